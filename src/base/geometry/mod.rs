@@ -1,0 +1,28 @@
+//! Geometry of the plane, in metres.
+
+pub mod polygon;
+pub mod segment;
+pub mod shape;
+
+pub use polygon::Polygon;
+pub use segment::Segment;
+pub use shape::{Bounds, Shape};
+
+/// A point or vector of the plane.
+pub type Vec2 = nalgebra::Vector2<f64>;
+
+/// The vector turned by a quarter to the left.
+pub fn left_of(v: Vec2) -> Vec2 {
+    Vec2::new(-v.y, v.x)
+}
+
+/// The vector turned by `angle` radians to the left.
+pub fn rotated(v: Vec2, angle: f64) -> Vec2 {
+    let (sin, cos) = super::math::sin_cos(angle);
+    Vec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)
+}
+
+/// The z component of the cross product.
+pub fn cross(a: Vec2, b: Vec2) -> f64 {
+    a.x * b.y - a.y * b.x
+}

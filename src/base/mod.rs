@@ -1,0 +1,11 @@
+//! Floor 0: what every other floor may use and what knows nothing of people, languages or statistics.
+//!
+//! Geometry of the plane, mathematics with the same bits on every machine, counter-based random
+//! streams, exact decimals, ticks of the clock, lane vectors and recorded traces.
+
+pub mod decimal;
+pub mod geometry;
+pub mod lanes;
+pub mod math;
+pub mod random;
+pub mod tick;

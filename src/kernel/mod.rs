@@ -1,0 +1,10 @@
+//! Floor 2: moving state and its laws: one step of eight trials at once, or of one large crowd.
+//!
+//! The three rules: a trial is a pure function of (model, seed, index); one lane is one trial; what one
+//! lane does never moves a byte of another.
+
+pub mod program;
+pub mod state;
+
+pub use program::Program;
+pub use state::{Layout, Slot, State};

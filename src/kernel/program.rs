@@ -1,0 +1,29 @@
+//! A scenario made ready to run: everything that is the same in every trial.
+
+use super::state::Layout;
+use crate::model::Scenario;
+use std::sync::Arc;
+
+/// Up to so many agents, one lane is one trial and all pairs interact in lanes; above, the lanes are
+/// agents of one trial and a cell list finds the pairs. The scene alone decides.
+pub const LARGEST_IN_LANES: usize = 64;
+
+/// A scenario made ready to run.
+#[derive(Clone, Debug)]
+pub struct Program {
+    /// What it runs.
+    pub scenario: Arc<Scenario>,
+    /// What the eight slots of a block are.
+    pub layout: Layout,
+    /// Length of a step, s.
+    pub dt: f64,
+}
+
+impl Program {
+    /// Prepares a scenario.
+    pub fn new(scenario: Arc<Scenario>) -> Self {
+        let layout = if scenario.agents.len() <= LARGEST_IN_LANES { Layout::Trials } else { Layout::Agents };
+        let dt = scenario.clock.step_seconds();
+        Self { scenario, layout, dt }
+    }
+}

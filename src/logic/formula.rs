@@ -1,0 +1,153 @@
+//! Formulas and metrics of bounded linear temporal logic (BLTL).
+//!
+//! Given-Wilson et al. 2017, equation (7), with intervals, weak until, release, and numbers of windows.
+//! A tree holds both kinds of nodes; children stand before their parents.
+
+use crate::base::tick::Tick;
+
+/// Index of a truth value that the observer supplies for each state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct AtomId(pub u32);
+
+/// Index of a number that the observer supplies for each state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct SignalId(pub u32);
+
+/// Index of a formula node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct NodeId(pub u32);
+
+/// Index of a numeric node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct TermId(pub u32);
+
+/// The states `from ..= to` after the present one, both ends included. `to: None` ranges over the
+/// states up to the horizon.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Window {
+    /// First state.
+    pub from: Tick,
+    /// Last state.
+    pub to: Option<Tick>,
+}
+
+/// A formula over the states from the present one on.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Node {
+    /// The same everywhere.
+    Constant(bool),
+    /// A truth value of the present state.
+    Atom(AtomId),
+    /// Comparison of two numbers, false where a side is not a number.
+    Compare(Relation, TermId, TermId),
+    /// Not.
+    Not(NodeId),
+    /// All of them; true if there are none.
+    And(Vec<NodeId>),
+    /// Any of them; false if there are none.
+    Or(Vec<NodeId>),
+    /// It holds at some state of the window.
+    Finally(Window, NodeId),
+    /// It holds at every state of the window.
+    Globally(Window, NodeId),
+    /// The second holds at some state of the window, and the first at every state before that, from the
+    /// present one on.
+    Until(Window, NodeId, NodeId),
+    /// Until, or the first holds at every state up to the end of the window.
+    WeakUntil(Window, NodeId, NodeId),
+    /// The second holds at every state of the window up to and including the first state at which the
+    /// first holds (which counts from the present state on): not (not first until not second).
+    Release(Window, NodeId, NodeId),
+}
+
+/// Relations of a comparison.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Relation {
+    /// `<`
+    Less,
+    /// `<=`
+    AtMost,
+    /// `>`
+    Greater,
+    /// `>=`
+    AtLeast,
+    /// `==`
+    Equal,
+    /// `!=`
+    Unequal,
+}
+
+/// Aggregates over a window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Aggregation {
+    /// Smallest.
+    Min,
+    /// Largest.
+    Max,
+    /// Sum over the states.
+    Sum,
+    /// Mean over the states.
+    Mean,
+}
+
+/// Arithmetic of two numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Operation {
+    /// Sum.
+    Add,
+    /// Difference.
+    Subtract,
+    /// Product.
+    Multiply,
+    /// Quotient.
+    Divide,
+    /// Smaller.
+    Min,
+    /// Larger.
+    Max,
+}
+
+/// A number of the states from the present one on.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Term {
+    /// The same everywhere.
+    Constant(f64),
+    /// A number of the present state.
+    Signal(SignalId),
+    /// Arithmetic.
+    Combine(Operation, TermId, TermId),
+    /// Magnitude.
+    Abs(TermId),
+    /// An aggregate over the states of a window.
+    Window(Aggregation, Window, TermId),
+    /// The number at the state so many ticks later.
+    Later(Tick, TermId),
+    /// The number at the last state before the horizon (the state at the horizon).
+    AtEnd(TermId),
+    /// Seconds until the formula first holds, counted from the present state; infinite if it never does
+    /// up to the horizon.
+    TimeUntil(NodeId),
+}
+
+/// A formula or metric with all its parts.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tree {
+    /// Formula nodes; children before parents.
+    pub nodes: Vec<Node>,
+    /// Numeric nodes; children before parents.
+    pub terms: Vec<Term>,
+}
+
+impl Tree {
+    /// Adds a formula node.
+    pub fn node(&mut self, node: Node) -> NodeId {
+        self.nodes.push(node);
+        NodeId(self.nodes.len() as u32 - 1)
+    }
+
+    /// Adds a numeric node.
+    pub fn term(&mut self, term: Term) -> TermId {
+        self.terms.push(term);
+        TermId(self.terms.len() as u32 - 1)
+    }
+}

@@ -1,0 +1,9 @@
+//! Floor 1: bounded linear temporal logic over traces: formulas, online monitors, metrics.
+//!
+//! The logic reads truth values and numbers of each state by index; it knows nothing of people.
+
+pub mod formula;
+
+pub use formula::{
+    Aggregation, AtomId, Node, NodeId, Operation, Relation, SignalId, Term, TermId, Tree, Window,
+};

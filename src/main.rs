@@ -1,0 +1,2 @@
+//! The command line; it only dispatches.
+fn main() {}

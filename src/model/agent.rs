@@ -1,0 +1,140 @@
+//! People: bodies, starts, routes, groups.
+
+use super::law::Law;
+use super::scene::RegionId;
+use crate::base::geometry::{Shape, Vec2};
+
+/// Index of an agent of the scenario.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct AgentId(pub u32);
+
+/// One person, or one body that stands for a group.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Agent {
+    /// `user`, `oncoming[3]`
+    pub name: String,
+    /// Stable number of 24 bits from the path of its declaration; addresses its random numbers.
+    pub entity: u32,
+    /// Laws of its parameters.
+    pub body: std::sync::Arc<Body>,
+    /// Where and how it starts.
+    pub start: Start,
+    /// Where it goes.
+    pub route: Route,
+    /// Its group, if its members are drawn together.
+    pub group: Option<u32>,
+    /// Set where this body stands for several persons.
+    pub particle: Option<Particle>,
+}
+
+/// Laws of the parameters of the social force model, in SI units.
+/// Helbing, Farkas, Vicsek 2000; Given-Wilson et al. 2017, equations (1) to (6).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    /// Mass, kg.
+    pub mass: Law,
+    /// Radius of the disc, m.
+    pub radius: Law,
+    /// Driving speed, m/s.
+    pub speed: Law,
+    /// Relaxation time of the driving force, s.
+    pub tau: Law,
+    /// Social force at touching distance, N.
+    pub a: Law,
+    /// Range of the social force, m.
+    pub b: Law,
+    /// Weight of what is behind, 0 to 1 (1: the same all around).
+    pub lambda: Law,
+    /// Second exponential term: force at touch, N (0: none).
+    pub a2: Law,
+    /// Second exponential term: range, m.
+    pub b2: Law,
+    /// Second exponential term: weight of what is behind.
+    pub lambda2: Law,
+    /// Body compression, kg/s^2.
+    pub k1: Law,
+    /// Sliding friction, kg/(m s).
+    pub k2: Law,
+    /// Stationary standard deviation of each velocity component, m/s.
+    pub noise: Law,
+}
+
+/// A body that stands for a group (Given-Wilson et al. 2017, section 4.2).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Particle {
+    /// Number of persons; the mass is the sum of so many draws, A is multiplied by it, noise divided by
+    /// its square root.
+    pub persons: u32,
+    /// Factor of the social force between two particles of more than one person.
+    pub repulsion: f64,
+    /// Friction constant where two such particles overlap, kg/(m s).
+    pub friction: f64,
+}
+
+/// Where and how an agent starts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Start {
+    /// Where.
+    pub position: Position,
+    /// Velocity, m/s.
+    pub velocity: Vec2,
+}
+
+/// A rule of placement.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Position {
+    /// At a point.
+    Point(Vec2),
+    /// Anywhere in a shape, without overlaps.
+    Within(Shape),
+    /// Anywhere within a distance of an agent that is placed before.
+    Near {
+        /// That agent.
+        agent: AgentId,
+        /// Largest distance of the centres, m.
+        within: f64,
+    },
+}
+
+/// Where an agent goes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Route {
+    /// Through goals in order; without any it stands.
+    Legs {
+        /// The legs.
+        legs: Vec<Leg>,
+        /// Whether it departs on reaching the last goal.
+        then_leave: bool,
+    },
+    /// On as it started: driving velocity is the start velocity (its direction and speed), for ever.
+    Onward,
+}
+
+/// One leg of a route.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Leg {
+    /// Walk there.
+    To(Goal),
+    /// Stand for a time, s.
+    Wait(Law),
+}
+
+/// Somewhere to go.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Goal {
+    /// A region of the scene: reached when the centre of the body is inside.
+    Region(RegionId),
+    /// A point.
+    Point(Vec2),
+}
+
+/// Members drawn together (Moussaïd, Perozo, Garnier, Helbing, Theraulaz 2010).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Group {
+    /// Its name.
+    pub name: String,
+    /// Its members.
+    pub members: Vec<AgentId>,
+    /// Force towards the centroid when farther than (n - 1)/2 m from it, N.
+    pub attraction: f64,
+}

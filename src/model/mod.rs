@@ -1,0 +1,15 @@
+//! Floor 1: what a scenario is once the language is gone. SI units, doubles, indices; no names to resolve.
+
+pub mod agent;
+pub mod expression;
+pub mod law;
+pub mod moves;
+pub mod scenario;
+pub mod scene;
+
+pub use agent::{Agent, AgentId, Body, Goal, Group, Leg, Particle, Position, Route, Start};
+pub use expression::{Arithmetic, Axis, Bool, Comparison, Field, Fold, Function, Num, Place, Set, Who};
+pub use law::{Family, Law};
+pub use moves::{Move, Moves};
+pub use scenario::Scenario;
+pub use scene::{Barrier, BarrierId, Obstacle, Region, RegionId, Scene};

@@ -1,0 +1,25 @@
+//! A whole scenario.
+
+use super::agent::{Agent, Group};
+use super::moves::Moves;
+use super::scene::Scene;
+use crate::base::tick::{Clock, Tick};
+
+/// Everything the kernel needs to know to run a trial.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scenario {
+    /// Its title.
+    pub title: String,
+    /// How time goes on.
+    pub clock: Clock,
+    /// Tick of the last state.
+    pub horizon: Tick,
+    /// What stands still.
+    pub scene: Scene,
+    /// Who moves.
+    pub agents: Vec<Agent>,
+    /// Groups whose members attract each other.
+    pub groups: Vec<Group>,
+    /// What may be suggested to whom.
+    pub moves: Vec<Moves>,
+}

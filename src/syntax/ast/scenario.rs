@@ -1,0 +1,302 @@
+//! Scenario files (`.scn`).
+
+use super::{Expr, Ident, Text};
+use crate::syntax::source::Span;
+
+/// A whole scenario file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ScenarioFile {
+    /// Declarations in order of writing.
+    pub items: Vec<Item>,
+}
+
+/// One declaration.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Item {
+    /// `scenario "Title"`
+    Title(Text),
+    /// `horizon = 30 s`, `step = 0.02 s`
+    Setting {
+        /// `horizon` or `step`, or a name that compilation will refuse.
+        name: Ident,
+        /// Its value.
+        value: Expr,
+    },
+    /// `const WIDTH = 4 m`
+    Const {
+        /// Its name.
+        name: Ident,
+        /// Its value.
+        value: Expr,
+    },
+    /// `param density = 0.4 /m^2 in 0 /m^2 .. 2 /m^2`
+    Param {
+        /// Its name.
+        name: Ident,
+        /// Default.
+        value: Expr,
+        /// Legal range, ends included.
+        range: Option<(Expr, Expr)>,
+    },
+    /// `let gap(a) = …`
+    Let(LetDecl),
+    /// `tracks hotel = eth_biwi "seq_hotel/obsmat.txt"`
+    Tracks {
+        /// Name of the recording.
+        name: Ident,
+        /// Format.
+        format: Ident,
+        /// File.
+        path: Text,
+    },
+    /// `scene { … }`
+    Scene(Vec<SceneItem>),
+    /// `kind adult: sfm { … }`
+    Kind(KindDecl),
+    /// `agent user: adult { … }`, `agents crowd[12]: adult { … }`
+    Agents(AgentsDecl),
+    /// `group friends[2]: companion { … }`
+    Group(GroupDecl),
+    /// `moves user for 2 s { … }`
+    Moves(MovesDecl),
+}
+
+/// `let gap(a) = distance(user, a) - radius(a)`; without arguments a named expression.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LetDecl {
+    /// Its name.
+    pub name: Ident,
+    /// Names of its arguments.
+    pub arguments: Vec<Ident>,
+    /// What it stands for.
+    pub body: Expr,
+}
+
+/// One declaration of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SceneItem {
+    /// `wall south: (0, 0) -- (20, 0) -- …`
+    Wall {
+        /// Its name, if any.
+        name: Option<Ident>,
+        /// Points joined by straight segments, at least two.
+        points: Vec<Expr>,
+        /// Where.
+        span: Span,
+    },
+    /// `obstacle pillar: circle (10, 2) radius 0.3 m`
+    Obstacle {
+        /// Its name, if any.
+        name: Option<Ident>,
+        /// Its shape.
+        shape: ShapeExpr,
+    },
+    /// `region exit: rect (18.5, 0) .. (20, 4)`
+    Region {
+        /// Its name.
+        name: Ident,
+        /// Its shape.
+        shape: ShapeExpr,
+    },
+    /// `point door: (3, 4)`
+    Point {
+        /// Its name.
+        name: Ident,
+        /// Where it is.
+        at: Expr,
+    },
+    /// `import "file.geojson" where source == "map.png"`
+    Import {
+        /// File.
+        path: Text,
+        /// Which features: comparisons of their properties with texts and numbers, joined by `&`, `|`, `!`.
+        filter: Option<Expr>,
+        /// Where.
+        span: Span,
+    },
+}
+
+/// A shape as written.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ShapeExpr {
+    /// The name of a region.
+    Named(Ident),
+    /// `circle (10, 2) radius 0.3 m`
+    Circle {
+        /// Centre.
+        centre: Expr,
+        /// Radius.
+        radius: Expr,
+        /// Where.
+        span: Span,
+    },
+    /// `rect (0, 0) .. (1, 4)`
+    Rectangle {
+        /// One corner.
+        a: Expr,
+        /// The opposite corner.
+        b: Expr,
+        /// Where.
+        span: Span,
+    },
+    /// `polygon (4, 4) (14, 4) (4, 14) hole (5, 5) (6, 5) (5, 6)`
+    Polygon {
+        /// Corners of the outline.
+        outline: Vec<Expr>,
+        /// Corners of each hole.
+        holes: Vec<Vec<Expr>>,
+        /// Where.
+        span: Span,
+    },
+}
+
+/// `name = value`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Field {
+    /// What is set.
+    pub name: Ident,
+    /// To what.
+    pub value: Value,
+}
+
+/// The value of a field.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// An expression, a distribution (a call) among them.
+    Plain(Expr),
+    /// `normal(75 kg, 10 kg) in 45 kg .. 120 kg`
+    Truncated {
+        /// The distribution.
+        law: Expr,
+        /// Lower end.
+        low: Expr,
+        /// Upper end.
+        high: Expr,
+    },
+    /// `uniform in hall`
+    UniformIn(ShapeExpr),
+    /// `near user within 2 m`
+    Near {
+        /// The agent.
+        agent: Expr,
+        /// Largest distance of the centres.
+        within: Expr,
+    },
+    /// `(9, 3) -> exit`, `exit then leave`, with at least two legs or a `then`; a single goal is `Plain`.
+    Route(Route),
+}
+
+/// A route as written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Route {
+    /// Legs in order.
+    pub legs: Vec<Leg>,
+    /// `then leave`: depart on reaching the last goal.
+    pub then_leave: Option<Span>,
+}
+
+/// One leg of a route.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Leg {
+    /// A region, point or coordinates.
+    Goal(Expr),
+    /// `wait lognormal(6 s, 1 s)`: a plain or truncated value.
+    Wait(Box<Value>),
+}
+
+/// `kind adult: sfm preset helbing2000 { … }`
+#[derive(Clone, Debug, PartialEq)]
+pub struct KindDecl {
+    /// Its name.
+    pub name: Ident,
+    /// `sfm`, or the kind it starts from.
+    pub base: Ident,
+    /// `preset name`
+    pub preset: Option<Ident>,
+    /// What it sets.
+    pub body: Vec<Field>,
+}
+
+/// `from hotel at 646.8 s id 367`, `from hotel at 646.8 s except 367, 368`, `from hotel at 646.8 s`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recorded {
+    /// Name of the recording.
+    pub tracks: Ident,
+    /// When.
+    pub at: Expr,
+    /// `id 367` or `id 3, 4`: only these.
+    pub only: Vec<Expr>,
+    /// `except 367, 368`: all present but these.
+    pub except: Vec<Expr>,
+    /// Where.
+    pub span: Span,
+}
+
+/// `agent user: adult { … }` or `agents crowd[12]: adult { … }`
+#[derive(Clone, Debug, PartialEq)]
+pub struct AgentsDecl {
+    /// Whether the keyword was `agents`.
+    pub plural: bool,
+    /// Name of the agent or set.
+    pub name: Ident,
+    /// `[n]`
+    pub count: Option<Expr>,
+    /// Its kind.
+    pub kind: Ident,
+    /// Behaviours attached by `with`: calls or names.
+    pub with: Vec<Expr>,
+    /// Start state from a recording.
+    pub recorded: Option<Recorded>,
+    /// What it sets; kinds' fields too.
+    pub body: Vec<Field>,
+}
+
+/// `group friends[2]: companion as particle { … }`
+#[derive(Clone, Debug, PartialEq)]
+pub struct GroupDecl {
+    /// Its name.
+    pub name: Ident,
+    /// Number of members.
+    pub count: Expr,
+    /// Kind of its members.
+    pub kind: Ident,
+    /// Where `as particle` stands, if it does.
+    pub particle: Option<Span>,
+    /// Behaviours attached by `with`.
+    pub with: Vec<Expr>,
+    /// What it sets.
+    pub body: Vec<Field>,
+}
+
+/// `moves user for 2 s { heading from -60 deg to 60 deg by 15 deg  stop }`
+#[derive(Clone, Debug, PartialEq)]
+pub struct MovesDecl {
+    /// Who may move otherwise.
+    pub agent: Ident,
+    /// For how long.
+    pub duration: Expr,
+    /// The options.
+    pub options: Vec<MoveOption>,
+    /// Where.
+    pub span: Span,
+}
+
+/// Options of a move.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MoveOption {
+    /// `heading from a to b by c`
+    Headings {
+        /// First.
+        from: Expr,
+        /// Last.
+        to: Expr,
+        /// Apart.
+        by: Expr,
+        /// Where.
+        span: Span,
+    },
+    /// `heading 15 deg`
+    Heading(Expr),
+    /// `stop`
+    Stop(Span),
+}

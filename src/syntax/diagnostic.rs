@@ -1,0 +1,92 @@
+//! What the front end says about a source: code, place, message, hint.
+
+use super::source::Span;
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// Nothing runs.
+    Error,
+    /// It runs, but look.
+    Warning,
+}
+
+/// A place and what is said there.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Label {
+    /// The marked bytes.
+    pub span: Span,
+    /// Said beside the mark; may be empty.
+    pub text: String,
+}
+
+/// One error or warning. One sentence, lower case, no full stop; the remedy in the hint.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// Error or warning.
+    pub severity: Severity,
+    /// Stable code, such as `E0201`; every code has a page (`smc explain`).
+    pub code: &'static str,
+    /// What is wrong.
+    pub title: String,
+    /// The place. `None` only for what has none (a missing file).
+    pub place: Option<Label>,
+    /// Further places that explain it.
+    pub related: Vec<Label>,
+    /// What to do about it.
+    pub hint: Option<String>,
+}
+
+impl Diagnostic {
+    /// An error at a place.
+    pub fn error(code: &'static str, span: Span, title: impl Into<String>) -> Self {
+        Self {
+            severity: Severity::Error,
+            code,
+            title: title.into(),
+            place: Some(Label { span, text: String::new() }),
+            related: Vec::new(),
+            hint: None,
+        }
+    }
+
+    /// A warning at a place.
+    pub fn warning(code: &'static str, span: Span, title: impl Into<String>) -> Self {
+        Self { severity: Severity::Warning, ..Self::error(code, span, title) }
+    }
+
+    /// An error that has no place in a source.
+    pub fn placeless(code: &'static str, title: impl Into<String>) -> Self {
+        Self {
+            severity: Severity::Error,
+            code,
+            title: title.into(),
+            place: None,
+            related: Vec::new(),
+            hint: None,
+        }
+    }
+
+    /// Says something beside the mark.
+    #[must_use]
+    pub fn label(mut self, text: impl Into<String>) -> Self {
+        if let Some(place) = &mut self.place {
+            place.text = text.into();
+        }
+        self
+    }
+
+    /// Marks a further place.
+    #[must_use]
+    pub fn related(mut self, span: Span, text: impl Into<String>) -> Self {
+        self.related.push(Label { span, text: text.into() });
+        self
+    }
+
+    /// Says what to do.
+    #[must_use]
+    pub fn hint(mut self, hint: impl Into<String>) -> Self {
+        self.hint = Some(hint.into());
+        self
+    }
+}
