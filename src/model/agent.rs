@@ -69,6 +69,10 @@ pub struct Particle {
     pub repulsion: f64,
     /// Friction constant where two such particles overlap, kg/(m s).
     pub friction: f64,
+    /// Factor of the radius as drawn: the root of `persons` (equal area) unless the group sets its own.
+    pub radius_factor: f64,
+    /// Factor of the relaxation time as drawn: the root of `persons` unless the group sets its own.
+    pub tau_factor: f64,
 }
 
 /// Where and how an agent starts.

@@ -1,0 +1,255 @@
+//! The state of compilation under one combination of parameter values.
+
+use super::dimension::{Dimension, describe};
+use super::number::Number;
+use super::symbols::{Scope, ScopeId};
+use super::typed::Typed;
+use crate::base::geometry::{Shape, Vec2};
+use crate::base::tick::{Clock, Tick};
+use crate::data::tracks::Recording;
+use crate::logic::{Node, NodeId, SignalId, Term, TermId, Tree};
+use crate::model::{AgentId, Bool, Num, Scene};
+use crate::syntax::ast::Expr;
+use crate::syntax::diagnostic::{Diagnostic, Severity};
+use crate::syntax::source::{Source, Span};
+use std::collections::BTreeMap;
+
+/// An error was reported; what depends on it is left out without another word.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reported;
+
+/// A result whose error has been reported.
+pub(super) type Lowered<T> = Result<T, Reported>;
+
+/// How deep expressions may nest once names are expanded.
+const DEEPEST: u32 = 1000;
+/// How many expression nodes one combination of parameter values may expand to.
+const MOST_NODES: u64 = 4_000_000;
+
+/// Names of enclosing expressions: function arguments and quantified agents.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Locals {
+    /// Which table of names is looked up after the locals.
+    pub(super) scope: ScopeId,
+    /// Bound names, innermost last.
+    pub(super) names: Vec<(String, Typed)>,
+    /// Number of enclosing folds over agents.
+    pub(super) running: u32,
+}
+
+impl Locals {
+    /// No locals in a scope.
+    pub(super) fn of(scope: ScopeId) -> Self {
+        Self { scope, ..Self::default() }
+    }
+}
+
+/// The state of compilation.
+pub(super) struct Elaborator<'a> {
+    /// Sources, for texts.
+    pub(super) sources: &'a [Source],
+    /// Tables of names.
+    pub(super) scopes: Vec<Scope<'a>>,
+    /// Values of parameters that are set.
+    pub(super) settings: BTreeMap<String, Number>,
+    /// Values of constants and parameters so far.
+    pub(super) constants: BTreeMap<(ScopeId, String), Lowered<Typed>>,
+    /// Names whose expansion is under way.
+    pub(super) expanding: Vec<(ScopeId, String)>,
+    /// Recordings read so far.
+    pub(super) recordings: Vec<Option<Recording>>,
+    /// Shapes of regions known so far.
+    pub(super) shapes: Vec<Option<Lowered<Shape>>>,
+    /// The scene.
+    pub(super) scene: Scene,
+    /// Names of the agents so far.
+    pub(super) agent_names: Vec<String>,
+    /// The clock.
+    pub(super) clock: Clock,
+    /// Last tick.
+    pub(super) horizon: Tick,
+    /// Whether formulas over time are allowed at present.
+    pub(super) temporal: bool,
+    /// What is observed.
+    pub(super) tree: Tree,
+    /// Truth values observed.
+    pub(super) atoms: Vec<Bool>,
+    /// Their sources.
+    pub(super) atom_texts: Vec<String>,
+    /// Numbers observed.
+    pub(super) signals: Vec<Num>,
+    /// What was found wrong.
+    pub(super) diagnostics: Vec<Diagnostic>,
+    /// Present depth of lowering.
+    pub(super) depth: u32,
+    /// Nodes lowered so far.
+    pub(super) nodes: u64,
+}
+
+impl<'a> Elaborator<'a> {
+    /// Nothing known yet.
+    pub(super) fn new(sources: &'a [Source], settings: BTreeMap<String, Number>) -> Self {
+        Self {
+            sources,
+            scopes: vec![Scope::default()],
+            settings,
+            constants: BTreeMap::new(),
+            expanding: Vec::new(),
+            recordings: Vec::new(),
+            shapes: Vec::new(),
+            scene: Scene::default(),
+            agent_names: Vec::new(),
+            clock: Clock::Steps,
+            horizon: Tick(0),
+            temporal: false,
+            tree: Tree::default(),
+            atoms: Vec::new(),
+            atom_texts: Vec::new(),
+            signals: Vec::new(),
+            diagnostics: Vec::new(),
+            depth: 0,
+            nodes: 0,
+        }
+    }
+
+    /// Reports an error.
+    pub(super) fn report<T>(&mut self, diagnostic: Diagnostic) -> Lowered<T> {
+        self.note(diagnostic);
+        Err(Reported)
+    }
+
+    /// Notes an error or warning, each place once.
+    pub(super) fn note(&mut self, diagnostic: Diagnostic) {
+        if !self.diagnostics.contains(&diagnostic) {
+            self.diagnostics.push(diagnostic);
+        }
+    }
+
+    /// Whether an error was found.
+    pub(super) fn failed(&self) -> bool {
+        self.diagnostics.iter().any(|d| d.severity == Severity::Error)
+    }
+
+    /// The text of a span.
+    pub(super) fn text(&self, span: Span) -> String {
+        let text = self.sources.iter().find(|s| s.id == span.source).map_or("", |s| s.slice(span));
+        text.split_whitespace().collect::<Vec<_>>().join(" ")
+    }
+
+    /// Expected one thing, found another.
+    pub(super) fn mismatch<T>(&mut self, span: Span, expected: &str, found: &Typed) -> Lowered<T> {
+        let error = Diagnostic::error("E0305", span, format!("expected {expected}, found {}", found.noun()));
+        self.report(error)
+    }
+
+    /// Two dimensions that ought to be one.
+    pub(super) fn wrong_dimension<T>(&mut self, span: Span, expected: Dimension, found: Dimension) -> Lowered<T> {
+        let mut error = Diagnostic::error(
+            "E0303",
+            span,
+            format!("expected {}, found {}", describe(expected), describe(found)),
+        );
+        if found.is_none() && !expected.is_none() {
+            error = error.hint(format!("write the unit, as in `{} {expected}`", self.text(span)));
+        }
+        self.report(error)
+    }
+
+    /// Counts one more level; an error where expressions nest or grow beyond reason.
+    pub(super) fn descend(&mut self, span: Span) -> Lowered<()> {
+        self.depth += 1;
+        self.nodes += 1;
+        if self.depth > DEEPEST {
+            let error = Diagnostic::error("E0211", span, format!("this nests deeper than {DEEPEST} once names are expanded"));
+            return self.report(error);
+        }
+        if self.nodes > MOST_NODES {
+            let error = Diagnostic::error("E0211", span, "this grows beyond reason once names are expanded")
+                .hint("quantifiers over formulas are written out for every agent; quantify over states where you can");
+            return self.report(error);
+        }
+        Ok(())
+    }
+
+    /// A number known at compile time, of a given dimension.
+    pub(super) fn number_of(&mut self, expr: &Expr, dimension: Dimension, locals: &Locals) -> Lowered<Number> {
+        let number = self.number(expr, locals)?;
+        if number.dimension != dimension {
+            return self.wrong_dimension(expr.span, dimension, number.dimension);
+        }
+        if !number.value.is_finite() {
+            let error = Diagnostic::error("E0405", expr.span, "this is not a finite number");
+            return self.report(error);
+        }
+        Ok(number)
+    }
+
+    /// A number known at compile time.
+    pub(super) fn number(&mut self, expr: &Expr, locals: &Locals) -> Lowered<Number> {
+        match self.lower(expr, locals)? {
+            Typed::Number(number) => Ok(number),
+            found @ (Typed::Num(..) | Typed::Term(..)) => {
+                let error = Diagnostic::error("E0304", expr.span, "this must be known before a trial starts")
+                    .label(format!("{} that changes during a trial", found.noun()));
+                self.report(error)
+            }
+            found => self.mismatch(expr.span, "a number", &found),
+        }
+    }
+
+    /// A point known at compile time, in metres (or metres per second).
+    pub(super) fn point_of(&mut self, expr: &Expr, dimension: Dimension, locals: &Locals) -> Lowered<Vec2> {
+        match self.lower(expr, locals)? {
+            Typed::Point(x, y) if x.dimension == dimension => Ok(Vec2::new(x.value, y.value)),
+            Typed::Point(x, _) => self.wrong_dimension(expr.span, dimension, x.dimension),
+            found => self.mismatch(expr.span, "a point such as `(1, 2)`", &found),
+        }
+    }
+
+    /// A formula node, shared with equal ones.
+    pub(super) fn node(&mut self, node: Node) -> NodeId {
+        match self.tree.nodes.iter().position(|n| *n == node) {
+            Some(at) => NodeId(at as u32),
+            None => self.tree.node(node),
+        }
+    }
+
+    /// A numeric node, shared with equal ones.
+    pub(super) fn term(&mut self, term: Term) -> TermId {
+        match self.tree.terms.iter().position(|t| *t == term) {
+            Some(at) => TermId(at as u32),
+            None => self.tree.term(term),
+        }
+    }
+
+    /// The formula that reads a truth value of the present state.
+    pub(super) fn atom(&mut self, truth: Bool, span: Span) -> NodeId {
+        if let Bool::Constant(value) = truth {
+            return self.node(Node::Constant(value));
+        }
+        let at = self.atoms.iter().position(|a| *a == truth).unwrap_or_else(|| {
+            self.atoms.push(truth);
+            let text = self.text(span);
+            self.atom_texts.push(text);
+            self.atoms.len() - 1
+        });
+        self.node(Node::Atom(crate::logic::AtomId(at as u32)))
+    }
+
+    /// The term that reads a number of the present state.
+    pub(super) fn signal(&mut self, num: Num) -> TermId {
+        if let Num::Constant(value) = num {
+            return self.term(Term::Constant(value));
+        }
+        let at = self.signals.iter().position(|s| *s == num).unwrap_or_else(|| {
+            self.signals.push(num);
+            self.signals.len() - 1
+        });
+        self.term(Term::Signal(SignalId(at as u32)))
+    }
+
+    /// All agents of the scenario.
+    pub(super) fn everyone(&self) -> std::sync::Arc<[AgentId]> {
+        (0..self.agent_names.len() as u32).map(AgentId).collect()
+    }
+}

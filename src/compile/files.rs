@@ -1,0 +1,55 @@
+//! Files that a scenario names. They are opened by the command line; here they are bytes.
+
+use crate::syntax::ast::{Item, SceneItem, ScenarioFile};
+use crate::syntax::source::Span;
+use std::collections::BTreeMap;
+
+/// A file that a scenario names.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Request {
+    /// As written.
+    pub path: String,
+    /// Where it is named.
+    pub span: Span,
+}
+
+/// All files that a scenario names.
+pub fn requests(file: &ScenarioFile) -> Vec<Request> {
+    let mut found = Vec::new();
+    for item in &file.items {
+        match item {
+            Item::Tracks { path, .. } => found.push(Request { path: path.value.clone(), span: path.span }),
+            Item::Scene(items) => {
+                for item in items {
+                    if let SceneItem::Import { path, .. } = item {
+                        found.push(Request { path: path.value.clone(), span: path.span });
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
+/// The contents of the files that were asked for, or why there are none.
+#[derive(Clone, Debug, Default)]
+pub struct Files {
+    contents: BTreeMap<String, Result<Vec<u8>, String>>,
+}
+
+impl Files {
+    /// Hands over the contents of a path, or a sentence why there are none.
+    pub fn insert(&mut self, path: impl Into<String>, contents: Result<Vec<u8>, String>) {
+        self.contents.insert(path.into(), contents);
+    }
+
+    /// The contents of a path.
+    pub fn get(&self, path: &str) -> Result<&[u8], String> {
+        match self.contents.get(path) {
+            Some(Ok(bytes)) => Ok(bytes),
+            Some(Err(reason)) => Err(reason.clone()),
+            None => Err(format!("`{path}` was not opened")),
+        }
+    }
+}

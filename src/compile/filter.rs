@@ -1,0 +1,69 @@
+//! Filters of imports: comparisons of a feature's properties, joined by `&`, `|`, `!`.
+
+use crate::data::geometry::{Feature, PropertyValue};
+use crate::syntax::ast::{BinaryOp, Expr, ExprKind, UnaryOp};
+use crate::syntax::diagnostic::Diagnostic;
+
+/// A side of a comparison.
+#[derive(Clone, Debug, PartialEq)]
+enum Side {
+    Text(String),
+    Number(f64),
+    Bool(bool),
+    /// The feature has no such property.
+    Absent,
+}
+
+/// Whether the filter selects the feature. A property that a feature lacks equals nothing.
+pub(super) fn selects(filter: &Expr, feature: &Feature) -> Result<bool, Diagnostic> {
+    match &filter.kind {
+        ExprKind::Bool(value) => Ok(*value),
+        ExprKind::Unary(UnaryOp::Not, inner) => Ok(!selects(inner, feature)?),
+        ExprKind::Binary(BinaryOp::And, a, b) => Ok(selects(a, feature)? & selects(b, feature)?),
+        ExprKind::Binary(BinaryOp::Or, a, b) => Ok(selects(a, feature)? | selects(b, feature)?),
+        ExprKind::Binary(op, a, b) => {
+            let (a, b) = (side(a, feature)?, side(b, feature)?);
+            let order = match (&a, &b) {
+                (Side::Text(a), Side::Text(b)) => Some(a.cmp(b)),
+                (Side::Number(a), Side::Number(b)) => a.partial_cmp(b),
+                (Side::Bool(a), Side::Bool(b)) => Some(a.cmp(b)),
+                _ => None,
+            };
+            match op {
+                BinaryOp::Equal => Ok(order.is_some_and(std::cmp::Ordering::is_eq)),
+                BinaryOp::Unequal => Ok(!order.is_some_and(std::cmp::Ordering::is_eq)),
+                BinaryOp::Less => Ok(order.is_some_and(std::cmp::Ordering::is_lt)),
+                BinaryOp::AtMost => Ok(order.is_some_and(std::cmp::Ordering::is_le)),
+                BinaryOp::Greater => Ok(order.is_some_and(std::cmp::Ordering::is_gt)),
+                BinaryOp::AtLeast => Ok(order.is_some_and(std::cmp::Ordering::is_ge)),
+                _ => Err(wrong(filter)),
+            }
+        }
+        _ => Err(wrong(filter)),
+    }
+}
+
+fn side(expr: &Expr, feature: &Feature) -> Result<Side, Diagnostic> {
+    match &expr.kind {
+        ExprKind::Text(text) => Ok(Side::Text(text.clone())),
+        ExprKind::Bool(value) => Ok(Side::Bool(*value)),
+        ExprKind::Quantity(q) if q.unit.is_none() => Ok(Side::Number(q.value.to_f64())),
+        ExprKind::Unary(UnaryOp::Minus, inner) => match side(inner, feature)? {
+            Side::Number(value) => Ok(Side::Number(-value)),
+            _ => Err(wrong(expr)),
+        },
+        ExprKind::Name(name) if name == "name" => Ok(Side::Text(feature.name.clone())),
+        ExprKind::Name(name) => Ok(match feature.properties.iter().find(|(n, _)| n == name).map(|(_, v)| v) {
+            Some(PropertyValue::Text(text)) => Side::Text(text.clone()),
+            Some(PropertyValue::Number(value)) => Side::Number(*value),
+            Some(PropertyValue::Bool(value)) => Side::Bool(*value),
+            None => Side::Absent,
+        }),
+        _ => Err(wrong(expr)),
+    }
+}
+
+fn wrong(expr: &Expr) -> Diagnostic {
+    Diagnostic::error("E0305", expr.span, "a filter compares properties of features with texts, numbers or truth values")
+        .hint("for example `where source == \"map.png\" & height > 1`")
+}

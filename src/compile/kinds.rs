@@ -1,0 +1,171 @@
+//! Kinds of agents: parameters inherited, preset, overridden.
+
+use super::elaborator::{Elaborator, Locals, Lowered, Reported};
+use super::laws::value_span;
+use super::presets::{PARAMETERS, PRESETS, law};
+use super::symbols::{Meaning, unknown};
+use crate::model::{Body, Law};
+use crate::syntax::ast::{Field, Ident};
+use crate::syntax::diagnostic::Diagnostic;
+
+/// The parameters of a kind as far as they are known.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Kind {
+    /// A law for each of `PARAMETERS`.
+    pub(super) laws: [Option<Law>; PARAMETERS.len()],
+}
+
+/// Index of a parameter.
+pub(super) fn parameter(name: &str) -> Option<usize> {
+    PARAMETERS.iter().position(|(n, ..)| *n == name)
+}
+
+impl Kind {
+    /// The law of a parameter.
+    pub(super) fn law(&self, name: &str) -> Option<&Law> {
+        parameter(name).and_then(|at| self.laws[at].as_ref())
+    }
+
+    /// Sets the law of a parameter.
+    pub(super) fn set(&mut self, name: &str, law: Law) {
+        if let Some(at) = parameter(name) {
+            self.laws[at] = Some(law);
+        }
+    }
+}
+
+impl Elaborator<'_> {
+    /// The parameters of a kind by name.
+    pub(super) fn kind(&mut self, name: &Ident) -> Lowered<Kind> {
+        if name.name == "sfm" {
+            return Ok(Kind::default());
+        }
+        let Some((_, meaning)) = self.find(&name.name, 0) else {
+            let kinds: Vec<String> = self.scopes[0]
+                .entries()
+                .filter(|(_, e)| matches!(e.meaning, Meaning::Kind(_)))
+                .map(|(n, _)| n.to_owned())
+                .chain(["sfm".to_owned()])
+                .collect();
+            let error = unknown("kind", &name.name, name.span, "E0208", kinds.iter().map(String::as_str));
+            return self.report(error);
+        };
+        let Meaning::Kind(decl) = meaning else {
+            let error = Diagnostic::error("E0206", name.span, format!("expected a kind, `{}` is {}", name.name, meaning.noun()));
+            return self.report(error);
+        };
+        if self.expanding.iter().any(|(_, n)| *n == name.name) {
+            return self.report(Diagnostic::error("E0205", name.span, format!("the kind `{}` starts from itself", name.name)));
+        }
+        self.expanding.push((0, name.name.clone()));
+        let mut kind = self.kind(&decl.base);
+        self.expanding.pop();
+        if let Some(preset) = &decl.preset {
+            if PRESETS.iter().any(|p| p.name == preset.name) {
+                if let Ok(kind) = &mut kind {
+                    for (parameter, ..) in PARAMETERS {
+                        if let Some(law) = law(&preset.name, parameter) {
+                            kind.set(parameter, law);
+                        }
+                    }
+                }
+            } else {
+                let error = unknown("preset", &preset.name, preset.span, "E0208", PRESETS.iter().map(|p| p.name))
+                    .hint(format!("known presets: {}", PRESETS.map(|p| p.name).join(", ")));
+                self.note(error);
+                kind = Err(Reported);
+            }
+        }
+        let rest = self.parameters(&decl.body, kind.as_mut().ok(), &Locals::default());
+        for field in rest {
+            let known = PARAMETERS.iter().map(|(n, ..)| *n);
+            let error = unknown("parameter", &field.name.name, field.name.span, "E0207", known);
+            self.note(error);
+            kind = Err(Reported);
+        }
+        kind
+    }
+
+    /// Takes the parameters among some fields into a kind; returns the other fields.
+    pub(super) fn parameters<'f>(&mut self, fields: &'f [Field], mut kind: Option<&mut Kind>, locals: &Locals) -> Vec<&'f Field> {
+        let mut rest = Vec::new();
+        for (at, field) in fields.iter().enumerate() {
+            if let Some(first) = fields[..at].iter().find(|f| f.name.name == field.name.name) {
+                let error = Diagnostic::error("E0202", field.name.span, format!("`{}` is set twice", field.name.name))
+                    .related(first.name.span, "first set here");
+                self.note(error);
+                continue;
+            }
+            let Some(index) = parameter(&field.name.name) else {
+                rest.push(field);
+                continue;
+            };
+            let (name, dimension, _) = PARAMETERS[index];
+            let Ok(law) = self.law(&field.value, dimension, locals) else { continue };
+            if let Some(reason) = out_of_range(name, &law) {
+                self.note(Diagnostic::error("E0405", value_span(&field.value), reason));
+                continue;
+            }
+            if let Some(kind) = &mut kind {
+                kind.laws[index] = Some(law);
+            }
+        }
+        rest
+    }
+
+    /// The body of a kind: every parameter must be known now.
+    pub(super) fn body(&mut self, kind: &Kind, name: &Ident) -> Lowered<Body> {
+        let missing: Vec<&str> = PARAMETERS
+            .iter()
+            .enumerate()
+            .filter(|(at, (_, _, default))| kind.laws[*at].is_none() && default.is_none())
+            .map(|(_, (name, ..))| *name)
+            .collect();
+        if !missing.is_empty() {
+            let error = Diagnostic::error("E0209", name.span, format!("`{}` has no {}", name.name, missing.join(", ")))
+                .hint("set them, or start from a preset: `kind adult: sfm preset helbing2000 { … }`");
+            return self.report(error);
+        }
+        let law = |name: &str| {
+            kind.law(name).cloned().or_else(|| parameter(name).and_then(|at| PARAMETERS[at].2).map(Law::Constant))
+        };
+        let all = || -> Option<Body> {
+            Some(Body {
+                mass: law("mass")?,
+                radius: law("radius")?,
+                speed: law("speed")?,
+                tau: law("tau")?,
+                a: law("A")?,
+                b: law("B")?,
+                lambda: law("lambda")?,
+                a2: law("A2")?,
+                b2: law("B2")?,
+                lambda2: law("lambda2")?,
+                k1: law("k1")?,
+                k2: law("k2")?,
+                noise: law("noise")?,
+            })
+        };
+        all().ok_or(Reported)
+    }
+}
+
+/// Why a law cannot be that of a parameter: the support must be physically possible.
+fn out_of_range(name: &str, law: &Law) -> Option<String> {
+    let (low, high) = law.bounds();
+    let positive = matches!(name, "mass" | "radius" | "tau" | "B" | "B2");
+    let share = matches!(name, "lambda" | "lambda2");
+    let constant = law.constant().is_some();
+    let truncate = if constant { "" } else { "; truncate the distribution: `… in lo .. hi`" };
+    if positive && (low < 0.0 || (constant && low == 0.0)) {
+        return Some(format!("`{name}` must be positive{truncate}"));
+    }
+    if !positive && low < 0.0 {
+        return Some(format!("`{name}` cannot be negative{truncate}"));
+    }
+    if share && high > 1.0 {
+        return Some(format!("`{name}` lies between 0 and 1{truncate}"));
+    }
+    None
+}
+

@@ -1,0 +1,138 @@
+//! Values of parameters: constants and distributions.
+
+use super::dimension::Dimension;
+use super::elaborator::{Elaborator, Locals, Lowered};
+use super::lower::DISTRIBUTIONS;
+use crate::model::{Family, Law};
+use crate::syntax::ast::{Expr, ExprKind, Value};
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+
+/// The span of a field's value.
+pub(super) fn value_span(value: &Value) -> Span {
+    match value {
+        Value::Plain(expr) => expr.span,
+        Value::Truncated { law, high, .. } => law.span.to(high.span),
+        Value::UniformIn(shape) => shape_span(shape),
+        Value::Near { agent, within } => agent.span.to(within.span),
+        Value::Route(route) => route
+            .legs
+            .iter()
+            .map(|leg| match leg {
+                crate::syntax::ast::Leg::Goal(goal) => goal.span,
+                crate::syntax::ast::Leg::Wait(value) => value_span(value),
+            })
+            .reduce(Span::to)
+            .unwrap_or_default(),
+    }
+}
+
+/// The span of a shape.
+pub(super) fn shape_span(shape: &crate::syntax::ast::ShapeExpr) -> Span {
+    use crate::syntax::ast::ShapeExpr;
+    match shape {
+        ShapeExpr::Named(name) => name.span,
+        ShapeExpr::Circle { span, .. } | ShapeExpr::Rectangle { span, .. } | ShapeExpr::Polygon { span, .. } => *span,
+    }
+}
+
+impl Elaborator<'_> {
+    /// The law of a parameter of a given dimension.
+    pub(super) fn law(&mut self, value: &Value, dimension: Dimension, locals: &Locals) -> Lowered<Law> {
+        match value {
+            Value::Plain(expr) => match distribution(expr) {
+                Some((name, arguments)) => {
+                    let family = self.family(name, expr.span, arguments, dimension, locals)?;
+                    self.validated(family, f64::NEG_INFINITY, f64::INFINITY, expr.span)
+                }
+                None => self.number_of(expr, dimension, locals).map(|n| Law::Constant(n.value)),
+            },
+            Value::Truncated { law, low, high } => {
+                let ends = (self.number_of(low, dimension, locals), self.number_of(high, dimension, locals));
+                let Some((name, arguments)) = distribution(law) else {
+                    let error = Diagnostic::error("E0404", law.span, "only a distribution can be truncated")
+                        .hint(format!("for example `normal(mean, sd) in lo .. hi`; known are {}", DISTRIBUTIONS.join(", ")));
+                    return self.report(error);
+                };
+                let family = self.family(name, law.span, arguments, dimension, locals)?;
+                let (low, high) = (ends.0?.value, ends.1?.value);
+                self.validated(family, low, high, law.span)
+            }
+            other => {
+                let error = Diagnostic::error("E0305", value_span(other), "expected a number or a distribution");
+                self.report(error)
+            }
+        }
+    }
+
+    fn validated(&mut self, family: Family, low: f64, high: f64, span: Span) -> Lowered<Law> {
+        let law = Law::Random { family, low, high };
+        match law.validate() {
+            Ok(()) => Ok(law),
+            Err(reason) => self.report(Diagnostic::error("E0404", span, reason)),
+        }
+    }
+
+    fn family(
+        &mut self,
+        name: &str,
+        span: Span,
+        arguments: &[Expr],
+        dimension: Dimension,
+        locals: &Locals,
+    ) -> Lowered<Family> {
+        let wanted = match name {
+            "choice" => arguments.len().max(1),
+            "exponential" | "poisson" | "bernoulli" => 1,
+            _ => 2,
+        };
+        if arguments.len() != wanted {
+            let usage = match name {
+                "uniform" | "uniform_int" => "its ends: `uniform(low, high)`".to_owned(),
+                "exponential" | "poisson" => format!("its mean: `{name}(mean)`"),
+                "bernoulli" => "the probability of 1: `bernoulli(p)`".to_owned(),
+                "choice" => "the values to choose from".to_owned(),
+                _ => format!("mean and standard deviation: `{name}(mean, sd)`"),
+            };
+            return self.report(Diagnostic::error("E0204", span, format!("`{name}` takes {usage}")));
+        }
+        let numbers: Vec<_> = arguments.iter().map(|a| self.number_of(a, dimension, locals)).collect();
+        let numbers: Vec<f64> = numbers.into_iter().collect::<Lowered<Vec<_>>>()?.iter().map(|n| n.value).collect();
+        let (first, second) = (numbers[0], numbers.get(1).copied().unwrap_or(0.0));
+        if matches!(name, "uniform_int" | "poisson" | "bernoulli") && !dimension.is_none() {
+            let error = Diagnostic::error("E0404", span, format!("`{name}` gives pure numbers, here {dimension} is needed"));
+            return self.report(error);
+        }
+        Ok(match name {
+            "normal" => Family::Normal { mean: first, sd: second },
+            "lognormal" => Family::LogNormal { mean: first, sd: second },
+            "uniform" => Family::Uniform { low: first, high: second },
+            "uniform_int" => {
+                if first.fract() != 0.0 || second.fract() != 0.0 {
+                    return self.report(Diagnostic::error("E0404", span, "the ends of `uniform_int` must be whole"));
+                }
+                Family::UniformInt { low: first as i64, high: second as i64 }
+            }
+            "exponential" => Family::Exponential { mean: first },
+            "poisson" => Family::Poisson { mean: first },
+            "bernoulli" => Family::Bernoulli { p: first },
+            "beta" => Family::Beta { mean: first, sd: second },
+            "gamma" => Family::Gamma { mean: first, sd: second },
+            "weibull" => Family::Weibull { mean: first, sd: second },
+            _ => {
+                let weight = 1.0 / numbers.len() as f64;
+                Family::Choice(numbers.into_iter().map(|value| (value, weight)).collect())
+            }
+        })
+    }
+}
+
+/// The name and arguments of a distribution.
+fn distribution(expr: &Expr) -> Option<(&str, &[Expr])> {
+    match &expr.kind {
+        ExprKind::Call { function, arguments } if DISTRIBUTIONS.contains(&function.name.as_str()) => {
+            Some((&function.name, arguments))
+        }
+        _ => None,
+    }
+}

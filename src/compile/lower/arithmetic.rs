@@ -1,0 +1,182 @@
+//! Arithmetic, with dimensions.
+
+use super::super::dimension::{Dimension, describe};
+use super::super::elaborator::{Elaborator, Locals, Lowered};
+use super::super::number::Number;
+use super::super::typed::Typed;
+use crate::base::math;
+use crate::logic::{Operation, Term};
+use crate::model::{Arithmetic, Function, Num};
+use crate::syntax::ast::{BinaryOp, Expr, ExprKind};
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+
+impl Elaborator<'_> {
+    pub(super) fn lower_minus(&mut self, operand: &Expr, locals: &Locals) -> Lowered<Typed> {
+        match self.lower(operand, locals)? {
+            Typed::Number(number) => Ok(Typed::Number(number.negated())),
+            Typed::Point(x, y) => Ok(Typed::Point(x.negated(), y.negated())),
+            Typed::Num(num, dimension) => Ok(Typed::Num(Num::Apply(Function::Negate, Box::new(num)), dimension)),
+            Typed::Vector(x, y, dimension) => {
+                let negate = |n| Num::Apply(Function::Negate, Box::new(n));
+                Ok(Typed::Vector(negate(x), negate(y), dimension))
+            }
+            Typed::Term(term, dimension) => {
+                let zero = self.term(Term::Constant(0.0));
+                Ok(Typed::Term(self.term(Term::Combine(Operation::Subtract, zero, term)), dimension))
+            }
+            found => self.mismatch(operand.span, "a number", &found),
+        }
+    }
+
+    pub(super) fn lower_arithmetic(
+        &mut self,
+        span: Span,
+        op: BinaryOp,
+        left: &Expr,
+        right: &Expr,
+        locals: &Locals,
+    ) -> Lowered<Typed> {
+        if op == BinaryOp::Power {
+            return self.lower_power(span, left, right, locals);
+        }
+        let sides = (self.lower(left, locals), self.lower(right, locals));
+        let (a, b) = (sides.0?, sides.1?);
+        if let (Typed::Number(a), Typed::Number(b)) = (&a, &b) {
+            return self.fold(span, op, (*a, left), (*b, right)).map(Typed::Number);
+        }
+        if is_vector(&a) || is_vector(&b) {
+            return self.lower_vector(op, (a, left.span), (b, right.span));
+        }
+        if matches!(a, Typed::Term(..)) || matches!(b, Typed::Term(..)) {
+            let (a, da) = self.as_term(a, left.span)?;
+            let (b, db) = self.as_term(b, right.span)?;
+            let dimension = self.joined(span, op, da, db, right.span)?;
+            let operation = match op {
+                BinaryOp::Plus => Operation::Add,
+                BinaryOp::Minus => Operation::Subtract,
+                BinaryOp::Times => Operation::Multiply,
+                _ => Operation::Divide,
+            };
+            return Ok(Typed::Term(self.term(Term::Combine(operation, a, b)), dimension));
+        }
+        let (a, da) = self.as_num(a, left.span)?;
+        let (b, db) = self.as_num(b, right.span)?;
+        let dimension = self.joined(span, op, da, db, right.span)?;
+        Ok(Typed::Num(Num::Combine(arithmetic(op), Box::new(a), Box::new(b)), dimension))
+    }
+
+    /// The dimension of a sum, difference, product or quotient.
+    fn joined(&mut self, span: Span, op: BinaryOp, a: Dimension, b: Dimension, right: Span) -> Lowered<Dimension> {
+        let joined = match op {
+            BinaryOp::Plus | BinaryOp::Minus if a != b => return self.wrong_dimension(right, a, b),
+            BinaryOp::Plus | BinaryOp::Minus => Some(a),
+            BinaryOp::Times => a.times(b),
+            _ => a.over(b),
+        };
+        match joined {
+            Some(dimension) => Ok(dimension),
+            None => self.report(Diagnostic::error("E0302", span, "the unit of this is out of range")),
+        }
+    }
+
+    fn fold(&mut self, span: Span, op: BinaryOp, a: (Number, &Expr), b: (Number, &Expr)) -> Lowered<Number> {
+        self.joined(span, op, a.0.dimension, b.0.dimension, b.1.span)?;
+        if op == BinaryOp::Over && b.0.value == 0.0 {
+            return self.report(Diagnostic::error("E0405", b.1.span, "division by zero"));
+        }
+        let value = match op {
+            BinaryOp::Plus => Some(a.0.plus(b.0)),
+            BinaryOp::Minus => Some(a.0.minus(b.0)),
+            BinaryOp::Times => a.0.times(b.0),
+            _ => a.0.over(b.0),
+        };
+        value.map_or_else(|| self.report(Diagnostic::error("E0302", span, "the unit of this is out of range")), Ok)
+    }
+
+    /// Sums of vectors, and products with numbers.
+    fn lower_vector(&mut self, op: BinaryOp, a: (Typed, Span), b: (Typed, Span)) -> Lowered<Typed> {
+        let combine = |op, x: &Num, y: &Num| Num::Combine(op, Box::new(x.clone()), Box::new(y.clone()));
+        match op {
+            BinaryOp::Plus | BinaryOp::Minus => {
+                let (ax, ay, da) = self.as_vector(a.0, a.1)?;
+                let (bx, by, db) = self.as_vector(b.0, b.1)?;
+                if da != db {
+                    return self.wrong_dimension(b.1, da, db);
+                }
+                let op = arithmetic(op);
+                Ok(Typed::Vector(combine(op, &ax, &bx), combine(op, &ay, &by), da))
+            }
+            BinaryOp::Times | BinaryOp::Over if is_vector(&a.0) && !is_vector(&b.0) => {
+                let (x, y, dv) = self.as_vector(a.0, a.1)?;
+                let (factor, df) = self.as_num(b.0, b.1)?;
+                let dimension = self.joined(b.1, op, dv, df, b.1)?;
+                let op = arithmetic(op);
+                Ok(Typed::Vector(combine(op, &x, &factor), combine(op, &y, &factor), dimension))
+            }
+            BinaryOp::Times if !is_vector(&a.0) => self.lower_vector(op, b, a),
+            _ => {
+                let error = Diagnostic::error("E0305", a.1.to(b.1), "vectors are added, subtracted, and multiplied by numbers")
+                    .hint("for the length of a vector write `distance(a, b)` or `speed(a)`");
+                self.report(error)
+            }
+        }
+    }
+
+    fn lower_power(&mut self, span: Span, left: &Expr, right: &Expr, locals: &Locals) -> Lowered<Typed> {
+        if matches!(&left.kind, ExprKind::Quantity(q) if q.unit.is_some()) {
+            let warning = Diagnostic::warning("W0301", left.span, "the power applies to the number and its unit")
+                .hint("in `2 m ^ 2` the unit is squared too: 4 m^2; write `2 m^2` for two square metres");
+            self.note(warning);
+        }
+        let exponent = self.number_of(right, Dimension::NONE, locals)?;
+        let base = self.lower(left, locals)?;
+        let whole = exponent.as_whole().and_then(|n| i32::try_from(n).ok()).filter(|n| n.abs() <= 64);
+        let power = |this: &mut Self, dimension: Dimension| -> Lowered<Dimension> {
+            if dimension.is_none() {
+                return Ok(dimension);
+            }
+            match whole {
+                Some(n) => match dimension.power(n) {
+                    Some(d) => Ok(d),
+                    None => this.report(Diagnostic::error("E0302", span, "the unit of this is out of range")),
+                },
+                None => this.report(
+                    Diagnostic::error("E0303", right.span, format!("{} can only be raised to a whole power", describe(dimension)))
+                ),
+            }
+        };
+        match base {
+            Typed::Number(base) => {
+                let dimension = power(self, base.dimension)?;
+                if let Some(n) = whole {
+                    let one = Some(Number::whole(1));
+                    let product = (0..n.abs()).fold(one, |p, _| p.and_then(|p| if n > 0 { p.times(base) } else { p.over(base) }));
+                    if let Some(product) = product {
+                        return Ok(Typed::Number(product));
+                    }
+                }
+                Ok(Typed::Number(Number::rounded(math::pow(base.value, exponent.value), dimension)))
+            }
+            other => {
+                let (num, dimension) = self.as_num(other, left.span)?;
+                let dimension = power(self, dimension)?;
+                let exponent = Box::new(Num::Constant(exponent.value));
+                Ok(Typed::Num(Num::Combine(Arithmetic::Power, Box::new(num), exponent), dimension))
+            }
+        }
+    }
+}
+
+fn is_vector(typed: &Typed) -> bool {
+    matches!(typed, Typed::Point(..) | Typed::Vector(..))
+}
+
+fn arithmetic(op: BinaryOp) -> Arithmetic {
+    match op {
+        BinaryOp::Plus => Arithmetic::Add,
+        BinaryOp::Minus => Arithmetic::Subtract,
+        BinaryOp::Times => Arithmetic::Multiply,
+        _ => Arithmetic::Divide,
+    }
+}

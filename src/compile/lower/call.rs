@@ -1,0 +1,362 @@
+//! Functions: those declared with `let`, and the built-in ones.
+
+use super::super::dimension::Dimension;
+use super::super::elaborator::{Elaborator, Locals, Lowered};
+use super::super::number::Number;
+use super::super::symbols::{Meaning, unknown};
+use super::super::typed::Typed;
+use super::coordinates;
+use crate::base::math;
+use crate::logic::{Operation, Term};
+use crate::model::{Arithmetic, Axis, Bool, Field, Function, Num, Place, Set, Who};
+use crate::syntax::ast::{Expr, Ident};
+use crate::syntax::diagnostic::Diagnostic;
+
+/// Built-in functions by name, for hints.
+pub(in crate::compile) const FUNCTIONS: [&str; 39] = [
+    "abs", "area", "atan2", "ceil", "centroid", "clearance", "contact", "cos", "count", "density", "distance",
+    "driving_speed", "exp", "floor", "heading", "if", "ln", "mass", "max", "min", "members", "modulo", "norm", "others",
+    "position", "radius", "round", "sin", "speed", "spread", "sqrt", "sum", "mean", "time_to_collision", "time_until", "travelled",
+    "velocity", "x", "y",
+];
+
+/// Distributions: they are values of fields, not of expressions.
+pub(in crate::compile) const DISTRIBUTIONS: [&str; 11] = [
+    "normal", "lognormal", "uniform", "uniform_int", "exponential", "poisson", "bernoulli", "beta", "gamma", "weibull", "choice",
+];
+
+impl Elaborator<'_> {
+    pub(super) fn lower_call(
+        &mut self,
+        expr: &Expr,
+        function: &Ident,
+        arguments: &[Expr],
+        locals: &Locals,
+    ) -> Lowered<Typed> {
+        if let Some((scope, meaning)) = self.find(&function.name, locals.scope)
+            && let Meaning::Let(decl) = meaning
+            && !decl.arguments.is_empty()
+        {
+            return self.lower_let((scope, decl), expr.span, arguments, locals);
+        }
+        match function.name.as_str() {
+            "min" | "max" => self.extremum(expr, function, arguments, locals),
+            "abs" | "sqrt" | "floor" | "ceil" | "round" | "exp" | "ln" | "sin" | "cos" => {
+                self.of_number(expr, function, arguments, locals)
+            }
+            "distance" | "time_to_collision" | "atan2" | "modulo" => self.of_two(expr, function, arguments, locals),
+            "if" => self.choice(expr, function, arguments, locals),
+            "contact" => self.contact(expr, function, arguments, locals),
+            "time_until" => {
+                let [formula] = arguments else { return self.arity(function, expr.span, "1 argument", arguments.len()) };
+                if !self.temporal || locals.running > 0 {
+                    let error = Diagnostic::error("E0504", expr.span, "`time_until` looks at a whole trace and stands only in metrics");
+                    return self.report(error);
+                }
+                let typed = self.lower(formula, locals)?;
+                let node = self.as_formula(typed, formula.span)?;
+                let dimension = self.time_dimension();
+                Ok(Typed::Term(self.term(Term::TimeUntil(node)), dimension))
+            }
+            name if DISTRIBUTIONS.contains(&name) => {
+                let error = Diagnostic::error("E0404", expr.span, format!("`{name}` is a distribution and can only be the value of a field"))
+                    .hint("give it to a parameter of a kind or an agent, which draws it once per trial");
+                self.report(error)
+            }
+            name if FUNCTIONS.contains(&name) => {
+                let [argument] = arguments else { return self.arity(function, expr.span, "1 argument", arguments.len()) };
+                self.of_one(function, argument, locals)
+            }
+            name => {
+                let mut known: Vec<&str> = FUNCTIONS.to_vec();
+                let declared: Vec<String> = [locals.scope, 0]
+                    .iter()
+                    .filter_map(|s| self.scopes.get(*s))
+                    .flat_map(|s| s.entries())
+                    .filter(|(_, e)| matches!(&e.meaning, Meaning::Let(d) if !d.arguments.is_empty()))
+                    .map(|(n, _)| n.to_owned())
+                    .collect();
+                known.extend(declared.iter().map(String::as_str));
+                let error = unknown("function", name, function.span, "E0203", known.into_iter());
+                self.report(error)
+            }
+        }
+    }
+
+    /// Functions of one agent, set, region or point.
+    fn of_one(&mut self, function: &Ident, argument: &Expr, locals: &Locals) -> Lowered<Typed> {
+        let typed = self.lower(argument, locals)?;
+        let span = argument.span;
+        let field = |field, dimension| (field, dimension);
+        let (field, dimension) = match function.name.as_str() {
+            "speed" => match typed {
+                Typed::Agents { set, particle: false } => {
+                    let (x, y) = mean_velocity(&set);
+                    return Ok(Typed::Num(norm(x, y), Dimension::SPEED));
+                }
+                _ => field(Field::Speed, Dimension::SPEED),
+            },
+            "heading" => match typed {
+                Typed::Agents { set, particle: false } => {
+                    let (x, y) = mean_velocity(&set);
+                    let angle = Num::Combine(Arithmetic::Atan2, Box::new(y), Box::new(x));
+                    return Ok(Typed::Num(angle, Dimension::ANGLE));
+                }
+                _ => field(Field::Heading, Dimension::ANGLE),
+            },
+            "radius" => field(Field::Radius, Dimension::LENGTH),
+            "mass" => field(Field::Mass, Dimension::MASS),
+            "driving_speed" => field(Field::DrivingSpeed, Dimension::SPEED),
+            "travelled" => field(Field::Travelled, Dimension::LENGTH),
+            "clearance" => return Ok(Typed::Num(Num::Clearance(self.as_agent(typed, span)?), Dimension::LENGTH)),
+            "position" => {
+                let (x, y, dimension) = match typed {
+                    Typed::Agents { set, particle: false } => {
+                        let (x, y) = coordinates(Place::Centroid(set));
+                        (x, y, Dimension::LENGTH)
+                    }
+                    other => self.as_vector(other, span)?,
+                };
+                return Ok(Typed::Vector(x, y, dimension));
+            }
+            "velocity" => {
+                let (x, y) = match typed {
+                    Typed::Agents { set, particle: false } => mean_velocity(&set),
+                    other => {
+                        let who = self.as_agent(other, span)?;
+                        (Num::Of(Field::VelocityX, who), Num::Of(Field::VelocityY, who))
+                    }
+                };
+                return Ok(Typed::Vector(x, y, Dimension::SPEED));
+            }
+            "x" | "y" | "norm" => {
+                let (x, y, dimension) = self.as_vector(typed, span)?;
+                let value = match function.name.as_str() {
+                    "x" => x,
+                    "y" => y,
+                    _ => norm(x, y),
+                };
+                return Ok(Typed::Num(value, dimension));
+            }
+            "centroid" => {
+                let set = self.as_set(typed, span)?;
+                let (x, y) = coordinates(Place::Centroid(set));
+                return Ok(Typed::Vector(x, y, Dimension::LENGTH));
+            }
+            "spread" => return Ok(Typed::Num(Num::Spread(self.as_set(typed, span)?), Dimension::LENGTH)),
+            "members" => {
+                let set = self.as_set(typed, span)?;
+                return Ok(Typed::Agents { set, particle: false });
+            }
+            "count" => {
+                let set = self.as_set(typed, span)?;
+                return Ok(Typed::Num(Num::Count(set, Box::new(Bool::Constant(true))), Dimension::NONE));
+            }
+            "others" => {
+                let who = self.as_agent(typed, span)?;
+                return Ok(Typed::Agents { set: Set { members: self.everyone(), except: Some(who) }, particle: false });
+            }
+            "area" => return self.area(typed, span).map(Typed::Number),
+            "density" => {
+                let Typed::Region(region) = typed else { return self.mismatch(span, "a region", &typed) };
+                let area = self.area(Typed::Region(region), span)?;
+                let everyone = Set { members: self.everyone(), except: None };
+                let inside = Num::Count(everyone, Box::new(Bool::In(Who::Running(locals.running), region)));
+                let density = Num::Combine(Arithmetic::Divide, Box::new(inside), Box::new(Num::Constant(area.value)));
+                return Ok(Typed::Num(density, Dimension::DENSITY));
+            }
+            name => {
+                let error = Diagnostic::error("E0305", function.span, format!("`{name}` joins values over a set or over time"))
+                    .hint(format!("write `{name}(… for a in crowd)` or `{name}<=10 s (…)`"));
+                return self.report(error);
+            }
+        };
+        Ok(Typed::Num(Num::Of(field, self.as_agent(typed, span)?), dimension))
+    }
+
+    fn area(&mut self, typed: Typed, span: crate::syntax::source::Span) -> Lowered<Number> {
+        match typed {
+            Typed::Region(region) => {
+                let shape = self.region_shape(region, span)?;
+                Ok(Number::rounded(shape.area(), Dimension::AREA))
+            }
+            found => self.mismatch(span, "a region", &found),
+        }
+    }
+
+    fn of_number(&mut self, expr: &Expr, function: &Ident, arguments: &[Expr], locals: &Locals) -> Lowered<Typed> {
+        let [argument] = arguments else { return self.arity(function, expr.span, "1 argument", arguments.len()) };
+        let typed = self.lower(argument, locals)?;
+        if let (Typed::Term(term, dimension), "abs") = (&typed, function.name.as_str()) {
+            let term = self.term(Term::Abs(*term));
+            return Ok(Typed::Term(term, *dimension));
+        }
+        let known = if let Typed::Number(number) = &typed { Some(*number) } else { None };
+        let (num, given) = self.as_num(typed, argument.span)?;
+        let expected = match function.name.as_str() {
+            "sin" | "cos" => Some(Dimension::ANGLE),
+            "exp" | "ln" | "floor" | "ceil" | "round" => Some(Dimension::NONE),
+            _ => None,
+        };
+        if let Some(expected) = expected
+            && expected != given
+        {
+            return self.wrong_dimension(argument.span, expected, given);
+        }
+        let dimension = match function.name.as_str() {
+            "sqrt" => match given.root() {
+                Some(root) => root,
+                None => {
+                    let error = Diagnostic::error("E0303", argument.span, format!("the square root of `{given}` has no unit"));
+                    return self.report(error);
+                }
+            },
+            "sin" | "cos" => Dimension::NONE,
+            _ => given,
+        };
+        let (apply, compute): (Function, fn(f64) -> f64) = match function.name.as_str() {
+            "abs" => (Function::Abs, f64::abs),
+            "sqrt" => (Function::Sqrt, f64::sqrt),
+            "floor" => (Function::Floor, f64::floor),
+            "ceil" => (Function::Ceil, f64::ceil),
+            "round" => (Function::Round, f64::round),
+            "exp" => (Function::Exp, math::exp),
+            "ln" => (Function::Ln, math::ln),
+            "sin" => (Function::Sin, |x| math::sin_cos(x).0),
+            _ => (Function::Cos, |x| math::sin_cos(x).1),
+        };
+        match known {
+            Some(number) => {
+                let value = compute(number.value);
+                if !value.is_finite() {
+                    let error = Diagnostic::error("E0405", argument.span, format!("`{}` of this is not a finite number", function.name));
+                    return self.report(error);
+                }
+                let whole = value.fract() == 0.0 && value.abs() < 9e15;
+                let exact = whole.then(|| crate::base::decimal::Decimal::whole(value as i64));
+                Ok(Typed::Number(Number { value, exact, dimension }))
+            }
+            None => Ok(Typed::Num(Num::Apply(apply, Box::new(num)), dimension)),
+        }
+    }
+
+    fn extremum(&mut self, expr: &Expr, function: &Ident, arguments: &[Expr], locals: &Locals) -> Lowered<Typed> {
+        if arguments.len() < 2 {
+            let error = Diagnostic::error("E0204", expr.span, format!("`{}` joins at least two values", function.name))
+                .hint(format!("over a set write `{0}(… for a in crowd)`, over time `{0}<=10 s (…)`", function.name));
+            return self.report(error);
+        }
+        let smallest = function.name == "min";
+        let mut values = Vec::with_capacity(arguments.len());
+        for argument in arguments {
+            values.push((self.lower(argument, locals)?, argument.span));
+        }
+        let over_time = values.iter().any(|(typed, _)| matches!(typed, Typed::Term(..)));
+        let mut joined: Option<(Typed, Dimension)> = None;
+        for (typed, span) in values {
+            let next = if over_time {
+                let (term, dimension) = self.as_term(typed, span)?;
+                (Typed::Term(term, dimension), dimension)
+            } else if let Typed::Number(number) = typed {
+                (Typed::Number(number), number.dimension)
+            } else {
+                let (num, dimension) = self.as_num(typed, span)?;
+                (Typed::Num(num, dimension), dimension)
+            };
+            let Some((so_far, dimension)) = joined else {
+                joined = Some(next);
+                continue;
+            };
+            if dimension != next.1 {
+                return self.wrong_dimension(span, dimension, next.1);
+            }
+            let both = match (so_far, next.0) {
+                (Typed::Term(a, _), Typed::Term(b, _)) => {
+                    let operation = if smallest { Operation::Min } else { Operation::Max };
+                    Typed::Term(self.term(Term::Combine(operation, a, b)), dimension)
+                }
+                (Typed::Number(a), Typed::Number(b)) => {
+                    Typed::Number(if (a.value <= b.value) == smallest { a } else { b })
+                }
+                (a, b) => {
+                    let (a, b) = (self.as_num(a, span)?.0, self.as_num(b, span)?.0);
+                    let op = if smallest { Arithmetic::Min } else { Arithmetic::Max };
+                    Typed::Num(Num::Combine(op, Box::new(a), Box::new(b)), dimension)
+                }
+            };
+            joined = Some((both, dimension));
+        }
+        joined.map(|(typed, _)| typed).ok_or(super::super::elaborator::Reported)
+    }
+
+    fn of_two(&mut self, expr: &Expr, function: &Ident, arguments: &[Expr], locals: &Locals) -> Lowered<Typed> {
+        let [left, right] = arguments else { return self.arity(function, expr.span, "2 arguments", arguments.len()) };
+        let sides = (self.lower(left, locals), self.lower(right, locals));
+        let (a, b) = (sides.0?, sides.1?);
+        match function.name.as_str() {
+            "distance" => {
+                let (a, b) = (self.as_place(a, left.span)?, self.as_place(b, right.span)?);
+                let extended = |p: &Place| matches!(p, Place::Region(_) | Place::Barrier(_));
+                if extended(&a) && extended(&b) {
+                    let error = Diagnostic::error("E0305", expr.span, "one side of a distance must be an agent or a point");
+                    return self.report(error);
+                }
+                Ok(Typed::Num(Num::Distance(a, b), Dimension::LENGTH))
+            }
+            "time_to_collision" => {
+                let (a, b) = (self.as_agent(a, left.span)?, self.as_agent(b, right.span)?);
+                Ok(Typed::Num(Num::TimeToCollision(a, b), Dimension::TIME))
+            }
+            _ => {
+                let (a, da) = self.as_num(a, left.span)?;
+                let (b, db) = self.as_num(b, right.span)?;
+                if da != db {
+                    return self.wrong_dimension(right.span, da, db);
+                }
+                let (op, dimension) = if function.name == "atan2" {
+                    (Arithmetic::Atan2, Dimension::ANGLE)
+                } else {
+                    (Arithmetic::Modulo, da)
+                };
+                Ok(Typed::Num(Num::Combine(op, Box::new(a), Box::new(b)), dimension))
+            }
+        }
+    }
+
+    fn contact(&mut self, expr: &Expr, function: &Ident, arguments: &[Expr], locals: &Locals) -> Lowered<Typed> {
+        let mut agents = Vec::new();
+        for argument in arguments {
+            let typed = self.lower(argument, locals)?;
+            agents.push(self.as_agent(typed, argument.span)?);
+        }
+        match agents.as_slice() {
+            [one] => Ok(Typed::Truth(Bool::Contact(*one))),
+            [one, other] => Ok(Typed::Truth(Bool::Touching(*one, *other))),
+            _ => self.arity(function, expr.span, "1 or 2 arguments", arguments.len()),
+        }
+    }
+
+    fn choice(&mut self, expr: &Expr, function: &Ident, arguments: &[Expr], locals: &Locals) -> Lowered<Typed> {
+        let [condition, yes, no] = arguments else { return self.arity(function, expr.span, "3 arguments", arguments.len()) };
+        let typed = self.lower(condition, locals)?;
+        let truth = self.as_truth(typed, condition.span)?;
+        let sides = (self.lower(yes, locals), self.lower(no, locals));
+        let (a, da) = self.as_num(sides.0?, yes.span)?;
+        let (b, db) = self.as_num(sides.1?, no.span)?;
+        if da != db {
+            return self.wrong_dimension(no.span, da, db);
+        }
+        Ok(Typed::Num(Num::If(Box::new(truth), Box::new(a), Box::new(b)), da))
+    }
+}
+
+fn mean_velocity(set: &Set) -> (Num, Num) {
+    (Num::MeanVelocity(Axis::X, set.clone()), Num::MeanVelocity(Axis::Y, set.clone()))
+}
+
+/// Length of a vector.
+fn norm(x: Num, y: Num) -> Num {
+    let square = |n: Num| Num::Combine(Arithmetic::Multiply, Box::new(n.clone()), Box::new(n));
+    let sum = Num::Combine(Arithmetic::Add, Box::new(square(x)), Box::new(square(y)));
+    Num::Apply(Function::Sqrt, Box::new(sum))
+}

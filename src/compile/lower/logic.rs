@@ -1,0 +1,188 @@
+//! Connectives, comparisons, membership.
+
+use super::super::dimension::Dimension;
+use super::super::elaborator::{Elaborator, Locals, Lowered};
+use super::super::typed::Typed;
+use crate::logic::{Node, Relation};
+use crate::model::{Bool, Comparison, Num, Place};
+use crate::syntax::ast::{BinaryOp, Expr};
+use crate::syntax::source::Span;
+
+impl Elaborator<'_> {
+    pub(super) fn lower_not(&mut self, operand: &Expr, locals: &Locals) -> Lowered<Typed> {
+        match self.lower(operand, locals)? {
+            Typed::Truth(truth) => Ok(Typed::Truth(negated(truth))),
+            Typed::Formula(node) => Ok(Typed::Formula(self.node(Node::Not(node)))),
+            found => self.mismatch(operand.span, "a condition", &found),
+        }
+    }
+
+    pub(super) fn lower_binary(
+        &mut self,
+        expr: &Expr,
+        op: BinaryOp,
+        left: &Expr,
+        right: &Expr,
+        locals: &Locals,
+    ) -> Lowered<Typed> {
+        match op {
+            BinaryOp::Plus | BinaryOp::Minus | BinaryOp::Times | BinaryOp::Over | BinaryOp::Power => {
+                self.lower_arithmetic(expr.span, op, left, right, locals)
+            }
+            BinaryOp::In => self.lower_in(left, right, locals),
+            BinaryOp::And | BinaryOp::Or | BinaryOp::Implies | BinaryOp::Iff => {
+                let sides = (self.lower(left, locals), self.lower(right, locals));
+                self.connect(op, (sides.0?, left.span), (sides.1?, right.span), locals)
+            }
+            _ => self.lower_comparison(op, left, right, locals),
+        }
+    }
+
+    fn connect(&mut self, op: BinaryOp, a: (Typed, Span), b: (Typed, Span), locals: &Locals) -> Lowered<Typed> {
+        // An implication of a formula stays visible to the monitor, which counts how often it was triggered.
+        let monitored = self.temporal && locals.running == 0 && op == BinaryOp::Implies;
+        let states = matches!((&a.0, &b.0), (Typed::Truth(_), Typed::Truth(_))) && !monitored;
+        if states {
+            let (a, b) = (self.as_truth(a.0, a.1)?, self.as_truth(b.0, b.1)?);
+            return Ok(Typed::Truth(match op {
+                BinaryOp::And => all(a, b),
+                BinaryOp::Or => any(a, b),
+                BinaryOp::Implies => any(negated(a), b),
+                _ => any(all(a.clone(), b.clone()), all(negated(a), negated(b))),
+            }));
+        }
+        let (a, b) = (self.as_formula(a.0, a.1)?, self.as_formula(b.0, b.1)?);
+        let node = match op {
+            BinaryOp::And => Node::And(vec![a, b]),
+            BinaryOp::Or => Node::Or(vec![a, b]),
+            BinaryOp::Implies => {
+                let not = self.node(Node::Not(a));
+                Node::Or(vec![not, b])
+            }
+            _ => {
+                let (not_a, not_b) = (self.node(Node::Not(a)), self.node(Node::Not(b)));
+                let both = self.node(Node::And(vec![a, b]));
+                let neither = self.node(Node::And(vec![not_a, not_b]));
+                Node::Or(vec![both, neither])
+            }
+        };
+        Ok(Typed::Formula(self.node(node)))
+    }
+
+    fn lower_comparison(&mut self, op: BinaryOp, left: &Expr, right: &Expr, locals: &Locals) -> Lowered<Typed> {
+        let sides = (self.lower(left, locals), self.lower(right, locals));
+        let (a, b) = (sides.0?, sides.1?);
+        let a = if matches!(a, Typed::Infinity) { infinite(&b) } else { a };
+        let b = if matches!(b, Typed::Infinity) { infinite(&a) } else { b };
+        if matches!(a, Typed::Term(..)) || matches!(b, Typed::Term(..)) {
+            let (a, da) = self.as_term(a, left.span)?;
+            let (b, db) = self.as_term(b, right.span)?;
+            if da != db {
+                return self.wrong_dimension(right.span, da, db);
+            }
+            return Ok(Typed::Formula(self.node(Node::Compare(relation(op), a, b))));
+        }
+        let (a, da) = self.as_num(a, left.span)?;
+        let (b, db) = self.as_num(b, right.span)?;
+        if da != db {
+            return self.wrong_dimension(right.span, da, db);
+        }
+        if let (Num::Constant(a), Num::Constant(b)) = (&a, &b) {
+            return Ok(Typed::Truth(Bool::Constant(holds(op, *a, *b))));
+        }
+        Ok(Typed::Truth(Bool::Compare(comparison(op), Box::new(a), Box::new(b))))
+    }
+
+    fn lower_in(&mut self, left: &Expr, right: &Expr, locals: &Locals) -> Lowered<Typed> {
+        let sides = (self.lower(left, locals), self.lower(right, locals));
+        let (who, region) = (sides.0?, sides.1?);
+        let Typed::Region(region) = region else { return self.mismatch(right.span, "a region", &region) };
+        match self.as_place(who, left.span)? {
+            Place::Agent(who) => Ok(Typed::Truth(Bool::In(who, region))),
+            place @ (Place::Point(..) | Place::Centroid(_)) => {
+                let distance = Num::Distance(place, Place::Region(region));
+                let zero = Box::new(Num::Constant(0.0));
+                Ok(Typed::Truth(Bool::Compare(Comparison::AtMost, Box::new(distance), zero)))
+            }
+            Place::Region(id) => self.mismatch(left.span, "an agent or a point", &Typed::Region(id)),
+            Place::Barrier(id) => self.mismatch(left.span, "an agent or a point", &Typed::Barrier(id)),
+        }
+    }
+}
+
+/// Infinity in the dimension of the other side.
+fn infinite(other: &Typed) -> Typed {
+    let dimension = match other {
+        Typed::Number(n) => n.dimension,
+        Typed::Num(_, dimension) | Typed::Term(_, dimension) => *dimension,
+        _ => Dimension::NONE,
+    };
+    Typed::Num(Num::Constant(f64::INFINITY), dimension)
+}
+
+fn negated(truth: Bool) -> Bool {
+    match truth {
+        Bool::Constant(value) => Bool::Constant(!value),
+        Bool::Not(inner) => *inner,
+        other => Bool::Not(Box::new(other)),
+    }
+}
+
+pub(super) fn all(a: Bool, b: Bool) -> Bool {
+    match (a, b) {
+        (Bool::Constant(true), b) => b,
+        (a, Bool::Constant(true)) => a,
+        (Bool::Constant(false), _) | (_, Bool::Constant(false)) => Bool::Constant(false),
+        (Bool::And(mut list), b) => {
+            list.push(b);
+            Bool::And(list)
+        }
+        (a, b) => Bool::And(vec![a, b]),
+    }
+}
+
+pub(super) fn any(a: Bool, b: Bool) -> Bool {
+    match (a, b) {
+        (Bool::Constant(false), b) => b,
+        (a, Bool::Constant(false)) => a,
+        (Bool::Constant(true), _) | (_, Bool::Constant(true)) => Bool::Constant(true),
+        (Bool::Or(mut list), b) => {
+            list.push(b);
+            Bool::Or(list)
+        }
+        (a, b) => Bool::Or(vec![a, b]),
+    }
+}
+
+fn comparison(op: BinaryOp) -> Comparison {
+    match op {
+        BinaryOp::Less => Comparison::Less,
+        BinaryOp::AtMost => Comparison::AtMost,
+        BinaryOp::Greater => Comparison::Greater,
+        BinaryOp::AtLeast => Comparison::AtLeast,
+        BinaryOp::Equal => Comparison::Equal,
+        _ => Comparison::Unequal,
+    }
+}
+
+fn relation(op: BinaryOp) -> Relation {
+    match op {
+        BinaryOp::Less => Relation::Less,
+        BinaryOp::AtMost => Relation::AtMost,
+        BinaryOp::Greater => Relation::Greater,
+        BinaryOp::AtLeast => Relation::AtLeast,
+        BinaryOp::Equal => Relation::Equal,
+        _ => Relation::Unequal,
+    }
+}
+
+fn holds(op: BinaryOp, a: f64, b: f64) -> bool {
+    match op {
+        BinaryOp::Less => a < b,
+        BinaryOp::AtMost => a <= b,
+        BinaryOp::Greater => a > b,
+        BinaryOp::AtLeast => a >= b,
+        BinaryOp::Equal => a == b,
+        _ => a != b,
+    }
+}

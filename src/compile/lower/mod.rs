@@ -1,0 +1,255 @@
+//! Lowering of expressions: names, units and types are settled, sugar is gone.
+
+mod arithmetic;
+mod call;
+mod logic;
+mod name;
+mod quantifier;
+mod temporal;
+
+pub(super) use call::DISTRIBUTIONS;
+
+use super::dimension::{self, Dimension};
+use super::elaborator::{Elaborator, Locals, Lowered};
+use super::number::Number;
+use super::typed::Typed;
+use crate::logic::{NodeId, TermId};
+use crate::model::{Axis, Bool, Num, Place, Set, Who};
+use crate::syntax::ast::{Expr, ExprKind, Ident, UnaryOp};
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+
+impl Elaborator<'_> {
+    /// What an expression means.
+    pub(super) fn lower(&mut self, expr: &Expr, locals: &Locals) -> Lowered<Typed> {
+        self.descend(expr.span)?;
+        let lowered = self.lower_kind(expr, locals);
+        self.depth -= 1;
+        lowered
+    }
+
+    fn lower_kind(&mut self, expr: &Expr, locals: &Locals) -> Lowered<Typed> {
+        match &expr.kind {
+            ExprKind::Quantity(quantity) => {
+                let unit = match &quantity.unit {
+                    Some(unit) => match dimension::resolve(unit) {
+                        Ok(unit) => unit,
+                        Err(error) => return self.report(error),
+                    },
+                    None => return Ok(Typed::Number(Number::exact(quantity.value, Dimension::NONE))),
+                };
+                Ok(Typed::Number(Number::literal(quantity.value, &unit)))
+            }
+            ExprKind::Infinity => Ok(Typed::Infinity),
+            ExprKind::Bool(value) => Ok(Typed::Truth(Bool::Constant(*value))),
+            ExprKind::Text(text) => Ok(Typed::Text(text.clone())),
+            ExprKind::Name(name) => self.lower_name(name, expr.span, locals),
+            ExprKind::Member(..) => {
+                let error = Diagnostic::error("E0201", expr.span, "there is no process to read a variable of")
+                    .hint("numbers of agents are functions: `speed(user)`");
+                self.report(error)
+            }
+            ExprKind::Index(base, index) => self.lower_index(base, index, locals),
+            ExprKind::Call { function, arguments } => self.lower_call(expr, function, arguments, locals),
+            ExprKind::Point { x, y, unit } => self.lower_point(x, y, unit.as_ref(), locals),
+            ExprKind::Unary(UnaryOp::Minus, operand) => self.lower_minus(operand, locals),
+            ExprKind::Unary(UnaryOp::Not, operand) => self.lower_not(operand, locals),
+            ExprKind::Binary(op, left, right) => self.lower_binary(expr, *op, left, right, locals),
+            ExprKind::Quantified { quantifier, variable, set, body } => {
+                self.lower_quantified(expr.span, *quantifier, variable, set, body, locals)
+            }
+            ExprKind::Temporal(op, bound, body) => self.lower_temporal(expr.span, *op, bound.as_ref(), body, locals),
+            ExprKind::TemporalPair(op, bound, left, right) => {
+                self.lower_temporal_pair(expr.span, *op, bound.as_ref(), left, right, locals)
+            }
+            ExprKind::Window(aggregate, bound, body) => {
+                self.lower_window(expr.span, *aggregate, bound, body, locals)
+            }
+            ExprKind::At(..) => {
+                let error = Diagnostic::error("E0504", expr.span, "`at` stands only directly inside `E(…)` and `Q(…)`");
+                self.report(error)
+            }
+        }
+    }
+
+    fn lower_point(
+        &mut self,
+        x: &Expr,
+        y: &Expr,
+        unit: Option<&crate::syntax::ast::UnitExpr>,
+        locals: &Locals,
+    ) -> Lowered<Typed> {
+        let coordinates = (self.lower(x, locals), self.lower(y, locals));
+        let (first, second) = (coordinates.0?, coordinates.1?);
+        let scale = match unit.map(dimension::resolve) {
+            Some(Ok(unit)) => Some(unit),
+            Some(Err(error)) => return self.report(error),
+            None => None,
+        };
+        let metre = dimension::unit("m");
+        let mut fixed = |this: &mut Self, typed: &Typed, span: Span| -> Lowered<Option<Number>> {
+            let Typed::Number(number) = typed else { return Ok(None) };
+            match (scale, number.dimension.is_none()) {
+                // `(1, 2) m/s`: the unit belongs to both coordinates.
+                (Some(unit), true) => Ok(number.times(Number::literal(crate::base::decimal::Decimal::ONE, &unit))),
+                (Some(_), false) => this.report(
+                    Diagnostic::error("E0303", span, "this coordinate has a unit of its own beside that of the point")
+                        .hint("write the unit once, after the parenthesis or in each coordinate"),
+                ),
+                // A point without a unit is in metres.
+                (None, true) => Ok(metre.map(|m| Number::literal(crate::base::decimal::Decimal::ONE, &m)).and_then(|m| number.times(m))),
+                (None, false) => Ok(Some(*number)),
+            }
+        };
+        let a = fixed(self, &first, x.span)?;
+        let b = fixed(self, &second, y.span)?;
+        if let (Some(a), Some(b)) = (a, b) {
+            if a.dimension != b.dimension {
+                return self.wrong_dimension(y.span, a.dimension, b.dimension);
+            }
+            return Ok(Typed::Point(a, b));
+        }
+        let (a, da) = self.as_num(first, x.span)?;
+        let (b, db) = self.as_num(second, y.span)?;
+        if da != db {
+            return self.wrong_dimension(y.span, da, db);
+        }
+        Ok(Typed::Vector(a, b, da))
+    }
+
+    /// A number of one state.
+    pub(super) fn as_num(&mut self, typed: Typed, span: Span) -> Lowered<(Num, Dimension)> {
+        match typed {
+            Typed::Number(number) => Ok((Num::Constant(number.value), number.dimension)),
+            Typed::Num(num, dimension) => Ok((num, dimension)),
+            Typed::Term(..) => {
+                let error = Diagnostic::error("E0504", span, "a number of one state is needed here, not one of a stretch of time");
+                self.report(error)
+            }
+            found => self.mismatch(span, "a number", &found),
+        }
+    }
+
+    /// A number of the states from the present one on.
+    pub(super) fn as_term(&mut self, typed: Typed, span: Span) -> Lowered<(TermId, Dimension)> {
+        match typed {
+            Typed::Term(term, dimension) => Ok((term, dimension)),
+            other => {
+                let (num, dimension) = self.as_num(other, span)?;
+                Ok((self.signal(num), dimension))
+            }
+        }
+    }
+
+    /// A formula.
+    pub(super) fn as_formula(&mut self, typed: Typed, span: Span) -> Lowered<NodeId> {
+        match typed {
+            Typed::Formula(node) => Ok(node),
+            Typed::Truth(truth) => Ok(self.atom(truth, span)),
+            found => self.mismatch(span, "a condition", &found),
+        }
+    }
+
+    /// A truth value of one state.
+    pub(super) fn as_truth(&mut self, typed: Typed, span: Span) -> Lowered<Bool> {
+        match typed {
+            Typed::Truth(truth) => Ok(truth),
+            Typed::Formula(_) => {
+                let error = Diagnostic::error("E0504", span, "a condition on one state is needed here, not a formula over time");
+                self.report(error)
+            }
+            found => self.mismatch(span, "a condition", &found),
+        }
+    }
+
+    /// One agent.
+    pub(super) fn as_agent(&mut self, typed: Typed, span: Span) -> Lowered<Who> {
+        match typed {
+            Typed::Agent(who) => Ok(who),
+            Typed::Agents { set, particle: true } if set.members.len() == 1 => Ok(Who::Agent(set.members[0])),
+            found @ Typed::Agents { .. } => {
+                let error = Diagnostic::error("E0305", span, format!("expected an agent, found {}", found.noun()))
+                    .hint("choose a member, as in `crowd[1]`, or quantify: `forall a in crowd: …`");
+                self.report(error)
+            }
+            found => self.mismatch(span, "an agent", &found),
+        }
+    }
+
+    /// A set of agents.
+    pub(super) fn as_set(&mut self, typed: Typed, span: Span) -> Lowered<Set> {
+        match typed {
+            Typed::Agents { set, .. } => Ok(set),
+            Typed::Agent(Who::Agent(id)) => Ok(Set { members: [id].into(), except: None }),
+            found => self.mismatch(span, "a set of agents", &found),
+        }
+    }
+
+    /// Something with a distance.
+    pub(super) fn as_place(&mut self, typed: Typed, span: Span) -> Lowered<Place> {
+        match typed {
+            Typed::Agent(who) => Ok(Place::Agent(who)),
+            Typed::Agents { set, particle: true } if set.members.len() == 1 => Ok(Place::Agent(Who::Agent(set.members[0]))),
+            Typed::Region(id) => Ok(Place::Region(id)),
+            Typed::Barrier(id) => Ok(Place::Barrier(id)),
+            Typed::Point(x, y) => {
+                if x.dimension != Dimension::LENGTH {
+                    return self.wrong_dimension(span, Dimension::LENGTH, x.dimension);
+                }
+                Ok(Place::Point(Box::new(Num::Constant(x.value)), Box::new(Num::Constant(y.value))))
+            }
+            Typed::Vector(x, y, dimension) => {
+                if dimension != Dimension::LENGTH {
+                    return self.wrong_dimension(span, Dimension::LENGTH, dimension);
+                }
+                // Keep centroids and agents recognisable: they have fast instructions.
+                if let (Num::Coordinate(Axis::X, a), Num::Coordinate(Axis::Y, b)) = (&x, &y)
+                    && a == b
+                {
+                    return Ok(a.clone());
+                }
+                Ok(Place::Point(Box::new(x), Box::new(y)))
+            }
+            found @ Typed::Agents { .. } => {
+                let error = Diagnostic::error("E0305", span, format!("expected a place, found {}", found.noun()))
+                    .hint("use its middle, `centroid(…)`, or a member");
+                self.report(error)
+            }
+            found => self.mismatch(span, "a place: an agent, point, region or wall", &found),
+        }
+    }
+
+    /// The coordinates of something that has them.
+    pub(super) fn as_vector(&mut self, typed: Typed, span: Span) -> Lowered<(Num, Num, Dimension)> {
+        match typed {
+            Typed::Vector(x, y, dimension) => Ok((x, y, dimension)),
+            Typed::Point(x, y) => Ok((Num::Constant(x.value), Num::Constant(y.value), x.dimension)),
+            other => match self.as_place(other, span)? {
+                place @ (Place::Agent(_) | Place::Centroid(_)) => {
+                    let (x, y) = coordinates(place);
+                    Ok((x, y, Dimension::LENGTH))
+                }
+                Place::Point(x, y) => Ok((*x, *y, Dimension::LENGTH)),
+                Place::Region(_) | Place::Barrier(_) => {
+                    let error = Diagnostic::error("E0305", span, "this has an extent and no single position");
+                    self.report(error)
+                }
+            },
+        }
+    }
+
+    /// Reports a wrong number of arguments.
+    pub(super) fn arity<T>(&mut self, function: &Ident, span: Span, wanted: &str, found: usize) -> Lowered<T> {
+        let error = Diagnostic::error(
+            "E0204",
+            span,
+            format!("`{}` takes {wanted}, but {found} {} given", function.name, if found == 1 { "is" } else { "are" }),
+        );
+        self.report(error)
+    }
+}
+
+/// The coordinates of an agent or centroid.
+pub(super) fn coordinates(place: Place) -> (Num, Num) {
+    (Num::Coordinate(Axis::X, place.clone()), Num::Coordinate(Axis::Y, place))
+}

@@ -1,0 +1,176 @@
+//! Names and members of sets.
+
+use super::super::elaborator::{Elaborator, Locals, Lowered};
+use super::super::symbols::{Meaning, ScopeId, unknown};
+use super::super::typed::Typed;
+use crate::model::{Set, Who};
+use crate::syntax::ast::{Expr, LetDecl};
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+
+use super::super::dimension::Dimension;
+
+/// Names that stand for something unless they are declared.
+const BUILT_IN: [&str; 3] = ["time", "everyone", "pi"];
+
+impl<'a> Elaborator<'a> {
+    /// Finds a name: in the file's own table, then in the scenario's.
+    pub(in crate::compile) fn find(&self, name: &str, scope: ScopeId) -> Option<(ScopeId, Meaning<'a>)> {
+        let own = self.scopes.get(scope).and_then(|table| table.get(name)).map(|e| (scope, e.meaning.clone()));
+        own.or_else(|| self.scopes[0].get(name).map(|e| (0, e.meaning.clone())))
+    }
+
+    pub(super) fn lower_name(&mut self, name: &str, span: Span, locals: &Locals) -> Lowered<Typed> {
+        if let Some((_, typed)) = locals.names.iter().rev().find(|(bound, _)| bound == name) {
+            return Ok(typed.clone());
+        }
+        let Some((scope, meaning)) = self.find(name, locals.scope) else {
+            return match name {
+                "time" => Ok(Typed::Num(crate::model::Num::Time, self.time_dimension())),
+                "everyone" => Ok(Typed::Agents { set: Set { members: self.everyone(), except: None }, particle: false }),
+                "pi" => Ok(Typed::Number(super::Number::rounded(std::f64::consts::PI, Dimension::NONE))),
+                _ => self.unknown_name(name, span, locals),
+            };
+        };
+        match meaning {
+            Meaning::Constant(value) => self.constant(scope, name, span, |this| this.lower(value, &Locals::of(scope))),
+            Meaning::Param { value, .. } => {
+                if let Some(set) = self.settings.get(name) {
+                    return Ok(Typed::Number(*set));
+                }
+                self.constant(scope, name, span, |this| this.number(value, &Locals::of(scope)).map(Typed::Number))
+            }
+            Meaning::Let(decl) => {
+                if !decl.arguments.is_empty() {
+                    let error = Diagnostic::error("E0204", span, format!("`{name}` is a function of {} arguments", decl.arguments.len()))
+                        .hint(format!("call it: `{name}(…)`"));
+                    return self.report(error);
+                }
+                let inner = Locals { scope, names: Vec::new(), running: locals.running };
+                self.expand(scope, name, span, |this| this.lower(&decl.body, &inner))
+            }
+            Meaning::Property(formula) => {
+                let inner = Locals { scope, names: Vec::new(), running: locals.running };
+                self.expand(scope, name, span, |this| this.lower(formula, &inner))
+            }
+            Meaning::Region(id, _) => Ok(Typed::Region(id)),
+            Meaning::Barrier(id) => Ok(Typed::Barrier(id)),
+            Meaning::Point(at) => self.constant(scope, name, span, |this| this.lower(at, &Locals::of(scope))),
+            Meaning::Agent(id) => Ok(Typed::Agent(Who::Agent(id))),
+            Meaning::Agents { members, particle } => Ok(Typed::Agents { set: Set { members, except: None }, particle }),
+            Meaning::Declared => {
+                let error = Diagnostic::error("E0205", span, format!("`{name}` is not known yet here"))
+                    .hint("numbers of agents and parameters cannot depend on agents");
+                self.report(error)
+            }
+            Meaning::Kind(_) | Meaning::Tracks(_) => {
+                let error = Diagnostic::error("E0206", span, format!("`{name}` is {}, which has no value", meaning.noun()));
+                self.report(error)
+            }
+        }
+    }
+
+    fn unknown_name(&mut self, name: &str, span: Span, locals: &Locals) -> Lowered<Typed> {
+        let mut known: Vec<String> = locals.names.iter().map(|(n, _)| n.clone()).collect();
+        for scope in [locals.scope, 0] {
+            known.extend(self.scopes.get(scope).into_iter().flat_map(|s| s.names().map(str::to_owned)));
+        }
+        known.extend(BUILT_IN.map(str::to_owned));
+        let error = unknown("name", name, span, "E0201", known.iter().map(String::as_str));
+        self.report(error)
+    }
+
+    /// Dimension of the clock: seconds, or steps where steps have no length.
+    pub(in crate::compile) fn time_dimension(&self) -> Dimension {
+        match self.clock {
+            crate::base::tick::Clock::Steps => Dimension::STEPS,
+            _ => Dimension::TIME,
+        }
+    }
+
+    /// The value of a constant, computed once.
+    fn constant(
+        &mut self,
+        scope: ScopeId,
+        name: &str,
+        span: Span,
+        compute: impl FnOnce(&mut Self) -> Lowered<Typed>,
+    ) -> Lowered<Typed> {
+        let key = (scope, name.to_owned());
+        if let Some(known) = self.constants.get(&key) {
+            return known.clone();
+        }
+        let value = self.expand(scope, name, span, compute);
+        self.constants.insert(key, value.clone());
+        value
+    }
+
+    /// Computes what a name stands for; an error where that needs the name itself.
+    pub(super) fn expand(
+        &mut self,
+        scope: ScopeId,
+        name: &str,
+        span: Span,
+        compute: impl FnOnce(&mut Self) -> Lowered<Typed>,
+    ) -> Lowered<Typed> {
+        if self.expanding.iter().any(|(s, n)| *s == scope && n == name) {
+            let way: Vec<&str> = self.expanding.iter().map(|(_, n)| n.as_str()).chain([name]).collect();
+            let error = Diagnostic::error("E0205", span, format!("`{name}` is defined by itself")).label(way.join(" → "));
+            return self.report(error);
+        }
+        self.expanding.push((scope, name.to_owned()));
+        let value = compute(self);
+        self.expanding.pop();
+        value
+    }
+
+    /// A call of a function declared with `let`.
+    pub(super) fn lower_let(
+        &mut self,
+        (scope, decl): (ScopeId, &LetDecl),
+        span: Span,
+        arguments: &[Expr],
+        locals: &Locals,
+    ) -> Lowered<Typed> {
+        if arguments.len() != decl.arguments.len() {
+            let wanted = match decl.arguments.len() {
+                1 => "1 argument".to_owned(),
+                n => format!("{n} arguments"),
+            };
+            return self.arity(&decl.name, span, &wanted, arguments.len());
+        }
+        let mut inner = Locals { scope, names: Vec::new(), running: locals.running };
+        for (name, argument) in decl.arguments.iter().zip(arguments) {
+            let value = self.lower(argument, locals)?;
+            inner.names.push((name.name.clone(), value));
+        }
+        self.expand(scope, &decl.name.name, span, |this| this.lower(&decl.body, &inner))
+    }
+
+    /// `crowd[3]`; members count from 1.
+    pub(super) fn lower_index(&mut self, base: &Expr, index: &Expr, locals: &Locals) -> Lowered<Typed> {
+        let set = match self.lower(base, locals)? {
+            Typed::Agents { set, particle: false } => set,
+            Typed::Agents { particle: true, .. } => {
+                let error = Diagnostic::error("E0206", base.span, "this group is simulated as one body and has no members")
+                    .hint("leave out `as particle` to simulate its members");
+                return self.report(error);
+            }
+            found => return self.mismatch(base.span, "a set of agents", &found),
+        };
+        let number = self.number_of(index, Dimension::NONE, locals)?;
+        let member = number.as_whole().and_then(|n| usize::try_from(n).ok()).filter(|n| (1..=set.members.len()).contains(n));
+        match member {
+            Some(n) => Ok(Typed::Agent(Who::Agent(set.members[n - 1]))),
+            None => {
+                let error = Diagnostic::error(
+                    "E0212",
+                    index.span,
+                    format!("there is no member {} of `{}`", number.value, self.text(base.span)),
+                )
+                .hint(format!("it has {} members, counted from 1", set.members.len()));
+                self.report(error)
+            }
+        }
+    }
+}

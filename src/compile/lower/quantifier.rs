@@ -1,0 +1,164 @@
+//! Quantifiers and folds over agents.
+//!
+//! Over states they become loops of the kernel's code. Over formulas they are written out, member by
+//! member, because each member's formula is monitored on its own.
+
+use super::super::elaborator::{Elaborator, Locals, Lowered};
+use super::super::symbols::Meaning;
+use super::super::typed::Typed;
+use crate::logic::{Node, Operation, Term};
+use crate::model::{AgentId, Bool, Fold, Num, Set, Who};
+use crate::syntax::ast::{Aggregate, Expr, ExprKind, Ident, Quantifier};
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+
+use super::super::dimension::Dimension;
+
+impl Elaborator<'_> {
+    pub(super) fn lower_quantified(
+        &mut self,
+        span: Span,
+        quantifier: Quantifier,
+        variable: &Ident,
+        set: &Expr,
+        body: &Expr,
+        locals: &Locals,
+    ) -> Lowered<Typed> {
+        let members = self.lower(set, locals)?;
+        let set = self.as_set(members, set.span)?;
+        if self.temporal && self.mentions_time(body, locals, 0) {
+            return self.write_out(span, quantifier, variable, &set, body, locals);
+        }
+        let mut inner = locals.clone();
+        inner.names.push((variable.name.clone(), Typed::Agent(Who::Running(locals.running))));
+        inner.running += 1;
+        let typed = self.lower(body, &inner)?;
+        match quantifier {
+            Quantifier::Forall => Ok(Typed::Truth(Bool::Forall(set, Box::new(self.as_truth(typed, body.span)?)))),
+            Quantifier::Exists => Ok(Typed::Truth(Bool::Exists(set, Box::new(self.as_truth(typed, body.span)?)))),
+            Quantifier::Count => {
+                let truth = self.as_truth(typed, body.span)?;
+                Ok(Typed::Num(Num::Count(set, Box::new(truth)), Dimension::NONE))
+            }
+            Quantifier::Fold(aggregate) => {
+                let (num, dimension) = self.as_num(typed, body.span)?;
+                Ok(Typed::Num(Num::Fold(fold(aggregate), set, Box::new(num)), dimension))
+            }
+        }
+    }
+
+    /// One formula or term for each member.
+    fn write_out(
+        &mut self,
+        span: Span,
+        quantifier: Quantifier,
+        variable: &Ident,
+        set: &Set,
+        body: &Expr,
+        locals: &Locals,
+    ) -> Lowered<Typed> {
+        let left_out = match set.except {
+            Some(Who::Agent(id)) => Some(id),
+            Some(Who::Running(_)) => {
+                let error = Diagnostic::error("E0504", span, "a formula over time cannot be quantified inside a fold over states");
+                return self.report(error);
+            }
+            None => None,
+        };
+        let members: Vec<AgentId> = set.members.iter().copied().filter(|id| Some(*id) != left_out).collect();
+        let mut each = Vec::with_capacity(members.len());
+        for id in members {
+            let mut inner = locals.clone();
+            inner.names.push((variable.name.clone(), Typed::Agent(Who::Agent(id))));
+            each.push(self.lower(body, &inner)?);
+        }
+        match quantifier {
+            Quantifier::Forall | Quantifier::Exists => {
+                let nodes: Lowered<Vec<_>> = each.into_iter().map(|typed| self.as_formula(typed, body.span)).collect();
+                let nodes = nodes?;
+                Ok(Typed::Formula(self.node(match quantifier {
+                    Quantifier::Forall => Node::And(nodes),
+                    _ => Node::Or(nodes),
+                })))
+            }
+            Quantifier::Count => {
+                let mut sum = self.term(Term::Constant(0.0));
+                for typed in each {
+                    let node = self.as_formula(typed, body.span)?;
+                    let one = self.term(Term::Indicator(node));
+                    sum = self.term(Term::Combine(Operation::Add, sum, one));
+                }
+                Ok(Typed::Term(sum, Dimension::NONE))
+            }
+            Quantifier::Fold(aggregate) => self.fold_terms(aggregate, each, body.span),
+        }
+    }
+
+    fn fold_terms(&mut self, aggregate: Aggregate, each: Vec<Typed>, span: Span) -> Lowered<Typed> {
+        let count = each.len();
+        let (operation, empty) = match aggregate {
+            Aggregate::Min => (Operation::Min, f64::INFINITY),
+            Aggregate::Max => (Operation::Max, f64::NEG_INFINITY),
+            Aggregate::Sum | Aggregate::Mean => (Operation::Add, 0.0),
+        };
+        let mut dimension = Dimension::NONE;
+        let mut joined = None;
+        for typed in each {
+            let (term, d) = self.as_term(typed, span)?;
+            dimension = d;
+            joined = Some(match joined {
+                None => term,
+                Some(so_far) => self.term(Term::Combine(operation, so_far, term)),
+            });
+        }
+        let joined = joined.unwrap_or_else(|| self.term(Term::Constant(empty)));
+        if aggregate == Aggregate::Mean {
+            let count = self.term(Term::Constant(count as f64));
+            return Ok(Typed::Term(self.term(Term::Combine(Operation::Divide, joined, count)), dimension));
+        }
+        Ok(Typed::Term(joined, dimension))
+    }
+
+    /// Whether an expression looks at more than one state. Names are followed to what they stand for.
+    fn mentions_time(&self, expr: &Expr, locals: &Locals, depth: u32) -> bool {
+        if depth > 200 {
+            return false;
+        }
+        let inside = |e: &Expr| self.mentions_time(e, locals, depth + 1);
+        match &expr.kind {
+            ExprKind::Temporal(..) | ExprKind::TemporalPair(..) | ExprKind::Window(..) | ExprKind::At(..) => true,
+            ExprKind::Quantity(_) | ExprKind::Infinity | ExprKind::Bool(_) | ExprKind::Text(_) => false,
+            ExprKind::Name(name) => match locals.names.iter().rev().find(|(bound, _)| bound == name) {
+                Some((_, typed)) => matches!(typed, Typed::Formula(_) | Typed::Term(..)),
+                None => match self.find(name, locals.scope) {
+                    Some((scope, Meaning::Let(decl))) => self.mentions_time(&decl.body, &Locals::of(scope), depth + 8),
+                    Some((scope, Meaning::Property(body))) => self.mentions_time(body, &Locals::of(scope), depth + 8),
+                    _ => false,
+                },
+            },
+            ExprKind::Call { function, arguments } => {
+                function.name == "time_until"
+                    || arguments.iter().any(inside)
+                    || match self.find(&function.name, locals.scope) {
+                        Some((scope, Meaning::Let(decl))) => {
+                            self.mentions_time(&decl.body, &Locals::of(scope), depth + 8)
+                        }
+                        _ => false,
+                    }
+            }
+            ExprKind::Member(a, _) | ExprKind::Unary(_, a) => inside(a),
+            ExprKind::Index(a, b) | ExprKind::Binary(_, a, b) => inside(a) || inside(b),
+            ExprKind::Point { x, y, .. } => inside(x) || inside(y),
+            ExprKind::Quantified { set, body, .. } => inside(set) || inside(body),
+        }
+    }
+}
+
+fn fold(aggregate: Aggregate) -> Fold {
+    match aggregate {
+        Aggregate::Min => Fold::Min,
+        Aggregate::Max => Fold::Max,
+        Aggregate::Sum => Fold::Sum,
+        Aggregate::Mean => Fold::Mean,
+    }
+}

@@ -1,0 +1,188 @@
+//! Temporal operators, windows and their bounds.
+
+use super::super::dimension::Dimension;
+use super::super::elaborator::{Elaborator, Locals, Lowered};
+use super::super::number::Number;
+use super::super::typed::Typed;
+use crate::base::decimal::Decimal;
+use crate::base::tick::{Clock, Tick};
+use crate::logic::{Aggregation, Node, Term, Window};
+use crate::syntax::ast::expression::{Temporal, TemporalPair};
+use crate::syntax::ast::{Aggregate, Bound, Expr};
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+
+const ALWAYS: Window = Window { from: Tick(0), to: None };
+
+impl Elaborator<'_> {
+    fn expect_temporal(&mut self, span: Span, locals: &Locals) -> Lowered<()> {
+        if locals.running > 0 {
+            let error = Diagnostic::error("E0504", span, "a formula over time cannot stand inside a fold over states");
+            return self.report(error);
+        }
+        if !self.temporal {
+            let error = Diagnostic::error("E0504", span, "operators over time belong in property files");
+            return self.report(error);
+        }
+        Ok(())
+    }
+
+    fn operand(&mut self, body: &Expr, locals: &Locals) -> Lowered<crate::logic::NodeId> {
+        let typed = self.lower(body, locals)?;
+        self.as_formula(typed, body.span)
+    }
+
+    pub(super) fn lower_temporal(
+        &mut self,
+        span: Span,
+        op: Temporal,
+        bound: Option<&Bound>,
+        body: &Expr,
+        locals: &Locals,
+    ) -> Lowered<Typed> {
+        self.expect_temporal(span, locals)?;
+        let window = self.window(bound, locals);
+        let body = self.operand(body, locals);
+        let (window, body) = (window?, body?);
+        let node = match op {
+            Temporal::Finally => Node::Finally(window, body),
+            Temporal::Globally => Node::Globally(window, body),
+            Temporal::Next => {
+                if self.clock == Clock::Jumps {
+                    let error = Diagnostic::error("E0507", span, "in continuous time there is no next state")
+                        .hint("use `F[a, b]`, or give the scenario a step");
+                    return self.report(error);
+                }
+                // X<=k p: p at exactly the k-th state, as in the paper; X p is X<=1.
+                let at = match (bound, window.to) {
+                    (None, _) => Tick(1),
+                    (Some(_), Some(to)) => to,
+                    (Some(_), None) => return self.report(Diagnostic::error("E0503", span, "`X` needs a finite time")),
+                };
+                Node::Finally(Window { from: at, to: Some(at) }, body)
+            }
+        };
+        Ok(Typed::Formula(self.node(node)))
+    }
+
+    pub(super) fn lower_temporal_pair(
+        &mut self,
+        span: Span,
+        op: TemporalPair,
+        bound: Option<&Bound>,
+        left: &Expr,
+        right: &Expr,
+        locals: &Locals,
+    ) -> Lowered<Typed> {
+        self.expect_temporal(span, locals)?;
+        let window = self.window(bound, locals);
+        let sides = (self.operand(left, locals), self.operand(right, locals));
+        let (window, left, right) = (window?, sides.0?, sides.1?);
+        let node = match op {
+            TemporalPair::Until => Node::Until(window, left, right),
+            TemporalPair::Release => Node::Release(window, left, right),
+            TemporalPair::WeakUntil => Node::WeakUntil(window, left, right),
+        };
+        Ok(Typed::Formula(self.node(node)))
+    }
+
+    pub(super) fn lower_window(
+        &mut self,
+        span: Span,
+        aggregate: Aggregate,
+        bound: &Bound,
+        body: &Expr,
+        locals: &Locals,
+    ) -> Lowered<Typed> {
+        self.expect_temporal(span, locals)?;
+        let window = self.window(Some(bound), locals);
+        let typed = self.lower(body, locals)?;
+        let (term, dimension) = self.as_term(typed, body.span)?;
+        let aggregation = match aggregate {
+            Aggregate::Min => Aggregation::Min,
+            Aggregate::Max => Aggregation::Max,
+            Aggregate::Sum => Aggregation::Sum,
+            Aggregate::Mean => Aggregation::Mean,
+        };
+        Ok(Typed::Term(self.term(Term::Window(aggregation, window?, term)), dimension))
+    }
+
+    /// The window of a bound.
+    fn window(&mut self, bound: Option<&Bound>, locals: &Locals) -> Lowered<Window> {
+        match bound {
+            None => Ok(ALWAYS),
+            Some(Bound::AtMost(end)) => Ok(Window { from: Tick(0), to: self.time(end, locals)? }),
+            Some(Bound::Interval(start, end)) => {
+                let ends = (self.time(start, locals), self.time(end, locals));
+                let Some(from) = ends.0? else {
+                    return self.report(Diagnostic::error("E0503", start.span, "an interval starts at a finite time"));
+                };
+                let to = ends.1?;
+                if to.is_some_and(|to| to < from) {
+                    let error = Diagnostic::error("E0503", start.span.to(end.span), "this interval ends before it starts");
+                    return self.report(error);
+                }
+                Ok(Window { from, to })
+            }
+        }
+    }
+
+    /// A time as ticks; `None` for infinity.
+    pub(in crate::compile) fn time(&mut self, expr: &Expr, locals: &Locals) -> Lowered<Option<Tick>> {
+        let number = match self.lower(expr, locals)? {
+            Typed::Infinity => return Ok(None),
+            Typed::Number(number) => number,
+            found => return self.mismatch(expr.span, "a time known before a trial starts", &found),
+        };
+        self.ticks(number, expr.span).map(Some)
+    }
+
+    /// A time known now, as ticks.
+    pub(in crate::compile) fn ticks(&mut self, number: Number, span: Span) -> Lowered<Tick> {
+        if number.value < 0.0 {
+            return self.report(Diagnostic::error("E0503", span, "a time bound cannot be negative"));
+        }
+        let steps = number.dimension == Dimension::STEPS || (number.dimension.is_none() && self.clock == Clock::Steps);
+        if steps {
+            return match number.as_whole().and_then(|n| u64::try_from(n).ok()) {
+                Some(n) if self.clock != Clock::Jumps => Ok(Tick(n)),
+                Some(_) => self.report(
+                    Diagnostic::error("E0503", span, "a scenario in continuous time has no steps").hint("write a time, as in `5 s`"),
+                ),
+                None => self.report(Diagnostic::error("E0501", span, "a number of steps must be whole")),
+            };
+        }
+        if number.dimension.is_none() {
+            let error = Diagnostic::error("E0503", span, "this bound needs a unit")
+                .hint("write `10 s`, or `#10` (`10 steps`) for a number of steps");
+            return self.report(error);
+        }
+        if number.dimension != Dimension::TIME {
+            return self.wrong_dimension(span, Dimension::TIME, number.dimension);
+        }
+        let Clock::Stepped(step) = self.clock else {
+            let error = Diagnostic::error("E0503", span, "this scenario has steps without a length")
+                .hint("write the bound in steps, as in `#10` or `10 steps`");
+            return self.report(error);
+        };
+        let exact = number.exact.or_else(|| nearest_tick(number.value, step));
+        let found = exact.map(|time| self.clock.tick_at(time));
+        match found {
+            Some(Ok(tick)) => Ok(tick),
+            Some(Err((below, above))) if above.0 < u64::MAX => {
+                let seconds = |tick: Tick| format!("{} s", Decimal::whole(tick.0 as i64).mul(step).map_or(f64::NAN, Decimal::to_f64));
+                let error = Diagnostic::error("E0501", span, format!("this is no multiple of the step of {step} s"))
+                    .hint(format!("the nearest bounds are {} and {}", seconds(below), seconds(above)));
+                self.report(error)
+            }
+            _ => self.report(Diagnostic::error("E0501", span, "this time is out of range")),
+        }
+    }
+}
+
+/// The multiple of the step that a rounded time means, if it is one to within rounding.
+fn nearest_tick(value: f64, step: Decimal) -> Option<Decimal> {
+    let ticks = value / step.to_f64();
+    let near = ticks.round();
+    ((ticks - near).abs() <= 1e-9 * near.max(1.0) && near < 9e15).then(|| Decimal::whole(near as i64).mul(step)).flatten()
+}

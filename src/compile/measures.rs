@@ -1,0 +1,160 @@
+//! Measures: what is asked of the distribution of traces.
+
+use super::dimension::Dimension;
+use super::elaborator::{Elaborator, Locals, Lowered};
+use super::reach::{Reach, Reaches};
+use super::study::{Column, MeasureKind, Root};
+use super::symbols::ScopeId;
+use super::typed::Typed;
+use crate::base::tick::Clock;
+use crate::logic::{Node, Relation, Term, TermId};
+use crate::syntax::ast::{self, Expr, ExprKind, Moment};
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+
+/// A measure lowered in one world.
+pub(super) struct Observed {
+    /// What is observed.
+    pub(super) column: Column,
+    /// Which number of its distribution.
+    pub(super) kind: MeasureKind,
+    /// Whether it ranges up to the horizon.
+    pub(super) unbounded: bool,
+}
+
+impl Elaborator<'_> {
+    /// A formula asked at the start of a trace.
+    pub(super) fn formula_column(&mut self, body: &Expr, scope: ScopeId) -> Lowered<(Column, bool)> {
+        self.temporal = true;
+        let typed = self.lower(body, &Locals::of(scope));
+        self.temporal = false;
+        let node = self.as_formula(typed?, body.span)?;
+        let reach = Reaches::new(&self.tree, self.horizon).node(node);
+        self.within_horizon(reach, body.span)?;
+        if let Node::Constant(value) = self.tree.nodes[node.0 as usize] {
+            let warning = Diagnostic::warning("W0501", body.span, format!("this is always {value}"))
+                .hint("it does not depend on what happens in a trial");
+            self.note(warning);
+        }
+        let text = self.text(body.span);
+        Ok((Column { root: Root::Formula(node), text }, reach.unbounded))
+    }
+
+    /// A metric read at the start of a trace.
+    fn metric(&mut self, body: &Expr, scope: ScopeId) -> Lowered<(TermId, Dimension, bool)> {
+        let locals = Locals::of(scope);
+        let (inner, moment) = match &body.kind {
+            ExprKind::At(inner, moment) => (&**inner, Some(moment)),
+            _ => (body, None),
+        };
+        self.temporal = true;
+        let typed = self.lower(inner, &locals);
+        let at = match moment {
+            Some(Moment::Time(time)) => self.time(time, &locals).map(Some),
+            _ => Ok(None),
+        };
+        self.temporal = false;
+        let typed = typed?;
+        let of_state = matches!(typed, Typed::Num(..));
+        let (mut term, dimension) = self.as_term(typed, inner.span)?;
+        match (moment, at?) {
+            (Some(Moment::Time(_)), Some(Some(tick))) => term = self.term(Term::Later(tick, term)),
+            (Some(_), _) => term = self.term(Term::AtEnd(term)),
+            (None, _) if of_state => {
+                let warning = Diagnostic::warning("W0502", body.span, "this is read in the first state")
+                    .hint("write `… at end`, `… at 5 s`, or join states as in `max<=10 s (…)`");
+                self.note(warning);
+            }
+            (None, _) => {}
+        }
+        let reach = Reaches::new(&self.tree, self.horizon).term(term);
+        self.within_horizon(reach, body.span)?;
+        Ok((term, dimension, reach.unbounded))
+    }
+
+    /// A measure; a quantile or expectation has the dimension of its metric.
+    pub(super) fn measure(&mut self, measure: &ast::Measure, scope: ScopeId) -> Lowered<Observed> {
+        if let (Some((low, _)), ast::MeasureKind::Probability | ast::MeasureKind::Quantile(_)) = (&measure.range, &measure.kind) {
+            let error = Diagnostic::error("E0605", low.span, "only an expectation needs a range");
+            return self.report(error);
+        }
+        match &measure.kind {
+            ast::MeasureKind::Probability => {
+                let (column, unbounded) = self.formula_column(&measure.body, scope)?;
+                Ok(Observed { column, kind: MeasureKind::Probability, unbounded })
+            }
+            ast::MeasureKind::Expectation => {
+                let (term, dimension, unbounded) = self.metric(&measure.body, scope)?;
+                let Some((low, high)) = &measure.range else {
+                    let error = Diagnostic::error("E0605", measure.span, "an expectation needs the range of its metric")
+                        .hint(format!("write `E(…) in lo .. hi` in {}; values beyond are clipped and counted", unit_hint(dimension)));
+                    return self.report(error);
+                };
+                let locals = Locals::of(scope);
+                let ends = (self.number_of(low, dimension, &locals), self.number_of(high, dimension, &locals));
+                let range = (ends.0?.value, ends.1?.value);
+                if range.0 >= range.1 {
+                    return self.report(Diagnostic::error("E0605", low.span.to(high.span), "this range is empty"));
+                }
+                let text = self.text(measure.body.span);
+                Ok(Observed {
+                    column: Column { root: Root::Metric(term), text },
+                    kind: MeasureKind::Expectation { range, dimension },
+                    unbounded,
+                })
+            }
+            ast::MeasureKind::Quantile(level) => {
+                let number = self.number_of(level, Dimension::NONE, &Locals::of(scope));
+                let (term, dimension, unbounded) = self.metric(&measure.body, scope)?;
+                let number = number?;
+                if number.value <= 0.0 || number.value >= 1.0 {
+                    return self.report(Diagnostic::error("E0601", level.span, "the level of a quantile lies between 0 and 1"));
+                }
+                let text = self.text(measure.body.span);
+                Ok(Observed {
+                    column: Column { root: Root::Metric(term), text },
+                    kind: MeasureKind::Quantile { level: number.value, dimension },
+                    unbounded,
+                })
+            }
+        }
+    }
+
+    /// `metric <= bound` or `metric < bound` as a formula, for checks of quantiles.
+    pub(super) fn below(&mut self, column: &Column, or_equal: bool, bound: f64) -> Column {
+        let Root::Metric(term) = column.root else { return column.clone() };
+        let limit = self.term(Term::Constant(bound));
+        let relation = if or_equal { Relation::AtMost } else { Relation::Less };
+        let node = self.node(Node::Compare(relation, term, limit));
+        Column { root: Root::Formula(node), text: column.text.clone() }
+    }
+
+    fn within_horizon(&mut self, reach: Reach, span: Span) -> Lowered<()> {
+        if reach.ticks <= self.horizon.0 {
+            return Ok(());
+        }
+        let (needed, horizon) = (self.duration(reach.ticks), self.duration(self.horizon.0));
+        let mut error = Diagnostic::error("E0502", span, format!("this looks {needed} ahead, but the horizon is {horizon}"));
+        error = if reach.unbounded {
+            error.hint("an operator without a bound asks at every state up to the horizon, and the bounded one inside looks beyond; bound the outer one")
+        } else {
+            error.hint(format!("set `horizon = {needed}` in the scenario, or shorten the bounds"))
+        };
+        self.report(error)
+    }
+
+    /// A number of ticks in words.
+    pub(super) fn duration(&self, ticks: u64) -> String {
+        match self.clock {
+            Clock::Stepped(_) => {
+                let seconds = self.clock.seconds(crate::base::tick::Tick(ticks));
+                format!("{} s", (seconds * 1e9).round() / 1e9)
+            }
+            _ => format!("{ticks} steps"),
+        }
+    }
+}
+
+fn unit_hint(dimension: Dimension) -> String {
+    if dimension.is_none() { "pure numbers".to_owned() } else { format!("{dimension}") }
+}

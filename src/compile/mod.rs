@@ -1,0 +1,33 @@
+//! Floor 2: from syntax to scenarios and questions: names, units, types, horizons.
+//!
+//! A scenario is elaborated once for every combination of parameter values that is asked about; each is a
+//! world with its own agents, and the formulas over them.
+
+pub mod dimension;
+mod elaborator;
+mod files;
+mod filter;
+mod kinds;
+mod laws;
+mod lower;
+mod measures;
+pub mod methods;
+pub mod nearest;
+mod number;
+mod people;
+pub mod presets;
+mod queries;
+mod reach;
+mod recordings;
+mod scenery;
+mod settings;
+pub mod study;
+mod symbols;
+mod typed;
+mod ways;
+mod world;
+
+pub use files::{Files, Request, requests};
+pub use queries::{Input, compile};
+pub use settings::{Setting, SettingValue};
+pub use study::Study;

@@ -1,0 +1,322 @@
+//! Agents and groups: declared one by one, in numbers, or from a recording.
+
+use super::dimension::Dimension;
+use super::elaborator::{Elaborator, Locals, Lowered, Reported};
+use super::kinds::Kind;
+use super::laws::value_span;
+use super::symbols::{Meaning, unknown};
+use crate::base::geometry::Vec2;
+use crate::base::random::name_hash;
+use crate::model::{Agent, AgentId, Body, Group, Law, Particle, Position, Route, Start, Who};
+use crate::syntax::ast::{AgentsDecl, Expr, Field, GroupDecl, Ident, Value};
+use crate::syntax::diagnostic::Diagnostic;
+use std::sync::Arc;
+
+use super::typed::Typed;
+
+/// Speed below which a recorded person stands, m/s.
+const STANDS: f64 = 0.05;
+/// Most agents of a scenario.
+const MOST_AGENTS: usize = 1_000_000;
+/// Friction where two particles overlap, kg/(m s), unless the group sets its own: two couples that pass
+/// through each other with an overlap of a metre lose half of their relative speed in about a second.
+const PARTICLE_FRICTION: f64 = 40.0;
+/// Factor of the social force between two particles, unless the group sets its own.
+const PARTICLE_REPULSION: f64 = 0.5;
+
+/// The people of a scenario so far.
+#[derive(Default)]
+pub(super) struct People {
+    /// Agents.
+    pub(super) agents: Vec<Agent>,
+    /// Groups.
+    pub(super) groups: Vec<Group>,
+    /// First numbers and sizes of the ranges of entities in use.
+    ranges: Vec<(u32, u32)>,
+}
+
+impl People {
+    /// A range of `size` stable numbers for a declaration; where hashes collide, the next free range.
+    fn entities(&mut self, path: &str, size: u32) -> u32 {
+        const ALL: u64 = 1 << 24;
+        let mut first = name_hash(path) % (ALL - u64::from(size).min(ALL - 1));
+        while let Some((start, length)) = self
+            .ranges
+            .iter()
+            .find(|(start, length)| first < u64::from(start + length) && u64::from(*start) < first + u64::from(size))
+        {
+            first = u64::from(start + length);
+            if first + u64::from(size) >= ALL {
+                first = 0;
+            }
+        }
+        self.ranges.push((first as u32, size));
+        first as u32
+    }
+}
+
+impl<'a> Elaborator<'a> {
+    /// `agent user: adult { … }`, `agents crowd[12]: adult { … }`
+    pub(super) fn agents(&mut self, decl: &'a AgentsDecl, people: &mut People) {
+        let kind = self.kind(&decl.kind);
+        let count = match (&decl.count, &decl.recorded) {
+            (Some(count), None) => self.count(count),
+            (Some(count), Some(_)) => {
+                let error = Diagnostic::error("E0402", count.span, "a recording decides how many there are")
+                    .hint("leave out the number in brackets");
+                self.report(error)
+            }
+            (None, None) if decl.plural => {
+                let error = Diagnostic::error("E0402", decl.name.span, format!("how many `{}` are there?", decl.name.name))
+                    .hint(format!("write `agents {}[12]: …`", decl.name.name));
+                self.report(error)
+            }
+            _ => Ok(1),
+        };
+        if let Some(with) = decl.with.first() {
+            self.note(Diagnostic::error("E0201", with.span, "there is no behaviour of this name"));
+        }
+        if let Some(recorded) = &decl.recorded {
+            self.recorded(decl, recorded, kind, people);
+            return;
+        }
+        let mut kind = kind;
+        let rest = self.parameters(&decl.body, kind.as_mut().ok(), &Locals::default());
+        let start = self.start(&decl.name, &rest, people, true);
+        let route = self.route_of(&rest);
+        self.only(&rest, &["at", "velocity", "route"]);
+        let body = kind.and_then(|kind| self.body(&kind, &decl.kind));
+        let (Ok(count), Ok(body), Ok(start), Ok(route)) = (count, body, start, route) else {
+            self.define_empty(&decl.name, decl.plural);
+            return;
+        };
+        let members = self.people(&decl.name, count, decl.plural, people, |_| {
+            (Arc::new(body.clone()), start.clone(), route.clone())
+        });
+        let meaning = match members.as_slice() {
+            [one] if !decl.plural => Meaning::Agent(*one),
+            _ => Meaning::Agents { members: members.into(), particle: false },
+        };
+        self.scopes[0].define(&decl.name.name, meaning);
+    }
+
+    /// `group friends[2]: companion as particle { … }`
+    pub(super) fn group(&mut self, decl: &'a GroupDecl, people: &mut People) {
+        let count = self.count(&decl.count);
+        let mut kind = self.kind(&decl.kind);
+        let rest = self.parameters(&decl.body, kind.as_mut().ok(), &Locals::default());
+        let start = self.start(&decl.name, &rest, people, true);
+        let route = self.route_of(&rest);
+        let mut field = |this: &mut Self, name: &str, dimension: Dimension, default: f64| -> Lowered<f64> {
+            let Some(field) = rest.iter().find(|f| f.name.name == name) else { return Ok(default) };
+            let Value::Plain(expr) = &field.value else {
+                return this.report(Diagnostic::error("E0305", value_span(&field.value), "expected a number"));
+            };
+            let number = this.number_of(expr, dimension, &Locals::default())?;
+            if number.value < 0.0 {
+                return this.report(Diagnostic::error("E0405", expr.span, format!("`{name}` cannot be negative")));
+            }
+            Ok(number.value)
+        };
+        let attraction = field(self, "attraction", Dimension::FORCE, 0.0);
+        let repulsion = field(self, "repulsion", Dimension::NONE, PARTICLE_REPULSION);
+        let friction = field(self, "friction", Dimension::FRICTION, PARTICLE_FRICTION);
+        if decl.particle.is_some() {
+            self.only(&rest, &["at", "velocity", "route", "attraction", "repulsion", "friction"]);
+        } else {
+            self.only(&rest, &["at", "velocity", "route", "attraction"]);
+        }
+        let given = |name: &str| decl.body.iter().any(|f| f.name.name == name);
+        let body = kind.and_then(|kind| self.body(&kind, &decl.kind));
+        let (Ok(count), Ok(body), Ok(start), Ok(route)) = (count, body, start, route) else {
+            self.define_empty(&decl.name, true);
+            return;
+        };
+        let (Ok(attraction), Ok(repulsion), Ok(friction)) = (attraction, repulsion, friction) else { return };
+        if let Some(span) = decl.particle {
+            if count == 0 {
+                self.note(Diagnostic::error("E0402", span, "a body stands for at least one person"));
+                return;
+            }
+            let size = (count as f64).sqrt();
+            let particle = Particle {
+                persons: count as u32,
+                repulsion,
+                friction,
+                radius_factor: if given("radius") { 1.0 } else { size },
+                tau_factor: if given("tau") { 1.0 } else { size },
+            };
+            let members = self.people(&decl.name, 1, false, people, |_| {
+                (Arc::new(body.clone()), start.clone(), route.clone())
+            });
+            people.agents[members[0].0 as usize].particle = Some(particle);
+            self.scopes[0].define(&decl.name.name, Meaning::Agents { members: members.into(), particle: true });
+            return;
+        }
+        let members =
+            self.people(&decl.name, count, true, people, |_| (Arc::new(body.clone()), start.clone(), route.clone()));
+        let index = people.groups.len() as u32;
+        for member in &members {
+            people.agents[member.0 as usize].group = Some(index);
+        }
+        people.groups.push(Group { name: decl.name.name.clone(), members: members.clone(), attraction });
+        self.scopes[0].define(&decl.name.name, Meaning::Agents { members: members.into(), particle: false });
+    }
+
+    fn define_empty(&mut self, name: &Ident, plural: bool) {
+        // What follows can then speak of the name without further errors.
+        let id = AgentId(self.agent_names.len() as u32);
+        self.agent_names.push(name.name.clone());
+        let meaning =
+            if plural { Meaning::Agents { members: [id].into(), particle: false } } else { Meaning::Agent(id) };
+        self.scopes[0].define(&name.name, meaning);
+    }
+
+    /// Adds `count` people of one declaration.
+    pub(super) fn people(
+        &mut self,
+        name: &Ident,
+        count: usize,
+        plural: bool,
+        people: &mut People,
+        each: impl Fn(usize) -> (Arc<Body>, Start, Route),
+    ) -> Vec<AgentId> {
+        let first = people.entities(&name.name, count as u32);
+        let mut shared: Option<Arc<Body>> = None;
+        (0..count)
+            .map(|k| {
+                let text = if plural { format!("{}[{}]", name.name, k + 1) } else { name.name.clone() };
+                let (body, start, route) = each(k);
+                // Equal bodies are kept once.
+                let body = match &shared {
+                    Some(known) if **known == *body => known.clone(),
+                    _ => body,
+                };
+                shared = Some(body.clone());
+                self.agent_names.push(text.clone());
+                let entity = first + k as u32;
+                people.agents.push(Agent { name: text, entity, body, start, route, group: None, particle: None });
+                AgentId(people.agents.len() as u32 - 1)
+            })
+            .collect()
+    }
+
+    fn count(&mut self, expr: &Expr) -> Lowered<usize> {
+        let number = self.number_of(expr, Dimension::NONE, &Locals::default())?;
+        match number.as_whole() {
+            Some(n) if n < 0 => {
+                self.report(Diagnostic::error("E0402", expr.span, format!("there cannot be {n} of them")))
+            }
+            Some(n) if n as usize <= MOST_AGENTS => Ok(n as usize),
+            Some(n) => self.report(Diagnostic::error("E0402", expr.span, format!("{n} agents are more than {MOST_AGENTS}"))),
+            None => {
+                let error = Diagnostic::error("E0402", expr.span, format!("the number of agents must be whole, this is {}", number.value))
+                    .hint("round it: `round(…)`");
+                self.report(error)
+            }
+        }
+    }
+
+    fn start(&mut self, name: &Ident, fields: &[&Field], people: &People, required: bool) -> Lowered<Start> {
+        let position = match fields.iter().find(|f| f.name.name == "at") {
+            Some(field) => self.position(&field.value, people),
+            None if required => {
+                let error = Diagnostic::error("E0209", name.span, format!("where does `{}` start?", name.name))
+                    .hint("set `at`: a point, `uniform in` a shape, or `near` another agent");
+                self.report(error)
+            }
+            None => Err(Reported),
+        };
+        let velocity = match fields.iter().find(|f| f.name.name == "velocity").map(|f| &f.value) {
+            Some(Value::Plain(expr)) => self.point_of(expr, Dimension::SPEED, &Locals::default()),
+            Some(other) => {
+                self.report(Diagnostic::error("E0305", value_span(other), "expected a velocity such as `(1, 0) m/s`"))
+            }
+            None => Ok(Vec2::zeros()),
+        };
+        Ok(Start { position: position?, velocity: velocity? })
+    }
+
+    fn position(&mut self, value: &Value, people: &People) -> Lowered<Position> {
+        match value {
+            Value::UniformIn(shape) => self.shape(shape, &Locals::default()).map(Position::Within),
+            Value::Near { agent, within } => {
+                let distance = self.number_of(within, Dimension::LENGTH, &Locals::default())?;
+                let typed = self.lower(agent, &Locals::default())?;
+                let Who::Agent(id) = self.as_agent(typed, agent.span)? else { return Err(Reported) };
+                if distance.value <= 0.0 {
+                    return self.report(Diagnostic::error("E0405", within.span, "this distance must be positive"));
+                }
+                if id.0 as usize >= people.agents.len() {
+                    return self.report(Diagnostic::error("E0403", agent.span, "this agent is declared later")
+                        .hint("an agent near another one is declared after it"));
+                }
+                Ok(Position::Near { agent: id, within: distance.value })
+            }
+            Value::Plain(expr) => match self.lower(expr, &Locals::default())? {
+                Typed::Point(x, y) if x.dimension == Dimension::LENGTH => {
+                    Ok(Position::Point(Vec2::new(x.value, y.value)))
+                }
+                // A region as a start means its inside.
+                Typed::Region(id) => self.region_shape(id, expr.span).map(Position::Within),
+                Typed::Point(x, _) => self.wrong_dimension(expr.span, Dimension::LENGTH, x.dimension),
+                found => self.mismatch(expr.span, "a point, a region or `uniform in` a shape", &found),
+            },
+            other => self.report(Diagnostic::error("E0305", value_span(other), "expected a place to start from")),
+        }
+    }
+
+    fn route_of(&mut self, fields: &[&Field]) -> Lowered<Route> {
+        match fields.iter().find(|f| f.name.name == "route") {
+            Some(field) => self.route(&field.value),
+            None => Ok(Route::Legs { legs: Vec::new(), then_leave: false }),
+        }
+    }
+
+    /// Refuses fields that mean nothing here.
+    pub(super) fn only(&mut self, fields: &[&Field], known: &[&str]) {
+        for field in fields {
+            if !known.contains(&field.name.name.as_str()) {
+                let all = known.iter().copied().chain(super::presets::PARAMETERS.iter().map(|(n, ..)| *n));
+                let error = unknown("field", &field.name.name, field.name.span, "E0207", all);
+                self.note(error);
+            }
+        }
+    }
+
+    /// People whose start state a recording gives.
+    fn recorded(
+        &mut self,
+        decl: &'a AgentsDecl,
+        recorded: &'a crate::syntax::ast::Recorded,
+        kind: Lowered<Kind>,
+        people: &mut People,
+    ) {
+        let found = self.observations(recorded, decl.plural);
+        let mut kind = kind;
+        let rest = self.parameters(&decl.body, kind.as_mut().ok(), &Locals::default());
+        let has_route = rest.iter().any(|f| f.name.name == "route");
+        let route = if has_route { self.route_of(&rest) } else { Ok(Route::Onward) };
+        self.only(&rest, &["route"]);
+        let base = kind.and_then(|kind| self.body(&kind, &decl.kind));
+        let (Ok(found), Ok(base), Ok(route)) = (found, base, route) else {
+            self.define_empty(&decl.name, decl.plural);
+            return;
+        };
+        let own_speed = decl.body.iter().any(|f| f.name.name == "speed");
+        let members = self.people(&decl.name, found.len(), decl.plural, people, |k| {
+            let velocity = found[k].velocity;
+            let speed = velocity.norm();
+            let mut body = base.clone();
+            if speed >= STANDS && !own_speed {
+                body.speed = Law::Constant(speed);
+            }
+            (Arc::new(body), Start { position: Position::Point(found[k].position), velocity }, route.clone())
+        });
+        let meaning = match members.as_slice() {
+            [one] if !decl.plural => Meaning::Agent(*one),
+            _ => Meaning::Agents { members: members.into(), particle: false },
+        };
+        self.scopes[0].define(&decl.name.name, meaning);
+    }
+}

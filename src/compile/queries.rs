@@ -1,0 +1,469 @@
+//! The whole of a call: worlds and questions.
+
+use super::dimension::Dimension;
+use super::elaborator::{Elaborator, Locals, Lowered, Reported};
+use super::files::Files;
+use super::measures::Observed;
+use super::number::Number;
+use super::settings::Setting;
+use super::study::{Ask, Column, Measure, MeasureKind, Query, Study, Target, World};
+use super::symbols::ScopeId;
+use crate::model::{Scenario, Who};
+use crate::syntax::ast::{self, BinaryOp, Binding, Clauses, Expr, PropertyFile, PropertyItem, QueryKind, ScenarioFile};
+use crate::syntax::diagnostic::{Diagnostic, Severity};
+use crate::syntax::source::{Source, Span};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// What a call hands over.
+pub struct Input<'a> {
+    /// All sources, for the texts of queries.
+    pub sources: &'a [Source],
+    /// The scenario.
+    pub scenario: &'a ScenarioFile,
+    /// Property files.
+    pub properties: &'a [PropertyFile],
+    /// Contents of the files that the scenario names.
+    pub files: &'a Files,
+    /// Values of parameters.
+    pub settings: &'a [Setting],
+}
+
+/// A world under construction.
+struct Site<'a> {
+    settings: BTreeMap<String, Number>,
+    elaborator: Elaborator<'a>,
+    scenario: Option<Scenario>,
+    columns: Vec<Column>,
+}
+
+struct Compiler<'a> {
+    input: &'a Input<'a>,
+    sites: Vec<Site<'a>>,
+    queries: Vec<Query>,
+    next_index: usize,
+}
+
+/// Compiles a scenario and property files. All errors are returned at once; a study only where there is none.
+pub fn compile(input: &Input<'_>) -> (Option<Study>, Vec<Diagnostic>) {
+    let mut compiler = Compiler { input, sites: Vec::new(), queries: Vec::new(), next_index: 0 };
+    compiler.run();
+    compiler.finish()
+}
+
+impl<'a> Compiler<'a> {
+    fn run(&mut self) {
+        // Sweep points are computed in the plain world, which also checks what no query uses.
+        let plain = self.site(BTreeMap::new());
+        let mut points: Vec<BTreeMap<String, Number>> = vec![BTreeMap::new()];
+        let mut seen: Vec<&Setting> = Vec::new();
+        for setting in self.input.settings {
+            if seen.iter().any(|s| s.name == setting.name) {
+                let error = Diagnostic::error("E0210", setting.span, format!("`{}` is set twice", setting.name));
+                self.sites[plain].elaborator.note(error);
+                continue;
+            }
+            seen.push(setting);
+            let Ok(values) = self.sites[plain].elaborator.points(setting) else { continue };
+            points = points
+                .iter()
+                .flat_map(|point| {
+                    values.iter().map(|value| {
+                        let mut next = point.clone();
+                        next.insert(setting.name.clone(), *value);
+                        next
+                    })
+                })
+                .collect();
+        }
+        let swept: Vec<&str> = self
+            .input
+            .settings
+            .iter()
+            .filter(|s| matches!(s.value, super::settings::SettingValue::Sweep(..)))
+            .map(|s| s.name.as_str())
+            .collect();
+        if self.input.settings.is_empty() || self.sites[plain].elaborator.failed() {
+            points.truncate(1);
+        } else {
+            // Only the combinations that were asked for are run.
+            self.sites[plain].columns.clear();
+        }
+        self.check_properties(plain);
+        for point in &points {
+            self.next_index = 0;
+            let base = self.site(point.clone());
+            for (number, file) in self.input.properties.iter().enumerate() {
+                self.file(file, number + 1, base, point, &swept);
+            }
+        }
+    }
+
+    /// The world of a combination of parameter values.
+    fn site(&mut self, settings: BTreeMap<String, Number>) -> usize {
+        if let Some(at) = self.sites.iter().position(|site| site.settings == settings) {
+            return at;
+        }
+        let (elaborator, scenario) = Elaborator::elaborate(
+            self.input.sources,
+            self.input.scenario,
+            self.input.properties,
+            self.input.files,
+            settings.clone(),
+        );
+        self.sites.push(Site { settings, elaborator, scenario, columns: Vec::new() });
+        self.sites.len() - 1
+    }
+
+    /// Properties are checked whether a query uses them or not.
+    fn check_properties(&mut self, site: usize) {
+        let elaborator = &mut self.sites[site].elaborator;
+        for (number, file) in self.input.properties.iter().enumerate() {
+            for item in &file.items {
+                match item {
+                    PropertyItem::Property { name, .. } => {
+                        let body = Expr { kind: ast::ExprKind::Name(name.name.clone()), span: name.span };
+                        let declared = self.input.properties[number].items.iter().find_map(|i| match i {
+                            PropertyItem::Property { name: n, formula } if n.name == name.name => Some(formula),
+                            _ => None,
+                        });
+                        let place = declared.map_or(name.span, |f| f.span);
+                        let _ = elaborator.formula_column(&Expr { span: place, ..body }, number + 1);
+                    }
+                    PropertyItem::Const { value, .. } => {
+                        let _ = elaborator.number(value, &Locals::of(number + 1));
+                    }
+                    PropertyItem::Let(decl) if decl.arguments.is_empty() => {
+                        elaborator.temporal = true;
+                        let _ = elaborator.lower(&decl.body, &Locals::of(number + 1));
+                        elaborator.temporal = false;
+                    }
+                    _ => {}
+                }
+            }
+        }
+        // What was observed for checking only is not observed in trials.
+        elaborator.tree = crate::logic::Tree::default();
+        elaborator.atoms.clear();
+        elaborator.atom_texts.clear();
+        elaborator.signals.clear();
+    }
+
+    fn file(&mut self, file: &'a PropertyFile, scope: ScopeId, base: usize, point: &BTreeMap<String, Number>, swept: &[&str]) {
+        let locals = Locals::of(scope);
+        let mut family: Option<f64> = None;
+        let mut members = 0usize;
+        for item in &file.items {
+            match item {
+                PropertyItem::Family { confidence, .. } => {
+                    family = self.sites[base].elaborator.confidence(confidence, &locals).ok();
+                }
+                PropertyItem::Query(query) => {
+                    members += if let QueryKind::Estimate(measures) = &query.kind { measures.len() } else { 1 };
+                }
+                _ => {}
+            }
+        }
+        for item in &file.items {
+            if let PropertyItem::Query(query) = item {
+                let settings = self.described(base, point, swept);
+                // Bonferroni: the claims of a family share its error.
+                let family = family.map(|delta| delta / members.max(1) as f64);
+                let _ = self.query(query, scope, base, point, &settings, family);
+            }
+        }
+    }
+
+    /// Values of the swept parameters in words.
+    fn described(&self, site: usize, point: &BTreeMap<String, Number>, names: &[&str]) -> Vec<(String, String)> {
+        let elaborator = &self.sites[site].elaborator;
+        names
+            .iter()
+            .filter_map(|name| {
+                let number = point.get(*name)?;
+                let shown = match elaborator.scopes[0].get(name).map(|e| e.meaning.clone()) {
+                    Some(super::symbols::Meaning::Param { value, .. }) => elaborator.shown(value, *number),
+                    _ => number.value.to_string(),
+                };
+                Some(((*name).to_owned(), shown))
+            })
+            .collect()
+    }
+
+    /// The world in which some parameters take other values.
+    fn under(&mut self, bindings: &'a [Binding], scope: ScopeId, base: usize, point: &BTreeMap<String, Number>) -> Lowered<(usize, Vec<(String, String)>)> {
+        let mut settings = point.clone();
+        let mut failed = false;
+        for binding in bindings {
+            let elaborator = &mut self.sites[base].elaborator;
+            if elaborator.param(&binding.name.name, binding.name.span).is_err() {
+                failed = true;
+                continue;
+            }
+            match elaborator.setting(&binding.name.name, &binding.value, &Locals::of(scope)) {
+                Ok(number) => {
+                    settings.insert(binding.name.name.clone(), number);
+                }
+                Err(_) => failed = true,
+            }
+        }
+        if failed {
+            return Err(Reported);
+        }
+        let names: Vec<&str> = bindings.iter().map(|b| b.name.name.as_str()).collect();
+        let described = self.described(base, &settings, &names);
+        Ok((self.site(settings), described))
+    }
+
+    fn measured(&mut self, site: usize, measure: &ast::Measure, scope: ScopeId) -> Lowered<(Measure, bool)> {
+        let Observed { column, kind, unbounded } = self.sites[site].elaborator.measure(measure, scope)?;
+        let column = self.column(site, column);
+        Ok((Measure { target: Target { world: site, column }, kind }, unbounded))
+    }
+
+    fn column(&mut self, site: usize, column: Column) -> usize {
+        let columns = &mut self.sites[site].columns;
+        columns.iter().position(|c| c.root == column.root).unwrap_or_else(|| {
+            columns.push(column);
+            columns.len() - 1
+        })
+    }
+
+    fn query(
+        &mut self,
+        query: &'a ast::Query,
+        scope: ScopeId,
+        base: usize,
+        point: &BTreeMap<String, Number>,
+        settings: &[(String, String)],
+        family: Option<f64>,
+    ) -> Lowered<()> {
+        let clauses = &query.clauses;
+        let locals = Locals::of(scope);
+        let text = self.sites[base].elaborator.text(query.span);
+        let (site, own) = self.under(&clauses.under, scope, base, point)?;
+        let settings: Vec<_> = settings.iter().cloned().chain(own).collect();
+        match &query.kind {
+            QueryKind::Check { measure, relation, threshold } => {
+                let ask = self.check(site, measure, *relation, threshold, clauses, family, scope);
+                let (ask, unbounded) = ask?;
+                self.push(query.span, text, settings, property_name(measure), ask, unbounded, site);
+            }
+            QueryKind::Estimate(measures) => {
+                let share = 1.0 / measures.len().max(1) as f64;
+                let mut failed = false;
+                for measure in measures {
+                    let Ok((measured, unbounded)) = self.measured(site, measure, scope) else {
+                        failed = true;
+                        continue;
+                    };
+                    let elaborator = &mut self.sites[site].elaborator;
+                    let with_family = family_clauses(clauses);
+                    let share = if let (Some(delta), true) = (family, with_family) { delta / super::methods::DEFAULT_DELTA } else { share };
+                    let Ok(estimator) = elaborator.estimator(clauses, &measured.kind, share, &locals) else {
+                        failed = true;
+                        continue;
+                    };
+                    let single = if measures.len() == 1 { text.clone() } else { format!("estimate {}", self.sites[site].elaborator.text(measure.span)) };
+                    let ask = Ask::Estimate { measure: measured, estimator };
+                    self.push(query.span, single, settings.clone(), property_name(measure), ask, unbounded, site);
+                }
+                if failed {
+                    return Err(Reported);
+                }
+            }
+            QueryKind::Compare { measure, first, second } => {
+                let sides = (self.under(first, scope, base, point), self.under(second, scope, base, point));
+                let ((one, first_settings), (two, second_settings)) = (sides.0?, sides.1?);
+                let (a, unbounded) = self.measured(one, measure, scope)?;
+                let (b, _) = self.measured(two, measure, scope)?;
+                let dimension = match &a.kind {
+                    MeasureKind::Probability => Dimension::NONE,
+                    MeasureKind::Expectation { dimension, .. } => *dimension,
+                    MeasureKind::Quantile { .. } => {
+                        let error = Diagnostic::error("E0607", measure.span, "quantiles cannot be compared directly")
+                            .hint("compare `P(metric <= bound)`, or estimate both");
+                        return self.sites[base].elaborator.report(error);
+                    }
+                };
+                let share = family.map_or(1.0, |delta| delta / super::methods::DEFAULT_DELTA);
+                let (within, delta) = self.sites[base].elaborator.comparison_clauses(clauses, dimension, share, &locals)?;
+                let ask = Ask::Compare { first: a, second: b, settings: [first_settings, second_settings], within, delta };
+                self.push(query.span, text, settings, property_name(measure), ask, unbounded, one);
+            }
+            QueryKind::Rank { what, agent, measure } => {
+                let (ask, unbounded) = self.rank(site, what, agent, measure, clauses, family, scope)?;
+                self.push(query.span, text, settings, property_name(measure), ask, unbounded, site);
+            }
+        }
+        Ok(())
+    }
+
+    fn check(
+        &mut self,
+        site: usize,
+        measure: &ast::Measure,
+        relation: BinaryOp,
+        threshold: &Expr,
+        clauses: &Clauses,
+        family: Option<f64>,
+        scope: ScopeId,
+    ) -> Lowered<(Ask, bool)> {
+        let locals = Locals::of(scope);
+        let observed = self.sites[site].elaborator.measure(measure, scope);
+        let dimension = match observed.as_ref().map(|o| &o.kind) {
+            Ok(MeasureKind::Expectation { dimension, .. } | MeasureKind::Quantile { dimension, .. }) => *dimension,
+            _ => Dimension::NONE,
+        };
+        let elaborator = &mut self.sites[site].elaborator;
+        let bound = elaborator.number_of(threshold, dimension, &locals);
+        let share = match family {
+            Some(delta) if family_clauses(clauses) => delta / super::methods::DEFAULT_ALPHA,
+            _ => 1.0,
+        };
+        let (Observed { column, kind, unbounded }, bound) = (observed?, bound?);
+        let mut at_least = matches!(relation, BinaryOp::AtLeast | BinaryOp::Greater);
+        let mut or_equal = matches!(relation, BinaryOp::AtLeast | BinaryOp::AtMost);
+        let (column, kind, theta) = match kind {
+            // A quantile is at most x exactly if P(metric <= x) is at least its level.
+            MeasureKind::Quantile { level, .. } => {
+                let below = elaborator.below(&column, !at_least, bound.value);
+                at_least = !at_least;
+                or_equal = true;
+                (below, MeasureKind::Probability, level)
+            }
+            kind => (column, kind, bound.value),
+        };
+        let test = match &kind {
+            MeasureKind::Expectation { range, .. } => {
+                if let Some(method) = &clauses.by {
+                    let error = Diagnostic::error("E0603", method.span, "a check of an expectation has one procedure only");
+                    return elaborator.report(error);
+                }
+                if theta <= range.0 || theta >= range.1 {
+                    let error = Diagnostic::error("E0601", threshold.span, "this threshold lies outside the range of the metric");
+                    return elaborator.report(error);
+                }
+                let delta = elaborator.delta(clauses, &locals)?.unwrap_or(super::methods::DEFAULT_ALPHA) * share;
+                super::study::Test::Interval { delta, trials: super::methods::DEFAULT_TRIALS }
+            }
+            _ => {
+                if theta <= 0.0 || theta >= 1.0 {
+                    let error = Diagnostic::error("E0601", threshold.span, format!("a probability is compared with a number between 0 and 1, not with {theta}"))
+                        .hint("that something is certain or impossible cannot be decided by sampling; ask for `>= 0.999`");
+                    return elaborator.report(error);
+                }
+                elaborator.test(clauses, theta, threshold.span, share, &locals)?
+            }
+        };
+        let column = self.column(site, column);
+        let measure = Measure { target: Target { world: site, column }, kind };
+        Ok((Ask::Check { measure, at_least, or_equal, threshold: theta, test }, unbounded))
+    }
+
+    fn rank(
+        &mut self,
+        site: usize,
+        what: &ast::Ident,
+        agent: &Expr,
+        measure: &ast::Measure,
+        clauses: &Clauses,
+        family: Option<f64>,
+        scope: ScopeId,
+    ) -> Lowered<(Ask, bool)> {
+        let locals = Locals::of(scope);
+        let (measured, unbounded) = self.measured(site, measure, scope)?;
+        let elaborator = &mut self.sites[site].elaborator;
+        if what.name != "moves" {
+            let error = Diagnostic::error("E0606", what.span, format!("`{}` cannot be ranked here", what.name)).hint("write `rank moves of …`");
+            return elaborator.report(error);
+        }
+        let typed = elaborator.lower(agent, &locals)?;
+        let Who::Agent(id) = elaborator.as_agent(typed, agent.span)? else { return Err(Reported) };
+        let dimension = match &measured.kind {
+            MeasureKind::Probability => Dimension::NONE,
+            MeasureKind::Expectation { dimension, .. } => *dimension,
+            MeasureKind::Quantile { .. } => {
+                let error = Diagnostic::error("E0607", measure.span, "moves are ranked by `P(…)` or `E(…)`");
+                return elaborator.report(error);
+            }
+        };
+        let share = family.map_or(1.0, |delta| delta / super::methods::DEFAULT_DELTA);
+        let (epsilon, delta, ranking) = elaborator.ranking(clauses, dimension, share, &locals)?;
+        let Some(scenario) = &self.sites[site].scenario else { return Err(Reported) };
+        let Some(moves) = scenario.moves.iter().position(|m| m.agent == id) else {
+            let name = scenario.agents.get(id.0 as usize).map_or("", |a| a.name.as_str()).to_owned();
+            let error = Diagnostic::error("E0606", agent.span, format!("the scenario declares no moves of `{name}`"))
+                .hint(format!("for example `moves {name} for 2 s {{ heading from -60 deg to 60 deg by 15 deg  stop }}`"));
+            return self.sites[site].elaborator.report(error);
+        };
+        Ok((Ask::Rank { moves, measure: measured, epsilon, delta, ranking }, unbounded))
+    }
+
+    fn push(
+        &mut self,
+        span: Span,
+        text: String,
+        settings: Vec<(String, String)>,
+        name: Option<String>,
+        ask: Ask,
+        unbounded: bool,
+        site: usize,
+    ) {
+        let elaborator = &self.sites[site].elaborator;
+        let within = unbounded.then(|| format!("the horizon of {}", elaborator.duration(elaborator.horizon.0)));
+        let index = self.next_index;
+        self.next_index += 1;
+        self.queries.push(Query { index, name, text, span, settings, ask, within });
+    }
+
+    fn finish(self) -> (Option<Study>, Vec<Diagnostic>) {
+        let mut diagnostics: Vec<Diagnostic> = Vec::new();
+        for site in &self.sites {
+            for diagnostic in &site.elaborator.diagnostics {
+                // The same place says the same thing once, whatever the parameter values.
+                let known = diagnostics.iter().any(|d| {
+                    d.code == diagnostic.code && d.place.as_ref().map(|p| p.span) == diagnostic.place.as_ref().map(|p| p.span)
+                });
+                if !known || diagnostic.place.is_none() && !diagnostics.contains(diagnostic) {
+                    diagnostics.push(diagnostic.clone());
+                }
+            }
+        }
+        diagnostics.sort_by_key(|d| d.place.as_ref().map(|p| p.span));
+        if diagnostics.iter().any(|d| d.severity == Severity::Error) {
+            return (None, diagnostics);
+        }
+        let mut worlds = Vec::with_capacity(self.sites.len());
+        let mut title = String::new();
+        for site in self.sites {
+            let Some(scenario) = site.scenario else { return (None, diagnostics) };
+            title.clone_from(&scenario.title);
+            let settings = site.settings.iter().map(|(name, number)| (name.clone(), number.value.to_string())).collect();
+            let elaborator = site.elaborator;
+            worlds.push(World {
+                settings,
+                scenario: Arc::new(scenario),
+                atoms: elaborator.atoms,
+                atom_texts: elaborator.atom_texts,
+                signals: elaborator.signals,
+                tree: elaborator.tree,
+                columns: site.columns,
+            });
+        }
+        (Some(Study { title, worlds, queries: self.queries }), diagnostics)
+    }
+}
+
+/// Whether the error of a query comes from its family rather than from its own clause.
+fn family_clauses(clauses: &Clauses) -> bool {
+    clauses.confidence.is_none()
+}
+
+/// The name of the property that is asked about, if it is one name.
+fn property_name(measure: &ast::Measure) -> Option<String> {
+    match &measure.body.kind {
+        ast::ExprKind::Name(name) => Some(name.clone()),
+        _ => None,
+    }
+}

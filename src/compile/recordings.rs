@@ -1,0 +1,112 @@
+//! Recordings as start states.
+
+use super::dimension::Dimension;
+use super::elaborator::{Elaborator, Locals, Lowered};
+use super::files::Files;
+use super::scenery::missing;
+use super::symbols::{Meaning, unknown};
+use crate::data::tracks::{Observation, Recording, read_eth_biwi};
+use crate::syntax::ast::{Expr, Ident, Recorded, Text};
+use crate::syntax::diagnostic::Diagnostic;
+
+/// How many bad lines of a file are shown.
+const SHOWN_LINES: usize = 10;
+
+impl<'a> Elaborator<'a> {
+    /// `tracks hotel = eth_biwi "seq_hotel/obsmat.txt"`
+    pub(super) fn tracks(&mut self, name: &'a Ident, format: &'a Ident, path: &'a Text, files: &Files) {
+        let index = self.recordings.len();
+        let recording = self.recording(format, path, files).ok();
+        self.recordings.push(recording);
+        if let Err(error) = self.scopes[0].declare(&name.name, name.span, Meaning::Tracks(index)) {
+            self.note(error);
+        }
+    }
+
+    fn recording(&mut self, format: &Ident, path: &Text, files: &Files) -> Lowered<Recording> {
+        if format.name != "eth_biwi" {
+            let error = unknown("format", &format.name, format.span, "E0702", ["eth_biwi"].into_iter())
+                .hint("known formats: eth_biwi");
+            return self.report(error);
+        }
+        let bytes = match files.get(&path.value) {
+            Ok(bytes) => bytes,
+            Err(reason) => return self.report(missing(path.span, &reason)),
+        };
+        let Ok(text) = std::str::from_utf8(bytes) else {
+            return self.report(Diagnostic::error("E0702", path.span, "this file is not text in UTF-8"));
+        };
+        match read_eth_biwi(text) {
+            Ok(recording) => Ok(recording),
+            Err(errors) => {
+                let shown: Vec<String> =
+                    errors.iter().take(SHOWN_LINES).map(|e| format!("line {}: {}", e.line, e.message)).collect();
+                let more = errors.len().saturating_sub(SHOWN_LINES);
+                let rest = if more > 0 { format!("; and {more} more") } else { String::new() };
+                let error = Diagnostic::error("E0702", path.span, format!("{} lines of this file cannot be read", errors.len()))
+                    .label(format!("{}{rest}", shown.join("; ")));
+                self.report(error)
+            }
+        }
+    }
+
+    /// The people of a recording at a time.
+    pub(super) fn observations(&mut self, recorded: &Recorded, plural: bool) -> Lowered<Vec<Observation>> {
+        let time = self.number_of(&recorded.at, Dimension::TIME, &Locals::default());
+        let only: Vec<_> = recorded.only.iter().map(|e| self.identity(e)).collect();
+        let except: Vec<_> = recorded.except.iter().map(|e| self.identity(e)).collect();
+        let name = &recorded.tracks;
+        let index = match self.find(&name.name, 0) {
+            Some((_, Meaning::Tracks(index))) => index,
+            Some((_, meaning)) => {
+                let error = Diagnostic::error("E0206", name.span, format!("expected a recording, `{}` is {}", name.name, meaning.noun()));
+                return self.report(error);
+            }
+            None => {
+                let recordings: Vec<String> = self.scopes[0]
+                    .entries()
+                    .filter(|(_, e)| matches!(e.meaning, Meaning::Tracks(_)))
+                    .map(|(n, _)| n.to_owned())
+                    .collect();
+                let error = unknown("recording", &name.name, name.span, "E0201", recordings.iter().map(String::as_str));
+                return self.report(error);
+            }
+        };
+        let (time, only, except) =
+            (time?, only.into_iter().collect::<Lowered<Vec<_>>>()?, except.into_iter().collect::<Lowered<Vec<_>>>()?);
+        let Some(Some(recording)) = self.recordings.get(index) else { return Err(super::elaborator::Reported) };
+        let found = recording.at(time.value);
+        if found.is_empty() {
+            let near = recording.nearest_time(time.value);
+            let error = Diagnostic::error("E0703", recorded.at.span, "nobody was recorded at this time")
+                .hint(near.map_or("the recording is empty".to_owned(), |t| format!("the nearest time with people is {t} s")));
+            return self.report(error);
+        }
+        for (expr, id) in recorded.only.iter().zip(&only).chain(recorded.except.iter().zip(&except)) {
+            if !found.iter().any(|o| o.id == *id) {
+                let present: Vec<String> = found.iter().map(|o| o.id.to_string()).collect();
+                let error = Diagnostic::error("E0703", expr.span, format!("person {id} was not recorded at this time"))
+                    .hint(format!("recorded were {}", present.join(", ")));
+                return self.report(error);
+            }
+        }
+        let chosen: Vec<Observation> = found
+            .into_iter()
+            .filter(|o| (only.is_empty() || only.contains(&o.id)) && !except.contains(&o.id))
+            .collect();
+        if !plural && chosen.len() != 1 {
+            let error = Diagnostic::error("E0703", recorded.span, format!("{} people are recorded there, one is needed", chosen.len()))
+                .hint("choose one by `id`, or declare `agents`");
+            return self.report(error);
+        }
+        Ok(chosen)
+    }
+
+    fn identity(&mut self, expr: &Expr) -> Lowered<u32> {
+        let number = self.number_of(expr, Dimension::NONE, &Locals::default())?;
+        match number.as_whole().and_then(|n| u32::try_from(n).ok()) {
+            Some(id) => Ok(id),
+            None => self.report(Diagnostic::error("E0703", expr.span, "a person is known by a whole number")),
+        }
+    }
+}

@@ -1,0 +1,213 @@
+//! The scene: walls, obstacles, regions, imports.
+
+use super::dimension::Dimension;
+use super::elaborator::{Elaborator, Locals, Lowered};
+use super::files::Files;
+use super::filter;
+use super::symbols::Meaning;
+use crate::base::geometry::{Polygon, Segment, Shape, Vec2};
+use crate::data::geometry::{Feature, Geometry, read_geojson, read_wkt};
+use crate::model::{Barrier, BarrierId, Obstacle, Region, RegionId};
+use crate::syntax::ast::{Expr, Ident, SceneItem, ShapeExpr, Text};
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+
+impl<'a> Elaborator<'a> {
+    /// Declares the names of a scene. Regions and barriers get their numbers in order of writing; barriers of
+    /// imports come last.
+    pub(super) fn declare_scene(&mut self, items: &'a [SceneItem]) {
+        for item in items {
+            let declared = match item {
+                SceneItem::Region { name, shape } => {
+                    self.shapes.push(None);
+                    let id = RegionId(self.shapes.len() as u32 - 1);
+                    self.scene.regions.push(Region { name: name.name.clone(), shape: Shape::rectangle(Vec2::zeros(), Vec2::zeros()) });
+                    self.scopes[0].declare(&name.name, name.span, Meaning::Region(id, shape))
+                }
+                SceneItem::Wall { name, .. } | SceneItem::Obstacle { name, .. } => {
+                    let id = BarrierId(self.scene.barriers.len() as u32);
+                    let text = name.as_ref().map_or(String::new(), |n| n.name.clone());
+                    self.scene.barriers.push(Barrier { name: text, obstacle: Obstacle::Wall(Vec::new()) });
+                    match name {
+                        Some(name) => self.scopes[0].declare(&name.name, name.span, Meaning::Barrier(id)),
+                        None => Ok(()),
+                    }
+                }
+                SceneItem::Point { name, at } => self.scopes[0].declare(&name.name, name.span, Meaning::Point(at)),
+                SceneItem::Import { .. } => Ok(()),
+            };
+            if let Err(error) = declared {
+                self.note(error);
+            }
+        }
+    }
+
+    /// Settles the shapes of a scene; `next` is the number of its first barrier.
+    pub(super) fn settle_scene(&mut self, items: &'a [SceneItem], files: &Files, next: &mut usize) {
+        for item in items {
+            match item {
+                SceneItem::Region { name, .. } => {
+                    if let Some(Meaning::Region(id, _)) = self.scopes[0].get(&name.name).map(|e| e.meaning.clone())
+                        && let Ok(shape) = self.region_shape(id, name.span)
+                    {
+                        self.scene.regions[id.0 as usize].shape = shape;
+                    }
+                }
+                SceneItem::Wall { points, span, .. } => {
+                    if let Ok(segments) = self.wall(points, *span) {
+                        self.scene.barriers[*next].obstacle = Obstacle::Wall(segments);
+                    }
+                    *next += 1;
+                }
+                SceneItem::Obstacle { shape, .. } => {
+                    if let Ok(shape) = self.shape(shape, &Locals::default()) {
+                        self.scene.barriers[*next].obstacle = Obstacle::Solid(shape);
+                    }
+                    *next += 1;
+                }
+                SceneItem::Point { at, .. } => {
+                    let _ = self.point_of(at, Dimension::LENGTH, &Locals::default());
+                }
+                SceneItem::Import { path, filter, .. } => self.import(path, filter.as_ref(), files),
+            }
+        }
+    }
+
+    /// The shape of a region, settled when it is first needed.
+    pub(super) fn region_shape(&mut self, id: RegionId, span: Span) -> Lowered<Shape> {
+        if let Some(Some(known)) = self.shapes.get(id.0 as usize) {
+            return known.clone();
+        }
+        let name = self.scene.regions[id.0 as usize].name.clone();
+        let Some(Meaning::Region(_, written)) = self.scopes[0].get(&name).map(|e| e.meaning.clone()) else {
+            return self.report(Diagnostic::error("E0205", span, format!("the region `{name}` is not known here")));
+        };
+        if self.expanding.iter().any(|(_, n)| *n == name) {
+            return self.report(Diagnostic::error("E0205", span, format!("`{name}` is defined by itself")));
+        }
+        self.expanding.push((0, name));
+        let shape = self.shape(written, &Locals::default());
+        self.expanding.pop();
+        self.shapes[id.0 as usize] = Some(shape.clone());
+        shape
+    }
+
+    fn wall(&mut self, points: &[Expr], span: Span) -> Lowered<Vec<Segment>> {
+        let corners: Vec<_> =
+            points.iter().map(|p| self.point_of(p, Dimension::LENGTH, &Locals::default())).collect();
+        let corners: Vec<Vec2> = corners.into_iter().collect::<Lowered<_>>()?;
+        if corners.windows(2).all(|pair| pair[0] == pair[1]) {
+            return self.report(Diagnostic::error("E0401", span, "this wall has no length"));
+        }
+        Ok(corners.windows(2).filter(|pair| pair[0] != pair[1]).map(|pair| Segment::new(pair[0], pair[1])).collect())
+    }
+
+    /// A shape as written.
+    pub(super) fn shape(&mut self, shape: &ShapeExpr, locals: &Locals) -> Lowered<Shape> {
+        match shape {
+            ShapeExpr::Named(name) => self.named_shape(name),
+            ShapeExpr::Circle { centre, radius, .. } => {
+                let middle = self.point_of(centre, Dimension::LENGTH, locals);
+                let size = self.number_of(radius, Dimension::LENGTH, locals)?;
+                if size.value <= 0.0 {
+                    return self.report(Diagnostic::error("E0401", radius.span, "the radius of a circle must be positive"));
+                }
+                Ok(Shape::Circle { centre: middle?, radius: size.value })
+            }
+            ShapeExpr::Rectangle { a, b, span } => {
+                let corners = (self.point_of(a, Dimension::LENGTH, locals), self.point_of(b, Dimension::LENGTH, locals));
+                let (a, b) = (corners.0?, corners.1?);
+                if a.x == b.x || a.y == b.y {
+                    return self.report(Diagnostic::error("E0401", *span, "this rectangle has no area"));
+                }
+                Ok(Shape::rectangle(a.inf(&b), a.sup(&b)))
+            }
+            ShapeExpr::Polygon { outline, holes, span } => {
+                let mut ring = |this: &mut Self, points: &[Expr]| -> Lowered<Vec<Vec2>> {
+                    let corners: Vec<_> = points.iter().map(|p| this.point_of(p, Dimension::LENGTH, locals)).collect();
+                    corners.into_iter().collect()
+                };
+                let outline = ring(self, outline)?;
+                let holes: Vec<_> = holes.iter().map(|hole| ring(self, hole)).collect();
+                let polygon = Polygon { outline, holes: holes.into_iter().collect::<Lowered<_>>()? };
+                if polygon.outline.len() < 3 || polygon.holes.iter().any(|hole| hole.len() < 3) {
+                    return self.report(Diagnostic::error("E0401", *span, "a polygon needs at least three corners"));
+                }
+                if !polygon.is_simple() {
+                    return self.report(Diagnostic::error("E0401", *span, "the edges of this polygon cross"));
+                }
+                if polygon.area() <= 0.0 {
+                    return self.report(Diagnostic::error("E0401", *span, "this polygon has no area"));
+                }
+                Ok(Shape::Polygon(polygon))
+            }
+        }
+    }
+
+    fn named_shape(&mut self, name: &Ident) -> Lowered<Shape> {
+        match self.find(&name.name, 0) {
+            Some((_, Meaning::Region(id, _))) => self.region_shape(id, name.span),
+            Some((_, meaning)) => {
+                let error = Diagnostic::error("E0206", name.span, format!("expected a region, `{}` is {}", name.name, meaning.noun()));
+                self.report(error)
+            }
+            None => {
+                let regions: Vec<String> = self.scene.regions.iter().map(|r| r.name.clone()).collect();
+                let known = regions.iter().map(String::as_str);
+                let error = super::symbols::unknown("region", &name.name, name.span, "E0201", known);
+                self.report(error)
+            }
+        }
+    }
+
+    fn import(&mut self, path: &Text, filter: Option<&Expr>, files: &Files) {
+        let features = match self.features(path, files) {
+            Ok(features) => features,
+            Err(_) => return,
+        };
+        let total = features.len();
+        let mut taken = 0;
+        for feature in features {
+            match filter.map(|f| filter::selects(f, &feature)) {
+                Some(Err(error)) => return self.note(error),
+                Some(Ok(false)) => continue,
+                Some(Ok(true)) | None => taken += 1,
+            }
+            let obstacle = match feature.geometry {
+                Geometry::Polygon(polygon) => Obstacle::Solid(Shape::Polygon(polygon)),
+                Geometry::Line(points) => {
+                    Obstacle::Wall(points.windows(2).map(|pair| Segment::new(pair[0], pair[1])).collect())
+                }
+                Geometry::Point(_) => continue,
+            };
+            self.scene.barriers.push(Barrier { name: feature.name, obstacle });
+        }
+        if taken == 0 {
+            let warning = Diagnostic::warning("W0401", path.span, format!("nothing of this file was taken: it has {total} features"))
+                .hint("the filter after `where` compares properties of features");
+            self.note(warning);
+        }
+    }
+
+    fn features(&mut self, path: &Text, files: &Files) -> Lowered<Vec<Feature>> {
+        let bytes = match files.get(&path.value) {
+            Ok(bytes) => bytes,
+            Err(reason) => return self.report(missing(path.span, &reason)),
+        };
+        let Ok(text) = std::str::from_utf8(bytes) else {
+            return self.report(Diagnostic::error("E0704", path.span, "this file is not text in UTF-8"));
+        };
+        let wkt = path.value.to_ascii_lowercase().ends_with(".wkt");
+        let read = if wkt { read_wkt(text) } else { read_geojson(text) };
+        match read {
+            Ok(features) => Ok(features),
+            Err(error) => self.report(Diagnostic::error("E0704", path.span, format!("this geometry cannot be read: {error}"))),
+        }
+    }
+}
+
+/// A file that could not be opened.
+pub(super) fn missing(span: Span, reason: &str) -> Diagnostic {
+    Diagnostic::error("E0701", span, reason.to_owned())
+        .hint("files are looked for beside the scenario, then under each `--data DIR`")
+}

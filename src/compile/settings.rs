@@ -1,0 +1,156 @@
+//! Values of parameters from outside: `--set name=value`, sweeps, `under`.
+
+use super::dimension::{self, Dimension};
+use super::elaborator::{Elaborator, Locals, Lowered};
+use super::number::Number;
+use super::symbols::{Meaning, unknown};
+use crate::base::decimal::Decimal;
+use crate::syntax::ast::{Expr, ExprKind, UnitExpr};
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+
+/// What a `--set` asks for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setting {
+    /// Name of the parameter.
+    pub name: String,
+    /// Where the value stands, for messages.
+    pub span: Span,
+    /// Its value or values.
+    pub value: SettingValue,
+}
+
+/// One value or several.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SettingValue {
+    /// One.
+    One(Expr),
+    /// From, to, by: ends included.
+    Sweep(Expr, Expr, Expr),
+}
+
+/// Most points of a sweep.
+const MOST_POINTS: usize = 10_000;
+
+impl<'a> Elaborator<'a> {
+    /// The unit in which the default of a parameter is written.
+    fn unit_of_default(default: &Expr) -> Option<&UnitExpr> {
+        match &default.kind {
+            ExprKind::Quantity(quantity) => quantity.unit.as_ref(),
+            ExprKind::Unary(_, inner) => Self::unit_of_default(inner),
+            _ => None,
+        }
+    }
+
+    /// The parameter of a name: its default and range.
+    pub(super) fn param(&mut self, name: &str, span: Span) -> Lowered<(&'a Expr, Option<&'a (Expr, Expr)>)> {
+        match self.scopes[0].get(name).map(|e| e.meaning.clone()) {
+            Some(Meaning::Param { value, range }) => Ok((value, range)),
+            Some(meaning) => {
+                let error = Diagnostic::error("E0210", span, format!("`{name}` is {} and cannot be set", meaning.noun()))
+                    .hint("declare it with `param`");
+                self.report(error)
+            }
+            None => {
+                let params: Vec<String> = self.scopes[0]
+                    .entries()
+                    .filter(|(_, e)| matches!(e.meaning, Meaning::Param { .. }))
+                    .map(|(n, _)| n.to_owned())
+                    .collect();
+                let mut error = unknown("parameter", name, span, "E0210", params.iter().map(String::as_str));
+                if error.hint.is_none() {
+                    error = error.hint(match params.as_slice() {
+                        [] => "the scenario declares no `param`".to_owned(),
+                        known => format!("the scenario declares {}", known.join(", ")),
+                    });
+                }
+                self.report(error)
+            }
+        }
+    }
+
+    /// The value that a parameter is set to. A bare number takes the unit of the default.
+    pub(super) fn setting(&mut self, name: &str, value: &Expr, locals: &Locals) -> Lowered<Number> {
+        let (default, range) = self.param(name, value.span)?;
+        let declared = self.number(default, &Locals::of(0))?;
+        let mut number = self.number(value, locals)?;
+        if number.dimension.is_none() && !declared.dimension.is_none() {
+            let unit = Self::unit_of_default(default).and_then(|unit| dimension::resolve(unit).ok());
+            number = match unit {
+                Some(unit) => number.times(Number::literal(Decimal::ONE, &unit)).unwrap_or(number),
+                None => Number { dimension: declared.dimension, ..number },
+            };
+        }
+        if number.dimension != declared.dimension {
+            return self.wrong_dimension(value.span, declared.dimension, number.dimension);
+        }
+        if !number.value.is_finite() {
+            return self.report(Diagnostic::error("E0405", value.span, "this is not a finite number"));
+        }
+        if let Some((low, high)) = range {
+            let ends = (
+                self.number_of(low, declared.dimension, &Locals::of(0)),
+                self.number_of(high, declared.dimension, &Locals::of(0)),
+            );
+            let (low, high) = (ends.0?, ends.1?);
+            if number.value < low.value || number.value > high.value {
+                let shown = [low, high].map(|n| self.shown(default, n));
+                let error = Diagnostic::error("E0405", value.span, format!("`{name}` lies between {} and {}", shown[0], shown[1]));
+                return self.report(error);
+            }
+        }
+        Ok(number)
+    }
+
+    /// The points of a sweep.
+    pub(super) fn points(&mut self, setting: &Setting) -> Lowered<Vec<Number>> {
+        let locals = Locals::of(0);
+        match &setting.value {
+            SettingValue::One(value) => Ok(vec![self.setting(&setting.name, value, &locals)?]),
+            SettingValue::Sweep(from, to, by) => {
+                let ends = (self.setting(&setting.name, from, &locals), self.setting(&setting.name, to, &locals));
+                let (first, last) = (ends.0?, ends.1?);
+                let (default, _) = self.param(&setting.name, setting.span)?;
+                let step = self.number(by, &locals)?;
+                let unit = Self::unit_of_default(default).and_then(|unit| dimension::resolve(unit).ok());
+                let step = match unit {
+                    Some(unit) if step.dimension.is_none() => {
+                        step.times(Number::literal(Decimal::ONE, &unit)).unwrap_or(step)
+                    }
+                    _ => Number { dimension: first.dimension, ..step },
+                };
+                if step.value <= 0.0 || last.value < first.value {
+                    let error = Diagnostic::error("E0405", setting.span, "a sweep goes up from its first to its last value by a positive step");
+                    return self.report(error);
+                }
+                let count = ((last.value - first.value) / step.value + 1e-9).floor();
+                if count >= MOST_POINTS as f64 {
+                    return self.report(Diagnostic::error("E0405", setting.span, format!("a sweep has at most {MOST_POINTS} points")));
+                }
+                let mut points = vec![first];
+                for _ in 0..count as usize {
+                    let next = points[points.len() - 1].plus(step);
+                    points.push(next);
+                }
+                Ok(points)
+            }
+        }
+    }
+
+    /// A value in the unit in which the default is written.
+    pub(super) fn shown(&self, default: &Expr, number: Number) -> String {
+        let unit = Self::unit_of_default(default);
+        let resolved = unit.and_then(|unit| dimension::resolve(unit).ok());
+        match (unit, resolved) {
+            (Some(unit), Some(resolved)) => {
+                let scaled = match (number.exact, resolved.exact) {
+                    (Some(a), Some(b)) => a.div(b).map_or(number.value / resolved.size, Decimal::to_f64),
+                    _ => number.value / resolved.size,
+                };
+                format!("{scaled} {}", self.text(unit.span))
+            }
+            _ if number.dimension == Dimension::NONE => format!("{}", number.value),
+            _ => format!("{} {}", number.value, number.dimension),
+        }
+    }
+}

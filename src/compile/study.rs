@@ -1,0 +1,275 @@
+//! What compilation yields: worlds to run and questions to answer about them.
+
+use super::dimension::Dimension;
+use crate::logic::{NodeId, TermId, Tree};
+use crate::model::{Bool, Num, Scenario};
+use crate::syntax::source::Span;
+use std::sync::Arc;
+
+/// Everything a call asks.
+#[derive(Clone, Debug)]
+pub struct Study {
+    /// Title of the scenario.
+    pub title: String,
+    /// The scenario under each combination of parameter values that is asked about.
+    pub worlds: Vec<World>,
+    /// The questions, in order of files and of writing; a sweep repeats them for each of its points.
+    pub queries: Vec<Query>,
+}
+
+/// The scenario under one combination of parameter values, and what is observed in it.
+#[derive(Clone, Debug)]
+pub struct World {
+    /// Values of parameters that were set, as `name`, `value` in the unit of the declaration.
+    pub settings: Vec<(String, String)>,
+    /// The scenario.
+    pub scenario: Arc<Scenario>,
+    /// Truth values observed in each state.
+    pub atoms: Vec<Bool>,
+    /// The source of each atom, for witnesses.
+    pub atom_texts: Vec<String>,
+    /// Numbers observed in each state.
+    pub signals: Vec<Num>,
+    /// Formulas and metrics over them.
+    pub tree: Tree,
+    /// What is asked of each trace.
+    pub columns: Vec<Column>,
+}
+
+/// One thing asked of each trace of a world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// Formula or metric.
+    pub root: Root,
+    /// As written.
+    pub text: String,
+}
+
+/// A formula or a metric.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Root {
+    /// A formula.
+    Formula(NodeId),
+    /// A metric.
+    Metric(TermId),
+}
+
+/// A column of a world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Target {
+    /// Index of the world.
+    pub world: usize,
+    /// Index of its column.
+    pub column: usize,
+}
+
+/// One question.
+#[derive(Clone, Debug)]
+pub struct Query {
+    /// Number of the query in the call, from 0; a list of estimates takes several.
+    pub index: usize,
+    /// Name of the property asked about, if it is one name.
+    pub name: Option<String>,
+    /// As written.
+    pub text: String,
+    /// Where.
+    pub span: Span,
+    /// Parameter values that hold for it alone (sweep, `under`).
+    pub settings: Vec<(String, String)>,
+    /// What is asked.
+    pub ask: Ask,
+    /// Set where a formula or metric ranges up to the horizon: the horizon in words.
+    pub within: Option<String>,
+}
+
+/// What is asked.
+#[derive(Clone, Debug)]
+pub enum Ask {
+    /// Is a measure above or below a threshold?
+    Check {
+        /// The measure.
+        measure: Measure,
+        /// Whether the claim is "at least" (or above) rather than "at most" (or below).
+        at_least: bool,
+        /// Whether equality counts as satisfied.
+        or_equal: bool,
+        /// The threshold, SI.
+        threshold: f64,
+        /// The procedure.
+        test: Test,
+    },
+    /// What is the value of a measure?
+    Estimate {
+        /// The measure.
+        measure: Measure,
+        /// The procedure.
+        estimator: Estimator,
+    },
+    /// How do two differ?
+    Compare {
+        /// First side.
+        first: Measure,
+        /// Second side.
+        second: Measure,
+        /// Values of the parameters on each side.
+        settings: [Vec<(String, String)>; 2],
+        /// Half width of the interval of the difference, or `None` for a fixed number of trials.
+        within: Option<f64>,
+        /// Error probability.
+        delta: f64,
+    },
+    /// Which move is best?
+    Rank {
+        /// Index into `Scenario::moves`.
+        moves: usize,
+        /// The score of an option.
+        measure: Measure,
+        /// Loss that does not matter.
+        epsilon: f64,
+        /// Error probability.
+        delta: f64,
+        /// The procedure.
+        ranking: Ranking,
+    },
+}
+
+/// A number of the distribution of traces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measure {
+    /// What is observed of each trace.
+    pub target: Target,
+    /// Which number of its distribution.
+    pub kind: MeasureKind,
+}
+
+/// Which number of the distribution.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MeasureKind {
+    /// Probability of a formula.
+    Probability,
+    /// Expectation of a metric, clipped to a range.
+    Expectation {
+        /// Range, SI.
+        range: (f64, f64),
+        /// Its dimension.
+        dimension: Dimension,
+    },
+    /// Quantile of a metric.
+    Quantile {
+        /// Level in (0, 1).
+        level: f64,
+        /// Its dimension.
+        dimension: Dimension,
+    },
+}
+
+/// Procedures of a check.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Test {
+    /// Sequential probability ratio test with an indifference region.
+    Sprt {
+        /// Error when the truth is above.
+        alpha: f64,
+        /// Error when the truth is below.
+        beta: f64,
+        /// Half width of the indifference region.
+        indifference: f64,
+    },
+    /// 2-SPRT: closed.
+    Sprt2 {
+        /// Error when the truth is above.
+        alpha: f64,
+        /// Error when the truth is below.
+        beta: f64,
+        /// Half width of the indifference region.
+        indifference: f64,
+    },
+    /// Exact single sampling plan.
+    Plan {
+        /// Error when the truth is above.
+        alpha: f64,
+        /// Error when the truth is below.
+        beta: f64,
+        /// Half width of the indifference region.
+        indifference: f64,
+    },
+    /// One-sided mixture e-process, without indifference region.
+    EProcess {
+        /// Error of either wrong side.
+        alpha: f64,
+        /// Error of the other side.
+        beta: f64,
+    },
+    /// Also "within the indifference region of the threshold".
+    ThreeWay {
+        /// Error.
+        alpha: f64,
+        /// Half width of the region.
+        indifference: f64,
+    },
+    /// Decide by an interval of the estimate: expectations and quantiles.
+    Interval {
+        /// Error.
+        delta: f64,
+        /// Fixed number of trials, for quantiles.
+        trials: u64,
+    },
+}
+
+/// Procedures of an estimate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Estimator {
+    /// The cheapest with the proven guarantee.
+    Default {
+        /// Half width.
+        epsilon: f64,
+        /// Error probability.
+        delta: f64,
+    },
+    /// Okamoto bound.
+    Okamoto {
+        /// Half width.
+        epsilon: f64,
+        /// Error probability.
+        delta: f64,
+    },
+    /// Sequential Massart bound.
+    Massart {
+        /// Half width.
+        epsilon: f64,
+        /// Error probability.
+        delta: f64,
+    },
+    /// Clopper-Pearson with alpha spending.
+    Spending {
+        /// Half width.
+        epsilon: f64,
+        /// Error probability.
+        delta: f64,
+    },
+    /// Fixed number of trials: Clopper-Pearson, or order statistics.
+    Fixed {
+        /// Number of trials.
+        trials: u64,
+        /// Error probability.
+        delta: f64,
+    },
+    /// Relative error (GBAS).
+    Relative {
+        /// Relative error.
+        epsilon: f64,
+        /// Error probability.
+        delta: f64,
+    },
+}
+
+/// Procedures of a ranking.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ranking {
+    /// Paired betting, all undecided challengers.
+    Betting,
+    /// Paired betting, one challenger at a time.
+    OneChallenger,
+    /// Okamoto on each option (Algorithm 1 of the paper).
+    Okamoto,
+}

@@ -1,0 +1,137 @@
+//! Names and what they stand for. Order of declaration does not matter; each name has one meaning.
+
+use super::nearest::nearest;
+use crate::model::{AgentId, BarrierId, RegionId};
+use crate::syntax::ast::{Expr, KindDecl, LetDecl, ShapeExpr};
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Which table of names: the scenario's is 0, property file k has k + 1.
+pub(super) type ScopeId = usize;
+
+/// What a name stands for.
+#[derive(Clone, Debug)]
+pub(super) enum Meaning<'a> {
+    /// A constant, evaluated when it is first used.
+    Constant(&'a Expr),
+    /// A parameter of the call.
+    Param {
+        /// Its default.
+        value: &'a Expr,
+        /// Its legal range.
+        range: Option<&'a (Expr, Expr)>,
+    },
+    /// A named expression or function.
+    Let(&'a LetDecl),
+    /// A property.
+    Property(&'a Expr),
+    /// A region of the scene.
+    Region(RegionId, &'a ShapeExpr),
+    /// A wall or obstacle.
+    Barrier(BarrierId),
+    /// A named point.
+    Point(&'a Expr),
+    /// A kind.
+    Kind(&'a KindDecl),
+    /// A recording.
+    Tracks(usize),
+    /// Agents that are declared but not elaborated yet.
+    Declared,
+    /// One agent.
+    Agent(AgentId),
+    /// Several agents; `particle` where one body stands for all.
+    Agents {
+        /// Ascending.
+        members: Arc<[AgentId]>,
+        /// Whether one body stands for all.
+        particle: bool,
+    },
+}
+
+impl Meaning<'_> {
+    /// What it is called in messages.
+    pub(super) fn noun(&self) -> &'static str {
+        match self {
+            Self::Constant(_) => "a constant",
+            Self::Param { .. } => "a parameter",
+            Self::Let(decl) if decl.arguments.is_empty() => "a named expression",
+            Self::Let(_) => "a function",
+            Self::Property(_) => "a property",
+            Self::Region(..) => "a region",
+            Self::Barrier(_) => "a wall or obstacle",
+            Self::Point(_) => "a point",
+            Self::Kind(_) => "a kind",
+            Self::Tracks(_) => "a recording",
+            Self::Declared | Self::Agent(_) => "an agent",
+            Self::Agents { .. } => "a set of agents",
+        }
+    }
+}
+
+/// A name's meaning and the place of its declaration.
+#[derive(Clone, Debug)]
+pub(super) struct Entry<'a> {
+    /// Where it was declared.
+    pub(super) span: Span,
+    /// What it stands for.
+    pub(super) meaning: Meaning<'a>,
+}
+
+/// One table of names.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Scope<'a> {
+    entries: BTreeMap<String, Entry<'a>>,
+}
+
+impl<'a> Scope<'a> {
+    /// Declares a name; a second declaration is an error that shows both places.
+    pub(super) fn declare(&mut self, name: &str, span: Span, meaning: Meaning<'a>) -> Result<(), Diagnostic> {
+        if let Some(first) = self.entries.get(name) {
+            return Err(Diagnostic::error("E0202", span, format!("`{name}` is declared twice"))
+                .related(first.span, "first declared here")
+                .hint("rename one of them"));
+        }
+        self.entries.insert(name.to_owned(), Entry { span, meaning });
+        Ok(())
+    }
+
+    /// Replaces the meaning of a declared name.
+    pub(super) fn define(&mut self, name: &str, meaning: Meaning<'a>) {
+        if let Some(entry) = self.entries.get_mut(name) {
+            entry.meaning = meaning;
+        }
+    }
+
+    /// The entry of a name.
+    pub(super) fn get(&self, name: &str) -> Option<&Entry<'a>> {
+        self.entries.get(name)
+    }
+
+    /// All names, sorted.
+    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+        self.entries.keys().map(String::as_str)
+    }
+
+    /// All entries, sorted by name.
+    pub(super) fn entries(&self) -> impl Iterator<Item = (&str, &Entry<'a>)> {
+        self.entries.iter().map(|(name, entry)| (name.as_str(), entry))
+    }
+}
+
+/// An unknown name, with the nearest known one as a hint.
+pub(super) fn unknown<'n>(
+    what: &str,
+    name: &str,
+    span: Span,
+    code: &'static str,
+    known: impl Iterator<Item = &'n str>,
+) -> Diagnostic {
+    let error = Diagnostic::error(code, span, format!("unknown {what} `{name}`"));
+    match nearest(name, known) {
+        Some(near) => error.hint(format!("did you mean `{near}`?")),
+        None => error,
+    }
+}
+

@@ -1,0 +1,62 @@
+//! Expressions after names, units and types are settled.
+
+use super::dimension::{Dimension, describe};
+use super::number::Number;
+use crate::logic::{NodeId, TermId};
+use crate::model::{BarrierId, Bool, Num, RegionId, Set, Who};
+
+/// What an expression turned out to be.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Typed {
+    /// A number known now.
+    Number(Number),
+    /// `∞`
+    Infinity,
+    /// A text.
+    Text(String),
+    /// A point or vector known now.
+    Point(Number, Number),
+    /// A number of a state.
+    Num(Num, Dimension),
+    /// A vector of a state.
+    Vector(Num, Num, Dimension),
+    /// A truth value of a state.
+    Truth(Bool),
+    /// One agent.
+    Agent(Who),
+    /// A set of agents.
+    Agents {
+        /// The set.
+        set: Set,
+        /// Whether one body stands for all.
+        particle: bool,
+    },
+    /// A region.
+    Region(RegionId),
+    /// A wall or obstacle.
+    Barrier(BarrierId),
+    /// A formula over states.
+    Formula(NodeId),
+    /// A number of the states from the present one on.
+    Term(TermId, Dimension),
+}
+
+impl Typed {
+    /// What it is called in messages.
+    pub(super) fn noun(&self) -> String {
+        match self {
+            Self::Number(n) => describe(n.dimension),
+            Self::Num(_, dimension) | Self::Term(_, dimension) => describe(*dimension),
+            Self::Infinity => "infinity".to_owned(),
+            Self::Text(_) => "a text".to_owned(),
+            Self::Point(..) => "a point".to_owned(),
+            Self::Vector(..) => "a vector".to_owned(),
+            Self::Truth(_) => "a condition".to_owned(),
+            Self::Agent(_) => "an agent".to_owned(),
+            Self::Agents { .. } => "a set of agents".to_owned(),
+            Self::Region(_) => "a region".to_owned(),
+            Self::Barrier(_) => "a wall or obstacle".to_owned(),
+            Self::Formula(_) => "a formula over time".to_owned(),
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! Routes and moves.
+
+use super::dimension::Dimension;
+use super::elaborator::{Elaborator, Locals, Lowered};
+use super::laws::value_span;
+use super::people::People;
+use super::typed::Typed;
+use crate::base::geometry::Vec2;
+use crate::model::{Goal, Leg, Move, Moves, Route, Who};
+use crate::syntax::ast::{self, Expr, MoveOption, MovesDecl, Value};
+use crate::syntax::diagnostic::Diagnostic;
+
+/// Most options of a `moves` declaration.
+const MOST_OPTIONS: usize = 1000;
+
+impl<'a> Elaborator<'a> {
+    /// A route as written.
+    pub(super) fn route(&mut self, value: &Value) -> Lowered<Route> {
+        match value {
+            Value::Plain(expr) => {
+                let goal = self.goal(expr)?;
+                Ok(Route::Legs { legs: vec![Leg::To(goal)], then_leave: false })
+            }
+            Value::Route(route) => {
+                let mut legs = Vec::with_capacity(route.legs.len());
+                for leg in &route.legs {
+                    legs.push(match leg {
+                        ast::Leg::Goal(expr) => self.goal(expr).map(Leg::To),
+                        ast::Leg::Wait(value) => {
+                            let law = self.law(value, Dimension::TIME, &Locals::default());
+                            match law {
+                                Ok(law) if law.bounds().0 < 0.0 => {
+                                    let error = Diagnostic::error("E0405", value_span(value), "a time to wait cannot be negative")
+                                        .hint("truncate the distribution: `… in 0 s .. 20 s`");
+                                    self.report(error)
+                                }
+                                law => law.map(Leg::Wait),
+                            }
+                        }
+                    });
+                }
+                let legs: Vec<Leg> = legs.into_iter().collect::<Lowered<_>>()?;
+                if let Some(span) = route.then_leave
+                    && !legs.iter().any(|leg| matches!(leg, Leg::To(_)))
+                {
+                    return self.report(Diagnostic::error("E0408", span, "who leaves needs a goal first"));
+                }
+                Ok(Route::Legs { legs, then_leave: route.then_leave.is_some() })
+            }
+            other => {
+                let error = Diagnostic::error("E0305", value_span(other), "expected a route")
+                    .hint("goals joined by arrows: `(9, 3) -> exit`");
+                self.report(error)
+            }
+        }
+    }
+
+    fn goal(&mut self, expr: &Expr) -> Lowered<Goal> {
+        match self.lower(expr, &Locals::default())? {
+            Typed::Region(id) => Ok(Goal::Region(id)),
+            Typed::Point(x, y) if x.dimension == Dimension::LENGTH => Ok(Goal::Point(Vec2::new(x.value, y.value))),
+            Typed::Point(x, _) => self.wrong_dimension(expr.span, Dimension::LENGTH, x.dimension),
+            found => self.mismatch(expr.span, "a region or a point to go to", &found),
+        }
+    }
+
+    /// `moves user for 2 s { … }`
+    pub(super) fn moves(&mut self, decl: &'a MovesDecl, people: &People) -> Lowered<Moves> {
+        let name = Expr { kind: ast::ExprKind::Name(decl.agent.name.clone()), span: decl.agent.span };
+        let typed = self.lower(&name, &Locals::default());
+        let duration = self.time(&decl.duration, &Locals::default());
+        let mut options: Vec<(String, Move)> = Vec::new();
+        let mut failed = false;
+        for option in &decl.options {
+            failed |= self.option(option, &mut options).is_err();
+        }
+        let typed = typed?;
+        let Who::Agent(agent) = self.as_agent(typed, decl.agent.span)? else { return Err(super::elaborator::Reported) };
+        let Some(duration) = duration? else {
+            return self.report(Diagnostic::error("E0406", decl.duration.span, "a move holds for a finite time"));
+        };
+        if failed {
+            return Err(super::elaborator::Reported);
+        }
+        if options.is_empty() {
+            return self.report(Diagnostic::error("E0406", decl.span, "there is no option to choose from")
+                .hint("for example `heading from -60 deg to 60 deg by 15 deg` and `stop`"));
+        }
+        if people.agents.get(agent.0 as usize).is_none() {
+            return Err(super::elaborator::Reported);
+        }
+        Ok(Moves { agent, duration, options })
+    }
+
+    fn option(&mut self, option: &MoveOption, options: &mut Vec<(String, Move)>) -> Lowered<()> {
+        match option {
+            MoveOption::Stop(span) => {
+                if options.iter().any(|(_, m)| *m == Move::Stop) {
+                    return self.report(Diagnostic::error("E0406", *span, "`stop` is there already"));
+                }
+                options.push(("stop".to_owned(), Move::Stop));
+                Ok(())
+            }
+            MoveOption::Heading(angle) => {
+                let number = self.number_of(angle, Dimension::ANGLE, &Locals::default())?;
+                options.push((heading_label(number.value), Move::Heading(number.value)));
+                Ok(())
+            }
+            MoveOption::Headings { from, to, by, span } => {
+                let ends = (
+                    self.number_of(from, Dimension::ANGLE, &Locals::default()),
+                    self.number_of(to, Dimension::ANGLE, &Locals::default()),
+                    self.number_of(by, Dimension::ANGLE, &Locals::default()),
+                );
+                let (from, to, by) = (ends.0?.value, ends.1?.value, ends.2?.value);
+                if by <= 0.0 || to < from {
+                    let error = Diagnostic::error("E0406", *span, "headings go up from the first to the last by a positive angle");
+                    return self.report(error);
+                }
+                let count = ((to - from) / by + 1e-9).floor() as usize + 1;
+                if count + options.len() > MOST_OPTIONS {
+                    return self.report(Diagnostic::error("E0406", *span, format!("these are more than {MOST_OPTIONS} options")));
+                }
+                for k in 0..count {
+                    let angle = from + by * k as f64;
+                    // What is zero but for rounding is the direct way.
+                    let angle = if angle.abs() < 1e-12 { 0.0 } else { angle };
+                    options.push((heading_label(angle), Move::Heading(angle)));
+                }
+                Ok(())
+            }
+        }
+    }
+}
+
+fn heading_label(angle: f64) -> String {
+    let degrees = angle.to_degrees();
+    let rounded = (degrees * 1e6).round() / 1e6;
+    let rounded = if rounded == 0.0 { 0.0 } else { rounded };
+    format!("heading {rounded} deg")
+}

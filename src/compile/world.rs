@@ -1,0 +1,225 @@
+//! A scenario under one combination of parameter values.
+
+use super::dimension::Dimension;
+use super::elaborator::{Elaborator, Locals, Lowered, Reported};
+use super::files::Files;
+use super::number::Number;
+use super::people::People;
+use super::symbols::Meaning;
+use crate::base::tick::{Clock, Tick};
+use crate::model::{Moves, Scenario};
+use crate::syntax::ast::{Item, PropertyFile, PropertyItem, ScenarioFile};
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::{Source, Span};
+use std::collections::BTreeMap;
+
+/// Most ticks of a trial.
+const MOST_TICKS: u64 = 1 << 32;
+
+impl<'a> Elaborator<'a> {
+    /// Elaborates a scenario with some parameters set, and declares the names of property files.
+    pub(super) fn elaborate(
+        sources: &'a [Source],
+        scenario: &'a ScenarioFile,
+        properties: &'a [PropertyFile],
+        files: &Files,
+        settings: BTreeMap<String, Number>,
+    ) -> (Self, Option<Scenario>) {
+        let mut this = Self::new(sources, settings);
+        this.declare(scenario);
+        this.declare_properties(properties);
+        let built = this.build(scenario, files).ok();
+        (this, built)
+    }
+
+    fn declare(&mut self, file: &'a ScenarioFile) {
+        for item in &file.items {
+            let (name, meaning) = match item {
+                Item::Const { name, value } => (name, Meaning::Constant(value)),
+                Item::Param { name, value, range } => (name, Meaning::Param { value, range: range.as_ref() }),
+                Item::Let(decl) => (&decl.name, Meaning::Let(decl)),
+                Item::Kind(decl) => (&decl.name, Meaning::Kind(decl)),
+                Item::Agents(decl) => (&decl.name, Meaning::Declared),
+                Item::Group(decl) => (&decl.name, Meaning::Declared),
+                Item::Scene(items) => {
+                    self.declare_scene(items);
+                    continue;
+                }
+                Item::Title(_) | Item::Setting { .. } | Item::Tracks { .. } | Item::Moves(_) => continue,
+            };
+            if let Err(error) = self.scopes[0].declare(&name.name, name.span, meaning) {
+                self.note(error);
+            }
+            if super::dimension::unit(&name.name).is_some() {
+                let warning = Diagnostic::warning("W0101", name.span, format!("`{}` is also a unit", name.name))
+                    .hint("after a number it is read as the unit; another name avoids surprises");
+                self.note(warning);
+            }
+        }
+    }
+
+    fn declare_properties(&mut self, files: &'a [PropertyFile]) {
+        for file in files {
+            let mut scope = super::symbols::Scope::default();
+            for item in &file.items {
+                let (name, meaning) = match item {
+                    PropertyItem::Let(decl) => (&decl.name, Meaning::Let(decl)),
+                    PropertyItem::Const { name, value } => (name, Meaning::Constant(value)),
+                    PropertyItem::Property { name, formula } => (name, Meaning::Property(formula)),
+                    PropertyItem::Family { .. } | PropertyItem::Query(_) => continue,
+                };
+                if let Some(first) = self.scopes[0].get(&name.name) {
+                    let error = Diagnostic::error("E0202", name.span, format!("`{}` is already a name of the scenario", name.name))
+                        .related(first.span, "declared here");
+                    self.note(error);
+                } else if let Err(error) = scope.declare(&name.name, name.span, meaning) {
+                    self.note(error);
+                }
+            }
+            self.scopes.push(scope);
+        }
+    }
+
+    fn build(&mut self, file: &'a ScenarioFile, files: &Files) -> Lowered<Scenario> {
+        let clock = self.settle_clock(file);
+        for item in &file.items {
+            if let Item::Tracks { name, format, path } = item {
+                self.tracks(name, format, path, files);
+            }
+        }
+        let mut barrier = 0;
+        for item in &file.items {
+            if let Item::Scene(items) = item {
+                self.settle_scene(items, files, &mut barrier);
+            }
+        }
+        let mut people = People::default();
+        for item in &file.items {
+            match item {
+                Item::Agents(decl) => self.agents(decl, &mut people),
+                Item::Group(decl) => self.group(decl, &mut people),
+                _ => {}
+            }
+        }
+        let mut moves: Vec<Moves> = Vec::new();
+        for item in &file.items {
+            if let Item::Moves(decl) = item
+                && clock.is_ok()
+                && let Ok(one) = self.moves(decl, &people)
+            {
+                if moves.iter().any(|m| m.agent == one.agent) {
+                    let error = Diagnostic::error("E0406", decl.agent.span, format!("the moves of `{}` are declared twice", decl.agent.name));
+                    self.note(error);
+                }
+                moves.push(one);
+            }
+        }
+        self.check_unused(file);
+        clock?;
+        if self.failed() {
+            return Err(Reported);
+        }
+        let title = file.items.iter().find_map(|item| if let Item::Title(text) = item { Some(text.value.clone()) } else { None });
+        Ok(Scenario {
+            title: title.unwrap_or_default(),
+            clock: self.clock,
+            horizon: self.horizon,
+            scene: self.scene.clone(),
+            agents: people.agents,
+            groups: people.groups,
+            moves,
+        })
+    }
+
+    /// What nobody uses is checked as well.
+    fn check_unused(&mut self, file: &'a ScenarioFile) {
+        let locals = Locals::of(0);
+        for item in &file.items {
+            match item {
+                Item::Const { name, value } => {
+                    let _ = self.lower_declared(&name.name, value.span);
+                }
+                Item::Param { name, value, range } => {
+                    let declared = self.lower_declared(&name.name, value.span);
+                    if let (Some((low, high)), Ok(super::typed::Typed::Number(number))) = (range, declared)
+                        && let (Ok(low), Ok(high)) =
+                            (self.number_of(low, number.dimension, &locals), self.number_of(high, number.dimension, &locals))
+                        && (number.value < low.value || number.value > high.value)
+                    {
+                        self.note(Diagnostic::error("E0405", value.span, format!("the default of `{}` lies outside its range", name.name)));
+                    }
+                }
+                Item::Kind(decl) => {
+                    if self.scopes[0].get(&decl.name.name).is_some_and(|e| e.span == decl.name.span) {
+                        let _ = self.kind(&decl.name);
+                    }
+                }
+                Item::Let(decl) if decl.arguments.is_empty() => {
+                    self.temporal = true;
+                    let _ = self.lower_declared(&decl.name.name, decl.body.span);
+                    self.temporal = false;
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn lower_declared(&mut self, name: &str, span: Span) -> Lowered<super::typed::Typed> {
+        let expr = crate::syntax::ast::Expr { kind: crate::syntax::ast::ExprKind::Name(name.to_owned()), span };
+        self.lower(&expr, &Locals::of(0))
+    }
+
+    fn settle_clock(&mut self, file: &'a ScenarioFile) -> Lowered<()> {
+        let mut found: [Option<(&crate::syntax::ast::Expr, Span)>; 2] = [None, None];
+        let mut failed = false;
+        for item in &file.items {
+            let Item::Setting { name, value } = item else { continue };
+            let slot = match name.name.as_str() {
+                "horizon" => 0,
+                "step" => 1,
+                _ => {
+                    let error = super::symbols::unknown("setting", &name.name, name.span, "E0207", ["horizon", "step"].into_iter());
+                    self.note(error.hint("a scenario sets `horizon` and `step`; constants start with `const`"));
+                    failed = true;
+                    continue;
+                }
+            };
+            if let Some((_, first)) = found[slot] {
+                let error = Diagnostic::error("E0202", name.span, format!("`{}` is set twice", name.name)).related(first, "first set here");
+                self.note(error);
+                failed = true;
+            }
+            found[slot] = Some((value, name.span));
+        }
+        if file.items.is_empty() {
+            return Err(Reported);
+        }
+        let [horizon, step] = found;
+        let mut missing = |this: &mut Self, what: &str, example: &str| {
+            let error = Diagnostic::placeless("E0505", format!("the scenario has no {what}")).hint(format!("write `{what} = {example}`"));
+            this.note(error);
+            failed = true;
+        };
+        if step.is_none() {
+            missing(self, "step", "0.02 s");
+        }
+        if horizon.is_none() {
+            missing(self, "horizon", "30 s");
+        }
+        let (Some((horizon, _)), Some((step, _))) = (horizon, step) else { return Err(Reported) };
+        let length = self.number_of(step, Dimension::TIME, &Locals::of(0))?;
+        let Some(exact) = length.exact.filter(|e| !e.is_zero() && !e.is_negative()) else {
+            return self.report(Diagnostic::error("E0505", step.span, "the step must be a positive, exact time"));
+        };
+        self.clock = Clock::Stepped(exact);
+        let end = self.time(horizon, &Locals::of(0))?;
+        match end {
+            Some(Tick(0)) => self.report(Diagnostic::error("E0505", horizon.span, "the horizon must be later than the start")),
+            Some(tick) if tick.0 <= MOST_TICKS => {
+                self.horizon = tick;
+                if failed { Err(Reported) } else { Ok(()) }
+            }
+            _ => self.report(Diagnostic::error("E0505", horizon.span, format!("a trial has at most {MOST_TICKS} steps"))),
+        }
+    }
+}
