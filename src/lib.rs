@@ -4,7 +4,10 @@
 //! The floors, low to high, are described in `ARCHITECTURE.md` and held by `tests/floors.rs`.
 
 pub mod base;
+pub mod data;
+pub mod engine;
 pub mod kernel;
 pub mod logic;
 pub mod model;
+pub mod report;
 pub mod syntax;

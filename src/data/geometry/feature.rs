@@ -1,0 +1,151 @@
+//! Features: a shape with a name and properties.
+
+use super::ring;
+use crate::base::geometry::{Polygon, Vec2};
+
+/// A shape and what is said of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Feature {
+    /// Its property `name`, else its id, else empty.
+    pub name: String,
+    /// Its properties in the order of the file.
+    pub properties: Vec<(String, PropertyValue)>,
+    /// Its shape.
+    pub shape: Geometry,
+}
+
+impl Feature {
+    /// A property by its name.
+    pub fn property(&self, name: &str) -> Option<&PropertyValue> {
+        self.properties.iter().find(|(key, _)| key == name).map(|(_, value)| value)
+    }
+}
+
+/// The value of a property.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PropertyValue {
+    /// A text.
+    Text(String),
+    /// A number, finite.
+    Number(f64),
+    /// True or false.
+    Bool(bool),
+    /// Said to be nothing.
+    Null,
+    /// A list or an object, as JSON text.
+    Other(String),
+}
+
+/// A shape of one part, in metres.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Geometry {
+    /// A point.
+    Point(Vec2),
+    /// At least two points, successive ones apart, joined by straight segments.
+    Line(Vec<Vec2>),
+    /// A polygon with simple rings and its holes inside.
+    Polygon(Polygon),
+}
+
+/// What is wrong with a geometry.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{}", self.sentence())]
+pub struct GeometryError {
+    /// Line of the file from 1, where known.
+    pub line: Option<usize>,
+    /// Column of that line from 1, where known.
+    pub column: Option<usize>,
+    /// Which feature, from 1, and its name if it has one.
+    pub feature: Option<String>,
+    /// What is wrong: one sentence, lower case, no full stop.
+    pub message: String,
+}
+
+impl GeometryError {
+    fn sentence(&self) -> String {
+        let mut text = String::new();
+        if let Some(line) = self.line {
+            text += &format!("line {line}");
+            if let Some(column) = self.column {
+                text += &format!(", column {column}");
+            }
+            text += ": ";
+        }
+        if let Some(feature) = &self.feature {
+            text += &format!("{feature}: ");
+        }
+        text + &self.message
+    }
+}
+
+/// A point, refused where it is not finite.
+pub(super) fn point(p: Vec2) -> Result<Geometry, String> {
+    finite(&[p])?;
+    Ok(Geometry::Point(p))
+}
+
+/// A line, refused where it is not finite or all in one place.
+pub(super) fn line(mut points: Vec<Vec2>) -> Result<Geometry, String> {
+    finite(&points)?;
+    points.dedup();
+    if points.len() < 2 {
+        return Err("a line needs two points apart from each other".into());
+    }
+    Ok(Geometry::Line(points))
+}
+
+/// A polygon of an outline and holes as the formats write them: closed rings, the outline first.
+pub(super) fn polygon(rings: Vec<Vec<Vec2>>) -> Result<Geometry, String> {
+    let mut good = Vec::with_capacity(rings.len());
+    for (k, points) in rings.into_iter().enumerate() {
+        let what = if k == 0 { "the outline".to_owned() } else { format!("hole {k}") };
+        finite(&points)?;
+        good.push(ring::checked(points).map_err(|fault| format!("{what} {fault}"))?);
+    }
+    let mut good = good.into_iter();
+    let Some(outline) = good.next() else { return Err("a polygon needs an outline".into()) };
+    let outline = Polygon::new(outline);
+    let holes: Vec<_> = good.collect();
+    if let Some(k) = holes.iter().position(|hole| !hole.iter().all(|&corner| outline.contains(corner))) {
+        return Err(format!("hole {} lies outside the outline", k + 1));
+    }
+    Ok(Geometry::Polygon(Polygon { holes, ..outline }))
+}
+
+fn finite(points: &[Vec2]) -> Result<(), String> {
+    match points.iter().find(|p| !(p.x.is_finite() && p.y.is_finite())) {
+        Some(p) => Err(format!("the point ({}, {}) is not finite", p.x, p.y)),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square(low: f64, high: f64) -> Vec<Vec2> {
+        [(low, low), (high, low), (high, high), (low, high), (low, low)]
+            .map(|(x, y)| Vec2::new(x, y))
+            .to_vec()
+    }
+
+    #[test]
+    fn a_polygon_keeps_its_holes() {
+        let Ok(Geometry::Polygon(p)) = polygon(vec![square(0.0, 4.0), square(1.0, 2.0)]) else { panic!() };
+        assert_eq!(p.area(), 15.0);
+        assert_eq!(p.outline.len(), 4, "the closing corner is not repeated");
+    }
+
+    #[test]
+    fn what_is_no_shape_is_refused() {
+        let fault = |rings| polygon(rings).unwrap_err();
+        assert_eq!(fault(vec![]), "a polygon needs an outline");
+        assert_eq!(fault(vec![square(0.0, 1.0), square(3.0, 4.0)]), "hole 1 lies outside the outline");
+        assert_eq!(fault(vec![square(0.0, 1.0), square(0.5, 0.5)]), "hole 1 has fewer than three corners");
+        let mut bad = square(0.0, 1.0);
+        bad[2].x = f64::NAN;
+        assert_eq!(fault(vec![bad]), "the point (NaN, 1) is not finite");
+        assert!(line(vec![Vec2::zeros(), Vec2::zeros()]).is_err());
+        assert!(point(Vec2::new(f64::INFINITY, 0.0)).is_err());
+    }
+}

@@ -1,0 +1,158 @@
+//! Reader of GeoJSON (RFC 7946): a feature collection, one feature, or one geometry.
+
+use super::feature::{self, Feature, Geometry, GeometryError, PropertyValue};
+use crate::base::geometry::Vec2;
+use geojson::feature::Id;
+use geojson::{GeoJson, GeometryValue, JsonValue, Position};
+
+/// Reads all features. A feature without a geometry is passed over, as the format allows it.
+///
+/// # Errors
+/// Text that is no GeoJSON (one error, with its place where the parser knows it); else every feature with
+/// a point that is not finite, a line in one place, or a ring that is degenerate or meets itself.
+pub fn read_geojson(text: &str) -> Result<Vec<Feature>, Vec<GeometryError>> {
+    let features = match text.parse::<GeoJson>() {
+        Ok(GeoJson::FeatureCollection(collection)) => collection.features,
+        Ok(GeoJson::Feature(one)) => vec![one],
+        Ok(GeoJson::Geometry(shape)) => vec![geojson::Feature::from(shape)],
+        Err(error) => return Err(vec![malformed(&error)]),
+    };
+    let (mut found, mut errors) = (Vec::new(), Vec::new());
+    for (k, one) in features.into_iter().enumerate() {
+        let properties: Vec<_> =
+            one.properties.into_iter().flatten().map(|(key, value)| (key, property(value))).collect();
+        let name = properties
+            .iter()
+            .find_map(|(key, value)| match value {
+                PropertyValue::Text(name) if key == "name" => Some(name.clone()),
+                _ => None,
+            })
+            .or_else(|| {
+                one.id.map(|id| match id {
+                    Id::String(text) => text,
+                    Id::Number(number) => number.to_string(),
+                })
+            })
+            .unwrap_or_default();
+        let Some(geometry) = one.geometry else { continue };
+        flatten(geometry.value, &mut |shape| match shape {
+            Ok(shape) => {
+                found.push(Feature { name: name.clone(), properties: properties.clone(), shape });
+            }
+            Err(message) => {
+                let number = k + 1;
+                let feature = if name.is_empty() {
+                    format!("feature {number}")
+                } else {
+                    format!("feature {number} `{name}`")
+                };
+                errors.push(GeometryError { line: None, column: None, feature: Some(feature), message });
+            }
+        });
+    }
+    if errors.is_empty() { Ok(found) } else { Err(errors) }
+}
+
+fn malformed(error: &geojson::Error) -> GeometryError {
+    let (mut line, mut column, mut message) = (None, None, error.to_string());
+    if let geojson::Error::MalformedGeoJson(json) = error {
+        message = json.to_string();
+        if json.line() > 0 {
+            (line, column) = (Some(json.line()), Some(json.column().max(1)));
+            let place = format!(" at line {} column {}", json.line(), json.column());
+            message = message.replace(&place, "");
+        }
+    }
+    GeometryError { line, column, feature: None, message: format!("this is no GeoJSON: {message}") }
+}
+
+fn property(value: JsonValue) -> PropertyValue {
+    match value {
+        JsonValue::Null => PropertyValue::Null,
+        JsonValue::Bool(truth) => PropertyValue::Bool(truth),
+        JsonValue::String(text) => PropertyValue::Text(text),
+        JsonValue::Number(ref number) => match number.as_f64() {
+            Some(number) if number.is_finite() => PropertyValue::Number(number),
+            _ => PropertyValue::Other(value.to_string()),
+        },
+        JsonValue::Array(_) | JsonValue::Object(_) => PropertyValue::Other(value.to_string()),
+    }
+}
+
+fn vector(position: &Position) -> Vec2 {
+    let at = |k| position.as_slice().get(k).copied().unwrap_or(f64::NAN);
+    Vec2::new(at(0), at(1))
+}
+
+fn vectors(positions: &[Position]) -> Vec<Vec2> {
+    positions.iter().map(vector).collect()
+}
+
+/// Hands on every part of a geometry. Nesting is bounded by the JSON parser.
+fn flatten(value: GeometryValue, each: &mut impl FnMut(Result<Geometry, String>)) {
+    let rings = |polygon: &[Vec<Position>]| polygon.iter().map(|ring| vectors(ring)).collect();
+    match value {
+        GeometryValue::Point { coordinates } => each(feature::point(vector(&coordinates))),
+        GeometryValue::MultiPoint { coordinates } => {
+            coordinates.iter().for_each(|p| each(feature::point(vector(p))));
+        }
+        GeometryValue::LineString { coordinates } => each(feature::line(vectors(&coordinates))),
+        GeometryValue::MultiLineString { coordinates } => {
+            coordinates.iter().for_each(|points| each(feature::line(vectors(points))));
+        }
+        GeometryValue::Polygon { coordinates } => each(feature::polygon(rings(&coordinates))),
+        GeometryValue::MultiPolygon { coordinates } => {
+            coordinates.iter().for_each(|polygon| each(feature::polygon(rings(polygon))));
+        }
+        GeometryValue::GeometryCollection { geometries } => {
+            geometries.into_iter().for_each(|part| flatten(part.value, each));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_collection_of_all_types_is_flattened() {
+        let text = r#"{"type": "FeatureCollection", "features": [
+            {"type": "Feature", "id": 7, "properties": null, "geometry": {"type": "Point", "coordinates": [1, 2, 3]}},
+            {"type": "Feature", "properties": {"name": "rail", "n": 2, "ok": true, "no": null, "list": [1]},
+             "geometry": {"type": "MultiLineString", "coordinates": [[[0,0],[1,0]], [[2,0],[3,0]]]}},
+            {"type": "Feature", "properties": {}, "geometry": null},
+            {"type": "Feature", "properties": {}, "geometry": {"type": "GeometryCollection", "geometries": [
+                {"type": "MultiPolygon", "coordinates": [[[[0,0],[1,0],[0,1],[0,0]]]]},
+                {"type": "MultiPoint", "coordinates": [[5, 5]]}]}}]}"#;
+        let found = read_geojson(text).unwrap();
+        let names: Vec<&str> = found.iter().map(|f| f.name.as_str()).collect();
+        assert_eq!(names, ["7", "rail", "rail", "", ""]);
+        assert_eq!(found[0].shape, Geometry::Point(Vec2::new(1.0, 2.0)));
+        assert_eq!(found[1].property("n"), Some(&PropertyValue::Number(2.0)));
+        assert_eq!(found[1].property("ok"), Some(&PropertyValue::Bool(true)));
+        assert_eq!(found[1].property("no"), Some(&PropertyValue::Null));
+        assert_eq!(found[1].property("list"), Some(&PropertyValue::Other("[1]".into())));
+        assert!(matches!(&found[3].shape, Geometry::Polygon(p) if p.area() == 0.5));
+    }
+
+    #[test]
+    fn every_bad_feature_is_named() {
+        let text = r#"{"type": "FeatureCollection", "features": [
+            {"type": "Feature", "properties": {"name": "bow"},
+             "geometry": {"type": "Polygon", "coordinates": [[[0,0],[2,2],[2,0],[0,2],[0,0]]]}},
+            {"type": "Feature", "properties": {}, "geometry": {"type": "LineString", "coordinates": [[1,1],[1,1]]}}]}"#;
+        let said: Vec<String> = read_geojson(text).unwrap_err().iter().map(ToString::to_string).collect();
+        assert_eq!(said[0], "feature 1 `bow`: the outline meets itself near (2, 0)");
+        assert_eq!(said[1], "feature 2: a line needs two points apart from each other");
+    }
+
+    #[test]
+    fn broken_text_has_a_place() {
+        let errors = read_geojson("{\n  \"type\": \"Point\",\n  \"coordinates\": [1, oops]\n}").unwrap_err();
+        assert_eq!((errors[0].line, errors[0].feature.as_ref()), (Some(3), None));
+        assert!(errors[0].column.is_some());
+        assert!(read_geojson("{\"type\": \"Point\"}").is_err());
+        assert!(read_geojson("{\"type\": \"Point\", \"coordinates\": [1]}").is_err());
+        assert!(read_geojson(&"[".repeat(100_000)).is_err());
+    }
+}

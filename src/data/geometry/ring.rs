@@ -1,0 +1,77 @@
+//! Rings of polygons: what makes one usable.
+//!
+//! Crossings are looked for with the edges sorted by their left ends, so that only edges that share a
+//! stretch of the x axis are compared.
+
+use crate::base::geometry::{Polygon, Segment, Vec2};
+
+/// The corners of a ring, the closing one not repeated, or what is wrong with it.
+pub(super) fn checked(mut points: Vec<Vec2>) -> Result<Vec<Vec2>, String> {
+    points.dedup();
+    while points.len() > 1 && points.first() == points.last() {
+        points.pop();
+    }
+    if points.len() < 3 {
+        return Err("has fewer than three corners".into());
+    }
+    if let Some(at) = crossing(&points) {
+        return Err(format!("meets itself near ({}, {})", at.x, at.y));
+    }
+    let ring = Polygon::new(points);
+    if ring.area() > 0.0 { Ok(ring.outline) } else { Err("has no area".into()) }
+}
+
+/// A point near which two edges meet that are not neighbours.
+fn crossing(ring: &[Vec2]) -> Option<Vec2> {
+    let n = ring.len();
+    let edge = |k: usize| Segment::new(ring[k], ring[(k + 1) % n]);
+    let left = |s: &Segment| s.a.x.min(s.b.x);
+    let right = |s: &Segment| s.a.x.max(s.b.x);
+    let mut order: Vec<usize> = (0..n).collect();
+    order.sort_by(|&i, &j| left(&edge(i)).total_cmp(&left(&edge(j))));
+    for (k, &i) in order.iter().enumerate() {
+        let first = edge(i);
+        for &j in &order[k + 1..] {
+            let second = edge(j);
+            if left(&second) > right(&first) {
+                break;
+            }
+            let neighbours = (i + 1) % n == j || (j + 1) % n == i;
+            if !neighbours && first.meets(&second) {
+                return Some(second.a);
+            }
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn ring(corners: &[(f64, f64)]) -> Vec<Vec2> {
+        corners.iter().map(|&(x, y)| Vec2::new(x, y)).collect()
+    }
+
+    #[test]
+    fn degenerate_rings_are_refused() {
+        assert_eq!(
+            checked(ring(&[(0., 0.), (1., 0.), (1., 0.), (0., 0.)])).unwrap_err(),
+            "has fewer than three corners"
+        );
+        assert_eq!(checked(ring(&[(0., 0.), (1., 0.), (2., 0.)])).unwrap_err(), "has no area");
+        let bow_tie = checked(ring(&[(0., 0.), (2., 2.), (2., 0.), (0., 2.)])).unwrap_err();
+        assert!(bow_tie.starts_with("meets itself near"), "{bow_tie}");
+        assert_eq!(checked(ring(&[(0., 0.), (1., 0.), (0., 1.), (0., 0.)])).unwrap().len(), 3);
+    }
+
+    proptest! {
+        #[test]
+        fn the_sweep_agrees_with_all_pairs(corners in prop::collection::vec((0_i8..6, 0_i8..6), 3..9)) {
+            let points: Vec<Vec2> =
+                corners.iter().map(|&(x, y)| Vec2::new(f64::from(x), f64::from(y))).collect();
+            prop_assert_eq!(crossing(&points).is_none(), Polygon::new(points).is_simple());
+        }
+    }
+}

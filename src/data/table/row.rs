@@ -1,0 +1,73 @@
+//! One row of a table of traces.
+
+use crate::base::geometry::Vec2;
+use std::io;
+
+/// The names of the columns before those of the signals.
+pub const COLUMNS: [&str; 9] = ["time", "trial", "agent", "x", "y", "vx", "vy", "speed", "present"];
+
+/// One agent in one state of one trial.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row<'a> {
+    /// Seconds since the start (steps where steps have no length).
+    pub time: f64,
+    /// Index of the trial.
+    pub trial: u64,
+    /// Name of the agent.
+    pub agent: &'a str,
+    /// Position, m.
+    pub position: Vec2,
+    /// Velocity, m/s.
+    pub velocity: Vec2,
+    /// Whether the agent is in the scene.
+    pub present: bool,
+    /// One value per signal, in the order of their names.
+    pub signals: &'a [f64],
+}
+
+impl Row<'_> {
+    /// x, y, vx, vy and speed, where the agent is present.
+    pub(super) fn motion(&self) -> [Option<f64>; 5] {
+        let (p, v) = (self.position, self.velocity);
+        [p.x, p.y, v.x, v.y, v.norm()].map(|value| self.present.then_some(value))
+    }
+
+    /// Refuses a row whose signals do not fit their names.
+    pub(super) fn checked(&self, names: &[&str]) -> io::Result<()> {
+        if self.signals.len() == names.len() {
+            return Ok(());
+        }
+        let message =
+            format!("a row has {} signals where there are {} names", self.signals.len(), names.len());
+        Err(io::Error::new(io::ErrorKind::InvalidInput, message))
+    }
+}
+
+#[cfg(test)]
+pub(super) mod samples {
+    use super::*;
+
+    /// Two rows with one signal, the second of somebody absent.
+    pub(in crate::data::table) fn rows() -> [Row<'static>; 2] {
+        [
+            Row {
+                time: 0.02,
+                trial: 3,
+                agent: "oncoming[2]",
+                position: Vec2::new(1.5, -0.25),
+                velocity: Vec2::new(0.3, 0.4),
+                present: true,
+                signals: &[f64::INFINITY],
+            },
+            Row {
+                time: 0.04,
+                trial: 3,
+                agent: "a, \"b\"",
+                position: Vec2::new(9.0, 9.0),
+                velocity: Vec2::zeros(),
+                present: false,
+                signals: &[f64::NAN],
+            },
+        ]
+    }
+}

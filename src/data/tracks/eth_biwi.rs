@@ -1,0 +1,189 @@
+//! Reader of the ETH/BIWI walking pedestrians (`obsmat.txt`).
+//!
+//! Pellegrini, Ess, Schindler, Van Gool, "You'll Never Walk Alone", ICCV 2009. Blank-separated columns
+//! `frame id x z y vx vz vy`, in metres and metres per second; all numbers are written as floats. Position
+//! is (x, y), velocity is (vx, vy); the height z is always 0 and is only checked to be a number.
+//!
+//! The file does not say how fast it was filmed. All sequences of the set are annotated every 0.4 s, so
+//! the distance in frames between two observations of one person gives the rate: 10 frames mean 25 frames
+//! per second (hotel), 6 mean 15 (eth). Time 0 is the first annotated frame of the file.
+
+use super::line::{LineError, fields, quoted};
+use super::recording::{Person, Recording, Sample};
+use crate::base::geometry::Vec2;
+use std::collections::BTreeMap;
+
+/// Seconds between two annotations, in every sequence of the set.
+const SECONDS_PER_ANNOTATION: f64 = 0.4;
+/// Frames between two annotations where nobody was seen twice, as at 25 frames per second.
+const DEFAULT_STRIDE: u32 = 10;
+
+const NAMES: [&str; 8] = ["frame", "id", "x", "z", "y", "vx", "vz", "vy"];
+
+/// One good row of the table.
+struct Row {
+    line: usize,
+    frame: u32,
+    id: u32,
+    position: Vec2,
+    velocity: Vec2,
+}
+
+/// Reads a whole `obsmat.txt`. Empty lines are passed over.
+///
+/// # Errors
+/// Every bad line: not eight columns, a field that is not a finite number, a frame or id that is no whole
+/// number from 0 to 4294967295, and a person who is in one frame twice; in the order of the lines. A text
+/// without any row is one error.
+pub fn read_eth_biwi(text: &str) -> Result<Recording, Vec<LineError>> {
+    let mut rows = Vec::with_capacity(text.len() / 128);
+    let mut errors = Vec::new();
+    for (k, line) in text.lines().enumerate() {
+        if line.trim().is_empty() {
+            continue;
+        }
+        if let Some(row) = read_row(k + 1, line, &mut errors) {
+            rows.push(row);
+        }
+    }
+    rows.sort_by_key(|row| (row.id, row.frame, row.line));
+    for pair in rows.windows(2) {
+        if (pair[0].id, pair[0].frame) == (pair[1].id, pair[1].frame) {
+            let message = format!(
+                "person {} is in frame {} twice, first in line {}",
+                pair[1].id, pair[1].frame, pair[0].line
+            );
+            errors.push(LineError::whole(pair[1].line, message));
+        }
+    }
+    if rows.is_empty() && errors.is_empty() {
+        errors.push(LineError::whole(1, "there is no observation in this file"));
+    }
+    if !errors.is_empty() {
+        errors.sort_by_key(|error| (error.line, error.column));
+        return Err(errors);
+    }
+    let people: Vec<Person> = rows
+        .chunk_by(|a, b| a.id == b.id)
+        .map(|track| Person {
+            id: track[0].id,
+            samples: track
+                .iter()
+                .map(|row| Sample { frame: row.frame, position: row.position, velocity: row.velocity })
+                .collect(),
+        })
+        .collect();
+    let stride = usual_stride(&people).unwrap_or(DEFAULT_STRIDE);
+    Ok(Recording::new(people, stride, SECONDS_PER_ANNOTATION / f64::from(stride)))
+}
+
+fn read_row(number: usize, line: &str, errors: &mut Vec<LineError>) -> Option<Row> {
+    let count = line.split_whitespace().count();
+    if count != NAMES.len() {
+        let message = format!(
+            "{count} column{} where {} are expected: {}",
+            if count == 1 { "" } else { "s" },
+            NAMES.len(),
+            NAMES.join(" ")
+        );
+        errors.push(LineError::whole(number, message));
+        return None;
+    }
+    let before = errors.len();
+    let mut values = [0.0; 8];
+    for (k, (column, field)) in fields(line).enumerate() {
+        let fault = match field.parse::<f64>() {
+            Err(_) => Some("is not a number"),
+            Ok(value) if !value.is_finite() => Some("is not a finite number"),
+            Ok(value) => {
+                values[k] = value;
+                (k < 2).then(|| whole_fault(value)).flatten()
+            }
+        };
+        if let Some(fault) = fault {
+            let message = format!("{} {} {fault}", NAMES[k], quoted(field));
+            errors.push(LineError::at(number, column, message));
+        }
+    }
+    (errors.len() == before).then(|| Row {
+        line: number,
+        frame: values[0] as u32,
+        id: values[1] as u32,
+        position: Vec2::new(values[2], values[4]),
+        velocity: Vec2::new(values[5], values[7]),
+    })
+}
+
+/// Why a number is no frame and no id.
+fn whole_fault(value: f64) -> Option<&'static str> {
+    if value < 0.0 {
+        Some("is negative")
+    } else if value.fract() != 0.0 {
+        Some("is not a whole number")
+    } else if value > f64::from(u32::MAX) {
+        Some("is too large")
+    } else {
+        None
+    }
+}
+
+/// The most frequent distance in frames between successive observations of one person; of equally
+/// frequent ones the smallest.
+fn usual_stride(people: &[Person]) -> Option<u32> {
+    let mut counts = BTreeMap::<u32, usize>::new();
+    for person in people {
+        for pair in person.samples.windows(2) {
+            *counts.entry(pair[1].frame - pair[0].frame).or_default() += 1;
+        }
+    }
+    counts
+        .into_iter()
+        .max_by_key(|&(stride, count)| (count, std::cmp::Reverse(stride)))
+        .map(|(stride, _)| stride)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_three_and_five_are_the_position() {
+        let recording = read_eth_biwi("1 7 1.5 0 -2 0.1 0 0.2\n\n11 7 1.6 0 -1 0.1 0 0.2\n").unwrap();
+        let seen = recording.at(0.0);
+        assert_eq!(seen.len(), 1);
+        assert_eq!(
+            (seen[0].id, seen[0].position, seen[0].velocity),
+            (7, Vec2::new(1.5, -2.0), Vec2::new(0.1, 0.2))
+        );
+        assert_eq!(recording.frames_per_second(), 25.0);
+        assert_eq!(recording.duration(), 0.4);
+    }
+
+    #[test]
+    fn all_faults_come_at_once_and_in_order() {
+        let text = "1 1 0 0 0 0 0 0\n1 2 0 0\n-5 x 0 0 inf 0 0 0\n1 1 9 0 9 0 0 0\n1.5 3 0 0 0 0 0 0\n\
+                    1 5000000000 0 0 0 0 0 NaN\n";
+        let said: Vec<String> = read_eth_biwi(text).unwrap_err().iter().map(ToString::to_string).collect();
+        assert_eq!(
+            said,
+            [
+                "line 2: 4 columns where 8 are expected: frame id x z y vx vz vy",
+                "line 3, column 1: frame `-5` is negative",
+                "line 3, column 4: id `x` is not a number",
+                "line 3, column 10: y `inf` is not a finite number",
+                "line 4: person 1 is in frame 1 twice, first in line 1",
+                "line 5, column 1: frame `1.5` is not a whole number",
+                "line 6, column 3: id `5000000000` is too large",
+                "line 6, column 24: vy `NaN` is not a finite number",
+            ]
+        );
+        assert_eq!(read_eth_biwi(" \n").unwrap_err()[0].line, 1);
+    }
+
+    #[test]
+    fn six_frames_apart_mean_fifteen_per_second() {
+        let recording = read_eth_biwi("780 1 0 0 0 0 0 0\n786 1 1 0 0 0 0 0\n798 2 1 0 0 0 0 0").unwrap();
+        assert!((recording.frames_per_second() - 15.0).abs() < 1e-12);
+        assert!((recording.time_of(798) - 1.2).abs() < 1e-12);
+    }
+}

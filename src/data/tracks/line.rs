@@ -1,0 +1,73 @@
+//! A fault in one line of a text table, and the fields of such a line.
+
+/// What is wrong with a line.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{}", self.sentence())]
+pub struct LineError {
+    /// Line, from 1.
+    pub line: usize,
+    /// Character of the line at which the fault begins, from 1; `None` where the whole line is meant.
+    pub column: Option<usize>,
+    /// What is wrong: one sentence, lower case, no full stop.
+    pub message: String,
+}
+
+impl LineError {
+    /// A fault of a whole line.
+    pub fn whole(line: usize, message: impl Into<String>) -> Self {
+        Self { line, column: None, message: message.into() }
+    }
+
+    /// A fault at a character of a line.
+    pub fn at(line: usize, column: usize, message: impl Into<String>) -> Self {
+        Self { line, column: Some(column), message: message.into() }
+    }
+
+    fn sentence(&self) -> String {
+        match self.column {
+            Some(column) => format!("line {}, column {column}: {}", self.line, self.message),
+            None => format!("line {}: {}", self.line, self.message),
+        }
+    }
+}
+
+/// The blank-separated fields of a line, each with the character (from 1) at which it begins.
+pub(super) fn fields(line: &str) -> impl Iterator<Item = (usize, &str)> {
+    let start = line.as_ptr() as usize;
+    let (mut counted, mut column) = (0, 1);
+    line.split_whitespace().map(move |field| {
+        let byte = field.as_ptr() as usize - start;
+        column += line[counted..byte].chars().count();
+        counted = byte;
+        (column, field)
+    })
+}
+
+/// A field for a message: quoted, and cut where it is long.
+pub(super) fn quoted(field: &str) -> String {
+    const LONGEST: usize = 24;
+    if field.chars().count() <= LONGEST {
+        return format!("`{}`", field.escape_debug());
+    }
+    let head: String = field.chars().take(LONGEST).collect();
+    format!("`{}…`", head.escape_debug())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fields_know_where_they_begin() {
+        let line = "  é 12\tx";
+        let found: Vec<_> = fields(line).collect();
+        assert_eq!(found, [(3, "é"), (5, "12"), (8, "x")]);
+    }
+
+    #[test]
+    fn a_fault_says_its_place() {
+        assert_eq!(LineError::at(3, 7, "no number").to_string(), "line 3, column 7: no number");
+        assert_eq!(LineError::whole(3, "too short").to_string(), "line 3: too short");
+        assert!(quoted(&"9".repeat(100)).chars().count() < 30);
+    }
+}

@@ -1,0 +1,217 @@
+//! A recording: who was where, when, and how fast.
+
+use crate::base::geometry::Vec2;
+
+/// How far, in annotation steps, a time may lie from a frame and still mean that frame.
+const SAME_FRAME: f64 = 1e-6;
+
+/// One person in one annotated frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Number of the frame in the film.
+    pub frame: u32,
+    /// Position, m.
+    pub position: Vec2,
+    /// Velocity, m/s.
+    pub velocity: Vec2,
+}
+
+/// One person, with samples of ascending frames.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Person {
+    /// Number given by the annotators.
+    pub id: u32,
+    /// Where it was seen; never empty.
+    pub samples: Vec<Sample>,
+}
+
+/// One person at one time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Observation {
+    /// Number given by the annotators.
+    pub id: u32,
+    /// Position, m.
+    pub position: Vec2,
+    /// Velocity, m/s.
+    pub velocity: Vec2,
+}
+
+/// People over time. Time 0 is the first annotated frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recording {
+    people: Vec<Person>,
+    /// Annotated frames, ascending.
+    frames: Vec<u32>,
+    stride: u32,
+    seconds_per_frame: f64,
+}
+
+impl Recording {
+    /// A recording of people with ascending ids, annotated every `stride` frames of so many seconds.
+    pub(super) fn new(people: Vec<Person>, stride: u32, seconds_per_frame: f64) -> Self {
+        let mut frames: Vec<u32> = people.iter().flat_map(|p| p.samples.iter().map(|s| s.frame)).collect();
+        frames.sort_unstable();
+        frames.dedup();
+        Self { people, frames, stride, seconds_per_frame }
+    }
+
+    /// Everybody, by ascending id.
+    pub fn people(&self) -> &[Person] {
+        &self.people
+    }
+
+    /// The person of that id.
+    pub fn person(&self, id: u32) -> Option<&Person> {
+        self.people.binary_search_by_key(&id, |person| person.id).ok().map(|k| &self.people[k])
+    }
+
+    /// All ids, ascending.
+    pub fn ids(&self) -> impl ExactSizeIterator<Item = u32> + '_ {
+        self.people.iter().map(|person| person.id)
+    }
+
+    /// Annotated frames with somebody in them, ascending.
+    pub fn frames(&self) -> &[u32] {
+        &self.frames
+    }
+
+    /// Frames of the film per second.
+    pub fn frames_per_second(&self) -> f64 {
+        1.0 / self.seconds_per_frame
+    }
+
+    /// Seconds between two annotations of one person.
+    pub fn step(&self) -> f64 {
+        f64::from(self.stride) * self.seconds_per_frame
+    }
+
+    /// Time of a frame, s; negative before the first annotated one.
+    pub fn time_of(&self, frame: u32) -> f64 {
+        let first = self.frames.first().copied().unwrap_or(0);
+        (f64::from(frame) - f64::from(first)) * self.seconds_per_frame
+    }
+
+    /// Time of the last annotated frame, s.
+    pub fn duration(&self) -> f64 {
+        self.frames.last().map_or(0.0, |&frame| self.time_of(frame))
+    }
+
+    /// From when to when a person is in the recording, s.
+    pub fn presence(&self, id: u32) -> Option<(f64, f64)> {
+        let samples = &self.person(id)?.samples;
+        Some((self.time_of(samples.first()?.frame), self.time_of(samples.last()?.frame)))
+    }
+
+    /// Everybody present at a time in seconds, by ascending id: as annotated on a frame, else halfway in
+    /// proportion between the two frames of the same person around it. Nobody is present before the first
+    /// or after the last frame of a track, nor in a hole of it longer than the usual step.
+    pub fn at(&self, time: f64) -> Vec<Observation> {
+        let Some(&first) = self.frames.first() else { return Vec::new() };
+        let mut frame = f64::from(first) + time / self.seconds_per_frame;
+        if !frame.is_finite() {
+            return Vec::new();
+        }
+        let whole = frame.round();
+        if (frame - whole).abs() <= SAME_FRAME * f64::from(self.stride) {
+            frame = whole;
+        }
+        self.people.iter().filter_map(|person| self.seen(person, frame)).collect()
+    }
+
+    fn seen(&self, person: &Person, frame: f64) -> Option<Observation> {
+        let after = person.samples.partition_point(|sample| f64::from(sample.frame) < frame);
+        let next = person.samples.get(after)?;
+        let observation = |position, velocity| Observation { id: person.id, position, velocity };
+        if f64::from(next.frame) == frame {
+            return Some(observation(next.position, next.velocity));
+        }
+        let last = &person.samples[after.checked_sub(1)?];
+        let gap = next.frame - last.frame;
+        if gap > self.stride {
+            return None;
+        }
+        let share = (frame - f64::from(last.frame)) / f64::from(gap);
+        Some(observation(
+            last.position + (next.position - last.position) * share,
+            last.velocity + (next.velocity - last.velocity) * share,
+        ))
+    }
+
+    /// The annotated time nearest to a time, s; for messages about a time at which nobody is present.
+    pub fn nearest_time(&self, time: f64) -> Option<f64> {
+        let after = self.frames.partition_point(|&frame| self.time_of(frame) < time);
+        let around = self
+            .frames
+            .get(after.saturating_sub(1)..=after)
+            .or_else(|| self.frames.last_chunk::<1>().map(|c| &c[..]))?;
+        around
+            .iter()
+            .map(|&frame| self.time_of(frame))
+            .min_by(|a, b| (a - time).abs().total_cmp(&(b - time).abs()))
+    }
+
+    /// The stretches of time without a break, s: a break is two successive annotated frames farther apart
+    /// than the usual step.
+    pub fn stretches(&self) -> Vec<(f64, f64)> {
+        self.frames
+            .chunk_by(|a, b| b - a <= self.stride)
+            .map(|part| (self.time_of(part[0]), self.time_of(part[part.len() - 1])))
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn recording() -> Recording {
+        let sample =
+            |frame, x| Sample { frame, position: Vec2::new(x, 0.0), velocity: Vec2::new(2.0 * x, 1.0) };
+        let people = vec![
+            Person { id: 1, samples: vec![sample(10, 0.0), sample(20, 1.0), sample(50, 4.0)] },
+            Person { id: 4, samples: vec![sample(20, 8.0)] },
+        ];
+        Recording::new(people, 10, 0.04)
+    }
+
+    fn ids(seen: &[Observation]) -> Vec<u32> {
+        seen.iter().map(|o| o.id).collect()
+    }
+
+    #[test]
+    fn between_two_frames_a_person_is_in_proportion() {
+        let seen = recording().at(0.1);
+        assert_eq!(
+            seen,
+            [Observation { id: 1, position: Vec2::new(0.25, 0.0), velocity: Vec2::new(0.5, 1.0) }]
+        );
+    }
+
+    #[test]
+    fn nobody_is_present_in_a_hole_or_outside_the_track() {
+        let r = recording();
+        assert_eq!(ids(&r.at(0.4)), [1, 4]);
+        assert_eq!(ids(&r.at(0.8)), [0; 0], "frame 30 lies in a hole of person 1");
+        assert_eq!(ids(&r.at(1.6)), [1]);
+        assert_eq!(ids(&r.at(1.7)), [0; 0]);
+        assert_eq!(ids(&r.at(-0.1)), [0; 0]);
+        assert_eq!(ids(&r.at(f64::NAN)), [0; 0]);
+        assert_eq!(ids(&r.at(f64::INFINITY)), [0; 0]);
+    }
+
+    #[test]
+    fn the_nearest_annotated_time_is_found() {
+        let r = recording();
+        assert_eq!(r.nearest_time(0.3), Some(0.4));
+        assert_eq!(r.nearest_time(0.9), Some(0.4));
+        assert_eq!(r.nearest_time(-7.0), Some(0.0));
+        assert_eq!(r.nearest_time(99.0), Some(1.6));
+    }
+
+    #[test]
+    fn a_break_parts_the_stretches() {
+        assert_eq!(recording().stretches(), [(0.0, 0.4), (1.6, 1.6)]);
+        assert_eq!(recording().presence(4), Some((0.4, 0.4)));
+        assert_eq!(recording().presence(2), None);
+    }
+}

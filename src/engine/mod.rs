@@ -1,0 +1,3 @@
+//! Floor 5: trials, executors, and the outcomes of queries.
+
+pub mod outcome;

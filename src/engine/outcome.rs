@@ -1,0 +1,371 @@
+//! What a run hands over: plain data for reports, without a format.
+//!
+//! Everything but the times is a function of input, seed and version. Counts are those of consumed trials.
+
+/// Everything one call has computed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Run {
+    /// Title of the scenario, or its file where it has none.
+    pub scenario: String,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// Version of the program.
+    pub version: String,
+    /// Results in the order of the queries; a swept query has one per setting.
+    pub results: Vec<QueryResult>,
+    /// Warnings that belong to no query.
+    pub warnings: Vec<String>,
+    /// Whether it was interrupted; the results are what is known so far.
+    pub interrupted: bool,
+    /// What ended the run early, if anything did.
+    pub failure: Option<Failure>,
+    /// Command that gives the same results again.
+    pub replay: String,
+    /// Duration of the whole call, s.
+    pub elapsed_s: f64,
+}
+
+/// Why a run ended before its queries.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Failure {
+    /// The call, an input or the model is wrong.
+    Input(String),
+    /// A bug in `smc`.
+    Bug(String),
+}
+
+/// The result of one query under one setting.
+#[derive(Clone, Debug, PartialEq)]
+pub struct QueryResult {
+    /// Number of the query among those of the call, from 0; together with the text it names the query.
+    pub index: usize,
+    /// Name of the property asked about, if it is one; may repeat.
+    pub name: Option<String>,
+    /// The query as written.
+    pub query: String,
+    /// Property file.
+    pub file: String,
+    /// Line of the query in it, from 1.
+    pub line: usize,
+    /// What was asked.
+    pub kind: Kind,
+    /// Values of swept or `under` parameters, as written; may be empty.
+    pub settings: Vec<(String, String)>,
+    /// The verdict of a `check`; `None` for the other kinds.
+    pub verdict: Option<Verdict>,
+    /// The certified statement in words.
+    pub certifies: String,
+    /// `the horizon of 30 s` where a formula has no bound of its own.
+    pub within: Option<String>,
+    /// The estimate; `None` where there is none, infinite where it lies beyond the horizon. Of a `compare`
+    /// the difference, of a `rank` the score of the choice.
+    pub estimate: Option<f64>,
+    /// Lower end of the interval.
+    pub low: f64,
+    /// Upper end of the interval; may be infinite.
+    pub high: f64,
+    /// Unit of the three numbers before; empty for probabilities.
+    pub unit: String,
+    /// Kind and level of the interval: `time-uniform, 95 %`.
+    pub interval: String,
+    /// The procedure.
+    pub method: Method,
+    /// Consumed trials.
+    pub counts: Counts,
+    /// Trials clipped by a declared range.
+    pub clipped: u64,
+    /// Steps of the model in the consumed trials.
+    pub steps: u64,
+    /// Why sampling stopped.
+    pub stopped_by: Stop,
+    /// Command that gives this result again.
+    pub replay: String,
+    /// Duration, s.
+    pub elapsed_s: f64,
+    /// The horizon in seconds where the estimate or an end of its interval lies beyond it.
+    pub censored: Option<f64>,
+    /// Vacuity, suspicious counts, conditions.
+    pub warnings: Vec<String>,
+    /// Trials that show why.
+    pub witnesses: Vec<Witness>,
+    /// Details of a `compare`.
+    pub compare: Option<Comparison>,
+    /// Details of a `rank`.
+    pub rank: Option<Ranking>,
+    /// Distribution of a metric.
+    pub distribution: Option<Distribution>,
+    /// Trials in which radii were shrunk to part people who overlap at the start.
+    pub shrunk: u64,
+}
+
+impl QueryResult {
+    /// A result without numbers yet: what is known before the first trial.
+    pub fn new(index: usize, kind: Kind, query: impl Into<String>) -> Self {
+        Self {
+            index,
+            name: None,
+            query: query.into(),
+            file: String::new(),
+            line: 0,
+            kind,
+            settings: Vec::new(),
+            verdict: None,
+            certifies: String::new(),
+            within: None,
+            estimate: None,
+            low: f64::NEG_INFINITY,
+            high: f64::INFINITY,
+            unit: String::new(),
+            interval: String::new(),
+            method: Method::default(),
+            counts: Counts::default(),
+            clipped: 0,
+            steps: 0,
+            stopped_by: Stop::Plan,
+            replay: String::new(),
+            elapsed_s: 0.0,
+            censored: None,
+            warnings: Vec::new(),
+            witnesses: Vec::new(),
+            compare: None,
+            rank: None,
+            distribution: None,
+            shrunk: 0,
+        }
+    }
+}
+
+/// What a query asks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// Whether a quantity passes a threshold.
+    Check,
+    /// A quantity.
+    Estimate,
+    /// The difference of a quantity under two settings.
+    Compare,
+    /// The best of several moves or paths.
+    Rank,
+}
+
+impl Kind {
+    /// Its keyword.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Check => "check",
+            Self::Estimate => "estimate",
+            Self::Compare => "compare",
+            Self::Rank => "rank",
+        }
+    }
+}
+
+/// The verdict of a `check`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Verdict {
+    /// It holds, up to the stated error.
+    Satisfied,
+    /// It does not hold, up to the stated error.
+    Violated,
+    /// The budget was too small to say.
+    Undecided,
+}
+
+impl Verdict {
+    /// Its word.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Satisfied => "satisfied",
+            Self::Violated => "violated",
+            Self::Undecided => "undecided",
+        }
+    }
+}
+
+/// A procedure and its numbers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Method {
+    /// Its name: `sprt`.
+    pub name: String,
+    /// Its parameters by name, in SI units, in order.
+    pub numbers: Vec<(String, f64)>,
+}
+
+/// Consumed trials by outcome. Trials with a number instead of a truth value are neither successes nor
+/// failures.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// All.
+    pub trials: u64,
+    /// Those in which the formula holds.
+    pub successes: u64,
+    /// Those in which it does not.
+    pub failures: u64,
+    /// Those that diverged or hit a cap.
+    pub unresolved: u64,
+}
+
+/// Why sampling stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Stop {
+    /// A test crossed its boundary.
+    Boundary,
+    /// The interval, or the gap of a ranking, became as narrow as asked for.
+    Width,
+    /// The number of trials was planned beforehand.
+    Plan,
+    /// The largest number of trials was reached.
+    Cap,
+    /// Time was up.
+    Deadline,
+    /// Somebody interrupted it.
+    Interrupt,
+    /// A trial failed.
+    Error,
+}
+
+impl Stop {
+    /// Its word in JSON.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Boundary => "boundary",
+            Self::Width => "width",
+            Self::Plan => "plan",
+            Self::Cap => "cap",
+            Self::Deadline => "deadline",
+            Self::Interrupt => "interrupt",
+            Self::Error => "error",
+        }
+    }
+}
+
+/// A trial that shows why.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Witness {
+    /// Whether the formula holds in it.
+    pub passing: bool,
+    /// Index of the trial.
+    pub trial: u64,
+    /// When the formula was decided, s (steps where steps have no length).
+    pub time: f64,
+    /// The atom that decided it, with its agents.
+    pub what: String,
+    /// Command that shows the trial.
+    pub command: String,
+}
+
+/// A number with an interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    /// The estimate.
+    pub estimate: f64,
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+/// The two sides of a `compare`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    /// The side of `under`.
+    pub first: Side,
+    /// The side of `with`.
+    pub second: Side,
+    /// First less second, over pairs of trials with the same random numbers.
+    pub difference: Side,
+}
+
+/// One side of a comparison, or the difference. Of the difference, successes count the pairs in which only
+/// the first holds, and failures those in which only the second does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Side {
+    /// Its settings, as written; for the difference `first - second`.
+    pub label: String,
+    /// What was measured.
+    pub value: Interval,
+    /// Its trials.
+    pub counts: Counts,
+}
+
+/// The outcome of a `rank`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ranking {
+    /// The recommended option.
+    pub choice: String,
+    /// Certified: the choice is at most so much worse than the best. Infinite where nothing is certified.
+    pub gap: f64,
+    /// Whether other options could not be told from the choice within the certified gap.
+    pub tied: bool,
+    /// All options, best first.
+    pub options: Vec<RankedOption>,
+}
+
+/// One option of a ranking.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RankedOption {
+    /// Its name: `heading 15 deg`.
+    pub label: String,
+    /// Its score.
+    pub value: Interval,
+    /// Its trials.
+    pub counts: Counts,
+    /// What is known of it.
+    pub status: Status,
+}
+
+/// What is known of an option.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Status {
+    /// The recommended one.
+    Chosen,
+    /// Within the wanted gap of the choice: a difference, if any, does not matter.
+    Tied,
+    /// Shown to be worse than the choice.
+    Beaten,
+    /// Not told apart from the choice when sampling stopped.
+    Open,
+}
+
+impl Status {
+    /// Its word.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Chosen => "chosen",
+            Self::Tied => "tied",
+            Self::Beaten => "beaten",
+            Self::Open => "open",
+        }
+    }
+}
+
+/// How the values of a metric are distributed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Distribution {
+    /// Counts in bins of equal width.
+    pub histogram: Option<Histogram>,
+    /// Quantiles, by level ascending.
+    pub quantiles: Vec<Quantile>,
+}
+
+/// Counts in bins of equal width.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Histogram {
+    /// Lower end of the first bin.
+    pub low: f64,
+    /// Upper end of the last bin.
+    pub high: f64,
+    /// Trials per bin.
+    pub counts: Vec<u64>,
+    /// Trials with an infinite value.
+    pub beyond: u64,
+}
+
+/// One quantile.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quantile {
+    /// Its level, in (0, 1).
+    pub level: f64,
+    /// Its value; infinite beyond the horizon.
+    pub value: Interval,
+}

@@ -1,0 +1,188 @@
+//! The readers of recordings and geometry, on the real files and on noise.
+//!
+//! The recordings may not be shipped. They are looked for in the folder that `SMC_DATA` names, else beside
+//! the checkout; where they are absent the tests say so and pass.
+
+#![allow(
+    clippy::disallowed_methods,
+    clippy::print_stderr,
+    reason = "tests open files and say what they skip"
+)]
+
+use proptest::prelude::*;
+use smc::base::geometry::Vec2;
+use smc::data::geometry::{Geometry, PropertyValue, read_geojson, read_wkt};
+use smc::data::tracks::{Recording, read_eth_biwi, read_groups};
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// The text of a file of the ETH/BIWI set.
+fn text(path: &str) -> Option<String> {
+    let beside = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/data/eth-biwi");
+    let folders = std::env::var_os("SMC_DATA").map(PathBuf::from).into_iter().chain([beside]);
+    for folder in folders {
+        for folder in [folder.clone(), folder.join("eth-biwi")] {
+            if let Ok(text) = std::fs::read_to_string(folder.join(path)) {
+                return Some(text);
+            }
+        }
+    }
+    eprintln!("SKIPPED: {path} is not here; set SMC_DATA to the folder of the recordings");
+    None
+}
+
+fn recording(path: &str) -> Option<Recording> {
+    text(path).map(|text| read_eth_biwi(&text).expect("the recording is well formed"))
+}
+
+fn rows(recording: &Recording) -> usize {
+    recording.people().iter().map(|person| person.samples.len()).sum()
+}
+
+#[test]
+fn the_hotel_is_as_described() {
+    let Some(hotel) = recording("seq_hotel/obsmat.txt") else { return };
+    assert_eq!((rows(&hotel), hotel.people().len()), (6544, 390));
+    assert!((hotel.frames_per_second() - 25.0).abs() < 1e-9);
+    assert_eq!((hotel.frames().first(), hotel.frames().last()), (Some(&1), Some(&18061)));
+    assert!((hotel.duration() - 722.4).abs() < 1e-9);
+    let present = hotel.at(646.8);
+    assert_eq!(present.len(), 18);
+    assert!([367, 368].iter().all(|id| present.iter().any(|o| o.id == *id)));
+    let stretches = hotel.stretches();
+    assert_eq!(stretches.len(), 27);
+    assert!((stretches[0].1 - 14.0).abs() < 1e-9 && (stretches[1].0 - 16.4).abs() < 1e-9);
+    let still = hotel.people().iter().filter(|person| {
+        let start = person.samples[0].position;
+        person.samples.iter().all(|sample| (sample.position - start).norm() <= 0.3)
+    });
+    assert_eq!(still.count(), 67, "people who never leave their start by more than 0.3 m");
+}
+
+#[test]
+fn the_eth_sequence_is_as_described() {
+    let Some(eth) = recording("seq_eth/obsmat.txt") else { return };
+    assert_eq!((rows(&eth), eth.people().len()), (8908, 360));
+    assert!((eth.frames_per_second() - 15.0).abs() < 1e-9);
+    assert!((eth.duration() - f64::from(12381 - 780) / 15.0).abs() < 1e-9);
+    assert_eq!(eth.stretches().len(), 16);
+}
+
+#[test]
+fn velocities_are_central_differences() {
+    let Some(hotel) = recording("seq_hotel/obsmat.txt") else { return };
+    let mut worst: f64 = 0.0;
+    for person in hotel.people() {
+        for three in person.samples.windows(3) {
+            let v: Vec2 = (three[2].position - three[0].position) / (2.0 * hotel.step());
+            worst = worst.max((v - three[1].velocity).norm());
+        }
+    }
+    assert!(worst < 1e-5, "positions and velocities disagree by {worst} m/s: wrong columns or rate");
+}
+
+#[test]
+fn groups_are_sets_and_merged() {
+    let (Some(hotel), Some(eth)) = (text("seq_hotel/groups.txt"), text("seq_eth/groups.txt")) else { return };
+    let hotel = read_groups(&hotel).unwrap();
+    assert_eq!(hotel.len(), 41);
+    assert_eq!(hotel.iter().filter(|group| group.len() == 2).count(), 38);
+    assert!(hotel.contains(&vec![367, 368]));
+    let eth = read_groups(&eth).unwrap();
+    assert!(eth.contains(&vec![237, 238, 239, 240, 241, 242]));
+    assert!(eth.contains(&vec![319, 320, 321, 322, 323, 324]));
+    let mut all: Vec<u32> = eth.concat();
+    let count = all.len();
+    all.sort_unstable();
+    all.dedup();
+    assert_eq!(all.len(), count, "nobody is in two groups");
+}
+
+#[test]
+fn obstacles_keep_their_properties() {
+    let Some(hotel) = text("hotel-obstacles.geojson") else { return };
+    let hotel = read_geojson(&hotel).unwrap();
+    assert_eq!(hotel.len(), 8);
+    let real: Vec<&str> = hotel
+        .iter()
+        .filter(|f| f.property("source") == Some(&PropertyValue::Text("map.png".into())))
+        .map(|f| f.name.as_str())
+        .collect();
+    assert_eq!(real, ["tree-right", "bench", "lamp-post", "tree-left"]);
+    let bench = hotel.iter().find(|f| f.name == "bench").unwrap();
+    assert!(matches!(&bench.shape, Geometry::Polygon(p) if (p.area() - 1.932).abs() < 1e-3));
+    assert!(matches!(&hotel[6].shape, Geometry::Line(points) if points.len() == 2));
+    let Some(eth) = text("eth-obstacles.geojson") else { return };
+    assert_eq!(read_geojson(&eth).unwrap().len(), 8);
+}
+
+#[test]
+fn the_hotel_is_read_in_ten_milliseconds() {
+    let Some(text) = text("seq_hotel/obsmat.txt") else { return };
+    let best = (0..20)
+        .map(|_| {
+            let start = Instant::now();
+            let recording = read_eth_biwi(&text).unwrap();
+            let took = start.elapsed();
+            assert_eq!(recording.people().len(), 390);
+            took
+        })
+        .min()
+        .unwrap();
+    assert!(best < Duration::from_millis(10), "it took {best:?}");
+}
+
+/// Lines that look like those of a table, with all kinds of fields.
+fn table() -> impl Strategy<Value = String> {
+    let field = prop_oneof![
+        4 => (-5_i32..30).prop_map(|n| n.to_string()),
+        2 => any::<f64>().prop_map(|x| x.to_string()),
+        1 => Just("1e9".to_owned()),
+        1 => "\\PC{0,4}",
+    ];
+    let line = prop::collection::vec(field, 0..10).prop_map(|fields| fields.join(" "));
+    prop::collection::vec(line, 0..20).prop_map(|lines| lines.join("\n"))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    #[test]
+    fn readers_survive_any_bytes(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
+        let text = String::from_utf8_lossy(&bytes);
+        let _ = (read_eth_biwi(&text), read_groups(&text), read_geojson(&text), read_wkt(&text));
+    }
+
+    #[test]
+    fn a_table_is_read_or_every_bad_line_is_named(text in table(), time in any::<f64>()) {
+        let lines = text.lines().count().max(1);
+        match read_eth_biwi(&text) {
+            Ok(recording) => {
+                let filled = text.lines().filter(|line| !line.trim().is_empty()).count();
+                prop_assert_eq!(rows(&recording), filled);
+                prop_assert!(recording.at(time).len() <= recording.people().len());
+                prop_assert!(recording.nearest_time(time).is_some());
+            }
+            Err(errors) => {
+                prop_assert!(!errors.is_empty());
+                prop_assert!(errors.iter().all(|e| (1..=lines).contains(&e.line)));
+            }
+        }
+        if let Err(errors) = read_groups(&text) {
+            prop_assert!(errors.iter().all(|e| (1..=lines).contains(&e.line)));
+        }
+    }
+
+    #[test]
+    fn shuffled_well_known_text_is_survived(
+        parts in prop::collection::vec(
+            prop::sample::select(vec!["POINT", "POLYGON", "MULTIPOINT", "GEOMETRYCOLLECTION", "EMPTY", "Z", "(",
+                "(", ")", ")", ",", "0 0", "1 0", "0 1", "-2.5e3 7", "nan 1", ";", "\n"]), 0..40)
+    ) {
+        let text = parts.join(" ");
+        if let Err(errors) = read_wkt(&text) {
+            prop_assert!(!errors.is_empty());
+            prop_assert!(errors.iter().all(|e| e.line.is_some_and(|line| line <= text.lines().count())));
+        }
+    }
+}
