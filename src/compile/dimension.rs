@@ -81,7 +81,12 @@ impl fmt::Display for Dimension {
         let names = ["kg", "m", "s", "rad", "steps"];
         let power = |e: i8| if e.abs() == 1 { String::new() } else { format!("^{}", e.abs()) };
         let factors = |sign: i8| -> Vec<String> {
-            names.iter().zip(self.0).filter(|(_, e)| e.signum() == sign).map(|(n, e)| format!("{n}{}", power(e))).collect()
+            names
+                .iter()
+                .zip(self.0)
+                .filter(|(_, e)| e.signum() == sign)
+                .map(|(n, e)| format!("{n}{}", power(e)))
+                .collect()
         };
         let (above, below) = (factors(1), factors(-1));
         f.write_str(&above.join(" "))?;
@@ -123,9 +128,8 @@ pub struct Unit {
 }
 
 /// Every unit by name.
-pub const UNITS: [&str; 17] = [
-    "m", "cm", "mm", "km", "s", "ms", "min", "h", "kg", "g", "N", "kN", "deg", "rad", "Hz", "%", "steps",
-];
+pub const UNITS: [&str; 17] =
+    ["m", "cm", "mm", "km", "s", "ms", "min", "h", "kg", "g", "N", "kN", "deg", "rad", "Hz", "%", "steps"];
 
 /// The unit of a name.
 pub fn unit(name: &str) -> Option<Unit> {
@@ -174,7 +178,13 @@ pub fn resolve(expression: &UnitExpr) -> Result<Unit, Diagnostic> {
         let mut exact = out.exact;
         for _ in 0..power.unsigned_abs() {
             exact = match (exact, unit.exact) {
-                (Some(a), Some(b)) => if power > 0 { a.mul(b) } else { a.div(b) },
+                (Some(a), Some(b)) => {
+                    if power > 0 {
+                        a.mul(b)
+                    } else {
+                        a.div(b)
+                    }
+                }
                 _ => None,
             };
             if power > 0 { out.size *= unit.size } else { out.size /= unit.size }

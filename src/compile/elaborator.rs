@@ -143,7 +143,12 @@ impl<'a> Elaborator<'a> {
     }
 
     /// Two dimensions that ought to be one.
-    pub(super) fn wrong_dimension<T>(&mut self, span: Span, expected: Dimension, found: Dimension) -> Lowered<T> {
+    pub(super) fn wrong_dimension<T>(
+        &mut self,
+        span: Span,
+        expected: Dimension,
+        found: Dimension,
+    ) -> Lowered<T> {
         let mut error = Diagnostic::error(
             "E0303",
             span,
@@ -160,7 +165,11 @@ impl<'a> Elaborator<'a> {
         self.depth += 1;
         self.nodes += 1;
         if self.depth > DEEPEST {
-            let error = Diagnostic::error("E0211", span, format!("this nests deeper than {DEEPEST} once names are expanded"));
+            let error = Diagnostic::error(
+                "E0211",
+                span,
+                format!("this nests deeper than {DEEPEST} once names are expanded"),
+            );
             return self.report(error);
         }
         if self.nodes > MOST_NODES {
@@ -172,7 +181,12 @@ impl<'a> Elaborator<'a> {
     }
 
     /// A number known at compile time, of a given dimension.
-    pub(super) fn number_of(&mut self, expr: &Expr, dimension: Dimension, locals: &Locals) -> Lowered<Number> {
+    pub(super) fn number_of(
+        &mut self,
+        expr: &Expr,
+        dimension: Dimension,
+        locals: &Locals,
+    ) -> Lowered<Number> {
         let number = self.number(expr, locals)?;
         if number.dimension != dimension {
             return self.wrong_dimension(expr.span, dimension, number.dimension);

@@ -1,6 +1,6 @@
 //! Files that a scenario names. They are opened by the command line; here they are bytes.
 
-use crate::syntax::ast::{Item, SceneItem, ScenarioFile};
+use crate::syntax::ast::{Item, ScenarioFile, SceneItem};
 use crate::syntax::source::Span;
 use std::collections::BTreeMap;
 

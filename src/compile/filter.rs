@@ -53,17 +53,23 @@ fn side(expr: &Expr, feature: &Feature) -> Result<Side, Diagnostic> {
             _ => Err(wrong(expr)),
         },
         ExprKind::Name(name) if name == "name" => Ok(Side::Text(feature.name.clone())),
-        ExprKind::Name(name) => Ok(match feature.properties.iter().find(|(n, _)| n == name).map(|(_, v)| v) {
-            Some(PropertyValue::Text(text)) => Side::Text(text.clone()),
-            Some(PropertyValue::Number(value)) => Side::Number(*value),
-            Some(PropertyValue::Bool(value)) => Side::Bool(*value),
-            None => Side::Absent,
-        }),
+        ExprKind::Name(name) => {
+            Ok(match feature.properties.iter().find(|(n, _)| n == name).map(|(_, v)| v) {
+                Some(PropertyValue::Text(text)) => Side::Text(text.clone()),
+                Some(PropertyValue::Number(value)) => Side::Number(*value),
+                Some(PropertyValue::Bool(value)) => Side::Bool(*value),
+                Some(PropertyValue::Null | PropertyValue::Other(_)) | None => Side::Absent,
+            })
+        }
         _ => Err(wrong(expr)),
     }
 }
 
 fn wrong(expr: &Expr) -> Diagnostic {
-    Diagnostic::error("E0305", expr.span, "a filter compares properties of features with texts, numbers or truth values")
-        .hint("for example `where source == \"map.png\" & height > 1`")
+    Diagnostic::error(
+        "E0305",
+        expr.span,
+        "a filter compares properties of features with texts, numbers or truth values",
+    )
+    .hint("for example `where source == \"map.png\" & height > 1`")
 }

@@ -51,11 +51,19 @@ impl Elaborator<'_> {
             return self.report(error);
         };
         let Meaning::Kind(decl) = meaning else {
-            let error = Diagnostic::error("E0206", name.span, format!("expected a kind, `{}` is {}", name.name, meaning.noun()));
+            let error = Diagnostic::error(
+                "E0206",
+                name.span,
+                format!("expected a kind, `{}` is {}", name.name, meaning.noun()),
+            );
             return self.report(error);
         };
         if self.expanding.iter().any(|(_, n)| *n == name.name) {
-            return self.report(Diagnostic::error("E0205", name.span, format!("the kind `{}` starts from itself", name.name)));
+            return self.report(Diagnostic::error(
+                "E0205",
+                name.span,
+                format!("the kind `{}` starts from itself", name.name),
+            ));
         }
         self.expanding.push((0, name.name.clone()));
         let mut kind = self.kind(&decl.base);
@@ -70,8 +78,9 @@ impl Elaborator<'_> {
                     }
                 }
             } else {
-                let error = unknown("preset", &preset.name, preset.span, "E0208", PRESETS.iter().map(|p| p.name))
-                    .hint(format!("known presets: {}", PRESETS.map(|p| p.name).join(", ")));
+                let error =
+                    unknown("preset", &preset.name, preset.span, "E0208", PRESETS.iter().map(|p| p.name))
+                        .hint(format!("known presets: {}", PRESETS.map(|p| p.name).join(", ")));
                 self.note(error);
                 kind = Err(Reported);
             }
@@ -87,12 +96,21 @@ impl Elaborator<'_> {
     }
 
     /// Takes the parameters among some fields into a kind; returns the other fields.
-    pub(super) fn parameters<'f>(&mut self, fields: &'f [Field], mut kind: Option<&mut Kind>, locals: &Locals) -> Vec<&'f Field> {
+    pub(super) fn parameters<'f>(
+        &mut self,
+        fields: &'f [Field],
+        mut kind: Option<&mut Kind>,
+        locals: &Locals,
+    ) -> Vec<&'f Field> {
         let mut rest = Vec::new();
         for (at, field) in fields.iter().enumerate() {
             if let Some(first) = fields[..at].iter().find(|f| f.name.name == field.name.name) {
-                let error = Diagnostic::error("E0202", field.name.span, format!("`{}` is set twice", field.name.name))
-                    .related(first.name.span, "first set here");
+                let error = Diagnostic::error(
+                    "E0202",
+                    field.name.span,
+                    format!("`{}` is set twice", field.name.name),
+                )
+                .related(first.name.span, "first set here");
                 self.note(error);
                 continue;
             }
@@ -122,12 +140,18 @@ impl Elaborator<'_> {
             .map(|(_, (name, ..))| *name)
             .collect();
         if !missing.is_empty() {
-            let error = Diagnostic::error("E0209", name.span, format!("`{}` has no {}", name.name, missing.join(", ")))
-                .hint("set them, or start from a preset: `kind adult: sfm preset helbing2000 { … }`");
+            let error = Diagnostic::error(
+                "E0209",
+                name.span,
+                format!("`{}` has no {}", name.name, missing.join(", ")),
+            )
+            .hint("set them, or start from a preset: `kind adult: sfm preset helbing2000 { … }`");
             return self.report(error);
         }
         let law = |name: &str| {
-            kind.law(name).cloned().or_else(|| parameter(name).and_then(|at| PARAMETERS[at].2).map(Law::Constant))
+            kind.law(name)
+                .cloned()
+                .or_else(|| parameter(name).and_then(|at| PARAMETERS[at].2).map(Law::Constant))
         };
         let all = || -> Option<Body> {
             Some(Body {
@@ -168,4 +192,3 @@ fn out_of_range(name: &str, law: &Law) -> Option<String> {
     }
     None
 }
-

@@ -32,7 +32,9 @@ pub(super) fn shape_span(shape: &crate::syntax::ast::ShapeExpr) -> Span {
     use crate::syntax::ast::ShapeExpr;
     match shape {
         ShapeExpr::Named(name) => name.span,
-        ShapeExpr::Circle { span, .. } | ShapeExpr::Rectangle { span, .. } | ShapeExpr::Polygon { span, .. } => *span,
+        ShapeExpr::Circle { span, .. }
+        | ShapeExpr::Rectangle { span, .. }
+        | ShapeExpr::Polygon { span, .. } => *span,
     }
 }
 
@@ -51,7 +53,10 @@ impl Elaborator<'_> {
                 let ends = (self.number_of(low, dimension, locals), self.number_of(high, dimension, locals));
                 let Some((name, arguments)) = distribution(law) else {
                     let error = Diagnostic::error("E0404", law.span, "only a distribution can be truncated")
-                        .hint(format!("for example `normal(mean, sd) in lo .. hi`; known are {}", DISTRIBUTIONS.join(", ")));
+                        .hint(format!(
+                            "for example `normal(mean, sd) in lo .. hi`; known are {}",
+                            DISTRIBUTIONS.join(", ")
+                        ));
                     return self.report(error);
                 };
                 let family = self.family(name, law.span, arguments, dimension, locals)?;
@@ -59,7 +64,8 @@ impl Elaborator<'_> {
                 self.validated(family, low, high, law.span)
             }
             other => {
-                let error = Diagnostic::error("E0305", value_span(other), "expected a number or a distribution");
+                let error =
+                    Diagnostic::error("E0305", value_span(other), "expected a number or a distribution");
                 self.report(error)
             }
         }
@@ -97,10 +103,15 @@ impl Elaborator<'_> {
             return self.report(Diagnostic::error("E0204", span, format!("`{name}` takes {usage}")));
         }
         let numbers: Vec<_> = arguments.iter().map(|a| self.number_of(a, dimension, locals)).collect();
-        let numbers: Vec<f64> = numbers.into_iter().collect::<Lowered<Vec<_>>>()?.iter().map(|n| n.value).collect();
+        let numbers: Vec<f64> =
+            numbers.into_iter().collect::<Lowered<Vec<_>>>()?.iter().map(|n| n.value).collect();
         let (first, second) = (numbers[0], numbers.get(1).copied().unwrap_or(0.0));
         if matches!(name, "uniform_int" | "poisson" | "bernoulli") && !dimension.is_none() {
-            let error = Diagnostic::error("E0404", span, format!("`{name}` gives pure numbers, here {dimension} is needed"));
+            let error = Diagnostic::error(
+                "E0404",
+                span,
+                format!("`{name}` gives pure numbers, here {dimension} is needed"),
+            );
             return self.report(error);
         }
         Ok(match name {
@@ -109,7 +120,11 @@ impl Elaborator<'_> {
             "uniform" => Family::Uniform { low: first, high: second },
             "uniform_int" => {
                 if first.fract() != 0.0 || second.fract() != 0.0 {
-                    return self.report(Diagnostic::error("E0404", span, "the ends of `uniform_int` must be whole"));
+                    return self.report(Diagnostic::error(
+                        "E0404",
+                        span,
+                        "the ends of `uniform_int` must be whole",
+                    ));
                 }
                 Family::UniformInt { low: first as i64, high: second as i64 }
             }

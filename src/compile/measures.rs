@@ -74,7 +74,9 @@ impl Elaborator<'_> {
 
     /// A measure; a quantile or expectation has the dimension of its metric.
     pub(super) fn measure(&mut self, measure: &ast::Measure, scope: ScopeId) -> Lowered<Observed> {
-        if let (Some((low, _)), ast::MeasureKind::Probability | ast::MeasureKind::Quantile(_)) = (&measure.range, &measure.kind) {
+        if let (Some((low, _)), ast::MeasureKind::Probability | ast::MeasureKind::Quantile(_)) =
+            (&measure.range, &measure.kind)
+        {
             let error = Diagnostic::error("E0605", low.span, "only an expectation needs a range");
             return self.report(error);
         }
@@ -86,15 +88,27 @@ impl Elaborator<'_> {
             ast::MeasureKind::Expectation => {
                 let (term, dimension, unbounded) = self.metric(&measure.body, scope)?;
                 let Some((low, high)) = &measure.range else {
-                    let error = Diagnostic::error("E0605", measure.span, "an expectation needs the range of its metric")
-                        .hint(format!("write `E(…) in lo .. hi` in {}; values beyond are clipped and counted", unit_hint(dimension)));
+                    let error = Diagnostic::error(
+                        "E0605",
+                        measure.span,
+                        "an expectation needs the range of its metric",
+                    )
+                    .hint(format!(
+                        "write `E(…) in lo .. hi` in {}; values beyond are clipped and counted",
+                        unit_hint(dimension)
+                    ));
                     return self.report(error);
                 };
                 let locals = Locals::of(scope);
-                let ends = (self.number_of(low, dimension, &locals), self.number_of(high, dimension, &locals));
+                let ends =
+                    (self.number_of(low, dimension, &locals), self.number_of(high, dimension, &locals));
                 let range = (ends.0?.value, ends.1?.value);
                 if range.0 >= range.1 {
-                    return self.report(Diagnostic::error("E0605", low.span.to(high.span), "this range is empty"));
+                    return self.report(Diagnostic::error(
+                        "E0605",
+                        low.span.to(high.span),
+                        "this range is empty",
+                    ));
                 }
                 let text = self.text(measure.body.span);
                 Ok(Observed {
@@ -108,7 +122,11 @@ impl Elaborator<'_> {
                 let (term, dimension, unbounded) = self.metric(&measure.body, scope)?;
                 let number = number?;
                 if number.value <= 0.0 || number.value >= 1.0 {
-                    return self.report(Diagnostic::error("E0601", level.span, "the level of a quantile lies between 0 and 1"));
+                    return self.report(Diagnostic::error(
+                        "E0601",
+                        level.span,
+                        "the level of a quantile lies between 0 and 1",
+                    ));
                 }
                 let text = self.text(measure.body.span);
                 Ok(Observed {
@@ -134,7 +152,11 @@ impl Elaborator<'_> {
             return Ok(());
         }
         let (needed, horizon) = (self.duration(reach.ticks), self.duration(self.horizon.0));
-        let mut error = Diagnostic::error("E0502", span, format!("this looks {needed} ahead, but the horizon is {horizon}"));
+        let mut error = Diagnostic::error(
+            "E0502",
+            span,
+            format!("this looks {needed} ahead, but the horizon is {horizon}"),
+        );
         error = if reach.unbounded {
             error.hint("an operator without a bound asks at every state up to the horizon, and the bounded one inside looks beyond; bound the outer one")
         } else {

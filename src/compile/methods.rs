@@ -36,9 +36,18 @@ impl Elaborator<'_> {
         let mut failed = false;
         for argument in &method.arguments {
             let Some(at) = names.iter().position(|n| *n == argument.name.name) else {
-                let known = if N == 0 { "it takes none".to_owned() } else { format!("it takes {}", names.join(", ")) };
-                let hint = nearest(&argument.name.name, names.iter().copied()).map_or(known, |n| format!("did you mean `{n}`?"));
-                let error = Diagnostic::error("E0604", argument.name.span, format!("`{}` has no argument `{}`", method.name.name, argument.name.name));
+                let known = if N == 0 {
+                    "it takes none".to_owned()
+                } else {
+                    format!("it takes {}", names.join(", "))
+                };
+                let hint = nearest(&argument.name.name, names.iter().copied())
+                    .map_or(known, |n| format!("did you mean `{n}`?"));
+                let error = Diagnostic::error(
+                    "E0604",
+                    argument.name.span,
+                    format!("`{}` has no argument `{}`", method.name.name, argument.name.name),
+                );
                 self.note(error.hint(hint));
                 failed = true;
                 continue;
@@ -56,18 +65,26 @@ impl Elaborator<'_> {
         match value {
             None => Ok(default),
             Some((value, _)) if value > 0.0 && value < 1.0 => Ok(value),
-            Some((value, span)) => {
-                self.report(Diagnostic::error("E0604", span, format!("`{name}` is {value}, but lies between 0 and 1")))
-            }
+            Some((value, span)) => self.report(Diagnostic::error(
+                "E0604",
+                span,
+                format!("`{name}` is {value}, but lies between 0 and 1"),
+            )),
         }
     }
 
-    fn required<const N: usize>(&mut self, arguments: &Arguments<'_, N>, at: usize, name: &str) -> Lowered<(f64, Span)> {
+    fn required<const N: usize>(
+        &mut self,
+        arguments: &Arguments<'_, N>,
+        at: usize,
+        name: &str,
+    ) -> Lowered<(f64, Span)> {
         match arguments.values[at] {
             Some(found) => Ok(found),
             None => {
                 let method = arguments.method;
-                let error = Diagnostic::error("E0604", method.span, format!("`{}` needs `{name}`", method.name.name));
+                let error =
+                    Diagnostic::error("E0604", method.span, format!("`{}` needs `{name}`", method.name.name));
                 self.report(error)
             }
         }
@@ -83,8 +100,12 @@ impl Elaborator<'_> {
     pub(super) fn confidence(&mut self, expr: &Expr, locals: &Locals) -> Lowered<f64> {
         let number = self.number_of(expr, Dimension::NONE, locals)?;
         if number.value <= 0.0 || number.value >= 1.0 {
-            let error = Diagnostic::error("E0604", expr.span, format!("a confidence of {} is not between 0 and 1", number.value))
-                .hint("write `confidence 95 %` or `confidence 0.95`");
+            let error = Diagnostic::error(
+                "E0604",
+                expr.span,
+                format!("a confidence of {} is not between 0 and 1", number.value),
+            )
+            .hint("write `confidence 95 %` or `confidence 0.95`");
             return self.report(error);
         }
         // 1 - 0.95 is not 0.05 in doubles; the decimal is.
@@ -99,20 +120,33 @@ impl Elaborator<'_> {
             return self.report(Diagnostic::error("E0604", expr.span, "`within` must be positive"));
         }
         if dimension.is_none() && number.value >= 1.0 {
-            return self.report(Diagnostic::error("E0604", expr.span, "`within` a whole probability says nothing"));
+            return self.report(Diagnostic::error(
+                "E0604",
+                expr.span,
+                "`within` a whole probability says nothing",
+            ));
         }
         Ok(Some(number.value))
     }
 
     fn unknown_method<T>(&mut self, method: &Method, known: &[&str]) -> Lowered<T> {
         let name = &method.name.name;
-        let error = Diagnostic::error("E0603", method.name.span, format!("there is no procedure `{name}` for this"));
-        let hint = nearest(name, known.iter().copied()).map_or_else(|| format!("known here: {}", known.join(", ")), |n| format!("did you mean `{n}`?"));
+        let error =
+            Diagnostic::error("E0603", method.name.span, format!("there is no procedure `{name}` for this"));
+        let hint = nearest(name, known.iter().copied())
+            .map_or_else(|| format!("known here: {}", known.join(", ")), |n| format!("did you mean `{n}`?"));
         self.report(error.hint(hint))
     }
 
     /// The test of a check with its threshold.
-    pub(super) fn test(&mut self, clauses: &Clauses, threshold: f64, at: Span, share: f64, locals: &Locals) -> Lowered<Test> {
+    pub(super) fn test(
+        &mut self,
+        clauses: &Clauses,
+        threshold: f64,
+        at: Span,
+        share: f64,
+        locals: &Locals,
+    ) -> Lowered<Test> {
         if let Some(within) = &clauses.within {
             let error = Diagnostic::error("E0607", within.span, "a check has no `within`")
                 .hint("for an indifference region write `by sprt(indifference = 0.01)`");
@@ -169,17 +203,28 @@ impl Elaborator<'_> {
     }
 
     /// The estimator of a measure; `share` is this query's part of the joint error.
-    pub(super) fn estimator(&mut self, clauses: &Clauses, kind: &MeasureKind, share: f64, locals: &Locals) -> Lowered<Estimator> {
+    pub(super) fn estimator(
+        &mut self,
+        clauses: &Clauses,
+        kind: &MeasureKind,
+        share: f64,
+        locals: &Locals,
+    ) -> Lowered<Estimator> {
         let dimension = match kind {
             MeasureKind::Probability => Dimension::NONE,
-            MeasureKind::Expectation { dimension, .. } | MeasureKind::Quantile { dimension, .. } => *dimension,
+            MeasureKind::Expectation { dimension, .. } | MeasureKind::Quantile { dimension, .. } => {
+                *dimension
+            }
         };
         let within = self.within(clauses, dimension, locals)?;
         let delta = self.delta(clauses, locals)?.unwrap_or(DEFAULT_DELTA) * share;
         let quantile = matches!(kind, MeasureKind::Quantile { .. });
         if let (true, Some(expr)) = (quantile, &clauses.within) {
-            let error = Diagnostic::error("E0607", expr.span, "a quantile takes a number of trials, not a width")
-                .hint("write `by fixed(trials = 2000)`; the interval follows from the order of the values");
+            let error =
+                Diagnostic::error("E0607", expr.span, "a quantile takes a number of trials, not a width")
+                    .hint(
+                        "write `by fixed(trials = 2000)`; the interval follows from the order of the values",
+                    );
             return self.report(error);
         }
         let probability = matches!(kind, MeasureKind::Probability);
@@ -196,7 +241,11 @@ impl Elaborator<'_> {
             let (trials, span) = self.required(&arguments, 0, "trials")?;
             let delta = self.error_of(arguments.values[1], delta, "delta")?;
             if trials < 1.0 || trials.fract() != 0.0 || trials > 1e12 {
-                return self.report(Diagnostic::error("E0604", span, "`trials` must be a whole, positive number"));
+                return self.report(Diagnostic::error(
+                    "E0604",
+                    span,
+                    "`trials` must be a whole, positive number",
+                ));
             }
             return Ok(Estimator::Fixed { trials: trials as u64, delta });
         }
@@ -215,13 +264,21 @@ impl Elaborator<'_> {
         let epsilon = match (arguments.values[0], within) {
             (Some((epsilon, span)), None) => {
                 if epsilon <= 0.0 || (probability && epsilon >= 1.0) {
-                    return self.report(Diagnostic::error("E0604", span, format!("`epsilon` is {epsilon}, but lies between 0 and 1")));
+                    return self.report(Diagnostic::error(
+                        "E0604",
+                        span,
+                        format!("`epsilon` is {epsilon}, but lies between 0 and 1"),
+                    ));
                 }
                 epsilon
             }
             (None, Some(epsilon)) => epsilon,
             (Some((_, span)), Some(_)) => {
-                return self.report(Diagnostic::error("E0604", span, "the width is given twice: by `within` and by `epsilon`"));
+                return self.report(Diagnostic::error(
+                    "E0604",
+                    span,
+                    "the width is given twice: by `within` and by `epsilon`",
+                ));
             }
             (None, None) => {
                 let error = Diagnostic::error("E0604", method.span, format!("`{name}` needs `epsilon`"));
@@ -237,9 +294,19 @@ impl Elaborator<'_> {
     }
 
     /// Half width, if any, and error of a comparison.
-    pub(super) fn comparison_clauses(&mut self, clauses: &Clauses, dimension: Dimension, share: f64, locals: &Locals) -> Lowered<(Option<f64>, f64)> {
+    pub(super) fn comparison_clauses(
+        &mut self,
+        clauses: &Clauses,
+        dimension: Dimension,
+        share: f64,
+        locals: &Locals,
+    ) -> Lowered<(Option<f64>, f64)> {
         if let Some(method) = &clauses.by {
-            return self.report(Diagnostic::error("E0603", method.span, "a comparison has one procedure only"));
+            return self.report(Diagnostic::error(
+                "E0603",
+                method.span,
+                "a comparison has one procedure only",
+            ));
         }
         let within = self.within(clauses, dimension, locals)?;
         let delta = self.delta(clauses, locals)?.unwrap_or(DEFAULT_DELTA) * share;
@@ -247,7 +314,13 @@ impl Elaborator<'_> {
     }
 
     /// Loss, error and procedure of a ranking.
-    pub(super) fn ranking(&mut self, clauses: &Clauses, dimension: Dimension, share: f64, locals: &Locals) -> Lowered<(f64, f64, Ranking)> {
+    pub(super) fn ranking(
+        &mut self,
+        clauses: &Clauses,
+        dimension: Dimension,
+        share: f64,
+        locals: &Locals,
+    ) -> Lowered<(f64, f64, Ranking)> {
         let within = self.within(clauses, dimension, locals)?;
         let delta = self.delta(clauses, locals)?.unwrap_or(DEFAULT_DELTA) * share;
         let Some(method) = &clauses.by else {

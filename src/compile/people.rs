@@ -40,11 +40,9 @@ impl People {
     fn entities(&mut self, path: &str, size: u32) -> u32 {
         const ALL: u64 = 1 << 24;
         let mut first = name_hash(path) % (ALL - u64::from(size).min(ALL - 1));
-        while let Some((start, length)) = self
-            .ranges
-            .iter()
-            .find(|(start, length)| first < u64::from(start + length) && u64::from(*start) < first + u64::from(size))
-        {
+        while let Some((start, length)) = self.ranges.iter().find(|(start, length)| {
+            first < u64::from(start + length) && u64::from(*start) < first + u64::from(size)
+        }) {
             first = u64::from(start + length);
             if first + u64::from(size) >= ALL {
                 first = 0;
@@ -67,8 +65,12 @@ impl<'a> Elaborator<'a> {
                 self.report(error)
             }
             (None, None) if decl.plural => {
-                let error = Diagnostic::error("E0402", decl.name.span, format!("how many `{}` are there?", decl.name.name))
-                    .hint(format!("write `agents {}[12]: …`", decl.name.name));
+                let error = Diagnostic::error(
+                    "E0402",
+                    decl.name.span,
+                    format!("how many `{}` are there?", decl.name.name),
+                )
+                .hint(format!("write `agents {}[12]: …`", decl.name.name));
                 self.report(error)
             }
             _ => Ok(1),
@@ -107,14 +109,22 @@ impl<'a> Elaborator<'a> {
         let rest = self.parameters(&decl.body, kind.as_mut().ok(), &Locals::default());
         let start = self.start(&decl.name, &rest, people, true);
         let route = self.route_of(&rest);
-        let mut field = |this: &mut Self, name: &str, dimension: Dimension, default: f64| -> Lowered<f64> {
+        let field = |this: &mut Self, name: &str, dimension: Dimension, default: f64| -> Lowered<f64> {
             let Some(field) = rest.iter().find(|f| f.name.name == name) else { return Ok(default) };
             let Value::Plain(expr) = &field.value else {
-                return this.report(Diagnostic::error("E0305", value_span(&field.value), "expected a number"));
+                return this.report(Diagnostic::error(
+                    "E0305",
+                    value_span(&field.value),
+                    "expected a number",
+                ));
             };
             let number = this.number_of(expr, dimension, &Locals::default())?;
             if number.value < 0.0 {
-                return this.report(Diagnostic::error("E0405", expr.span, format!("`{name}` cannot be negative")));
+                return this.report(Diagnostic::error(
+                    "E0405",
+                    expr.span,
+                    format!("`{name}` cannot be negative"),
+                ));
             }
             Ok(number.value)
         };
@@ -150,11 +160,13 @@ impl<'a> Elaborator<'a> {
                 (Arc::new(body.clone()), start.clone(), route.clone())
             });
             people.agents[members[0].0 as usize].particle = Some(particle);
-            self.scopes[0].define(&decl.name.name, Meaning::Agents { members: members.into(), particle: true });
+            self.scopes[0]
+                .define(&decl.name.name, Meaning::Agents { members: members.into(), particle: true });
             return;
         }
-        let members =
-            self.people(&decl.name, count, true, people, |_| (Arc::new(body.clone()), start.clone(), route.clone()));
+        let members = self.people(&decl.name, count, true, people, |_| {
+            (Arc::new(body.clone()), start.clone(), route.clone())
+        });
         let index = people.groups.len() as u32;
         for member in &members {
             people.agents[member.0 as usize].group = Some(index);
@@ -167,8 +179,11 @@ impl<'a> Elaborator<'a> {
         // What follows can then speak of the name without further errors.
         let id = AgentId(self.agent_names.len() as u32);
         self.agent_names.push(name.name.clone());
-        let meaning =
-            if plural { Meaning::Agents { members: [id].into(), particle: false } } else { Meaning::Agent(id) };
+        let meaning = if plural {
+            Meaning::Agents { members: [id].into(), particle: false }
+        } else {
+            Meaning::Agent(id)
+        };
         self.scopes[0].define(&name.name, meaning);
     }
 
@@ -195,7 +210,15 @@ impl<'a> Elaborator<'a> {
                 shared = Some(body.clone());
                 self.agent_names.push(text.clone());
                 let entity = first + k as u32;
-                people.agents.push(Agent { name: text, entity, body, start, route, group: None, particle: None });
+                people.agents.push(Agent {
+                    name: text,
+                    entity,
+                    body,
+                    start,
+                    route,
+                    group: None,
+                    particle: None,
+                });
                 AgentId(people.agents.len() as u32 - 1)
             })
             .collect()
@@ -208,10 +231,18 @@ impl<'a> Elaborator<'a> {
                 self.report(Diagnostic::error("E0402", expr.span, format!("there cannot be {n} of them")))
             }
             Some(n) if n as usize <= MOST_AGENTS => Ok(n as usize),
-            Some(n) => self.report(Diagnostic::error("E0402", expr.span, format!("{n} agents are more than {MOST_AGENTS}"))),
+            Some(n) => self.report(Diagnostic::error(
+                "E0402",
+                expr.span,
+                format!("{n} agents are more than {MOST_AGENTS}"),
+            )),
             None => {
-                let error = Diagnostic::error("E0402", expr.span, format!("the number of agents must be whole, this is {}", number.value))
-                    .hint("round it: `round(…)`");
+                let error = Diagnostic::error(
+                    "E0402",
+                    expr.span,
+                    format!("the number of agents must be whole, this is {}", number.value),
+                )
+                .hint("round it: `round(…)`");
                 self.report(error)
             }
         }
@@ -221,17 +252,20 @@ impl<'a> Elaborator<'a> {
         let position = match fields.iter().find(|f| f.name.name == "at") {
             Some(field) => self.position(&field.value, people),
             None if required => {
-                let error = Diagnostic::error("E0209", name.span, format!("where does `{}` start?", name.name))
-                    .hint("set `at`: a point, `uniform in` a shape, or `near` another agent");
+                let error =
+                    Diagnostic::error("E0209", name.span, format!("where does `{}` start?", name.name))
+                        .hint("set `at`: a point, `uniform in` a shape, or `near` another agent");
                 self.report(error)
             }
             None => Err(Reported),
         };
         let velocity = match fields.iter().find(|f| f.name.name == "velocity").map(|f| &f.value) {
             Some(Value::Plain(expr)) => self.point_of(expr, Dimension::SPEED, &Locals::default()),
-            Some(other) => {
-                self.report(Diagnostic::error("E0305", value_span(other), "expected a velocity such as `(1, 0) m/s`"))
-            }
+            Some(other) => self.report(Diagnostic::error(
+                "E0305",
+                value_span(other),
+                "expected a velocity such as `(1, 0) m/s`",
+            )),
             None => Ok(Vec2::zeros()),
         };
         Ok(Start { position: position?, velocity: velocity? })
@@ -245,11 +279,17 @@ impl<'a> Elaborator<'a> {
                 let typed = self.lower(agent, &Locals::default())?;
                 let Who::Agent(id) = self.as_agent(typed, agent.span)? else { return Err(Reported) };
                 if distance.value <= 0.0 {
-                    return self.report(Diagnostic::error("E0405", within.span, "this distance must be positive"));
+                    return self.report(Diagnostic::error(
+                        "E0405",
+                        within.span,
+                        "this distance must be positive",
+                    ));
                 }
                 if id.0 as usize >= people.agents.len() {
-                    return self.report(Diagnostic::error("E0403", agent.span, "this agent is declared later")
-                        .hint("an agent near another one is declared after it"));
+                    return self.report(
+                        Diagnostic::error("E0403", agent.span, "this agent is declared later")
+                            .hint("an agent near another one is declared after it"),
+                    );
                 }
                 Ok(Position::Near { agent: id, within: distance.value })
             }
@@ -262,7 +302,9 @@ impl<'a> Elaborator<'a> {
                 Typed::Point(x, _) => self.wrong_dimension(expr.span, Dimension::LENGTH, x.dimension),
                 found => self.mismatch(expr.span, "a point, a region or `uniform in` a shape", &found),
             },
-            other => self.report(Diagnostic::error("E0305", value_span(other), "expected a place to start from")),
+            other => {
+                self.report(Diagnostic::error("E0305", value_span(other), "expected a place to start from"))
+            }
         }
     }
 

@@ -56,7 +56,13 @@ pub fn law(preset: &str, parameter: &str) -> Option<Law> {
         "helbing2000" => &[("A", 2000.0), ("B", 0.08), ("tau", 0.5)],
         "johansson2007" => &[("A", 33.6), ("B", 1.65), ("lambda", 0.12), ("tau", 0.5)],
         "vissim2008" => &[
-            ("A", 40.0), ("B", 2.8), ("lambda", 0.1), ("A2", 2000.0), ("B2", 0.2), ("lambda2", 1.0), ("tau", 0.4),
+            ("A", 40.0),
+            ("B", 2.8),
+            ("lambda", 0.1),
+            ("A2", 2000.0),
+            ("B2", 0.2),
+            ("lambda2", 1.0),
+            ("tau", 0.4),
         ],
         _ => return None,
     };
@@ -85,7 +91,11 @@ mod tests {
     fn every_preset_gives_every_parameter_that_has_no_default() {
         for preset in &PRESETS {
             for (parameter, _, default) in PARAMETERS {
-                assert!(default.is_some() || law(preset.name, parameter).is_some(), "{} {parameter}", preset.name);
+                assert!(
+                    default.is_some() || law(preset.name, parameter).is_some(),
+                    "{} {parameter}",
+                    preset.name
+                );
             }
         }
         assert!(law("unknown", "mass").is_none());

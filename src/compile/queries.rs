@@ -9,7 +9,9 @@ use super::settings::Setting;
 use super::study::{Ask, Column, Measure, MeasureKind, Query, Study, Target, World};
 use super::symbols::ScopeId;
 use crate::model::{Scenario, Who};
-use crate::syntax::ast::{self, BinaryOp, Binding, Clauses, Expr, PropertyFile, PropertyItem, QueryKind, ScenarioFile};
+use crate::syntax::ast::{
+    self, BinaryOp, Binding, Clauses, Expr, PropertyFile, PropertyItem, QueryKind, ScenarioFile,
+};
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::source::{Source, Span};
 use std::collections::BTreeMap;
@@ -59,7 +61,8 @@ impl<'a> Compiler<'a> {
         let mut seen: Vec<&Setting> = Vec::new();
         for setting in self.input.settings {
             if seen.iter().any(|s| s.name == setting.name) {
-                let error = Diagnostic::error("E0210", setting.span, format!("`{}` is set twice", setting.name));
+                let error =
+                    Diagnostic::error("E0210", setting.span, format!("`{}` is set twice", setting.name));
                 self.sites[plain].elaborator.note(error);
                 continue;
             }
@@ -124,7 +127,9 @@ impl<'a> Compiler<'a> {
                     PropertyItem::Property { name, .. } => {
                         let body = Expr { kind: ast::ExprKind::Name(name.name.clone()), span: name.span };
                         let declared = self.input.properties[number].items.iter().find_map(|i| match i {
-                            PropertyItem::Property { name: n, formula } if n.name == name.name => Some(formula),
+                            PropertyItem::Property { name: n, formula } if n.name == name.name => {
+                                Some(formula)
+                            }
                             _ => None,
                         });
                         let place = declared.map_or(name.span, |f| f.span);
@@ -149,7 +154,14 @@ impl<'a> Compiler<'a> {
         elaborator.signals.clear();
     }
 
-    fn file(&mut self, file: &'a PropertyFile, scope: ScopeId, base: usize, point: &BTreeMap<String, Number>, swept: &[&str]) {
+    fn file(
+        &mut self,
+        file: &'a PropertyFile,
+        scope: ScopeId,
+        base: usize,
+        point: &BTreeMap<String, Number>,
+        swept: &[&str],
+    ) {
         let locals = Locals::of(scope);
         let mut family: Option<f64> = None;
         let mut members = 0usize;
@@ -159,7 +171,8 @@ impl<'a> Compiler<'a> {
                     family = self.sites[base].elaborator.confidence(confidence, &locals).ok();
                 }
                 PropertyItem::Query(query) => {
-                    members += if let QueryKind::Estimate(measures) = &query.kind { measures.len() } else { 1 };
+                    members +=
+                        if let QueryKind::Estimate(measures) = &query.kind { measures.len() } else { 1 };
                 }
                 _ => {}
             }
@@ -175,7 +188,12 @@ impl<'a> Compiler<'a> {
     }
 
     /// Values of the swept parameters in words.
-    fn described(&self, site: usize, point: &BTreeMap<String, Number>, names: &[&str]) -> Vec<(String, String)> {
+    fn described(
+        &self,
+        site: usize,
+        point: &BTreeMap<String, Number>,
+        names: &[&str],
+    ) -> Vec<(String, String)> {
         let elaborator = &self.sites[site].elaborator;
         names
             .iter()
@@ -191,7 +209,13 @@ impl<'a> Compiler<'a> {
     }
 
     /// The world in which some parameters take other values.
-    fn under(&mut self, bindings: &'a [Binding], scope: ScopeId, base: usize, point: &BTreeMap<String, Number>) -> Lowered<(usize, Vec<(String, String)>)> {
+    fn under(
+        &mut self,
+        bindings: &'a [Binding],
+        scope: ScopeId,
+        base: usize,
+        point: &BTreeMap<String, Number>,
+    ) -> Lowered<(usize, Vec<(String, String)>)> {
         let mut settings = point.clone();
         let mut failed = false;
         for binding in bindings {
@@ -259,14 +283,30 @@ impl<'a> Compiler<'a> {
                     };
                     let elaborator = &mut self.sites[site].elaborator;
                     let with_family = family_clauses(clauses);
-                    let share = if let (Some(delta), true) = (family, with_family) { delta / super::methods::DEFAULT_DELTA } else { share };
+                    let share = if let (Some(delta), true) = (family, with_family) {
+                        delta / super::methods::DEFAULT_DELTA
+                    } else {
+                        share
+                    };
                     let Ok(estimator) = elaborator.estimator(clauses, &measured.kind, share, &locals) else {
                         failed = true;
                         continue;
                     };
-                    let single = if measures.len() == 1 { text.clone() } else { format!("estimate {}", self.sites[site].elaborator.text(measure.span)) };
+                    let single = if measures.len() == 1 {
+                        text.clone()
+                    } else {
+                        format!("estimate {}", self.sites[site].elaborator.text(measure.span))
+                    };
                     let ask = Ask::Estimate { measure: measured, estimator };
-                    self.push(query.span, single, settings.clone(), property_name(measure), ask, unbounded, site);
+                    self.push(
+                        query.span,
+                        single,
+                        settings.clone(),
+                        property_name(measure),
+                        ask,
+                        unbounded,
+                        site,
+                    );
                 }
                 if failed {
                     return Err(Reported);
@@ -281,14 +321,22 @@ impl<'a> Compiler<'a> {
                     MeasureKind::Probability => Dimension::NONE,
                     MeasureKind::Expectation { dimension, .. } => *dimension,
                     MeasureKind::Quantile { .. } => {
-                        let error = Diagnostic::error("E0607", measure.span, "quantiles cannot be compared directly")
-                            .hint("compare `P(metric <= bound)`, or estimate both");
+                        let error =
+                            Diagnostic::error("E0607", measure.span, "quantiles cannot be compared directly")
+                                .hint("compare `P(metric <= bound)`, or estimate both");
                         return self.sites[base].elaborator.report(error);
                     }
                 };
                 let share = family.map_or(1.0, |delta| delta / super::methods::DEFAULT_DELTA);
-                let (within, delta) = self.sites[base].elaborator.comparison_clauses(clauses, dimension, share, &locals)?;
-                let ask = Ask::Compare { first: a, second: b, settings: [first_settings, second_settings], within, delta };
+                let (within, delta) =
+                    self.sites[base].elaborator.comparison_clauses(clauses, dimension, share, &locals)?;
+                let ask = Ask::Compare {
+                    first: a,
+                    second: b,
+                    settings: [first_settings, second_settings],
+                    within,
+                    delta,
+                };
                 self.push(query.span, text, settings, property_name(measure), ask, unbounded, one);
             }
             QueryKind::Rank { what, agent, measure } => {
@@ -312,7 +360,9 @@ impl<'a> Compiler<'a> {
         let locals = Locals::of(scope);
         let observed = self.sites[site].elaborator.measure(measure, scope);
         let dimension = match observed.as_ref().map(|o| &o.kind) {
-            Ok(MeasureKind::Expectation { dimension, .. } | MeasureKind::Quantile { dimension, .. }) => *dimension,
+            Ok(MeasureKind::Expectation { dimension, .. } | MeasureKind::Quantile { dimension, .. }) => {
+                *dimension
+            }
             _ => Dimension::NONE,
         };
         let elaborator = &mut self.sites[site].elaborator;
@@ -337,14 +387,23 @@ impl<'a> Compiler<'a> {
         let test = match &kind {
             MeasureKind::Expectation { range, .. } => {
                 if let Some(method) = &clauses.by {
-                    let error = Diagnostic::error("E0603", method.span, "a check of an expectation has one procedure only");
+                    let error = Diagnostic::error(
+                        "E0603",
+                        method.span,
+                        "a check of an expectation has one procedure only",
+                    );
                     return elaborator.report(error);
                 }
                 if theta <= range.0 || theta >= range.1 {
-                    let error = Diagnostic::error("E0601", threshold.span, "this threshold lies outside the range of the metric");
+                    let error = Diagnostic::error(
+                        "E0601",
+                        threshold.span,
+                        "this threshold lies outside the range of the metric",
+                    );
                     return elaborator.report(error);
                 }
-                let delta = elaborator.delta(clauses, &locals)?.unwrap_or(super::methods::DEFAULT_ALPHA) * share;
+                let delta =
+                    elaborator.delta(clauses, &locals)?.unwrap_or(super::methods::DEFAULT_ALPHA) * share;
                 super::study::Test::Interval { delta, trials: super::methods::DEFAULT_TRIALS }
             }
             _ => {
@@ -375,7 +434,9 @@ impl<'a> Compiler<'a> {
         let (measured, unbounded) = self.measured(site, measure, scope)?;
         let elaborator = &mut self.sites[site].elaborator;
         if what.name != "moves" {
-            let error = Diagnostic::error("E0606", what.span, format!("`{}` cannot be ranked here", what.name)).hint("write `rank moves of …`");
+            let error =
+                Diagnostic::error("E0606", what.span, format!("`{}` cannot be ranked here", what.name))
+                    .hint("write `rank moves of …`");
             return elaborator.report(error);
         }
         let typed = elaborator.lower(agent, &locals)?;
@@ -393,8 +454,14 @@ impl<'a> Compiler<'a> {
         let Some(scenario) = &self.sites[site].scenario else { return Err(Reported) };
         let Some(moves) = scenario.moves.iter().position(|m| m.agent == id) else {
             let name = scenario.agents.get(id.0 as usize).map_or("", |a| a.name.as_str()).to_owned();
-            let error = Diagnostic::error("E0606", agent.span, format!("the scenario declares no moves of `{name}`"))
-                .hint(format!("for example `moves {name} for 2 s {{ heading from -60 deg to 60 deg by 15 deg  stop }}`"));
+            let error = Diagnostic::error(
+                "E0606",
+                agent.span,
+                format!("the scenario declares no moves of `{name}`"),
+            )
+            .hint(format!(
+                "for example `moves {name} for 2 s {{ heading from -60 deg to 60 deg by 15 deg  stop }}`"
+            ));
             return self.sites[site].elaborator.report(error);
         };
         Ok((Ask::Rank { moves, measure: measured, epsilon, delta, ranking }, unbounded))
@@ -411,7 +478,8 @@ impl<'a> Compiler<'a> {
         site: usize,
     ) {
         let elaborator = &self.sites[site].elaborator;
-        let within = unbounded.then(|| format!("the horizon of {}", elaborator.duration(elaborator.horizon.0)));
+        let within =
+            unbounded.then(|| format!("the horizon of {}", elaborator.duration(elaborator.horizon.0)));
         let index = self.next_index;
         self.next_index += 1;
         self.queries.push(Query { index, name, text, span, settings, ask, within });
@@ -423,7 +491,8 @@ impl<'a> Compiler<'a> {
             for diagnostic in &site.elaborator.diagnostics {
                 // The same place says the same thing once, whatever the parameter values.
                 let known = diagnostics.iter().any(|d| {
-                    d.code == diagnostic.code && d.place.as_ref().map(|p| p.span) == diagnostic.place.as_ref().map(|p| p.span)
+                    d.code == diagnostic.code
+                        && d.place.as_ref().map(|p| p.span) == diagnostic.place.as_ref().map(|p| p.span)
                 });
                 if !known || diagnostic.place.is_none() && !diagnostics.contains(diagnostic) {
                     diagnostics.push(diagnostic.clone());
@@ -439,7 +508,8 @@ impl<'a> Compiler<'a> {
         for site in self.sites {
             let Some(scenario) = site.scenario else { return (None, diagnostics) };
             title.clone_from(&scenario.title);
-            let settings = site.settings.iter().map(|(name, number)| (name.clone(), number.value.to_string())).collect();
+            let settings =
+                site.settings.iter().map(|(name, number)| (name.clone(), number.value.to_string())).collect();
             let elaborator = site.elaborator;
             worlds.push(World {
                 settings,

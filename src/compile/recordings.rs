@@ -39,12 +39,19 @@ impl<'a> Elaborator<'a> {
         match read_eth_biwi(text) {
             Ok(recording) => Ok(recording),
             Err(errors) => {
-                let shown: Vec<String> =
-                    errors.iter().take(SHOWN_LINES).map(|e| format!("line {}: {}", e.line, e.message)).collect();
+                let shown: Vec<String> = errors
+                    .iter()
+                    .take(SHOWN_LINES)
+                    .map(|e| format!("line {}: {}", e.line, e.message))
+                    .collect();
                 let more = errors.len().saturating_sub(SHOWN_LINES);
                 let rest = if more > 0 { format!("; and {more} more") } else { String::new() };
-                let error = Diagnostic::error("E0702", path.span, format!("{} lines of this file cannot be read", errors.len()))
-                    .label(format!("{}{rest}", shown.join("; ")));
+                let error = Diagnostic::error(
+                    "E0702",
+                    path.span,
+                    format!("{} lines of this file cannot be read", errors.len()),
+                )
+                .label(format!("{}{rest}", shown.join("; ")));
                 self.report(error)
             }
         }
@@ -59,7 +66,11 @@ impl<'a> Elaborator<'a> {
         let index = match self.find(&name.name, 0) {
             Some((_, Meaning::Tracks(index))) => index,
             Some((_, meaning)) => {
-                let error = Diagnostic::error("E0206", name.span, format!("expected a recording, `{}` is {}", name.name, meaning.noun()));
+                let error = Diagnostic::error(
+                    "E0206",
+                    name.span,
+                    format!("expected a recording, `{}` is {}", name.name, meaning.noun()),
+                );
                 return self.report(error);
             }
             None => {
@@ -68,25 +79,42 @@ impl<'a> Elaborator<'a> {
                     .filter(|(_, e)| matches!(e.meaning, Meaning::Tracks(_)))
                     .map(|(n, _)| n.to_owned())
                     .collect();
-                let error = unknown("recording", &name.name, name.span, "E0201", recordings.iter().map(String::as_str));
+                let error = unknown(
+                    "recording",
+                    &name.name,
+                    name.span,
+                    "E0201",
+                    recordings.iter().map(String::as_str),
+                );
                 return self.report(error);
             }
         };
-        let (time, only, except) =
-            (time?, only.into_iter().collect::<Lowered<Vec<_>>>()?, except.into_iter().collect::<Lowered<Vec<_>>>()?);
-        let Some(Some(recording)) = self.recordings.get(index) else { return Err(super::elaborator::Reported) };
+        let (time, only, except) = (
+            time?,
+            only.into_iter().collect::<Lowered<Vec<_>>>()?,
+            except.into_iter().collect::<Lowered<Vec<_>>>()?,
+        );
+        let Some(Some(recording)) = self.recordings.get(index) else {
+            return Err(super::elaborator::Reported);
+        };
         let found = recording.at(time.value);
         if found.is_empty() {
             let near = recording.nearest_time(time.value);
             let error = Diagnostic::error("E0703", recorded.at.span, "nobody was recorded at this time")
-                .hint(near.map_or("the recording is empty".to_owned(), |t| format!("the nearest time with people is {t} s")));
+                .hint(near.map_or("the recording is empty".to_owned(), |t| {
+                    format!("the nearest time with people is {t} s")
+                }));
             return self.report(error);
         }
         for (expr, id) in recorded.only.iter().zip(&only).chain(recorded.except.iter().zip(&except)) {
             if !found.iter().any(|o| o.id == *id) {
                 let present: Vec<String> = found.iter().map(|o| o.id.to_string()).collect();
-                let error = Diagnostic::error("E0703", expr.span, format!("person {id} was not recorded at this time"))
-                    .hint(format!("recorded were {}", present.join(", ")));
+                let error = Diagnostic::error(
+                    "E0703",
+                    expr.span,
+                    format!("person {id} was not recorded at this time"),
+                )
+                .hint(format!("recorded were {}", present.join(", ")));
                 return self.report(error);
             }
         }
@@ -95,8 +123,12 @@ impl<'a> Elaborator<'a> {
             .filter(|o| (only.is_empty() || only.contains(&o.id)) && !except.contains(&o.id))
             .collect();
         if !plural && chosen.len() != 1 {
-            let error = Diagnostic::error("E0703", recorded.span, format!("{} people are recorded there, one is needed", chosen.len()))
-                .hint("choose one by `id`, or declare `agents`");
+            let error = Diagnostic::error(
+                "E0703",
+                recorded.span,
+                format!("{} people are recorded there, one is needed", chosen.len()),
+            )
+            .hint("choose one by `id`, or declare `agents`");
             return self.report(error);
         }
         Ok(chosen)

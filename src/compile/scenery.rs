@@ -21,7 +21,10 @@ impl<'a> Elaborator<'a> {
                 SceneItem::Region { name, shape } => {
                     self.shapes.push(None);
                     let id = RegionId(self.shapes.len() as u32 - 1);
-                    self.scene.regions.push(Region { name: name.name.clone(), shape: Shape::rectangle(Vec2::zeros(), Vec2::zeros()) });
+                    self.scene.regions.push(Region {
+                        name: name.name.clone(),
+                        shape: Shape::rectangle(Vec2::zeros(), Vec2::zeros()),
+                    });
                     self.scopes[0].declare(&name.name, name.span, Meaning::Region(id, shape))
                 }
                 SceneItem::Wall { name, .. } | SceneItem::Obstacle { name, .. } => {
@@ -33,7 +36,9 @@ impl<'a> Elaborator<'a> {
                         None => Ok(()),
                     }
                 }
-                SceneItem::Point { name, at } => self.scopes[0].declare(&name.name, name.span, Meaning::Point(at)),
+                SceneItem::Point { name, at } => {
+                    self.scopes[0].declare(&name.name, name.span, Meaning::Point(at))
+                }
                 SceneItem::Import { .. } => Ok(()),
             };
             if let Err(error) = declared {
@@ -47,7 +52,8 @@ impl<'a> Elaborator<'a> {
         for item in items {
             match item {
                 SceneItem::Region { name, .. } => {
-                    if let Some(Meaning::Region(id, _)) = self.scopes[0].get(&name.name).map(|e| e.meaning.clone())
+                    if let Some(Meaning::Region(id, _)) =
+                        self.scopes[0].get(&name.name).map(|e| e.meaning.clone())
                         && let Ok(shape) = self.region_shape(id, name.span)
                     {
                         self.scene.regions[id.0 as usize].shape = shape;
@@ -80,7 +86,11 @@ impl<'a> Elaborator<'a> {
         }
         let name = self.scene.regions[id.0 as usize].name.clone();
         let Some(Meaning::Region(_, written)) = self.scopes[0].get(&name).map(|e| e.meaning.clone()) else {
-            return self.report(Diagnostic::error("E0205", span, format!("the region `{name}` is not known here")));
+            return self.report(Diagnostic::error(
+                "E0205",
+                span,
+                format!("the region `{name}` is not known here"),
+            ));
         };
         if self.expanding.iter().any(|(_, n)| *n == name) {
             return self.report(Diagnostic::error("E0205", span, format!("`{name}` is defined by itself")));
@@ -99,7 +109,11 @@ impl<'a> Elaborator<'a> {
         if corners.windows(2).all(|pair| pair[0] == pair[1]) {
             return self.report(Diagnostic::error("E0401", span, "this wall has no length"));
         }
-        Ok(corners.windows(2).filter(|pair| pair[0] != pair[1]).map(|pair| Segment::new(pair[0], pair[1])).collect())
+        Ok(corners
+            .windows(2)
+            .filter(|pair| pair[0] != pair[1])
+            .map(|pair| Segment::new(pair[0], pair[1]))
+            .collect())
     }
 
     /// A shape as written.
@@ -110,12 +124,19 @@ impl<'a> Elaborator<'a> {
                 let middle = self.point_of(centre, Dimension::LENGTH, locals);
                 let size = self.number_of(radius, Dimension::LENGTH, locals)?;
                 if size.value <= 0.0 {
-                    return self.report(Diagnostic::error("E0401", radius.span, "the radius of a circle must be positive"));
+                    return self.report(Diagnostic::error(
+                        "E0401",
+                        radius.span,
+                        "the radius of a circle must be positive",
+                    ));
                 }
                 Ok(Shape::Circle { centre: middle?, radius: size.value })
             }
             ShapeExpr::Rectangle { a, b, span } => {
-                let corners = (self.point_of(a, Dimension::LENGTH, locals), self.point_of(b, Dimension::LENGTH, locals));
+                let corners = (
+                    self.point_of(a, Dimension::LENGTH, locals),
+                    self.point_of(b, Dimension::LENGTH, locals),
+                );
                 let (a, b) = (corners.0?, corners.1?);
                 if a.x == b.x || a.y == b.y {
                     return self.report(Diagnostic::error("E0401", *span, "this rectangle has no area"));
@@ -123,15 +144,20 @@ impl<'a> Elaborator<'a> {
                 Ok(Shape::rectangle(a.inf(&b), a.sup(&b)))
             }
             ShapeExpr::Polygon { outline, holes, span } => {
-                let mut ring = |this: &mut Self, points: &[Expr]| -> Lowered<Vec<Vec2>> {
-                    let corners: Vec<_> = points.iter().map(|p| this.point_of(p, Dimension::LENGTH, locals)).collect();
+                let ring = |this: &mut Self, points: &[Expr]| -> Lowered<Vec<Vec2>> {
+                    let corners: Vec<_> =
+                        points.iter().map(|p| this.point_of(p, Dimension::LENGTH, locals)).collect();
                     corners.into_iter().collect()
                 };
                 let outline = ring(self, outline)?;
                 let holes: Vec<_> = holes.iter().map(|hole| ring(self, hole)).collect();
                 let polygon = Polygon { outline, holes: holes.into_iter().collect::<Lowered<_>>()? };
                 if polygon.outline.len() < 3 || polygon.holes.iter().any(|hole| hole.len() < 3) {
-                    return self.report(Diagnostic::error("E0401", *span, "a polygon needs at least three corners"));
+                    return self.report(Diagnostic::error(
+                        "E0401",
+                        *span,
+                        "a polygon needs at least three corners",
+                    ));
                 }
                 if !polygon.is_simple() {
                     return self.report(Diagnostic::error("E0401", *span, "the edges of this polygon cross"));
@@ -148,7 +174,11 @@ impl<'a> Elaborator<'a> {
         match self.find(&name.name, 0) {
             Some((_, Meaning::Region(id, _))) => self.region_shape(id, name.span),
             Some((_, meaning)) => {
-                let error = Diagnostic::error("E0206", name.span, format!("expected a region, `{}` is {}", name.name, meaning.noun()));
+                let error = Diagnostic::error(
+                    "E0206",
+                    name.span,
+                    format!("expected a region, `{}` is {}", name.name, meaning.noun()),
+                );
                 self.report(error)
             }
             None => {
@@ -173,7 +203,7 @@ impl<'a> Elaborator<'a> {
                 Some(Ok(false)) => continue,
                 Some(Ok(true)) | None => taken += 1,
             }
-            let obstacle = match feature.geometry {
+            let obstacle = match feature.shape {
                 Geometry::Polygon(polygon) => Obstacle::Solid(Shape::Polygon(polygon)),
                 Geometry::Line(points) => {
                     Obstacle::Wall(points.windows(2).map(|pair| Segment::new(pair[0], pair[1])).collect())
@@ -183,8 +213,12 @@ impl<'a> Elaborator<'a> {
             self.scene.barriers.push(Barrier { name: feature.name, obstacle });
         }
         if taken == 0 {
-            let warning = Diagnostic::warning("W0401", path.span, format!("nothing of this file was taken: it has {total} features"))
-                .hint("the filter after `where` compares properties of features");
+            let warning = Diagnostic::warning(
+                "W0401",
+                path.span,
+                format!("nothing of this file was taken: it has {total} features"),
+            )
+            .hint("the filter after `where` compares properties of features");
             self.note(warning);
         }
     }
@@ -201,7 +235,12 @@ impl<'a> Elaborator<'a> {
         let read = if wkt { read_wkt(text) } else { read_geojson(text) };
         match read {
             Ok(features) => Ok(features),
-            Err(error) => self.report(Diagnostic::error("E0704", path.span, format!("this geometry cannot be read: {error}"))),
+            Err(errors) => {
+                let shown: Vec<String> = errors.iter().take(5).map(ToString::to_string).collect();
+                let error = Diagnostic::error("E0704", path.span, "the geometry of this file cannot be read")
+                    .label(shown.join("; "));
+                self.report(error)
+            }
         }
     }
 }

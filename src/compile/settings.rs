@@ -47,8 +47,12 @@ impl<'a> Elaborator<'a> {
         match self.scopes[0].get(name).map(|e| e.meaning.clone()) {
             Some(Meaning::Param { value, range }) => Ok((value, range)),
             Some(meaning) => {
-                let error = Diagnostic::error("E0210", span, format!("`{name}` is {} and cannot be set", meaning.noun()))
-                    .hint("declare it with `param`");
+                let error = Diagnostic::error(
+                    "E0210",
+                    span,
+                    format!("`{name}` is {} and cannot be set", meaning.noun()),
+                )
+                .hint("declare it with `param`");
                 self.report(error)
             }
             None => {
@@ -95,7 +99,11 @@ impl<'a> Elaborator<'a> {
             let (low, high) = (ends.0?, ends.1?);
             if number.value < low.value || number.value > high.value {
                 let shown = [low, high].map(|n| self.shown(default, n));
-                let error = Diagnostic::error("E0405", value.span, format!("`{name}` lies between {} and {}", shown[0], shown[1]));
+                let error = Diagnostic::error(
+                    "E0405",
+                    value.span,
+                    format!("`{name}` lies between {} and {}", shown[0], shown[1]),
+                );
                 return self.report(error);
             }
         }
@@ -108,7 +116,8 @@ impl<'a> Elaborator<'a> {
         match &setting.value {
             SettingValue::One(value) => Ok(vec![self.setting(&setting.name, value, &locals)?]),
             SettingValue::Sweep(from, to, by) => {
-                let ends = (self.setting(&setting.name, from, &locals), self.setting(&setting.name, to, &locals));
+                let ends =
+                    (self.setting(&setting.name, from, &locals), self.setting(&setting.name, to, &locals));
                 let (first, last) = (ends.0?, ends.1?);
                 let (default, _) = self.param(&setting.name, setting.span)?;
                 let step = self.number(by, &locals)?;
@@ -120,12 +129,20 @@ impl<'a> Elaborator<'a> {
                     _ => Number { dimension: first.dimension, ..step },
                 };
                 if step.value <= 0.0 || last.value < first.value {
-                    let error = Diagnostic::error("E0405", setting.span, "a sweep goes up from its first to its last value by a positive step");
+                    let error = Diagnostic::error(
+                        "E0405",
+                        setting.span,
+                        "a sweep goes up from its first to its last value by a positive step",
+                    );
                     return self.report(error);
                 }
                 let count = ((last.value - first.value) / step.value + 1e-9).floor();
                 if count >= MOST_POINTS as f64 {
-                    return self.report(Diagnostic::error("E0405", setting.span, format!("a sweep has at most {MOST_POINTS} points")));
+                    return self.report(Diagnostic::error(
+                        "E0405",
+                        setting.span,
+                        format!("a sweep has at most {MOST_POINTS} points"),
+                    ));
                 }
                 let mut points = vec![first];
                 for _ in 0..count as usize {

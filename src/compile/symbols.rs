@@ -134,4 +134,3 @@ pub(super) fn unknown<'n>(
         None => error,
     }
 }
-

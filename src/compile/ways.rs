@@ -30,8 +30,12 @@ impl<'a> Elaborator<'a> {
                             let law = self.law(value, Dimension::TIME, &Locals::default());
                             match law {
                                 Ok(law) if law.bounds().0 < 0.0 => {
-                                    let error = Diagnostic::error("E0405", value_span(value), "a time to wait cannot be negative")
-                                        .hint("truncate the distribution: `… in 0 s .. 20 s`");
+                                    let error = Diagnostic::error(
+                                        "E0405",
+                                        value_span(value),
+                                        "a time to wait cannot be negative",
+                                    )
+                                    .hint("truncate the distribution: `… in 0 s .. 20 s`");
                                     self.report(error)
                                 }
                                 law => law.map(Leg::Wait),
@@ -58,7 +62,9 @@ impl<'a> Elaborator<'a> {
     fn goal(&mut self, expr: &Expr) -> Lowered<Goal> {
         match self.lower(expr, &Locals::default())? {
             Typed::Region(id) => Ok(Goal::Region(id)),
-            Typed::Point(x, y) if x.dimension == Dimension::LENGTH => Ok(Goal::Point(Vec2::new(x.value, y.value))),
+            Typed::Point(x, y) if x.dimension == Dimension::LENGTH => {
+                Ok(Goal::Point(Vec2::new(x.value, y.value)))
+            }
             Typed::Point(x, _) => self.wrong_dimension(expr.span, Dimension::LENGTH, x.dimension),
             found => self.mismatch(expr.span, "a region or a point to go to", &found),
         }
@@ -75,16 +81,24 @@ impl<'a> Elaborator<'a> {
             failed |= self.option(option, &mut options).is_err();
         }
         let typed = typed?;
-        let Who::Agent(agent) = self.as_agent(typed, decl.agent.span)? else { return Err(super::elaborator::Reported) };
+        let Who::Agent(agent) = self.as_agent(typed, decl.agent.span)? else {
+            return Err(super::elaborator::Reported);
+        };
         let Some(duration) = duration? else {
-            return self.report(Diagnostic::error("E0406", decl.duration.span, "a move holds for a finite time"));
+            return self.report(Diagnostic::error(
+                "E0406",
+                decl.duration.span,
+                "a move holds for a finite time",
+            ));
         };
         if failed {
             return Err(super::elaborator::Reported);
         }
         if options.is_empty() {
-            return self.report(Diagnostic::error("E0406", decl.span, "there is no option to choose from")
-                .hint("for example `heading from -60 deg to 60 deg by 15 deg` and `stop`"));
+            return self.report(
+                Diagnostic::error("E0406", decl.span, "there is no option to choose from")
+                    .hint("for example `heading from -60 deg to 60 deg by 15 deg` and `stop`"),
+            );
         }
         if people.agents.get(agent.0 as usize).is_none() {
             return Err(super::elaborator::Reported);
@@ -114,12 +128,20 @@ impl<'a> Elaborator<'a> {
                 );
                 let (from, to, by) = (ends.0?.value, ends.1?.value, ends.2?.value);
                 if by <= 0.0 || to < from {
-                    let error = Diagnostic::error("E0406", *span, "headings go up from the first to the last by a positive angle");
+                    let error = Diagnostic::error(
+                        "E0406",
+                        *span,
+                        "headings go up from the first to the last by a positive angle",
+                    );
                     return self.report(error);
                 }
                 let count = ((to - from) / by + 1e-9).floor() as usize + 1;
                 if count + options.len() > MOST_OPTIONS {
-                    return self.report(Diagnostic::error("E0406", *span, format!("these are more than {MOST_OPTIONS} options")));
+                    return self.report(Diagnostic::error(
+                        "E0406",
+                        *span,
+                        format!("these are more than {MOST_OPTIONS} options"),
+                    ));
                 }
                 for k in 0..count {
                     let angle = from + by * k as f64;

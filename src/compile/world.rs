@@ -51,8 +51,9 @@ impl<'a> Elaborator<'a> {
                 self.note(error);
             }
             if super::dimension::unit(&name.name).is_some() {
-                let warning = Diagnostic::warning("W0101", name.span, format!("`{}` is also a unit", name.name))
-                    .hint("after a number it is read as the unit; another name avoids surprises");
+                let warning =
+                    Diagnostic::warning("W0101", name.span, format!("`{}` is also a unit", name.name))
+                        .hint("after a number it is read as the unit; another name avoids surprises");
                 self.note(warning);
             }
         }
@@ -69,8 +70,12 @@ impl<'a> Elaborator<'a> {
                     PropertyItem::Family { .. } | PropertyItem::Query(_) => continue,
                 };
                 if let Some(first) = self.scopes[0].get(&name.name) {
-                    let error = Diagnostic::error("E0202", name.span, format!("`{}` is already a name of the scenario", name.name))
-                        .related(first.span, "declared here");
+                    let error = Diagnostic::error(
+                        "E0202",
+                        name.span,
+                        format!("`{}` is already a name of the scenario", name.name),
+                    )
+                    .related(first.span, "declared here");
                     self.note(error);
                 } else if let Err(error) = scope.declare(&name.name, name.span, meaning) {
                     self.note(error);
@@ -108,7 +113,11 @@ impl<'a> Elaborator<'a> {
                 && let Ok(one) = self.moves(decl, &people)
             {
                 if moves.iter().any(|m| m.agent == one.agent) {
-                    let error = Diagnostic::error("E0406", decl.agent.span, format!("the moves of `{}` are declared twice", decl.agent.name));
+                    let error = Diagnostic::error(
+                        "E0406",
+                        decl.agent.span,
+                        format!("the moves of `{}` are declared twice", decl.agent.name),
+                    );
                     self.note(error);
                 }
                 moves.push(one);
@@ -119,7 +128,10 @@ impl<'a> Elaborator<'a> {
         if self.failed() {
             return Err(Reported);
         }
-        let title = file.items.iter().find_map(|item| if let Item::Title(text) = item { Some(text.value.clone()) } else { None });
+        let title = file
+            .items
+            .iter()
+            .find_map(|item| if let Item::Title(text) = item { Some(text.value.clone()) } else { None });
         Ok(Scenario {
             title: title.unwrap_or_default(),
             clock: self.clock,
@@ -142,11 +154,17 @@ impl<'a> Elaborator<'a> {
                 Item::Param { name, value, range } => {
                     let declared = self.lower_declared(&name.name, value.span);
                     if let (Some((low, high)), Ok(super::typed::Typed::Number(number))) = (range, declared)
-                        && let (Ok(low), Ok(high)) =
-                            (self.number_of(low, number.dimension, &locals), self.number_of(high, number.dimension, &locals))
+                        && let (Ok(low), Ok(high)) = (
+                            self.number_of(low, number.dimension, &locals),
+                            self.number_of(high, number.dimension, &locals),
+                        )
                         && (number.value < low.value || number.value > high.value)
                     {
-                        self.note(Diagnostic::error("E0405", value.span, format!("the default of `{}` lies outside its range", name.name)));
+                        self.note(Diagnostic::error(
+                            "E0405",
+                            value.span,
+                            format!("the default of `{}` lies outside its range", name.name),
+                        ));
                     }
                 }
                 Item::Kind(decl) => {
@@ -165,7 +183,8 @@ impl<'a> Elaborator<'a> {
     }
 
     fn lower_declared(&mut self, name: &str, span: Span) -> Lowered<super::typed::Typed> {
-        let expr = crate::syntax::ast::Expr { kind: crate::syntax::ast::ExprKind::Name(name.to_owned()), span };
+        let expr =
+            crate::syntax::ast::Expr { kind: crate::syntax::ast::ExprKind::Name(name.to_owned()), span };
         self.lower(&expr, &Locals::of(0))
     }
 
@@ -178,14 +197,23 @@ impl<'a> Elaborator<'a> {
                 "horizon" => 0,
                 "step" => 1,
                 _ => {
-                    let error = super::symbols::unknown("setting", &name.name, name.span, "E0207", ["horizon", "step"].into_iter());
-                    self.note(error.hint("a scenario sets `horizon` and `step`; constants start with `const`"));
+                    let error = super::symbols::unknown(
+                        "setting",
+                        &name.name,
+                        name.span,
+                        "E0207",
+                        ["horizon", "step"].into_iter(),
+                    );
+                    self.note(
+                        error.hint("a scenario sets `horizon` and `step`; constants start with `const`"),
+                    );
                     failed = true;
                     continue;
                 }
             };
             if let Some((_, first)) = found[slot] {
-                let error = Diagnostic::error("E0202", name.span, format!("`{}` is set twice", name.name)).related(first, "first set here");
+                let error = Diagnostic::error("E0202", name.span, format!("`{}` is set twice", name.name))
+                    .related(first, "first set here");
                 self.note(error);
                 failed = true;
             }
@@ -196,7 +224,8 @@ impl<'a> Elaborator<'a> {
         }
         let [horizon, step] = found;
         let mut missing = |this: &mut Self, what: &str, example: &str| {
-            let error = Diagnostic::placeless("E0505", format!("the scenario has no {what}")).hint(format!("write `{what} = {example}`"));
+            let error = Diagnostic::placeless("E0505", format!("the scenario has no {what}"))
+                .hint(format!("write `{what} = {example}`"));
             this.note(error);
             failed = true;
         };
@@ -209,17 +238,29 @@ impl<'a> Elaborator<'a> {
         let (Some((horizon, _)), Some((step, _))) = (horizon, step) else { return Err(Reported) };
         let length = self.number_of(step, Dimension::TIME, &Locals::of(0))?;
         let Some(exact) = length.exact.filter(|e| !e.is_zero() && !e.is_negative()) else {
-            return self.report(Diagnostic::error("E0505", step.span, "the step must be a positive, exact time"));
+            return self.report(Diagnostic::error(
+                "E0505",
+                step.span,
+                "the step must be a positive, exact time",
+            ));
         };
         self.clock = Clock::Stepped(exact);
         let end = self.time(horizon, &Locals::of(0))?;
         match end {
-            Some(Tick(0)) => self.report(Diagnostic::error("E0505", horizon.span, "the horizon must be later than the start")),
+            Some(Tick(0)) => self.report(Diagnostic::error(
+                "E0505",
+                horizon.span,
+                "the horizon must be later than the start",
+            )),
             Some(tick) if tick.0 <= MOST_TICKS => {
                 self.horizon = tick;
                 if failed { Err(Reported) } else { Ok(()) }
             }
-            _ => self.report(Diagnostic::error("E0505", horizon.span, format!("a trial has at most {MOST_TICKS} steps"))),
+            _ => self.report(Diagnostic::error(
+                "E0505",
+                horizon.span,
+                format!("a trial has at most {MOST_TICKS} steps"),
+            )),
         }
     }
 }

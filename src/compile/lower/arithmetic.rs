@@ -16,7 +16,9 @@ impl Elaborator<'_> {
         match self.lower(operand, locals)? {
             Typed::Number(number) => Ok(Typed::Number(number.negated())),
             Typed::Point(x, y) => Ok(Typed::Point(x.negated(), y.negated())),
-            Typed::Num(num, dimension) => Ok(Typed::Num(Num::Apply(Function::Negate, Box::new(num)), dimension)),
+            Typed::Num(num, dimension) => {
+                Ok(Typed::Num(Num::Apply(Function::Negate, Box::new(num)), dimension))
+            }
             Typed::Vector(x, y, dimension) => {
                 let negate = |n| Num::Apply(Function::Negate, Box::new(n));
                 Ok(Typed::Vector(negate(x), negate(y), dimension))
@@ -67,7 +69,14 @@ impl Elaborator<'_> {
     }
 
     /// The dimension of a sum, difference, product or quotient.
-    fn joined(&mut self, span: Span, op: BinaryOp, a: Dimension, b: Dimension, right: Span) -> Lowered<Dimension> {
+    fn joined(
+        &mut self,
+        span: Span,
+        op: BinaryOp,
+        a: Dimension,
+        b: Dimension,
+        right: Span,
+    ) -> Lowered<Dimension> {
         let joined = match op {
             BinaryOp::Plus | BinaryOp::Minus if a != b => return self.wrong_dimension(right, a, b),
             BinaryOp::Plus | BinaryOp::Minus => Some(a),
@@ -91,7 +100,10 @@ impl Elaborator<'_> {
             BinaryOp::Times => a.0.times(b.0),
             _ => a.0.over(b.0),
         };
-        value.map_or_else(|| self.report(Diagnostic::error("E0302", span, "the unit of this is out of range")), Ok)
+        value.map_or_else(
+            || self.report(Diagnostic::error("E0302", span, "the unit of this is out of range")),
+            Ok,
+        )
     }
 
     /// Sums of vectors, and products with numbers.
@@ -116,8 +128,12 @@ impl Elaborator<'_> {
             }
             BinaryOp::Times if !is_vector(&a.0) => self.lower_vector(op, b, a),
             _ => {
-                let error = Diagnostic::error("E0305", a.1.to(b.1), "vectors are added, subtracted, and multiplied by numbers")
-                    .hint("for the length of a vector write `distance(a, b)` or `speed(a)`");
+                let error = Diagnostic::error(
+                    "E0305",
+                    a.1.to(b.1),
+                    "vectors are added, subtracted, and multiplied by numbers",
+                )
+                .hint("for the length of a vector write `distance(a, b)` or `speed(a)`");
                 self.report(error)
             }
         }
@@ -125,8 +141,9 @@ impl Elaborator<'_> {
 
     fn lower_power(&mut self, span: Span, left: &Expr, right: &Expr, locals: &Locals) -> Lowered<Typed> {
         if matches!(&left.kind, ExprKind::Quantity(q) if q.unit.is_some()) {
-            let warning = Diagnostic::warning("W0301", left.span, "the power applies to the number and its unit")
-                .hint("in `2 m ^ 2` the unit is squared too: 4 m^2; write `2 m^2` for two square metres");
+            let warning =
+                Diagnostic::warning("W0301", left.span, "the power applies to the number and its unit")
+                    .hint("in `2 m ^ 2` the unit is squared too: 4 m^2; write `2 m^2` for two square metres");
             self.note(warning);
         }
         let exponent = self.number_of(right, Dimension::NONE, locals)?;
@@ -141,9 +158,11 @@ impl Elaborator<'_> {
                     Some(d) => Ok(d),
                     None => this.report(Diagnostic::error("E0302", span, "the unit of this is out of range")),
                 },
-                None => this.report(
-                    Diagnostic::error("E0303", right.span, format!("{} can only be raised to a whole power", describe(dimension)))
-                ),
+                None => this.report(Diagnostic::error(
+                    "E0303",
+                    right.span,
+                    format!("{} can only be raised to a whole power", describe(dimension)),
+                )),
             }
         };
         match base {
@@ -151,7 +170,8 @@ impl Elaborator<'_> {
                 let dimension = power(self, base.dimension)?;
                 if let Some(n) = whole {
                     let one = Some(Number::whole(1));
-                    let product = (0..n.abs()).fold(one, |p, _| p.and_then(|p| if n > 0 { p.times(base) } else { p.over(base) }));
+                    let product = (0..n.abs())
+                        .fold(one, |p, _| p.and_then(|p| if n > 0 { p.times(base) } else { p.over(base) }));
                     if let Some(product) = product {
                         return Ok(Typed::Number(product));
                     }

@@ -14,15 +14,60 @@ use crate::syntax::diagnostic::Diagnostic;
 
 /// Built-in functions by name, for hints.
 pub(in crate::compile) const FUNCTIONS: [&str; 39] = [
-    "abs", "area", "atan2", "ceil", "centroid", "clearance", "contact", "cos", "count", "density", "distance",
-    "driving_speed", "exp", "floor", "heading", "if", "ln", "mass", "max", "min", "members", "modulo", "norm", "others",
-    "position", "radius", "round", "sin", "speed", "spread", "sqrt", "sum", "mean", "time_to_collision", "time_until", "travelled",
-    "velocity", "x", "y",
+    "abs",
+    "area",
+    "atan2",
+    "ceil",
+    "centroid",
+    "clearance",
+    "contact",
+    "cos",
+    "count",
+    "density",
+    "distance",
+    "driving_speed",
+    "exp",
+    "floor",
+    "heading",
+    "if",
+    "ln",
+    "mass",
+    "max",
+    "min",
+    "members",
+    "modulo",
+    "norm",
+    "others",
+    "position",
+    "radius",
+    "round",
+    "sin",
+    "speed",
+    "spread",
+    "sqrt",
+    "sum",
+    "mean",
+    "time_to_collision",
+    "time_until",
+    "travelled",
+    "velocity",
+    "x",
+    "y",
 ];
 
 /// Distributions: they are values of fields, not of expressions.
 pub(in crate::compile) const DISTRIBUTIONS: [&str; 11] = [
-    "normal", "lognormal", "uniform", "uniform_int", "exponential", "poisson", "bernoulli", "beta", "gamma", "weibull", "choice",
+    "normal",
+    "lognormal",
+    "uniform",
+    "uniform_int",
+    "exponential",
+    "poisson",
+    "bernoulli",
+    "beta",
+    "gamma",
+    "weibull",
+    "choice",
 ];
 
 impl Elaborator<'_> {
@@ -44,13 +89,21 @@ impl Elaborator<'_> {
             "abs" | "sqrt" | "floor" | "ceil" | "round" | "exp" | "ln" | "sin" | "cos" => {
                 self.of_number(expr, function, arguments, locals)
             }
-            "distance" | "time_to_collision" | "atan2" | "modulo" => self.of_two(expr, function, arguments, locals),
+            "distance" | "time_to_collision" | "atan2" | "modulo" => {
+                self.of_two(expr, function, arguments, locals)
+            }
             "if" => self.choice(expr, function, arguments, locals),
             "contact" => self.contact(expr, function, arguments, locals),
             "time_until" => {
-                let [formula] = arguments else { return self.arity(function, expr.span, "1 argument", arguments.len()) };
+                let [formula] = arguments else {
+                    return self.arity(function, expr.span, "1 argument", arguments.len());
+                };
                 if !self.temporal || locals.running > 0 {
-                    let error = Diagnostic::error("E0504", expr.span, "`time_until` looks at a whole trace and stands only in metrics");
+                    let error = Diagnostic::error(
+                        "E0504",
+                        expr.span,
+                        "`time_until` looks at a whole trace and stands only in metrics",
+                    );
                     return self.report(error);
                 }
                 let typed = self.lower(formula, locals)?;
@@ -59,12 +112,18 @@ impl Elaborator<'_> {
                 Ok(Typed::Term(self.term(Term::TimeUntil(node)), dimension))
             }
             name if DISTRIBUTIONS.contains(&name) => {
-                let error = Diagnostic::error("E0404", expr.span, format!("`{name}` is a distribution and can only be the value of a field"))
-                    .hint("give it to a parameter of a kind or an agent, which draws it once per trial");
+                let error = Diagnostic::error(
+                    "E0404",
+                    expr.span,
+                    format!("`{name}` is a distribution and can only be the value of a field"),
+                )
+                .hint("give it to a parameter of a kind or an agent, which draws it once per trial");
                 self.report(error)
             }
             name if FUNCTIONS.contains(&name) => {
-                let [argument] = arguments else { return self.arity(function, expr.span, "1 argument", arguments.len()) };
+                let [argument] = arguments else {
+                    return self.arity(function, expr.span, "1 argument", arguments.len());
+                };
                 self.of_one(function, argument, locals)
             }
             name => {
@@ -108,7 +167,9 @@ impl Elaborator<'_> {
             "mass" => field(Field::Mass, Dimension::MASS),
             "driving_speed" => field(Field::DrivingSpeed, Dimension::SPEED),
             "travelled" => field(Field::Travelled, Dimension::LENGTH),
-            "clearance" => return Ok(Typed::Num(Num::Clearance(self.as_agent(typed, span)?), Dimension::LENGTH)),
+            "clearance" => {
+                return Ok(Typed::Num(Num::Clearance(self.as_agent(typed, span)?), Dimension::LENGTH));
+            }
             "position" => {
                 let (x, y, dimension) = match typed {
                     Typed::Agents { set, particle: false } => {
@@ -154,7 +215,10 @@ impl Elaborator<'_> {
             }
             "others" => {
                 let who = self.as_agent(typed, span)?;
-                return Ok(Typed::Agents { set: Set { members: self.everyone(), except: Some(who) }, particle: false });
+                return Ok(Typed::Agents {
+                    set: Set { members: self.everyone(), except: Some(who) },
+                    particle: false,
+                });
             }
             "area" => return self.area(typed, span).map(Typed::Number),
             "density" => {
@@ -162,12 +226,17 @@ impl Elaborator<'_> {
                 let area = self.area(Typed::Region(region), span)?;
                 let everyone = Set { members: self.everyone(), except: None };
                 let inside = Num::Count(everyone, Box::new(Bool::In(Who::Running(locals.running), region)));
-                let density = Num::Combine(Arithmetic::Divide, Box::new(inside), Box::new(Num::Constant(area.value)));
+                let density =
+                    Num::Combine(Arithmetic::Divide, Box::new(inside), Box::new(Num::Constant(area.value)));
                 return Ok(Typed::Num(density, Dimension::DENSITY));
             }
             name => {
-                let error = Diagnostic::error("E0305", function.span, format!("`{name}` joins values over a set or over time"))
-                    .hint(format!("write `{name}(… for a in crowd)` or `{name}<=10 s (…)`"));
+                let error = Diagnostic::error(
+                    "E0305",
+                    function.span,
+                    format!("`{name}` joins values over a set or over time"),
+                )
+                .hint(format!("write `{name}(… for a in crowd)` or `{name}<=10 s (…)`"));
                 return self.report(error);
             }
         };
@@ -184,8 +253,16 @@ impl Elaborator<'_> {
         }
     }
 
-    fn of_number(&mut self, expr: &Expr, function: &Ident, arguments: &[Expr], locals: &Locals) -> Lowered<Typed> {
-        let [argument] = arguments else { return self.arity(function, expr.span, "1 argument", arguments.len()) };
+    fn of_number(
+        &mut self,
+        expr: &Expr,
+        function: &Ident,
+        arguments: &[Expr],
+        locals: &Locals,
+    ) -> Lowered<Typed> {
+        let [argument] = arguments else {
+            return self.arity(function, expr.span, "1 argument", arguments.len());
+        };
         let typed = self.lower(argument, locals)?;
         if let (Typed::Term(term, dimension), "abs") = (&typed, function.name.as_str()) {
             let term = self.term(Term::Abs(*term));
@@ -207,7 +284,11 @@ impl Elaborator<'_> {
             "sqrt" => match given.root() {
                 Some(root) => root,
                 None => {
-                    let error = Diagnostic::error("E0303", argument.span, format!("the square root of `{given}` has no unit"));
+                    let error = Diagnostic::error(
+                        "E0303",
+                        argument.span,
+                        format!("the square root of `{given}` has no unit"),
+                    );
                     return self.report(error);
                 }
             },
@@ -229,7 +310,11 @@ impl Elaborator<'_> {
             Some(number) => {
                 let value = compute(number.value);
                 if !value.is_finite() {
-                    let error = Diagnostic::error("E0405", argument.span, format!("`{}` of this is not a finite number", function.name));
+                    let error = Diagnostic::error(
+                        "E0405",
+                        argument.span,
+                        format!("`{}` of this is not a finite number", function.name),
+                    );
                     return self.report(error);
                 }
                 let whole = value.fract() == 0.0 && value.abs() < 9e15;
@@ -240,10 +325,23 @@ impl Elaborator<'_> {
         }
     }
 
-    fn extremum(&mut self, expr: &Expr, function: &Ident, arguments: &[Expr], locals: &Locals) -> Lowered<Typed> {
+    fn extremum(
+        &mut self,
+        expr: &Expr,
+        function: &Ident,
+        arguments: &[Expr],
+        locals: &Locals,
+    ) -> Lowered<Typed> {
         if arguments.len() < 2 {
-            let error = Diagnostic::error("E0204", expr.span, format!("`{}` joins at least two values", function.name))
-                .hint(format!("over a set write `{0}(… for a in crowd)`, over time `{0}<=10 s (…)`", function.name));
+            let error = Diagnostic::error(
+                "E0204",
+                expr.span,
+                format!("`{}` joins at least two values", function.name),
+            )
+            .hint(format!(
+                "over a set write `{0}(… for a in crowd)`, over time `{0}<=10 s (…)`",
+                function.name
+            ));
             return self.report(error);
         }
         let smallest = function.name == "min";
@@ -289,8 +387,16 @@ impl Elaborator<'_> {
         joined.map(|(typed, _)| typed).ok_or(super::super::elaborator::Reported)
     }
 
-    fn of_two(&mut self, expr: &Expr, function: &Ident, arguments: &[Expr], locals: &Locals) -> Lowered<Typed> {
-        let [left, right] = arguments else { return self.arity(function, expr.span, "2 arguments", arguments.len()) };
+    fn of_two(
+        &mut self,
+        expr: &Expr,
+        function: &Ident,
+        arguments: &[Expr],
+        locals: &Locals,
+    ) -> Lowered<Typed> {
+        let [left, right] = arguments else {
+            return self.arity(function, expr.span, "2 arguments", arguments.len());
+        };
         let sides = (self.lower(left, locals), self.lower(right, locals));
         let (a, b) = (sides.0?, sides.1?);
         match function.name.as_str() {
@@ -298,7 +404,11 @@ impl Elaborator<'_> {
                 let (a, b) = (self.as_place(a, left.span)?, self.as_place(b, right.span)?);
                 let extended = |p: &Place| matches!(p, Place::Region(_) | Place::Barrier(_));
                 if extended(&a) && extended(&b) {
-                    let error = Diagnostic::error("E0305", expr.span, "one side of a distance must be an agent or a point");
+                    let error = Diagnostic::error(
+                        "E0305",
+                        expr.span,
+                        "one side of a distance must be an agent or a point",
+                    );
                     return self.report(error);
                 }
                 Ok(Typed::Num(Num::Distance(a, b), Dimension::LENGTH))
@@ -323,7 +433,13 @@ impl Elaborator<'_> {
         }
     }
 
-    fn contact(&mut self, expr: &Expr, function: &Ident, arguments: &[Expr], locals: &Locals) -> Lowered<Typed> {
+    fn contact(
+        &mut self,
+        expr: &Expr,
+        function: &Ident,
+        arguments: &[Expr],
+        locals: &Locals,
+    ) -> Lowered<Typed> {
         let mut agents = Vec::new();
         for argument in arguments {
             let typed = self.lower(argument, locals)?;
@@ -336,8 +452,16 @@ impl Elaborator<'_> {
         }
     }
 
-    fn choice(&mut self, expr: &Expr, function: &Ident, arguments: &[Expr], locals: &Locals) -> Lowered<Typed> {
-        let [condition, yes, no] = arguments else { return self.arity(function, expr.span, "3 arguments", arguments.len()) };
+    fn choice(
+        &mut self,
+        expr: &Expr,
+        function: &Ident,
+        arguments: &[Expr],
+        locals: &Locals,
+    ) -> Lowered<Typed> {
+        let [condition, yes, no] = arguments else {
+            return self.arity(function, expr.span, "3 arguments", arguments.len());
+        };
         let typed = self.lower(condition, locals)?;
         let truth = self.as_truth(typed, condition.span)?;
         let sides = (self.lower(yes, locals), self.lower(no, locals));

@@ -38,7 +38,13 @@ impl Elaborator<'_> {
         }
     }
 
-    fn connect(&mut self, op: BinaryOp, a: (Typed, Span), b: (Typed, Span), locals: &Locals) -> Lowered<Typed> {
+    fn connect(
+        &mut self,
+        op: BinaryOp,
+        a: (Typed, Span),
+        b: (Typed, Span),
+        locals: &Locals,
+    ) -> Lowered<Typed> {
         // An implication of a formula stays visible to the monitor, which counts how often it was triggered.
         let monitored = self.temporal && locals.running == 0 && op == BinaryOp::Implies;
         let states = matches!((&a.0, &b.0), (Typed::Truth(_), Typed::Truth(_))) && !monitored;
@@ -69,7 +75,13 @@ impl Elaborator<'_> {
         Ok(Typed::Formula(self.node(node)))
     }
 
-    fn lower_comparison(&mut self, op: BinaryOp, left: &Expr, right: &Expr, locals: &Locals) -> Lowered<Typed> {
+    fn lower_comparison(
+        &mut self,
+        op: BinaryOp,
+        left: &Expr,
+        right: &Expr,
+        locals: &Locals,
+    ) -> Lowered<Typed> {
         let sides = (self.lower(left, locals), self.lower(right, locals));
         let (a, b) = (sides.0?, sides.1?);
         let a = if matches!(a, Typed::Infinity) { infinite(&b) } else { a };

@@ -45,8 +45,9 @@ impl Elaborator<'_> {
             ExprKind::Text(text) => Ok(Typed::Text(text.clone())),
             ExprKind::Name(name) => self.lower_name(name, expr.span, locals),
             ExprKind::Member(..) => {
-                let error = Diagnostic::error("E0201", expr.span, "there is no process to read a variable of")
-                    .hint("numbers of agents are functions: `speed(user)`");
+                let error =
+                    Diagnostic::error("E0201", expr.span, "there is no process to read a variable of")
+                        .hint("numbers of agents are functions: `speed(user)`");
                 self.report(error)
             }
             ExprKind::Index(base, index) => self.lower_index(base, index, locals),
@@ -58,7 +59,9 @@ impl Elaborator<'_> {
             ExprKind::Quantified { quantifier, variable, set, body } => {
                 self.lower_quantified(expr.span, *quantifier, variable, set, body, locals)
             }
-            ExprKind::Temporal(op, bound, body) => self.lower_temporal(expr.span, *op, bound.as_ref(), body, locals),
+            ExprKind::Temporal(op, bound, body) => {
+                self.lower_temporal(expr.span, *op, bound.as_ref(), body, locals)
+            }
             ExprKind::TemporalPair(op, bound, left, right) => {
                 self.lower_temporal_pair(expr.span, *op, bound.as_ref(), left, right, locals)
             }
@@ -66,7 +69,11 @@ impl Elaborator<'_> {
                 self.lower_window(expr.span, *aggregate, bound, body, locals)
             }
             ExprKind::At(..) => {
-                let error = Diagnostic::error("E0504", expr.span, "`at` stands only directly inside `E(…)` and `Q(…)`");
+                let error = Diagnostic::error(
+                    "E0504",
+                    expr.span,
+                    "`at` stands only directly inside `E(…)` and `Q(…)`",
+                );
                 self.report(error)
             }
         }
@@ -87,17 +94,25 @@ impl Elaborator<'_> {
             None => None,
         };
         let metre = dimension::unit("m");
-        let mut fixed = |this: &mut Self, typed: &Typed, span: Span| -> Lowered<Option<Number>> {
+        let fixed = |this: &mut Self, typed: &Typed, span: Span| -> Lowered<Option<Number>> {
             let Typed::Number(number) = typed else { return Ok(None) };
             match (scale, number.dimension.is_none()) {
                 // `(1, 2) m/s`: the unit belongs to both coordinates.
-                (Some(unit), true) => Ok(number.times(Number::literal(crate::base::decimal::Decimal::ONE, &unit))),
+                (Some(unit), true) => {
+                    Ok(number.times(Number::literal(crate::base::decimal::Decimal::ONE, &unit)))
+                }
                 (Some(_), false) => this.report(
-                    Diagnostic::error("E0303", span, "this coordinate has a unit of its own beside that of the point")
-                        .hint("write the unit once, after the parenthesis or in each coordinate"),
+                    Diagnostic::error(
+                        "E0303",
+                        span,
+                        "this coordinate has a unit of its own beside that of the point",
+                    )
+                    .hint("write the unit once, after the parenthesis or in each coordinate"),
                 ),
                 // A point without a unit is in metres.
-                (None, true) => Ok(metre.map(|m| Number::literal(crate::base::decimal::Decimal::ONE, &m)).and_then(|m| number.times(m))),
+                (None, true) => Ok(metre
+                    .map(|m| Number::literal(crate::base::decimal::Decimal::ONE, &m))
+                    .and_then(|m| number.times(m))),
                 (None, false) => Ok(Some(*number)),
             }
         };
@@ -123,7 +138,11 @@ impl Elaborator<'_> {
             Typed::Number(number) => Ok((Num::Constant(number.value), number.dimension)),
             Typed::Num(num, dimension) => Ok((num, dimension)),
             Typed::Term(..) => {
-                let error = Diagnostic::error("E0504", span, "a number of one state is needed here, not one of a stretch of time");
+                let error = Diagnostic::error(
+                    "E0504",
+                    span,
+                    "a number of one state is needed here, not one of a stretch of time",
+                );
                 self.report(error)
             }
             found => self.mismatch(span, "a number", &found),
@@ -155,7 +174,11 @@ impl Elaborator<'_> {
         match typed {
             Typed::Truth(truth) => Ok(truth),
             Typed::Formula(_) => {
-                let error = Diagnostic::error("E0504", span, "a condition on one state is needed here, not a formula over time");
+                let error = Diagnostic::error(
+                    "E0504",
+                    span,
+                    "a condition on one state is needed here, not a formula over time",
+                );
                 self.report(error)
             }
             found => self.mismatch(span, "a condition", &found),
@@ -168,8 +191,9 @@ impl Elaborator<'_> {
             Typed::Agent(who) => Ok(who),
             Typed::Agents { set, particle: true } if set.members.len() == 1 => Ok(Who::Agent(set.members[0])),
             found @ Typed::Agents { .. } => {
-                let error = Diagnostic::error("E0305", span, format!("expected an agent, found {}", found.noun()))
-                    .hint("choose a member, as in `crowd[1]`, or quantify: `forall a in crowd: …`");
+                let error =
+                    Diagnostic::error("E0305", span, format!("expected an agent, found {}", found.noun()))
+                        .hint("choose a member, as in `crowd[1]`, or quantify: `forall a in crowd: …`");
                 self.report(error)
             }
             found => self.mismatch(span, "an agent", &found),
@@ -189,7 +213,9 @@ impl Elaborator<'_> {
     pub(super) fn as_place(&mut self, typed: Typed, span: Span) -> Lowered<Place> {
         match typed {
             Typed::Agent(who) => Ok(Place::Agent(who)),
-            Typed::Agents { set, particle: true } if set.members.len() == 1 => Ok(Place::Agent(Who::Agent(set.members[0]))),
+            Typed::Agents { set, particle: true } if set.members.len() == 1 => {
+                Ok(Place::Agent(Who::Agent(set.members[0])))
+            }
             Typed::Region(id) => Ok(Place::Region(id)),
             Typed::Barrier(id) => Ok(Place::Barrier(id)),
             Typed::Point(x, y) => {
@@ -211,8 +237,9 @@ impl Elaborator<'_> {
                 Ok(Place::Point(Box::new(x), Box::new(y)))
             }
             found @ Typed::Agents { .. } => {
-                let error = Diagnostic::error("E0305", span, format!("expected a place, found {}", found.noun()))
-                    .hint("use its middle, `centroid(…)`, or a member");
+                let error =
+                    Diagnostic::error("E0305", span, format!("expected a place, found {}", found.noun()))
+                        .hint("use its middle, `centroid(…)`, or a member");
                 self.report(error)
             }
             found => self.mismatch(span, "a place: an agent, point, region or wall", &found),
@@ -239,11 +266,21 @@ impl Elaborator<'_> {
     }
 
     /// Reports a wrong number of arguments.
-    pub(super) fn arity<T>(&mut self, function: &Ident, span: Span, wanted: &str, found: usize) -> Lowered<T> {
+    pub(super) fn arity<T>(
+        &mut self,
+        function: &Ident,
+        span: Span,
+        wanted: &str,
+        found: usize,
+    ) -> Lowered<T> {
         let error = Diagnostic::error(
             "E0204",
             span,
-            format!("`{}` takes {wanted}, but {found} {} given", function.name, if found == 1 { "is" } else { "are" }),
+            format!(
+                "`{}` takes {wanted}, but {found} {} given",
+                function.name,
+                if found == 1 { "is" } else { "are" }
+            ),
         );
         self.report(error)
     }

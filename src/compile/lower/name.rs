@@ -16,7 +16,8 @@ const BUILT_IN: [&str; 3] = ["time", "everyone", "pi"];
 impl<'a> Elaborator<'a> {
     /// Finds a name: in the file's own table, then in the scenario's.
     pub(in crate::compile) fn find(&self, name: &str, scope: ScopeId) -> Option<(ScopeId, Meaning<'a>)> {
-        let own = self.scopes.get(scope).and_then(|table| table.get(name)).map(|e| (scope, e.meaning.clone()));
+        let own =
+            self.scopes.get(scope).and_then(|table| table.get(name)).map(|e| (scope, e.meaning.clone()));
         own.or_else(|| self.scopes[0].get(name).map(|e| (0, e.meaning.clone())))
     }
 
@@ -27,23 +28,33 @@ impl<'a> Elaborator<'a> {
         let Some((scope, meaning)) = self.find(name, locals.scope) else {
             return match name {
                 "time" => Ok(Typed::Num(crate::model::Num::Time, self.time_dimension())),
-                "everyone" => Ok(Typed::Agents { set: Set { members: self.everyone(), except: None }, particle: false }),
+                "everyone" => {
+                    Ok(Typed::Agents { set: Set { members: self.everyone(), except: None }, particle: false })
+                }
                 "pi" => Ok(Typed::Number(super::Number::rounded(std::f64::consts::PI, Dimension::NONE))),
                 _ => self.unknown_name(name, span, locals),
             };
         };
         match meaning {
-            Meaning::Constant(value) => self.constant(scope, name, span, |this| this.lower(value, &Locals::of(scope))),
+            Meaning::Constant(value) => {
+                self.constant(scope, name, span, |this| this.lower(value, &Locals::of(scope)))
+            }
             Meaning::Param { value, .. } => {
                 if let Some(set) = self.settings.get(name) {
                     return Ok(Typed::Number(*set));
                 }
-                self.constant(scope, name, span, |this| this.number(value, &Locals::of(scope)).map(Typed::Number))
+                self.constant(scope, name, span, |this| {
+                    this.number(value, &Locals::of(scope)).map(Typed::Number)
+                })
             }
             Meaning::Let(decl) => {
                 if !decl.arguments.is_empty() {
-                    let error = Diagnostic::error("E0204", span, format!("`{name}` is a function of {} arguments", decl.arguments.len()))
-                        .hint(format!("call it: `{name}(…)`"));
+                    let error = Diagnostic::error(
+                        "E0204",
+                        span,
+                        format!("`{name}` is a function of {} arguments", decl.arguments.len()),
+                    )
+                    .hint(format!("call it: `{name}(…)`"));
                     return self.report(error);
                 }
                 let inner = Locals { scope, names: Vec::new(), running: locals.running };
@@ -57,14 +68,20 @@ impl<'a> Elaborator<'a> {
             Meaning::Barrier(id) => Ok(Typed::Barrier(id)),
             Meaning::Point(at) => self.constant(scope, name, span, |this| this.lower(at, &Locals::of(scope))),
             Meaning::Agent(id) => Ok(Typed::Agent(Who::Agent(id))),
-            Meaning::Agents { members, particle } => Ok(Typed::Agents { set: Set { members, except: None }, particle }),
+            Meaning::Agents { members, particle } => {
+                Ok(Typed::Agents { set: Set { members, except: None }, particle })
+            }
             Meaning::Declared => {
                 let error = Diagnostic::error("E0205", span, format!("`{name}` is not known yet here"))
                     .hint("numbers of agents and parameters cannot depend on agents");
                 self.report(error)
             }
             Meaning::Kind(_) | Meaning::Tracks(_) => {
-                let error = Diagnostic::error("E0206", span, format!("`{name}` is {}, which has no value", meaning.noun()));
+                let error = Diagnostic::error(
+                    "E0206",
+                    span,
+                    format!("`{name}` is {}, which has no value", meaning.noun()),
+                );
                 self.report(error)
             }
         }
@@ -115,7 +132,8 @@ impl<'a> Elaborator<'a> {
     ) -> Lowered<Typed> {
         if self.expanding.iter().any(|(s, n)| *s == scope && n == name) {
             let way: Vec<&str> = self.expanding.iter().map(|(_, n)| n.as_str()).chain([name]).collect();
-            let error = Diagnostic::error("E0205", span, format!("`{name}` is defined by itself")).label(way.join(" → "));
+            let error = Diagnostic::error("E0205", span, format!("`{name}` is defined by itself"))
+                .label(way.join(" → "));
             return self.report(error);
         }
         self.expanding.push((scope, name.to_owned()));
@@ -152,14 +170,21 @@ impl<'a> Elaborator<'a> {
         let set = match self.lower(base, locals)? {
             Typed::Agents { set, particle: false } => set,
             Typed::Agents { particle: true, .. } => {
-                let error = Diagnostic::error("E0206", base.span, "this group is simulated as one body and has no members")
-                    .hint("leave out `as particle` to simulate its members");
+                let error = Diagnostic::error(
+                    "E0206",
+                    base.span,
+                    "this group is simulated as one body and has no members",
+                )
+                .hint("leave out `as particle` to simulate its members");
                 return self.report(error);
             }
             found => return self.mismatch(base.span, "a set of agents", &found),
         };
         let number = self.number_of(index, Dimension::NONE, locals)?;
-        let member = number.as_whole().and_then(|n| usize::try_from(n).ok()).filter(|n| (1..=set.members.len()).contains(n));
+        let member = number
+            .as_whole()
+            .and_then(|n| usize::try_from(n).ok())
+            .filter(|n| (1..=set.members.len()).contains(n));
         match member {
             Some(n) => Ok(Typed::Agent(Who::Agent(set.members[n - 1]))),
             None => {

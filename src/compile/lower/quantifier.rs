@@ -34,8 +34,12 @@ impl Elaborator<'_> {
         inner.running += 1;
         let typed = self.lower(body, &inner)?;
         match quantifier {
-            Quantifier::Forall => Ok(Typed::Truth(Bool::Forall(set, Box::new(self.as_truth(typed, body.span)?)))),
-            Quantifier::Exists => Ok(Typed::Truth(Bool::Exists(set, Box::new(self.as_truth(typed, body.span)?)))),
+            Quantifier::Forall => {
+                Ok(Typed::Truth(Bool::Forall(set, Box::new(self.as_truth(typed, body.span)?))))
+            }
+            Quantifier::Exists => {
+                Ok(Typed::Truth(Bool::Exists(set, Box::new(self.as_truth(typed, body.span)?))))
+            }
             Quantifier::Count => {
                 let truth = self.as_truth(typed, body.span)?;
                 Ok(Typed::Num(Num::Count(set, Box::new(truth)), Dimension::NONE))
@@ -60,7 +64,11 @@ impl Elaborator<'_> {
         let left_out = match set.except {
             Some(Who::Agent(id)) => Some(id),
             Some(Who::Running(_)) => {
-                let error = Diagnostic::error("E0504", span, "a formula over time cannot be quantified inside a fold over states");
+                let error = Diagnostic::error(
+                    "E0504",
+                    span,
+                    "a formula over time cannot be quantified inside a fold over states",
+                );
                 return self.report(error);
             }
             None => None,
@@ -74,7 +82,8 @@ impl Elaborator<'_> {
         }
         match quantifier {
             Quantifier::Forall | Quantifier::Exists => {
-                let nodes: Lowered<Vec<_>> = each.into_iter().map(|typed| self.as_formula(typed, body.span)).collect();
+                let nodes: Lowered<Vec<_>> =
+                    each.into_iter().map(|typed| self.as_formula(typed, body.span)).collect();
                 let nodes = nodes?;
                 Ok(Typed::Formula(self.node(match quantifier {
                     Quantifier::Forall => Node::And(nodes),
@@ -126,13 +135,19 @@ impl Elaborator<'_> {
         }
         let inside = |e: &Expr| self.mentions_time(e, locals, depth + 1);
         match &expr.kind {
-            ExprKind::Temporal(..) | ExprKind::TemporalPair(..) | ExprKind::Window(..) | ExprKind::At(..) => true,
+            ExprKind::Temporal(..) | ExprKind::TemporalPair(..) | ExprKind::Window(..) | ExprKind::At(..) => {
+                true
+            }
             ExprKind::Quantity(_) | ExprKind::Infinity | ExprKind::Bool(_) | ExprKind::Text(_) => false,
             ExprKind::Name(name) => match locals.names.iter().rev().find(|(bound, _)| bound == name) {
                 Some((_, typed)) => matches!(typed, Typed::Formula(_) | Typed::Term(..)),
                 None => match self.find(name, locals.scope) {
-                    Some((scope, Meaning::Let(decl))) => self.mentions_time(&decl.body, &Locals::of(scope), depth + 8),
-                    Some((scope, Meaning::Property(body))) => self.mentions_time(body, &Locals::of(scope), depth + 8),
+                    Some((scope, Meaning::Let(decl))) => {
+                        self.mentions_time(&decl.body, &Locals::of(scope), depth + 8)
+                    }
+                    Some((scope, Meaning::Property(body))) => {
+                        self.mentions_time(body, &Locals::of(scope), depth + 8)
+                    }
                     _ => false,
                 },
             },

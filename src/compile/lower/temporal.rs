@@ -17,7 +17,11 @@ const ALWAYS: Window = Window { from: Tick(0), to: None };
 impl Elaborator<'_> {
     fn expect_temporal(&mut self, span: Span, locals: &Locals) -> Lowered<()> {
         if locals.running > 0 {
-            let error = Diagnostic::error("E0504", span, "a formula over time cannot stand inside a fold over states");
+            let error = Diagnostic::error(
+                "E0504",
+                span,
+                "a formula over time cannot stand inside a fold over states",
+            );
             return self.report(error);
         }
         if !self.temporal {
@@ -57,7 +61,9 @@ impl Elaborator<'_> {
                 let at = match (bound, window.to) {
                     (None, _) => Tick(1),
                     (Some(_), Some(to)) => to,
-                    (Some(_), None) => return self.report(Diagnostic::error("E0503", span, "`X` needs a finite time")),
+                    (Some(_), None) => {
+                        return self.report(Diagnostic::error("E0503", span, "`X` needs a finite time"));
+                    }
                 };
                 Node::Finally(Window { from: at, to: Some(at) }, body)
             }
@@ -115,11 +121,19 @@ impl Elaborator<'_> {
             Some(Bound::Interval(start, end)) => {
                 let ends = (self.time(start, locals), self.time(end, locals));
                 let Some(from) = ends.0? else {
-                    return self.report(Diagnostic::error("E0503", start.span, "an interval starts at a finite time"));
+                    return self.report(Diagnostic::error(
+                        "E0503",
+                        start.span,
+                        "an interval starts at a finite time",
+                    ));
                 };
                 let to = ends.1?;
                 if to.is_some_and(|to| to < from) {
-                    let error = Diagnostic::error("E0503", start.span.to(end.span), "this interval ends before it starts");
+                    let error = Diagnostic::error(
+                        "E0503",
+                        start.span.to(end.span),
+                        "this interval ends before it starts",
+                    );
                     return self.report(error);
                 }
                 Ok(Window { from, to })
@@ -142,12 +156,14 @@ impl Elaborator<'_> {
         if number.value < 0.0 {
             return self.report(Diagnostic::error("E0503", span, "a time bound cannot be negative"));
         }
-        let steps = number.dimension == Dimension::STEPS || (number.dimension.is_none() && self.clock == Clock::Steps);
+        let steps = number.dimension == Dimension::STEPS
+            || (number.dimension.is_none() && self.clock == Clock::Steps);
         if steps {
             return match number.as_whole().and_then(|n| u64::try_from(n).ok()) {
                 Some(n) if self.clock != Clock::Jumps => Ok(Tick(n)),
                 Some(_) => self.report(
-                    Diagnostic::error("E0503", span, "a scenario in continuous time has no steps").hint("write a time, as in `5 s`"),
+                    Diagnostic::error("E0503", span, "a scenario in continuous time has no steps")
+                        .hint("write a time, as in `5 s`"),
                 ),
                 None => self.report(Diagnostic::error("E0501", span, "a number of steps must be whole")),
             };
@@ -170,9 +186,12 @@ impl Elaborator<'_> {
         match found {
             Some(Ok(tick)) => Ok(tick),
             Some(Err((below, above))) if above.0 < u64::MAX => {
-                let seconds = |tick: Tick| format!("{} s", Decimal::whole(tick.0 as i64).mul(step).map_or(f64::NAN, Decimal::to_f64));
-                let error = Diagnostic::error("E0501", span, format!("this is no multiple of the step of {step} s"))
-                    .hint(format!("the nearest bounds are {} and {}", seconds(below), seconds(above)));
+                let seconds = |tick: Tick| {
+                    format!("{} s", Decimal::whole(tick.0 as i64).mul(step).map_or(f64::NAN, Decimal::to_f64))
+                };
+                let error =
+                    Diagnostic::error("E0501", span, format!("this is no multiple of the step of {step} s"))
+                        .hint(format!("the nearest bounds are {} and {}", seconds(below), seconds(above)));
                 self.report(error)
             }
             _ => self.report(Diagnostic::error("E0501", span, "this time is out of range")),
@@ -184,5 +203,7 @@ impl Elaborator<'_> {
 fn nearest_tick(value: f64, step: Decimal) -> Option<Decimal> {
     let ticks = value / step.to_f64();
     let near = ticks.round();
-    ((ticks - near).abs() <= 1e-9 * near.max(1.0) && near < 9e15).then(|| Decimal::whole(near as i64).mul(step)).flatten()
+    ((ticks - near).abs() <= 1e-9 * near.max(1.0) && near < 9e15)
+        .then(|| Decimal::whole(near as i64).mul(step))
+        .flatten()
 }
