@@ -1,0 +1,236 @@
+//! The command line as typed: data only.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// Statistical model checking of people in motion.
+#[derive(Debug, Parser)]
+#[command(name = "smc", version, about, long_about = None, max_term_width = 100)]
+#[command(after_help = "Exit codes: 0 satisfied, 1 violated, 2 wrong call or input, 3 undecided, 130 interrupted, 70 a bug.\n\
+    Start with: smc check models/corridor.scn properties/corridor.bltl")]
+pub(super) struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub(super) command: Command,
+    /// When to colour the output.
+    #[arg(long, global = true, value_enum, default_value_t = ColorChoice::Auto)]
+    pub(super) color: ColorChoice,
+}
+
+/// When to colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum ColorChoice {
+    /// On a terminal.
+    Auto,
+    /// Always.
+    Always,
+    /// Never.
+    Never,
+}
+
+/// Verbs.
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Decide, estimate, compare and rank what property files ask of a scenario.
+    Check(Box<Check>),
+    /// Run trials of a scenario and write their traces.
+    Simulate(Box<Simulate>),
+    /// Show how a scenario, and property files, were understood.
+    Show(Show),
+    /// Format scenarios and property files; comments are kept.
+    Fmt(Format),
+    /// Explain a code of an error or warning, such as E0303.
+    Explain(Explain),
+    /// Write completions for a shell to standard output.
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
+    /// Write man pages into a directory.
+    Man {
+        /// The directory.
+        directory: PathBuf,
+    },
+}
+
+/// Where the model comes from and what is set in it.
+#[derive(Args, Clone, Debug)]
+pub(super) struct Model {
+    /// Scenario file (`.scn`), or `-` for standard input.
+    pub(super) scenario: String,
+    /// Set a parameter, or sweep it: `density=0.8`, `density=0.1..0.8 by 0.1`. A bare number takes the unit of
+    /// the declared default.
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub(super) set: Vec<String>,
+    /// Look for recordings and imports here too. May be given several times.
+    #[arg(long = "data", value_name = "DIR")]
+    pub(super) data: Vec<PathBuf>,
+}
+
+/// `smc check`
+#[derive(Args, Debug)]
+pub(super) struct Check {
+    /// The model.
+    #[command(flatten)]
+    pub(super) model: Model,
+    /// Property files (`.bltl`), or `-` for standard input.
+    #[arg(required = true)]
+    pub(super) properties: Vec<String>,
+    /// Seed of all random numbers.
+    #[arg(long, default_value_t = 0)]
+    pub(super) seed: u64,
+    /// Number of threads; all cores by default. Never changes a result.
+    #[arg(short = 'j', long)]
+    pub(super) threads: Option<usize>,
+    /// Most trials of one query.
+    #[arg(long, value_name = "N")]
+    pub(super) max_trials: Option<u64>,
+    /// Time for the whole call, such as `50ms`, `2s`, `5min`.
+    #[arg(long, value_parser = parse_duration)]
+    pub(super) timeout: Option<std::time::Duration>,
+    /// Format of the results on standard output.
+    #[arg(long, value_enum, default_value_t = OutputFormat::Text)]
+    pub(super) format: OutputFormat,
+    /// Ask only this query: the name of its property, or its number. May be given several times.
+    #[arg(long, value_name = "NAME")]
+    pub(super) only: Vec<String>,
+    /// No progress and no forecast on standard error.
+    #[arg(short, long)]
+    pub(super) quiet: bool,
+}
+
+/// Formats of results.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum OutputFormat {
+    /// For people.
+    Text,
+    /// One object; see docs/schema/verdict.schema.json.
+    Json,
+    /// For continuous integration: JUnit XML.
+    Junit,
+    /// Annotations of GitHub workflows.
+    Github,
+}
+
+/// `smc simulate`
+#[derive(Args, Debug)]
+pub(super) struct Simulate {
+    /// The model.
+    #[command(flatten)]
+    pub(super) model: Model,
+    /// Seed of all random numbers.
+    #[arg(long, default_value_t = 0)]
+    pub(super) seed: u64,
+    /// Index of the first trial.
+    #[arg(long, default_value_t = 0, value_name = "INDEX")]
+    pub(super) trial: u64,
+    /// Number of trials.
+    #[arg(long, default_value_t = 1, value_name = "N")]
+    pub(super) trials: u64,
+    /// Follow a suggested move, by its name as in a ranking: `heading 15 deg`, `stop`.
+    #[arg(long = "move", value_name = "MOVE")]
+    pub(super) advice: Option<String>,
+    /// Write every N-th state only.
+    #[arg(long, default_value_t = 1, value_name = "N")]
+    pub(super) every: u64,
+    /// Stop at this time in seconds instead of the horizon.
+    #[arg(long, value_name = "SECONDS")]
+    pub(super) until: Option<f64>,
+    /// Format of the table.
+    #[arg(long, value_enum, default_value_t = TableFormat::Csv)]
+    pub(super) format: TableFormat,
+    /// File to write; standard output by default.
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
+}
+
+/// Formats of traces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum TableFormat {
+    /// Comma-separated values.
+    Csv,
+    /// One object with columns and rows.
+    Json,
+    /// One object a line.
+    Jsonl,
+}
+
+/// `smc show`
+#[derive(Args, Debug)]
+pub(super) struct Show {
+    /// The model.
+    #[command(flatten)]
+    pub(super) model: Model,
+    /// Property files (`.bltl`).
+    pub(super) properties: Vec<String>,
+}
+
+/// `smc fmt`
+#[derive(Args, Debug)]
+pub(super) struct Format {
+    /// Files to format; `-` reads standard input and writes standard output.
+    #[arg(required = true)]
+    pub(super) files: Vec<String>,
+    /// Change nothing; exit with 1 if a file is not formatted.
+    #[arg(long)]
+    pub(super) check: bool,
+    /// What standard input holds.
+    #[arg(long, value_enum, default_value_t = Language::Scn)]
+    pub(super) language: Language,
+}
+
+/// Languages.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Language {
+    /// A scenario.
+    Scn,
+    /// Properties.
+    Bltl,
+}
+
+/// `smc explain`
+#[derive(Args, Debug)]
+pub(super) struct Explain {
+    /// The code, such as `E0303`; all codes without it.
+    pub(super) code: Option<String>,
+}
+
+/// A duration with its unit: `50ms`, `2s`, `1.5min`, `1h`.
+fn parse_duration(text: &str) -> Result<std::time::Duration, String> {
+    let split = text.find(|c: char| c.is_alphabetic()).unwrap_or(text.len());
+    let (digits, unit) = text.split_at(split);
+    let scale = match unit {
+        "ms" => 1e-3,
+        "s" => 1.0,
+        "min" => 60.0,
+        "h" => 3600.0,
+        "" => return Err("the unit is missing: write 50ms, 2s or 5min".to_owned()),
+        _ => return Err(format!("unknown unit `{unit}`: use ms, s, min or h")),
+    };
+    let value: f64 = digits.trim().parse().map_err(|_| format!("`{digits}` is not a number"))?;
+    let seconds = value * scale;
+    if !(seconds > 0.0 && seconds < 1e9) {
+        return Err("a timeout must be positive".to_owned());
+    }
+    Ok(std::time::Duration::from_secs_f64(seconds))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_definition_is_consistent() {
+        use clap::CommandFactory;
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn durations_need_a_unit() {
+        assert_eq!(parse_duration("50ms"), Ok(std::time::Duration::from_millis(50)));
+        assert_eq!(parse_duration("1.5min"), Ok(std::time::Duration::from_secs(90)));
+        assert!(parse_duration("50").is_err());
+        assert!(parse_duration("0s").is_err());
+        assert!(parse_duration("5 parsecs").is_err());
+    }
+}

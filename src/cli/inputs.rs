@@ -1,0 +1,215 @@
+//! Files of a call: read, decoded, parsed, compiled.
+
+use super::arguments::Model;
+use crate::compile::{Files, Input, Setting, SettingValue, Study, compile, requests};
+use crate::syntax::ast::{PropertyFile, ScenarioFile};
+use crate::syntax::diagnostic::{Diagnostic, Severity};
+use crate::syntax::source::{Source, SourceId, Span};
+use crate::syntax::{decode, parse_properties, parse_scenario, parse_value};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// All that was read, and what was found wrong with it.
+pub(super) struct Inputs {
+    /// Texts.
+    pub(super) sources: Vec<Source>,
+    /// Scenario.
+    pub(super) scenario: ScenarioFile,
+    /// Property files.
+    pub(super) properties: Vec<PropertyFile>,
+    /// Errors and warnings.
+    pub(super) diagnostics: Vec<Diagnostic>,
+    /// What compilation yields, if nothing is wrong.
+    pub(super) study: Option<Study>,
+}
+
+impl Inputs {
+    /// Whether something is wrong.
+    pub(super) fn failed(&self) -> bool {
+        self.diagnostics.iter().any(|d| d.severity == Severity::Error)
+    }
+}
+
+/// Bytes of a file, or of standard input for `-`.
+#[allow(clippy::disallowed_methods, reason = "files are opened by the command line")]
+pub(super) fn read(name: &str) -> Result<Vec<u8>, String> {
+    if name == "-" {
+        let mut bytes = Vec::new();
+        return match std::io::stdin().lock().read_to_end(&mut bytes) {
+            Ok(_) => Ok(bytes),
+            Err(error) => Err(format!("standard input cannot be read: {error}")),
+        };
+    }
+    if Path::new(name).is_dir() {
+        return Err(format!("`{name}` is a directory"));
+    }
+    std::fs::read(name).map_err(|error| match error.kind() {
+        std::io::ErrorKind::NotFound => format!("there is no file `{name}`"),
+        std::io::ErrorKind::PermissionDenied => format!("`{name}` may not be read"),
+        _ => format!("`{name}` cannot be read: {error}"),
+    })
+}
+
+/// Name of a source for people.
+pub(super) fn shown(name: &str) -> &str {
+    if name == "-" { "<stdin>" } else { name }
+}
+
+struct Reader {
+    sources: Vec<Source>,
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl Reader {
+    fn source(&mut self, name: &str) -> Option<Source> {
+        let id = SourceId(self.sources.len() as u16);
+        let bytes = match read(name) {
+            Ok(bytes) => bytes,
+            Err(reason) => {
+                self.diagnostics.push(Diagnostic::placeless("E0701", reason));
+                return None;
+            }
+        };
+        let (source, diagnostics) = decode(id, shown(name), &bytes);
+        let broken = diagnostics.iter().any(|d| d.severity == Severity::Error);
+        self.diagnostics.extend(diagnostics);
+        self.sources.push(source.clone());
+        (!broken).then_some(source)
+    }
+
+    /// A part of the command line as a source of its own.
+    fn text(&mut self, name: &str, text: &str) -> Source {
+        let id = SourceId(self.sources.len() as u16);
+        let source = Source::new(id, name, text);
+        self.sources.push(source.clone());
+        source
+    }
+
+    fn expression(&mut self, name: &str, text: &str) -> Option<crate::syntax::ast::Expr> {
+        let source = self.text(name, text.trim());
+        match parse_value(&source) {
+            Ok(expr) => Some(expr),
+            Err(diagnostics) => {
+                self.diagnostics.extend(diagnostics);
+                None
+            }
+        }
+    }
+
+    /// `name=value` or `name=from..to by step`
+    fn setting(&mut self, text: &str) -> Option<Setting> {
+        let Some((name, value)) = text.split_once('=') else {
+            let error = Diagnostic::placeless("E0210", format!("`--set {text}` sets nothing"))
+                .hint("write `--set name=value` or `--set name=from..to by step`");
+            self.diagnostics.push(error);
+            return None;
+        };
+        let (name, value) = (name.trim(), value.trim());
+        let label = format!("--set {name}");
+        let value = match value.split_once("..") {
+            None => SettingValue::One(self.expression(&label, value)?),
+            Some((from, rest)) => {
+                let Some((to, by)) = rest.split_once(" by ") else {
+                    let error = Diagnostic::placeless("E0210", format!("the sweep `{value}` has no step"))
+                        .hint("write `--set name=0.1..0.8 by 0.1`");
+                    self.diagnostics.push(error);
+                    return None;
+                };
+                let parts = (self.expression(&label, from), self.expression(&label, to), self.expression(&label, by));
+                SettingValue::Sweep(parts.0?, parts.1?, parts.2?)
+            }
+        };
+        let span = match &value {
+            SettingValue::One(expr) => expr.span,
+            SettingValue::Sweep(from, ..) => from.span,
+        };
+        Some(Setting { name: name.to_owned(), span, value })
+    }
+}
+
+/// Looks for a file beside the scenario, then under each data directory.
+fn find(path: &str, scenario: &str, data: &[PathBuf]) -> Result<PathBuf, String> {
+    let beside = if scenario == "-" { None } else { Path::new(scenario).parent() };
+    let mut places: Vec<PathBuf> = beside.into_iter().map(Path::to_path_buf).collect();
+    places.extend(data.iter().cloned());
+    if Path::new(path).is_absolute() {
+        return Ok(PathBuf::from(path));
+    }
+    for place in &places {
+        let candidate = place.join(path);
+        if candidate.is_file() {
+            return Ok(candidate);
+        }
+    }
+    let looked: Vec<String> = places
+        .iter()
+        .map(|p| if p.as_os_str().is_empty() { ".".to_owned() } else { p.display().to_string() })
+        .collect();
+    Err(format!("there is no file `{path}` under {}", if looked.is_empty() { "any --data directory".to_owned() } else { looked.join(", ") }))
+}
+
+/// Reads, parses and compiles what a call names.
+#[allow(clippy::disallowed_methods, reason = "files are opened by the command line")]
+pub(super) fn load(model: &Model, properties: &[String]) -> Inputs {
+    let mut reader = Reader { sources: Vec::new(), diagnostics: Vec::new() };
+    let twice = std::iter::once(&model.scenario).chain(properties).filter(|name| *name == "-").count() > 1;
+    if twice {
+        reader.diagnostics.push(Diagnostic::placeless("E0701", "standard input can be read once only"));
+    }
+    let mut scenario = ScenarioFile::default();
+    let mut parsed = Vec::new();
+    let mut complete = !twice;
+    if !twice {
+        match reader.source(&model.scenario) {
+            Some(source) => {
+                let (file, diagnostics) = parse_scenario(&source);
+                scenario = file;
+                reader.diagnostics.extend(diagnostics);
+            }
+            None => complete = false,
+        }
+        for name in properties {
+            match reader.source(name) {
+                Some(source) => {
+                    let (file, diagnostics) = parse_properties(&source);
+                    parsed.push(file);
+                    reader.diagnostics.extend(diagnostics);
+                }
+                None => complete = false,
+            }
+        }
+    }
+    let settings: Vec<Setting> = model.set.iter().filter_map(|text| reader.setting(text)).collect();
+    let mut files = Files::default();
+    for request in requests(&scenario) {
+        let contents = find(&request.path, &model.scenario, &model.data)
+            .and_then(|path| std::fs::read(&path).map_err(|e| format!("`{}` cannot be read: {e}", request.path)));
+        files.insert(request.path, contents);
+    }
+    let Reader { sources, mut diagnostics } = reader;
+    let mut study = None;
+    if complete {
+        let input = Input { sources: &sources, scenario: &scenario, properties: &parsed, files: &files, settings: &settings };
+        let (compiled, found) = compile(&input);
+        // What could not be parsed may be missed elsewhere: those errors would only confuse.
+        let broken = |span: Option<Span>| {
+            diagnostics
+                .iter()
+                .any(|d| d.severity == Severity::Error && d.place.as_ref().map(|p| p.span.source) == span.map(|s| s.source))
+        };
+        let scenario_broken = broken(Some(Span::default()));
+        let found: Vec<Diagnostic> = found
+            .into_iter()
+            .filter(|d| {
+                let names = matches!(d.code, "E0201" | "E0203" | "E0205" | "E0208" | "E0209" | "E0505" | "E0606");
+                !(names && (scenario_broken || broken(d.place.as_ref().map(|p| p.span))))
+            })
+            .collect();
+        diagnostics.extend(found);
+        study = compiled;
+    }
+    if diagnostics.iter().any(|d| d.severity == Severity::Error) {
+        study = None;
+    }
+    Inputs { sources, scenario, properties: parsed, diagnostics, study }
+}

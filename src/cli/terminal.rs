@@ -1,0 +1,43 @@
+//! Standard output and standard error: colours, broken pipes.
+
+use super::arguments::ColorChoice;
+use std::io::{IsTerminal, Write};
+
+/// Where colours are wanted.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Colors {
+    /// On standard output.
+    pub(super) out: bool,
+    /// On standard error.
+    pub(super) err: bool,
+}
+
+impl Colors {
+    /// Follows the choice, then `NO_COLOR` and `CLICOLOR_FORCE`, then whether it is a terminal.
+    #[allow(clippy::disallowed_methods, reason = "the command line reads the environment")]
+    pub(super) fn chosen(choice: ColorChoice) -> Self {
+        let set = |name: &str| std::env::var(name).is_ok_and(|v| !v.is_empty() && v != "0");
+        match choice {
+            ColorChoice::Always => Self { out: true, err: true },
+            ColorChoice::Never => Self { out: false, err: false },
+            ColorChoice::Auto if set("NO_COLOR") => Self { out: false, err: false },
+            ColorChoice::Auto if set("CLICOLOR_FORCE") || set("FORCE_COLOR") => Self { out: true, err: true },
+            ColorChoice::Auto => Self { out: std::io::stdout().is_terminal(), err: std::io::stderr().is_terminal() },
+        }
+    }
+}
+
+/// Writes to standard output. A reader that went away is no error.
+pub(super) fn print(text: &str) -> Result<(), String> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(format!("standard output: {error}")),
+        _ => Ok(()),
+    }
+}
+
+/// Writes to standard error; nothing can be done where that fails.
+pub(super) fn say(text: &str) {
+    let mut err = std::io::stderr().lock();
+    let _ = err.write_all(text.as_bytes());
+}

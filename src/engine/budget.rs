@@ -1,0 +1,71 @@
+//! Budgets: how many trials, until when, and whether somebody interrupted.
+//!
+//! The clock never decides what a trial yields, only how many trials are consumed; with a deadline a result
+//! is a function of input, seed and the number of trials.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// Default number of trials of one query.
+pub const DEFAULT_TRIALS: u64 = 1_000_000;
+
+/// How much may be spent.
+#[derive(Debug)]
+pub struct Budget {
+    /// Most trials of one query (of a ranking or comparison: of one option or side).
+    pub max_trials: u64,
+    deadline: Option<Instant>,
+    started: Instant,
+    interrupted: AtomicBool,
+}
+
+impl Budget {
+    /// A budget that starts now; `timeout` is for the whole call.
+    #[allow(clippy::disallowed_methods, reason = "the engine keeps deadlines; trials never see the clock")]
+    pub fn new(max_trials: u64, timeout: Option<Duration>) -> Self {
+        let started = Instant::now();
+        Self {
+            max_trials,
+            deadline: timeout.and_then(|t| started.checked_add(t)),
+            started,
+            interrupted: AtomicBool::new(false),
+        }
+    }
+
+    /// Seconds since the call began.
+    pub fn elapsed(&self) -> f64 {
+        self.started.elapsed().as_secs_f64()
+    }
+
+    /// Whether a deadline was set.
+    pub fn has_deadline(&self) -> bool {
+        self.deadline.is_some()
+    }
+
+    /// Seconds left, if there is a deadline.
+    #[allow(clippy::disallowed_methods, reason = "the engine keeps deadlines; trials never see the clock")]
+    pub fn seconds_left(&self) -> Option<f64> {
+        self.deadline.map(|end| end.saturating_duration_since(Instant::now()).as_secs_f64())
+    }
+
+    /// Whether time is up.
+    #[allow(clippy::disallowed_methods, reason = "the engine keeps deadlines; trials never see the clock")]
+    pub fn is_over(&self) -> bool {
+        self.deadline.is_some_and(|end| Instant::now() >= end)
+    }
+
+    /// Somebody wants it to stop.
+    pub fn interrupt(&self) {
+        self.interrupted.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether somebody wanted it to stop.
+    pub fn is_interrupted(&self) -> bool {
+        self.interrupted.load(Ordering::Relaxed)
+    }
+
+    /// Whether no more should be started, for either reason.
+    pub fn must_stop(&self) -> bool {
+        self.is_interrupted() || self.is_over()
+    }
+}
