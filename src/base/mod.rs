@@ -8,4 +8,5 @@ pub mod geometry;
 pub mod lanes;
 pub mod math;
 pub mod random;
+pub mod special;
 pub mod tick;

@@ -4,6 +4,11 @@
 //! itself, `exponential` its mean. Truncation is by the inverse distribution function, so that every draw
 //! takes one uniform number.
 
+mod discrete;
+mod draw;
+mod family;
+mod validate;
+
 /// How a number of each agent and trial comes about.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Law {
@@ -103,3 +108,7 @@ impl Law {
         }
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::disallowed_methods, reason = "the platform's functions are the reference")]
+mod tests;
