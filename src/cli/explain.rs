@@ -1,0 +1,35 @@
+//! `smc explain`: what a code means and what to do.
+
+use super::arguments::Explain;
+use super::outcome::Exit;
+use super::terminal::{print, say};
+use crate::compile::nearest::nearest;
+use crate::syntax::codes;
+
+/// Runs the command.
+pub(super) fn run(arguments: &Explain) -> Exit {
+    let Some(code) = &arguments.code else {
+        let list: String = codes::pages().map(|page| format!("{}  {}\n", page.code, page.title)).collect();
+        return finish(&list);
+    };
+    let wanted = code.trim().to_ascii_uppercase();
+    match codes::page(&wanted) {
+        Some(page) => finish(&format!("{}: {}\n\n{}\n", page.code, page.title, page.text.trim_end())),
+        None => {
+            let hint = nearest(&wanted, codes::pages().map(|page| page.code));
+            let hint = hint.map_or_else(|| "; `smc explain` lists all".to_owned(), |near| format!("; did you mean {near}?"));
+            say(&format!("error: there is no code `{code}`{hint}\n"));
+            Exit::Wrong
+        }
+    }
+}
+
+fn finish(text: &str) -> Exit {
+    match print(text) {
+        Ok(()) => Exit::Fine,
+        Err(reason) => {
+            say(&format!("error: {reason}\n"));
+            Exit::Wrong
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! `smc fmt`: one layout for all files.
+
+use super::arguments::{Format, Language};
+use super::inputs;
+use super::outcome::Exit;
+use super::terminal::{Colors, print, say};
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::{Source, SourceId};
+use crate::syntax::{decode, format_properties, format_scenario, render};
+
+/// Runs the command.
+#[allow(clippy::disallowed_methods, reason = "files are opened by the command line")]
+pub(super) fn run(arguments: &Format, colors: Colors) -> Exit {
+    let mut exit = Exit::Fine;
+    for name in &arguments.files {
+        let language = match name.rsplit_once('.').map(|(_, ending)| ending) {
+            _ if name == "-" => arguments.language,
+            Some("scn") => Language::Scn,
+            Some("bltl") => Language::Bltl,
+            _ => {
+                say(&format!("error: `{name}` is neither a scenario (.scn) nor a property file (.bltl)\n"));
+                exit = Exit::Wrong;
+                continue;
+            }
+        };
+        let bytes = match inputs::read(name) {
+            Ok(bytes) => bytes,
+            Err(reason) => {
+                say(&format!("error: {reason}\n"));
+                exit = Exit::Wrong;
+                continue;
+            }
+        };
+        let fail = |diagnostics: &[Diagnostic], source: &Source| {
+            say(&render(diagnostics, std::slice::from_ref(source), colors.err));
+        };
+        let (source, found) = decode(SourceId(0), inputs::shown(name), &bytes);
+        if !found.is_empty() {
+            fail(&found, &source);
+            exit = Exit::Wrong;
+            continue;
+        }
+        let formatted = match language {
+            Language::Scn => format_scenario(&source),
+            Language::Bltl => format_properties(&source),
+        };
+        let text = match formatted {
+            Ok(text) => text,
+            Err(diagnostics) => {
+                fail(&diagnostics, &source);
+                exit = Exit::Wrong;
+                continue;
+            }
+        };
+        if arguments.check {
+            if text != source.text {
+                say(&format!("{} is not formatted\n", inputs::shown(name)));
+                exit = exit.or(Exit::Violated);
+            }
+        } else if name == "-" {
+            if let Err(reason) = print(&text) {
+                say(&format!("error: {reason}\n"));
+                return Exit::Wrong;
+            }
+        } else if text != source.text
+            && let Err(error) = std::fs::write(name, &text)
+        {
+            say(&format!("error: `{name}` cannot be written: {error}\n"));
+            exit = Exit::Wrong;
+        }
+    }
+    exit
+}

@@ -1,0 +1,33 @@
+//! Completions and man pages.
+
+use super::arguments::Arguments;
+use super::outcome::Exit;
+use super::terminal::{print, say};
+use clap::CommandFactory;
+use std::path::Path;
+
+/// Completions of a shell, to standard output.
+pub(super) fn completions(shell: clap_complete::Shell) -> Exit {
+    let mut bytes = Vec::new();
+    clap_complete::generate(shell, &mut Arguments::command(), "smc", &mut bytes);
+    match print(&String::from_utf8_lossy(&bytes)) {
+        Ok(()) => Exit::Fine,
+        Err(reason) => {
+            say(&format!("error: {reason}\n"));
+            Exit::Wrong
+        }
+    }
+}
+
+/// Man pages, into a directory.
+pub(super) fn pages(directory: &Path) -> Exit {
+    let written = std::fs::create_dir_all(directory)
+        .and_then(|()| clap_mangen::generate_to(Arguments::command(), directory));
+    match written {
+        Ok(()) => Exit::Fine,
+        Err(error) => {
+            say(&format!("error: man pages cannot be written to `{}`: {error}\n", directory.display()));
+            Exit::Wrong
+        }
+    }
+}

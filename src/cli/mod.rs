@@ -1,0 +1,74 @@
+//! Floor 8: the command line. It alone opens files, reads the environment and writes to the terminal.
+
+mod arguments;
+mod check;
+mod explain;
+mod format;
+mod inputs;
+mod manual;
+mod outcome;
+mod progress;
+mod show;
+mod simulate;
+mod terminal;
+
+use crate::model::Scenario;
+use crate::syntax::render;
+use arguments::{Arguments, Command};
+use clap::Parser;
+use outcome::Exit;
+use std::process::ExitCode;
+use terminal::{Colors, say};
+
+/// Stack of the thread that does the work: deep formulas are walked recursively, up to a limit.
+const STACK: usize = 256 << 20;
+
+/// Runs the program.
+pub fn run() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            let fine = !error.use_stderr();
+            let _ = error.print();
+            return ExitCode::from(if fine { 0 } else { Exit::Wrong.code() });
+        }
+    };
+    let worker = std::thread::Builder::new().stack_size(STACK).spawn(move || dispatch(&arguments));
+    let exit = match worker.map(std::thread::JoinHandle::join) {
+        Ok(Ok(exit)) => exit,
+        Ok(Err(_)) => {
+            say("this is a bug in smc; please report it with the files of this call\n");
+            Exit::Bug
+        }
+        Err(error) => {
+            say(&format!("error: no thread can be started: {error}\n"));
+            Exit::Wrong
+        }
+    };
+    ExitCode::from(exit.code())
+}
+
+fn dispatch(arguments: &Arguments) -> Exit {
+    let colors = Colors::chosen(arguments.color);
+    match &arguments.command {
+        Command::Check(command) => check::run(command, colors),
+        Command::Simulate(command) => simulate::run(command, colors),
+        Command::Show(command) => show::run(command, colors),
+        Command::Fmt(command) => format::run(command, colors),
+        Command::Explain(command) => explain::run(command),
+        Command::Completions { shell } => manual::completions(*shell),
+        Command::Man { directory } => manual::pages(directory),
+    }
+}
+
+/// Writes errors and warnings to standard error.
+fn diagnose(inputs: &inputs::Inputs, colors: Colors) {
+    if !inputs.diagnostics.is_empty() {
+        say(&render(&inputs.diagnostics, &inputs.sources, colors.err));
+    }
+}
+
+/// Whether everybody can be placed, as far as areas tell.
+fn placeable(scenario: &Scenario) -> Result<(), String> {
+    crate::kernel::start::check_area(scenario).map_err(|fault| fault.to_string())
+}

@@ -1,0 +1,215 @@
+//! `smc simulate`: traces of trials as tables.
+
+use super::arguments::{Simulate, TableFormat};
+use super::inputs;
+use super::outcome::Exit;
+use super::terminal::{Colors, say};
+use crate::base::geometry::Vec2;
+use crate::base::random::TrialKey;
+use crate::compile::nearest::nearest;
+use crate::data::table::{Row, write_csv, write_json, write_json_lines};
+use crate::kernel::{Program, Scratch, State, dynamics, start};
+use crate::model::Scenario;
+use std::io::{BufWriter, Write};
+use std::sync::Arc;
+
+/// One agent in one state.
+struct Record {
+    time: f64,
+    trial: u64,
+    agent: usize,
+    position: Vec2,
+    velocity: Vec2,
+    present: bool,
+}
+
+/// Runs trials one after the other and yields their states.
+struct Walk<'p> {
+    program: &'p Program,
+    arguments: &'p Simulate,
+    advice: Option<(usize, usize)>,
+    last: u64,
+    state: State,
+    scratch: Scratch,
+    trial: u64,
+    agent: usize,
+    running: bool,
+    /// Trials that ended before their time.
+    notes: Vec<String>,
+}
+
+impl<'p> Walk<'p> {
+    fn new(program: &'p Program, arguments: &'p Simulate, advice: Option<(usize, usize)>, last: u64) -> Self {
+        Self {
+            program,
+            arguments,
+            advice,
+            last,
+            state: State::new(program.layout, program.scenario.agents.len()),
+            scratch: Scratch::new(program),
+            trial: arguments.trial,
+            agent: 0,
+            running: false,
+            notes: Vec::new(),
+        }
+    }
+
+    /// Goes to the next state that is written; false when all trials are done.
+    fn advance(&mut self) -> bool {
+        loop {
+            if !self.running {
+                if self.trial >= self.arguments.trial.saturating_add(self.arguments.trials) {
+                    return false;
+                }
+                let key = TrialKey { seed: self.arguments.seed, index: self.trial, branch: 0 };
+                match start::load(self.program, &mut self.state, 0, key, self.advice) {
+                    Ok(_) => {
+                        let lanes = crate::base::lanes::Mask::lane(0);
+                        dynamics::refresh(self.program, &mut self.state, &mut self.scratch, lanes);
+                        self.running = true;
+                        return true;
+                    }
+                    Err(fault) => {
+                        self.notes.push(format!("trial {} cannot start: {fault}", self.trial));
+                        self.trial += 1;
+                        continue;
+                    }
+                }
+            }
+            let tick = self.state.ticks[0];
+            if tick >= self.last || !self.state.diverged.is_empty() {
+                if !self.state.diverged.is_empty() {
+                    let time = self.program.scenario.clock.seconds(crate::base::tick::Tick(tick));
+                    self.notes.push(format!(
+                        "trial {} diverged at {time} s: somebody left every human speed; a smaller step may help",
+                        self.trial
+                    ));
+                }
+                self.running = false;
+                self.trial += 1;
+                continue;
+            }
+            dynamics::step(self.program, &mut self.state, &mut self.scratch);
+            if self.state.ticks[0].is_multiple_of(self.arguments.every.max(1)) {
+                return true;
+            }
+        }
+    }
+}
+
+impl Iterator for Walk<'_> {
+    type Item = Record;
+
+    fn next(&mut self) -> Option<Record> {
+        if self.agent == 0 && !self.advance() {
+            return None;
+        }
+        let agents = self.program.scenario.agents.len();
+        if agents == 0 {
+            return None;
+        }
+        let slot = self.state.slot(self.agent, 0);
+        let at = |field: &[crate::base::lanes::Lanes]| field[slot.block].0[slot.lane];
+        let record = Record {
+            time: self.program.scenario.clock.seconds(crate::base::tick::Tick(self.state.ticks[0])),
+            trial: self.trial,
+            agent: self.agent,
+            position: Vec2::new(at(&self.state.x), at(&self.state.y)),
+            velocity: Vec2::new(at(&self.state.vx), at(&self.state.vy)),
+            present: self.state.present[slot.block].has(slot.lane),
+        };
+        self.agent = (self.agent + 1) % agents;
+        Some(record)
+    }
+}
+
+/// The option of a name.
+fn option(scenario: &Scenario, name: &str) -> Result<(usize, usize), String> {
+    let wanted = name.trim();
+    for (declaration, moves) in scenario.moves.iter().enumerate() {
+        if let Some(at) = moves.options.iter().position(|(label, _)| label == wanted) {
+            return Ok((declaration, at));
+        }
+    }
+    let labels: Vec<&str> = scenario.moves.iter().flat_map(|m| m.options.iter().map(|(l, _)| l.as_str())).collect();
+    let hint = match nearest(wanted, labels.iter().copied()) {
+        Some(near) => format!("; did you mean `{near}`?"),
+        None if labels.is_empty() => "; the scenario declares no moves".to_owned(),
+        None => format!("; there are {}", labels.join(", ")),
+    };
+    Err(format!("there is no move `{wanted}`{hint}"))
+}
+
+/// Runs the command.
+#[allow(clippy::disallowed_methods, reason = "files are opened by the command line")]
+pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
+    let inputs = inputs::load(&arguments.model, &[]);
+    super::diagnose(&inputs, colors);
+    let Some(study) = &inputs.study else { return Exit::Wrong };
+    let Some(world) = study.worlds.last() else { return Exit::Wrong };
+    if study.worlds.len() > 2 {
+        say("error: `smc simulate` runs one setting; a sweep has several\n");
+        return Exit::Wrong;
+    }
+    let scenario: Arc<Scenario> = world.scenario.clone();
+    let advice = match arguments.advice.as_deref().map(|name| option(&scenario, name)) {
+        Some(Err(reason)) => {
+            say(&format!("error: {reason}\n"));
+            return Exit::Wrong;
+        }
+        Some(Ok(advice)) => Some(advice),
+        None => None,
+    };
+    if let Err(reason) = super::placeable(&scenario) {
+        say(&format!("error: {reason}\n"));
+        return Exit::Wrong;
+    }
+    let mut last = scenario.horizon.0;
+    if let Some(until) = arguments.until {
+        if !(until >= 0.0) {
+            say("error: `--until` takes a time in seconds\n");
+            return Exit::Wrong;
+        }
+        last = last.min((until / scenario.clock.step_seconds()).round() as u64);
+    }
+    let program = Program::new(scenario.clone());
+    let mut walk = Walk::new(&program, arguments, advice, last);
+    let written = match &arguments.output {
+        Some(path) => match std::fs::File::create(path) {
+            Ok(file) => write(arguments.format, BufWriter::new(file), &scenario, &mut walk),
+            Err(error) => {
+                say(&format!("error: `{}` cannot be written: {error}\n", path.display()));
+                return Exit::Wrong;
+            }
+        },
+        None => write(arguments.format, BufWriter::new(std::io::stdout().lock()), &scenario, &mut walk),
+    };
+    for note in &walk.notes {
+        say(&format!("warning: {note}\n"));
+    }
+    match written {
+        Ok(_) => Exit::Fine,
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Exit::Fine,
+        Err(error) => {
+            say(&format!("error: {error}\n"));
+            Exit::Wrong
+        }
+    }
+}
+
+fn write(format: TableFormat, out: impl Write, scenario: &Scenario, walk: &mut Walk<'_>) -> std::io::Result<u64> {
+    let rows = walk.map(|record| Row {
+        time: record.time,
+        trial: record.trial,
+        agent: &scenario.agents[record.agent].name,
+        position: record.position,
+        velocity: record.velocity,
+        present: record.present,
+        signals: &[],
+    });
+    match format {
+        TableFormat::Csv => write_csv(out, &[], rows),
+        TableFormat::Json => write_json(out, &[], rows),
+        TableFormat::Jsonl => write_json_lines(out, &[], rows),
+    }
+}

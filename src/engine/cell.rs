@@ -1,0 +1,34 @@
+//! What one trial yields for one column.
+
+/// What a column came to in one trial.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reading {
+    /// Of a formula.
+    Truth(bool),
+    /// Of a metric, in SI units; infinite where it lies beyond the horizon.
+    Value(f64),
+    /// The trial diverged, or the column has no value in it.
+    Unresolved,
+}
+
+/// What one trial yields for one column.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cell {
+    /// What it came to.
+    pub reading: Reading,
+    /// Steps of the model until it was decided.
+    pub steps: u64,
+    /// Whether an implication in it was triggered.
+    pub triggered: bool,
+    /// Whether radii were shrunk to part people who overlap at the start.
+    pub shrunk: bool,
+}
+
+/// A trial of a table: which option of which moves is followed, and the index of the trial.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Item {
+    /// Index of the moves declaration and of its option, if one is followed.
+    pub advice: Option<(usize, usize)>,
+    /// Index of the trial.
+    pub index: u64,
+}

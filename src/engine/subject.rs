@@ -1,0 +1,139 @@
+//! A world made ready to run: a program of the kernel and what is observed in it.
+
+use crate::base::tick::Tick;
+use crate::compile::study::{Root, World};
+use crate::kernel::{Code, Program};
+use crate::logic::{Invalid, Monitor, Node, NodeId, Term, TermId, Tree};
+use crate::model::{Bool, Num};
+
+/// A world made ready to run.
+pub struct Subject {
+    /// The program of the kernel.
+    pub program: Program,
+    /// Formulas and metrics.
+    pub tree: Tree,
+    /// What is asked of each trace.
+    pub columns: Vec<Root>,
+    /// Last tick.
+    pub horizon: Tick,
+    /// Seconds of a tick (1 where steps have no length).
+    pub seconds: f64,
+    atoms: Vec<Bool>,
+    signals: Vec<Num>,
+}
+
+/// Code and monitors for some columns of a subject. Columns whose atoms can lack a value stand alone, so
+/// that the outcome of one never depends on which others are observed.
+pub(super) struct Sheet {
+    /// Code that reads the atoms and signals of these columns.
+    pub(super) code: Code,
+    /// Places of the columns in the request.
+    pub(super) places: Vec<usize>,
+    /// One monitor a column.
+    pub(super) monitors: Vec<Monitor>,
+}
+
+impl Subject {
+    /// Makes a world ready.
+    pub fn new(world: &World) -> Self {
+        let scenario = world.scenario.clone();
+        Self {
+            horizon: scenario.horizon,
+            seconds: scenario.clock.step_seconds(),
+            program: Program::new(scenario),
+            tree: world.tree.clone(),
+            columns: world.columns.iter().map(|c| c.root).collect(),
+            atoms: world.atoms.clone(),
+            signals: world.signals.clone(),
+        }
+    }
+
+    /// A monitor of a column.
+    pub fn monitor(&self, column: usize) -> Result<Monitor, Invalid> {
+        match self.columns[column] {
+            Root::Formula(node) => Monitor::formula(&self.tree, node, self.horizon, self.seconds),
+            Root::Metric(term) => Monitor::metric(&self.tree, term, self.horizon, self.seconds),
+        }
+    }
+
+    /// Code that reads what some columns use; what they do not use reads as a constant.
+    pub fn code(&self, columns: &[usize]) -> Code {
+        let mut used = Used { tree: &self.tree, atoms: vec![false; self.atoms.len()], signals: vec![false; self.signals.len()] };
+        for &column in columns {
+            match self.columns[column] {
+                Root::Formula(node) => used.node(node),
+                Root::Metric(term) => used.term(term),
+            }
+        }
+        let atoms: Vec<Bool> = self
+            .atoms
+            .iter()
+            .zip(&used.atoms)
+            .map(|(atom, used)| if *used { atom.clone() } else { Bool::Constant(false) })
+            .collect();
+        let signals: Vec<Num> = self
+            .signals
+            .iter()
+            .zip(&used.signals)
+            .map(|(signal, used)| if *used { signal.clone() } else { Num::Constant(0.0) })
+            .collect();
+        Code::compile(&self.program.scenario, &atoms, &signals)
+    }
+
+    /// Sheets for some columns.
+    pub(super) fn sheets(&self, columns: &[usize]) -> Result<Vec<Sheet>, Invalid> {
+        let together = self.code(columns);
+        let groups: Vec<Vec<usize>> = if together.may_be_unresolved() && columns.len() > 1 {
+            (0..columns.len()).map(|place| vec![place]).collect()
+        } else {
+            vec![(0..columns.len()).collect()]
+        };
+        groups
+            .into_iter()
+            .map(|places| {
+                let chosen: Vec<usize> = places.iter().map(|&p| columns[p]).collect();
+                let monitors = chosen.iter().map(|&c| self.monitor(c)).collect::<Result<Vec<_>, _>>()?;
+                Ok(Sheet { code: self.code(&chosen), places, monitors })
+            })
+            .collect()
+    }
+}
+
+/// Marks the atoms and signals below a root.
+struct Used<'t> {
+    tree: &'t Tree,
+    atoms: Vec<bool>,
+    signals: Vec<bool>,
+}
+
+impl Used<'_> {
+    fn node(&mut self, id: NodeId) {
+        match &self.tree.nodes[id.0 as usize] {
+            Node::Constant(_) => {}
+            Node::Atom(atom) => self.atoms[atom.0 as usize] = true,
+            Node::Compare(_, a, b) => {
+                self.term(*a);
+                self.term(*b);
+            }
+            Node::Not(a) | Node::Finally(_, a) | Node::Globally(_, a) => self.node(*a),
+            Node::And(list) | Node::Or(list) => list.iter().for_each(|id| self.node(*id)),
+            Node::Until(_, a, b) | Node::WeakUntil(_, a, b) | Node::Release(_, a, b) => {
+                self.node(*a);
+                self.node(*b);
+            }
+        }
+    }
+
+    fn term(&mut self, id: TermId) {
+        match &self.tree.terms[id.0 as usize] {
+            Term::Constant(_) => {}
+            Term::Signal(signal) => self.signals[signal.0 as usize] = true,
+            Term::Combine(_, a, b) => {
+                self.term(*a);
+                self.term(*b);
+            }
+            Term::Abs(a) | Term::Window(_, _, a) | Term::Later(_, a) | Term::AtEnd(a) => self.term(*a),
+            Term::TimeUntil(node) | Term::Indicator(node) => self.node(*node),
+        }
+    }
+}

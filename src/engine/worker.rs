@@ -1,0 +1,191 @@
+//! A worker: a batch of lanes that runs one trial after the other.
+//!
+//! A lane whose monitors have decided takes the next trial while the others go on (rule 3: stop early).
+
+use super::budget::Budget;
+use super::cell::{Cell, Item, Reading};
+use super::subject::{Sheet, Subject};
+use crate::base::lanes::{LANES, Mask};
+use crate::base::random::TrialKey;
+use crate::kernel::{Readings, Scratch, State, dynamics, start};
+use crate::logic::Invalid;
+
+/// Steps between two looks at the clock.
+const CLOCK_EVERY: u32 = 32;
+
+/// What a lane is busy with.
+#[derive(Clone, Copy, Debug)]
+struct Busy {
+    /// Place of the item in the request.
+    place: usize,
+    /// Whether radii were shrunk at its start.
+    shrunk: bool,
+    /// Columns not decided yet.
+    open: usize,
+}
+
+/// A batch of lanes with the monitors of some columns.
+pub(super) struct Worker {
+    columns: Vec<usize>,
+    state: State,
+    scratch: Scratch,
+    sheets: Vec<Sheet>,
+    readings: Vec<Readings>,
+    busy: [Option<Busy>; LANES],
+    /// For each column, the lanes in which it is decided.
+    settled: Vec<Mask>,
+    /// Steps made, of all lanes.
+    pub(super) steps: u64,
+}
+
+/// The cells of one finished trial: place of the item, one cell a column.
+pub(super) type Finished = (usize, Vec<Cell>);
+
+impl Worker {
+    /// A worker for some columns of a subject.
+    pub(super) fn new(subject: &Subject, columns: &[usize]) -> Result<Self, Invalid> {
+        let sheets = subject.sheets(columns)?;
+        let program = &subject.program;
+        Ok(Self {
+            columns: columns.to_vec(),
+            state: State::new(program.layout, program.scenario.agents.len()),
+            scratch: Scratch::new(program),
+            readings: sheets.iter().map(|_| Readings::default()).collect(),
+            sheets,
+            busy: [None; LANES],
+            settled: vec![Mask::NONE; columns.len()],
+            steps: 0,
+        })
+    }
+
+    /// Whether it observes just these columns.
+    pub(super) fn serves(&self, columns: &[usize]) -> bool {
+        self.columns == columns
+    }
+
+    /// Runs items until `next` gives no more, or the budget says stop; then unfinished trials are dropped.
+    pub(super) fn run(
+        &mut self,
+        subject: &Subject,
+        seed: u64,
+        next: &mut dyn FnMut() -> Option<(usize, Item)>,
+        budget: &Budget,
+    ) -> Vec<Finished> {
+        let program = &subject.program;
+        let mut finished: Vec<Finished> = Vec::new();
+        let mut cells: [Vec<Cell>; LANES] = std::array::from_fn(|_| Vec::new());
+        let blank = Cell { reading: Reading::Unresolved, steps: 0, triggered: false, shrunk: false };
+        let mut exhausted = false;
+        let mut rounds = 0u32;
+        loop {
+            if !exhausted {
+                let mut loaded = Mask::NONE;
+                for lane in 0..self.state.width() {
+                    while self.busy[lane].is_none() && !exhausted {
+                        let Some((place, item)) = next() else {
+                            exhausted = true;
+                            break;
+                        };
+                        let key = TrialKey { seed, index: item.index, branch: 0 };
+                        let shrunk = match start::load(program, &mut self.state, lane, key, item.advice) {
+                            Ok(start) => start.shrunk_pairs > 0,
+                            Err(_) => {
+                                // A trial that cannot start is unresolved in every column.
+                                finished.push((place, vec![blank; self.columns.len()]));
+                                continue;
+                            }
+                        };
+                        cells[lane] = vec![Cell { shrunk, ..blank }; self.columns.len()];
+                        self.busy[lane] = Some(Busy { place, shrunk, open: self.columns.len() });
+                        loaded |= Mask::lane(lane);
+                        for sheet in &mut self.sheets {
+                            for monitor in &mut sheet.monitors {
+                                monitor.start(lane);
+                            }
+                        }
+                        for settled in &mut self.settled {
+                            *settled &= !Mask::lane(lane);
+                        }
+                    }
+                }
+                if !loaded.is_empty() {
+                    dynamics::refresh(program, &mut self.state, &mut self.scratch, loaded);
+                }
+            }
+            if self.state.occupied.is_empty() {
+                return finished;
+            }
+            self.observe(subject, &mut cells, &mut finished);
+            rounds += 1;
+            if budget.is_interrupted() || (rounds.is_multiple_of(CLOCK_EVERY) && budget.is_over()) {
+                self.drop_all();
+                return finished;
+            }
+            if !self.state.occupied.is_empty() {
+                self.steps += u64::from(self.state.occupied.0.count_ones());
+                dynamics::step(program, &mut self.state, &mut self.scratch);
+            }
+        }
+    }
+
+    fn drop_all(&mut self) {
+        self.busy = [None; LANES];
+        self.state.occupied = Mask::NONE;
+    }
+
+    /// Shows the present states to the monitors and ends trials that are decided.
+    fn observe(&mut self, subject: &Subject, cells: &mut [Vec<Cell>; LANES], finished: &mut Vec<Finished>) {
+        let diverged = self.state.diverged & self.state.occupied;
+        let watched = self.state.occupied & !diverged;
+        let mut touched = diverged;
+        for (sheet, readings) in self.sheets.iter_mut().zip(&mut self.readings) {
+            sheet.code.run(&subject.program, &self.state, readings);
+            let lost = readings.unresolved & watched;
+            let lanes = watched & !lost;
+            for (monitor, &place) in sheet.monitors.iter_mut().zip(&sheet.places) {
+                let open = lanes & !self.settled[place];
+                if !open.is_empty() {
+                    monitor.observe(open, &readings.atoms, &readings.signals);
+                }
+                let decided = (monitor.decided() & open) | (lost & !self.settled[place]);
+                if decided.is_empty() {
+                    continue;
+                }
+                touched |= decided;
+                self.settled[place] |= decided;
+                for lane in decided.iter() {
+                    let Some(busy) = &mut self.busy[lane] else { continue };
+                    busy.open -= 1;
+                    let reading = if lost.has(lane) { Reading::Unresolved } else { reading(monitor, lane) };
+                    cells[lane][place] = Cell {
+                        reading,
+                        steps: self.state.ticks[lane],
+                        triggered: monitor.triggered(lane),
+                        shrunk: busy.shrunk,
+                    };
+                }
+            }
+        }
+        for lane in touched.iter() {
+            let Some(busy) = self.busy[lane] else { continue };
+            if busy.open == 0 || diverged.has(lane) {
+                for cell in &mut cells[lane] {
+                    if matches!(cell.reading, Reading::Unresolved) && cell.steps == 0 {
+                        cell.steps = self.state.ticks[lane];
+                    }
+                }
+                finished.push((busy.place, std::mem::take(&mut cells[lane])));
+                self.busy[lane] = None;
+                self.state.occupied &= !Mask::lane(lane);
+            }
+        }
+    }
+}
+
+fn reading(monitor: &crate::logic::Monitor, lane: usize) -> Reading {
+    if monitor.is_formula() {
+        return Reading::Truth(monitor.truth().has(lane));
+    }
+    let value = monitor.value().0[lane];
+    if value.is_nan() { Reading::Unresolved } else { Reading::Value(value) }
+}
