@@ -209,7 +209,7 @@ fn run() -> Run {
         version: "0.1.0".into(),
         results,
         warnings: vec!["param width is never used".into()],
-        replay: "smc check corridor.scn corridor.bltl --seed 7 --set density=0.2,0.8".into(),
+        replay: "smc check corridor.scn corridor.bltl --seed 7 --set 'density=0.2..0.8 by 0.6'".into(),
         elapsed_s: 130.2,
         ..Run::default()
     }

@@ -68,7 +68,7 @@ fn case(run: &Run, result: &QueryResult) -> TestCase {
     let mut name = one_line(&result.query);
     let with = settings(result);
     if !with.is_empty() {
-        name += &format!(" where {with}");
+        name = format!("{name} where {with}");
     }
     let mut case = TestCase::new(name, status);
     case.set_classname(run.scenario.as_str());

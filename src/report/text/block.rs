@@ -124,7 +124,7 @@ fn trials(result: &QueryResult) -> String {
         parts.push(format!("{} clipped to the range", count(result.clipped)));
     }
     if !parts.is_empty() {
-        text += &format!(" ({})", parts.join(", "));
+        text = format!("{text} ({})", parts.join(", "));
     }
     let cause = match result.stopped_by {
         Stop::Boundary => "stopped at the boundary of the test",

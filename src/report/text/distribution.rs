@@ -28,7 +28,7 @@ pub(super) fn write(text: &mut String, result: &QueryResult, found: &Distributio
         let bars = palette.paint(Paint::Neutral, &bars(histogram));
         let mut said = format!("{}{unit} {bars} {}{unit}", plain(histogram.low), plain(histogram.high));
         if histogram.beyond > 0 {
-            said += &format!(", {} beyond the horizon", count(histogram.beyond));
+            said = format!("{said}, {} beyond the horizon", count(histogram.beyond));
         }
         block::line(text, &said);
     }
