@@ -276,8 +276,8 @@ pub struct Comparison {
     pub difference: Side,
 }
 
-/// One side of a comparison, or the difference. Of the difference, successes count the pairs in which only
-/// the first holds, and failures those in which only the second does.
+/// One side of a comparison, or the difference. Of the difference, `trials` counts pairs, successes those in
+/// which only the first holds, and failures those in which only the second does.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Side {
     /// Its settings, as written; for the difference `first - second`.

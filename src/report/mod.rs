@@ -1,1 +1,60 @@
-//! Floor 7.
+//! Floor 7: reports of a run, one file per format.
+//!
+//! A report is a function of a [`Run`]; no clock and no environment. What a verdict must say follows
+//! `docs/language.md`: the certified statement, the estimate with its interval and the kind of that
+//! interval, all counts, why sampling stopped, and the command that gives the result again.
+
+pub mod exit;
+pub mod github;
+pub mod json;
+pub mod junit;
+pub mod number;
+pub mod palette;
+pub mod text;
+
+pub use exit::{ExitCode, exit_code};
+pub use palette::Palette;
+
+use crate::engine::outcome::{QueryResult, Run};
+
+/// Formats of a report.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Format {
+    /// For people.
+    #[default]
+    Text,
+    /// One JSON object, `docs/schema/verdict.schema.json`.
+    Json,
+    /// `JUnit` XML for continuous integration.
+    Junit,
+    /// Workflow commands of GitHub.
+    Github,
+}
+
+/// The report of a run, ending with a line end. Only text uses the palette.
+pub fn render(run: &Run, format: Format, palette: Palette) -> String {
+    match format {
+        Format::Text => text::render(run, palette),
+        Format::Json => json::render(run),
+        Format::Junit => junit::render(run),
+        Format::Github => github::render(run),
+    }
+}
+
+/// A query on one line, as written.
+fn one_line(query: &str) -> String {
+    query.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// `density = 0.2 /m^2, step = 0.02 s`
+fn settings(result: &QueryResult) -> String {
+    result.settings.iter().map(|(name, value)| format!("{name} = {value}")).collect::<Vec<_>>().join(", ")
+}
+
+/// The certified statement with the horizon it is conditional on; empty where nothing is certified.
+fn certified(result: &QueryResult) -> String {
+    match &result.within {
+        Some(within) if !result.certifies.is_empty() => format!("{}, within {within}", result.certifies),
+        _ => result.certifies.clone(),
+    }
+}

@@ -63,16 +63,13 @@ pub struct GeometryError {
 
 impl GeometryError {
     fn sentence(&self) -> String {
-        let mut text = String::new();
-        if let Some(line) = self.line {
-            text += &format!("line {line}");
-            if let Some(column) = self.column {
-                text += &format!(", column {column}");
-            }
-            text += ": ";
-        }
+        let mut text = match (self.line, self.column) {
+            (Some(line), Some(column)) => format!("line {line}, column {column}: "),
+            (Some(line), None) => format!("line {line}: "),
+            (None, _) => String::new(),
+        };
         if let Some(feature) = &self.feature {
-            text += &format!("{feature}: ");
+            text = text + feature + ": ";
         }
         text + &self.message
     }

@@ -1,4 +1,4 @@
-//! Reader of GeoJSON (RFC 7946): a feature collection, one feature, or one geometry.
+//! Reader of `GeoJSON` (RFC 7946): a feature collection, one feature, or one geometry.
 
 use super::feature::{self, Feature, Geometry, GeometryError, PropertyValue};
 use crate::base::geometry::Vec2;
@@ -8,7 +8,7 @@ use geojson::{GeoJson, GeometryValue, JsonValue, Position};
 /// Reads all features. A feature without a geometry is passed over, as the format allows it.
 ///
 /// # Errors
-/// Text that is no GeoJSON (one error, with its place where the parser knows it); else every feature with
+/// Text that is no `GeoJSON` (one error, with its place where the parser knows it); else every feature with
 /// a point that is not finite, a line in one place, or a ring that is degenerate or meets itself.
 pub fn read_geojson(text: &str) -> Result<Vec<Feature>, Vec<GeometryError>> {
     let features = match text.parse::<GeoJson>() {
@@ -94,18 +94,26 @@ fn flatten(value: GeometryValue, each: &mut impl FnMut(Result<Geometry, String>)
     match value {
         GeometryValue::Point { coordinates } => each(feature::point(vector(&coordinates))),
         GeometryValue::MultiPoint { coordinates } => {
-            coordinates.iter().for_each(|p| each(feature::point(vector(p))));
+            for p in &coordinates {
+                each(feature::point(vector(p)));
+            }
         }
         GeometryValue::LineString { coordinates } => each(feature::line(vectors(&coordinates))),
         GeometryValue::MultiLineString { coordinates } => {
-            coordinates.iter().for_each(|points| each(feature::line(vectors(points))));
+            for points in &coordinates {
+                each(feature::line(vectors(points)));
+            }
         }
         GeometryValue::Polygon { coordinates } => each(feature::polygon(rings(&coordinates))),
         GeometryValue::MultiPolygon { coordinates } => {
-            coordinates.iter().for_each(|polygon| each(feature::polygon(rings(polygon))));
+            for polygon in &coordinates {
+                each(feature::polygon(rings(polygon)));
+            }
         }
         GeometryValue::GeometryCollection { geometries } => {
-            geometries.into_iter().for_each(|part| flatten(part.value, each));
+            for part in geometries {
+                flatten(part.value, each);
+            }
         }
     }
 }

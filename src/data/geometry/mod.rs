@@ -1,4 +1,4 @@
-//! Plane geometry from GeoJSON (RFC 7946) and WKT (OGC 06-103r4), as one list of plain features.
+//! Plane geometry from `GeoJSON` (RFC 7946) and WKT (OGC 06-103r4), as one list of plain features.
 //!
 //! Coordinates are metres in the plane of the scene, whatever a file says of its reference system; a third
 //! coordinate is dropped. Geometries of several parts become several features of one name.

@@ -1,0 +1,84 @@
+//! Exit codes of the program.
+
+use crate::engine::outcome::{Failure, Run, Verdict};
+
+/// What the program exits with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ExitCode {
+    /// 0: every `check` is satisfied, everything was computed.
+    Success,
+    /// 3: a `check` is undecided within the budget, and none is violated.
+    Undecided,
+    /// 1: a `check` is violated.
+    Violated,
+    /// 130: interrupted; what is known so far was printed.
+    Interrupted,
+    /// 2: the call, an input or the model is wrong.
+    Wrong,
+    /// 70: a bug in `smc`.
+    Bug,
+}
+
+impl ExitCode {
+    /// The number.
+    pub const fn code(self) -> u8 {
+        match self {
+            Self::Success => 0,
+            Self::Undecided => 3,
+            Self::Violated => 1,
+            Self::Interrupted => 130,
+            Self::Wrong => 2,
+            Self::Bug => 70,
+        }
+    }
+
+    /// The one of two that counts: 70 > 2 > 130 > 1 > 3 > 0.
+    #[must_use]
+    pub const fn worse(self, other: Self) -> Self {
+        if self as u8 >= other as u8 { self } else { other }
+    }
+}
+
+/// The exit code of a run. Only a `check` can make it 1 or 3.
+pub fn exit_code(run: &Run) -> ExitCode {
+    let start = match &run.failure {
+        Some(Failure::Bug(_)) => ExitCode::Bug,
+        Some(Failure::Input(_)) => ExitCode::Wrong,
+        None if run.interrupted => ExitCode::Interrupted,
+        None => ExitCode::Success,
+    };
+    run.results.iter().fold(start, |code, result| {
+        code.worse(match result.verdict {
+            Some(Verdict::Violated) => ExitCode::Violated,
+            Some(Verdict::Undecided) => ExitCode::Undecided,
+            Some(Verdict::Satisfied) | None => ExitCode::Success,
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::outcome::{Kind, QueryResult};
+
+    fn run(verdicts: &[Option<Verdict>], interrupted: bool, failure: Option<Failure>) -> u8 {
+        let results = verdicts
+            .iter()
+            .map(|&verdict| QueryResult { verdict, ..QueryResult::new(0, Kind::Check, "check") })
+            .collect();
+        exit_code(&Run { results, interrupted, failure, ..Run::default() }).code()
+    }
+
+    #[test]
+    fn the_order_is_70_2_130_1_3_0() {
+        use Verdict::{Satisfied, Undecided, Violated};
+        let all = [Some(Satisfied), Some(Undecided), Some(Violated), None];
+        assert_eq!(run(&all, true, Some(Failure::Bug(String::new()))), 70);
+        assert_eq!(run(&all, true, Some(Failure::Input(String::new()))), 2);
+        assert_eq!(run(&all, true, None), 130);
+        assert_eq!(run(&all, false, None), 1);
+        assert_eq!(run(&all[..2], false, None), 3);
+        assert_eq!(run(&all[..1], false, None), 0);
+        assert_eq!(run(&[None], false, None), 0);
+    }
+}

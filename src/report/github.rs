@@ -1,0 +1,98 @@
+//! Workflow commands of GitHub: one annotation per finding, at the line of the query.
+//!
+//! A violated `check` is an error, an undecided one and every warning is a warning; a notice sums up.
+//! Values are escaped as the runner unescapes them: `%`, line ends, and in properties `:` and `,` too.
+
+use super::{certified, exit_code, one_line, settings};
+use crate::engine::outcome::{Failure, QueryResult, Run, Verdict};
+use std::fmt::Write as _;
+
+/// The annotations of a run, one a line.
+pub fn render(run: &Run) -> String {
+    let mut text = String::new();
+    for result in &run.results {
+        let at = if result.file.is_empty() {
+            String::new()
+        } else {
+            format!("file={},line={},", property(&result.file), result.line)
+        };
+        let mut annotate = |level: &str, title: &str, message: &str| {
+            let _ = writeln!(text, "::{level} {at}title={}::{}", property(title), data(message));
+        };
+        match result.verdict {
+            Some(Verdict::Violated) => annotate("error", "violated", &finding(result)),
+            Some(Verdict::Undecided) => annotate("warning", "undecided", &finding(result)),
+            Some(Verdict::Satisfied) | None => {}
+        }
+        for warning in &result.warnings {
+            annotate("warning", "smc", &format!("{}: {warning}", one_line(&result.query)));
+        }
+    }
+    for warning in &run.warnings {
+        let _ = writeln!(text, "::warning title=smc::{}", data(warning));
+    }
+    match &run.failure {
+        Some(Failure::Input(message)) => {
+            let _ = writeln!(text, "::error title=smc::{}", data(message));
+        }
+        Some(Failure::Bug(message)) => {
+            let _ = writeln!(text, "::error title=bug in smc::{}", data(message));
+        }
+        None => {}
+    }
+    let number = |verdict| run.results.iter().filter(|r| r.verdict == verdict).count();
+    let summary = format!(
+        "{}: {} satisfied, {} violated, {} undecided, {} computed{}; exit code {}\n{}",
+        run.scenario,
+        number(Some(Verdict::Satisfied)),
+        number(Some(Verdict::Violated)),
+        number(Some(Verdict::Undecided)),
+        number(None),
+        if run.interrupted { "; interrupted" } else { "" },
+        exit_code(run).code(),
+        run.replay
+    );
+    let _ = writeln!(text, "::notice title=smc::{}", data(&summary));
+    text
+}
+
+fn finding(result: &QueryResult) -> String {
+    let mut text = one_line(&result.query);
+    let with = settings(result);
+    if !with.is_empty() {
+        let _ = write!(text, " where {with}");
+    }
+    let statement = certified(result);
+    if !statement.is_empty() {
+        let _ = write!(text, "\ncertified: {statement}");
+    }
+    let _ = write!(
+        text,
+        "\n{} trials: {} hold, {} fail, {} unresolved",
+        result.counts.trials, result.counts.successes, result.counts.failures, result.counts.unresolved
+    );
+    for witness in &result.witnesses {
+        let word = if witness.passing { "holds" } else { "fails" };
+        let _ = write!(text, "\n{word} in trial {}: {}\n  {}", witness.trial, witness.what, witness.command);
+    }
+    text
+}
+
+fn data(text: &str) -> String {
+    text.replace('%', "%25").replace('\r', "%0D").replace('\n', "%0A")
+}
+
+fn property(text: &str) -> String {
+    data(text).replace(':', "%3A").replace(',', "%2C")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_escaped() {
+        assert_eq!(data("95 %\r\n::error"), "95 %25%0D%0A::error");
+        assert_eq!(property("a:b,c%"), "a%3Ab%2Cc%25");
+    }
+}

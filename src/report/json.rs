@@ -1,0 +1,160 @@
+//! One JSON object for programs; `docs/schema/verdict.schema.json` describes it.
+//!
+//! Fields are only ever added within a major version. What is infinite or unknown is `null`; a result that
+//! lies beyond the horizon, in whole or by an end of its interval, says so by `"censored": true`. Everything
+//! but `elapsed_s` is a function of input, seed and version.
+
+use crate::engine::outcome::{
+    Comparison, Counts, Distribution, Failure, Interval, Method, QueryResult, Ranking, Run, Side, Witness,
+};
+use serde_json::{Map, Value, json};
+
+/// The report of a run, indented, ending with a line end.
+pub fn render(run: &Run) -> String {
+    format!("{:#}\n", object(run))
+}
+
+/// The report of a run as a JSON value.
+pub fn object(run: &Run) -> Value {
+    let mut object = json!({
+        "schema": 1,
+        "scenario": run.scenario,
+        "seed": run.seed,
+        "version": run.version,
+        "results": run.results.iter().map(result).collect::<Vec<_>>(),
+        "warnings": run.warnings,
+        "interrupted": run.interrupted,
+        "error": Value::Null,
+        "replay": run.replay,
+        "elapsed_s": run.elapsed_s,
+    });
+    if let Some(failure) = &run.failure {
+        let (bug, message) = match failure {
+            Failure::Input(message) => (false, message),
+            Failure::Bug(message) => (true, message),
+        };
+        object["error"] = json!({ "bug": bug, "message": message });
+    }
+    object
+}
+
+fn result(result: &QueryResult) -> Value {
+    let settings: Map<String, Value> =
+        result.settings.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
+    let mut object = Map::new();
+    let mut put = |key: &str, value: Value| object.insert(key.to_owned(), value);
+    put("index", json!(result.index));
+    put("name", json!(result.name));
+    put("query", json!(result.query));
+    put("file", json!(result.file));
+    put("line", json!(result.line));
+    put("settings", Value::Object(settings));
+    put("kind", json!(result.kind.name()));
+    put("verdict", json!(result.verdict.map(crate::engine::outcome::Verdict::name)));
+    put("certifies", json!(result.certifies));
+    put("within", json!(result.within));
+    put("estimate", json!(result.estimate));
+    put("low", json!(result.low));
+    put("high", json!(result.high));
+    put("censored", json!(result.censored.is_some()));
+    put("unit", json!(result.unit));
+    put("interval", json!(result.interval));
+    put("method", method(&result.method));
+    for (key, value) in counts(&result.counts) {
+        put(&key, value);
+    }
+    put("clipped", json!(result.clipped));
+    put("shrunk", json!(result.shrunk));
+    put("steps", json!(result.steps));
+    put("stopped_by", json!(result.stopped_by.name()));
+    if let Some(Comparison { first, second, difference }) = &result.compare {
+        put("first", side(first));
+        put("second", side(second));
+        put("difference", side(difference));
+    }
+    if let Some(Ranking { choice, gap, tied, options }) = &result.rank {
+        put("choice", json!(choice));
+        put("gap", json!(gap));
+        put("tied", json!(tied));
+        let options = options.iter().map(|option| {
+            let mut object = numbered("option", &option.label, &option.value, &option.counts);
+            object.insert("status".into(), json!(option.status.name()));
+            Value::Object(object)
+        });
+        put("options", options.collect());
+    }
+    if let Some(found) = &result.distribution {
+        put("distribution", distribution(found));
+    }
+    put("warnings", json!(result.warnings));
+    put("witnesses", result.witnesses.iter().map(witness).collect());
+    put("replay", json!(result.replay));
+    put("elapsed_s", json!(result.elapsed_s));
+    Value::Object(object)
+}
+
+fn method(method: &Method) -> Value {
+    let mut object = Map::new();
+    object.insert("name".into(), json!(method.name));
+    object.extend(method.numbers.iter().map(|(name, value)| (name.clone(), json!(value))));
+    Value::Object(object)
+}
+
+fn counts(counts: &Counts) -> Map<String, Value> {
+    let fields = [
+        ("trials", counts.trials),
+        ("successes", counts.successes),
+        ("failures", counts.failures),
+        ("unresolved", counts.unresolved),
+    ];
+    fields.into_iter().map(|(name, value)| (name.to_owned(), json!(value))).collect()
+}
+
+fn interval(value: &Interval) -> Map<String, Value> {
+    let fields = [("estimate", value.estimate), ("low", value.low), ("high", value.high)];
+    fields.into_iter().map(|(name, value)| (name.to_owned(), json!(value))).collect()
+}
+
+fn numbered(key: &str, label: &str, value: &Interval, trials: &Counts) -> Map<String, Value> {
+    let mut object = Map::new();
+    object.insert(key.to_owned(), json!(label));
+    object.extend(interval(value));
+    object.extend(counts(trials));
+    object
+}
+
+fn side(side: &Side) -> Value {
+    Value::Object(numbered("settings", &side.label, &side.value, &side.counts))
+}
+
+fn witness(witness: &Witness) -> Value {
+    json!({
+        "passing": witness.passing,
+        "trial": witness.trial,
+        "time": witness.time,
+        "what": witness.what,
+        "command": witness.command,
+    })
+}
+
+fn distribution(found: &Distribution) -> Value {
+    let histogram = found.histogram.as_ref().map(|histogram| {
+        json!({
+            "low": histogram.low,
+            "high": histogram.high,
+            "counts": histogram.counts,
+            "beyond": histogram.beyond,
+        })
+    });
+    let quantiles: Vec<Value> = found
+        .quantiles
+        .iter()
+        .map(|quantile| {
+            let mut object = Map::new();
+            object.insert("level".into(), json!(quantile.level));
+            object.extend(interval(&quantile.value));
+            Value::Object(object)
+        })
+        .collect();
+    json!({ "histogram": histogram, "quantiles": quantiles })
+}

@@ -1,0 +1,83 @@
+//! `JUnit` XML: one suite per property file, one test case per result.
+//!
+//! A violated `check` is a failure; an undecided one is an error, so that nothing undecided passes as green.
+//! Other queries pass with their numbers as output.
+
+use super::palette::Palette;
+use super::{certified, one_line, settings, text};
+use crate::engine::outcome::{Failure, QueryResult, Run, Verdict};
+use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
+use std::time::Duration;
+
+/// The report of a run, ending with a line end.
+pub fn render(run: &Run) -> String {
+    let mut report = Report::new(format!("smc {}", run.scenario));
+    report.set_time(seconds(run.elapsed_s));
+    for file in run.results.chunk_by(|a, b| a.file == b.file) {
+        let name = file.first().map_or("", |result| result.file.as_str());
+        let mut suite = TestSuite::new(if name.is_empty() { run.scenario.as_str() } else { name });
+        for (key, value) in
+            [("seed", run.seed.to_string()), ("version", run.version.clone()), ("replay", run.replay.clone())]
+        {
+            suite.add_property((key, value.as_str()));
+        }
+        suite.set_time(seconds(file.iter().map(|result| result.elapsed_s).sum()));
+        for result in file {
+            suite.add_test_case(case(run, result));
+        }
+        report.add_test_suite(suite);
+    }
+    if let Some(failure) = &run.failure {
+        let (Failure::Input(message) | Failure::Bug(message)) = failure;
+        let kind = if matches!(failure, Failure::Bug(_)) { "bug" } else { "input" };
+        report.add_test_suite(stopped("run", kind, message));
+    } else if run.interrupted {
+        report.add_test_suite(stopped("run", "interrupted", "interrupted before all queries were answered"));
+    }
+    // Writing into memory fails only for what XML cannot hold, and the crate drops that from every string.
+    let mut text = report.to_string().unwrap_or_default();
+    if !text.ends_with('\n') {
+        text.push('\n');
+    }
+    text
+}
+
+fn stopped(name: &str, kind: &str, message: &str) -> TestSuite {
+    let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
+    status.set_type(kind).set_message(message);
+    let mut suite = TestSuite::new("smc");
+    suite.add_test_case(TestCase::new(name, status));
+    suite
+}
+
+fn case(run: &Run, result: &QueryResult) -> TestCase {
+    let statement = match certified(result) {
+        empty if empty.is_empty() => "nothing is certified".to_owned(),
+        statement => statement,
+    };
+    let bad = |kind, word: &str| {
+        let mut status = TestCaseStatus::non_success(kind);
+        status.set_type(word).set_message(format!("{word}: {statement}"));
+        status
+    };
+    let status = match result.verdict {
+        Some(Verdict::Violated) => bad(NonSuccessKind::Failure, "violated"),
+        Some(Verdict::Undecided) => bad(NonSuccessKind::Error, "undecided"),
+        Some(Verdict::Satisfied) | None => TestCaseStatus::success(),
+    };
+    let mut name = one_line(&result.query);
+    let with = settings(result);
+    if !with.is_empty() {
+        name = format!("{name} where {with}");
+    }
+    let mut case = TestCase::new(name, status);
+    case.set_classname(run.scenario.as_str());
+    case.set_time(seconds(result.elapsed_s));
+    case.set_system_out(text::block(result, Palette::PLAIN));
+    case
+}
+
+/// A duration that cannot fail, whatever the number.
+fn seconds(s: f64) -> Duration {
+    Duration::try_from_secs_f64(s).unwrap_or_default()
+}

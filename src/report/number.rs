@@ -1,0 +1,217 @@
+//! Numbers for people: no more digits than their interval supports.
+//!
+//! The first significant digit of half the interval's width decides; a 1 or 2 there allows one digit more,
+//! as the Particle Data Group rounds. Ends are rounded outwards, so that the printed interval contains the
+//! computed one.
+
+use crate::engine::outcome::Interval;
+
+/// Below this all numbers of an interval are written with an exponent.
+const SMALL: f64 = 1e-4;
+/// Significant digits of a number without an uncertainty.
+const EXACT: usize = 6;
+
+/// An estimate and its interval, ready to print.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Printed {
+    /// The estimate.
+    pub estimate: String,
+    /// `[low, high]`
+    pub interval: String,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Round {
+    Nearest,
+    Down,
+    Up,
+}
+
+/// Prints a number with its interval. Numbers beyond the horizon read `> 30`.
+pub fn interval(value: &Interval, horizon: Option<f64>) -> Printed {
+    let Interval { estimate, low, high } = *value;
+    let largest =
+        [estimate, low, high].into_iter().filter(|x| x.is_finite()).fold(0.0, |m: f64, x| m.max(x.abs()));
+    let decimals = decimals(value);
+    let show = |x: f64, round: Round| {
+        if x == f64::INFINITY {
+            return horizon.map_or_else(|| "∞".to_owned(), |h| format!("> {}", plain(h)));
+        }
+        if x == f64::NEG_INFINITY {
+            return "-∞".to_owned();
+        }
+        match decimals {
+            _ if !x.is_finite() => "?".to_owned(),
+            _ if x == 0.0 => "0".to_owned(),
+            _ if largest < SMALL => scientific(x, round),
+            Some(decimals) => fixed(x, decimals, round),
+            None => plain(x),
+        }
+    };
+    Printed {
+        estimate: show(estimate, Round::Nearest),
+        interval: format!("[{}, {}]", show(low, Round::Down), show(high, Round::Up)),
+    }
+}
+
+/// Decimal places that an interval supports; `None` where it has no width.
+fn decimals(value: &Interval) -> Option<usize> {
+    let Interval { estimate, low, high } = *value;
+    let half = match (low.is_finite(), high.is_finite()) {
+        (true, true) => 0.5 * (high - low),
+        (true, false) if estimate.is_finite() => estimate - low,
+        (false, true) if estimate.is_finite() => high - estimate,
+        _ => return None,
+    };
+    if half <= 0.0 || !half.is_finite() {
+        return None;
+    }
+    let (leading, exponent) = leading(half);
+    let decimals = -exponent + i32::from(leading <= 2);
+    Some(decimals.clamp(0, 12) as usize)
+}
+
+/// First significant digit and decimal exponent.
+fn leading(x: f64) -> (u8, i32) {
+    let text = format!("{:.5e}", x.abs());
+    let digit = text.bytes().next().map_or(0, |b| b.saturating_sub(b'0'));
+    let exponent = text.split_once('e').and_then(|(_, e)| e.parse().ok()).unwrap_or(0);
+    (digit, exponent)
+}
+
+fn fixed(x: f64, decimals: usize, round: Round) -> String {
+    let print = |x: f64| {
+        let text = format!("{x:.decimals$}");
+        if text.bytes().all(|b| matches!(b, b'-' | b'0' | b'.')) { text.replace('-', "") } else { text }
+    };
+    let nearest = print(x);
+    let Ok(value) = nearest.parse::<f64>() else { return nearest };
+    let unit = format!("1e-{decimals}").parse::<f64>().unwrap_or(0.0);
+    match round {
+        Round::Down if value > x => print(value - unit),
+        Round::Up if value < x => print(value + unit),
+        _ => nearest,
+    }
+}
+
+/// Two significant digits with an exponent.
+fn scientific(x: f64, round: Round) -> String {
+    let nearest = format!("{x:.1e}");
+    let Ok(value) = nearest.parse::<f64>() else { return nearest };
+    let unit = format!("1e{}", leading(value).1 - 1).parse::<f64>().unwrap_or(0.0);
+    match round {
+        Round::Down if value > x => format!("{:.1e}", value - unit),
+        Round::Up if value < x => format!("{:.1e}", value + unit),
+        _ => nearest,
+    }
+}
+
+/// A number known exactly: at most six significant digits, without trailing zeros.
+pub fn plain(x: f64) -> String {
+    if x == 0.0 || !x.is_finite() {
+        return if x.is_finite() { "0".into() } else { x.to_string() };
+    }
+    let (_, exponent) = leading(x);
+    if !(-4..15).contains(&exponent) {
+        return format!("{x:e}");
+    }
+    let text = format!("{x:.*}", (EXACT as i32 - 1 - exponent).max(0) as usize);
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+/// A count with commas: `1,234,567`.
+pub fn count(n: u64) -> String {
+    let digits = n.to_string();
+    let mut text = String::with_capacity(digits.len() + digits.len() / 3);
+    for (k, digit) in digits.chars().enumerate() {
+        if k > 0 && (digits.len() - k).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// A count and its noun: `1 trial`, `2 trials`.
+pub fn counted(n: u64, noun: &str) -> String {
+    format!("{} {noun}{}", count(n), if n == 1 { "" } else { "s" })
+}
+
+/// A duration: `21 ms`, `1.32 s`, `2 min 5 s`.
+pub fn duration(seconds: f64) -> String {
+    if !seconds.is_finite() || seconds < 0.0 {
+        "?".into()
+    } else if seconds < 0.000_999_5 {
+        format!("{:.0} µs", seconds * 1e6)
+    } else if seconds < 0.999_5 {
+        format!("{:.0} ms", seconds * 1e3)
+    } else if seconds < 99.95 {
+        format!("{seconds:.2} s")
+    } else {
+        let whole = seconds.round() as u64;
+        format!("{} min {} s", whole / 60, whole % 60)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn printed(estimate: f64, low: f64, high: f64) -> String {
+        let p = interval(&Interval { estimate, low, high }, Some(30.0));
+        format!("{} {}", p.estimate, p.interval)
+    }
+
+    #[test]
+    fn digits_follow_the_interval() {
+        assert_eq!(printed(0.939_393, 0.841_2, 0.981_3), "0.94 [0.84, 0.99]");
+        assert_eq!(printed(0.874_123, 0.864_9, 0.883_1), "0.874 [0.864, 0.884]");
+        assert_eq!(printed(0.5, 0.4, 0.6), "0.50 [0.40, 0.60]");
+        assert_eq!(printed(12345.6, 12000.0, 13000.0), "12346 [12000, 13000]");
+        assert_eq!(printed(-0.001, -0.04, 0.03), "0.00 [-0.04, 0.03]");
+    }
+
+    #[test]
+    fn nothing_seen_is_a_bound_and_never_plus_minus_nothing() {
+        assert_eq!(printed(0.0, 0.0, 3.688_9e-6), "0 [0, 3.7e-6]");
+        assert_eq!(printed(1e-5, 6.19e-6, 8.767e-5), "1.0e-5 [6.1e-6, 8.8e-5]");
+        assert_eq!(printed(0.0, 0.0, 0.008), "0 [0, 0.008]");
+    }
+
+    #[test]
+    fn beyond_the_horizon_is_said_so() {
+        assert_eq!(printed(f64::INFINITY, 28.3, f64::INFINITY), "> 30 [28.3, > 30]");
+        assert_eq!(printed(20.0, 18.0, f64::INFINITY), "20.0 [18.0, > 30]");
+        assert_eq!(printed(7.25, 7.25, 7.25), "7.25 [7.25, 7.25]");
+        assert_eq!(printed(f64::NAN, f64::NEG_INFINITY, 1.0), "? [-∞, 1]");
+    }
+
+    #[test]
+    fn counts_and_durations() {
+        assert_eq!(count(0), "0");
+        assert_eq!(count(1_234_567), "1,234,567");
+        assert_eq!(counted(1, "trial"), "1 trial");
+        assert_eq!(
+            [3e-6, 0.021, 0.9999, 1.324, 125.0, f64::NAN].map(duration),
+            ["3 µs", "21 ms", "1.00 s", "1.32 s", "2 min 5 s", "?"]
+        );
+        assert_eq!([0.05, 1e-7, 30.0, 2_093.0, 0.1 + 0.2].map(plain), ["0.05", "1e-7", "30", "2093", "0.3"]);
+    }
+
+    proptest! {
+        #[test]
+        fn the_printed_interval_contains_the_computed_one(
+            low in -1e6..1e6_f64, exponent in -9..6_i32, share in 0.0..1.0_f64, width in 1.0..10.0_f64
+        ) {
+            let width = width * format!("1e{exponent}").parse::<f64>().unwrap();
+            let value = Interval { estimate: low + share * width, low, high: low + width };
+            let text = interval(&value, None).interval;
+            let (a, b) = text.trim_matches(['[', ']']).split_once(", ").unwrap();
+            let (a, b) = (a.parse::<f64>().unwrap(), b.parse::<f64>().unwrap());
+            let slack = 1e-9 * (1.0 + low.abs());
+            prop_assert!(a <= low + slack && b >= value.high - slack, "{text} for {value:?}");
+            prop_assert!(b - a <= 1.7 * width + slack, "{text} is much wider than {value:?}");
+        }
+    }
+}

@@ -1,0 +1,172 @@
+//! The block of one result.
+
+use super::columns::{Cell, lines};
+use super::{compare, distribution, rank};
+use crate::engine::outcome::{Interval, QueryResult, Stop, Verdict, Witness};
+use crate::report::number::{count, counted, duration, interval, plain};
+use crate::report::palette::{Paint, Palette};
+use crate::report::{certified, one_line, settings};
+use std::fmt::Write as _;
+
+/// Width of the verdict's column, blanks after it included.
+const MARGIN: usize = 11;
+
+/// Writes the block of one result.
+pub(super) fn write(text: &mut String, result: &QueryResult, palette: Palette) {
+    head(text, result, palette);
+    let with = settings(result);
+    if !with.is_empty() {
+        line(text, &format!("where {with}"));
+    }
+    if let Some(ranking) = &result.rank {
+        rank::write(text, result, ranking, palette);
+    } else if let Some(comparison) = &result.compare {
+        compare::write(text, result, comparison, palette);
+    } else {
+        value(text, result, palette);
+    }
+    let statement = certified(result);
+    if !statement.is_empty() {
+        line(text, &format!("certified: {statement}"));
+    }
+    line(text, &trials(result));
+    method(text, result, palette);
+    if let Some(found) = &result.distribution {
+        distribution::write(text, result, found, palette);
+    }
+    remarks(text, result, "", palette);
+    for witness in &result.witnesses {
+        self::witness(text, witness, palette);
+    }
+}
+
+/// The first line: the verdict, the query as written, where it stands.
+pub(super) fn head(text: &mut String, result: &QueryResult, palette: Palette) {
+    let (word, paint) = word(result);
+    let place =
+        if result.file.is_empty() { String::new() } else { format!("  {}:{}", result.file, result.line) };
+    let pad = " ".repeat(MARGIN - word.len());
+    // The word already says what is asked; only a verdict needs the keyword again.
+    let query = one_line(&result.query);
+    let asked = query.strip_prefix(word).map_or(query.as_str(), str::trim_start);
+    let query = palette.paint(Paint::Strong, asked);
+    let _ =
+        writeln!(text, "{}{pad}{query}{}", palette.paint(paint, word), palette.paint(Paint::Faint, &place));
+}
+
+/// The word at the head of a result.
+pub(super) fn word(result: &QueryResult) -> (&'static str, Paint) {
+    match result.verdict {
+        Some(verdict @ Verdict::Satisfied) => (verdict.name(), Paint::Good),
+        Some(verdict @ Verdict::Violated) => (verdict.name(), Paint::Bad),
+        Some(verdict @ Verdict::Undecided) => (verdict.name(), Paint::Caution),
+        None => (result.kind.name(), Paint::Neutral),
+    }
+}
+
+/// A line under the head.
+pub(super) fn line(text: &mut String, content: &str) {
+    let _ = writeln!(text, "{:MARGIN$}{content}", "");
+}
+
+/// Aligned lines under the head.
+pub(super) fn table(text: &mut String, rows: &[Vec<Cell>], palette: Palette) {
+    for row in lines(rows, palette) {
+        line(text, &row);
+    }
+}
+
+/// The estimate and its interval, each with its unit.
+pub(super) fn printed(result: &QueryResult, value: &Interval) -> (String, String) {
+    let printed = interval(value, result.censored);
+    let unit = if result.unit.is_empty() { String::new() } else { format!(" {}", result.unit) };
+    let mut estimate = format!("{}{unit}", printed.estimate);
+    if value.estimate == f64::INFINITY && result.censored.is_some() {
+        estimate += " (within the horizon)";
+    }
+    (estimate, format!("{}{unit}", printed.interval))
+}
+
+fn value(text: &mut String, result: &QueryResult, palette: Palette) {
+    let Some(estimate) = result.estimate else { return };
+    let (shown, range) = printed(result, &Interval { estimate, low: result.low, high: result.high });
+    let kind = if result.interval.is_empty() { String::new() } else { format!("  {}", result.interval) };
+    line(
+        text,
+        &format!("{}  {range}{}", palette.paint(Paint::Strong, &shown), palette.paint(Paint::Faint, &kind)),
+    );
+}
+
+/// The procedure with all its numbers, where the query does not name it itself.
+pub(super) fn method(text: &mut String, result: &QueryResult, palette: Palette) {
+    let name = &result.method.name;
+    if name.is_empty() || one_line(&result.query).contains(&format!("by {name}(")) {
+        return;
+    }
+    let numbers: Vec<String> =
+        result.method.numbers.iter().map(|(name, value)| format!("{name} = {}", plain(*value))).collect();
+    line(text, &palette.paint(Paint::Faint, &format!("method: {name}({})", numbers.join(", "))));
+}
+
+/// The counts and why sampling stopped.
+fn trials(result: &QueryResult) -> String {
+    let counts = result.counts;
+    let mut text = counted(counts.trials, "trial");
+    let mut parts = Vec::new();
+    if counts.successes + counts.failures > 0 {
+        parts.push(format!("{} hold", count(counts.successes)));
+        parts.push(format!("{} fail", count(counts.failures)));
+    }
+    if counts.unresolved > 0 {
+        parts.push(format!("{} unresolved", count(counts.unresolved)));
+    }
+    if result.clipped > 0 {
+        parts.push(format!("{} clipped to the range", count(result.clipped)));
+    }
+    if !parts.is_empty() {
+        text = format!("{text} ({})", parts.join(", "));
+    }
+    let cause = match result.stopped_by {
+        Stop::Boundary => "stopped at the boundary of the test",
+        Stop::Width => "stopped when narrow enough",
+        Stop::Plan => "as planned",
+        Stop::Cap => "stopped at the largest number of trials",
+        Stop::Deadline => "stopped when time was up",
+        Stop::Interrupt => "interrupted",
+        Stop::Error => "stopped by an error",
+    };
+    format!("{text}, {cause}, {}", duration(result.elapsed_s))
+}
+
+/// Warnings of a result, and how often bodies were shrunk.
+pub(super) fn remarks(text: &mut String, result: &QueryResult, at: &str, palette: Palette) {
+    let warning = palette.paint(Paint::Caution, "warning:");
+    for said in &result.warnings {
+        line(text, &format!("{warning} {at}{said}"));
+    }
+    if result.shrunk > 0 {
+        let trials = counted(result.shrunk, "trial");
+        line(
+            text,
+            &format!("{warning} {at}people overlapped at the start and were made smaller in {trials}"),
+        );
+    }
+}
+
+/// A trial that shows why, and the command that shows the trial.
+pub(super) fn witness(text: &mut String, witness: &Witness, palette: Palette) {
+    let (word, paint) = if witness.passing { ("holds", Paint::Good) } else { ("fails", Paint::Bad) };
+    let Witness { trial, time, what, command, .. } = witness;
+    line(
+        text,
+        &format!(
+            "{} in trial {}, decided at {} s: {what}",
+            palette.paint(paint, word),
+            count(*trial),
+            plain(*time)
+        ),
+    );
+    if !command.is_empty() {
+        line(text, &palette.paint(Paint::Faint, &format!("  {command}")));
+    }
+}

@@ -1,0 +1,82 @@
+//! Rows of cells in aligned columns.
+
+use crate::report::palette::{Paint, Palette};
+
+/// A cell: a text, how it looks, and to which side it leans.
+pub(super) struct Cell {
+    text: String,
+    paint: Option<Paint>,
+    right: bool,
+}
+
+impl Cell {
+    /// Leans to the left.
+    pub(super) fn left(text: impl Into<String>) -> Self {
+        Self { text: text.into(), paint: None, right: false }
+    }
+
+    /// Leans to the right.
+    pub(super) fn right(text: impl Into<String>) -> Self {
+        Self { right: true, ..Self::left(text) }
+    }
+
+    /// Looks like this.
+    pub(super) fn paint(self, paint: Paint) -> Self {
+        Self { paint: Some(paint), ..self }
+    }
+}
+
+/// Lines of aligned columns, two blanks apart, without blanks at their ends. Columns that are empty in
+/// every row take no room.
+pub(super) fn lines(rows: &[Vec<Cell>], palette: Palette) -> Vec<String> {
+    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+    let width =
+        |k: usize| rows.iter().filter_map(|r| r.get(k)).map(|c| c.text.chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    rows.iter()
+        .map(|row| {
+            let last = row.iter().rposition(|cell| !cell.text.is_empty()).map_or(0, |k| k + 1);
+            let mut line = String::new();
+            let mut first = true;
+            for (k, cell) in row[..last].iter().enumerate() {
+                if widths[k] == 0 {
+                    continue;
+                }
+                if !first {
+                    line.push_str("  ");
+                }
+                first = false;
+                let pad = " ".repeat(widths[k] - cell.text.chars().count());
+                let shown =
+                    cell.paint.map_or_else(|| cell.text.clone(), |paint| palette.paint(paint, &cell.text));
+                if cell.right {
+                    line += &pad;
+                    line += &shown;
+                } else {
+                    line += &shown;
+                    if k + 1 < last {
+                        line += &pad;
+                    }
+                }
+            }
+            line
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_align_whatever_the_colour() {
+        let rows = || {
+            vec![
+                vec![Cell::left("a").paint(Paint::Good), Cell::left(""), Cell::right("1")],
+                vec![Cell::left("bcd"), Cell::left(""), Cell::right("100"), Cell::left("µ")],
+            ]
+        };
+        assert_eq!(lines(&rows(), Palette::PLAIN), ["a      1", "bcd  100  µ"]);
+        assert_eq!(lines(&rows(), Palette::ANSI)[0], "\u{1b}[1;32ma\u{1b}[0m      1");
+    }
+}

@@ -1,0 +1,45 @@
+//! The block of a comparison: both sides and the difference.
+
+use super::block;
+use super::columns::Cell;
+use crate::engine::outcome::{Comparison, QueryResult, Side};
+use crate::report::number::{count, counted};
+use crate::report::palette::{Paint, Palette};
+
+/// Writes the lines under the head.
+pub(super) fn write(text: &mut String, result: &QueryResult, comparison: &Comparison, palette: Palette) {
+    let Comparison { first, second, difference } = comparison;
+    let row = |side: &Side, paint: Option<Paint>, noun: &str, remark: String| {
+        let (estimate, interval) = block::printed(result, &side.value);
+        let estimate = Cell::left(estimate);
+        vec![
+            Cell::left(side.label.clone()),
+            match paint {
+                Some(paint) => estimate.paint(paint),
+                None => estimate,
+            },
+            Cell::left(interval),
+            Cell::right(counted(side.counts.trials, noun)),
+            Cell::left(remark),
+        ]
+    };
+    let unresolved = |n: u64| if n == 0 { String::new() } else { format!("{} unresolved", count(n)) };
+    let counts = difference.counts;
+    let mut pairs = String::new();
+    if counts.successes + counts.failures > 0 {
+        pairs = format!(
+            "only the first holds {}, only the second {}",
+            count(counts.successes),
+            count(counts.failures)
+        );
+    }
+    let rows = [
+        row(first, None, "trial", unresolved(first.counts.unresolved)),
+        row(second, None, "trial", unresolved(second.counts.unresolved)),
+        row(difference, Some(Paint::Strong), "pair", pairs),
+    ];
+    block::table(text, &rows, palette);
+    if !result.interval.is_empty() {
+        block::line(text, &palette.paint(Paint::Faint, &format!("intervals: {}", result.interval)));
+    }
+}

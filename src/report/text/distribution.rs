@@ -1,0 +1,57 @@
+//! How the values of a metric are distributed: quantiles, and a histogram in one line.
+
+use super::block;
+use crate::engine::outcome::{Distribution, Histogram, QueryResult};
+use crate::report::number::{count, interval, plain};
+use crate::report::palette::{Paint, Palette};
+
+const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
+
+/// Writes the lines of a distribution.
+pub(super) fn write(text: &mut String, result: &QueryResult, found: &Distribution, palette: Palette) {
+    let unit = if result.unit.is_empty() { String::new() } else { format!(" {}", result.unit) };
+    if !found.quantiles.is_empty() {
+        let parts: Vec<String> = found
+            .quantiles
+            .iter()
+            .map(|q| {
+                format!(
+                    "{} %: {}{unit}",
+                    plain(100.0 * q.level),
+                    interval(&q.value, result.censored).estimate
+                )
+            })
+            .collect();
+        block::line(text, &format!("quantiles {}", parts.join(", ")));
+    }
+    if let Some(histogram) = &found.histogram {
+        let bars = palette.paint(Paint::Neutral, &bars(histogram));
+        let mut said = format!("{}{unit} {bars} {}{unit}", plain(histogram.low), plain(histogram.high));
+        if histogram.beyond > 0 {
+            said = format!("{said}, {} beyond the horizon", count(histogram.beyond));
+        }
+        block::line(text, &said);
+    }
+}
+
+/// One bar per bin; an empty bin is a dot, the fullest has full height.
+fn bars(histogram: &Histogram) -> String {
+    let most = histogram.counts.iter().copied().max().unwrap_or(0).max(1);
+    histogram
+        .counts
+        .iter()
+        .map(|&n| if n == 0 { '·' } else { BARS[((n as f64 / most as f64) * 7.0).round() as usize] })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_empty_bin_shows() {
+        let histogram = Histogram { low: 0.0, high: 1.0, counts: vec![0, 1, 100, 50], beyond: 0 };
+        assert_eq!(bars(&histogram), "·▁█▅");
+        assert_eq!(bars(&Histogram { counts: vec![], ..histogram }), "");
+    }
+}

@@ -1,0 +1,81 @@
+//! A report for people: one block per query, a summary, and the command that gives it again.
+
+mod block;
+mod columns;
+mod compare;
+mod distribution;
+mod rank;
+mod sweep;
+
+use super::number::{count, counted, duration};
+use super::palette::{Paint, Palette};
+use crate::engine::outcome::{Failure, QueryResult, Run, Verdict};
+use std::fmt::Write as _;
+
+/// The report of a run, ending with its replay line.
+pub fn render(run: &Run, palette: Palette) -> String {
+    let mut text = String::new();
+    if !run.scenario.is_empty() {
+        let _ = writeln!(text, "{}\n", palette.paint(Paint::Strong, &run.scenario));
+    }
+    for group in run.results.chunk_by(same_sweep) {
+        match group {
+            [one] => block::write(&mut text, one, palette),
+            many => sweep::write(&mut text, many, palette),
+        }
+        text.push('\n');
+    }
+    for warning in &run.warnings {
+        let _ = writeln!(text, "{}{warning}", palette.paint(Paint::Caution, "warning: "));
+    }
+    if run.interrupted {
+        let _ =
+            writeln!(text, "{}these are the results so far", palette.paint(Paint::Caution, "interrupted: "));
+    }
+    match &run.failure {
+        Some(Failure::Input(message)) => {
+            let _ = writeln!(text, "{}{message}", palette.paint(Paint::Bad, "stopped by an error: "));
+        }
+        Some(Failure::Bug(message)) => {
+            let _ = writeln!(text, "{}{message}", palette.paint(Paint::Bad, "stopped by a bug in smc: "));
+        }
+        None => {}
+    }
+    let _ = writeln!(text, "{}", summary(run, palette));
+    let _ = writeln!(text, "{} {}", palette.paint(Paint::Faint, "replay:"), run.replay);
+    text
+}
+
+/// The block of one result alone.
+pub fn block(result: &QueryResult, palette: Palette) -> String {
+    let mut text = String::new();
+    block::write(&mut text, result, palette);
+    text
+}
+
+/// Whether two successive results are of one query under different settings.
+fn same_sweep(a: &QueryResult, b: &QueryResult) -> bool {
+    let simple = |r: &QueryResult| r.compare.is_none() && r.rank.is_none();
+    a.index == b.index && !a.settings.is_empty() && !b.settings.is_empty() && simple(a) && simple(b)
+}
+
+fn summary(run: &Run, palette: Palette) -> String {
+    let number = |verdict| run.results.iter().filter(|r| r.verdict == verdict).count() as u64;
+    let parts: Vec<String> = [
+        (number(Some(Verdict::Satisfied)), "satisfied", Paint::Good),
+        (number(Some(Verdict::Violated)), "violated", Paint::Bad),
+        (number(Some(Verdict::Undecided)), "undecided", Paint::Caution),
+        (number(None), "computed", Paint::Neutral),
+    ]
+    .into_iter()
+    .filter(|(n, ..)| *n > 0)
+    .map(|(n, word, paint)| palette.paint(paint, &format!("{} {word}", count(n))))
+    .collect();
+    let trials = run.results.iter().map(|r| r.counts.trials).sum::<u64>();
+    let mut text = if parts.is_empty() { "no results".to_owned() } else { parts.join(", ") };
+    let _ = write!(text, "; {} in {}", counted(trials, "trial"), duration(run.elapsed_s));
+    if run.elapsed_s > 0.0 && trials > 0 {
+        let _ = write!(text, " ({} per second)", count((trials as f64 / run.elapsed_s).round() as u64));
+    }
+    text
+}

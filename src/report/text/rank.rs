@@ -1,0 +1,75 @@
+//! The block of a ranking: the choice, what is certified of it, and all options, best first.
+
+use super::block;
+use super::columns::Cell;
+use crate::engine::outcome::{QueryResult, Ranking, Status};
+use crate::report::number::{counted, plain};
+use crate::report::palette::{Paint, Palette};
+
+/// Writes the lines under the head.
+pub(super) fn write(text: &mut String, result: &QueryResult, ranking: &Ranking, palette: Palette) {
+    let choice = palette.paint(Paint::Good, &ranking.choice);
+    let unit = if result.unit.is_empty() { String::new() } else { format!(" {}", result.unit) };
+    let mut said = if ranking.gap.is_finite() {
+        format!("choose {choice}: at most {}{unit} worse than the best", upwards(ranking.gap))
+    } else {
+        format!("{choice} leads, but nothing is certified yet")
+    };
+    if ranking.tied {
+        said += "; tied with others within that gap";
+    }
+    block::line(text, &said);
+    let rows: Vec<Vec<Cell>> = ranking
+        .options
+        .iter()
+        .map(|option| {
+            let (estimate, interval) = block::printed(result, &option.value);
+            let paint = match option.status {
+                Status::Chosen => Paint::Good,
+                Status::Tied => Paint::Neutral,
+                Status::Beaten => Paint::Faint,
+                Status::Open => Paint::Caution,
+            };
+            let unresolved = match option.counts.unresolved {
+                0 => String::new(),
+                n => format!("{n} unresolved"),
+            };
+            vec![
+                Cell::left(option.label.clone()),
+                Cell::left(estimate),
+                Cell::left(interval),
+                Cell::right(counted(option.counts.trials, "trial")),
+                Cell::left(option.status.name()).paint(paint),
+                Cell::left(unresolved),
+            ]
+        })
+        .collect();
+    block::table(text, &rows, palette);
+    if !result.interval.is_empty() {
+        block::line(text, &palette.paint(Paint::Faint, &format!("intervals: {}", result.interval)));
+    }
+}
+
+/// A bound with two significant digits, rounded up.
+fn upwards(gap: f64) -> String {
+    let text = format!("{gap:.1e}");
+    let Ok(value) = text.parse::<f64>() else { return text };
+    if value >= gap {
+        return plain(value);
+    }
+    let exponent = text.split_once('e').and_then(|(_, e)| e.parse::<i32>().ok()).unwrap_or(0);
+    plain(value + format!("1e{}", exponent - 1).parse::<f64>().unwrap_or(0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::upwards;
+
+    #[test]
+    fn a_certified_gap_is_rounded_up() {
+        assert_eq!(upwards(0.0), "0");
+        assert_eq!(upwards(0.02), "0.02");
+        assert_eq!(upwards(0.017_23), "0.018");
+        assert_eq!(upwards(0.099_9), "0.1");
+    }
+}

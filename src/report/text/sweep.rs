@@ -1,0 +1,62 @@
+//! The block of a query swept over values of parameters: one row per setting.
+
+use super::block;
+use super::columns::Cell;
+use crate::engine::outcome::{Interval, QueryResult, Verdict};
+use crate::report::number::{count, counted};
+use crate::report::palette::{Paint, Palette};
+use crate::report::{certified, settings};
+
+/// Writes all results of one query.
+pub(super) fn write(text: &mut String, results: &[QueryResult], palette: Palette) {
+    let worst = |r: &&QueryResult| match r.verdict {
+        Some(Verdict::Violated) => 3,
+        Some(Verdict::Undecided) => 2,
+        Some(Verdict::Satisfied) => 1,
+        None => 0,
+    };
+    let Some(first) = results.iter().max_by_key(worst) else { return };
+    block::head(text, first, palette);
+    let rows: Vec<Vec<Cell>> = results.iter().map(row).collect();
+    block::table(text, &rows, palette);
+    if !first.interval.is_empty() && results.iter().all(|r| r.interval == first.interval) {
+        block::line(text, &palette.paint(Paint::Faint, &format!("intervals: {}", first.interval)));
+    }
+    block::method(text, first, palette);
+    let statement = certified(first);
+    if results.iter().all(|r| certified(r) == statement) {
+        if !statement.is_empty() {
+            block::line(text, &format!("certified, each: {statement}"));
+        }
+    } else {
+        for result in results.iter().filter(|r| !r.certifies.is_empty()) {
+            block::line(text, &format!("certified for {}: {}", settings(result), certified(result)));
+        }
+    }
+    for result in results {
+        block::remarks(text, result, &format!("{}: ", settings(result)), palette);
+        for witness in &result.witnesses {
+            block::witness(text, witness, palette);
+        }
+    }
+}
+
+fn row(result: &QueryResult) -> Vec<Cell> {
+    let (word, paint) = block::word(result);
+    let word = if result.verdict.is_some() { word } else { "" };
+    let (estimate, interval) = result.estimate.map_or_else(Default::default, |estimate| {
+        block::printed(result, &Interval { estimate, low: result.low, high: result.high })
+    });
+    let unresolved = match result.counts.unresolved {
+        0 => String::new(),
+        n => format!("{} unresolved", count(n)),
+    };
+    vec![
+        Cell::left(settings(result)),
+        Cell::left(word).paint(paint),
+        Cell::left(estimate).paint(Paint::Strong),
+        Cell::left(interval),
+        Cell::right(counted(result.counts.trials, "trial")),
+        Cell::left(unresolved),
+    ]
+}

@@ -1,0 +1,367 @@
+//! Every report format over one rich run.
+
+use smc::engine::outcome::{
+    Comparison, Counts, Distribution, Failure, Histogram, Interval, Kind, Method, Quantile, QueryResult,
+    RankedOption, Ranking, Run, Side, Status, Stop, Verdict, Witness,
+};
+use smc::report::{ExitCode, Format, Palette, exit_code, json, render};
+
+fn counts(successes: u64, failures: u64, unresolved: u64) -> Counts {
+    Counts { trials: successes + failures + unresolved, successes, failures, unresolved }
+}
+
+fn value(estimate: f64, low: f64, high: f64) -> Interval {
+    Interval { estimate, low, high }
+}
+
+fn method(name: &str, numbers: &[(&str, f64)]) -> Method {
+    Method { name: name.into(), numbers: numbers.iter().map(|&(n, v)| (n.to_owned(), v)).collect() }
+}
+
+fn result(index: usize, kind: Kind, query: &str) -> QueryResult {
+    QueryResult {
+        file: "corridor.bltl".into(),
+        line: 10 + index,
+        replay: format!("smc check corridor.scn corridor.bltl --seed 7 --only {index}"),
+        elapsed_s: 0.021,
+        steps: 29_117,
+        ..QueryResult::new(index, kind, query)
+    }
+}
+
+fn checks() -> Vec<QueryResult> {
+    let safe = "check P(safe) >= 0.5 by sprt(alpha = 0.01,\n    beta = 0.01, indifference = 0.02)";
+    vec![
+        QueryResult {
+            name: Some("safe".into()),
+            verdict: Some(Verdict::Satisfied),
+            certifies: "P(safe) > 0.48, error at most 0.01".into(),
+            estimate: Some(0.939_393_94),
+            low: 0.8412,
+            high: 0.9813,
+            interval: "time-uniform, 95 %".into(),
+            method: method(
+                "sprt",
+                &[("alpha", 0.01), ("beta", 0.01), ("theta", 0.5), ("indifference", 0.02)],
+            ),
+            counts: counts(62, 4, 0),
+            stopped_by: Stop::Boundary,
+            witnesses: vec![Witness {
+                passing: false,
+                trial: 17,
+                time: 3.42,
+                what: "gap(oncoming[4]) > 0.1 m".into(),
+                command: "smc simulate corridor.scn --seed 7 --trial 17".into(),
+            }],
+            ..result(0, Kind::Check, safe)
+        },
+        QueryResult {
+            name: Some("arrives".into()),
+            verdict: Some(Verdict::Violated),
+            certifies: "P(arrives) < 0.3, error at most 0.01".into(),
+            within: Some("the horizon of 30 s".into()),
+            estimate: Some(0.0),
+            low: 0.0,
+            high: 0.066_1,
+            interval: "time-uniform, 95 %".into(),
+            method: method("mixture", &[("theta", 0.3), ("alpha", 0.01)]),
+            counts: counts(0, 88, 0),
+            stopped_by: Stop::Boundary,
+            warnings: vec!["never true in any trial: is the goal reachable?".into()],
+            ..result(1, Kind::Check, "check P(arrives) >= 0.3")
+        },
+        QueryResult {
+            name: Some("brief".into()),
+            verdict: Some(Verdict::Undecided),
+            estimate: Some(0.900_12),
+            low: 0.899_5,
+            high: 0.900_7,
+            interval: "time-uniform, 95 %".into(),
+            method: method("mixture", &[("theta", 0.9), ("alpha", 0.01)]),
+            counts: counts(900_119, 99_876, 5),
+            stopped_by: Stop::Cap,
+            elapsed_s: 128.4,
+            ..result(2, Kind::Check, "check P(brief) >= 0.9")
+        },
+    ]
+}
+
+fn estimates() -> Vec<QueryResult> {
+    let sweep = |density: &str, successes, failures, estimate, low, high| QueryResult {
+        settings: vec![("density".into(), density.into())],
+        certifies: "the interval holds with confidence 95 %".into(),
+        estimate: Some(estimate),
+        low,
+        high,
+        interval: "calibrated sequential, 95 %".into(),
+        method: method("calibrated", &[("epsilon", 0.01), ("delta", 0.05)]),
+        counts: counts(successes, failures, 0),
+        stopped_by: Stop::Width,
+        ..result(3, Kind::Estimate, "estimate P(safe) within 0.01 confidence 95 %")
+    };
+    vec![
+        sweep("0.2 /m^2", 2_228, 112, 0.952_1, 0.943_2, 0.961_0),
+        sweep("0.8 /m^2", 5_912, 3_630, 0.619_6, 0.609_8, 0.629_3),
+        QueryResult {
+            estimate: Some(-0.041_7),
+            low: -0.046_6,
+            high: -0.036_7,
+            unit: "m".into(),
+            interval: "time-uniform, 95 %".into(),
+            certifies: "the interval holds with confidence 95 %".into(),
+            method: method("betting", &[("delta", 0.05)]),
+            counts: Counts { trials: 1_000, unresolved: 2, ..Counts::default() },
+            clipped: 3,
+            shrunk: 40,
+            stopped_by: Stop::Plan,
+            distribution: Some(Distribution {
+                histogram: Some(Histogram {
+                    low: -0.5,
+                    high: 1.5,
+                    counts: vec![2, 0, 12, 140, 320, 270, 130, 80, 40, 4],
+                    beyond: 0,
+                }),
+                quantiles: vec![],
+            }),
+            ..result(4, Kind::Estimate, "estimate E(min<=10 s (gap(a))) in -0.5 m .. 20 m")
+        },
+        QueryResult {
+            estimate: Some(f64::INFINITY),
+            low: 28.31,
+            high: f64::INFINITY,
+            censored: Some(30.0),
+            unit: "s".into(),
+            interval: "order statistics, 95 %".into(),
+            certifies: "the interval holds with confidence 95 %".into(),
+            within: Some("the horizon of 30 s".into()),
+            method: method("order-statistics", &[("level", 0.95), ("trials", 1000.0)]),
+            counts: Counts { trials: 1_000, ..Counts::default() },
+            distribution: Some(Distribution {
+                histogram: None,
+                quantiles: vec![
+                    Quantile { level: 0.5, value: value(21.42, 21.11, 21.73) },
+                    Quantile { level: 0.95, value: value(f64::INFINITY, 28.31, f64::INFINITY) },
+                ],
+            }),
+            ..result(5, Kind::Estimate, "estimate Q(0.95, time_until(user in exit))")
+        },
+    ]
+}
+
+fn compare() -> QueryResult {
+    let side = |label: &str, value, counts| Side { label: label.into(), value, counts };
+    QueryResult {
+        estimate: Some(0.336),
+        low: 0.309,
+        high: 0.363,
+        certifies: "the difference lies in the interval with confidence 95 %".into(),
+        interval: "time-uniform, 95 %, common random numbers".into(),
+        method: method("paired", &[("delta", 0.05)]),
+        counts: counts(3_293, 906, 1),
+        stopped_by: Stop::Width,
+        compare: Some(Comparison {
+            first: side("density = 0.2 /m^2", value(0.952, 0.936, 0.965), counts(2_000, 100, 0)),
+            second: side("density = 0.8 /m^2", value(0.616, 0.588, 0.643), counts(1_293, 806, 1)),
+            difference: side(
+                "first - second",
+                value(0.336, 0.309, 0.363),
+                Counts { trials: 2_100, ..counts(780, 73, 1) },
+            ),
+        }),
+        ..result(6, Kind::Compare, "compare P(safe) under density = 0.2 /m^2 with density = 0.8 /m^2")
+    }
+}
+
+fn rank() -> QueryResult {
+    let option =
+        |label: &str, value, counts, status| RankedOption { label: label.into(), value, counts, status };
+    QueryResult {
+        estimate: Some(0.911),
+        low: 0.887,
+        high: 0.932,
+        certifies: "heading 15 deg is within 0.02 of the best, confidence 95 %".into(),
+        interval: "time-uniform, 95 %, common random numbers".into(),
+        method: method("paired-betting", &[("epsilon", 0.02), ("delta", 0.05)]),
+        counts: counts(2_700, 500, 0),
+        stopped_by: Stop::Width,
+        rank: Some(Ranking {
+            choice: "heading 15 deg".into(),
+            gap: 0.017_23,
+            tied: true,
+            options: vec![
+                option("heading 15 deg", value(0.911, 0.887, 0.932), counts(1_399, 137, 0), Status::Chosen),
+                option("heading 0 deg", value(0.905, 0.879, 0.926), counts(1_390, 146, 0), Status::Tied),
+                option("heading -60 deg", value(0.71, 0.62, 0.79), counts(90, 37, 1), Status::Open),
+                option("stop", value(0.0, 0.0, 0.041), counts(0, 128, 0), Status::Beaten),
+            ],
+        }),
+        ..result(7, Kind::Rank, "rank moves of user by P(safe) within 0.02 confidence 95 %")
+    }
+}
+
+fn run() -> Run {
+    let mut results = checks();
+    results.extend(estimates());
+    results.extend([compare(), rank()]);
+    Run {
+        scenario: "Corridor with an oncoming crowd".into(),
+        seed: 7,
+        version: "0.1.0".into(),
+        results,
+        warnings: vec!["param width is never used".into()],
+        replay: "smc check corridor.scn corridor.bltl --seed 7 --set 'density=0.2..0.8 by 0.6'".into(),
+        elapsed_s: 130.2,
+        ..Run::default()
+    }
+}
+
+#[test]
+fn text() {
+    insta::assert_snapshot!(render(&run(), Format::Text, Palette::PLAIN));
+}
+
+#[test]
+fn text_in_colour_says_the_same() {
+    let painted = render(&run(), Format::Text, Palette::ANSI);
+    let mut plain = String::new();
+    for (k, part) in painted.split('\u{1b}').enumerate() {
+        plain += if k == 0 { part } else { part.split_once('m').expect("a code ends with m").1 };
+    }
+    assert_ne!(painted, plain);
+    assert_eq!(plain, render(&run(), Format::Text, Palette::PLAIN));
+}
+
+#[test]
+fn text_of_a_run_that_ended_early() {
+    let mut run = Run { interrupted: true, warnings: vec![], ..run() };
+    run.results.truncate(1);
+    run.results[0].stopped_by = Stop::Interrupt;
+    run.failure = Some(Failure::Input("trial 12: two commands of `die` are enabled, s = 3".into()));
+    insta::assert_snapshot!(render(&run, Format::Text, Palette::PLAIN));
+    assert_eq!(exit_code(&run), ExitCode::Wrong);
+    assert_eq!(exit_code(&Run { failure: None, ..run }).code(), 130);
+}
+
+#[test]
+fn text_ends_with_the_replay_line_even_without_results() {
+    let empty = Run { replay: "smc check a b".into(), ..Run::default() };
+    assert_eq!(
+        render(&empty, Format::Text, Palette::PLAIN),
+        "no results; 0 trials in 0 µs\nreplay: smc check a b\n"
+    );
+}
+
+#[test]
+fn json_object() {
+    insta::assert_snapshot!(render(&run(), Format::Json, Palette::ANSI));
+}
+
+#[test]
+fn json_has_the_promised_fields_in_order() {
+    let promised = [
+        "index",
+        "name",
+        "query",
+        "kind",
+        "verdict",
+        "certifies",
+        "within",
+        "estimate",
+        "low",
+        "high",
+        "unit",
+        "interval",
+        "method",
+        "trials",
+        "successes",
+        "failures",
+        "unresolved",
+        "clipped",
+        "steps",
+        "stopped_by",
+        "replay",
+        "elapsed_s",
+    ];
+    let object = json::object(&run());
+    let top: Vec<&str> = object.as_object().unwrap().keys().map(String::as_str).take(5).collect();
+    assert_eq!(top, ["schema", "scenario", "seed", "version", "results"]);
+    for result in object["results"].as_array().unwrap() {
+        let keys: Vec<&str> = result
+            .as_object()
+            .unwrap()
+            .keys()
+            .map(String::as_str)
+            .filter(|key| promised.contains(key))
+            .collect();
+        assert_eq!(keys, promised);
+    }
+}
+
+#[test]
+fn json_fits_its_schema_and_the_schema_is_strict() {
+    let schema = serde_json::from_str(include_str!("../docs/schema/verdict.schema.json")).unwrap();
+    assert!(jsonschema::draft202012::meta::is_valid(&schema));
+    let validator = jsonschema::draft202012::new(&schema).unwrap();
+    let good = json::object(&run());
+    let faults: Vec<String> =
+        validator.iter_errors(&good).map(|e| format!("{}: {e}", e.instance_path)).collect();
+    assert_eq!(faults, [""; 0]);
+    let mut failed = run();
+    failed.failure = Some(Failure::Bug("index out of range".into()));
+    assert!(validator.is_valid(&json::object(&failed)));
+
+    let broken = |change: &dyn Fn(&mut serde_json::Value)| {
+        let mut object = good.clone();
+        change(&mut object);
+        !validator.is_valid(&object)
+    };
+    assert!(broken(&|o| o["schema"] = 2.into()));
+    assert!(broken(&|o| o["results"][0]["verdict"] = "maybe".into()));
+    assert!(broken(&|o| o["results"][0]["verdict"] = serde_json::Value::Null));
+    assert!(broken(&|o| o["results"][3]["verdict"] = "satisfied".into()));
+    assert!(broken(&|o| o["results"][0]["trials"] = (-1).into()));
+    assert!(broken(&|o| o["results"][7]["difference"]["low"] = "x".into()));
+    for field in ["certifies", "estimate", "unresolved", "stopped_by", "replay"] {
+        assert!(broken(&|o| drop(o["results"][0].as_object_mut().unwrap().shift_remove(field))), "{field}");
+    }
+    assert!(broken(&|o| drop(o["results"][8].as_object_mut().unwrap().shift_remove("options"))));
+}
+
+#[test]
+fn json_knows_no_infinity() {
+    let object = json::object(&run());
+    let quantile = &object["results"][6];
+    assert_eq!(
+        (&quantile["estimate"], &quantile["high"]),
+        (&serde_json::Value::Null, &serde_json::Value::Null)
+    );
+    assert_eq!(quantile["censored"], true);
+    assert_eq!(object["results"][5]["censored"], false);
+}
+
+#[test]
+fn junit() {
+    insta::assert_snapshot!(render(&run(), Format::Junit, Palette::PLAIN));
+}
+
+#[test]
+fn junit_is_red_where_the_run_failed() {
+    let failed = Run { failure: Some(Failure::Bug("\u{0}<&>".into())), ..Run::default() };
+    let text = render(&failed, Format::Junit, Palette::PLAIN);
+    assert!(text.contains("errors=\"1\"") && text.contains("&lt;&amp;&gt;"), "{text}");
+}
+
+#[test]
+fn github() {
+    insta::assert_snapshot!(render(&run(), Format::Github, Palette::PLAIN));
+}
+
+#[test]
+fn the_exit_code_is_that_of_the_worst_check() {
+    assert_eq!(exit_code(&run()), ExitCode::Violated);
+    let mut run = run();
+    run.results.retain(|r| r.verdict != Some(Verdict::Violated));
+    assert_eq!(exit_code(&run), ExitCode::Undecided);
+    run.results.retain(|r| r.verdict != Some(Verdict::Undecided));
+    assert_eq!(exit_code(&run), ExitCode::Success);
+}
