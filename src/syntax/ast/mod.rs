@@ -1,12 +1,17 @@
 //! Syntax trees of both languages. Every node knows its place; nothing is resolved yet.
 
 pub mod expression;
+pub mod process;
 pub mod property;
 pub mod scenario;
 
 pub use expression::{
-    Aggregate, BinaryOp, Bound, Expr, ExprKind, Ident, Moment, Quantifier, Quantity, Text, UnaryOp, UnitExpr,
-    UnitFactor,
+    Aggregate, BinaryOp, Bound, Expr, ExprKind, Ident, Moment, Quantifier, Quantity, Temporal, TemporalPair,
+    Text, UnaryOp, UnitExpr, UnitFactor,
+};
+pub use process::{
+    BehaviourDecl, BehaviourItem, Branch, Choice, Command, Domain, OnDecl, ProcessDecl, ProcessItem, SourceDecl,
+    StateDecl, Timing, Transition, Update, VarDecl,
 };
 pub use property::{
     Binding, Clauses, Measure, MeasureKind, Method, PropertyFile, PropertyItem, Query, QueryKind,

@@ -1,6 +1,6 @@
 //! Scenario files (`.scn`).
 
-use super::{Expr, Ident, Text};
+use super::{BehaviourDecl, Expr, Ident, ProcessDecl, SourceDecl, Text};
 use crate::syntax::source::Span;
 
 /// A whole scenario file.
@@ -59,6 +59,12 @@ pub enum Item {
     Group(GroupDecl),
     /// `moves user for 2 s { … }`
     Moves(MovesDecl),
+    /// `process queue { … }`
+    Process(ProcessDecl),
+    /// `behaviour phone { … }`
+    Behaviour(BehaviourDecl),
+    /// `source doors: adult { … }`
+    Source(SourceDecl),
 }
 
 /// `let gap(a) = distance(user, a) - radius(a)`; without arguments a named expression.

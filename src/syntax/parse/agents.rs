@@ -1,0 +1,150 @@
+//! Kinds, agents, groups, sources, and the values of their fields.
+
+use super::builder::{Builder, Pair, Parts};
+use super::grammar::Rule;
+use crate::syntax::ast::{
+    AgentsDecl, Expr, Field, GroupDecl, KindDecl, Leg, Recorded, Route, SourceDecl, Value,
+};
+
+impl Builder<'_> {
+    pub(super) fn kind(&mut self, pair: Pair<'_>) -> Option<KindDecl> {
+        let mut parts = Parts::of(pair);
+        let name = self.ident(&parts.part(Rule::name)?);
+        let base = self.ident(&parts.part(Rule::name)?);
+        let preset = match parts.part(Rule::preset) {
+            Some(preset) => Some(self.ident(&Parts::of(preset).part(Rule::name)?)),
+            None => None,
+        };
+        Some(KindDecl { name, base, preset, body: self.body(parts) })
+    }
+
+    pub(super) fn agents(&mut self, pair: Pair<'_>) -> Option<AgentsDecl> {
+        let plural = pair.clone().into_inner().next()?.as_rule() == Rule::kw_agents;
+        let mut parts = Parts::of(pair);
+        let name = self.declared(&parts.part(Rule::name)?);
+        let count = self.size(&mut parts)?;
+        let kind = self.ident(&parts.part(Rule::name)?);
+        let (mut with, mut recorded) = (Vec::new(), None);
+        loop {
+            if let Some(clause) = parts.part(Rule::with) {
+                with = self.with(clause)?;
+            } else if let Some(clause) = parts.part(Rule::recorded) {
+                recorded = Some(self.recorded(clause)?);
+            } else {
+                break;
+            }
+        }
+        Some(AgentsDecl { plural, name, count, kind, with, recorded, body: self.body(parts) })
+    }
+
+    pub(super) fn group(&mut self, pair: Pair<'_>) -> Option<GroupDecl> {
+        let mut parts = Parts::of(pair);
+        let name = self.declared(&parts.part(Rule::name)?);
+        let count = self.size(&mut parts)??;
+        let kind = self.ident(&parts.part(Rule::name)?);
+        let particle = parts.part(Rule::particle).map(|particle| self.span(&particle));
+        let with = match parts.part(Rule::with) {
+            Some(clause) => self.with(clause)?,
+            None => Vec::new(),
+        };
+        Some(GroupDecl { name, count, kind, particle, with, body: self.body(parts) })
+    }
+
+    pub(super) fn source_decl(&mut self, pair: Pair<'_>) -> Option<SourceDecl> {
+        let span = self.span(&pair);
+        let mut parts = Parts::of(pair);
+        let name = self.declared(&parts.part(Rule::name)?);
+        let kind = self.ident(&parts.part(Rule::name)?);
+        let with = match parts.part(Rule::with) {
+            Some(clause) => self.with(clause)?,
+            None => Vec::new(),
+        };
+        Some(SourceDecl { name, kind, with, body: self.body(parts), span })
+    }
+
+    /// `[n]`; the outer `None` is a failure, the inner one is no size.
+    #[allow(clippy::option_option, reason = "a failure is not the absence of a size")]
+    pub(super) fn size(&mut self, parts: &mut Parts<'_>) -> Option<Option<Expr>> {
+        match parts.part(Rule::size) {
+            Some(size) => self.expr(Parts::of(size).part(Rule::expr)?).map(Some),
+            None => Some(None),
+        }
+    }
+
+    fn with(&mut self, pair: Pair<'_>) -> Option<Vec<Expr>> {
+        Parts::of(pair).map(|attached| self.attached(attached)).collect()
+    }
+
+    fn recorded(&mut self, pair: Pair<'_>) -> Option<Recorded> {
+        let span = self.span(&pair);
+        let mut parts = Parts::of(pair);
+        let tracks = self.ident(&parts.part(Rule::name)?);
+        let at = self.expr(parts.part(Rule::arith)?)?;
+        let mut ids = |pair: Option<Pair<'_>>| match pair {
+            Some(pair) => Parts::of(pair).map(|id| self.expr(id)).collect::<Option<Vec<_>>>(),
+            None => Some(Vec::new()),
+        };
+        let only = ids(parts.part(Rule::only))?;
+        let except = ids(parts.part(Rule::except))?;
+        Some(Recorded { tracks, at, only, except, span })
+    }
+
+    fn body(&mut self, mut parts: Parts<'_>) -> Vec<Field> {
+        let Some(fields) = parts.part(Rule::fields) else { return Vec::new() };
+        self.report_faults(&fields);
+        Parts::of(fields)
+            .filter(|part| part.as_rule() == Rule::field)
+            .filter_map(|field| self.field(field))
+            .collect()
+    }
+
+    pub(super) fn field(&mut self, pair: Pair<'_>) -> Option<Field> {
+        let mut parts = Parts::of(pair);
+        let name = self.ident(&parts.part(Rule::ident)?);
+        let value = parts.part(Rule::value)?.into_inner().next()?;
+        Some(Field { name, value: self.value(value)? })
+    }
+
+    /// The value of a field, a wait or a delay.
+    pub(super) fn value(&mut self, pair: Pair<'_>) -> Option<Value> {
+        match pair.as_rule() {
+            Rule::uniform_in => Some(Value::UniformIn(self.shape(Parts::of(pair).part(Rule::shape)?)?)),
+            Rule::near => {
+                let mut parts = Parts::of(pair);
+                let agent = self.expr(parts.part(Rule::operand_of)?)?;
+                Some(Value::Near { agent, within: self.expr(parts.part(Rule::arith)?)? })
+            }
+            Rule::route => self.route(pair).map(Value::Route),
+            Rule::truncated => {
+                let (law, low, high) = self.truncated(pair)?;
+                Some(Value::Truncated { law, low, high })
+            }
+            _ => self.expr(pair).map(Value::Plain),
+        }
+    }
+
+    /// `law in low .. high`
+    pub(super) fn truncated(&mut self, pair: Pair<'_>) -> Option<(Expr, Expr, Expr)> {
+        let mut parts = Parts::of(pair);
+        let law = self.expr(parts.part(Rule::arith)?)?;
+        let low = self.expr(parts.part(Rule::arith)?)?;
+        Some((law, low, self.expr(parts.part(Rule::arith)?)?))
+    }
+
+    fn route(&mut self, pair: Pair<'_>) -> Option<Route> {
+        let mut route = Route { legs: Vec::new(), then_leave: None };
+        for part in Parts::of(pair) {
+            if part.as_rule() == Rule::then_leave {
+                route.then_leave = Some(self.span(&part));
+                continue;
+            }
+            let leg = part.into_inner().next()?;
+            route.legs.push(if leg.as_rule() == Rule::wait {
+                Leg::Wait(Box::new(self.value(Parts::of(leg).next()?)?))
+            } else {
+                Leg::Goal(self.expr(leg)?)
+            });
+        }
+        Some(route)
+    }
+}

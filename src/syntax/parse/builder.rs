@@ -1,0 +1,144 @@
+//! What the tree builders share: the source, what was said so far, and walking pest's pairs.
+//!
+//! The grammar fixes the shape of every pair, so the builders take the parts in order and give up
+//! (`None`) on one that is not there; nothing panics.
+
+use super::grammar::Rule;
+use crate::syntax::ast::{Ident, Text};
+use crate::syntax::codes::syntax as code;
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::{Source, Span};
+
+pub(super) type Pair<'i> = pest::iterators::Pair<'i, Rule>;
+
+/// Builds trees and collects diagnostics.
+pub(super) struct Builder<'s> {
+    pub(super) source: &'s Source,
+    /// The part of the text that was parsed: all of it, or what stands before a comment that never ends.
+    pub(super) text: &'s str,
+    pub(super) diagnostics: Vec<Diagnostic>,
+}
+
+/// Whether a pair is only a mark or keyword.
+pub(super) fn is_mark(rule: Rule) -> bool {
+    matches!(
+        rule,
+        Rule::t_lparen
+            | Rule::t_rparen
+            | Rule::t_lbracket
+            | Rule::t_rbracket
+            | Rule::t_lbrace
+            | Rule::t_rbrace
+            | Rule::t_comma
+            | Rule::t_semi
+            | Rule::t_colon
+            | Rule::t_dot
+            | Rule::t_dots
+            | Rule::t_arrow
+            | Rule::t_line
+            | Rule::t_assign
+            | Rule::t_bar
+    ) || super::nouns::keyword(rule).is_some()
+}
+
+/// The parts of a pair without marks and keywords, in order.
+pub(super) struct Parts<'i> {
+    pairs: std::iter::Peekable<std::vec::IntoIter<Pair<'i>>>,
+}
+
+impl<'i> Parts<'i> {
+    pub(super) fn of(pair: Pair<'i>) -> Self {
+        let pairs: Vec<_> = pair.into_inner().filter(|part| !is_mark(part.as_rule())).collect();
+        Self { pairs: pairs.into_iter().peekable() }
+    }
+
+    /// The next part, if it is of this rule.
+    pub(super) fn part(&mut self, rule: Rule) -> Option<Pair<'i>> {
+        self.pairs.next_if(|part| part.as_rule() == rule)
+    }
+
+    /// Rule of the next part.
+    pub(super) fn rule(&mut self) -> Option<Rule> {
+        self.pairs.peek().map(Pair::as_rule)
+    }
+}
+
+impl<'i> Iterator for Parts<'i> {
+    type Item = Pair<'i>;
+
+    fn next(&mut self) -> Option<Pair<'i>> {
+        self.pairs.next()
+    }
+}
+
+/// End of the last token of a pair. Pest counts the blanks before a part that turned out empty as part
+/// of the pair.
+pub(super) fn end_of(pair: &Pair<'_>) -> usize {
+    let span = pair.as_span();
+    match pair.clone().into_inner().rev().find(|part| part.as_span().end() > part.as_span().start()) {
+        Some(last) => end_of(&last),
+        None => span.end(),
+    }
+}
+
+impl Builder<'_> {
+    /// Where a pair stands, without blanks after it.
+    pub(super) fn span(&self, pair: &Pair<'_>) -> Span {
+        Span::new(self.source.id, pair.as_span().start(), end_of(pair))
+    }
+
+    pub(super) fn say(&mut self, diagnostic: Diagnostic) {
+        self.diagnostics.push(diagnostic);
+    }
+
+    pub(super) fn ident(&self, pair: &Pair<'_>) -> Ident {
+        Ident { name: pair.as_str().to_owned(), span: self.span(pair) }
+    }
+
+    /// A name that is declared and may then stand in expressions.
+    pub(super) fn declared(&mut self, pair: &Pair<'_>) -> Ident {
+        let ident = self.ident(pair);
+        if super::quantity::UNITS.contains(&ident.name.as_str()) {
+            let name = &ident.name;
+            let warning = Diagnostic::warning(
+                code::NAME_IS_UNIT,
+                ident.span,
+                format!("the name `{name}` is also a unit"),
+            )
+            .hint(format!("after a number `{name}` is read as the unit: `2 {name}` never means this name; choose another"));
+            self.say(warning);
+        }
+        ident
+    }
+
+    /// A quoted text, escapes resolved.
+    pub(super) fn quoted(&mut self, pair: &Pair<'_>) -> Text {
+        let span = self.span(pair);
+        let inner = pair.as_str().trim_start_matches('"');
+        let inner = inner.strip_suffix('"').unwrap_or(inner);
+        let mut value = String::with_capacity(inner.len());
+        let mut characters = pair.as_str().char_indices().skip(1);
+        while let Some((at, character)) = characters.next() {
+            match character {
+                '"' => break,
+                '\\' => match characters.next() {
+                    Some((_, 'n')) => value.push('\n'),
+                    Some((_, 't')) => value.push('\t'),
+                    Some((_, plain @ ('"' | '\\'))) => value.push(plain),
+                    other => {
+                        let unknown = other.map_or(' ', |(_, c)| c);
+                        let start = span.start as usize + at;
+                        let place = Span::new(span.source, start, start + 1 + unknown.len_utf8());
+                        self.say(
+                            Diagnostic::error(code::ESCAPE, place, format!("unknown escape `\\{unknown}`"))
+                                .hint("known are `\\\"`, `\\\\`, `\\n` and `\\t`"),
+                        );
+                        value.push(unknown);
+                    }
+                },
+                plain => value.push(plain),
+            }
+        }
+        Text { value, span }
+    }
+}

@@ -1,0 +1,247 @@
+//! From a part of the text that no rule takes to one diagnostic at the exact place.
+//!
+//! The grammar wraps what it cannot take in `bad_…` rules. Such a part is parsed again with the strict rule of
+//! its context, from its own start and from the start of the declaration before it (which may have
+//! ended early); the farthest failure is the error.
+
+use super::builder::{Builder, Pair, end_of};
+use super::grammar::{Grammar, Rule};
+use super::{lexeme, nesting, nouns};
+use crate::syntax::codes::syntax as code;
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+use pest::Parser;
+use pest::error::{ErrorVariant, InputLocation};
+
+/// Where the strict rule failed, and what it would have taken there.
+pub(super) struct Fault<'t> {
+    /// Byte of the failure.
+    pub(super) at: usize,
+    /// What stands there; empty at the end of the text.
+    pub(super) found: &'t str,
+    /// What could have stood there.
+    pub(super) expected: Vec<Rule>,
+    /// Start of the declaration.
+    pub(super) from: usize,
+}
+
+impl Fault<'_> {
+    /// Whether an operator could have stood there: the place is after a value.
+    pub(super) fn after_value(&self) -> bool {
+        self.expected.iter().any(|&rule| nouns::is_operator(rule))
+    }
+}
+
+/// The strict rule for what a bad part was meant to be.
+fn strict_rule(bad: Rule) -> Option<Rule> {
+    Some(match bad {
+        Rule::bad_item => Rule::strict_item,
+        Rule::bad_property_item => Rule::strict_property_item,
+        Rule::bad_scene_item => Rule::strict_scene_item,
+        Rule::bad_field => Rule::strict_field,
+        Rule::bad_move => Rule::strict_move,
+        Rule::bad_process_item => Rule::strict_process_item,
+        Rule::bad_behaviour_item => Rule::strict_behaviour_item,
+        Rule::bad_state_item => Rule::strict_state_item,
+        _ => return None,
+    })
+}
+
+impl Builder<'_> {
+    /// Looks through the direct parts of a block or file and reports the bad ones.
+    pub(super) fn report_faults(&mut self, block: &Pair<'_>) {
+        let text = self.text;
+        let mut before: Option<Pair<'_>> = None;
+        let mut last_bad_end = None;
+        for part in block.clone().into_inner() {
+            let rule = part.as_rule();
+            if let Some(strict) = strict_rule(rule) {
+                let start = part.as_span().start();
+                // What follows a bad part on its line is a consequence of it.
+                let same_line = last_bad_end.is_some_and(|end: usize| !text[end..start].contains('\n'));
+                if !same_line {
+                    let fault = self.fault(strict, &part, before.as_ref());
+                    let diagnostic = self.describe(&fault);
+                    self.say(diagnostic);
+                }
+                last_bad_end = Some(end_of(&part));
+                before = None;
+            } else if rule == Rule::missing_brace || rule == Rule::missing_decl {
+                self.missing_brace(block, part.as_span().start());
+            } else if rule == Rule::t_semi {
+                before = None;
+            } else {
+                last_bad_end = None;
+                let is_member = !super::builder::is_mark(rule) && part.as_span().start() < part.as_span().end();
+                before = is_member.then_some(part);
+            }
+        }
+    }
+
+    fn missing_brace(&mut self, block: &Pair<'_>, at: usize) {
+        let found = lexeme::first(&self.text[at..]);
+        let place = self.place(at, found);
+        let mut diagnostic = Diagnostic::error(code::UNCLOSED, place, format!("expected `}}`, found {}", quote(found)));
+        if let Some((open, _)) = nesting::open_bracket(self.text, block.as_span().start(), at) {
+            let span = Span::new(self.source.id, open, open + 1);
+            diagnostic = diagnostic.related(span, "this `{` is not closed");
+        }
+        self.say(diagnostic);
+    }
+
+    fn fault<'t>(&self, strict: Rule, bad: &Pair<'_>, before: Option<&Pair<'_>>) -> Fault<'t>
+    where
+        Self: 't,
+    {
+        let start = bad.as_span().start();
+        let mut fault = Fault { at: start, found: "", expected: Vec::new(), from: start };
+        let starts = before.map(|pair| pair.as_span().start()).into_iter().chain([start]);
+        for from in starts {
+            if let Some((at, expected)) = failure(strict, self.text, from) {
+                if at > fault.at {
+                    fault = Fault { at, expected, from, ..fault };
+                } else if at == fault.at {
+                    if fault.expected.is_empty() {
+                        fault.from = from;
+                    }
+                    fault.expected.extend(expected);
+                }
+            }
+        }
+        fault
+    }
+
+    /// The place of a token.
+    pub(super) fn place(&self, at: usize, found: &str) -> Span {
+        if found.is_empty() {
+            // At the end of the text: right after its last token.
+            let end = self.text.trim_end().len();
+            let end = last_token_end(self.text, end);
+            return Span::new(self.source.id, end, end);
+        }
+        Span::new(self.source.id, at, at + found.len())
+    }
+
+    fn describe(&self, fault: &Fault<'_>) -> Diagnostic {
+        let fault = Fault {
+            at: fault.at,
+            found: lexeme::first(&self.text[fault.at..]),
+            expected: fault.expected.clone(),
+            from: fault.from,
+        };
+        if let Some(slip) = self.slip(&fault) {
+            return slip;
+        }
+        let place = self.place(fault.at, fault.found);
+        let mut diagnostic = if matches!(fault.found, ")" | "]" | "}") && self.closes_nothing(&fault) {
+            Diagnostic::error(code::STRAY, place, format!("`{}` closes nothing", fault.found))
+        } else {
+            let expected = expected_nouns(&fault.expected);
+            let title = if expected.is_empty() {
+                format!("unexpected {}", quote(fault.found))
+            } else {
+                format!("expected {expected}, found {}", quote(fault.found))
+            };
+            Diagnostic::error(code::UNEXPECTED, place, title)
+        };
+        if fault.expected.contains(&Rule::t_rparen) || fault.expected.contains(&Rule::t_rbracket) {
+            if let Some((open, bracket)) = nesting::open_bracket(self.text, fault.from, fault.at) {
+                let span = Span::new(self.source.id, open, open + 1);
+                diagnostic = diagnostic.related(span, format!("this `{bracket}` is still open"));
+            }
+        }
+        if let Some(word) = self.meant(&fault) {
+            diagnostic = diagnostic.hint(format!("did you mean `{word}`?"));
+        }
+        diagnostic
+    }
+
+    fn closes_nothing(&self, fault: &Fault<'_>) -> bool {
+        let wanted = match fault.found {
+            ")" => '(',
+            "]" => '[',
+            _ => '{',
+        };
+        nesting::open_bracket(self.text, 0, fault.at).is_none_or(|(_, open)| open != wanted && fault.found != "}")
+    }
+
+    /// The keyword that was probably meant.
+    fn meant(&self, fault: &Fault<'_>) -> Option<&'static str> {
+        if !fault.found.starts_with(lexeme::starts_name) {
+            return None;
+        }
+        let known = fault.expected.iter().flat_map(|&rule| {
+            nouns::keyword(rule).into_iter().chain(nouns::words(rule).iter().copied())
+        });
+        nouns::nearest(fault.found, known)
+    }
+}
+
+/// The farthest failure of a rule from a byte on, and what it would have taken there.
+fn failure(strict: Rule, text: &str, from: usize) -> Option<(usize, Vec<Rule>)> {
+    let error = Grammar::parse(strict, &text[from..]).err()?;
+    let at = match error.location {
+        InputLocation::Pos(at) | InputLocation::Span((at, _)) => from + at,
+    };
+    // Blanks and comments may precede what could not be taken.
+    let at = at + lexeme::all_trivia(&text[at..]);
+    let expected = match error.variant {
+        ErrorVariant::ParsingError { positives, .. } => positives,
+        ErrorVariant::CustomError { .. } => Vec::new(),
+    };
+    Some((at, expected))
+}
+
+/// End of the last token before `end`: comments there are no tokens.
+fn last_token_end(text: &str, end: usize) -> usize {
+    let mut at = 0;
+    let mut last = 0;
+    while at < end {
+        let rest = &text[at..];
+        if let Some(length) = lexeme::trivia(rest) {
+            at += length;
+        } else {
+            at += lexeme::first(rest).len().max(1);
+            last = at;
+        }
+    }
+    last
+}
+
+/// What is found, for a message.
+pub(super) fn quote(found: &str) -> String {
+    if found.is_empty() {
+        return "the end of the file".to_owned();
+    }
+    let short: String = found.chars().take(40).flat_map(char::escape_debug).collect();
+    // A quoted text keeps its quotes as they are.
+    format!("`{}`", short.replace("\\\"", "\"").replace("\\'", "'"))
+}
+
+fn expected_nouns(expected: &[Rule]) -> String {
+    let mut nouns: Vec<_> = expected.iter().filter_map(|&rule| nouns::noun(rule)).collect();
+    nouns.sort();
+    nouns.dedup();
+    // `in` is one of the operators.
+    if nouns.iter().any(|(_, noun)| noun == "an operator") {
+        nouns.retain(|(rank, _)| *rank != 9);
+    }
+    let nouns: Vec<_> = nouns.into_iter().map(|(_, noun)| noun).take(5).collect();
+    nouns::list(&nouns)
+}
+
+impl Builder<'_> {
+    /// The whole text was refused: only `parse_value` has no rule for what is bad.
+    pub(super) fn refused(&mut self, error: &pest::error::Error<Rule>) {
+        let at = match error.location {
+            InputLocation::Pos(at) | InputLocation::Span((at, _)) => at,
+        };
+        let at = at + lexeme::all_trivia(&self.text[at..]);
+        let expected = match &error.variant {
+            ErrorVariant::ParsingError { positives, .. } => positives.clone(),
+            ErrorVariant::CustomError { .. } => Vec::new(),
+        };
+        let diagnostic = self.describe(&Fault { at, found: "", expected, from: 0 });
+        self.say(diagnostic);
+    }
+}

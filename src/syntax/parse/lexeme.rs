@@ -1,0 +1,107 @@
+//! The words and marks of a text, one at a time: for marking what an error points at and for scans that
+//! come before the grammar.
+
+/// Marks of several characters, longer ones first.
+const MARKS: [&str; 14] =
+    ["<=>", "===", "==", "=>", "!=", "<=", ">=", "->", "--", "..", "&&", "||", "**", ":="];
+
+/// Whether a character may start a name.
+pub(super) fn starts_name(c: char) -> bool {
+    c.is_alphabetic() || c == '_'
+}
+
+/// Whether a character may continue a name.
+pub(super) fn continues_name(c: char) -> bool {
+    c.is_alphanumeric() || c == '_'
+}
+
+/// Length of the blank or comment at the start of a text, if there is one.
+pub(super) fn trivia(text: &str) -> Option<usize> {
+    let first = text.chars().next()?;
+    if matches!(first, ' ' | '\t' | '\r' | '\n' | '\u{FEFF}') {
+        return Some(first.len_utf8());
+    }
+    if text.starts_with("//") {
+        return Some(text.find('\n').unwrap_or(text.len()));
+    }
+    if text.starts_with("/*") {
+        return text[2..].find("*/").map(|at| at + 4);
+    }
+    None
+}
+
+/// Length of all blanks and comments at the start of a text.
+pub(super) fn all_trivia(text: &str) -> usize {
+    let mut at = 0;
+    while let Some(length) = trivia(&text[at..]) {
+        at += length;
+    }
+    at
+}
+
+/// The first word, number, quoted text or mark of a text that starts with no blank. Empty only at the end.
+pub(super) fn first(text: &str) -> &str {
+    let Some(start) = text.chars().next() else { return "" };
+    if starts_name(start) {
+        return &text[..text.find(|c| !continues_name(c)).unwrap_or(text.len())];
+    }
+    if start.is_ascii_digit() {
+        return number(text);
+    }
+    if start == '"' {
+        return quoted(text);
+    }
+    if let Some(mark) = MARKS.iter().find(|mark| text.starts_with(**mark)) {
+        return &text[..mark.len()];
+    }
+    &text[..start.len_utf8()]
+}
+
+/// Digits, fraction and exponent.
+fn number(text: &str) -> &str {
+    let bytes = text.as_bytes();
+    let digits = |mut at: usize| {
+        while bytes.get(at).is_some_and(u8::is_ascii_digit) {
+            at += 1;
+        }
+        at
+    };
+    let mut end = digits(0);
+    if bytes.get(end) == Some(&b'.') && bytes.get(end + 1).is_some_and(u8::is_ascii_digit) {
+        end = digits(end + 1);
+    }
+    if matches!(bytes.get(end), Some(b'e' | b'E')) {
+        let sign = usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
+        if bytes.get(end + 1 + sign).is_some_and(u8::is_ascii_digit) {
+            end = digits(end + 1 + sign);
+        }
+    }
+    &text[..end]
+}
+
+/// A quoted text with its quotes, or up to the end of the line if it is not closed there.
+fn quoted(text: &str) -> &str {
+    let mut escaped = false;
+    for (at, c) in text.char_indices().skip(1) {
+        match c {
+            '\n' => return text[..at].trim_end(),
+            '"' if !escaped => return &text[..=at],
+            _ => escaped = c == '\\' && !escaped,
+        }
+    }
+    text
+}
+
+/// Whether what `first` gave is a quoted text without its closing quote.
+pub(super) fn is_open_text(token: &str) -> bool {
+    token.starts_with('"') && (token.len() == 1 || !token.ends_with('"') || token.ends_with("\\\""))
+}
+
+/// The word or number that ends right before `at`, blanks skipped, and where it starts.
+pub(super) fn word_before(text: &str, at: usize) -> Option<(usize, &str)> {
+    let trimmed = text[..at].trim_end();
+    let start = trimmed.rfind(|c: char| !continues_name(c) && c != '.').map_or(0, |before| {
+        before + trimmed[before..].chars().next().map_or(1, char::len_utf8)
+    });
+    (start < trimmed.len()).then(|| (start, &trimmed[start..]))
+}

@@ -1,0 +1,117 @@
+//! From texts to syntax trees.
+//!
+//! Parsing never fails: what is broken is reported, each thing once and at its exact byte, and skipped; the
+//! rest is returned.
+
+mod agents;
+mod builder;
+mod expression;
+mod fault;
+pub(super) mod grammar;
+mod lexeme;
+mod nesting;
+mod nouns;
+mod process;
+mod property;
+mod quantity;
+mod scenario;
+mod scene;
+mod slips;
+
+pub use nouns::edits;
+
+use super::ast::{Expr, PropertyFile, ScenarioFile};
+use super::codes::syntax as code;
+use super::diagnostic::{Diagnostic, Severity};
+use super::source::{Source, SourceId, Span};
+use builder::Builder;
+use grammar::{Grammar, Rule};
+use nesting::Scan;
+use pest::Parser;
+
+/// Reads bytes as a source text: UTF-8, not empty, below 4 GiB.
+pub fn decode(id: SourceId, name: &str, bytes: &[u8]) -> Result<Source, Diagnostic> {
+    if u32::try_from(bytes.len()).is_err() {
+        return Err(Diagnostic::placeless(code::ENCODING, format!("{name} is larger than 4 GiB")));
+    }
+    match std::str::from_utf8(bytes) {
+        Ok(text) if text.trim_matches(|c: char| c.is_whitespace() || c == '\u{FEFF}').is_empty() => {
+            Err(Diagnostic::placeless(code::EMPTY, format!("{name} is empty")))
+        }
+        Ok(text) => Ok(Source::new(id, name, text)),
+        Err(error) => {
+            let at = error.valid_up_to();
+            let valid = std::str::from_utf8(&bytes[..at]).unwrap_or("");
+            let line = valid.matches('\n').count() + 1;
+            let column = valid.rsplit('\n').next().unwrap_or("").chars().count() + 1;
+            let title = format!("{name}:{line}:{column} is not UTF-8: byte 0x{:02X}", bytes[at]);
+            let hint = if bytes.starts_with(&[0xFF, 0xFE]) || bytes.starts_with(&[0xFE, 0xFF]) {
+                "the file looks like UTF-16; save it as UTF-8"
+            } else {
+                "save the file as UTF-8"
+            };
+            Err(Diagnostic::error(code::ENCODING, Span::new(id, at, at + 1), title).hint(hint))
+        }
+    }
+}
+
+/// Parses a scenario (`.scn`). What could not be read is missing from the tree and reported.
+pub fn parse_scenario(source: &Source) -> (ScenarioFile, Vec<Diagnostic>) {
+    let (file, diagnostics) =
+        parse(source, Rule::scenario_file, |builder, file| builder.scenario_file(file));
+    (file.unwrap_or_default(), diagnostics)
+}
+
+/// Parses a property file (`.bltl`). What could not be read is missing from the tree and reported.
+pub fn parse_properties(source: &Source) -> (PropertyFile, Vec<Diagnostic>) {
+    let (file, diagnostics) =
+        parse(source, Rule::property_file, |builder, file| builder.property_file(file));
+    (file.unwrap_or_default(), diagnostics)
+}
+
+/// Parses one value, such as the right side of `--set name=value`.
+pub fn parse_value(source: &Source) -> Result<Expr, Vec<Diagnostic>> {
+    let (value, diagnostics) = parse(source, Rule::value_file, |builder, file| {
+        file.into_inner().next().and_then(|value| builder.expr(value))
+    });
+    let fails = diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error);
+    match value.flatten() {
+        Some(value) if !fails => Ok(value),
+        _ => Err(diagnostics),
+    }
+}
+
+fn parse<T>(
+    source: &Source,
+    rule: Rule,
+    build: impl FnOnce(&mut Builder<'_>, builder::Pair<'_>) -> T,
+) -> (Option<T>, Vec<Diagnostic>) {
+    let mut builder = Builder { source, text: &source.text, diagnostics: Vec::new() };
+    match nesting::scan(source) {
+        Scan::Fine => {}
+        Scan::TooDeep(diagnostic) => return (None, vec![diagnostic]),
+        Scan::Until(at, diagnostic) => {
+            builder.text = &source.text[..at];
+            builder.say(diagnostic);
+        }
+    }
+    let text = builder.text;
+    let built = match Grammar::parse(rule, text) {
+        Ok(mut pairs) => pairs.next().map(|file| build(&mut builder, file)),
+        Err(error) => {
+            builder.refused(&error);
+            None
+        }
+    };
+    let mut diagnostics = builder.diagnostics;
+    // An error at the end of a text that was cut there is a consequence of the cut.
+    if text.len() < source.text.len() {
+        let last = text.trim_end().len() as u32;
+        diagnostics.retain(|diagnostic| {
+            diagnostic.code == code::COMMENT || diagnostic.place.as_ref().is_none_or(|place| place.span.start < last)
+        });
+    }
+    diagnostics.sort_by_key(|diagnostic| diagnostic.place.as_ref().map(|place| place.span));
+    diagnostics.dedup_by_key(|diagnostic| diagnostic.place.as_ref().map(|place| (place.span.start, diagnostic.severity)));
+    (built, diagnostics)
+}

@@ -1,0 +1,80 @@
+//! A scan of the brackets before the grammar sees the text: how deep they nest, and comments that never
+//! end. It reads the text once and recurses nowhere.
+
+use super::expression::NESTING;
+use super::lexeme;
+use crate::syntax::codes::syntax as code;
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::{Source, Span};
+
+/// What the scan says about a text.
+pub(super) enum Scan {
+    /// It may be parsed.
+    Fine,
+    /// It may be parsed up to this byte; there a comment starts that never ends.
+    Until(usize, Diagnostic),
+    /// It nests too deep to be parsed.
+    TooDeep(Diagnostic),
+}
+
+/// The error for nesting that is too deep.
+pub(super) fn too_deep(span: Span) -> Diagnostic {
+    Diagnostic::error(code::TOO_DEEP, span, format!("brackets and prefixes nest more than {NESTING} deep"))
+        .hint("give inner parts names with `let`")
+}
+
+/// Scans a text.
+pub(super) fn scan(source: &Source) -> Scan {
+    let text = &source.text;
+    let mut depth = 0_u16;
+    let mut at = 0;
+    while at < text.len() {
+        let rest = &text[at..];
+        if rest.starts_with("/*") && !rest[2..].contains("*/") {
+            let place = Span::new(source.id, at, at + 2);
+            return Scan::Until(
+                at,
+                Diagnostic::error(code::COMMENT, place, "the comment never ends")
+                    .hint("close it with `*/`; `//` comments to the end of the line"),
+            );
+        }
+        if let Some(length) = lexeme::trivia(rest) {
+            at += length;
+            continue;
+        }
+        let token = lexeme::first(rest);
+        match token {
+            "(" | "[" | "{" => {
+                depth += 1;
+                if depth > NESTING {
+                    return Scan::TooDeep(too_deep(Span::new(source.id, at, at + 1)));
+                }
+            }
+            ")" | "]" | "}" => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        at += token.len().max(1);
+    }
+    Scan::Fine
+}
+
+/// The innermost bracket that is open at `until`, counted from `from`.
+pub(super) fn open_bracket(text: &str, from: usize, until: usize) -> Option<(usize, char)> {
+    let mut open = Vec::new();
+    let mut at = from;
+    while at < until {
+        let rest = &text[at..];
+        if let Some(length) = lexeme::trivia(rest) {
+            at += length;
+            continue;
+        }
+        let token = lexeme::first(rest);
+        match token {
+            "(" | "[" | "{" => open.push((at, token.chars().next()?)),
+            ")" | "]" | "}" => drop(open.pop()),
+            _ => {}
+        }
+        at += token.len().max(1);
+    }
+    open.pop()
+}

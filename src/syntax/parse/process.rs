@@ -1,0 +1,185 @@
+//! Processes and behaviours.
+
+use super::builder::{Builder, Pair, Parts};
+use super::grammar::Rule;
+use crate::syntax::ast::{
+    BehaviourDecl, BehaviourItem, Branch, Choice, Command, Domain, OnDecl, ProcessDecl, ProcessItem, StateDecl,
+    Timing, Transition, Update, Value, VarDecl,
+};
+use crate::syntax::codes::syntax as code;
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+
+impl Builder<'_> {
+    pub(super) fn process(&mut self, pair: Pair<'_>) -> Option<ProcessDecl> {
+        self.report_faults(&pair);
+        let span = self.span(&pair);
+        let mut parts = Parts::of(pair);
+        let name = self.ident(&parts.part(Rule::name)?);
+        let count = self.size(&mut parts)?;
+        let items = parts
+            .filter(|part| part.as_rule() == Rule::process_item)
+            .filter_map(|part| self.process_item(part.into_inner().next()?))
+            .collect();
+        Some(ProcessDecl { name, count, items, span })
+    }
+
+    fn process_item(&mut self, pair: Pair<'_>) -> Option<ProcessItem> {
+        match pair.as_rule() {
+            Rule::var => self.var(pair).map(ProcessItem::Var),
+            Rule::let_decl => self.let_decl(pair).map(ProcessItem::Let),
+            Rule::label => {
+                let mut parts = Parts::of(pair);
+                let name = self.ident(&parts.part(Rule::name)?);
+                Some(ProcessItem::Label { name, value: self.expr(parts.part(Rule::expr)?)? })
+            }
+            Rule::command => self.command(pair).map(ProcessItem::Command),
+            _ => Some(ProcessItem::Choose(self.span(&pair))),
+        }
+    }
+
+    fn var(&mut self, pair: Pair<'_>) -> Option<VarDecl> {
+        let mut parts = Parts::of(pair);
+        // A variable is `process.name` outside; that it may equal a unit does no harm.
+        let name = self.ident(&parts.part(Rule::name)?);
+        let domain = if let Some(range) = parts.part(Rule::var_range) {
+            let mut ends = Parts::of(range);
+            let low = self.expr(ends.part(Rule::arith)?)?;
+            Some(Domain::Range(low, self.expr(ends.part(Rule::arith)?)?))
+        } else {
+            parts.part(Rule::name).map(|domain| Domain::Named(self.ident(&domain)))
+        };
+        Some(VarDecl { name, domain, initial: self.expr(parts.part(Rule::tight)?)? })
+    }
+
+    fn command(&mut self, pair: Pair<'_>) -> Option<Command> {
+        let span = self.span(&pair);
+        let mut parts = Parts::of(pair);
+        let guard = self.expr(parts.part(Rule::expr)?)?;
+        let timing = match parts.rule()? {
+            Rule::rate => Some(Timing::Rate(self.expr(Parts::of(parts.next()?).part(Rule::arith)?)?)),
+            Rule::delay => Some(Timing::Delay(self.delay(parts.next()?)?)),
+            _ => None,
+        };
+        let mut branches = Vec::new();
+        for branch in Parts::of(parts.part(Rule::branches)?) {
+            let span = self.span(&branch);
+            let mut parts = Parts::of(branch);
+            let weight = self.weight(&mut parts)?;
+            let updates = Parts::of(parts.part(Rule::updates)?)
+                .map(|update| {
+                    let mut parts = Parts::of(update);
+                    let target = self.ident(&parts.part(Rule::name)?);
+                    Some(Update { target, value: self.expr(parts.part(Rule::tight)?)? })
+                })
+                .collect::<Option<_>>()?;
+            branches.push(Branch { weight, updates, span });
+        }
+        let weighted: Vec<_> = branches.iter().map(|branch| (branch.weight.is_some(), branch.span)).collect();
+        self.need_weights(&weighted);
+        Some(Command { guard, timing, branches, span })
+    }
+
+    #[allow(clippy::option_option, reason = "a failure is not the absence of a weight")]
+    fn weight(&mut self, parts: &mut Parts<'_>) -> Option<Option<crate::syntax::ast::Expr>> {
+        match parts.part(Rule::weight) {
+            Some(weight) => self.expr(Parts::of(weight).part(Rule::arith)?).map(Some),
+            None => Some(None),
+        }
+    }
+
+    fn delay(&mut self, pair: Pair<'_>) -> Option<Box<Value>> {
+        self.value(Parts::of(pair).next()?).map(Box::new)
+    }
+
+    /// Two or more branches need weights.
+    fn need_weights(&mut self, branches: &[(bool, Span)]) {
+        if branches.len() < 2 {
+            return;
+        }
+        for (_, span) in branches.iter().filter(|(has_weight, _)| !has_weight) {
+            self.say(
+                Diagnostic::error(code::WEIGHT, *span, "one of several branches has no weight")
+                    .hint("write `1/2: …` before each; a Boolean value that needs `|` stands in parentheses"),
+            );
+        }
+    }
+
+    pub(super) fn behaviour(&mut self, pair: Pair<'_>) -> Option<BehaviourDecl> {
+        self.report_faults(&pair);
+        let span = self.span(&pair);
+        let mut parts = Parts::of(pair);
+        let name = self.ident(&parts.part(Rule::name)?);
+        let arguments = parts.part(Rule::parameters).map(|parameters| self.parameters(parameters)).unwrap_or_default();
+        let items = parts
+            .filter(|part| part.as_rule() == Rule::behaviour_item)
+            .filter_map(|part| self.behaviour_item(part.into_inner().next()?))
+            .collect();
+        Some(BehaviourDecl { name, arguments, items, span })
+    }
+
+    fn behaviour_item(&mut self, pair: Pair<'_>) -> Option<BehaviourItem> {
+        let span = self.span(&pair);
+        match pair.as_rule() {
+            Rule::state => self.state(pair).map(BehaviourItem::State),
+            Rule::on => {
+                let mut parts = Parts::of(pair);
+                let event = self.ident(&parts.part(Rule::name)?);
+                let choices = self.choices(parts.part(Rule::choices)?)?;
+                Some(BehaviourItem::On(OnDecl { event, choices, span }))
+            }
+            _ => self.let_decl(pair).map(BehaviourItem::Let),
+        }
+    }
+
+    fn state(&mut self, pair: Pair<'_>) -> Option<StateDecl> {
+        self.report_faults(&pair);
+        let span = self.span(&pair);
+        let mut parts = Parts::of(pair);
+        let name = self.ident(&parts.part(Rule::name)?);
+        let (mut fields, mut transitions) = (Vec::new(), Vec::new());
+        for part in parts.filter(|part| part.as_rule() == Rule::state_item) {
+            let Some(part) = part.into_inner().next() else { continue };
+            if part.as_rule() == Rule::transition {
+                transitions.extend(self.transition(part));
+                continue;
+            }
+            if !transitions.is_empty() {
+                let place = self.span(&part);
+                self.say(
+                    Diagnostic::error(code::FIELD_PLACE, place, "in a state fields come first")
+                        .hint("move it before the transitions"),
+                );
+            }
+            fields.extend(self.field(part));
+        }
+        Some(StateDecl { name, fields, transitions, span })
+    }
+
+    fn transition(&mut self, pair: Pair<'_>) -> Option<Transition> {
+        let span = self.span(&pair);
+        let mut parts = Parts::of(pair);
+        let guard = match parts.part(Rule::expr) {
+            Some(guard) => Some(self.expr(guard)?),
+            None => None,
+        };
+        let after = match parts.part(Rule::delay) {
+            Some(delay) => Some(self.delay(delay)?),
+            None => None,
+        };
+        Some(Transition { guard, after, targets: self.choices(parts.part(Rule::choices)?)?, span })
+    }
+
+    fn choices(&mut self, pair: Pair<'_>) -> Option<Vec<Choice>> {
+        let mut choices = Vec::new();
+        for choice in Parts::of(pair) {
+            let mut parts = Parts::of(choice);
+            let weight = self.weight(&mut parts)?;
+            choices.push(Choice { weight, target: self.ident(&parts.part(Rule::name)?) });
+        }
+        let weighted: Vec<_> =
+            choices.iter().map(|choice| (choice.weight.is_some(), choice.target.span)).collect();
+        self.need_weights(&weighted);
+        Some(choices)
+    }
+}

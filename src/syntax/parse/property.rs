@@ -1,0 +1,156 @@
+//! Property files: properties and queries.
+
+use super::builder::{Builder, Pair, Parts};
+use super::grammar::Rule;
+use crate::syntax::ast::{
+    BinaryOp, Binding, Clauses, Expr, Measure, MeasureKind, Method, Moment, PropertyFile, PropertyItem, Query,
+    QueryKind, ExprKind,
+};
+use crate::syntax::codes::syntax as code;
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+
+impl Builder<'_> {
+    pub(super) fn property_file(&mut self, file: Pair<'_>) -> PropertyFile {
+        self.report_faults(&file);
+        let items = Parts::of(file)
+            .filter(|part| part.as_rule() == Rule::property_item)
+            .filter_map(|part| self.property_item(part.into_inner().next()?))
+            .collect();
+        PropertyFile { items }
+    }
+
+    fn property_item(&mut self, pair: Pair<'_>) -> Option<PropertyItem> {
+        let span = self.span(&pair);
+        let rule = pair.as_rule();
+        if rule == Rule::let_decl {
+            return self.let_decl(pair).map(PropertyItem::Let);
+        }
+        let mut parts = Parts::of(pair);
+        match rule {
+            Rule::const_decl => {
+                let name = self.declared(&parts.part(Rule::name)?);
+                Some(PropertyItem::Const { name, value: self.expr(parts.part(Rule::expr)?)? })
+            }
+            Rule::property => {
+                let name = self.declared(&parts.part(Rule::name)?);
+                Some(PropertyItem::Property { name, formula: self.expr(parts.part(Rule::expr)?)? })
+            }
+            Rule::family => {
+                Some(PropertyItem::Family { confidence: self.expr(parts.part(Rule::arith)?)?, span })
+            }
+            _ => self.query(rule, parts, span).map(PropertyItem::Query),
+        }
+    }
+
+    fn query(&mut self, rule: Rule, mut parts: Parts<'_>, span: Span) -> Option<Query> {
+        let kind = match rule {
+            Rule::check => QueryKind::Check {
+                measure: self.measure(parts.part(Rule::measure)?)?,
+                relation: relation(&parts.part(Rule::relation)?)?,
+                threshold: self.expr(parts.part(Rule::arith)?)?,
+            },
+            Rule::estimate => {
+                let mut measures = Vec::new();
+                while let Some(measure) = parts.part(Rule::measure) {
+                    measures.push(self.measure(measure)?);
+                }
+                QueryKind::Estimate(measures)
+            }
+            Rule::compare => QueryKind::Compare {
+                measure: self.measure(parts.part(Rule::measure)?)?,
+                first: self.bindings(parts.part(Rule::bindings)?)?,
+                second: self.bindings(parts.part(Rule::bindings)?)?,
+            },
+            _ => QueryKind::Rank {
+                what: self.ident(&parts.part(Rule::name)?),
+                agent: self.expr(parts.part(Rule::set)?)?,
+                measure: self.measure(parts.part(Rule::measure)?)?,
+            },
+        };
+        let clauses = self.clauses(parts)?;
+        Some(Query { kind, clauses, span })
+    }
+
+    fn measure(&mut self, pair: Pair<'_>) -> Option<Measure> {
+        let span = self.span(&pair);
+        let pair = pair.into_inner().next()?;
+        let rule = pair.as_rule();
+        // `P`, `E` and `Q` are marks of a kind, but stand first.
+        let mut parts = Parts::of(pair);
+        parts.next()?;
+        let kind = match rule {
+            Rule::probability => MeasureKind::Probability,
+            Rule::expectation => MeasureKind::Expectation,
+            _ => MeasureKind::Quantile(self.expr(parts.part(Rule::arith)?)?),
+        };
+        let mut body = self.expr(parts.part(Rule::expr)?)?;
+        if let Some(moment) = parts.part(Rule::moment) {
+            let span = body.span.to(self.span(&moment));
+            let moment = match Parts::of(moment).part(Rule::arith) {
+                Some(time) => Moment::Time(Box::new(self.expr(time)?)),
+                None => Moment::End,
+            };
+            body = Expr { kind: ExprKind::At(Box::new(body), moment), span };
+        }
+        let range = match parts.part(Rule::measure_range) {
+            Some(range) => {
+                let mut ends = Parts::of(range);
+                let low = self.expr(ends.part(Rule::arith)?)?;
+                Some((low, self.expr(ends.part(Rule::arith)?)?))
+            }
+            None => None,
+        };
+        Some(Measure { kind, body, range, span })
+    }
+
+    fn bindings(&mut self, pair: Pair<'_>) -> Option<Vec<Binding>> {
+        Parts::of(pair).map(|binding| self.binding(binding)).collect()
+    }
+
+    fn binding(&mut self, pair: Pair<'_>) -> Option<Binding> {
+        let mut parts = Parts::of(pair);
+        let name = self.ident(&parts.part(Rule::ident)?);
+        Some(Binding { name, value: self.expr(parts.part(Rule::tight)?)? })
+    }
+
+    fn clauses(&mut self, parts: Parts<'_>) -> Option<Clauses> {
+        let mut clauses = Clauses::default();
+        for clause in parts {
+            let clause = clause.into_inner().next()?;
+            let span = self.span(&clause);
+            let rule = clause.as_rule();
+            let mut parts = Parts::of(clause);
+            let twice = match rule {
+                Rule::within => clauses.within.replace(self.expr(parts.part(Rule::arith)?)?).is_some(),
+                Rule::confidence => clauses.confidence.replace(self.expr(parts.part(Rule::arith)?)?).is_some(),
+                Rule::method => {
+                    let name = self.ident(&parts.part(Rule::name)?);
+                    let arguments = parts.map(|binding| self.binding(binding)).collect::<Option<_>>()?;
+                    clauses.by.replace(Method { name, arguments, span }).is_some()
+                }
+                _ => {
+                    let bindings = self.bindings(parts.part(Rule::bindings)?)?;
+                    !std::mem::replace(&mut clauses.under, bindings).is_empty()
+                }
+            };
+            if twice {
+                let word = self.source.slice(span).split_whitespace().next().unwrap_or("").to_owned();
+                self.say(
+                    Diagnostic::error(code::TWICE, span, format!("`{word}` stands here a second time"))
+                        .hint("keep one of the two"),
+                );
+            }
+        }
+        Some(clauses)
+    }
+}
+
+fn relation(pair: &Pair<'_>) -> Option<BinaryOp> {
+    Some(match pair.clone().into_inner().next()?.as_rule() {
+        Rule::op_at_least => BinaryOp::AtLeast,
+        Rule::op_more => BinaryOp::Greater,
+        Rule::op_at_most => BinaryOp::AtMost,
+        _ => BinaryOp::Less,
+    })
+}

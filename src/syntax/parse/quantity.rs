@@ -1,0 +1,120 @@
+//! Numbers and units.
+
+use super::builder::{Builder, Pair};
+use super::grammar::Rule;
+use crate::base::decimal::Decimal;
+use crate::syntax::ast::{Ident, Quantity, UnitExpr, UnitFactor};
+use crate::syntax::codes::syntax as code;
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+
+/// The units of both languages, as in `grammar/common.pest`.
+pub(super) const UNITS: [&str; 18] = [
+    "m", "cm", "mm", "km", "s", "ms", "min", "h", "kg", "g", "N", "kN", "deg", "rad", "Hz", "%", "step", "steps",
+];
+
+/// What people write for a unit, and the unit.
+const SPOKEN: [(&[&str], &str); 16] = [
+    (&["metre", "metres", "meter", "meters", "M"], "m"),
+    (&["centimetre", "centimetres", "centimeter", "centimeters"], "cm"),
+    (&["millimetre", "millimetres", "millimeter", "millimeters"], "mm"),
+    (&["kilometre", "kilometres", "kilometer", "kilometers"], "km"),
+    (&["second", "seconds", "sec", "secs", "S"], "s"),
+    (&["millisecond", "milliseconds", "msec"], "ms"),
+    (&["minute", "minutes", "mins"], "min"),
+    (&["hour", "hours", "hr", "hrs"], "h"),
+    (&["kilogram", "kilograms", "KG", "Kg"], "kg"),
+    (&["gram", "grams"], "g"),
+    (&["newton", "newtons", "Newton"], "N"),
+    (&["degree", "degrees", "degs", "grad"], "deg"),
+    (&["radian", "radians", "rads"], "rad"),
+    (&["hertz", "hz", "HZ"], "Hz"),
+    (&["percent", "pct"], "%"),
+    (&["ticks", "tick", "Steps"], "steps"),
+];
+
+/// The unit that was probably meant.
+pub(super) fn nearest_unit(word: &str) -> Option<&'static str> {
+    if let Some((_, unit)) = SPOKEN.iter().find(|(spoken, _)| spoken.contains(&word)) {
+        return Some(unit);
+    }
+    super::nouns::nearest(word, UNITS.iter().copied())
+}
+
+impl Builder<'_> {
+    /// `0.2 m/s`
+    pub(super) fn quantity(&mut self, pair: Pair<'_>) -> Option<Quantity> {
+        let mut value = None;
+        let mut unit = None;
+        for part in pair.into_inner() {
+            match part.as_rule() {
+                Rule::number => value = Some(self.number(&part)?),
+                Rule::unit => unit = Some(self.unit(part)?),
+                _ => {}
+            }
+        }
+        Some(Quantity { value: value?, unit })
+    }
+
+    /// `#40`
+    pub(super) fn steps(&mut self, pair: &Pair<'_>) -> Option<Quantity> {
+        let span = self.span(pair);
+        let Some(value) = Decimal::parse(pair.as_str().trim_start_matches('#')) else {
+            self.number_too_long(span);
+            return None;
+        };
+        let mark = Span::new(span.source, span.start as usize, span.start as usize + 1);
+        let name = Ident { name: "steps".to_owned(), span: mark };
+        Some(Quantity {
+            value,
+            unit: Some(UnitExpr { factors: vec![UnitFactor { name, power: 1 }], span: mark }),
+        })
+    }
+
+    fn number(&mut self, pair: &Pair<'_>) -> Option<Decimal> {
+        let value = Decimal::parse(pair.as_str());
+        if value.is_none() {
+            let span = self.span(pair);
+            self.number_too_long(span);
+        }
+        value
+    }
+
+    fn number_too_long(&mut self, span: Span) {
+        self.say(
+            Diagnostic::error(code::NUMBER, span, "the number has too many digits")
+                .hint("numbers are kept exactly; about 37 digits fit, places after the point and exponent included"),
+        );
+    }
+
+    /// `kg/(m s)`, of a quantity or a point.
+    pub(super) fn unit(&mut self, pair: Pair<'_>) -> Option<UnitExpr> {
+        let span = self.span(&pair);
+        let mut factors = Vec::new();
+        for part in pair.into_inner() {
+            match part.as_rule() {
+                Rule::percent => factors.push(UnitFactor { name: self.ident(&part), power: 1 }),
+                Rule::unit_factor => factors.push(self.unit_factor(&part, 1)?),
+                Rule::unit_over => {
+                    for below in part.into_inner() {
+                        factors.push(self.unit_factor(&below, -1)?);
+                    }
+                }
+                _ => {}
+            }
+        }
+        Some(UnitExpr { factors, span })
+    }
+
+    fn unit_factor(&mut self, pair: &Pair<'_>, sign: i32) -> Option<UnitFactor> {
+        let start = pair.as_span().start();
+        let (name, power) = pair.as_str().split_once('^').unwrap_or((pair.as_str(), "1"));
+        let Some(power) = power.parse::<i8>().ok() else {
+            let span = self.span(pair);
+            self.say(Diagnostic::error(code::NUMBER, span, "the power of the unit is too large"));
+            return None;
+        };
+        let span = Span::new(self.source.id, start, start + name.len());
+        Some(UnitFactor { name: Ident { name: name.to_owned(), span }, power: sign * i32::from(power) })
+    }
+}

@@ -1,0 +1,98 @@
+//! Scenario files and what both languages declare alike.
+
+use super::builder::{Builder, Pair, Parts};
+use super::grammar::Rule;
+use crate::syntax::ast::{Item, LetDecl, MoveOption, MovesDecl, ScenarioFile};
+
+impl Builder<'_> {
+    pub(super) fn scenario_file(&mut self, file: Pair<'_>) -> ScenarioFile {
+        self.report_faults(&file);
+        let items = Parts::of(file)
+            .filter(|part| part.as_rule() == Rule::item)
+            .filter_map(|part| self.item(part.into_inner().next()?))
+            .collect();
+        ScenarioFile { items }
+    }
+
+    fn item(&mut self, pair: Pair<'_>) -> Option<Item> {
+        let span = self.span(&pair);
+        match pair.as_rule() {
+            Rule::title => Some(Item::Title(self.quoted(&Parts::of(pair).part(Rule::text)?))),
+            Rule::setting => {
+                let mut parts = Parts::of(pair);
+                let name = self.ident(&parts.part(Rule::ident)?);
+                Some(Item::Setting { name, value: self.expr(parts.part(Rule::expr)?)? })
+            }
+            Rule::const_decl => {
+                let mut parts = Parts::of(pair);
+                let name = self.declared(&parts.part(Rule::name)?);
+                Some(Item::Const { name, value: self.expr(parts.part(Rule::expr)?)? })
+            }
+            Rule::param => {
+                let mut parts = Parts::of(pair);
+                let name = self.declared(&parts.part(Rule::name)?);
+                if let Some(value) = parts.part(Rule::expr) {
+                    return Some(Item::Param { name, value: self.expr(value)?, range: None });
+                }
+                let (value, low, high) = self.truncated(parts.part(Rule::truncated)?)?;
+                Some(Item::Param { name, value, range: Some((low, high)) })
+            }
+            Rule::let_decl => self.let_decl(pair).map(Item::Let),
+            Rule::tracks => {
+                let mut parts = Parts::of(pair);
+                let name = self.ident(&parts.part(Rule::name)?);
+                let format = self.ident(&parts.part(Rule::name)?);
+                Some(Item::Tracks { name, format, path: self.quoted(&parts.part(Rule::text)?) })
+            }
+            Rule::scene => Some(Item::Scene(self.scene(pair))),
+            Rule::kind => self.kind(pair).map(Item::Kind),
+            Rule::agents => self.agents(pair).map(Item::Agents),
+            Rule::group => self.group(pair).map(Item::Group),
+            Rule::moves => self.moves(pair).map(|moves| Item::Moves(MovesDecl { span, ..moves })),
+            Rule::process => self.process(pair).map(Item::Process),
+            Rule::behaviour => self.behaviour(pair).map(Item::Behaviour),
+            Rule::source => self.source_decl(pair).map(Item::Source),
+            _ => None,
+        }
+    }
+
+    /// `let f(a) = …`
+    pub(super) fn let_decl(&mut self, pair: Pair<'_>) -> Option<LetDecl> {
+        let mut parts = Parts::of(pair);
+        let name = self.declared(&parts.part(Rule::name)?);
+        let arguments = parts.part(Rule::parameters).map(|parameters| self.parameters(parameters)).unwrap_or_default();
+        Some(LetDecl { name, arguments, body: self.expr(parts.part(Rule::expr)?)? })
+    }
+
+    pub(super) fn parameters(&mut self, pair: Pair<'_>) -> Vec<crate::syntax::ast::Ident> {
+        Parts::of(pair).map(|parameter| self.declared(&parameter)).collect()
+    }
+
+    fn moves(&mut self, pair: Pair<'_>) -> Option<MovesDecl> {
+        self.report_faults(&pair);
+        let span = self.span(&pair);
+        let mut parts = Parts::of(pair);
+        let agent = self.ident(&parts.part(Rule::name)?);
+        let duration = self.expr(parts.part(Rule::arith)?)?;
+        let options = parts
+            .filter(|part| part.as_rule() == Rule::move_option)
+            .filter_map(|part| self.move_option(part.into_inner().next()?))
+            .collect();
+        Some(MovesDecl { agent, duration, options, span })
+    }
+
+    fn move_option(&mut self, pair: Pair<'_>) -> Option<MoveOption> {
+        let span = self.span(&pair);
+        match pair.as_rule() {
+            Rule::headings => {
+                let mut parts = Parts::of(pair);
+                let from = self.expr(parts.part(Rule::arith)?)?;
+                let to = self.expr(parts.part(Rule::arith)?)?;
+                let by = self.expr(parts.part(Rule::arith)?)?;
+                Some(MoveOption::Headings { from, to, by, span })
+            }
+            Rule::heading => Some(MoveOption::Heading(self.expr(Parts::of(pair).part(Rule::arith)?)?)),
+            _ => Some(MoveOption::Stop(span)),
+        }
+    }
+}

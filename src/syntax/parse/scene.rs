@@ -1,0 +1,66 @@
+//! Scenes and shapes.
+
+use super::builder::{Builder, Pair, Parts};
+use super::grammar::Rule;
+use crate::syntax::ast::{Expr, SceneItem, ShapeExpr};
+
+impl Builder<'_> {
+    pub(super) fn scene(&mut self, pair: Pair<'_>) -> Vec<SceneItem> {
+        self.report_faults(&pair);
+        Parts::of(pair)
+            .filter(|part| part.as_rule() == Rule::scene_item)
+            .filter_map(|part| self.scene_item(part.into_inner().next()?))
+            .collect()
+    }
+
+    fn scene_item(&mut self, pair: Pair<'_>) -> Option<SceneItem> {
+        let span = self.span(&pair);
+        let rule = pair.as_rule();
+        let mut parts = Parts::of(pair);
+        if rule == Rule::import {
+            let path = self.quoted(&parts.part(Rule::text)?);
+            let filter = match parts.part(Rule::expr) {
+                Some(filter) => Some(self.expr(filter)?),
+                None => None,
+            };
+            return Some(SceneItem::Import { path, filter, span });
+        }
+        let name = parts.part(Rule::name).map(|name| self.declared(&name));
+        match rule {
+            Rule::wall => {
+                let points = parts.map(|point| self.expr(point)).collect::<Option<_>>()?;
+                Some(SceneItem::Wall { name, points, span })
+            }
+            Rule::obstacle => Some(SceneItem::Obstacle { name, shape: self.shape(parts.part(Rule::shape)?)? }),
+            Rule::region => Some(SceneItem::Region { name: name?, shape: self.shape(parts.part(Rule::shape)?)? }),
+            _ => Some(SceneItem::Point { name: name?, at: self.expr(parts.part(Rule::place)?)? }),
+        }
+    }
+
+    pub(super) fn shape(&mut self, pair: Pair<'_>) -> Option<ShapeExpr> {
+        let pair = pair.into_inner().next()?;
+        let span = self.span(&pair);
+        match pair.as_rule() {
+            Rule::name => Some(ShapeExpr::Named(self.ident(&pair))),
+            Rule::circle => {
+                let mut parts = Parts::of(pair);
+                let centre = self.expr(parts.part(Rule::place)?)?;
+                Some(ShapeExpr::Circle { centre, radius: self.expr(parts.part(Rule::arith)?)?, span })
+            }
+            Rule::rect => {
+                let mut parts = Parts::of(pair);
+                let a = self.expr(parts.part(Rule::place)?)?;
+                Some(ShapeExpr::Rectangle { a, b: self.expr(parts.part(Rule::place)?)?, span })
+            }
+            _ => {
+                let mut outlines = Parts::of(pair).map(|outline| self.outline(outline));
+                let outline = outlines.next()??;
+                Some(ShapeExpr::Polygon { outline, holes: outlines.collect::<Option<_>>()?, span })
+            }
+        }
+    }
+
+    fn outline(&mut self, pair: Pair<'_>) -> Option<Vec<Expr>> {
+        pair.into_inner().map(|corner| self.corner(corner)).collect()
+    }
+}

@@ -1,0 +1,186 @@
+//! Common slips, each with its own words.
+
+use super::builder::Builder;
+use super::fault::{Fault, quote};
+use super::grammar::Rule;
+use super::{lexeme, quantity};
+use crate::syntax::codes::syntax as code;
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+
+impl Builder<'_> {
+    /// The diagnostic of a known slip.
+    pub(super) fn slip(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
+        self.slip_in_text(fault)
+            .or_else(|| self.slip_of_bound(fault))
+            .or_else(|| self.slip_of_equals(fault))
+            .or_else(|| self.slip_of_operator(fault))
+            .or_else(|| self.slip_of_unit(fault))
+            .or_else(|| self.slip_of_process(fault))
+    }
+
+    fn slip_in_text(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
+        let place = self.place(fault.at, fault.found);
+        if lexeme::is_open_text(fault.found) {
+            return Some(
+                Diagnostic::error(code::TEXT, place, "the quoted text does not end on its line")
+                    .hint("close it with `\"`; a quote inside is written `\\\"`"),
+            );
+        }
+        let plain = match fault.found {
+            "“" | "”" | "„" | "‘" | "’" | "'" => "\"",
+            "–" | "−" | "—" => "-",
+            "×" | "·" => "*",
+            "÷" => "/",
+            "→" => "->",
+            "…" => "..",
+            "%" if fault.after_value() => {
+                return Some(
+                    Diagnostic::error(code::CHARACTER, place, "`%` is the unit percent, no operator")
+                        .hint("the remainder is written `mod(a, b)`"),
+                );
+            }
+            _ => return None,
+        };
+        Some(
+            Diagnostic::error(code::CHARACTER, place, format!("unexpected {}", quote(fault.found)))
+                .hint(format!("write `{plain}`")),
+        )
+    }
+
+    /// `F<=0 s == 3`: the bound took the name for its unit; and `F<5 s p`.
+    fn slip_of_bound(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
+        let comparison = matches!(fault.found, "==" | "!=" | "<" | "<=" | ">" | ">=" | "≤" | "≥" | "≠");
+        let (unit_at, word) = lexeme::word_before(self.text, fault.at)?;
+        let place = self.place(fault.at, fault.found);
+        if comparison && matches!(word, "F" | "G" | "X" | "U" | "W" | "R") {
+            return Some(
+                Diagnostic::error(code::BOUND, place, format!("a bound of `{word}` is written with `<=`"))
+                    .hint(format!("write `{word}<=` and a time, or an interval: `{word}[1 s, 5 s]`")),
+            );
+        }
+        if !(comparison || matches!(fault.found, "+" | "*" | "/" | "^" | "-" | "in")) || !quantity::UNITS.contains(&word) {
+            return None;
+        }
+        let (number_at, number) = lexeme::word_before(self.text, unit_at)?;
+        let before = self.text[..number_at].trim_end();
+        let bounded = before.ends_with("<=") || before.ends_with('≤');
+        if !bounded || !number.starts_with(|c: char| c.is_ascii_digit()) {
+            return None;
+        }
+        let unit = Span::new(self.source.id, unit_at, unit_at + word.len());
+        Some(
+            Diagnostic::error(code::BOUND_TOOK_NAME, place, format!("expected a formula, found {}", quote(fault.found)))
+                .related(unit, "read as the unit of the bound")
+                .hint(format!("write `#{number}` for so many steps, or parentheses: `({word} {} …)`", fault.found)),
+        )
+    }
+
+    fn slip_of_equals(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
+        let place = self.place(fault.at, fault.found);
+        if fault.found == ":=" {
+            return Some(
+                Diagnostic::error(code::EQUALS, place, "`:=` is not known").hint("`=` sets, `==` compares"),
+            );
+        }
+        if fault.found == "===" || fault.found == "==" && fault.expected.contains(&Rule::t_assign) {
+            let wanted = if fault.found == "===" { "==" } else { "=" };
+            return Some(
+                Diagnostic::error(code::EQUALS, place, format!("expected `{wanted}`, found `{}`", fault.found))
+                    .hint("`=` sets, `==` compares"),
+            );
+        }
+        if fault.found != "=" || !fault.after_value() {
+            return None;
+        }
+        let (start, word) = lexeme::word_before(self.text, fault.at)?;
+        let line_start = self.text[..start].rfind('\n').map_or(0, |at| at + 1);
+        if self.text[line_start..start].trim().is_empty() && start > fault.from {
+            let place = Span::new(self.source.id, start, start + word.len());
+            return Some(
+                Diagnostic::error(
+                    code::UNEXPECTED,
+                    place,
+                    format!("expected a number, a name or `(`, found `{word} =`"),
+                )
+                .hint("the value before it is missing or ends in an operator"),
+            );
+        }
+        Some(
+            Diagnostic::error(code::EQUALS, place, "expected an operator, found `=`")
+                .hint("`=` sets, `==` compares"),
+        )
+    }
+
+    /// Operators of other languages.
+    fn slip_of_operator(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
+        let say = |at: usize, found: &str, plain: &str| {
+            Diagnostic::error(code::OPERATOR, self.place(at, found), format!("`{found}` is not an operator here"))
+                .hint(format!("write `{plain}`"))
+        };
+        let after_value = fault.after_value();
+        let plain = match fault.found {
+            "&&" => "&",
+            "||" => "|",
+            "and" | "AND" if after_value => "&",
+            "or" | "OR" if after_value => "|",
+            "implies" | "->" if after_value => "=>",
+            "iff" if after_value => "<=>",
+            "**" => "^",
+            "~" if !after_value => "!",
+            "is" if after_value => "==",
+            _ => {
+                // `not p`: the name `not` stands before the place.
+                let (at, word) = lexeme::word_before(self.text, fault.at)?;
+                return (after_value && matches!(word, "not" | "NOT")).then(|| say(at, word, "!"));
+            }
+        };
+        // Only a command, transition or route has arrows of its own.
+        if fault.found == "->" && fault.expected.contains(&Rule::t_arrow) {
+            return None;
+        }
+        Some(say(fault.at, fault.found, plain))
+    }
+
+    /// `3 metres`
+    fn slip_of_unit(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
+        if !fault.found.starts_with(lexeme::starts_name) {
+            return None;
+        }
+        let before = &self.text[..fault.at];
+        let between = &before[before.trim_end().len()..];
+        let (_, number) = lexeme::word_before(self.text, fault.at)?;
+        if between.contains('\n') || !number.starts_with(|c: char| c.is_ascii_digit()) {
+            return None;
+        }
+        let unit = quantity::nearest_unit(fault.found);
+        let near_keyword = fault.expected.iter().any(|&rule| {
+            let words = super::nouns::keyword(rule).into_iter().chain(super::nouns::words(rule).iter().copied());
+            super::nouns::nearest(fault.found, words).is_some()
+        });
+        if near_keyword || quantity::UNITS.contains(&fault.found) || unit.is_none() && !between.is_empty() && !fault.after_value() {
+            return None;
+        }
+        let place = self.place(fault.at, fault.found);
+        let hint = match unit {
+            Some(unit) => format!("did you mean `{number} {unit}`?"),
+            None => format!("units are {}; to multiply write `{number} * {}`", quantity::UNITS.join(", "), fault.found),
+        };
+        Some(Diagnostic::error(code::UNIT, place, format!("unknown unit `{}`", fault.found)).hint(hint))
+    }
+
+    /// `process p { n = 3 }`
+    fn slip_of_process(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
+        let expects = fault.expected.contains(&Rule::process_item) || fault.expected.contains(&Rule::process_item_end);
+        let rest = self.text[fault.at + fault.found.len()..].trim_start();
+        let sets = rest.starts_with('=') && !rest.starts_with("==") && !rest.starts_with("=>");
+        if !expects || !sets || !fault.found.starts_with(lexeme::starts_name) {
+            return None;
+        }
+        let place = self.place(fault.at, fault.found);
+        Some(
+            Diagnostic::error(code::FIELD_PLACE, place, "a process has no fields")
+                .hint(format!("write `var {} = …` or `let {} = …`", fault.found, fault.found)),
+        )
+    }
+}
