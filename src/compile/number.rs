@@ -5,33 +5,33 @@ use crate::base::decimal::Decimal;
 
 /// A number with a dimension, in SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Number {
+pub(super) struct Number {
     /// Nearest double.
-    pub value: f64,
+    pub(super) value: f64,
     /// The exact value, as long as only exact literals and `+ - * /` made it.
-    pub exact: Option<Decimal>,
+    pub(super) exact: Option<Decimal>,
     /// Its dimension.
-    pub dimension: Dimension,
+    pub(super) dimension: Dimension,
 }
 
 impl Number {
     /// An exact number.
-    pub fn exact(value: Decimal, dimension: Dimension) -> Self {
+    pub(super) fn exact(value: Decimal, dimension: Dimension) -> Self {
         Self { value: value.to_f64(), exact: Some(value), dimension }
     }
 
     /// A rounded number.
-    pub const fn rounded(value: f64, dimension: Dimension) -> Self {
+    pub(super) const fn rounded(value: f64, dimension: Dimension) -> Self {
         Self { value, exact: None, dimension }
     }
 
     /// A pure whole number.
-    pub fn whole(value: i64) -> Self {
+    pub(super) fn whole(value: i64) -> Self {
         Self::exact(Decimal::whole(value), Dimension::NONE)
     }
 
     /// A literal in a unit.
-    pub fn literal(value: Decimal, unit: &Unit) -> Self {
+    pub(super) fn literal(value: Decimal, unit: &Unit) -> Self {
         let exact = unit.exact.and_then(|size| value.mul(size));
         match exact {
             Some(exact) => Self::exact(exact, unit.dimension),
@@ -53,32 +53,32 @@ impl Number {
     }
 
     /// Sum of two numbers of one dimension.
-    pub fn plus(self, other: Self) -> Self {
+    pub(super) fn plus(self, other: Self) -> Self {
         self.join(other, self.dimension, Decimal::add, |a, b| a + b)
     }
 
     /// Difference of two numbers of one dimension.
-    pub fn minus(self, other: Self) -> Self {
+    pub(super) fn minus(self, other: Self) -> Self {
         self.join(other, self.dimension, Decimal::sub, |a, b| a - b)
     }
 
     /// Product; `None` if the dimension is out of range.
-    pub fn times(self, other: Self) -> Option<Self> {
+    pub(super) fn times(self, other: Self) -> Option<Self> {
         Some(self.join(other, self.dimension.times(other.dimension)?, Decimal::mul, |a, b| a * b))
     }
 
     /// Quotient; `None` if the dimension is out of range.
-    pub fn over(self, other: Self) -> Option<Self> {
+    pub(super) fn over(self, other: Self) -> Option<Self> {
         Some(self.join(other, self.dimension.over(other.dimension)?, Decimal::div, |a, b| a / b))
     }
 
     /// The other sign.
-    pub fn negated(self) -> Self {
+    pub(super) fn negated(self) -> Self {
         Self { value: -self.value, exact: self.exact.map(Decimal::neg), dimension: self.dimension }
     }
 
     /// The whole number it is, if it is one (to within rounding where it is not exact).
-    pub fn as_whole(self) -> Option<i64> {
+    pub(super) fn as_whole(self) -> Option<i64> {
         if let Some(exact) = self.exact {
             return exact.as_whole().and_then(|whole| i64::try_from(whole).ok());
         }

@@ -8,6 +8,7 @@ use super::people::People;
 use super::symbols::Meaning;
 use crate::base::tick::{Clock, Tick};
 use crate::model::{Moves, Scenario};
+use crate::syntax::ast::process::{BehaviourDecl, ProcessDecl, SourceDecl};
 use crate::syntax::ast::{Item, PropertyFile, PropertyItem, ScenarioFile};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
@@ -46,6 +47,17 @@ impl<'a> Elaborator<'a> {
                     continue;
                 }
                 Item::Title(_) | Item::Setting { .. } | Item::Tracks { .. } | Item::Moves(_) => continue,
+                Item::Process(ProcessDecl { span, .. })
+                | Item::Behaviour(BehaviourDecl { span, .. })
+                | Item::Source(SourceDecl { span, .. }) => {
+                    let error = Diagnostic::error(
+                        "E0213",
+                        *span,
+                        "this version simulates no processes, behaviours and sources",
+                    );
+                    self.note(error);
+                    continue;
+                }
             };
             if let Err(error) = self.scopes[0].declare(&name.name, name.span, meaning) {
                 self.note(error);

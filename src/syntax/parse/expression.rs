@@ -312,14 +312,17 @@ impl Builder<'_> {
                 self.say(warning);
             }
             (Infix::Plain(BinaryOp::Power), ExprKind::Quantity(quantity))
-                if left.bare && quantity.unit.as_ref().is_some_and(|unit| unit.factors[0].name.name != "%") =>
+                if left.bare
+                    && quantity.unit.as_ref().is_some_and(|unit| unit.factors[0].name.name != "%") =>
             {
                 let warning = Diagnostic::warning(
                     code::POWER_OF_QUANTITY,
                     left.expr.span.to(right.expr.span),
                     "this is a power of the whole quantity, number and unit",
                 )
-                .hint("a power of the unit alone has no blanks: `2 m^2`; else write parentheses: `(2 m) ^ 2`");
+                .hint(
+                    "a power of the unit alone has no blanks: `2 m^2`; else write parentheses: `(2 m) ^ 2`",
+                );
                 self.say(warning);
             }
             _ => {}
@@ -372,7 +375,13 @@ impl Builder<'_> {
             let height = first.height.max(second.height) + 1;
             let nesting = first.nesting.max(second.nesting) + 1;
             let kind = ExprKind::Point { x: Box::new(first.expr), y: Box::new(second.expr), unit };
-            return self.limited(Built { expr: Expr { kind, span }, height, nesting, bare: false, open: false });
+            return self.limited(Built {
+                expr: Expr { kind, span },
+                height,
+                nesting,
+                bare: false,
+                open: false,
+            });
         }
         first.expr.span = span;
         first.nesting += 1;

@@ -72,7 +72,8 @@ impl Builder<'_> {
                 before = None;
             } else {
                 last_bad_end = None;
-                let is_member = !super::builder::is_mark(rule) && part.as_span().start() < part.as_span().end();
+                let is_member =
+                    !super::builder::is_mark(rule) && part.as_span().start() < part.as_span().end();
                 before = is_member.then_some(part);
             }
         }
@@ -81,7 +82,8 @@ impl Builder<'_> {
     fn missing_brace(&mut self, block: &Pair<'_>, at: usize) {
         let found = lexeme::first(&self.text[at..]);
         let place = self.place(at, found);
-        let mut diagnostic = Diagnostic::error(code::UNCLOSED, place, format!("expected `}}`, found {}", quote(found)));
+        let mut diagnostic =
+            Diagnostic::error(code::UNCLOSED, place, format!("expected `}}`, found {}", quote(found)));
         if let Some((open, _)) = nesting::open_bracket(self.text, block.as_span().start(), at) {
             let span = Span::new(self.source.id, open, open + 1);
             diagnostic = diagnostic.related(span, "this `{` is not closed");
@@ -162,7 +164,8 @@ impl Builder<'_> {
             "]" => '[',
             _ => '{',
         };
-        nesting::open_bracket(self.text, 0, fault.at).is_none_or(|(_, open)| open != wanted && fault.found != "}")
+        nesting::open_bracket(self.text, 0, fault.at)
+            .is_none_or(|(_, open)| open != wanted && fault.found != "}")
     }
 
     /// The keyword that was probably meant.
@@ -170,9 +173,10 @@ impl Builder<'_> {
         if !fault.found.starts_with(lexeme::starts_name) {
             return None;
         }
-        let known = fault.expected.iter().flat_map(|&rule| {
-            nouns::keyword(rule).into_iter().chain(nouns::words(rule).iter().copied())
-        });
+        let known = fault
+            .expected
+            .iter()
+            .flat_map(|&rule| nouns::keyword(rule).into_iter().chain(nouns::words(rule).iter().copied()));
         nouns::nearest(fault.found, known)
     }
 }
