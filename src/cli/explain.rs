@@ -1,7 +1,7 @@
 //! `smc explain`: what a code means and what to do.
 
 use super::arguments::Explain;
-use super::outcome::Exit;
+use crate::report::ExitCode as Exit;
 use super::terminal::{print, say};
 use crate::compile::nearest::nearest;
 use crate::syntax::codes;
@@ -26,7 +26,7 @@ pub(super) fn run(arguments: &Explain) -> Exit {
 
 fn finish(text: &str) -> Exit {
     match print(text) {
-        Ok(()) => Exit::Fine,
+        Ok(()) => Exit::Success,
         Err(reason) => {
             say(&format!("error: {reason}\n"));
             Exit::Wrong

@@ -2,16 +2,18 @@
 
 use super::arguments::{Format, Language};
 use super::inputs;
-use super::outcome::Exit;
+use crate::report::ExitCode as Exit;
 use super::terminal::{Colors, print, say};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, SourceId};
-use crate::syntax::{decode, format_properties, format_scenario, render};
+use crate::syntax::parse::decode;
+use crate::syntax::print::{format_properties, format_scenario};
+use crate::syntax::render::render;
 
 /// Runs the command.
 #[allow(clippy::disallowed_methods, reason = "files are opened by the command line")]
 pub(super) fn run(arguments: &Format, colors: Colors) -> Exit {
-    let mut exit = Exit::Fine;
+    let mut exit = Exit::Success;
     for name in &arguments.files {
         let language = match name.rsplit_once('.').map(|(_, ending)| ending) {
             _ if name == "-" => arguments.language,
@@ -34,12 +36,14 @@ pub(super) fn run(arguments: &Format, colors: Colors) -> Exit {
         let fail = |diagnostics: &[Diagnostic], source: &Source| {
             say(&render(diagnostics, std::slice::from_ref(source), colors.err));
         };
-        let (source, found) = decode(SourceId(0), inputs::shown(name), &bytes);
-        if !found.is_empty() {
-            fail(&found, &source);
-            exit = Exit::Wrong;
-            continue;
-        }
+        let source = match decode(SourceId(0), inputs::shown(name), &bytes) {
+            Ok(source) => source,
+            Err(found) => {
+                fail(&[found], &Source::new(SourceId(0), inputs::shown(name), String::from_utf8_lossy(&bytes)));
+                exit = Exit::Wrong;
+                continue;
+            }
+        };
         let formatted = match language {
             Language::Scn => format_scenario(&source),
             Language::Bltl => format_properties(&source),
@@ -55,7 +59,7 @@ pub(super) fn run(arguments: &Format, colors: Colors) -> Exit {
         if arguments.check {
             if text != source.text {
                 say(&format!("{} is not formatted\n", inputs::shown(name)));
-                exit = exit.or(Exit::Violated);
+                exit = exit.worse(Exit::Violated);
             }
         } else if name == "-" {
             if let Err(reason) = print(&text) {

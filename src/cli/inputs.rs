@@ -5,7 +5,7 @@ use crate::compile::{Files, Input, Setting, SettingValue, Study, compile, reques
 use crate::syntax::ast::{PropertyFile, ScenarioFile};
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::source::{Source, SourceId, Span};
-use crate::syntax::{decode, parse_properties, parse_scenario, parse_value};
+use crate::syntax::parse::{decode, parse_properties, parse_scenario, parse_value};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -70,11 +70,17 @@ impl Reader {
                 return None;
             }
         };
-        let (source, diagnostics) = decode(id, shown(name), &bytes);
-        let broken = diagnostics.iter().any(|d| d.severity == Severity::Error);
-        self.diagnostics.extend(diagnostics);
-        self.sources.push(source.clone());
-        (!broken).then_some(source)
+        match decode(id, shown(name), &bytes) {
+            Ok(source) => {
+                self.sources.push(source.clone());
+                Some(source)
+            }
+            Err(diagnostic) => {
+                self.sources.push(Source::new(id, shown(name), String::from_utf8_lossy(&bytes)));
+                self.diagnostics.push(diagnostic);
+                None
+            }
+        }
     }
 
     /// A part of the command line as a source of its own.

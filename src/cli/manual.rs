@@ -1,7 +1,7 @@
 //! Completions and man pages.
 
 use super::arguments::Arguments;
-use super::outcome::Exit;
+use crate::report::ExitCode as Exit;
 use super::terminal::{print, say};
 use clap::CommandFactory;
 use std::path::Path;
@@ -11,7 +11,7 @@ pub(super) fn completions(shell: clap_complete::Shell) -> Exit {
     let mut bytes = Vec::new();
     clap_complete::generate(shell, &mut Arguments::command(), "smc", &mut bytes);
     match print(&String::from_utf8_lossy(&bytes)) {
-        Ok(()) => Exit::Fine,
+        Ok(()) => Exit::Success,
         Err(reason) => {
             say(&format!("error: {reason}\n"));
             Exit::Wrong
@@ -24,7 +24,7 @@ pub(super) fn pages(directory: &Path) -> Exit {
     let written = std::fs::create_dir_all(directory)
         .and_then(|()| clap_mangen::generate_to(Arguments::command(), directory));
     match written {
-        Ok(()) => Exit::Fine,
+        Ok(()) => Exit::Success,
         Err(error) => {
             say(&format!("error: man pages cannot be written to `{}`: {error}\n", directory.display()));
             Exit::Wrong

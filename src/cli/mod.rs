@@ -6,31 +6,30 @@ mod explain;
 mod format;
 mod inputs;
 mod manual;
-mod outcome;
 mod progress;
 mod show;
 mod simulate;
 mod terminal;
 
 use crate::model::Scenario;
-use crate::syntax::render;
+use crate::syntax::render::render;
 use arguments::{Arguments, Command};
 use clap::Parser;
-use outcome::Exit;
-use std::process::ExitCode;
+use crate::report::ExitCode as Exit;
+use std::process;
 use terminal::{Colors, say};
 
 /// Stack of the thread that does the work: deep formulas are walked recursively, up to a limit.
 const STACK: usize = 256 << 20;
 
 /// Runs the program.
-pub fn run() -> ExitCode {
+pub fn run() -> process::ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
             let fine = !error.use_stderr();
             let _ = error.print();
-            return ExitCode::from(if fine { 0 } else { Exit::Wrong.code() });
+            return process::ExitCode::from(if fine { 0 } else { Exit::Wrong.code() });
         }
     };
     let worker = std::thread::Builder::new().stack_size(STACK).spawn(move || dispatch(&arguments));
@@ -45,7 +44,7 @@ pub fn run() -> ExitCode {
             Exit::Wrong
         }
     };
-    ExitCode::from(exit.code())
+    process::ExitCode::from(exit.code())
 }
 
 fn dispatch(arguments: &Arguments) -> Exit {

@@ -2,7 +2,7 @@
 
 use super::arguments::{Simulate, TableFormat};
 use super::inputs;
-use super::outcome::Exit;
+use crate::report::ExitCode as Exit;
 use super::terminal::{Colors, say};
 use crate::base::geometry::Vec2;
 use crate::base::random::TrialKey;
@@ -188,8 +188,8 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
         say(&format!("warning: {note}\n"));
     }
     match written {
-        Ok(_) => Exit::Fine,
-        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Exit::Fine,
+        Ok(_) => Exit::Success,
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Exit::Success,
         Err(error) => {
             say(&format!("error: {error}\n"));
             Exit::Wrong

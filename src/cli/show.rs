@@ -1,0 +1,21 @@
+//! `smc show`: how a scenario and property files were understood, in units.
+
+use super::arguments::Show;
+use super::inputs;
+use crate::report::ExitCode as Exit;
+use super::terminal::{Colors, print, say};
+use crate::report::model;
+
+/// Runs the command.
+pub(super) fn run(arguments: &Show, colors: Colors) -> Exit {
+    let inputs = inputs::load(&arguments.model, &arguments.properties);
+    super::diagnose(&inputs, colors);
+    let Some(study) = &inputs.study else { return Exit::Wrong };
+    match print(&model::describe(study)) {
+        Ok(()) => Exit::Success,
+        Err(reason) => {
+            say(&format!("error: {reason}\n"));
+            Exit::Wrong
+        }
+    }
+}

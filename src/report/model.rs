@@ -1,0 +1,283 @@
+//! How a scenario and its questions were understood, in units, for `smc show`.
+
+use crate::base::geometry::{Shape, Vec2};
+use crate::base::tick::Clock;
+use crate::compile::study::{Ask, Estimator, MeasureKind, Ranking, Study, Test, World};
+use crate::model::{Agent, Family, Goal, Law, Leg, Obstacle, Position, Route, Scenario};
+use std::fmt::Write;
+
+/// Everything that was understood.
+pub fn describe(study: &Study) -> String {
+    let mut out = String::new();
+    let Some(world) = study.worlds.last() else { return out };
+    scenario(&mut out, world);
+    if !study.queries.is_empty() {
+        let _ = writeln!(out, "\nQueries");
+    }
+    for query in &study.queries {
+        let _ = writeln!(out, "  {}  {}", query.index, query.text);
+        for (name, value) in &query.settings {
+            let _ = writeln!(out, "     {name} = {value}");
+        }
+        let _ = writeln!(out, "     {}", procedure(&query.ask));
+        if let Some(within) = &query.within {
+            let _ = writeln!(out, "     within {within}");
+        }
+    }
+    out
+}
+
+fn scenario(out: &mut String, world: &World) {
+    let scenario = &world.scenario;
+    let title = if scenario.title.is_empty() { "(without a title)" } else { &scenario.title };
+    let _ = writeln!(out, "{title}");
+    let end = scenario.clock.seconds(scenario.horizon);
+    match scenario.clock {
+        Clock::Stepped(step) => {
+            let _ = writeln!(out, "  horizon {end} s, step {step} s: {} steps", scenario.horizon.0);
+        }
+        Clock::Steps => {
+            let _ = writeln!(out, "  horizon {} steps", scenario.horizon.0);
+        }
+        Clock::Jumps => {
+            let _ = writeln!(out, "  horizon {end} s, continuous time");
+        }
+    }
+    for (name, value) in &world.settings {
+        let _ = writeln!(out, "  set {name} = {value}");
+    }
+    scene(out, scenario);
+    people(out, scenario);
+}
+
+fn scene(out: &mut String, scenario: &Scenario) {
+    if scenario.scene.barriers.is_empty() && scenario.scene.regions.is_empty() {
+        return;
+    }
+    let _ = writeln!(out, "\nScene");
+    for barrier in &scenario.scene.barriers {
+        let name = if barrier.name.is_empty() { String::new() } else { format!(" {}", barrier.name) };
+        let _ = match &barrier.obstacle {
+            Obstacle::Wall(segments) => {
+                let length: f64 = segments.iter().map(crate::base::geometry::Segment::length).sum();
+                writeln!(out, "  wall{name}: {} segment(s), {} m", segments.len(), number(length))
+            }
+            Obstacle::Solid(solid) => writeln!(out, "  obstacle{name}: {}", shape(solid)),
+        };
+    }
+    for region in &scenario.scene.regions {
+        let _ = writeln!(out, "  region {}: {}", region.name, shape(&region.shape));
+    }
+}
+
+fn people(out: &mut String, scenario: &Scenario) {
+    let _ = writeln!(out, "\nPeople: {}", scenario.agents.len());
+    let mut rest = scenario.agents.as_slice();
+    while let Some(first) = rest.first() {
+        // Members of one declaration that differ in nothing but their number are told once.
+        let stem = first.name.split('[').next().unwrap_or("").to_owned();
+        let alike = |a: &Agent| {
+            a.name.split('[').next() == Some(stem.as_str()) && a.body == first.body && a.start == first.start && a.route == first.route
+        };
+        let count = rest.iter().take_while(|a| alike(a)).count().max(1);
+        let name = if count > 1 { format!("{} to {}", first.name, rest[count - 1].name) } else { first.name.clone() };
+        let _ = writeln!(out, "  {name}");
+        agent(out, scenario, first);
+        rest = &rest[count..];
+    }
+    for group in &scenario.groups {
+        let _ = writeln!(
+            out,
+            "  group {}: {} members, attraction {} N",
+            group.name,
+            group.members.len(),
+            number(group.attraction)
+        );
+    }
+    for moves in &scenario.moves {
+        let labels: Vec<&str> = moves.options.iter().map(|(label, _)| label.as_str()).collect();
+        let _ = writeln!(
+            out,
+            "\nMoves of {} for {} s: {}",
+            scenario.agents[moves.agent.0 as usize].name,
+            number(scenario.clock.seconds(moves.duration)),
+            labels.join(", ")
+        );
+    }
+}
+
+fn agent(out: &mut String, scenario: &Scenario, agent: &Agent) {
+    let b = &agent.body;
+    let parameters = [
+        ("mass", &b.mass, "kg"),
+        ("radius", &b.radius, "m"),
+        ("speed", &b.speed, "m/s"),
+        ("tau", &b.tau, "s"),
+        ("A", &b.a, "N"),
+        ("B", &b.b, "m"),
+        ("lambda", &b.lambda, ""),
+        ("A2", &b.a2, "N"),
+        ("B2", &b.b2, "m"),
+        ("lambda2", &b.lambda2, ""),
+        ("k1", &b.k1, "kg/s^2"),
+        ("k2", &b.k2, "kg/(m s)"),
+        ("noise", &b.noise, "m/s"),
+    ];
+    let second = b.a2 != Law::Constant(0.0);
+    let shown: Vec<String> = parameters
+        .iter()
+        .filter(|(name, ..)| second || !name.ends_with('2') || *name == "k2")
+        .map(|(name, value, unit)| format!("{name} {}", law(value, unit)))
+        .collect();
+    for line in shown.chunks(4) {
+        let _ = writeln!(out, "      {}", line.join(", "));
+    }
+    if let Some(p) = agent.particle {
+        let _ = writeln!(
+            out,
+            "      one body for {} persons: radius times {}, tau times {}, repulsion times {}, friction {} kg/(m s)",
+            p.persons,
+            number(p.radius_factor),
+            number(p.tau_factor),
+            number(p.repulsion),
+            number(p.friction)
+        );
+    }
+    let place = match &agent.start.position {
+        Position::Point(p) => point(*p),
+        Position::Within(s) => format!("anywhere in {}", shape(s)),
+        Position::Near { agent, within } => {
+            format!("within {} m of {}", number(*within), scenario.agents[agent.0 as usize].name)
+        }
+    };
+    let _ = writeln!(out, "      starts {place} at {} m/s", point(agent.start.velocity));
+    let way = match &agent.route {
+        Route::Onward => "goes on as it starts".to_owned(),
+        Route::Legs { legs, .. } if legs.is_empty() => "stands".to_owned(),
+        Route::Legs { legs, then_leave } => {
+            let legs: Vec<String> = legs
+                .iter()
+                .map(|leg| match leg {
+                    Leg::To(Goal::Region(id)) => scenario.scene.regions[id.0 as usize].name.clone(),
+                    Leg::To(Goal::Point(p)) => point(*p),
+                    Leg::Wait(time) => format!("wait {}", law(time, "s")),
+                })
+                .collect();
+            format!("goes {}{}", legs.join(" -> "), if *then_leave { ", then leaves" } else { "" })
+        }
+    };
+    let _ = writeln!(out, "      {way}");
+}
+
+/// A number without noise of rounding.
+fn number(value: f64) -> String {
+    let rounded = (value * 1e6).round() / 1e6;
+    format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
+}
+
+fn point(p: Vec2) -> String {
+    format!("({}, {})", number(p.x), number(p.y))
+}
+
+fn shape(shape: &Shape) -> String {
+    match shape {
+        Shape::Circle { centre, radius } => format!("circle {} radius {} m", point(*centre), number(*radius)),
+        Shape::Polygon(polygon) => {
+            let corners = polygon.outline.len();
+            let holes = if polygon.holes.is_empty() { String::new() } else { format!(", {} hole(s)", polygon.holes.len()) };
+            let bounds = shape.bounds();
+            format!("{corners} corners{holes}, {} .. {}, {} m^2", point(bounds.low), point(bounds.high), number(polygon.area()))
+        }
+    }
+}
+
+/// A law as one would write it.
+pub fn law(law: &Law, unit: &str) -> String {
+    let with = |value: f64| if unit.is_empty() { number(value) } else { format!("{} {unit}", number(value)) };
+    match law {
+        Law::Constant(value) => with(*value),
+        Law::Random { family, low, high } => {
+            let name = match family {
+                Family::Normal { mean, sd } => format!("normal({}, {})", with(*mean), with(*sd)),
+                Family::LogNormal { mean, sd } => format!("lognormal({}, {})", with(*mean), with(*sd)),
+                Family::Uniform { low, high } => format!("uniform({}, {})", with(*low), with(*high)),
+                Family::UniformInt { low, high } => format!("uniform_int({low}, {high})"),
+                Family::Exponential { mean } => format!("exponential({})", with(*mean)),
+                Family::Poisson { mean } => format!("poisson({})", number(*mean)),
+                Family::Bernoulli { p } => format!("bernoulli({})", number(*p)),
+                Family::Beta { mean, sd } => format!("beta({}, {})", with(*mean), with(*sd)),
+                Family::Gamma { mean, sd } => format!("gamma({}, {})", with(*mean), with(*sd)),
+                Family::Weibull { mean, sd } => format!("weibull({}, {})", with(*mean), with(*sd)),
+                Family::Choice(values) => {
+                    let values: Vec<String> = values.iter().map(|(value, _)| with(*value)).collect();
+                    format!("choice({})", values.join(", "))
+                }
+            };
+            if low.is_finite() && high.is_finite() {
+                format!("{name} in {} .. {}", with(*low), with(*high))
+            } else {
+                name
+            }
+        }
+    }
+}
+
+fn procedure(ask: &Ask) -> String {
+    match ask {
+        Ask::Check { test, threshold, .. } => {
+            let test = match test {
+                Test::Sprt { alpha, beta, indifference } => {
+                    format!("SPRT, alpha {alpha}, beta {beta}, indifference {indifference}")
+                }
+                Test::Sprt2 { alpha, beta, indifference } => {
+                    format!("2-SPRT, alpha {alpha}, beta {beta}, indifference {indifference}")
+                }
+                Test::Plan { alpha, beta, indifference } => {
+                    format!("exact plan of fixed size, alpha {alpha}, beta {beta}, indifference {indifference}")
+                }
+                Test::EProcess { alpha, beta } => format!("one-sided e-process, errors {alpha} and {beta}"),
+                Test::ThreeWay { alpha, indifference } => {
+                    format!("three-way e-process, error {alpha}, indifference {indifference}")
+                }
+                Test::Interval { delta, .. } => format!("time-uniform interval of the mean, error {delta}"),
+            };
+            format!("against {}: {test}", number(*threshold))
+        }
+        Ask::Estimate { measure, estimator } => {
+            let what = match measure.kind {
+                MeasureKind::Probability => "probability",
+                MeasureKind::Expectation { .. } => "expectation",
+                MeasureKind::Quantile { .. } => "quantile",
+            };
+            let how = match estimator {
+                Estimator::Default { epsilon, delta } => {
+                    format!("fewest trials for ± {}, error {delta}", number(*epsilon))
+                }
+                Estimator::Okamoto { epsilon, delta } => format!("Okamoto bound for ± {}, error {delta}", number(*epsilon)),
+                Estimator::Massart { epsilon, delta } => {
+                    format!("sequential Massart bound for ± {}, error {delta}", number(*epsilon))
+                }
+                Estimator::Spending { epsilon, delta } => {
+                    format!("Clopper-Pearson with alpha spending for ± {}, error {delta}", number(*epsilon))
+                }
+                Estimator::Fixed { trials, delta } => format!("{trials} trials, error {delta}"),
+                Estimator::Relative { epsilon, delta } => {
+                    format!("relative error {}, error {delta}", number(*epsilon))
+                }
+            };
+            format!("{what}: {how}")
+        }
+        Ask::Compare { within, delta, .. } => match within {
+            Some(within) => format!("difference to ± {}, error {delta}, common random numbers", number(*within)),
+            None => format!("difference from 1000 pairs, error {delta}, common random numbers"),
+        },
+        Ask::Rank { epsilon, delta, ranking, .. } => {
+            let how = match ranking {
+                Ranking::Betting => "paired betting, all challengers",
+                Ranking::OneChallenger => "paired betting, one challenger",
+                Ranking::Okamoto => "Okamoto bound on each option",
+            };
+            format!("best within {}, error {delta}: {how}", number(*epsilon))
+        }
+    }
+}
