@@ -7,4 +7,5 @@ pub mod base;
 pub mod kernel;
 pub mod logic;
 pub mod model;
+pub mod stats;
 pub mod syntax;
