@@ -11,4 +11,5 @@ pub mod kernel;
 pub mod logic;
 pub mod model;
 pub mod report;
+pub mod stats;
 pub mod syntax;

@@ -1,0 +1,384 @@
+//! The statistical procedure of a check or an estimate, fed with cells in index order.
+
+use super::cell::{Cell, Reading};
+use super::outcome::{Distribution, Histogram, Interval, Method, Quantile};
+use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Test};
+use crate::stats::quantile::Sample;
+use crate::stats::test::Verdict as TestVerdict;
+use crate::stats::{
+    self, AnyEstimator, AnyTest, Coverage, Decision, EstimatorReadings, Evidence, FixedSize, Gbas, Invalid, Massart,
+    Mean, Okamoto, Outcome, Plan, Spending, Sprt, Statement, TestReadings, ThreeWay, TwoSprt,
+};
+use stats::Estimator as _;
+use stats::Test as _;
+
+/// Bins of the histogram of a metric.
+const BINS: usize = 40;
+/// Error of the interval beside the verdict of a test.
+pub(super) const BESIDE: f64 = 0.05;
+
+/// A procedure of one query.
+pub(super) enum Procedure {
+    /// Is a probability above a threshold?
+    Test(Box<TestReadings<AnyTest>>),
+    /// What is a probability?
+    Probability(Box<EstimatorReadings<AnyEstimator>>),
+    /// What is an expectation, and perhaps: is it above a threshold?
+    Mean {
+        /// The estimator.
+        mean: Box<Mean>,
+        /// Threshold of a check.
+        threshold: Option<f64>,
+        /// Values, for the histogram.
+        values: Vec<f64>,
+    },
+    /// What is a quantile?
+    Quantile {
+        /// The values.
+        sample: Box<Sample>,
+        /// Its level.
+        level: f64,
+        /// Error probability.
+        delta: f64,
+    },
+}
+
+/// The outcome of a cell for a procedure of probabilities.
+pub(super) fn outcome(cell: &Cell) -> Outcome {
+    match cell.reading {
+        Reading::Truth(held) => Outcome::from(held),
+        Reading::Value(_) | Reading::Unresolved => Outcome::Unresolved,
+    }
+}
+
+/// The value of a cell for a procedure of metrics.
+pub(super) fn value(cell: &Cell) -> Option<f64> {
+    match cell.reading {
+        Reading::Value(value) => Some(value),
+        Reading::Truth(_) | Reading::Unresolved => None,
+    }
+}
+
+impl Procedure {
+    /// The procedure of a check or an estimate. `seed` addresses what a procedure draws for itself.
+    pub(super) fn new(ask: &Ask, max_trials: u64, seed: u64) -> Result<Self, Invalid> {
+        match ask {
+            Ask::Check { measure, threshold, test, .. } => Self::test(measure, *threshold, test, max_trials),
+            Ask::Estimate { measure, estimator } => Self::estimate(measure, estimator, max_trials, seed),
+            Ask::Compare { .. } | Ask::Rank { .. } => Err(Invalid::Unsuitable),
+        }
+    }
+
+    fn test(measure: &Measure, theta: f64, test: &Test, max_trials: u64) -> Result<Self, Invalid> {
+        let test = match *test {
+            Test::Sprt { alpha, beta, indifference } => AnyTest::Sprt(Sprt::new(theta, indifference, alpha, beta)?),
+            Test::Sprt2 { alpha, beta, indifference } => {
+                AnyTest::TwoSprt(TwoSprt::new(theta, indifference, alpha, beta)?)
+            }
+            Test::Plan { alpha, beta, indifference } => AnyTest::Plan(Plan::new(theta, indifference, alpha, beta)?),
+            Test::EProcess { alpha, beta } => AnyTest::Evidence(Evidence::new(theta, alpha, beta)?),
+            Test::ThreeWay { alpha, indifference } => AnyTest::ThreeWay(ThreeWay::new(theta, indifference, alpha)?),
+            Test::Interval { delta, .. } => {
+                let MeasureKind::Expectation { range: (low, high), .. } = measure.kind else {
+                    return Err(Invalid::Unsuitable);
+                };
+                let mean = Box::new(Mean::fixed(low, high, max_trials, delta)?);
+                return Ok(Self::Mean { mean, threshold: Some(theta), values: Vec::new() });
+            }
+        };
+        Ok(Self::Test(Box::new(TestReadings::new(test))))
+    }
+
+    fn estimate(measure: &Measure, estimator: &Estimator, max_trials: u64, seed: u64) -> Result<Self, Invalid> {
+        match (&measure.kind, *estimator) {
+            (MeasureKind::Probability, estimator) => {
+                let estimator = match estimator {
+                    Estimator::Default { epsilon, delta } => AnyEstimator::within(epsilon, delta)?,
+                    Estimator::Okamoto { epsilon, delta } => AnyEstimator::Okamoto(Okamoto::new(epsilon, delta)?),
+                    Estimator::Massart { epsilon, delta } => {
+                        AnyEstimator::Massart(Massart::new(epsilon, delta, MASSART_SHARE * delta)?)
+                    }
+                    Estimator::Spending { epsilon, delta } => AnyEstimator::Spending(Spending::new(epsilon, delta)?),
+                    Estimator::Fixed { trials, delta } => AnyEstimator::FixedSize(FixedSize::new(trials, delta)?),
+                    Estimator::Relative { epsilon, delta } => {
+                        AnyEstimator::Gbas(Gbas::new(epsilon, delta, Some(max_trials), seed)?)
+                    }
+                };
+                Ok(Self::Probability(Box::new(EstimatorReadings::new(estimator))))
+            }
+            (MeasureKind::Expectation { range: (low, high), .. }, estimator) => {
+                let mean = match estimator {
+                    Estimator::Fixed { trials, delta } => Mean::fixed(*low, *high, trials, delta)?,
+                    Estimator::Okamoto { epsilon, delta } => {
+                        let trials = stats::okamoto::size(epsilon / (high - low), delta);
+                        Mean::fixed(*low, *high, trials, delta)?
+                    }
+                    Estimator::Default { epsilon, delta }
+                    | Estimator::Massart { epsilon, delta }
+                    | Estimator::Spending { epsilon, delta }
+                    | Estimator::Relative { epsilon, delta } => Mean::within(*low, *high, epsilon, delta)?,
+                };
+                Ok(Self::Mean { mean: Box::new(mean), threshold: None, values: Vec::new() })
+            }
+            (MeasureKind::Quantile { level, .. }, Estimator::Fixed { trials, delta }) => {
+                Ok(Self::Quantile { sample: Box::new(Sample::new(trials)?), level: *level, delta })
+            }
+            (MeasureKind::Quantile { .. }, _) => Err(Invalid::Unsuitable),
+        }
+    }
+
+    /// Reads the cell of the next trial; true once finished.
+    pub(super) fn observe(&mut self, cell: &Cell) -> bool {
+        match self {
+            Self::Test(test) => test.observe(outcome(cell)).is_some(),
+            Self::Probability(estimator) => estimator.observe(outcome(cell)),
+            Self::Mean { mean, threshold, values } => {
+                let value = value(cell);
+                values.extend(value);
+                let finished = mean.observe(value);
+                match threshold {
+                    None => finished,
+                    // The interval holds at all times at once, so it may be looked at after every trial.
+                    Some(theta) => {
+                        let interval = mean.interval();
+                        finished || interval.low > *theta || interval.high < *theta
+                    }
+                }
+            }
+            Self::Quantile { sample, .. } => sample.observe(value(cell)),
+        }
+    }
+
+    /// Whether it has stopped by itself.
+    pub(super) fn finished(&self) -> bool {
+        match self {
+            Self::Test(test) => test.verdict().is_some(),
+            Self::Probability(estimator) => estimator.finished(),
+            Self::Mean { mean, threshold: Some(theta), .. } => {
+                let interval = mean.interval();
+                interval.low > *theta || interval.high < *theta
+            }
+            Self::Mean { mean, threshold: None, .. } => mean.finished(),
+            Self::Quantile { sample, .. } => sample.finished(),
+        }
+    }
+
+    /// The number of trials after which it has surely stopped, if there is one.
+    pub(super) fn limit(&self) -> Option<u64> {
+        match self {
+            Self::Test(test) => test.readings().0.limit(),
+            Self::Probability(estimator) => estimator.readings().0.limit(),
+            Self::Mean { mean, threshold: None, .. } => Some(mean.limit()),
+            Self::Mean { .. } => None,
+            Self::Quantile { sample, .. } => Some(sample.size()),
+        }
+    }
+
+    /// Whether the number of trials is fixed beforehand.
+    pub(super) fn is_planned(&self) -> bool {
+        match self {
+            Self::Test(test) => matches!(test.readings().0, AnyTest::Plan(_)),
+            Self::Probability(estimator) => {
+                matches!(estimator.readings().0, AnyEstimator::Okamoto(_) | AnyEstimator::FixedSize(_))
+            }
+            Self::Mean { mean, threshold, .. } => threshold.is_none() && mean.is_fixed(),
+            Self::Quantile { .. } => true,
+        }
+    }
+
+    /// The decision of a test on which both readings of unresolved trials agree.
+    pub(super) fn decision(&self) -> Option<Decision> {
+        match self {
+            Self::Test(test) => match test.verdict() {
+                Some(TestVerdict::Agreed(decision)) => Some(decision),
+                _ => None,
+            },
+            Self::Mean { mean, threshold: Some(theta), .. } => {
+                let interval = mean.interval();
+                if interval.low > *theta {
+                    Some(Decision::Above)
+                } else if interval.high < *theta {
+                    Some(Decision::Below)
+                } else {
+                    None
+                }
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether the readings of unresolved trials disagree.
+    pub(super) fn split(&self) -> bool {
+        matches!(self, Self::Test(test) if matches!(test.verdict(), Some(TestVerdict::Split(..))))
+    }
+
+    /// What the decision of a test certifies.
+    pub(super) fn statement(&self) -> Option<Statement> {
+        let decision = self.decision()?;
+        match self {
+            Self::Test(test) => Some(test.readings().0.certifies(decision)),
+            Self::Mean { mean, threshold: Some(theta), .. } => {
+                let claim = match decision {
+                    Decision::Above => stats::Claim::Above(*theta),
+                    _ => stats::Claim::Below(*theta),
+                };
+                Some(Statement { claim, error: mean.interval().error })
+            }
+            _ => None,
+        }
+    }
+
+    /// Estimate and interval, and the kind of the interval.
+    pub(super) fn interval(&mut self, counts: super::outcome::Counts) -> Option<(Interval, Coverage, f64)> {
+        if counts.trials == 0 {
+            return None;
+        }
+        match self {
+            Self::Test(_) => {
+                // An interval beside a test holds at its stopping time: that of the confidence sequence.
+                let reading = |successes| {
+                    let read = stats::Counts { successes, failures: counts.trials - successes };
+                    stats::sequence::interval(read, BESIDE)
+                };
+                let hull = reading(counts.successes).hull(reading(counts.successes + counts.unresolved));
+                Some((around(share(counts), hull), Coverage::TimeUniform, BESIDE))
+            }
+            Self::Probability(estimator) => {
+                let interval = estimator.interval();
+                let (low, high) = estimator.readings();
+                let estimate = 0.5 * (low.estimate() + high.estimate());
+                Some((around(estimate, interval), interval.coverage, interval.error))
+            }
+            Self::Mean { mean, .. } => {
+                let interval = mean.interval();
+                let (low, high) = mean.estimate();
+                let coverage = if mean.finished() && mean.is_fixed() { Coverage::FixedSize } else { Coverage::TimeUniform };
+                Some((around(0.5 * (low + high), interval), coverage, interval.error))
+            }
+            Self::Quantile { sample, level, delta } => {
+                let quantile = sample.quantiles(&[*level], *delta).ok()?.into_iter().next()?;
+                let estimate = if quantile.low_estimate.is_finite() { quantile.low_estimate } else { quantile.high_estimate };
+                let interval = Interval { estimate, low: quantile.interval.low, high: quantile.interval.high };
+                Some((interval, Coverage::FixedSize, *delta))
+            }
+        }
+    }
+
+    /// Histogram and quantiles of a metric.
+    pub(super) fn distribution(&mut self) -> Option<Distribution> {
+        let (mut values, quantile) = match self {
+            Self::Mean { values, .. } => (values.clone(), None),
+            Self::Quantile { sample, level, delta } => {
+                let found = sample.quantiles(&[*level], *delta).ok()?.into_iter().next();
+                let quantile = found.map(|q| Quantile {
+                    level: q.q,
+                    value: Interval {
+                        estimate: if q.low_estimate.is_finite() { q.low_estimate } else { q.high_estimate },
+                        low: q.interval.low,
+                        high: q.interval.high,
+                    },
+                });
+                (sample.sorted().to_vec(), quantile)
+            }
+            _ => return None,
+        };
+        values.sort_by(f64::total_cmp);
+        let finite: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+        let histogram = match (finite.first(), finite.last()) {
+            (Some(&low), Some(&high)) if low < high => {
+                let mut bins = stats::Histogram::new(low, high, BINS).ok()?;
+                finite.iter().for_each(|v| bins.add(*v));
+                Some(Histogram { low, high, counts: bins.bins, beyond: (values.len() - finite.len()) as u64 })
+            }
+            _ => None,
+        };
+        Some(Distribution { histogram, quantiles: quantile.into_iter().collect() })
+    }
+}
+
+/// Share of the error that the sequential Massart bound spends on its auxiliary interval.
+const MASSART_SHARE: f64 = 0.02;
+
+fn around(estimate: f64, interval: stats::Interval) -> Interval {
+    Interval { estimate, low: interval.low, high: interval.high }
+}
+
+/// Share of successes; unresolved trials count half.
+pub(super) fn share(counts: super::outcome::Counts) -> f64 {
+    if counts.trials == 0 {
+        return 0.5;
+    }
+    (counts.successes as f64 + 0.5 * counts.unresolved as f64) / counts.trials as f64
+}
+
+/// The name and numbers of a procedure, for reports.
+pub(super) fn method(ask: &Ask, procedure: Option<&Procedure>) -> Method {
+    let named = |name: &str, numbers: &[(&str, f64)]| Method {
+        name: name.to_owned(),
+        numbers: numbers.iter().map(|(n, v)| ((*n).to_owned(), *v)).collect(),
+    };
+    match ask {
+        Ask::Check { threshold, test, .. } => {
+            let theta = ("theta", *threshold);
+            match *test {
+                Test::Sprt { alpha, beta, indifference } => {
+                    named("sprt", &[("alpha", alpha), ("beta", beta), theta, ("indifference", indifference)])
+                }
+                Test::Sprt2 { alpha, beta, indifference } => {
+                    named("sprt2", &[("alpha", alpha), ("beta", beta), theta, ("indifference", indifference)])
+                }
+                Test::Plan { alpha, beta, indifference } => {
+                    named("plan", &[("alpha", alpha), ("beta", beta), theta, ("indifference", indifference)])
+                }
+                Test::EProcess { alpha, beta } => named("eprocess", &[("alpha", alpha), ("beta", beta), theta]),
+                Test::ThreeWay { alpha, indifference } => {
+                    named("three_way", &[("alpha", alpha), theta, ("indifference", indifference)])
+                }
+                Test::Interval { delta, .. } => named("empirical_bernstein", &[("delta", delta), theta]),
+            }
+        }
+        Ask::Estimate { estimator, measure } => match (*estimator, &measure.kind) {
+            (Estimator::Default { epsilon, delta }, MeasureKind::Probability) => {
+                let name = match procedure {
+                    Some(Procedure::Probability(p)) => match p.readings().0 {
+                        AnyEstimator::Calibrated(c) => {
+                            return named("calibrated", &[("epsilon", epsilon), ("delta", delta), ("gamma", c.gamma())]);
+                        }
+                        AnyEstimator::Spending(_) => "spending",
+                        _ => "okamoto",
+                    },
+                    _ => "calibrated",
+                };
+                named(name, &[("epsilon", epsilon), ("delta", delta)])
+            }
+            (Estimator::Default { epsilon, delta }, _) => {
+                named("empirical_bernstein", &[("epsilon", epsilon), ("delta", delta)])
+            }
+            (Estimator::Okamoto { epsilon, delta }, _) => named("okamoto", &[("epsilon", epsilon), ("delta", delta)]),
+            (Estimator::Massart { epsilon, delta }, _) => named("massart", &[("epsilon", epsilon), ("delta", delta)]),
+            (Estimator::Spending { epsilon, delta }, _) => named("spending", &[("epsilon", epsilon), ("delta", delta)]),
+            (Estimator::Relative { epsilon, delta }, _) => named("gbas", &[("epsilon", epsilon), ("delta", delta)]),
+            (Estimator::Fixed { trials, delta }, kind) => {
+                let name = match kind {
+                    MeasureKind::Probability => "clopper_pearson",
+                    MeasureKind::Expectation { .. } => "empirical_bernstein",
+                    MeasureKind::Quantile { .. } => "order_statistics",
+                };
+                named(name, &[("trials", trials as f64), ("delta", delta)])
+            }
+        },
+        Ask::Compare { within, delta, .. } => {
+            let mut numbers = vec![("delta", *delta)];
+            numbers.extend(within.map(|w| ("epsilon", w)));
+            named("paired_betting", &numbers)
+        }
+        Ask::Rank { epsilon, delta, ranking, .. } => {
+            let name = match ranking {
+                crate::compile::study::Ranking::Betting => "betting",
+                crate::compile::study::Ranking::OneChallenger => "one_challenger",
+                crate::compile::study::Ranking::Okamoto => "okamoto",
+            };
+            named(name, &[("epsilon", *epsilon), ("delta", *delta)])
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! What was consumed for one query, besides what its procedure keeps.
+
+use super::cell::{Cell, Reading};
+use super::outcome::Counts;
+
+/// Consumed trials of one query.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Tally {
+    /// Trials by outcome.
+    pub(super) counts: Counts,
+    /// Steps of the model until the column was decided.
+    pub(super) steps: u64,
+    /// Values outside the declared range.
+    pub(super) clipped: u64,
+    /// Trials in which radii were shrunk.
+    pub(super) shrunk: u64,
+    /// Trials in which an implication was triggered.
+    pub(super) triggered: u64,
+    /// Index of the first trial that passes, of the first that fails, and of the first that is unresolved.
+    pub(super) first: [Option<u64>; 3],
+}
+
+impl Tally {
+    /// Counts a trial; `range` is that of an expectation.
+    pub(super) fn add(&mut self, index: u64, cell: &Cell, range: Option<(f64, f64)>) {
+        self.counts.trials += 1;
+        self.steps += cell.steps;
+        self.shrunk += u64::from(cell.shrunk);
+        self.triggered += u64::from(cell.triggered);
+        let place = match cell.reading {
+            Reading::Truth(true) => {
+                self.counts.successes += 1;
+                0
+            }
+            Reading::Truth(false) => {
+                self.counts.failures += 1;
+                1
+            }
+            Reading::Value(value) => {
+                self.clipped += u64::from(range.is_some_and(|(low, high)| value < low || value > high));
+                return;
+            }
+            Reading::Unresolved => {
+                self.counts.unresolved += 1;
+                2
+            }
+        };
+        self.first[place].get_or_insert(index);
+    }
+}

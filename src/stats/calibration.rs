@@ -1,0 +1,304 @@
+//! The level gamma at which sequential Clopper-Pearson misses with probability at most delta: the proven
+//! table, and the proof itself for other half-widths and errors.
+//!
+//! Given the number of successes, all orders are equally likely, so the probability R of reaching a point
+//! (n, s) without an earlier stop, among all orders, is free of p; one pass over the lattice finds it. For
+//! an interval [c, d] of p, noncoverage is at most P_c(U < d) + P_d(L > c), because a larger p only moves
+//! the stopping point along the boundary, on which both ends rise (checked). Branch and bound over [0, 1/2]
+//! closes the proof; the other half is its mirror.
+
+use super::{Counts, clopper_pearson};
+use crate::base::math;
+use crate::base::special::ln_gamma;
+
+/// Smallest half-width for which the proof takes seconds at most.
+const LEAST_EPSILON: f64 = 0.005;
+/// Largest error worth a proof: beyond, trials are so few that the bound is loose.
+const MOST_DELTA: f64 = 0.3;
+/// Rounding that the proof allows for.
+const ROUNDING: f64 = 1e-8;
+/// Tried levels over delta, the largest first.
+const LADDER: [f64; 8] = [0.76, 0.72, 0.68, 0.64, 0.60, 0.55, 0.48, 0.40];
+
+/// A proven level.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    /// Half-width.
+    pub epsilon: f64,
+    /// Error.
+    pub delta: f64,
+    /// Level of the intervals.
+    pub gamma: f64,
+}
+
+/// The proven levels.
+#[derive(Clone, Copy, Debug)]
+pub struct Table;
+
+impl Table {
+    /// All rows.
+    pub const ROWS: [Row; 8] = [
+        Row { epsilon: 0.1, delta: 0.05, gamma: 0.033 },
+        Row { epsilon: 0.05, delta: 0.05, gamma: 0.035 },
+        Row { epsilon: 0.05, delta: 0.01, gamma: 0.006 },
+        Row { epsilon: 0.02, delta: 0.05, gamma: 0.036 },
+        Row { epsilon: 0.02, delta: 0.01, gamma: 0.006 },
+        Row { epsilon: 0.01, delta: 0.1, gamma: 0.076 },
+        Row { epsilon: 0.01, delta: 0.05, gamma: 0.036 },
+        Row { epsilon: 0.01, delta: 0.01, gamma: 0.006 },
+    ];
+
+    /// The row of a half-width and an error, if there is one; 1 - 0.95 counts as 0.05.
+    pub fn row(epsilon: f64, delta: f64) -> Option<Row> {
+        let same = |x: f64, y: f64| (x - y).abs() <= 1e-12;
+        Self::ROWS.into_iter().find(|row| same(row.epsilon, epsilon) && same(row.delta, delta))
+    }
+}
+
+/// A point where the procedure can stop.
+#[derive(Clone, Copy, Debug)]
+struct Stop {
+    successes: f64,
+    failures: f64,
+    /// Logarithm of the number of ways to get there.
+    ln_ways: f64,
+    low: f64,
+    high: f64,
+}
+
+/// All stopping points, from few successes to many.
+#[derive(Clone, Debug)]
+pub struct Boundary {
+    stops: Vec<Stop>,
+}
+
+impl Boundary {
+    /// Follows the procedure of half-width `epsilon` at level `gamma`. None if the ends of the intervals
+    /// do not rise along the boundary, which no level met so far.
+    pub fn new(epsilon: f64, gamma: f64) -> Option<Self> {
+        let limit = clopper_pearson::size(epsilon, gamma) as usize;
+        let mut ln_factorial = Vec::with_capacity(limit + 1);
+        for n in 0..=limit {
+            ln_factorial.push(ln_gamma(n as f64 + 1.0));
+        }
+        let (mut lower, mut upper) = (Vec::new(), Vec::new());
+        // Shares of orders that reach s successes in n trials without a stop, for s in first ..= last.
+        let mut reach = vec![0.0; limit + 2];
+        let mut next = vec![0.0; limit + 2];
+        reach[0] = 1.0;
+        let (mut first, mut last) = (0, 0);
+        let mut open_from = 0;
+        for n in 1..=limit {
+            let total = n as f64;
+            // Going on is possible for s in open_from ..= n - open_from.
+            while 2 * open_from <= n
+                && (n == limit
+                    || clopper_pearson::narrow(
+                        Counts { successes: open_from as u64, failures: (n - open_from) as u64 },
+                        gamma,
+                        2.0 * epsilon,
+                    ))
+            {
+                open_from += 1;
+            }
+            next[first] = reach[first] * ((total - first as f64) / total);
+            let old = &reach[first..=last];
+            for (s, (cell, pair)) in next[first + 1..=last].iter_mut().zip(old.windows(2)).enumerate() {
+                let s = (first + 1 + s) as f64;
+                *cell = (pair[0] * s + pair[1] * (total - s)) / total;
+            }
+            next[last + 1] = reach[last] * ((last + 1) as f64 / total);
+            last += 1;
+            std::mem::swap(&mut reach, &mut next);
+            let stop = |s: usize, reach: &[f64]| {
+                let ways = ln_factorial[n] - ln_factorial[s] - ln_factorial[n - s] + math::ln(reach[s]);
+                let counts = Counts { successes: s as u64, failures: (n - s) as u64 };
+                let interval = clopper_pearson::interval(counts, gamma);
+                Stop {
+                    successes: s as f64,
+                    failures: (n - s) as f64,
+                    ln_ways: ways,
+                    low: interval.low,
+                    high: interval.high,
+                }
+            };
+            if n < 2 * open_from {
+                // The interval is narrow whatever the outcomes: all that is left stops here.
+                for s in first..=last {
+                    lower.push(stop(s, &reach));
+                }
+                break;
+            }
+            while first < open_from {
+                lower.push(stop(first, &reach));
+                first += 1;
+            }
+            while last > n - open_from {
+                upper.push(stop(last, &reach));
+                last -= 1;
+            }
+        }
+        upper.reverse();
+        lower.append(&mut upper);
+        let rising = lower.windows(2).all(|w| w[0].low <= w[1].low && w[0].high <= w[1].high);
+        rising.then_some(Self { stops: lower })
+    }
+
+    /// The probability at `p` of the stops of `range`.
+    fn mass(&self, p: f64, range: std::ops::Range<usize>) -> f64 {
+        let (ln_p, ln_q) = (math::ln(p), math::ln_1p(-p));
+        let mut sum = 0.0;
+        for stop in &self.stops[range] {
+            let from_successes = if stop.successes == 0.0 { 0.0 } else { stop.successes * ln_p };
+            let ln_mass = stop.ln_ways + from_successes + stop.failures * ln_q;
+            if ln_mass > -45.0 {
+                sum += math::exp(ln_mass);
+            }
+        }
+        sum
+    }
+
+    /// The probability at `p`, in (0, 1), that the interval misses it.
+    pub fn miss(&self, p: f64) -> f64 {
+        let below = self.stops.partition_point(|stop| stop.high < p);
+        let above = self.stops.partition_point(|stop| stop.low <= p);
+        self.mass(p, 0..below) + self.mass(p, above..self.stops.len())
+    }
+
+    /// The mean number of trials at `p` in (0, 1).
+    pub fn mean_trials(&self, p: f64) -> f64 {
+        (0..self.stops.len())
+            .map(|k| self.mass(p, k..k + 1) * (self.stops[k].successes + self.stops[k].failures))
+            .sum()
+    }
+
+    /// The largest number of trials.
+    pub fn limit(&self) -> u64 {
+        self.stops.iter().map(|stop| (stop.successes + stop.failures) as u64).fold(0, u64::max)
+    }
+
+    /// A bound on the probability of missing, for all p in [c, d].
+    fn bound(&self, c: f64, d: f64) -> f64 {
+        let below = self.stops.partition_point(|stop| stop.high < d);
+        let above = self.stops.partition_point(|stop| stop.low <= c);
+        self.mass(c, 0..below) + self.mass(d, above..self.stops.len())
+    }
+
+    /// Whether the probability of missing is proven to be at most `delta` for every p.
+    pub fn proves(&self, delta: f64) -> bool {
+        let allowed = delta - ROUNDING;
+        // Between neighbouring ends of intervals the sets of stops that miss do not change, so cutting
+        // exactly there costs nothing.
+        let mut cuts: Vec<f64> =
+            self.stops.iter().flat_map(|s| [s.low, s.high]).filter(|p| *p > 0.0 && *p < 0.5).collect();
+        cuts.extend([0.0, 0.5]);
+        cuts.sort_by(f64::total_cmp);
+        cuts.dedup();
+        // A cheap look first: just above each upper end and just below each lower end it misses most.
+        let stride = 1 + cuts.len() / 500;
+        if cuts.iter().step_by(stride).any(|p| {
+            self.miss(p.next_up()) > allowed || (*p > 0.0 && self.miss(p.next_down()) > allowed)
+        }) {
+            return false;
+        }
+        let mut open = vec![(0, cuts.len() - 1)];
+        while let Some((i, j)) = open.pop() {
+            if self.bound(cuts[i], cuts[j]) <= allowed {
+                continue;
+            }
+            if j - i > 1 {
+                let middle = usize::midpoint(i, j);
+                open.push((i, middle));
+                open.push((middle, j));
+            } else if !self.proves_between(cuts[i], cuts[j], allowed) {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// The same between two neighbouring ends, where the bound falls continuously with the width.
+    fn proves_between(&self, c: f64, d: f64, allowed: f64) -> bool {
+        // For p strictly inside, `high < d` is what `high < p` is there, and `low > c` what `low > p` is.
+        // At p = c and p = d fewer stops miss.
+        let below = self.stops.partition_point(|stop| stop.high < d);
+        let above = self.stops.partition_point(|stop| stop.low <= c);
+        let mut open = vec![(c, d, 0)];
+        while let Some((c, d, depth)) = open.pop() {
+            let bound = self.mass(c, 0..below) + self.mass(d, above..self.stops.len());
+            if bound <= allowed {
+                continue;
+            }
+            if depth >= 12 {
+                return false;
+            }
+            let middle = 0.5 * (c + d);
+            open.push((c, middle, depth + 1));
+            open.push((middle, d, depth + 1));
+        }
+        true
+    }
+}
+
+/// A level for half-width `epsilon` and error `delta`, proven here and now; None where the proof would take
+/// longer than seconds or no level of the ladder can be proven.
+pub fn calibrate(epsilon: f64, delta: f64) -> Option<f64> {
+    let affordable = (LEAST_EPSILON..=0.4).contains(&epsilon) && delta > 1e-6 && delta <= MOST_DELTA;
+    if !affordable {
+        return None;
+    }
+    LADDER
+        .into_iter()
+        .map(|part| part * delta)
+        .find(|gamma| Boundary::new(epsilon, *gamma).is_some_and(|boundary| boundary.proves(delta)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_of_the_table_are_proven_and_meet_their_sizes() {
+        let sizes = [121, 462, 771, 2796, 4765];
+        for (row, size) in Table::ROWS.into_iter().zip(sizes) {
+            let boundary = Boundary::new(row.epsilon, row.gamma).unwrap();
+            assert!(boundary.proves(row.delta), "{row:?}");
+            assert_eq!(boundary.limit(), size, "{row:?}");
+        }
+    }
+
+    #[test]
+    fn the_naive_level_is_refuted() {
+        assert!(!Boundary::new(0.05, 0.05).unwrap().proves(0.05));
+        assert!(!Boundary::new(0.02, 0.05).unwrap().proves(0.05));
+        assert!(!Boundary::new(0.05, 0.01).unwrap().proves(0.01));
+    }
+
+    /// T10 and T11 without chance: errors and mean numbers of trials by the lattice.
+    #[test]
+    fn exact_errors_of_the_reference() {
+        let boundary = Boundary::new(0.05, 0.035).unwrap();
+        let cases = [
+            (0.05, 0.008_47, 93.97),
+            (0.1, 0.038_26, 169.67),
+            (0.107, 0.044_30, 180.21),
+            (0.3, 0.030_10, 389.63),
+            (0.5, 0.031_30, 461.10),
+        ];
+        for (p, miss, trials) in cases {
+            assert!((boundary.miss(p) - miss).abs() < 1e-5, "{p}: {}", boundary.miss(p));
+            assert!((boundary.mean_trials(p) - trials).abs() < 0.01, "{p}: {}", boundary.mean_trials(p));
+        }
+        let naive = Boundary::new(0.05, 0.05).unwrap();
+        assert!((naive.miss(0.107) - 0.064_09).abs() < 1e-5);
+        assert!((naive.mean_trials(0.107) - 157.22).abs() < 0.01);
+    }
+
+    #[test]
+    fn probabilities_of_the_stops_sum_to_one() {
+        let boundary = Boundary::new(0.05, 0.035).unwrap();
+        for p in [1e-6, 0.03, 0.5, 0.77] {
+            assert!((boundary.mass(p, 0..boundary.stops.len()) - 1.0).abs() < 1e-10, "{p}");
+        }
+    }
+}

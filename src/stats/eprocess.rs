@@ -1,0 +1,316 @@
+//! Tests of P >= theta without an indifference region: one-sided Beta-mixture e-processes.
+//!
+//! The evidence against P <= theta is the likelihood ratio of a Beta prior cut to (theta, 1) over theta, a
+//! nonnegative supermartingale for every P <= theta (Robbins 1970; Ville 1939). So the error holds at any
+//! stopping time, and at P = theta it is right never to stop.
+
+use super::invalid::{Invalid, probability, region};
+use super::sprt::SLACK;
+use super::{Claim, Counts, Decision, Statement, Test};
+use crate::base::math;
+use crate::base::special::{beta_tails, ln_beta};
+
+/// The evidence against P <= theta, and the number of successes at which it can first reach a threshold.
+#[derive(Clone, Debug, PartialEq)]
+struct OneSided {
+    theta: f64,
+    a: f64,
+    b: f64,
+    /// ln B(a, b) plus the logarithm of the prior mass above theta.
+    ln_prior: f64,
+    ln_theta: f64,
+    ln_rest: f64,
+    threshold: f64,
+    /// No count of successes below this reaches the threshold, whatever the failures from now on.
+    wanted: u64,
+}
+
+impl OneSided {
+    /// Against P <= theta, with a prior of weight 100 around theta (10 at the very ends), each parameter
+    /// at least 1/2.
+    fn new(theta: f64, error: f64) -> Self {
+        let weight = if (0.01..=0.99).contains(&theta) { 100.0 } else { 10.0 };
+        let a = math::at_least(weight * theta, 0.5);
+        let b = math::at_least(weight * (1.0 - theta), 0.5);
+        let mut process = Self {
+            theta,
+            a,
+            b,
+            ln_prior: ln_beta(a, b) + beta_tails(a, b, theta, 1.0 - theta).ln_upper,
+            ln_theta: math::ln(theta),
+            ln_rest: math::ln_1p(-theta),
+            threshold: -math::ln(error) + SLACK,
+            wanted: 0,
+        };
+        process.wanted = process.first_reaching(0, 0);
+        process
+    }
+
+    /// The logarithm of the evidence.
+    fn log(&self, successes: u64, failures: u64) -> f64 {
+        let (s, f) = (successes as f64, failures as f64);
+        let (a, b) = (self.a + s, self.b + f);
+        ln_beta(a, b) + beta_tails(a, b, self.theta, 1.0 - self.theta).ln_upper
+            - self.ln_prior
+            - s * self.ln_theta
+            - f * self.ln_rest
+    }
+
+    /// The least number of successes, not below `successes`, that reaches the threshold with `failures`.
+    ///
+    /// A success raises the evidence and a failure lowers it, because the mixture predicts success with
+    /// a probability of at least theta. So no path through more failures gets there with fewer.
+    fn first_reaching(&self, successes: u64, failures: u64) -> u64 {
+        let reached = |s: u64| self.log(s, failures) >= self.threshold;
+        let (mut low, mut step) = (successes, 1);
+        if reached(low) {
+            return low;
+        }
+        while !reached(low + step) {
+            low += step;
+            step *= 2;
+        }
+        let mut high = low + step;
+        while high - low > 1 {
+            let middle = low + (high - low) / 2;
+            if reached(middle) {
+                high = middle;
+            } else {
+                low = middle;
+            }
+        }
+        high
+    }
+
+    /// Whether the threshold is reached now. `log` is evaluated only where it could be.
+    #[inline]
+    fn reached(&mut self, successes: u64, failures: u64) -> bool {
+        if successes < self.wanted {
+            return false;
+        }
+        self.wanted = self.first_reaching(successes, failures);
+        successes >= self.wanted
+    }
+}
+
+/// P > theta or P < theta, each with its own error, for every P.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Evidence {
+    theta: f64,
+    alpha: f64,
+    beta: f64,
+    above: OneSided,
+    below: OneSided,
+    counts: Counts,
+    decision: Option<Decision>,
+}
+
+impl Evidence {
+    /// `alpha` bounds the error of deciding `Below` though P >= theta, `beta` that of deciding `Above`
+    /// though P <= theta (the roles they have in the SPRT).
+    pub fn new(theta: f64, alpha: f64, beta: f64) -> Result<Self, Invalid> {
+        probability("theta", theta)?;
+        probability("alpha", alpha)?;
+        probability("beta", beta)?;
+        Ok(Self {
+            theta,
+            alpha,
+            beta,
+            above: OneSided::new(theta, beta),
+            // The other side is the same test of failures against 1 - theta.
+            below: OneSided::new(1.0 - theta, alpha),
+            counts: Counts::default(),
+            decision: None,
+        })
+    }
+
+    /// The logarithms of the evidence that P > theta and that P < theta.
+    pub fn logs(&self) -> (f64, f64) {
+        let Counts { successes, failures } = self.counts;
+        (self.above.log(successes, failures), self.below.log(failures, successes))
+    }
+}
+
+impl Test for Evidence {
+    #[inline]
+    fn observe(&mut self, success: bool) -> Option<Decision> {
+        if self.decision.is_none() {
+            self.counts.add(success);
+            let Counts { successes, failures } = self.counts;
+            if success {
+                if self.above.reached(successes, failures) {
+                    self.decision = Some(Decision::Above);
+                }
+            } else if self.below.reached(failures, successes) {
+                self.decision = Some(Decision::Below);
+            }
+        }
+        self.decision
+    }
+
+    fn decision(&self) -> Option<Decision> {
+        self.decision
+    }
+
+    fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    fn certifies(&self, decision: Decision) -> Statement {
+        match decision {
+            Decision::Above => Statement { claim: Claim::Above(self.theta), error: self.beta },
+            Decision::Below => Statement { claim: Claim::Below(self.theta), error: self.alpha },
+            Decision::Within => {
+                Statement { claim: Claim::Between(self.theta, self.theta), error: 1.0 }
+            }
+        }
+    }
+
+    fn limit(&self) -> Option<u64> {
+        None
+    }
+}
+
+/// P > theta, P < theta, or P within the indifference of theta; it stops for every P.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ThreeWay {
+    theta: f64,
+    ends: (f64, f64),
+    error: f64,
+    above: OneSided,
+    below: OneSided,
+    /// Against P <= theta - indifference and, counting failures, against P >= theta + indifference.
+    above_low: OneSided,
+    below_high: OneSided,
+    passed: (bool, bool),
+    counts: Counts,
+    decision: Option<Decision>,
+}
+
+impl ThreeWay {
+    /// `error` bounds the probability of any wrong decision; each part is run at half of it.
+    pub fn new(theta: f64, indifference: f64, error: f64) -> Result<Self, Invalid> {
+        let ends = region(theta, indifference)?;
+        probability("error", error)?;
+        let half = 0.5 * error;
+        Ok(Self {
+            theta,
+            ends,
+            error,
+            above: OneSided::new(theta, half),
+            below: OneSided::new(1.0 - theta, half),
+            above_low: OneSided::new(ends.0, half),
+            below_high: OneSided::new(1.0 - ends.1, half),
+            passed: (false, false),
+            counts: Counts::default(),
+            decision: None,
+        })
+    }
+}
+
+impl Test for ThreeWay {
+    #[inline]
+    fn observe(&mut self, success: bool) -> Option<Decision> {
+        if self.decision.is_none() {
+            self.counts.add(success);
+            let Counts { successes, failures } = self.counts;
+            // Ville's inequality bounds the highest evidence ever, so what was once passed stays passed.
+            if success {
+                self.passed.0 = self.passed.0 || self.above_low.reached(successes, failures);
+                if self.above.reached(successes, failures) {
+                    self.decision = Some(Decision::Above);
+                }
+            } else {
+                self.passed.1 = self.passed.1 || self.below_high.reached(failures, successes);
+                if self.below.reached(failures, successes) {
+                    self.decision = Some(Decision::Below);
+                }
+            }
+            if self.decision.is_none() && self.passed == (true, true) {
+                self.decision = Some(Decision::Within);
+            }
+        }
+        self.decision
+    }
+
+    fn decision(&self) -> Option<Decision> {
+        self.decision
+    }
+
+    fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    fn certifies(&self, decision: Decision) -> Statement {
+        let claim = match decision {
+            Decision::Above => Claim::Above(self.theta),
+            Decision::Below => Claim::Below(self.theta),
+            Decision::Within => Claim::Between(self.ends.0, self.ends.1),
+        };
+        Statement { claim, error: self.error }
+    }
+
+    fn limit(&self) -> Option<u64> {
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::random::{Purpose, Stream, TrialKey};
+
+    fn outcome(index: u64, p: f64) -> bool {
+        Stream::of(TrialKey { seed: 5, index, branch: 0 }, 0, Purpose::Test).uniform(0) < p
+    }
+
+    #[test]
+    fn the_lazy_stop_is_the_stop_of_checking_every_index() {
+        for (run, p) in [0.5, 0.85, 0.88, 0.93, 0.99].into_iter().enumerate() {
+            let mut test = Evidence::new(0.9, 0.01, 0.02).unwrap();
+            let mut n = run as u64 * 1_000_000;
+            loop {
+                let decision = test.observe(outcome(n, p));
+                n += 1;
+                let (above, below) = test.logs();
+                let direct = if above >= -math::ln(0.02) + SLACK {
+                    Some(Decision::Above)
+                } else if below >= -math::ln(0.01) + SLACK {
+                    Some(Decision::Below)
+                } else {
+                    None
+                };
+                assert_eq!(decision, direct, "{p} {n}");
+                if decision.is_some() {
+                    break;
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn evidence_is_a_supermartingale_at_the_boundary_and_below() {
+        // One step from any state: the mean of the next value is at most the present one.
+        for theta in [0.1, 0.5, 0.9, 0.999] {
+            let process = OneSided::new(theta, 0.01);
+            for (s, f) in [(0, 0), (3, 5), (90, 10), (500, 500), (1000, 1)] {
+                let now = process.log(s, f);
+                let win = math::exp(process.log(s + 1, f) - now);
+                let lose = math::exp(process.log(s, f + 1) - now);
+                assert!((theta * win + (1.0 - theta) * lose - 1.0).abs() < 1e-9, "{theta} {s} {f}");
+                assert!(win >= 1.0 - 1e-12 && lose <= 1.0 + 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn three_answers() {
+        let run = |p: f64| {
+            let mut test = ThreeWay::new(0.5, 0.1, 0.05).unwrap();
+            (0..100_000).find_map(|n| test.observe(outcome(n, p)))
+        };
+        assert_eq!(run(0.5), Some(Decision::Within));
+        assert_eq!(run(0.8), Some(Decision::Above));
+        assert_eq!(run(0.2), Some(Decision::Below));
+    }
+}

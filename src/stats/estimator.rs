@@ -1,0 +1,260 @@
+//! What estimators of a probability have in common, the default choice, and unresolved trials.
+
+use super::calibration::{self, Table};
+use super::{Calibrated, Counts, FixedSize, Gbas, Invalid, Massart, Okamoto, Outcome, Sequence, Spending};
+
+/// In which sense an interval holds what it should.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Coverage {
+    /// At a number of trials fixed in advance.
+    FixedSize,
+    /// At the stopping time of this procedure.
+    Sequential,
+    /// At all numbers of trials at once: at deadlines and interruptions too.
+    TimeUniform,
+}
+
+/// An interval that misses the truth with probability at most `error`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+    /// Bound on the probability of missing.
+    pub error: f64,
+    /// When that bound holds.
+    pub coverage: Coverage,
+}
+
+impl Interval {
+    /// Half of the width.
+    pub fn half_width(self) -> f64 {
+        0.5 * (self.high - self.low)
+    }
+
+    /// The middle.
+    pub fn middle(self) -> f64 {
+        0.5 * (self.low + self.high)
+    }
+
+    /// Whether `x` lies in it, ends included.
+    pub fn holds(self, x: f64) -> bool {
+        self.low <= x && x <= self.high
+    }
+
+    /// The smallest interval that holds both.
+    pub fn hull(self, other: Self) -> Self {
+        Self {
+            low: if other.low < self.low { other.low } else { self.low },
+            high: if other.high > self.high { other.high } else { self.high },
+            error: if other.error > self.error { other.error } else { self.error },
+            coverage: self.coverage,
+        }
+    }
+}
+
+/// An estimator of a probability that reads outcomes in index order.
+pub trait Estimator {
+    /// Reads the next outcome; true once finished. Outcomes after that are ignored.
+    fn observe(&mut self, success: bool) -> bool;
+
+    /// Whether it has stopped.
+    fn finished(&self) -> bool;
+
+    /// The outcomes read.
+    fn counts(&self) -> Counts;
+
+    /// Once finished, the interval with the procedure's own guarantee; before, the time-uniform interval
+    /// of the confidence sequence at the same error, which holds at any deadline.
+    fn interval(&self) -> Interval;
+
+    /// The point estimate.
+    fn estimate(&self) -> f64 {
+        self.counts().share()
+    }
+
+    /// The number of trials after which it has surely stopped, if it has one.
+    fn limit(&self) -> Option<u64>;
+}
+
+/// Any of the estimators.
+#[derive(Clone, Debug)]
+pub enum AnyEstimator {
+    /// Calibrated sequential Clopper-Pearson.
+    Calibrated(Calibrated),
+    /// Clopper-Pearson with the error spent over geometric looks.
+    Spending(Spending),
+    /// Fixed size by Okamoto and Hoeffding.
+    Okamoto(Okamoto),
+    /// Sequential Massart.
+    Massart(Massart),
+    /// Clopper-Pearson at a fixed size.
+    FixedSize(FixedSize),
+    /// The Krichevsky-Trofimov confidence sequence.
+    Sequence(Sequence),
+    /// Relative error.
+    Gbas(Gbas),
+}
+
+impl AnyEstimator {
+    /// The default for half-width `epsilon` and error `delta`: calibrated sequential Clopper-Pearson where
+    /// the level is in the proven table or can be proven in seconds (epsilon of 0.005 or more), else
+    /// whichever of alpha spending and Okamoto has the smaller largest number of trials.
+    pub fn within(epsilon: f64, delta: f64) -> Result<Self, Invalid> {
+        if let Some(row) = Table::row(epsilon, delta) {
+            return Ok(Self::Calibrated(Calibrated::at_level(epsilon, delta, row.gamma)?));
+        }
+        let (spending, okamoto) = (Spending::new(epsilon, delta)?, Okamoto::new(epsilon, delta)?);
+        if let Some(gamma) = calibration::calibrate(epsilon, delta) {
+            return Ok(Self::Calibrated(Calibrated::at_level(epsilon, delta, gamma)?));
+        }
+        Ok(if spending.limit() < okamoto.limit() {
+            Self::Spending(spending)
+        } else {
+            Self::Okamoto(okamoto)
+        })
+    }
+
+    fn inner(&self) -> &dyn Estimator {
+        match self {
+            Self::Calibrated(e) => e,
+            Self::Spending(e) => e,
+            Self::Okamoto(e) => e,
+            Self::Massart(e) => e,
+            Self::FixedSize(e) => e,
+            Self::Sequence(e) => e,
+            Self::Gbas(e) => e,
+        }
+    }
+}
+
+impl Estimator for AnyEstimator {
+    #[inline]
+    fn observe(&mut self, success: bool) -> bool {
+        match self {
+            Self::Calibrated(e) => e.observe(success),
+            Self::Spending(e) => e.observe(success),
+            Self::Okamoto(e) => e.observe(success),
+            Self::Massart(e) => e.observe(success),
+            Self::FixedSize(e) => e.observe(success),
+            Self::Sequence(e) => e.observe(success),
+            Self::Gbas(e) => e.observe(success),
+        }
+    }
+
+    fn finished(&self) -> bool {
+        self.inner().finished()
+    }
+
+    fn counts(&self) -> Counts {
+        self.inner().counts()
+    }
+
+    fn interval(&self) -> Interval {
+        self.inner().interval()
+    }
+
+    fn estimate(&self) -> f64 {
+        self.inner().estimate()
+    }
+
+    fn limit(&self) -> Option<u64> {
+        self.inner().limit()
+    }
+}
+
+/// An estimator over outcomes of which some are unresolved: it runs with all of them as failures and with
+/// all of them as successes, each to its own stop.
+///
+/// The interval holds both readings; each reading's own probability is missed with at most the
+/// estimator's error.
+#[derive(Clone, Debug)]
+pub struct EstimatorReadings<E> {
+    pessimistic: E,
+    optimistic: Option<E>,
+    unresolved: u64,
+    read: u64,
+}
+
+impl<E: Estimator + Clone> EstimatorReadings<E> {
+    /// Around a fresh estimator.
+    pub const fn new(estimator: E) -> Self {
+        Self { pessimistic: estimator, optimistic: None, unresolved: 0, read: 0 }
+    }
+
+    /// Reads the next outcome; true once both readings have stopped.
+    #[inline]
+    pub fn observe(&mut self, outcome: Outcome) -> bool {
+        if self.finished() {
+            return true;
+        }
+        self.read += 1;
+        if outcome == Outcome::Unresolved {
+            self.unresolved += 1;
+            if self.optimistic.is_none() {
+                self.optimistic = Some(self.pessimistic.clone());
+            }
+        }
+        let low = self.pessimistic.observe(outcome == Outcome::True);
+        match &mut self.optimistic {
+            None => low,
+            Some(estimator) => estimator.observe(outcome != Outcome::False) && low,
+        }
+    }
+
+    /// Whether both readings have stopped.
+    #[inline]
+    pub fn finished(&self) -> bool {
+        self.pessimistic.finished() && self.optimistic.as_ref().is_none_or(Estimator::finished)
+    }
+
+    /// The interval that holds both readings.
+    pub fn interval(&self) -> Interval {
+        let low = self.pessimistic.interval();
+        self.optimistic.as_ref().map_or(low, |e| low.hull(e.interval()))
+    }
+
+    /// Outcomes read, and how many of them were unresolved.
+    pub const fn read(&self) -> (u64, u64) {
+        (self.read, self.unresolved)
+    }
+
+    /// The two readings: unresolved trials as failures, as successes.
+    pub fn readings(&self) -> (&E, &E) {
+        (&self.pessimistic, self.optimistic.as_ref().unwrap_or(&self.pessimistic))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_default_takes_the_table_then_proves_then_falls_back() {
+        assert!(matches!(AnyEstimator::within(0.01, 0.05), Ok(AnyEstimator::Calibrated(_))));
+        assert!(matches!(AnyEstimator::within(0.08, 0.02), Ok(AnyEstimator::Calibrated(_))));
+        assert!(matches!(AnyEstimator::within(0.001, 0.05), Ok(AnyEstimator::Okamoto(_))));
+        assert!(AnyEstimator::within(0.0, 0.05).is_err());
+        assert!(AnyEstimator::within(0.6, 0.05).is_err());
+        assert!(AnyEstimator::within(0.01, 1.0).is_err());
+    }
+
+    #[test]
+    fn the_interval_holds_both_readings() {
+        let mut readings = EstimatorReadings::new(FixedSize::new(100, 0.05).unwrap());
+        for k in 0..100 {
+            readings.observe(match k % 10 {
+                0 => Outcome::Unresolved,
+                1..5 => Outcome::True,
+                _ => Outcome::False,
+            });
+        }
+        assert!(readings.finished());
+        let (low, high) = readings.readings();
+        assert_eq!((low.counts().successes, high.counts().successes), (40, 50));
+        let interval = readings.interval();
+        assert_eq!((interval.low, interval.high), (low.interval().low, high.interval().high));
+        assert_eq!(readings.read(), (100, 10));
+    }
+}

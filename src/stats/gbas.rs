@@ -1,0 +1,143 @@
+//! Relative error by the Gamma Bernoulli approximation scheme (Huber, "A Bernoulli mean estimate with known
+//! relative error distribution", Random Structures and Algorithms 50, 2017).
+//!
+//! Each trial adds an exponential number to a sum R until the k-th success; then (k - 1)/R over P has
+//! exactly the law of (k - 1)/Gamma(k), whatever P is.
+
+use super::invalid::{Invalid, probability, range};
+use super::{Counts, Coverage, Estimator, Interval, clopper_pearson, sequence};
+use crate::base::math;
+use crate::base::random::{Purpose, Stream, TrialKey};
+use crate::base::special::{gamma_quantile, gamma_reg, gamma_upper_quantile, gamma_tails};
+
+/// The share of the error kept for the interval at the cap.
+const CAP_SHARE: f64 = 0.1;
+
+/// The smallest number of successes with relative error at most `epsilon` but for probability `delta`.
+pub fn size(epsilon: f64, delta: f64) -> u64 {
+    let miss = |k: f64| {
+        gamma_reg(k, (k - 1.0) / (1.0 + epsilon)) + gamma_tails(k, (k - 1.0) / (1.0 - epsilon)).upper()
+    };
+    let mut high = 4.0;
+    while miss(high) > delta && high < 1e12 {
+        high *= 2.0;
+    }
+    let mut low = 1.0;
+    while high - low > 1.0 {
+        let middle = (0.5 * (low + high)).floor();
+        if miss(middle) > delta {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    high as u64
+}
+
+/// Estimates P to a relative error.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gbas {
+    epsilon: f64,
+    delta: f64,
+    needed: u64,
+    cap: Option<u64>,
+    seed: u64,
+    sum: f64,
+    counts: Counts,
+}
+
+impl Gbas {
+    /// P(|estimate / P - 1| > epsilon) <= delta. Without a `cap` it never stops at P = 0; with one, a tenth
+    /// of the error is kept for the Clopper-Pearson interval at the cap. `seed` addresses the exponential
+    /// numbers, one per trial index.
+    pub fn new(epsilon: f64, delta: f64, cap: Option<u64>, seed: u64) -> Result<Self, Invalid> {
+        range("epsilon", epsilon, 1e-4, 0.999)?;
+        probability("delta", delta)?;
+        if let Some(cap) = cap {
+            range("cap", cap as f64, 1.0, 1e15)?;
+        }
+        let own = if cap.is_some() { (1.0 - CAP_SHARE) * delta } else { delta };
+        let needed = size(epsilon, own);
+        Ok(Self { epsilon, delta, needed, cap, seed, sum: 0.0, counts: Counts::default() })
+    }
+
+    /// Successes at which it stops.
+    pub const fn needed(&self) -> u64 {
+        self.needed
+    }
+
+    fn succeeded(&self) -> bool {
+        self.counts.successes >= self.needed
+    }
+}
+
+impl Estimator for Gbas {
+    #[inline]
+    fn observe(&mut self, success: bool) -> bool {
+        if !self.finished() {
+            let key = TrialKey { seed: self.seed, index: self.counts.trials(), branch: 0 };
+            self.sum -= math::ln(Stream::of(key, 0, Purpose::Procedure).uniform(0));
+            self.counts.add(success);
+        }
+        self.finished()
+    }
+
+    #[inline]
+    fn finished(&self) -> bool {
+        self.succeeded() || self.cap.is_some_and(|cap| self.counts.trials() >= cap)
+    }
+
+    fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// At its own stop the exact two-sided interval of the pivot P R, which has the law Gamma(k); at the cap
+    /// a Clopper-Pearson interval, with upper end about 3/n without successes at 5 %.
+    fn interval(&self) -> Interval {
+        if self.succeeded() {
+            let own = if self.cap.is_some() { (1.0 - CAP_SHARE) * self.delta } else { self.delta };
+            let k = self.needed as f64;
+            return Interval {
+                low: gamma_quantile(k, 0.5 * own) / self.sum,
+                high: math::at_most(gamma_upper_quantile(k, 0.5 * own) / self.sum, 1.0),
+                error: self.delta,
+                coverage: Coverage::Sequential,
+            };
+        }
+        if self.finished() {
+            let at_cap = clopper_pearson::interval(self.counts, CAP_SHARE * self.delta);
+            return Interval { error: self.delta, coverage: Coverage::Sequential, ..at_cap };
+        }
+        sequence::interval(self.counts, self.delta)
+    }
+
+    fn estimate(&self) -> f64 {
+        if self.succeeded() { (self.needed as f64 - 1.0) / self.sum } else { self.counts.share() }
+    }
+
+    fn limit(&self) -> Option<u64> {
+        self.cap
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// T7.
+    #[test]
+    fn sizes_of_the_reference() {
+        for (epsilon, k) in [(0.5, 17), (0.2, 97), (0.1, 385), (0.05, 1537)] {
+            assert_eq!(size(epsilon, 0.05), k);
+        }
+    }
+
+    #[test]
+    fn at_the_cap_it_stops_with_an_upper_bound() {
+        let mut gbas = Gbas::new(0.1, 0.05, Some(1000), 1).unwrap();
+        while !gbas.observe(false) {}
+        assert_eq!(gbas.counts().trials(), 1000);
+        let interval = gbas.interval();
+        assert!(interval.low == 0.0 && interval.high > 3e-3 && interval.high < 7e-3);
+    }
+}

@@ -1,0 +1,251 @@
+//! The mean of a bounded metric: the predictable plug-in empirical Bernstein confidence sequence of
+//! Waudby-Smith and Ramdas, "Estimating means of bounded random variables by betting", JRSS B 86 (2024),
+//! at 0.8 of the error, capped by Hoeffding's bound at the other 0.2.
+
+use super::invalid::{Invalid, probability, range};
+use super::{Coverage, Interval};
+use crate::base::math;
+
+/// The share of the error for the sequence; the rest is for the cap.
+const SEQUENCE_SHARE: f64 = 0.8;
+
+/// The confidence sequence of one reading, on [0, 1].
+#[derive(Clone, Debug, PartialEq)]
+struct Sequence {
+    /// ln(2 / error).
+    ln_error: f64,
+    /// Number of trials that bets aim at; None bets for all times.
+    aim: Option<f64>,
+    /// Trials, their sum, and the sum of squared deviations from the running means.
+    n: u64,
+    sum: f64,
+    squares: f64,
+    /// Sums of bets, of bets times values, and of the variance terms.
+    bets: f64,
+    weighted: f64,
+    variance: f64,
+    finished: bool,
+}
+
+impl Sequence {
+    fn new(error: f64, aim: Option<u64>) -> Self {
+        Self {
+            ln_error: math::ln(2.0 / error),
+            aim: aim.map(|n| n as f64),
+            n: 0,
+            sum: 0.0,
+            squares: 0.0,
+            bets: 0.0,
+            weighted: 0.0,
+            variance: 0.0,
+            finished: false,
+        }
+    }
+
+    fn push(&mut self, x: f64) {
+        let before = self.n as f64;
+        let t = before + 1.0;
+        // One pseudo-observation: mean 1/2, variance 1/4.
+        let mean = (0.5 + self.sum) / t;
+        let spread = (0.25 + self.squares) / t;
+        let horizon = self.aim.unwrap_or_else(|| t * math::ln(1.0 + t));
+        let bet = math::at_most((2.0 * self.ln_error / (spread * horizon)).sqrt(), 0.5);
+        let deviation = x - mean;
+        self.n += 1;
+        self.sum += x;
+        let after = (0.5 + self.sum) / (t + 1.0);
+        self.squares += (x - after) * (x - after);
+        self.bets += bet;
+        self.weighted += bet * x;
+        self.variance += deviation * deviation * (-math::ln_1p(-bet) - bet);
+    }
+
+    /// Centre and radius.
+    fn interval(&self) -> (f64, f64) {
+        if self.n == 0 {
+            return (0.5, 0.5);
+        }
+        (self.weighted / self.bets, (self.ln_error + self.variance) / self.bets)
+    }
+}
+
+/// Estimates the mean of a metric with a declared range.
+///
+/// Values outside of the range are clipped and counted. Unresolved trials are read as the lower end of the
+/// range and as the upper end, each reading to its own stop, and the interval holds both.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mean {
+    low: f64,
+    high: f64,
+    epsilon: Option<f64>,
+    delta: f64,
+    limit: u64,
+    lower: Sequence,
+    /// The reading with unresolved trials at the upper end, once there are any.
+    upper: Option<Sequence>,
+    read: u64,
+    unresolved: u64,
+    clipped: u64,
+}
+
+impl Mean {
+    /// Values in [low, high], half-width `epsilon` in the same unit, error `delta`.
+    pub fn within(low: f64, high: f64, epsilon: f64, delta: f64) -> Result<Self, Invalid> {
+        let mut mean = Self::new(low, high, delta, None)?;
+        let part = range("epsilon over the range", epsilon / (high - low), 1e-6, 0.5)?;
+        mean.epsilon = Some(part);
+        mean.limit = super::okamoto::size(part, (1.0 - SEQUENCE_SHARE) * delta);
+        Ok(mean)
+    }
+
+    /// Values in [low, high], a fixed number of trials, error `delta`.
+    pub fn fixed(low: f64, high: f64, trials: u64, delta: f64) -> Result<Self, Invalid> {
+        range("trials", trials as f64, 1.0, 1e15)?;
+        let mut mean = Self::new(low, high, delta, Some(trials))?;
+        mean.limit = trials;
+        Ok(mean)
+    }
+
+    fn new(low: f64, high: f64, delta: f64, aim: Option<u64>) -> Result<Self, Invalid> {
+        probability("delta", delta)?;
+        if !(low < high && (high - low).is_finite()) {
+            return Err(Invalid::Order { low_name: "low", low, high_name: "high", high });
+        }
+        Ok(Self {
+            low,
+            high,
+            epsilon: None,
+            delta,
+            limit: 0,
+            lower: Sequence::new(SEQUENCE_SHARE * delta, aim),
+            upper: None,
+            read: 0,
+            unresolved: 0,
+            clipped: 0,
+        })
+    }
+
+    /// Reads the next value, `None` (or NaN) if it is unresolved; true once finished.
+    pub fn observe(&mut self, value: Option<f64>) -> bool {
+        if self.finished() {
+            return true;
+        }
+        self.read += 1;
+        let value = value.filter(|x| !x.is_nan());
+        if value.is_none() {
+            self.unresolved += 1;
+            if self.upper.is_none() {
+                self.upper = Some(self.lower.clone());
+            }
+        }
+        let scaled = value.map(|x| {
+            if x < self.low || x > self.high {
+                self.clipped += 1;
+            }
+            (math::at_most(math::at_least(x, self.low), self.high) - self.low) / (self.high - self.low)
+        });
+        let (epsilon, limit) = (self.epsilon, self.limit);
+        let step = |sequence: &mut Sequence, x: f64| {
+            if !sequence.finished {
+                sequence.push(x);
+                sequence.finished = sequence.n >= limit || epsilon.is_some_and(|e| sequence.interval().1 <= e);
+            }
+        };
+        step(&mut self.lower, scaled.unwrap_or(0.0));
+        if let Some(upper) = &mut self.upper {
+            step(upper, scaled.unwrap_or(1.0));
+        }
+        self.finished()
+    }
+
+    /// Whether it has stopped.
+    pub fn finished(&self) -> bool {
+        self.lower.finished && self.upper.as_ref().is_none_or(|upper| upper.finished)
+    }
+
+    /// The number of trials after which it has surely stopped.
+    pub const fn limit(&self) -> u64 {
+        self.limit
+    }
+
+    /// Trials read, unresolved among them, and values that were clipped.
+    pub const fn read(&self) -> (u64, u64, u64) {
+        (self.read, self.unresolved, self.clipped)
+    }
+
+    /// The means of both readings; the same without unresolved trials.
+    pub fn estimate(&self) -> (f64, f64) {
+        let of = |s: &Sequence| {
+            let mean = if s.n == 0 { 0.5 } else { s.sum / s.n as f64 };
+            self.low + (self.high - self.low) * mean
+        };
+        (of(&self.lower), of(self.upper.as_ref().unwrap_or(&self.lower)))
+    }
+
+    /// The interval; before the stop it holds at all times, with a fixed number of trials as well.
+    pub fn interval(&self) -> Interval {
+        let one = |sequence: &Sequence| {
+            let (centre, radius) = sequence.interval();
+            let (mut low, mut high) = (centre - radius, centre + radius);
+            if sequence.n >= self.limit {
+                // At the number of trials fixed in advance Hoeffding's interval holds too.
+                let n = sequence.n as f64;
+                let mean = sequence.sum / n;
+                let reach =
+                    (math::ln(2.0 / ((1.0 - SEQUENCE_SHARE) * self.delta)) / (2.0 * n)).sqrt();
+                low = math::at_least(low, mean - reach);
+                high = math::at_most(high, mean + reach);
+            }
+            let scale = |x: f64| self.low + (self.high - self.low) * math::at_most(math::at_least(x, 0.0), 1.0);
+            Interval {
+                low: scale(low),
+                high: scale(high),
+                error: self.delta,
+                coverage: if sequence.finished { Coverage::Sequential } else { Coverage::TimeUniform },
+            }
+        };
+        let lower = one(&self.lower);
+        self.upper.as_ref().map_or(lower, |upper| lower.hull(one(upper)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_constant_is_soon_known_and_units_are_kept() {
+        let mut mean = Mean::within(0.0, 60.0, 0.6, 0.05).unwrap();
+        while !mean.observe(Some(15.0)) {}
+        let interval = mean.interval();
+        assert!(interval.holds(15.0) && interval.half_width() <= 0.6 + 1e-9);
+        assert!(mean.read().0 < 1200, "{:?}", mean.read());
+        assert_eq!(mean.limit(), 26_492);
+    }
+
+    #[test]
+    fn unresolved_trials_widen_to_both_ends_and_clipping_is_counted() {
+        let mut mean = Mean::fixed(0.0, 1.0, 1000, 0.05).unwrap();
+        for k in 0..1000 {
+            mean.observe(match k % 10 {
+                0 => None,
+                1 => Some(7.0),
+                _ => Some(0.5),
+            });
+        }
+        assert!(mean.finished());
+        let (low, high) = mean.estimate();
+        assert!((low - 0.5).abs() < 1e-12 && (high - 0.6).abs() < 1e-12);
+        assert_eq!(mean.read(), (1000, 100, 100));
+        let interval = mean.interval();
+        assert!(interval.low < 0.5 && interval.high > 0.6);
+    }
+
+    #[test]
+    fn bad_ranges_are_refused() {
+        assert!(Mean::within(1.0, 1.0, 0.1, 0.05).is_err());
+        assert!(Mean::within(0.0, f64::INFINITY, 0.1, 0.05).is_err());
+        assert!(Mean::within(0.0, 1.0, 0.0, 0.05).is_err());
+        assert!(Mean::fixed(0.0, 1.0, 0, 0.05).is_err());
+    }
+}

@@ -1,0 +1,201 @@
+//! Quantiles by order statistics, and the band of Dvoretzky, Kiefer and Wolfowitz (Massart 1990) around the
+//! whole distribution function; both for a number of trials fixed in advance.
+
+use super::invalid::{Invalid, probability, range};
+use super::{Coverage, Interval};
+use crate::base::math;
+use crate::base::special::beta_tails;
+
+/// P(Bin(n, q) <= k).
+fn at_most(n: u64, k: u64, q: f64) -> f64 {
+    if k >= n { 1.0 } else { beta_tails(k as f64 + 1.0, (n - k) as f64, q, 1.0 - q).upper() }
+}
+
+/// The ranks, from 1, of the order statistics that hold the `q`-quantile with error at most `delta`, half
+/// of it on either side; None where no rank is far enough out.
+pub fn ranks(n: u64, q: f64, delta: f64) -> (Option<u64>, Option<u64>) {
+    // The number of k in 0..n with P(Bin(n, q) <= k) below a bound, by bisection.
+    let count = |holds: &dyn Fn(f64) -> bool| {
+        let (mut low, mut high) = (0, n);
+        while low < high {
+            let middle = low + (high - low) / 2;
+            if holds(at_most(n, middle, q)) {
+                low = middle + 1;
+            } else {
+                high = middle;
+            }
+        }
+        low
+    };
+    // The largest l with P(Bin <= l - 1) <= delta / 2, the smallest u with P(Bin <= u - 1) >= 1 - delta / 2.
+    let lower = count(&|mass| mass <= 0.5 * delta);
+    let upper = count(&|mass| mass < 1.0 - 0.5 * delta) + 1;
+    ((lower >= 1).then_some(lower), (upper <= n).then_some(upper))
+}
+
+/// Half-width of the band: sqrt(ln(2 / delta) / (2 n)).
+pub fn band(n: u64, delta: f64) -> f64 {
+    (math::ln(2.0 / delta) / (2.0 * n as f64)).sqrt()
+}
+
+/// A quantile: its estimate in both readings of unresolved trials, and its interval. Infinite ends mean
+/// that the trials do not bound it on that side (or that the values there are censored).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quantile {
+    /// Which quantile.
+    pub q: f64,
+    /// The empirical quantile with unresolved trials below everything.
+    pub low_estimate: f64,
+    /// The empirical quantile with unresolved trials above everything.
+    pub high_estimate: f64,
+    /// The interval, which holds both readings.
+    pub interval: Interval,
+}
+
+/// Values of a fixed number of trials. Censored values are +infinity and come last; unresolved ones are
+/// read as lying below and above everything.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sample {
+    size: u64,
+    values: Vec<f64>,
+    unresolved: u64,
+    sorted: bool,
+}
+
+impl Sample {
+    /// For `size` trials.
+    pub fn new(size: u64) -> Result<Self, Invalid> {
+        range("trials", size as f64, 1.0, 1e9)?;
+        Ok(Self { size, values: Vec::new(), unresolved: 0, sorted: true })
+    }
+
+    /// Reads the next value, `None` (or NaN) if it is unresolved; true once all are there.
+    pub fn observe(&mut self, value: Option<f64>) -> bool {
+        if !self.finished() {
+            match value.filter(|x| !x.is_nan()) {
+                Some(value) => {
+                    self.values.push(value);
+                    self.sorted = false;
+                }
+                None => self.unresolved += 1,
+            }
+        }
+        self.finished()
+    }
+
+    /// Whether all trials are there.
+    pub fn finished(&self) -> bool {
+        self.trials() >= self.size
+    }
+
+    /// Trials read.
+    pub fn trials(&self) -> u64 {
+        self.values.len() as u64 + self.unresolved
+    }
+
+    /// Unresolved trials among them.
+    pub const fn unresolved(&self) -> u64 {
+        self.unresolved
+    }
+
+    /// The resolved values in ascending order.
+    pub fn sorted(&mut self) -> &[f64] {
+        if !self.sorted {
+            self.values.sort_by(f64::total_cmp);
+            self.sorted = true;
+        }
+        &self.values
+    }
+
+    /// The value of rank `rank`, from 1, with `below` unresolved trials before the values.
+    fn at(&self, rank: Option<u64>, below: u64, missing: f64) -> f64 {
+        let Some(rank) = rank else { return missing };
+        if rank <= below {
+            return f64::NEG_INFINITY;
+        }
+        self.values.get((rank - below - 1) as usize).copied().unwrap_or(f64::INFINITY)
+    }
+
+    /// The quantiles with error at most `delta` for all of them together (Bonferroni). Meant for the
+    /// finished sample: the number of trials must not depend on their values. Empty without trials.
+    pub fn quantiles(&mut self, qs: &[f64], delta: f64) -> Result<Vec<Quantile>, Invalid> {
+        probability("delta", delta)?;
+        for q in qs {
+            probability("quantile", *q)?;
+        }
+        let n = self.trials();
+        if n == 0 {
+            return Ok(Vec::new());
+        }
+        self.sorted();
+        let each = delta / qs.len() as f64;
+        let of = |q: f64| {
+            let (lower, upper) = ranks(n, q, each);
+            let middle = Some(math::at_least((q * n as f64).ceil(), 1.0) as u64);
+            Quantile {
+                q,
+                low_estimate: self.at(middle, self.unresolved, f64::NEG_INFINITY),
+                high_estimate: self.at(middle, 0, f64::INFINITY),
+                interval: Interval {
+                    low: self.at(lower, self.unresolved, f64::NEG_INFINITY),
+                    high: self.at(upper, 0, f64::INFINITY),
+                    error: delta,
+                    coverage: Coverage::FixedSize,
+                },
+            }
+        };
+        Ok(qs.iter().map(|q| of(*q)).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// T22: ranks of the reference.
+    #[test]
+    fn ranks_of_the_reference() {
+        assert_eq!(ranks(1000, 0.5, 0.05), (Some(469), Some(532)));
+        assert_eq!(ranks(1000, 0.95, 0.05), (Some(936), Some(964)));
+        assert_eq!(ranks(1000, 0.99, 0.05), (Some(983), Some(997)));
+        assert!((band(1000, 0.05) - 0.042_947).abs() < 1e-6);
+    }
+
+    #[test]
+    fn coverage_by_enumeration_is_kept() {
+        for n in [20, 300, 1000] {
+            for q in [0.05, 0.5, 0.9] {
+                let (lower, upper) = ranks(n, q, 0.05);
+                let miss_low = lower.map_or(0.0, |l| at_most(n, l - 1, q));
+                let miss_high = upper.map_or(0.0, |u| 1.0 - at_most(n, u - 1, q));
+                assert!(miss_low <= 0.025 && miss_high <= 0.025 + 1e-12, "{n} {q}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_finite_upper_end_needs_enough_trials() {
+        // With both sides at 0.025: n >= ln(0.025) / ln(0.99) = 367.04.
+        assert_eq!(ranks(367, 0.99, 0.05).1, None);
+        assert_eq!(ranks(368, 0.99, 0.05).1, Some(368));
+    }
+
+    #[test]
+    fn censored_and_unresolved_values() {
+        let mut sample = Sample::new(100).unwrap();
+        for k in 0..100 {
+            sample.observe(match k {
+                0..80 => Some(f64::from(k)),
+                80..90 => Some(f64::INFINITY),
+                _ => None,
+            });
+        }
+        assert!(sample.finished());
+        let found = sample.quantiles(&[0.5, 0.85], 0.05).unwrap();
+        assert_eq!((found[0].low_estimate, found[0].high_estimate), (39.0, 49.0));
+        assert!(found[0].interval.low < 39.0 && found[0].interval.high > 49.0);
+        assert_eq!(found[1].high_estimate, f64::INFINITY);
+        assert_eq!(found[1].interval.high, f64::INFINITY);
+        assert!(sample.quantiles(&[1.0], 0.05).is_err());
+    }
+}

@@ -1,0 +1,115 @@
+//! Boolean outcomes as bitsets by trial index; a pair is compared by counting bits.
+
+use super::Table;
+use super::bet::{BETS, Factors, log_mean, log_mean_near};
+use crate::stats::Outcome;
+
+/// Outcomes of one arm.
+#[derive(Clone, Debug, Default)]
+struct Arm {
+    trials: u64,
+    /// Bits of trials that held.
+    sure: Vec<u64>,
+    /// Bits of trials that held or are unresolved.
+    possible: Vec<u64>,
+    /// How many bits each has.
+    count: (u64, u64),
+}
+
+/// What is known of a pair over the first `trials` trials.
+#[derive(Clone, Copy, Debug, Default)]
+struct Pair {
+    trials: u64,
+    wins: u64,
+    losses: u64,
+}
+
+/// Boolean outcomes; unresolved ones count for the rival and against the leader.
+#[derive(Clone, Debug)]
+pub struct Booleans {
+    arms: Vec<Arm>,
+    pairs: Vec<Pair>,
+    /// Bets on a gap of 0 and of epsilon.
+    factors: [Factors; 2],
+}
+
+impl Booleans {
+    /// Successes, failures and unresolved trials of an arm.
+    pub fn counts(&self, arm: usize) -> (u64, u64, u64) {
+        let Arm { trials, count: (sure, possible), .. } = &self.arms[arm];
+        (*sure, trials - possible, possible - sure)
+    }
+
+    /// Brings the counts of a pair up to the common prefix.
+    fn pair(&mut self, rival: usize, leader: usize) -> Pair {
+        let (b, a) = (&self.arms[rival], &self.arms[leader]);
+        let pair = &mut self.pairs[rival * self.arms.len() + leader];
+        let common = if a.trials < b.trials { a.trials } else { b.trials };
+        while pair.trials < common {
+            // From here to the end of the word or of the common prefix.
+            let word = (pair.trials / 64) as usize;
+            let bit = pair.trials % 64;
+            let end = if common < (word as u64 + 1) * 64 { common } else { (word as u64 + 1) * 64 };
+            let width = end - pair.trials;
+            let mask = (u64::MAX >> (64 - width)) << bit;
+            pair.wins += u64::from((b.possible[word] & !a.sure[word] & mask).count_ones());
+            pair.losses += u64::from((a.sure[word] & !b.possible[word] & mask).count_ones());
+            pair.trials = end;
+        }
+        *pair
+    }
+}
+
+fn logs(pair: Pair, factors: &Factors) -> [f64; BETS] {
+    factors.logs(pair.wins, pair.trials - pair.wins - pair.losses, pair.losses)
+}
+
+impl Table for Booleans {
+    type Outcome = Outcome;
+
+    fn new(arms: usize, epsilon: f64) -> Self {
+        Self {
+            arms: vec![Arm::default(); arms],
+            pairs: vec![Pair::default(); arms * arms],
+            factors: [Factors::new(0.0), Factors::new(epsilon)],
+        }
+    }
+
+    fn push(&mut self, arm: usize, outcomes: &[Outcome]) {
+        let arm = &mut self.arms[arm];
+        for outcome in outcomes {
+            let bit = arm.trials % 64;
+            if bit == 0 {
+                arm.sure.push(0);
+                arm.possible.push(0);
+            }
+            let word = (arm.trials / 64) as usize;
+            let (sure, possible) = (*outcome == Outcome::True, *outcome != Outcome::False);
+            arm.sure[word] |= u64::from(sure) << bit;
+            arm.possible[word] |= u64::from(possible) << bit;
+            arm.count.0 += u64::from(sure);
+            arm.count.1 += u64::from(possible);
+            arm.trials += 1;
+        }
+    }
+
+    fn trials(&self, arm: usize) -> u64 {
+        self.arms[arm].trials
+    }
+
+    fn mean(&self, arm: usize) -> f64 {
+        let Arm { trials, count: (sure, possible), .. } = &self.arms[arm];
+        if *trials == 0 { 0.5 } else { (sure + possible) as f64 / (2 * trials) as f64 }
+    }
+
+    fn evidence(&mut self, rival: usize, leader: usize, threshold: f64) -> (f64, f64) {
+        let pair = self.pair(rival, leader);
+        let [worse, close] = &self.factors;
+        (log_mean_near(&logs(pair, worse), threshold), log_mean_near(&logs(pair, close), threshold))
+    }
+
+    fn evidence_at(&mut self, rival: usize, leader: usize, gap: f64) -> f64 {
+        let pair = self.pair(rival, leader);
+        log_mean(&logs(pair, &Factors::new(gap)))
+    }
+}

@@ -1,0 +1,145 @@
+//! Okamoto's bound on each arm at half of epsilon: the baseline, with a joint guarantee.
+
+use super::{Choice, Share};
+use crate::base::math;
+use crate::stats::invalid::{Invalid, probability, range};
+use crate::stats::{Counts, Outcome};
+
+/// The same fixed number of trials for every arm.
+#[derive(Clone, Debug)]
+pub struct Each {
+    epsilon: f64,
+    size: u64,
+    word: u64,
+    /// Successes and trials of each arm with unresolved ones as failures, and unresolved ones.
+    arms: Vec<(Counts, u64)>,
+    pending: Vec<Share>,
+}
+
+/// ceil(ln(2 k / delta) / (2 (epsilon / 2)^2)).
+pub fn size(arms: usize, epsilon: f64, delta: f64) -> u64 {
+    crate::stats::okamoto::size(0.5 * epsilon, delta / arms as f64)
+}
+
+impl Each {
+    /// The chosen arm is within `epsilon` of the best, and every share of successes within epsilon / 2 of
+    /// its probability, but for probability `delta` in all. Rounds give up to `word` trials to every arm.
+    pub fn new(arms: usize, epsilon: f64, delta: f64, word: u64) -> Result<Self, Invalid> {
+        range("options", arms as f64, 1.0, 4096.0)?;
+        range("epsilon", epsilon, 1e-5, 1.0)?;
+        range("trials a round", word as f64, 1.0, 1e9)?;
+        probability("delta", delta)?;
+        let mut each = Self {
+            epsilon,
+            size: size(arms, epsilon, delta),
+            word,
+            arms: vec![(Counts::default(), 0); arms],
+            pending: Vec::new(),
+        };
+        each.open_round();
+        Ok(each)
+    }
+
+    fn open_round(&mut self) {
+        let from = self.arms[0].0.trials();
+        let to = if from + self.word < self.size { from + self.word } else { self.size };
+        if from < to {
+            self.pending = (0..self.arms.len()).map(|arm| Share { arm, from, to }).collect();
+        }
+    }
+
+    /// Trials of each arm in all.
+    pub const fn size(&self) -> u64 {
+        self.size
+    }
+
+    /// The trials that are wanted now. Empty once finished.
+    pub fn next_round(&self) -> &[Share] {
+        &self.pending
+    }
+
+    /// Takes the next outcomes of an arm; refuses more than are wanted.
+    pub fn feed(&mut self, arm: usize, outcomes: &[Outcome]) -> Result<(), Invalid> {
+        let place = self.pending.iter().position(|share| share.arm == arm);
+        let wanted = place.map_or(0, |k| self.pending[k].to - self.pending[k].from);
+        range("outcomes", outcomes.len() as f64, 0.0, wanted as f64)?;
+        let Some(place) = place else { return Ok(()) };
+        for outcome in outcomes {
+            self.arms[arm].0.add(*outcome == Outcome::True);
+            self.arms[arm].1 += u64::from(*outcome == Outcome::Unresolved);
+        }
+        self.pending[place].from += outcomes.len() as u64;
+        if self.pending[place].from == self.pending[place].to {
+            self.pending.remove(place);
+            if self.pending.is_empty() {
+                self.open_round();
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether all trials are there.
+    pub fn finished(&self) -> bool {
+        self.pending.is_empty()
+    }
+
+    /// Successes, failures and unresolved trials of an arm.
+    pub fn counts(&self, arm: usize) -> (u64, u64, u64) {
+        let (counts, unresolved) = self.arms[arm];
+        (counts.successes, counts.failures - unresolved, unresolved)
+    }
+
+    /// The lowest and highest share of successes that an arm can have.
+    fn shares(&self, arm: usize) -> (f64, f64) {
+        let (counts, unresolved) = self.arms[arm];
+        if counts.trials() == 0 {
+            return (0.0, 1.0);
+        }
+        let n = counts.trials() as f64;
+        (counts.successes as f64 / n, (counts.successes + unresolved) as f64 / n)
+    }
+
+    /// The choice; its gap is 1 before the end, because the bound holds at the fixed number only. Unresolved
+    /// trials count against the chosen arm and for its rivals, and widen the gap.
+    pub fn choice(&self, deviations: Option<&[f64]>) -> Choice {
+        let k = self.arms.len();
+        let middle = |arm: usize| {
+            let (low, high) = self.shares(arm);
+            low + high
+        };
+        let mut leader = 0;
+        for arm in 1..k {
+            if middle(arm) > middle(leader) {
+                leader = arm;
+            }
+        }
+        // Every share is within epsilon / 2 of its probability, so a share this far below the best possible
+        // one of the others is within that plus epsilon.
+        let gap_of = |arm: usize| {
+            let mut behind = 0.0;
+            for rival in (0..k).filter(|rival| *rival != arm) {
+                behind = math::at_least(behind, self.shares(rival).1 - self.shares(arm).0);
+            }
+            math::at_most(behind + self.epsilon, 1.0)
+        };
+        let finished = self.finished();
+        let certified: Vec<usize> =
+            (0..k).filter(|arm| finished && gap_of(*arm) <= self.epsilon + 1e-12).collect();
+        let mut arm = leader;
+        if let Some(deviations) = deviations {
+            let of = |arm: usize| deviations.get(arm).copied().unwrap_or(f64::INFINITY);
+            for other in &certified {
+                if of(*other) < of(arm) {
+                    arm = *other;
+                }
+            }
+        }
+        let tied = (0..k)
+            .filter(|other| {
+                *other != arm
+                    && (!finished || self.shares(*other).1 + self.epsilon > self.shares(leader).0)
+            })
+            .collect();
+        Choice { arm, gap: if finished { gap_of(arm) } else { 1.0 }, tied, certified }
+    }
+}

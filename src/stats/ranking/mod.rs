@@ -1,0 +1,66 @@
+//! Which of k arms has the highest mean: paired betting races, and Okamoto's bound on each arm.
+//!
+//! Sampling goes in rounds: `next_round` says which trials of which arms are wanted, `feed` takes their
+//! outcomes, and when a round is complete the next is a function of all outcomes so far. Any dependence
+//! between the arms of one trial is allowed, so common random numbers only help.
+
+mod bet;
+mod booleans;
+mod each;
+mod race;
+mod scores;
+
+pub use booleans::Booleans;
+pub use each::Each;
+pub use race::{Allocation, Race};
+pub use scores::Scores;
+
+/// Trials `from .. to` of one arm.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Share {
+    /// The arm.
+    pub arm: usize,
+    /// First trial index.
+    pub from: u64,
+    /// One past the last.
+    pub to: u64,
+}
+
+/// The outcome of a ranking, at its end or at a deadline.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Choice {
+    /// The chosen arm.
+    pub arm: usize,
+    /// The mean of the chosen arm is within this of the best mean, with error at most delta; 1 if nothing
+    /// is certified, and possible before the end only for races.
+    pub gap: f64,
+    /// Other arms that are not known to be worse than the leader.
+    pub tied: Vec<usize>,
+    /// Arms, the chosen one included, that each carry the full certificate: within epsilon of the best.
+    pub certified: Vec<usize>,
+}
+
+/// Outcomes of many trials for each arm, and the evidence in their differences.
+pub trait Table {
+    /// The outcome of one trial.
+    type Outcome: Copy;
+
+    /// An empty table for `arms` arms and races to within `epsilon`.
+    fn new(arms: usize, epsilon: f64) -> Self;
+
+    /// Appends the next outcomes of an arm, in index order.
+    fn push(&mut self, arm: usize, outcomes: &[Self::Outcome]);
+
+    /// Trials of an arm.
+    fn trials(&self, arm: usize) -> u64;
+
+    /// The mean of an arm; unresolved trials count half.
+    fn mean(&self, arm: usize) -> f64;
+
+    /// The logarithms of the evidence that `rival` is worse than `leader`, and that it is less than epsilon
+    /// better. Exact values are needed only near `threshold`: they may be any number on the same side.
+    fn evidence(&mut self, rival: usize, leader: usize, threshold: f64) -> (f64, f64);
+
+    /// The logarithm of the evidence that `rival` is less than `gap` better than `leader`.
+    fn evidence_at(&mut self, rival: usize, leader: usize, gap: f64) -> f64;
+}

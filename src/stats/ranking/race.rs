@@ -1,0 +1,231 @@
+//! The paired betting race (PB-LUCB): LUCB (Kalyanakrishnan et al. 2012) with a betting test on the
+//! differences of paired trials instead of confidence bounds on each arm.
+//!
+//! Let K(b, a; e) be the mixture of bets against "b is at least e better than a". For each rival a of the
+//! true best arm a*, dropping a* and stopping on an a more than epsilon worse both need
+//! K(a*, a; epsilon) >= (k - 1)/delta at some time, because K rises in e; by Ville's inequality that has
+//! probability at most delta/(k - 1), and there are k - 1 rivals. Chains of eliminations are harmless, and
+//! so is adaptive sampling: every trial exists before it is looked at, and the bound holds for all prefixes.
+
+use super::{Choice, Share, Table};
+use crate::base::math;
+use crate::stats::invalid::{Invalid, probability, range};
+
+/// Which of the rivals that are not yet decided get more trials in a round.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Allocation {
+    /// All of them: the tightest certificate.
+    #[default]
+    AllFailing,
+    /// The least decided one: the best choice under a starving budget. To be chosen before sampling.
+    OneChallenger,
+}
+
+/// A race between arms over a table of outcomes.
+#[derive(Clone, Debug)]
+pub struct Race<T> {
+    table: T,
+    epsilon: f64,
+    /// ln((k - 1) / delta).
+    threshold: f64,
+    word: u64,
+    allocation: Allocation,
+    live: Vec<usize>,
+    leader: usize,
+    pending: Vec<Share>,
+    arms: usize,
+    finished: bool,
+}
+
+impl<T: Table> Race<T> {
+    /// The chosen arm is within `epsilon` of the best but for probability `delta`. A round gives `word`
+    /// trials to an arm (64, or 32 where trials are slow).
+    pub fn new(
+        arms: usize,
+        epsilon: f64,
+        delta: f64,
+        word: u64,
+        allocation: Allocation,
+    ) -> Result<Self, Invalid> {
+        range("options", arms as f64, 1.0, 4096.0)?;
+        range("epsilon", epsilon, 1e-5, 1.0)?;
+        range("trials a round", word as f64, 1.0, 1e6)?;
+        probability("delta", delta)?;
+        let rivals = math::at_least(arms as f64 - 1.0, 1.0);
+        let alone = arms == 1;
+        let first = |arm| Share { arm, from: 0, to: word };
+        Ok(Self {
+            table: T::new(arms, epsilon),
+            epsilon,
+            threshold: math::ln(rivals / delta) + 1e-9,
+            word,
+            allocation,
+            live: (0..arms).collect(),
+            leader: 0,
+            pending: if alone { Vec::new() } else { (0..arms).map(first).collect() },
+            arms,
+            finished: alone,
+        })
+    }
+
+    /// The trials that are wanted now: all of this round that were not fed yet, ascending by arm. Empty once
+    /// finished.
+    pub fn next_round(&self) -> &[Share] {
+        &self.pending
+    }
+
+    /// Takes the next outcomes of an arm, in index order; when the round is complete, decides. Refuses more
+    /// outcomes than are wanted.
+    pub fn feed(&mut self, arm: usize, outcomes: &[T::Outcome]) -> Result<(), Invalid> {
+        let place = self.pending.iter().position(|share| share.arm == arm);
+        let wanted = place.map_or(0, |k| self.pending[k].to - self.pending[k].from);
+        range("outcomes", outcomes.len() as f64, 0.0, wanted as f64)?;
+        let Some(place) = place else { return Ok(()) };
+        self.table.push(arm, outcomes);
+        self.pending[place].from += outcomes.len() as u64;
+        if self.pending[place].from == self.pending[place].to {
+            self.pending.remove(place);
+            if self.pending.is_empty() {
+                self.decide();
+            }
+        }
+        Ok(())
+    }
+
+    /// The live arm with the highest mean; the first of equals.
+    fn ahead(&self) -> usize {
+        let mut best = self.live[0];
+        for arm in &self.live[1..] {
+            if self.table.mean(*arm) > self.table.mean(best) {
+                best = *arm;
+            }
+        }
+        best
+    }
+
+    fn decide(&mut self) {
+        let leader = self.ahead();
+        self.leader = leader;
+        let mut failing: Vec<(usize, f64)> = Vec::new();
+        let (table, threshold) = (&mut self.table, self.threshold);
+        self.live.retain(|arm| {
+            if *arm == leader {
+                return true;
+            }
+            let (worse, close) = table.evidence(*arm, leader, threshold);
+            if worse >= threshold {
+                return false;
+            }
+            if close < threshold {
+                failing.push((*arm, close));
+            }
+            true
+        });
+        if failing.is_empty() {
+            self.finished = true;
+            return;
+        }
+        if self.allocation == Allocation::OneChallenger {
+            let mut least = failing[0];
+            for rival in &failing[1..] {
+                if rival.1 < least.1 {
+                    least = *rival;
+                }
+            }
+            failing = vec![least];
+        }
+        let most = failing.iter().fold(0, |most, (arm, _)| self.table.trials(*arm).max(most));
+        let mut wanted: Vec<usize> = failing.iter().map(|(arm, _)| *arm).collect();
+        if self.table.trials(leader) <= most {
+            wanted.push(leader);
+        }
+        wanted.sort_unstable();
+        self.pending = wanted
+            .into_iter()
+            .map(|arm| {
+                let from = self.table.trials(arm);
+                Share { arm, from, to: from + self.word }
+            })
+            .collect();
+    }
+
+    /// Whether the race is decided.
+    pub const fn finished(&self) -> bool {
+        self.finished
+    }
+
+    /// The outcomes so far.
+    pub const fn table(&self) -> &T {
+        &self.table
+    }
+
+    /// Trials so far, over all arms.
+    pub fn trials(&self) -> u64 {
+        (0..self.arms).map(|arm| self.table.trials(arm)).sum()
+    }
+
+    /// Arms not dropped yet.
+    pub fn live(&self) -> &[usize] {
+        &self.live
+    }
+
+    /// The leader of the last complete round.
+    pub const fn leader(&self) -> usize {
+        self.leader
+    }
+
+    /// The smallest gap, to 30 steps of bisection, such that `arm` is within it of the best but for
+    /// probability delta: at any time and for a live arm. 1 if nothing is certified.
+    pub fn gap(&mut self, arm: usize) -> f64 {
+        let rivals: Vec<usize> = self.live.iter().copied().filter(|rival| *rival != arm).collect();
+        let mut gap = 0.0;
+        for rival in rivals {
+            if self.table.evidence_at(rival, arm, gap) >= self.threshold {
+                continue;
+            }
+            let (mut low, mut high) = (gap, 1.0);
+            for _ in 0..30 {
+                let middle = 0.5 * (low + high);
+                if self.table.evidence_at(rival, arm, middle) >= self.threshold {
+                    high = middle;
+                } else {
+                    low = middle;
+                }
+            }
+            gap = high;
+        }
+        gap
+    }
+
+    /// The choice now, at the end or at a deadline. With `deviations` (one number per arm), the least of
+    /// them decides among arms that each carry the full certificate; else the leader is chosen.
+    pub fn choice(&mut self, deviations: Option<&[f64]>) -> Choice {
+        let live = self.live.clone();
+        let mut certified = Vec::new();
+        if self.finished {
+            for arm in &live {
+                let passes = live.iter().all(|rival| {
+                    rival == arm
+                        || self.table.evidence(*rival, *arm, self.threshold).1 >= self.threshold
+                });
+                if passes {
+                    certified.push(*arm);
+                }
+            }
+        }
+        let mut arm = self.leader;
+        if let Some(deviations) = deviations {
+            for other in &certified {
+                let of = |arm: usize| deviations.get(arm).copied().unwrap_or(f64::INFINITY);
+                if of(*other) < of(arm) {
+                    arm = *other;
+                }
+            }
+        }
+        let gap = self.gap(arm);
+        // The certificate is at least what the stopping rule has checked.
+        let gap = if certified.contains(&arm) { math::at_most(gap, self.epsilon) } else { gap };
+        let tied = live.into_iter().filter(|other| *other != arm).collect();
+        Choice { arm, gap, tied, certified }
+    }
+}

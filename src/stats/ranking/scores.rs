@@ -1,0 +1,114 @@
+//! Scores in [0, 1] by trial index; a pair keeps the capital of each bet.
+
+use super::Table;
+use super::bet::{BETS, bets, log_mean, log_mean_near};
+use crate::base::math;
+use std::collections::BTreeMap;
+
+/// Factors of a product before its logarithm is taken: each lies in [0.05, 3], so sixteen stay far from
+/// the ends of the doubles.
+const CHUNK: u64 = 16;
+
+/// Scores of one arm, as the least and the greatest they can be.
+#[derive(Clone, Debug, Default)]
+struct Arm {
+    least: Vec<f64>,
+    greatest: Vec<f64>,
+    sum: f64,
+}
+
+/// Logarithms of the capital of each bet, on a gap of 0 and of epsilon.
+#[derive(Clone, Copy, Debug, Default)]
+struct Pair {
+    trials: u64,
+    logs: [[f64; BETS]; 2],
+}
+
+/// Real-valued scores; values outside of [0, 1] are clipped, and `None` (or NaN) is unresolved: 1 for the
+/// rival and 0 for the leader.
+#[derive(Clone, Debug)]
+pub struct Scores {
+    epsilon: f64,
+    bets: [f64; BETS],
+    arms: Vec<Arm>,
+    pairs: BTreeMap<(usize, usize), Pair>,
+}
+
+impl Scores {
+    /// Adds the logarithms of the factors of trials `from .. to` for a gap.
+    fn add(&self, logs: &mut [f64; BETS], rival: usize, leader: usize, gap: f64, (from, to): (u64, u64)) {
+        let (b, a) = (&self.arms[rival].greatest, &self.arms[leader].least);
+        let mut start = from;
+        while start < to {
+            // Chunks lie on a fixed lattice of trial indices, so that sums do not depend on the rounds.
+            let lattice = (start / CHUNK + 1) * CHUNK;
+            let end = if lattice < to { lattice } else { to };
+            let mut products = [1.0; BETS];
+            for t in start as usize..end as usize {
+                let excess = gap - (b[t] - a[t]);
+                for (product, bet) in products.iter_mut().zip(&self.bets) {
+                    *product *= 1.0 + bet * excess;
+                }
+            }
+            for (log, product) in logs.iter_mut().zip(products) {
+                *log += math::ln(product);
+            }
+            start = end;
+        }
+    }
+
+    fn common(&self, rival: usize, leader: usize) -> u64 {
+        let (b, a) = (self.trials(rival), self.trials(leader));
+        if a < b { a } else { b }
+    }
+}
+
+impl Table for Scores {
+    type Outcome = Option<f64>;
+
+    fn new(arms: usize, epsilon: f64) -> Self {
+        Self { epsilon, bets: bets(), arms: vec![Arm::default(); arms], pairs: BTreeMap::new() }
+    }
+
+    fn push(&mut self, arm: usize, outcomes: &[Option<f64>]) {
+        let arm = &mut self.arms[arm];
+        for outcome in outcomes {
+            let (least, greatest) = match outcome.filter(|x| !x.is_nan()) {
+                Some(x) => {
+                    let x = math::at_most(math::at_least(x, 0.0), 1.0);
+                    (x, x)
+                }
+                None => (0.0, 1.0),
+            };
+            arm.least.push(least);
+            arm.greatest.push(greatest);
+            arm.sum += 0.5 * (least + greatest);
+        }
+    }
+
+    fn trials(&self, arm: usize) -> u64 {
+        self.arms[arm].least.len() as u64
+    }
+
+    fn mean(&self, arm: usize) -> f64 {
+        let Arm { least, sum, .. } = &self.arms[arm];
+        if least.is_empty() { 0.5 } else { sum / least.len() as f64 }
+    }
+
+    fn evidence(&mut self, rival: usize, leader: usize, threshold: f64) -> (f64, f64) {
+        let mut pair = self.pairs.get(&(rival, leader)).copied().unwrap_or_default();
+        let common = self.common(rival, leader);
+        let range = (pair.trials, common);
+        self.add(&mut pair.logs[0], rival, leader, 0.0, range);
+        self.add(&mut pair.logs[1], rival, leader, self.epsilon, range);
+        pair.trials = common;
+        self.pairs.insert((rival, leader), pair);
+        (log_mean_near(&pair.logs[0], threshold), log_mean_near(&pair.logs[1], threshold))
+    }
+
+    fn evidence_at(&mut self, rival: usize, leader: usize, gap: f64) -> f64 {
+        let mut logs = [0.0; BETS];
+        self.add(&mut logs, rival, leader, gap, (0, self.common(rival, leader)));
+        log_mean(&logs)
+    }
+}

@@ -1,0 +1,134 @@
+//! The Beta-mixture confidence sequence with the prior of Krichevsky and Trofimov (1981): an interval that
+//! holds P at all numbers of trials at once, and so at any deadline (Robbins 1970; Ville 1939).
+
+use super::invalid::{Invalid, probability};
+use super::{Counts, Coverage, Estimator, Interval};
+use crate::base::math;
+use crate::base::special::ln_beta;
+
+/// The logarithm of the mixture likelihood ratio over `m` in (0, 1), less that of S and F alone.
+fn ln_mixture(counts: Counts) -> f64 {
+    ln_beta(0.5 + counts.successes as f64, 0.5 + counts.failures as f64) - ln_beta(0.5, 0.5)
+}
+
+/// k ln x with 0 ln 0 = 0.
+fn times_ln(k: u64, ln_x: f64) -> f64 {
+    if k == 0 { 0.0 } else { k as f64 * ln_x }
+}
+
+/// The interval at all times that misses with probability at most `delta`.
+pub fn interval(counts: Counts, delta: f64) -> Interval {
+    let limit = -math::ln(delta) - ln_mixture(counts) + 1e-12;
+    let inside = |m: f64| {
+        -times_ln(counts.successes, math::ln(m)) - times_ln(counts.failures, math::ln_1p(-m)) < limit
+    };
+    let share = counts.share();
+    // Bisection outward of the share of successes, towards either end.
+    let bound = |end: f64| {
+        let (mut out, mut inner) = (end, share);
+        for _ in 0..100 {
+            let middle = 0.5 * (out + inner);
+            if middle == out || middle == inner {
+                break;
+            }
+            if inside(middle) {
+                inner = middle;
+            } else {
+                out = middle;
+            }
+        }
+        out
+    };
+    let none = counts.trials() == 0;
+    Interval {
+        low: if none || counts.successes == 0 { 0.0 } else { bound(0.0) },
+        high: if none || counts.failures == 0 { 1.0 } else { bound(1.0) },
+        error: delta,
+        coverage: Coverage::TimeUniform,
+    }
+}
+
+/// The confidence sequence as an estimator: until a half-width, or until somebody stops it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sequence {
+    delta: f64,
+    epsilon: Option<f64>,
+    /// Where the width is looked at next; the interval holds at all times, so any schedule is sound.
+    next: u64,
+    counts: Counts,
+    finished: bool,
+}
+
+impl Sequence {
+    /// Runs as long as it is fed, or, with `epsilon`, until the half-width is at most that (looked at
+    /// after each percent of more trials).
+    pub fn new(delta: f64, epsilon: Option<f64>) -> Result<Self, Invalid> {
+        probability("delta", delta)?;
+        if let Some(epsilon) = epsilon {
+            super::invalid::range("epsilon", epsilon, 1e-5, 0.5)?;
+        }
+        Ok(Self { delta, epsilon, next: 1, counts: Counts::default(), finished: false })
+    }
+}
+
+impl Estimator for Sequence {
+    #[inline]
+    fn observe(&mut self, success: bool) -> bool {
+        if !self.finished {
+            self.counts.add(success);
+            if let Some(epsilon) = self.epsilon
+                && self.counts.trials() >= self.next
+            {
+                self.next += 1 + self.next / 100;
+                self.finished = self.interval().half_width() <= epsilon;
+            }
+        }
+        self.finished
+    }
+
+    fn finished(&self) -> bool {
+        self.finished
+    }
+
+    fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    fn interval(&self) -> Interval {
+        interval(self.counts, self.delta)
+    }
+
+    fn limit(&self) -> Option<u64> {
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ends_lie_on_the_threshold() {
+        for (successes, failures) in [(1, 0), (3, 7), (500, 500), (1, 99_999), (100_000, 3)] {
+            let counts = Counts { successes, failures };
+            let found = interval(counts, 0.05);
+            for m in [found.low, found.high] {
+                if m > 0.0 && m < 1.0 {
+                    let value = ln_mixture(counts)
+                        - times_ln(successes, math::ln(m))
+                        - times_ln(failures, math::ln_1p(-m));
+                    assert!((value - math::ln(20.0)).abs() < 1e-6, "{counts:?} {m}: {value}");
+                }
+            }
+            assert!(found.holds(counts.share()));
+        }
+        assert_eq!((interval(Counts::default(), 0.05).low, interval(Counts::default(), 0.05).high), (0.0, 1.0));
+    }
+
+    #[test]
+    fn without_successes_the_upper_end_has_a_closed_form() {
+        let counts = Counts { successes: 0, failures: 1000 };
+        let expected = 1.0 - math::exp((ln_mixture(counts) - math::ln(20.0)) / 1000.0);
+        assert!((interval(counts, 0.05).high - expected).abs() < 1e-12);
+    }
+}

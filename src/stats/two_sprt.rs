@@ -1,0 +1,109 @@
+//! The 2-SPRT of Lorden, "2-SPRT's and the modified Kiefer-Weiss problem", Annals of Statistics 4 (1976):
+//! two one-sided tests of theta against either end of the indifference region.
+//!
+//! Errors are bounded as with the SPRT, and the number of trials has a bound: the test for hard deadlines.
+
+use super::invalid::{Invalid, probability, region};
+use super::sprt::{SLACK, region_statement};
+use super::{Counts, Decision, Statement, Test};
+use crate::base::math;
+
+/// P >= theta + indifference against P <= theta - indifference, with a closed region.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TwoSprt {
+    low: f64,
+    high: f64,
+    alpha: f64,
+    beta: f64,
+    /// Log likelihood ratios of theta over the high end, per success and failure.
+    over_high: (f64, f64),
+    /// Log likelihood ratios of theta over the low end, per success and failure.
+    over_low: (f64, f64),
+    /// ln(1 / alpha) and ln(1 / beta), widened.
+    thresholds: (f64, f64),
+    limit: u64,
+    counts: Counts,
+    decision: Option<Decision>,
+}
+
+impl TwoSprt {
+    /// Parameters as those of the SPRT.
+    pub fn new(theta: f64, indifference: f64, alpha: f64, beta: f64) -> Result<Self, Invalid> {
+        let (low, high) = region(theta, indifference)?;
+        probability("alpha", alpha)?;
+        probability("beta", beta)?;
+        let over = |end: f64| (math::ln(theta / end), math::ln((1.0 - theta) / (1.0 - end)));
+        let (over_high, over_low) = (over(high), over(low));
+        let thresholds = (-math::ln(alpha) + SLACK, -math::ln(beta) + SLACK);
+        // The two boundary lines meet where both ratios are at their thresholds; beyond that number of
+        // trials every point lies outside one of them.
+        let determinant = over_high.0 * over_low.1 - over_high.1 * over_low.0;
+        let successes = (thresholds.0 * over_low.1 - thresholds.1 * over_high.1) / determinant;
+        let failures = (over_high.0 * thresholds.1 - over_low.0 * thresholds.0) / determinant;
+        let limit = (successes + failures).ceil() as u64;
+        Ok(Self {
+            low,
+            high,
+            alpha,
+            beta,
+            over_high,
+            over_low,
+            thresholds,
+            limit,
+            counts: Counts::default(),
+            decision: None,
+        })
+    }
+}
+
+impl Test for TwoSprt {
+    #[inline]
+    fn observe(&mut self, success: bool) -> Option<Decision> {
+        if self.decision.is_none() {
+            self.counts.add(success);
+            let (s, f) = (self.counts.successes as f64, self.counts.failures as f64);
+            if s * self.over_high.0 + f * self.over_high.1 >= self.thresholds.0 {
+                self.decision = Some(Decision::Below);
+            } else if s * self.over_low.0 + f * self.over_low.1 >= self.thresholds.1 {
+                self.decision = Some(Decision::Above);
+            }
+        }
+        self.decision
+    }
+
+    fn decision(&self) -> Option<Decision> {
+        self.decision
+    }
+
+    fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    fn certifies(&self, decision: Decision) -> Statement {
+        region_statement(decision, (self.low, self.high), self.alpha, self.beta)
+    }
+
+    fn limit(&self) -> Option<u64> {
+        Some(self.limit)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_region_is_closed_at_the_limit_and_open_before_it() {
+        let test = TwoSprt::new(0.9, 0.01, 0.01, 0.01).unwrap();
+        let limit = test.limit().unwrap();
+        assert!(limit == 8189 || limit == 8190, "{limit}");
+        let outside = |s: u64, f: u64| {
+            let (s, f) = (s as f64, f as f64);
+            s * test.over_high.0 + f * test.over_high.1 >= test.thresholds.0
+                || s * test.over_low.0 + f * test.over_low.1 >= test.thresholds.1
+        };
+        assert!((0..=limit).all(|s| outside(s, limit - s)));
+        let near = limit - 30;
+        assert!((0..=near).any(|s| !outside(s, near - s)));
+    }
+}
