@@ -4,5 +4,6 @@ pub mod ast;
 pub mod codes;
 pub mod diagnostic;
 pub mod parse;
+pub mod print;
 pub mod render;
 pub mod source;

@@ -9,7 +9,8 @@ use crate::syntax::codes::syntax as code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
 
-pub(super) type Pair<'i> = pest::iterators::Pair<'i, Rule>;
+/// A piece of the text that a rule took.
+pub(in crate::syntax) type Pair<'i> = pest::iterators::Pair<'i, Rule>;
 
 /// Builds trees and collects diagnostics.
 pub(super) struct Builder<'s> {

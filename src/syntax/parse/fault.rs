@@ -72,8 +72,7 @@ impl Builder<'_> {
                 before = None;
             } else {
                 last_bad_end = None;
-                let is_member =
-                    !super::builder::is_mark(rule) && part.as_span().start() < part.as_span().end();
+                let is_member = !super::builder::is_mark(rule) && part.as_span().start() < part.as_span().end();
                 before = is_member.then_some(part);
             }
         }
@@ -82,8 +81,7 @@ impl Builder<'_> {
     fn missing_brace(&mut self, block: &Pair<'_>, at: usize) {
         let found = lexeme::first(&self.text[at..]);
         let place = self.place(at, found);
-        let mut diagnostic =
-            Diagnostic::error(code::UNCLOSED, place, format!("expected `}}`, found {}", quote(found)));
+        let mut diagnostic = Diagnostic::error(code::UNCLOSED, place, format!("expected `}}`, found {}", quote(found)));
         if let Some((open, _)) = nesting::open_bracket(self.text, block.as_span().start(), at) {
             let span = Span::new(self.source.id, open, open + 1);
             diagnostic = diagnostic.related(span, "this `{` is not closed");
@@ -99,7 +97,12 @@ impl Builder<'_> {
         let mut fault = Fault { at: start, found: "", expected: Vec::new(), from: start };
         let starts = before.map(|pair| pair.as_span().start()).into_iter().chain([start]);
         for from in starts {
-            if let Some((at, expected)) = failure(strict, self.text, from) {
+            if let Some((mut at, mut expected)) = failure(strict, self.text, from) {
+                if from == start && is_bare_word(self.text, start, at, &expected) {
+                    // Any word could set something (`word = …`); this one sets nothing.
+                    at = start;
+                    expected = vec![declaration(strict)];
+                }
                 if at > fault.at {
                     fault = Fault { at, expected, from, ..fault };
                 } else if at == fault.at {
@@ -164,8 +167,7 @@ impl Builder<'_> {
             "]" => '[',
             _ => '{',
         };
-        nesting::open_bracket(self.text, 0, fault.at)
-            .is_none_or(|(_, open)| open != wanted && fault.found != "}")
+        nesting::open_bracket(self.text, fault.from, fault.at).is_none_or(|(_, open)| open != wanted)
     }
 
     /// The keyword that was probably meant.
@@ -173,11 +175,29 @@ impl Builder<'_> {
         if !fault.found.starts_with(lexeme::starts_name) {
             return None;
         }
-        let known = fault
-            .expected
-            .iter()
-            .flat_map(|&rule| nouns::keyword(rule).into_iter().chain(nouns::words(rule).iter().copied()));
+        let known = fault.expected.iter().flat_map(|&rule| {
+            nouns::keyword(rule).into_iter().chain(nouns::words(rule).iter().copied())
+        });
         nouns::nearest(fault.found, known)
+    }
+}
+
+/// Whether all that failed is that a first word is not followed by `=`.
+fn is_bare_word(text: &str, start: usize, at: usize, expected: &[Rule]) -> bool {
+    let word = lexeme::first(&text[start..]);
+    let after = start + word.len();
+    word.starts_with(lexeme::starts_name)
+        && expected.iter().all(|&rule| rule == Rule::t_assign)
+        && at == after + lexeme::all_trivia(&text[after..])
+}
+
+/// What a strict rule is a rule of.
+fn declaration(strict: Rule) -> Rule {
+    match strict {
+        Rule::strict_item => Rule::item,
+        Rule::strict_property_item => Rule::property_item,
+        Rule::strict_state_item => Rule::state_item,
+        _ => Rule::field,
     }
 }
 
@@ -226,9 +246,9 @@ fn expected_nouns(expected: &[Rule]) -> String {
     let mut nouns: Vec<_> = expected.iter().filter_map(|&rule| nouns::noun(rule)).collect();
     nouns.sort();
     nouns.dedup();
-    // `in` is one of the operators.
+    // After a value there is always more that could follow; an operator stands for all of it.
     if nouns.iter().any(|(_, noun)| noun == "an operator") {
-        nouns.retain(|(rank, _)| *rank != 9);
+        nouns.retain(|(rank, noun)| (3..9).contains(rank) && noun != "`(`" && noun != "a declaration");
     }
     let nouns: Vec<_> = nouns.into_iter().map(|(_, noun)| noun).take(5).collect();
     nouns::list(&nouns)

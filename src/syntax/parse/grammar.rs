@@ -7,4 +7,4 @@
 #[grammar = "../grammar/common.pest"]
 #[grammar = "../grammar/scenario.pest"]
 #[grammar = "../grammar/property.pest"]
-pub(super) struct Grammar;
+pub(in crate::syntax) struct Grammar;

@@ -5,6 +5,7 @@
 
 mod agents;
 mod builder;
+pub(super) mod comments;
 mod expression;
 mod fault;
 pub(super) mod grammar;
@@ -19,6 +20,8 @@ mod scene;
 mod slips;
 
 pub use nouns::edits;
+
+pub(super) use builder::Pair;
 
 use super::ast::{Expr, PropertyFile, ScenarioFile};
 use super::codes::syntax as code;
@@ -76,6 +79,18 @@ pub fn parse_value(source: &Source) -> Result<Expr, Vec<Diagnostic>> {
     match value.flatten() {
         Some(value) if !fails => Ok(value),
         _ => Err(diagnostics),
+    }
+}
+
+/// Runs the grammar once more, for the formatter.
+pub(super) fn with_pairs<T>(
+    source: &Source,
+    rule: Rule,
+    take: impl FnOnce(Pair<'_>) -> T,
+) -> Result<T, Vec<Diagnostic>> {
+    match parse(source, rule, |_, file| take(file)) {
+        (Some(taken), _) => Ok(taken),
+        (None, diagnostics) => Err(diagnostics),
     }
 }
 

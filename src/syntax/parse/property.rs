@@ -33,7 +33,7 @@ impl Builder<'_> {
                 Some(PropertyItem::Const { name, value: self.expr(parts.part(Rule::expr)?)? })
             }
             Rule::property => {
-                let name = self.declared(&parts.part(Rule::name)?);
+                let name = self.ident(&parts.part(Rule::name)?);
                 Some(PropertyItem::Property { name, formula: self.expr(parts.part(Rule::expr)?)? })
             }
             Rule::family => {

@@ -1,0 +1,79 @@
+//! The formatter of both languages.
+//!
+//! It keeps the tokens and sets the blanks between them, so that every comment, number and parenthesis stays as
+//! it was written and the tree cannot change. Members of a block stand one on a line, indented by two; a
+//! block that was written on one line stays there while it fits. `=` signs and comments of adjacent lines are
+//! aligned. Of several empty lines one stays; line breaks inside an expression stay.
+
+mod lines;
+mod token;
+mod writer;
+
+use super::diagnostic::{Diagnostic, Severity};
+use super::parse::grammar::Rule;
+use super::parse::{parse_properties, parse_scenario, with_pairs};
+use super::source::Source;
+
+/// Formats a scenario; its errors if it has any.
+pub fn format_scenario(source: &Source) -> Result<String, Vec<Diagnostic>> {
+    format(source, Rule::scenario_file, parse_scenario(source).1)
+}
+
+/// Formats a property file; its errors if it has any.
+pub fn format_properties(source: &Source) -> Result<String, Vec<Diagnostic>> {
+    format(source, Rule::property_file, parse_properties(source).1)
+}
+
+fn format(source: &Source, rule: Rule, diagnostics: Vec<Diagnostic>) -> Result<String, Vec<Diagnostic>> {
+    let errors: Vec<_> =
+        diagnostics.into_iter().filter(|diagnostic| diagnostic.severity == Severity::Error).collect();
+    if !errors.is_empty() {
+        return Err(errors);
+    }
+    with_pairs(source, rule, |file| {
+        let members = token::members(file);
+        lines::join(writer::write(&source.text, &members))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::syntax::source::SourceId;
+
+    fn scenario(text: &str) -> String {
+        format_scenario(&Source::new(SourceId(0), "a.scn", text)).unwrap()
+    }
+
+    fn properties(text: &str) -> String {
+        format_properties(&Source::new(SourceId(0), "a.bltl", text)).unwrap()
+    }
+
+    #[test]
+    fn blanks_are_set_by_what_stands_beside_them() {
+        let text = properties("property  p=G<=10 s(forall a in others( user ):gap(a)>0.1m&!q&-x^2<- -3)U [ 1s,2 s ]r");
+        assert_eq!(
+            text,
+            "property p = G<=10 s (forall a in others(user): gap(a) > 0.1 m & !q & -x^2 < - -3) U[1 s, 2 s] r\n"
+        );
+        assert_eq!(properties("let a=2 m ^2*1 / 2"), "let a = 2 m ^ 2 * 1/2\n");
+        assert_eq!(properties("let a=3 kg /( m  s )/ 2 s"), "let a = 3 kg/(m s) / 2 s\n");
+    }
+
+    #[test]
+    fn blocks_written_on_one_line_stay_there() {
+        assert_eq!(scenario("kind a:b{x=1 y=2}"), "kind a: b { x = 1; y = 2 }\n");
+        assert_eq!(scenario("kind a:b{x=1\nyy=2}"), "kind a: b {\n  x  = 1\n  yy = 2\n}\n");
+        assert_eq!(scenario("scene{}"), "scene {}\n");
+    }
+
+    #[test]
+    fn comments_stay() {
+        let text = "// top\n\n\n\nconst a=1 // one\nconst bb=2// two\n/* own */\nkind k:b{ // open\n  x=1 // last\n  // alone\n}\n// end";
+        assert_eq!(
+            scenario(text),
+            "// top\n\nconst a  = 1  // one\nconst bb = 2  // two\n/* own */\nkind k: b {  // open\n  x = 1  // last\n  // alone\n}\n// end\n"
+        );
+        assert_eq!(properties("let a = 1 + // why\n2 /* two */ + 3"), "let a = 1 +  // why\n    2 /* two */ + 3\n");
+    }
+}
