@@ -5,12 +5,14 @@ use crate::engine::outcome::Interval;
 use crate::report::number::plain;
 use std::fmt::Write as _;
 
-/// Widths in user units: labels, plot, numbers.
-const LABELS: f64 = 170.0;
+/// Widths in user units: one letter of a label, plot, numbers.
+const LETTER: f64 = 7.2;
 const PLOT: f64 = 340.0;
 const NUMBERS: f64 = 300.0;
 const ROW: f64 = 24.0;
 const AXIS: f64 = 26.0;
+/// Probabilities closer together than this are looked at closely.
+const APART: f64 = 0.1;
 
 /// How a row looks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,7 +55,7 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// An axis that shows all the numbers; from 0 to 1 where they are probabilities.
+    /// An axis that shows all the numbers; from 0 to 1 where they are probabilities that lie apart.
     pub(super) fn around(numbers: impl IntoIterator<Item = f64>, probability: bool) -> Self {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for x in numbers.into_iter().filter(|x| x.is_finite()) {
@@ -63,7 +65,7 @@ impl Axis {
         if low > high {
             (low, high) = (0.0, 1.0);
         }
-        if probability && high <= 1.0 && low >= -1.0 {
+        if probability && high - low >= APART && high <= 1.0 && low >= -1.0 {
             (low, high) = (if low < 0.0 { -1.0 } else { 0.0 }, 1.0);
         } else if low == high {
             let pad = if low == 0.0 { 1.0 } else { 0.1 * low.abs() };
@@ -90,14 +92,19 @@ fn round_step(x: f64) -> f64 {
     [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|&step| step >= x).unwrap_or(power)
 }
 
-/// The chart; empty without rows.
-pub(super) fn intervals(marks: &[Mark], unit: &str, threshold: Option<f64>) -> String {
+/// The chart; empty without rows. What lies beyond the horizon is drawn at the end of the axis.
+pub(super) fn intervals(marks: &[Mark], unit: &str, threshold: Option<f64>, horizon: Option<f64>) -> String {
     if marks.is_empty() {
         return String::new();
     }
-    let numbers = marks.iter().flat_map(|m| [m.value.estimate, m.value.low, m.value.high]).chain(threshold);
+    let numbers = marks
+        .iter()
+        .flat_map(|m| [m.value.estimate, m.value.low, m.value.high])
+        .chain(threshold)
+        .chain(horizon);
     let axis = Axis::around(numbers, unit.is_empty());
-    let labels = if marks.iter().all(|m| m.label.is_empty()) { 10.0 } else { LABELS };
+    let letters = marks.iter().map(|m| m.label.chars().count()).max().unwrap_or(0);
+    let labels = (20.0 + LETTER * letters as f64).max(30.0);
     let x = |value: f64| labels + PLOT * axis.share(value);
     let bottom = ROW * marks.len() as f64 + 4.0;
     let (width, height) = (labels + PLOT + NUMBERS, bottom + AXIS);
@@ -142,7 +149,7 @@ fn row(svg: &mut String, mark: &Mark, y: f64, labels: f64, x: &impl Fn(f64) -> f
     );
     if !mark.value.estimate.is_nan() {
         let at = x(mark.value.estimate);
-        let _ = writeln!(svg, "<circle class=\"dot {class}\" cx=\"{at:.1}\" cy=\"{y:.1}\" r=\"4.5\"/>");
+        let _ = writeln!(svg, "<circle class=\"dot {class}\" cx=\"{at:.1}\" cy=\"{y:.1}\" r=\"3.5\"/>");
     }
     let _ = writeln!(
         svg,
@@ -164,8 +171,10 @@ mod tests {
             ["-0.06", "-0.04", "-0.02", "0", "0.02"]
         );
         assert_eq!((axis.share(-9.0), axis.share(9.0)), (0.0, 1.0));
-        let unit = Axis::around([0.93, 0.95], true);
-        assert_eq!((unit.low, unit.high), (0.0, 1.0));
+        let apart = Axis::around([0.63, 0.95], true);
+        assert_eq!((apart.low, apart.high), (0.0, 1.0));
+        let close = Axis::around([0.93, 0.95], true);
+        assert!(close.low > 0.9 && close.high < 0.96);
         let lone = Axis::around([f64::INFINITY, 7.0], false);
         assert!(lone.low < 7.0 && lone.high > 7.0);
         assert_eq!(Axis::around([], false).ticks.len(), 6);
@@ -173,6 +182,6 @@ mod tests {
 
     #[test]
     fn a_chart_without_rows_is_nothing() {
-        assert_eq!(intervals(&[], "m", None), "");
+        assert_eq!(intervals(&[], "m", None, None), "");
     }
 }

@@ -82,7 +82,7 @@ fn section(page: &mut String, group: &[QueryResult]) {
         marks(first)
     };
     let threshold = first.method.numbers.iter().find(|(name, _)| name == "theta").map(|(_, value)| *value);
-    page.push_str(&chart::intervals(&marks, &first.unit, threshold));
+    page.push_str(&chart::intervals(&marks, &first.unit, threshold, first.censored));
     if !first.interval.is_empty() {
         let _ = writeln!(page, "<p class=\"faint\">intervals: {}</p>", escape(&first.interval));
     }
