@@ -365,3 +365,28 @@ fn the_exit_code_is_that_of_the_worst_check() {
     run.results.retain(|r| r.verdict != Some(Verdict::Undecided));
     assert_eq!(exit_code(&run), ExitCode::Success);
 }
+
+#[test]
+fn html() {
+    insta::assert_snapshot!(render(&run(), Format::Html, Palette::PLAIN));
+}
+
+/// Every element is closed in order, and nothing is loaded from elsewhere.
+#[test]
+fn html_is_well_nested_and_stands_alone() {
+    let page = render(&run(), Format::Html, Palette::PLAIN);
+    let mut open = Vec::new();
+    for tag in page.split('<').skip(1).filter(|tag| !tag.starts_with('!')) {
+        let inside = tag.split('>').next().unwrap();
+        let name = inside.trim_start_matches('/').split(' ').next().unwrap();
+        if inside.starts_with('/') {
+            assert_eq!(open.pop(), Some(name));
+        } else if !inside.ends_with('/') && name != "meta" {
+            open.push(name);
+        }
+    }
+    assert_eq!(open, [""; 0]);
+    for outside in ["http", "src=", "url(", "@import", "<script"] {
+        assert!(!page.contains(outside), "{outside}");
+    }
+}

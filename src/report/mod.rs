@@ -6,6 +6,7 @@
 
 pub mod exit;
 pub mod github;
+pub mod html;
 pub mod json;
 pub mod junit;
 pub mod number;
@@ -29,6 +30,8 @@ pub enum Format {
     Junit,
     /// Workflow commands of GitHub.
     Github,
+    /// A page that needs nothing but a browser.
+    Html,
 }
 
 /// The report of a run, ending with a line end. Only text uses the palette.
@@ -38,6 +41,7 @@ pub fn render(run: &Run, format: Format, palette: Palette) -> String {
         Format::Json => json::render(run),
         Format::Junit => junit::render(run),
         Format::Github => github::render(run),
+        Format::Html => html::render(run),
     }
 }
 

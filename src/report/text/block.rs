@@ -77,7 +77,7 @@ pub(super) fn table(text: &mut String, rows: &[Vec<Cell>], palette: Palette) {
 }
 
 /// The estimate and its interval, each with its unit.
-pub(super) fn printed(result: &QueryResult, value: &Interval) -> (String, String) {
+pub(in crate::report) fn printed(result: &QueryResult, value: &Interval) -> (String, String) {
     let printed = interval(value, result.censored);
     let unit = if result.unit.is_empty() { String::new() } else { format!(" {}", result.unit) };
     let mut estimate = format!("{}{unit}", printed.estimate);
@@ -109,7 +109,7 @@ pub(super) fn method(text: &mut String, result: &QueryResult, palette: Palette) 
 }
 
 /// The counts and why sampling stopped.
-fn trials(result: &QueryResult) -> String {
+pub(in crate::report) fn trials(result: &QueryResult) -> String {
     let counts = result.counts;
     let mut text = counted(counts.trials, "trial");
     let mut parts = Vec::new();

@@ -7,6 +7,8 @@ mod distribution;
 mod rank;
 mod sweep;
 
+pub(super) use block::{printed, trials};
+
 use super::number::{count, counted, duration};
 use super::palette::{Paint, Palette};
 use crate::engine::outcome::{Failure, QueryResult, Run, Verdict};
@@ -54,7 +56,7 @@ pub fn block(result: &QueryResult, palette: Palette) -> String {
 }
 
 /// Whether two successive results are of one query under different settings.
-fn same_sweep(a: &QueryResult, b: &QueryResult) -> bool {
+pub(super) fn same_sweep(a: &QueryResult, b: &QueryResult) -> bool {
     let simple = |r: &QueryResult| r.compare.is_none() && r.rank.is_none();
     a.index == b.index && !a.settings.is_empty() && !b.settings.is_empty() && simple(a) && simple(b)
 }

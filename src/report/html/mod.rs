@@ -1,0 +1,225 @@
+//! A report as one HTML page: no script, no font, no file beside it.
+
+mod chart;
+mod histogram;
+
+use super::number::{count, counted, duration, plain};
+use super::{certified, one_line, settings, text};
+use crate::engine::outcome::{Failure, Interval, QueryResult, Run, Status, Verdict, Witness};
+use chart::{Mark, Tone};
+use std::fmt::Write as _;
+
+const STYLE: &str = include_str!("style.css");
+
+/// The page of a run.
+pub fn render(run: &Run) -> String {
+    let title = escape(if run.scenario.is_empty() { "smc" } else { &run.scenario });
+    let mut page = format!(
+        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n"
+    );
+    let trials = run.results.iter().map(|r| r.counts.trials).sum::<u64>();
+    let _ = writeln!(
+        page,
+        "<header>\n<h1>{title}</h1>\n<p>seed {}, smc {}, {} in {}</p>\n<p class=\"tally\">{}</p>\n</header>",
+        run.seed,
+        escape(&run.version),
+        counted(trials, "trial"),
+        duration(run.elapsed_s),
+        tally(run)
+    );
+    for group in run.results.chunk_by(text::same_sweep) {
+        section(&mut page, group);
+    }
+    for warning in &run.warnings {
+        let _ = writeln!(page, "<p class=\"warning\">{}</p>", escape(warning));
+    }
+    if run.interrupted {
+        page.push_str("<p class=\"warning\">Interrupted: these are the results so far.</p>\n");
+    }
+    if let Some(Failure::Input(message) | Failure::Bug(message)) = &run.failure {
+        let _ = writeln!(page, "<p class=\"failure\">Stopped by an error: {}</p>", escape(message));
+    }
+    let _ = writeln!(
+        page,
+        "<footer>\n<p>All guarantees are about the model.</p>\n<p>replay</p>\n<pre>{}</pre>\n</footer>\n</main>\n</body>\n</html>",
+        escape(&run.replay)
+    );
+    page
+}
+
+fn tally(run: &Run) -> String {
+    let kinds = [
+        (Some(Verdict::Satisfied), "satisfied"),
+        (Some(Verdict::Violated), "violated"),
+        (Some(Verdict::Undecided), "undecided"),
+        (None, "computed"),
+    ];
+    let parts: Vec<String> = kinds
+        .into_iter()
+        .map(|(verdict, word)| (run.results.iter().filter(|r| r.verdict == verdict).count(), word))
+        .filter(|(n, _)| *n > 0)
+        .map(|(n, word)| format!("<span class=\"badge {word}\">{n} {word}</span>"))
+        .collect();
+    parts.join(" ")
+}
+
+/// One query: alone, or under several settings.
+fn section(page: &mut String, group: &[QueryResult]) {
+    let Some(first) = group.first() else { return };
+    let word = group.iter().map(word).max_by_key(|word| severity(word)).unwrap_or("computed");
+    let place = if first.file.is_empty() { String::new() } else { format!("{}:{}", first.file, first.line) };
+    let _ = writeln!(
+        page,
+        "<section>\n<h2><span class=\"badge {word}\">{word}</span> <code>{}</code> <small>{}</small></h2>",
+        escape(&one_line(&first.query)),
+        escape(&place)
+    );
+    let marks: Vec<Mark> = if group.len() > 1 {
+        group.iter().filter_map(|result| mark(result, &settings(result))).collect()
+    } else {
+        marks(first)
+    };
+    let threshold = first.method.numbers.iter().find(|(name, _)| name == "theta").map(|(_, value)| *value);
+    page.push_str(&chart::intervals(&marks, &first.unit, threshold, first.censored));
+    if !first.interval.is_empty() {
+        let _ = writeln!(page, "<p class=\"faint\">intervals: {}</p>", escape(&first.interval));
+    }
+    if let Some(ranking) = &first.rank
+        && ranking.gap.is_finite()
+    {
+        let _ = writeln!(
+            page,
+            "<p>Choose <strong>{}</strong>{}.</p>",
+            escape(&ranking.choice),
+            if ranking.tied { ", tied with others within the certified gap" } else { "" }
+        );
+    }
+    for result in group {
+        facts(page, result, group.len() > 1);
+    }
+    page.push_str("</section>\n");
+}
+
+fn severity(word: &str) -> u8 {
+    match word {
+        "violated" => 3,
+        "undecided" => 2,
+        "satisfied" => 1,
+        _ => 0,
+    }
+}
+
+fn word(result: &QueryResult) -> &'static str {
+    result.verdict.map_or("computed", Verdict::name)
+}
+
+/// The lines of one result under its chart.
+fn facts(page: &mut String, result: &QueryResult, swept: bool) {
+    let with = settings(result);
+    let head = if swept { format!("<strong>{}</strong>: ", escape(&with)) } else { String::new() };
+    let statement = certified(result);
+    if !statement.is_empty() {
+        let _ = writeln!(page, "<p class=\"certified\">{head}{}</p>", escape(&statement));
+    }
+    let _ = writeln!(page, "<p class=\"faint\">{head}{}</p>", escape(&text::trials(result)));
+    if let Some(histogram) = result.distribution.as_ref().and_then(|d| d.histogram.as_ref()) {
+        page.push_str(&histogram::bars(histogram, &result.unit));
+    }
+    for warning in &result.warnings {
+        let _ = writeln!(page, "<p class=\"warning\">{head}{}</p>", escape(warning));
+    }
+    if result.shrunk > 0 {
+        let trials = counted(result.shrunk, "trial");
+        let _ = writeln!(
+            page,
+            "<p class=\"warning\">{head}people overlapped at the start and were made smaller in {trials}</p>"
+        );
+    }
+    for Witness { passing, trial, time, what, command } in &result.witnesses {
+        let _ = writeln!(
+            page,
+            "<p>{} in trial {}, decided at {} s: <code>{}</code></p>\n<pre>{}</pre>",
+            if *passing { "Holds" } else { "Fails" },
+            count(*trial),
+            plain(*time),
+            escape(what),
+            escape(command)
+        );
+    }
+}
+
+/// The rows of the chart of one result.
+fn marks(result: &QueryResult) -> Vec<Mark> {
+    if let Some(ranking) = &result.rank {
+        let tone = |status| match status {
+            Status::Chosen => Tone::Good,
+            Status::Tied => Tone::Plain,
+            Status::Beaten => Tone::Faint,
+            Status::Open => Tone::Caution,
+        };
+        let row = |o: &crate::engine::outcome::RankedOption| {
+            let note = format!("{}, {}", o.status.name(), counted(o.counts.trials, "trial"));
+            labelled(result, &o.label, o.value, tone(o.status), &note)
+        };
+        return ranking.options.iter().map(row).collect();
+    }
+    if let Some(sides) = &result.compare {
+        let row =
+            |side: &crate::engine::outcome::Side, tone| labelled(result, &side.label, side.value, tone, "");
+        return vec![
+            row(&sides.first, Tone::Plain),
+            row(&sides.second, Tone::Plain),
+            row(&sides.difference, Tone::Good),
+        ];
+    }
+    mark(result, "").into_iter().collect()
+}
+
+fn mark(result: &QueryResult, label: &str) -> Option<Mark> {
+    let value = Interval { estimate: result.estimate?, low: result.low, high: result.high };
+    let tone = match result.verdict {
+        Some(Verdict::Satisfied) => Tone::Good,
+        Some(Verdict::Violated) => Tone::Bad,
+        Some(Verdict::Undecided) => Tone::Caution,
+        None => Tone::Plain,
+    };
+    Some(labelled(result, label, value, tone, ""))
+}
+
+fn labelled(result: &QueryResult, label: &str, value: Interval, tone: Tone, note: &str) -> Mark {
+    let (estimate, interval) = text::printed(result, &value);
+    let note = if note.is_empty() { String::new() } else { format!(" ({note})") };
+    Mark { label: label.to_owned(), value, tone, said: format!("{estimate}  {interval}{note}") }
+}
+
+/// A text inside HTML or SVG. Control characters, which neither may hold, become blanks.
+fn escape(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => safe.push_str("&amp;"),
+            '<' => safe.push_str("&lt;"),
+            '>' => safe.push_str("&gt;"),
+            '"' => safe.push_str("&quot;"),
+            '\'' => safe.push_str("&#39;"),
+            '\n' | '\t' => safe.push(c),
+            c if c.is_control() => safe.push(' '),
+            c => safe.push(c),
+        }
+    }
+    safe
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_gets_out_of_its_element() {
+        assert_eq!(escape("<a href='x'>&\u{0}\""), "&lt;a href=&#39;x&#39;&gt;&amp; &quot;");
+        let run = Run { scenario: "</title><script>".into(), ..Run::default() };
+        assert!(!render(&run).contains("<script>"));
+    }
+}
