@@ -3,8 +3,10 @@
 //! The three rules: a trial is a pure function of (model, seed, index); one lane is one trial; what one
 //! lane does never moves a byte of another.
 
+pub mod code;
 pub mod program;
 pub mod state;
 
+pub use code::{Code, Readings};
 pub use program::Program;
 pub use state::{Layout, Slot, State};

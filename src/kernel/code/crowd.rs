@@ -1,0 +1,309 @@
+//! Tight loops over a crowd: the shapes of expression that nearly every property has.
+
+use super::lanes::{Truth, Vector, View, by_lane_of_two, lesser, narrow, widen};
+use super::machine::compare_all;
+use super::node::{Measure, Reading};
+use crate::base::lanes::{Lanes, Mask};
+use crate::base::math;
+use crate::model::{Comparison, Field};
+use fearless_simd::{Simd, prelude::*};
+
+/// Relative margin within which a comparison without square root is not trusted: a million times what
+/// rounding can do.
+const MARGIN: f64 = 1e-9;
+
+/// The members of a crowd, less perhaps one.
+#[derive(Clone, Copy)]
+pub(super) struct Members<'a> {
+    pub(super) list: &'a [u32],
+    /// Left out; `u32::MAX` for none.
+    pub(super) except: u32,
+}
+
+impl Members<'_> {
+    /// Calls `f` with each member present in some lane, and those lanes.
+    #[inline(always)]
+    fn each<S: Simd, const ONE: bool>(self, view: &View<'_, S, ONE>, mut f: impl FnMut(usize, Mask)) {
+        for &member in self.list {
+            let here = view.present(member as usize);
+            if member != self.except && !here.is_empty() {
+                f(member as usize, here);
+            }
+        }
+    }
+}
+
+/// A body and what is measured from it.
+#[derive(Clone, Copy)]
+pub(super) struct Probe<S: Simd> {
+    x: Vector<S>,
+    y: Vector<S>,
+    radius: Vector<S>,
+    measure: Measure,
+}
+
+impl<S: Simd> Probe<S> {
+    #[inline(always)]
+    pub(super) fn new<const ONE: bool>(view: &View<'_, S, ONE>, who: usize, measure: Measure) -> Self {
+        let state = view.state;
+        let centres = measure == Measure::Centres;
+        Self {
+            x: view.load(&state.x, who),
+            y: view.load(&state.y, who),
+            radius: if centres { view.splat(0.0) } else { view.load(&state.radius, who) },
+            measure,
+        }
+    }
+
+    #[inline(always)]
+    fn squared<const ONE: bool>(&self, view: &View<'_, S, ONE>, member: usize) -> Vector<S> {
+        let dx = self.x - view.load(&view.state.x, member);
+        let dy = self.y - view.load(&view.state.y, member);
+        dx * dx + dy * dy
+    }
+
+    /// The measure, with the roundings of the expression it stands for.
+    #[inline(always)]
+    fn value<const ONE: bool>(&self, view: &View<'_, S, ONE>, member: usize) -> Vector<S> {
+        let distance = self.squared(view, member).sqrt();
+        match self.measure {
+            Measure::Centres => distance,
+            Measure::GapFixedFirst => distance - self.radius - view.load(&view.state.radius, member),
+            Measure::GapRunningFirst => distance - view.load(&view.state.radius, member) - self.radius,
+        }
+    }
+
+    /// Smallest measure; infinite over nobody.
+    #[inline(always)]
+    pub(super) fn nearest<const ONE: bool>(
+        &self,
+        view: &View<'_, S, ONE>,
+        members: Members<'_>,
+    ) -> Vector<S> {
+        let mut best = view.splat(f64::INFINITY);
+        if self.measure == Measure::Centres {
+            members.each(
+                view,
+                #[inline(always)]
+                |member, here| {
+                    let joined = lesser(best, self.squared(view, member));
+                    best =
+                        if here == Mask::ALL { joined } else { widen(view.simd, here).select(joined, best) };
+                },
+            );
+            // The square root is monotone and correctly rounded: the root of the least is the least root.
+            return best.sqrt();
+        }
+        members.each(
+            view,
+            #[inline(always)]
+            |member, here| {
+                let joined = lesser(best, self.value(view, member));
+                best = if here == Mask::ALL { joined } else { widen(view.simd, here).select(joined, best) };
+            },
+        );
+        best
+    }
+
+    /// The lanes in which `f` of squared distance and reach holds for some member, where the reach is `base` and, for gaps, the member's radius times `factor`.
+    #[inline(always)]
+    fn some<const ONE: bool>(
+        &self,
+        view: &View<'_, S, ONE>,
+        members: Members<'_>,
+        base: Vector<S>,
+        factor: f64,
+        f: impl Fn(Vector<S>, Vector<S>) -> Truth<S>,
+    ) -> Mask {
+        let mut some = view.splat(0.0);
+        let one = view.splat(1.0);
+        let centres = self.measure == Measure::Centres;
+        members.each(
+            view,
+            #[inline(always)]
+            |member, here| {
+                let squared = self.squared(view, member);
+                let reach =
+                    if centres { base } else { base + view.load(&view.state.radius, member) * factor };
+                let holds = f(squared, reach);
+                // Kept as a number: truth values that live across a loop are slow where they are not vectors.
+                let holds = if here == Mask::ALL { holds } else { holds & widen(view.simd, here) };
+                some = holds.select(one, some);
+            },
+        );
+        narrow(some.simd_eq(one))
+    }
+
+    /// The lanes in which the comparison with the bound has the wanted value for all members.
+    ///
+    /// Square roots are taken only where the comparison of squares is too close to be sure, so the
+    /// outcome is that of the plain comparison, to the last bit.
+    #[inline(always)]
+    pub(super) fn all_far<const ONE: bool>(
+        &self,
+        view: &View<'_, S, ONE>,
+        members: Members<'_>,
+        bound: Vector<S>,
+        test: Comparison,
+        wanted: bool,
+    ) -> Mask {
+        let slack = (self.radius.abs() + bound.abs()) * MARGIN + 1e-30;
+        let (middle, zero) = (self.radius + bound, view.splat(0.0));
+        // A reach below 0 has no square to compare with; taken as 0 it is only less sure.
+        let outer = middle + slack;
+        let outer = outer.simd_lt(zero).select(zero, outer);
+        // A NaN is not surely far, and not surely near.
+        let unsure = self.some(
+            view,
+            members,
+            outer,
+            1.0 + MARGIN,
+            #[inline(always)]
+            |squared, reach| !squared.simd_gt(reach * reach),
+        );
+        if unsure.is_empty() {
+            return Mask::ALL;
+        }
+        let near = self.some(
+            view,
+            members,
+            middle - slack,
+            1.0 - MARGIN,
+            #[inline(always)]
+            |squared, reach| reach.simd_gt(zero) & squared.simd_lt(reach * reach),
+        );
+        if (unsure & !near).is_empty() {
+            return !unsure;
+        }
+        let mut bad = Mask::NONE;
+        members.each(
+            view,
+            #[inline(always)]
+            |member, here| {
+                let holds = compare_all(test, self.value(view, member), bound);
+                bad |= here & if wanted { !holds } else { holds };
+            },
+        );
+        !bad
+    }
+}
+
+/// A number of an agent.
+#[inline(always)]
+pub(super) fn reading<S: Simd, const ONE: bool>(
+    view: &View<'_, S, ONE>,
+    reading: Reading,
+    agent: usize,
+) -> Vector<S> {
+    let state = view.state;
+    let of = |field: &[Lanes]| view.load(field, agent);
+    match reading {
+        Reading::X => of(&state.x),
+        Reading::Y => of(&state.y),
+        Reading::Field(Field::VelocityX) => of(&state.vx),
+        Reading::Field(Field::VelocityY) => of(&state.vy),
+        Reading::Field(Field::Speed) => {
+            let (x, y) = (of(&state.vx), of(&state.vy));
+            (x * x + y * y).sqrt()
+        }
+        Reading::Field(Field::Heading) => {
+            let (x, y, zero) = (of(&state.vx), of(&state.vy), view.splat(0.0));
+            let stands = x.simd_eq(zero) & y.simd_eq(zero);
+            let (x, y) = (stands.select(of(&state.ex), x), stands.select(of(&state.ey), y));
+            by_lane_of_two(y, x, math::atan2)
+        }
+        Reading::Field(Field::Radius) => of(&state.radius),
+        Reading::Field(Field::Mass) => of(&state.mass),
+        Reading::Field(Field::DrivingSpeed) => of(&state.speed),
+        Reading::Field(Field::Travelled) => of(&state.travelled),
+    }
+}
+
+/// Mean of a value over the members; NaN over nobody.
+#[inline(always)]
+fn mean<S: Simd, const ONE: bool>(
+    view: &View<'_, S, ONE>,
+    members: Members<'_>,
+    value: impl Fn(usize) -> Vector<S>,
+) -> Vector<S> {
+    let (mut sum, mut count) = (view.splat(0.0), view.splat(0.0));
+    members.each(
+        view,
+        #[inline(always)]
+        |member, here| {
+            let here = widen(view.simd, here);
+            sum = here.select(sum + value(member), sum);
+            count = here.select(count + 1.0, count);
+        },
+    );
+    sum / count
+}
+
+/// Mean of a reading; NaN over nobody.
+#[inline(always)]
+pub(super) fn mean_reading<S: Simd, const ONE: bool>(
+    view: &View<'_, S, ONE>,
+    members: Members<'_>,
+    what: Reading,
+) -> Vector<S> {
+    mean(
+        view,
+        members,
+        #[inline(always)]
+        |member| reading(view, what, member),
+    )
+}
+
+/// Root of the mean squared distance from a point; NaN over nobody.
+#[inline(always)]
+pub(super) fn spread<S: Simd, const ONE: bool>(
+    view: &View<'_, S, ONE>,
+    members: Members<'_>,
+    x: Vector<S>,
+    y: Vector<S>,
+) -> Vector<S> {
+    let from = Probe { x, y, radius: view.splat(0.0), measure: Measure::Centres };
+    mean(
+        view,
+        members,
+        #[inline(always)]
+        |member| from.squared(view, member),
+    )
+    .sqrt()
+}
+
+/// The lanes in which some member is present.
+#[inline(always)]
+pub(super) fn somebody<S: Simd, const ONE: bool>(view: &View<'_, S, ONE>, members: Members<'_>) -> Mask {
+    let mut some = Mask::NONE;
+    members.each(
+        view,
+        #[inline(always)]
+        |_, here| some |= here,
+    );
+    some
+}
+
+/// Seconds until two bodies touch if both keep their velocity. Touching discs: 0. Else the first root of
+/// |p + v t| = R with p and v of one relative to the other, in the form without cancellation.
+#[inline(always)]
+pub(super) fn time_to_collision<S: Simd, const ONE: bool>(
+    view: &View<'_, S, ONE>,
+    a: usize,
+    b: usize,
+) -> Vector<S> {
+    let state = view.state;
+    let (zero, never) = (view.splat(0.0), view.splat(f64::INFINITY));
+    let apart = |field: &[Lanes]| view.load(field, a) - view.load(field, b);
+    let (px, py, vx, vy) = (apart(&state.x), apart(&state.y), apart(&state.vx), apart(&state.vy));
+    let (ra, rb) = (view.load(&state.radius, a), view.load(&state.radius, b));
+    let (squared, reach) = (px * px + py * py, ra + rb);
+    let (speed, along, beyond) = (vx * vx + vy * vy, px * vx + py * vy, squared - reach * reach);
+    let root = along * along - speed * beyond;
+    let time = beyond / (root.sqrt() - along);
+    let time = time.simd_lt(zero).select(zero, time);
+    // A NaN is neither approaching nor receding: it stays NaN.
+    let time = (along.simd_ge(zero) | root.simd_lt(zero)).select(never, time);
+    let time = (squared.sqrt() - ra - rb).simd_le(zero).select(zero, time);
+    widen(view.simd, view.present(a) & view.present(b)).select(time, never)
+}

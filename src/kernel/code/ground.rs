@@ -1,0 +1,239 @@
+//! Regions and barriers, made ready for lanes of points.
+//!
+//! Rectangles and discs have formulas of their own; everything else is a list of edges: the nearest
+//! point of each, and the even-odd rule for what is inside.
+
+use super::lanes::{Truth, Vector, lesser, narrow};
+use crate::base::geometry::{Bounds, Polygon, Segment, Shape, Vec2};
+use crate::base::lanes::Mask;
+use crate::model::{Obstacle, Scene};
+use fearless_simd::{Simd, prelude::*};
+
+/// An edge with what is the same for every point.
+#[derive(Clone, Copy, Debug)]
+struct Edge {
+    a: Vec2,
+    b: Vec2,
+    along: Vec2,
+    square: f64,
+}
+
+impl Edge {
+    fn new(segment: Segment) -> Self {
+        let along = segment.b - segment.a;
+        Self { a: segment.a, b: segment.b, along, square: along.dot(&along) }
+    }
+
+    /// Squared distance of a point, with the nearest point as in [`Segment::nearest`].
+    #[inline(always)]
+    fn distance_squared<S: Simd>(&self, x: Vector<S>, y: Vector<S>) -> Vector<S> {
+        let zero = Vector::splat(x.simd, 0.0);
+        let one = Vector::splat(x.simd, 1.0);
+        let share = if self.square == 0.0 {
+            zero
+        } else {
+            let share = ((x - self.a.x) * self.along.x + (y - self.a.y) * self.along.y) / self.square;
+            let share = share.simd_lt(zero).select(zero, share);
+            share.simd_gt(one).select(one, share)
+        };
+        let dx = x - (share * self.along.x + self.a.x);
+        let dy = y - (share * self.along.y + self.a.y);
+        dx * dx + dy * dy
+    }
+
+    /// Whether a ray from the point in the direction of x crosses the edge.
+    #[inline(always)]
+    fn crossed<S: Simd>(&self, x: Vector<S>, y: Vector<S>) -> Truth<S> {
+        let (ay, by) = (Vector::splat(x.simd, self.a.y), Vector::splat(x.simd, self.b.y));
+        let at = (y - self.a.y) / (self.b.y - self.a.y) * (self.b.x - self.a.x) + self.a.x;
+        (ay.simd_gt(y) ^ by.simd_gt(y)) & x.simd_lt(at)
+    }
+}
+
+/// A form.
+#[derive(Clone, Debug)]
+enum Form {
+    Rectangle(Bounds),
+    Disc {
+        centre: Vec2,
+        radius: f64,
+    },
+    /// Edges of the outline, then of each hole; the ends of the rings in the list.
+    Polygon {
+        edges: Vec<Edge>,
+        rings: Vec<usize>,
+    },
+    /// Edges without an inside.
+    Wall(Vec<Edge>),
+}
+
+/// A region or barrier.
+#[derive(Clone, Debug)]
+pub(super) struct Ground {
+    form: Form,
+    bounds: Option<Bounds>,
+}
+
+/// The upright rectangle that a polygon is, if it is one.
+pub(crate) fn upright(polygon: &Polygon) -> Option<Bounds> {
+    let [a, b, c, d] = *polygon.outline.as_slice() else { return None };
+    let flat = |p: Vec2, q: Vec2| p.y == q.y;
+    let steep = |p: Vec2, q: Vec2| p.x == q.x;
+    let is = (flat(a, b) && steep(b, c) && flat(c, d) && steep(d, a))
+        || (steep(a, b) && flat(b, c) && steep(c, d) && flat(d, a));
+    if is && polygon.holes.is_empty() { Bounds::around([a, b, c, d]) } else { None }
+}
+
+impl Ground {
+    fn polygon(polygon: &Polygon) -> Form {
+        let mut rings = vec![polygon.outline.len()];
+        for hole in &polygon.holes {
+            rings.push(rings[rings.len() - 1] + hole.len());
+        }
+        Form::Polygon { edges: polygon.segments().map(Edge::new).collect(), rings }
+    }
+
+    /// A region.
+    pub(super) fn region(shape: &Shape) -> Self {
+        let form = match shape {
+            Shape::Circle { centre, radius } => Form::Disc { centre: *centre, radius: *radius },
+            Shape::Polygon(polygon) => match upright(polygon) {
+                Some(bounds) => Form::Rectangle(bounds),
+                None => Self::polygon(polygon),
+            },
+        };
+        Self { form, bounds: Some(shape.bounds()) }
+    }
+
+    /// A barrier.
+    pub(super) fn barrier(obstacle: &Obstacle) -> Self {
+        match obstacle {
+            Obstacle::Wall(segments) => Self {
+                form: Form::Wall(segments.iter().copied().map(Edge::new).collect()),
+                bounds: Bounds::around(segments.iter().flat_map(|s| [s.a, s.b])),
+            },
+            Obstacle::Solid(Shape::Polygon(polygon)) => {
+                Self { form: Self::polygon(polygon), bounds: Bounds::around(polygon.outline.iter().copied()) }
+            }
+            Obstacle::Solid(shape @ Shape::Circle { .. }) => Self::region(shape),
+        }
+    }
+
+    /// All barriers of a scene.
+    pub(super) fn barriers(scene: &Scene) -> Vec<Self> {
+        scene.barriers.iter().map(|barrier| Self::barrier(&barrier.obstacle)).collect()
+    }
+
+    /// The lanes whose point is inside or on the rim.
+    #[inline(always)]
+    pub(super) fn contains<S: Simd>(&self, x: Vector<S>, y: Vector<S>) -> Truth<S> {
+        let splat = |value: f64| Vector::splat(x.simd, value);
+        match &self.form {
+            Form::Rectangle(Bounds { low, high }) => {
+                x.simd_ge(splat(low.x))
+                    & x.simd_le(splat(high.x))
+                    & y.simd_ge(splat(low.y))
+                    & y.simd_le(splat(high.y))
+            }
+            Form::Disc { centre, radius } => {
+                let (dx, dy) = (x - centre.x, y - centre.y);
+                (dx * dx + dy * dy).simd_le(splat(radius * radius))
+            }
+            Form::Polygon { edges, rings } => {
+                nearest_squared(edges, x, y).simd_eq(splat(0.0)) | within(edges, rings, x, y)
+            }
+            Form::Wall(_) => Truth::<S>::splat(x.simd, false),
+        }
+    }
+
+    /// Distance from the region: 0 inside.
+    #[inline(always)]
+    pub(super) fn distance<S: Simd>(&self, x: Vector<S>, y: Vector<S>) -> Vector<S> {
+        let outside = match &self.form {
+            Form::Rectangle(bounds) => return box_squared(bounds, x, y).sqrt(),
+            Form::Disc { .. } => self.signed_distance(x, y),
+            Form::Polygon { edges, .. } | Form::Wall(edges) => nearest_squared(edges, x, y).sqrt(),
+        };
+        self.contains(x, y).select(Vector::splat(x.simd, 0.0), outside)
+    }
+
+    /// Distance from the barrier's surface: negative inside a solid.
+    #[inline(always)]
+    pub(super) fn signed_distance<S: Simd>(&self, x: Vector<S>, y: Vector<S>) -> Vector<S> {
+        match &self.form {
+            Form::Disc { centre, radius } => {
+                let (dx, dy) = (x - centre.x, y - centre.y);
+                (dx * dx + dy * dy + nothing(x, y)).sqrt() - *radius
+            }
+            Form::Polygon { edges, .. } => {
+                let distance = nearest_squared(edges, x, y).sqrt();
+                self.contains(x, y).select(-distance, distance)
+            }
+            Form::Wall(edges) => nearest_squared(edges, x, y).sqrt(),
+            // A barrier is never built as a rectangle.
+            Form::Rectangle(bounds) => box_squared(bounds, x, y).sqrt(),
+        }
+    }
+
+    /// The smaller of `best` and the distance from the barrier. Far barriers are passed over by their
+    /// bounds, with a margin far above what rounding can do.
+    #[inline(always)]
+    pub(super) fn nearer<S: Simd>(&self, best: Vector<S>, x: Vector<S>, y: Vector<S>) -> Vector<S> {
+        if let Some(bounds) = &self.bounds {
+            let zero = Vector::splat(x.simd, 0.0);
+            // Below 0 the point is in a solid: of what is outside nothing is nearer.
+            let reach = best.simd_lt(zero).select(zero, best);
+            let far = box_squared(bounds, x, y).simd_gt(reach * reach * (1.0 + 1e-9));
+            if narrow(far) == Mask::ALL {
+                return best;
+            }
+        }
+        lesser(best, self.signed_distance(x, y))
+    }
+}
+
+/// Zero; NaN for a position that is no finite number, so that it is at no distance from anything.
+#[inline(always)]
+fn nothing<S: Simd>(x: Vector<S>, y: Vector<S>) -> Vector<S> {
+    (x + y) * 0.0
+}
+
+/// Squared distance from an upright rectangle; 0 inside.
+#[inline(always)]
+fn box_squared<S: Simd>(bounds: &Bounds, x: Vector<S>, y: Vector<S>) -> Vector<S> {
+    let beyond = |v: Vector<S>, low: f64, high: f64| {
+        let (low, high) = (Vector::splat(v.simd, low), Vector::splat(v.simd, high));
+        let below = v.simd_lt(low).select(low - v, Vector::splat(v.simd, 0.0));
+        v.simd_gt(high).select(v - high, below)
+    };
+    let dx = beyond(x, bounds.low.x, bounds.high.x);
+    let dy = beyond(y, bounds.low.y, bounds.high.y);
+    dx * dx + dy * dy + nothing(x, y)
+}
+
+/// Squared distance from the nearest edge; infinite without any.
+#[inline(always)]
+fn nearest_squared<S: Simd>(edges: &[Edge], x: Vector<S>, y: Vector<S>) -> Vector<S> {
+    let mut best = Vector::splat(x.simd, f64::INFINITY);
+    for edge in edges {
+        let squared = edge.distance_squared(x, y);
+        best = squared.simd_lt(best).select(squared, best);
+    }
+    best + nothing(x, y)
+}
+
+/// The lanes whose point is within the outline and in no hole.
+#[inline(always)]
+fn within<S: Simd>(edges: &[Edge], rings: &[usize], x: Vector<S>, y: Vector<S>) -> Truth<S> {
+    let mut inside = Truth::<S>::splat(x.simd, true);
+    let mut start = 0;
+    for (ring, &end) in rings.iter().enumerate() {
+        let mut odd = Truth::<S>::splat(x.simd, ring > 0);
+        for edge in &edges[start..end] {
+            odd = odd ^ edge.crossed(x, y);
+        }
+        inside = inside & odd;
+        start = end;
+    }
+    inside
+}

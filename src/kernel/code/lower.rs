@@ -1,0 +1,430 @@
+//! From expressions to the graph of values.
+//!
+//! A value may be unresolved: the mean or centroid of nobody. Whether it is becomes a truth value of its
+//! own, in the strong three-valued logic of Kleene: `false & unresolved` is false, and an `if` asks only
+//! the branch it takes. So a guard as in `count(..) > 0 & mean(..) > 1` does what it says.
+
+use super::node::{Crowd, Graph, Id, Join, Measure, Node, Reading};
+use super::span;
+use crate::model::{
+    AgentId, Arithmetic, Axis, Bool, Comparison, Field, Fold, Num, Place, Scenario, Set, Who,
+};
+
+/// A value and, if it can be unresolved, the node that tells where it is.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Value {
+    pub(super) id: Id,
+    pub(super) open: Option<Id>,
+}
+
+/// Puts expressions into a graph.
+pub(super) struct Lowering<'a> {
+    scenario: &'a Scenario,
+    pub(super) graph: Graph,
+    /// The lists of members that crowds refer to.
+    pub(super) lists: Vec<Vec<u32>>,
+    /// How many loops are around the present place.
+    depth: u32,
+}
+
+const fn resolved(id: Id) -> Value {
+    Value { id, open: None }
+}
+
+impl<'a> Lowering<'a> {
+    pub(super) fn new(scenario: &'a Scenario) -> Self {
+        Self { scenario, graph: Graph::default(), lists: Vec::new(), depth: 0 }
+    }
+
+    fn list(&mut self, members: Vec<u32>) -> u32 {
+        let known = self.lists.iter().position(|list| *list == members);
+        known.unwrap_or_else(|| {
+            self.lists.push(members);
+            self.lists.len() - 1
+        }) as u32
+    }
+
+    fn crowd(&mut self, set: &Set) -> Crowd {
+        let members = set.members.iter().map(|id| id.0);
+        match set.except {
+            Some(Who::Agent(AgentId(out))) => {
+                Crowd { list: self.list(members.filter(|&id| id != out).collect()), except: None }
+            }
+            except => Crowd { list: self.list(members.collect()), except },
+        }
+    }
+
+    /// Everybody else.
+    fn others(&mut self, who: Who) -> Crowd {
+        let everybody = (0..self.scenario.agents.len() as u32).map(AgentId).collect();
+        self.crowd(&Set { members: everybody, except: Some(who) })
+    }
+
+    /// Some of the conditions holds, or none is there.
+    fn either(&mut self, conditions: impl IntoIterator<Item = Option<Id>>) -> Option<Id> {
+        let mut all: Vec<Id> = conditions.into_iter().flatten().collect();
+        all.sort_unstable();
+        all.dedup();
+        match *all.as_slice() {
+            [] => None,
+            [one] => Some(one),
+            _ => Some(self.graph.enter(Node::Or(all))),
+        }
+    }
+
+    fn both(&mut self, a: Id, b: Id) -> Id {
+        self.graph.enter(Node::And(vec![a, b]))
+    }
+
+    fn not(&mut self, a: Id) -> Id {
+        self.graph.enter(Node::Not(a))
+    }
+
+    fn distance(&mut self, a: Who, b: Who) -> Id {
+        // The distance is the same bits both ways: let both ways be one node.
+        let swapped = matches!((a, b), (Who::Agent(p), Who::Agent(q)) if p > q);
+        self.graph.enter(if swapped { Node::Distance(b, a) } else { Node::Distance(a, b) })
+    }
+
+    fn radius(&mut self, who: Who) -> Id {
+        self.graph.enter(Node::Of(Reading::Field(Field::Radius), who))
+    }
+
+    fn gap(&mut self, a: Who, b: Who) -> Id {
+        let (distance, ra, rb) = (self.distance(a, b), self.radius(a), self.radius(b));
+        let first = self.graph.enter(Node::Combine(Arithmetic::Subtract, distance, ra));
+        self.graph.enter(Node::Combine(Arithmetic::Subtract, first, rb))
+    }
+
+    /// Gap between a body and the nearest barrier, if there is any.
+    fn gap_to_scene(&mut self, who: Who) -> Option<Id> {
+        if self.scenario.scene.barriers.is_empty() {
+            return None;
+        }
+        let x = self.graph.enter(Node::Of(Reading::X, who));
+        let y = self.graph.enter(Node::Of(Reading::Y, who));
+        let (distance, radius) = (self.graph.enter(Node::ToScene(x, y)), self.radius(who));
+        Some(self.graph.enter(Node::Combine(Arithmetic::Subtract, distance, radius)))
+    }
+
+    /// A number.
+    pub(super) fn number(&mut self, number: &Num) -> Value {
+        match number {
+            Num::Constant(value) => resolved(self.graph.constant(*value)),
+            Num::Time => resolved(self.graph.enter(Node::Time)),
+            Num::Of(field, who) => resolved(self.graph.enter(Node::Of(Reading::Field(*field), *who))),
+            Num::Coordinate(axis, place) => {
+                let (x, y) = self.point(place);
+                match axis {
+                    Axis::X => x,
+                    Axis::Y => y,
+                }
+            }
+            Num::MeanVelocity(axis, set) => {
+                let field = match axis {
+                    Axis::X => Field::VelocityX,
+                    Axis::Y => Field::VelocityY,
+                };
+                self.mean(Reading::Field(field), set)
+            }
+            Num::Distance(a, b) => self.between(a, b),
+            Num::Clearance(who) => resolved(self.clearance(*who)),
+            Num::TimeToCollision(a, b) => resolved(self.graph.enter(Node::TimeToCollision(*a, *b))),
+            Num::Spread(set) => {
+                let (x, y) = self.point(&Place::Centroid(set.clone()));
+                let crowd = self.crowd(set);
+                Value { id: self.graph.enter(Node::Spread(crowd, x.id, y.id)), open: x.open }
+            }
+            Num::Apply(function, a) => {
+                let a = self.number(a);
+                Value { id: self.graph.enter(Node::Apply(*function, a.id)), open: a.open }
+            }
+            Num::Combine(..) => self.arithmetic(number),
+            Num::Fold(fold, set, body) => self.fold(*fold, set, body),
+            Num::Count(set, body) => {
+                let (crowd, var, body) = self.enter_loop(set, |inside| inside.truth(body));
+                let id = self.graph.enter(Node::Loop(Join::Count, crowd, var, body.id));
+                Value { id, open: self.some_open(crowd, var, body) }
+            }
+            Num::If(condition, a, b) => {
+                let (c, a, b) = (self.truth(condition), self.number(a), self.number(b));
+                let id = self.graph.enter(Node::Select(c.id, a.id, b.id));
+                let on_a = a.open.map(|open| self.both(c.id, open));
+                let on_b = b.open.map(|open| {
+                    let not = self.not(c.id);
+                    self.both(not, open)
+                });
+                Value { id, open: self.either([c.open, on_a, on_b]) }
+            }
+        }
+    }
+
+    /// Arithmetic: a long sum leans to the left, so the left side is walked without recursion.
+    fn arithmetic(&mut self, number: &Num) -> Value {
+        let mut spine = Vec::new();
+        let mut left = number;
+        while let Num::Combine(operator, a, b) = left {
+            spine.push((*operator, b));
+            left = a;
+        }
+        let mut value = self.number(left);
+        for (operator, b) in spine.into_iter().rev() {
+            let b = self.number(b);
+            let id = self.graph.enter(Node::Combine(operator, value.id, b.id));
+            value = Value { id, open: self.either([value.open, b.open]) };
+        }
+        value
+    }
+
+    /// Lowers the body of a loop over `set`.
+    fn enter_loop(&mut self, set: &Set, body: impl FnOnce(&mut Self) -> Value) -> (Crowd, u32, Value) {
+        let crowd = self.crowd(set);
+        let var = self.depth;
+        self.depth += 1;
+        let value = body(self);
+        self.depth -= 1;
+        (crowd, var, value)
+    }
+
+    /// Where the body is unresolved for some member.
+    fn some_open(&mut self, crowd: Crowd, var: u32, body: Value) -> Option<Id> {
+        body.open.map(|open| self.graph.enter(Node::Loop(Join::Exists, crowd, var, open)))
+    }
+
+    fn mean(&mut self, reading: Reading, set: &Set) -> Value {
+        let crowd = self.crowd(set);
+        let id = self.graph.enter(Node::Mean(reading, crowd));
+        Value { id, open: Some(self.nobody(crowd)) }
+    }
+
+    fn nobody(&mut self, crowd: Crowd) -> Id {
+        let somebody = self.graph.enter(Node::Somebody(crowd));
+        self.not(somebody)
+    }
+
+    fn fold(&mut self, fold: Fold, set: &Set, body: &Num) -> Value {
+        if let (Fold::Min, Some((who, measure))) = (fold, self.measure(body)) {
+            let crowd = self.crowd(set);
+            return resolved(self.graph.enter(Node::Nearest(who, crowd, measure)));
+        }
+        let (crowd, var, body) = self.enter_loop(set, |inside| inside.number(body));
+        let id = self.graph.enter(Node::Loop(Join::Fold(fold), crowd, var, body.id));
+        let nobody = (fold == Fold::Mean).then(|| self.nobody(crowd));
+        let inner = self.some_open(crowd, var, body);
+        Value { id, open: self.either([nobody, inner]) }
+    }
+
+    /// Whether a body about to be looped over is a distance or gap to the running agent.
+    fn measure(&self, body: &Num) -> Option<(Who, Measure)> {
+        let running = Who::Running(self.depth);
+        let other = |a: Who, b: Who| match (a == running, b == running) {
+            (true, false) => Some(b),
+            (false, true) => Some(a),
+            _ => None,
+        };
+        match body {
+            Num::Distance(Place::Agent(a), Place::Agent(b)) => Some((other(*a, *b)?, Measure::Centres)),
+            Num::Combine(Arithmetic::Subtract, left, second) => {
+                let Num::Of(Field::Radius, second) = **second else { return None };
+                let Num::Combine(Arithmetic::Subtract, distance, first) = &**left else { return None };
+                let Num::Of(Field::Radius, first) = **first else { return None };
+                let Num::Distance(Place::Agent(a), Place::Agent(b)) = **distance else { return None };
+                let who = other(a, b)?;
+                match (first == who && second == running, first == running && second == who) {
+                    (true, _) => Some((who, Measure::GapFixedFirst)),
+                    (_, true) => Some((who, Measure::GapRunningFirst)),
+                    _ => None,
+                }
+            }
+            _ => None,
+        }
+    }
+
+    /// The coordinates of a place that is a point; NaN for a region or barrier.
+    fn point(&mut self, place: &Place) -> (Value, Value) {
+        match place {
+            Place::Agent(who) => (
+                resolved(self.graph.enter(Node::Of(Reading::X, *who))),
+                resolved(self.graph.enter(Node::Of(Reading::Y, *who))),
+            ),
+            Place::Point(x, y) => (self.number(x), self.number(y)),
+            Place::Centroid(set) => (self.mean(Reading::X, set), self.mean(Reading::Y, set)),
+            Place::Region(_) | Place::Barrier(_) => {
+                let nowhere = resolved(self.graph.constant(f64::NAN));
+                (nowhere, nowhere)
+            }
+        }
+    }
+
+    fn between(&mut self, a: &Place, b: &Place) -> Value {
+        let extended = |place: &Place| matches!(place, Place::Region(_) | Place::Barrier(_));
+        match (a, b) {
+            (Place::Agent(a), Place::Agent(b)) => resolved(self.distance(*a, *b)),
+            (a, b) if extended(a) && extended(b) => {
+                resolved(self.graph.constant(span::between(&self.scenario.scene, a, b)))
+            }
+            (thing @ (Place::Region(_) | Place::Barrier(_)), point)
+            | (point, thing @ (Place::Region(_) | Place::Barrier(_))) => {
+                let (x, y) = self.point(point);
+                let node = match thing {
+                    Place::Region(region) => Node::ToRegion(x.id, y.id, region.0),
+                    Place::Barrier(barrier) => Node::ToBarrier(x.id, y.id, barrier.0),
+                    // Not reached: `thing` is one of the two.
+                    _ => Node::Constant(f64::NAN.to_bits()),
+                };
+                Value { id: self.graph.enter(node), open: self.either([x.open, y.open]) }
+            }
+            (a, b) => {
+                let ((ax, ay), (bx, by)) = (self.point(a), self.point(b));
+                let id = self.graph.enter(Node::Between([ax.id, ay.id, bx.id, by.id]));
+                Value { id, open: self.either([ax.open, ay.open, bx.open, by.open]) }
+            }
+        }
+    }
+
+    /// A body that has left has no gap: infinite.
+    fn clearance(&mut self, who: Who) -> Id {
+        let crowd = self.others(who);
+        let mut gap = self.graph.enter(Node::Nearest(who, crowd, Measure::GapFixedFirst));
+        if let Some(walls) = self.gap_to_scene(who) {
+            gap = self.graph.enter(Node::Combine(Arithmetic::Min, gap, walls));
+        }
+        let present = self.graph.enter(Node::Present(who));
+        let infinite = self.graph.constant(f64::INFINITY);
+        self.graph.enter(Node::Select(present, gap, infinite))
+    }
+
+    /// A truth value.
+    pub(super) fn truth(&mut self, truth: &Bool) -> Value {
+        match truth {
+            Bool::Constant(value) => resolved(self.graph.enter(Node::Truth(*value))),
+            Bool::Compare(comparison, a, b) => self.comparison(*comparison, a, b),
+            Bool::Not(a) => {
+                let a = self.truth(a);
+                Value { id: self.not(a.id), open: a.open }
+            }
+            Bool::And(all) => self.junction(all, true),
+            Bool::Or(all) => self.junction(all, false),
+            Bool::In(who, region) => resolved(self.graph.enter(Node::Inside(*who, region.0))),
+            Bool::Contact(who) => resolved(self.contact(*who)),
+            Bool::Touching(a, b) => {
+                let (gap, zero) = (self.gap(*a, *b), self.graph.constant(0.0));
+                let touch = self.graph.enter(Node::Compare(Comparison::AtMost, gap, zero));
+                let here = [self.graph.enter(Node::Present(*a)), self.graph.enter(Node::Present(*b))];
+                resolved(self.graph.enter(Node::And(vec![here[0], here[1], touch])))
+            }
+            Bool::Forall(set, body) => self.quantifier(set, body, true),
+            Bool::Exists(set, body) => self.quantifier(set, body, false),
+        }
+    }
+
+    /// All (`and`) or any of the conditions.
+    fn junction(&mut self, all: &[Bool], and: bool) -> Value {
+        let values: Vec<Value> = all.iter().map(|one| self.truth(one)).collect();
+        let ids: Vec<Id> = values.iter().map(|v| v.id).collect();
+        let id = self.graph.enter(if and { Node::And(ids) } else { Node::Or(ids) });
+        let Some(open) = self.either(values.iter().map(|v| v.open)) else { return resolved(id) };
+        // Settled by one that is resolved and decides.
+        let deciding: Vec<Option<Id>> = values.iter().map(|v| Some(self.deciding(*v, and))).collect();
+        let undecided = match self.either(deciding) {
+            Some(settled) => {
+                let not = self.not(settled);
+                self.both(open, not)
+            }
+            None => open,
+        };
+        Value { id, open: Some(undecided) }
+    }
+
+    /// Where a value is resolved and settles a conjunction (`and`) or disjunction by itself.
+    fn deciding(&mut self, value: Value, and: bool) -> Id {
+        let decides = if and { self.not(value.id) } else { value.id };
+        match value.open {
+            Some(open) => {
+                let closed = self.not(open);
+                self.both(closed, decides)
+            }
+            None => decides,
+        }
+    }
+
+    fn quantifier(&mut self, set: &Set, body: &Bool, all: bool) -> Value {
+        if let Bool::Compare(comparison, a, b) = body
+            && let Some(fast) = self.all_far(set, *comparison, a, b, all)
+        {
+            return resolved(fast);
+        }
+        let (crowd, var, body) = self.enter_loop(set, |inside| inside.truth(body));
+        let join = if all { Join::Forall } else { Join::Exists };
+        let id = self.graph.enter(Node::Loop(join, crowd, var, body.id));
+        let Some(open) = self.some_open(crowd, var, body) else { return resolved(id) };
+        let deciding = self.deciding(body, all);
+        let settled = self.graph.enter(Node::Loop(Join::Exists, crowd, var, deciding));
+        let not = self.not(settled);
+        Value { id, open: Some(self.both(open, not)) }
+    }
+
+    /// `forall a: distance > bound` or `exists a: distance < bound` and their like.
+    fn all_far(&mut self, set: &Set, test: Comparison, a: &Num, b: &Num, all: bool) -> Option<Id> {
+        use Comparison::{AtLeast, AtMost, Greater, Less};
+        let (who, measure, test, bound) = match (self.measure(a), self.measure(b)) {
+            (Some((who, measure)), None) => (who, measure, test, b),
+            (None, Some((who, measure))) => {
+                let mirrored = match test {
+                    Less => Greater,
+                    AtMost => AtLeast,
+                    Greater => Less,
+                    AtLeast => AtMost,
+                    Comparison::Equal | Comparison::Unequal => return None,
+                };
+                (who, measure, mirrored, a)
+            }
+            _ => return None,
+        };
+        match (all, test) {
+            (true, Greater | AtLeast) | (false, Less | AtMost) => {}
+            _ => return None,
+        }
+        let (crowd, var, bound) = self.enter_loop(set, |inside| inside.number(bound));
+        if bound.open.is_some() || self.graph.depends_on(bound.id, var) {
+            return None;
+        }
+        let far = Node::AllFar { who, crowd, measure, test, wanted: all, bound: bound.id };
+        let far = self.graph.enter(far);
+        Some(if all { far } else { self.not(far) })
+    }
+
+    fn comparison(&mut self, comparison: Comparison, a: &Num, b: &Num) -> Value {
+        // The least distance is above a bound where all are: no square roots are needed. An infinite
+        // bound is left out: nobody is infinitely far away.
+        if let (Num::Fold(Fold::Min, set, body), Num::Constant(bound)) = (a, b)
+            && bound.is_finite()
+            && matches!(comparison, Comparison::Greater | Comparison::AtLeast)
+            && let Some(fast) = self.all_far(set, comparison, body, b, true)
+        {
+            return resolved(fast);
+        }
+        let (a, b) = (self.number(a), self.number(b));
+        let id = self.graph.enter(Node::Compare(comparison, a.id, b.id));
+        Value { id, open: self.either([a.open, b.open]) }
+    }
+
+    fn contact(&mut self, who: Who) -> Id {
+        let (crowd, zero) = (self.others(who), self.graph.constant(0.0));
+        let free = self.graph.enter(Node::AllFar {
+            who,
+            crowd,
+            measure: Measure::GapFixedFirst,
+            test: Comparison::AtMost,
+            wanted: false,
+            bound: zero,
+        });
+        let mut touch = self.not(free);
+        if let Some(walls) = self.gap_to_scene(who) {
+            let at_wall = self.graph.enter(Node::Compare(Comparison::AtMost, walls, zero));
+            touch = self.graph.enter(Node::Or(vec![touch, at_wall]));
+        }
+        let present = self.graph.enter(Node::Present(who));
+        self.both(present, touch)
+    }
+}

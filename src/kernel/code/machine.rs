@@ -1,0 +1,327 @@
+//! The machine that runs linear code: one pass, no recursion, all lanes at once.
+
+use super::arithmetic::{apply, combine};
+use super::crowd::{self, Members, Probe};
+use super::lanes::{Vector, View, by_lane, by_lane_of_two, greater, lesser, narrow, widen};
+use super::node::{Crowd, Id, Join, Node};
+use super::schedule::{Instruction, Loop};
+use super::{Code, Readings};
+use crate::base::lanes::{LANES, Lanes, Mask};
+use crate::kernel::state::State;
+use crate::model::{Arithmetic, Comparison, Fold, Function, Who};
+use fearless_simd::{Simd, prelude::*};
+
+/// A running agent.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Frame {
+    agent: u32,
+    /// Next place in the list of members.
+    next: usize,
+    present: Mask,
+}
+
+/// What the machine works on.
+struct Machine<'a, S: Simd, const ONE: bool> {
+    code: &'a Code,
+    view: View<'a, S, ONE>,
+    numbers: &'a mut [Lanes],
+    truths: &'a mut [Mask],
+    frames: &'a mut [Frame],
+}
+
+/// Runs the code; the registers are left with all values.
+#[inline(always)]
+pub(super) fn execute<S: Simd, const ONE: bool>(
+    simd: S,
+    code: &Code,
+    state: &State,
+    readings: &mut Readings,
+) {
+    let mut machine = Machine::<S, ONE> {
+        code,
+        view: View::new(simd, state),
+        numbers: &mut readings.numbers,
+        truths: &mut readings.truths,
+        frames: &mut readings.frames,
+    };
+    let instructions = code.schedule.instructions.as_slice();
+    let mut at = 0;
+    while at < instructions.len() {
+        match &instructions[at] {
+            Instruction::Do(into, node) => {
+                machine.step(*into, node);
+                at += 1;
+            }
+            Instruction::Enter(number) => {
+                let info = &code.schedule.loops[*number as usize];
+                machine.begin(info);
+                at = if machine.advance(info) { info.start } else { machine.finish(info) };
+            }
+            Instruction::Leave(number) => {
+                let info = &code.schedule.loops[*number as usize];
+                let settled = machine.join(info);
+                at = if !settled && machine.advance(info) { info.start } else { machine.finish(info) };
+            }
+        }
+    }
+}
+
+impl<S: Simd, const ONE: bool> Machine<'_, S, ONE> {
+    #[inline(always)]
+    fn who(&self, who: Who) -> usize {
+        match who {
+            Who::Agent(id) => id.0 as usize,
+            Who::Running(var) => self.frames.get(var as usize).map_or(0, |frame| frame.agent as usize),
+        }
+    }
+
+    #[inline(always)]
+    fn members(&self, crowd: Crowd) -> Members<'_> {
+        let except = crowd.except.map_or(u32::MAX, |who| self.who(who) as u32);
+        Members { list: &self.code.lists[crowd.list as usize], except }
+    }
+
+    #[inline(always)]
+    fn number(&self, id: Id) -> Vector<S> {
+        self.view.register(&self.numbers[id as usize])
+    }
+
+    #[inline(always)]
+    fn truth(&self, id: Id) -> Mask {
+        self.truths[id as usize]
+    }
+
+    #[inline(always)]
+    fn put(&mut self, into: Id, value: Vector<S>) {
+        value.store_slice(&mut self.numbers[into as usize].0);
+    }
+
+    #[inline(always)]
+    fn begin(&mut self, info: &Loop) {
+        self.frames[info.var as usize].next = 0;
+        let start = match info.join {
+            Join::Fold(Fold::Min) => f64::INFINITY,
+            Join::Fold(Fold::Max) => f64::NEG_INFINITY,
+            Join::Fold(Fold::Sum | Fold::Mean) | Join::Count => 0.0,
+            Join::Forall => {
+                self.truths[info.into as usize] = Mask::ALL;
+                return;
+            }
+            Join::Exists => {
+                self.truths[info.into as usize] = Mask::NONE;
+                return;
+            }
+        };
+        self.put(info.into, self.view.splat(start));
+        self.put(info.count, self.view.splat(0.0));
+    }
+
+    /// Goes to the next member that is present in some lane.
+    #[inline(always)]
+    fn advance(&mut self, info: &Loop) -> bool {
+        let members = self.members(info.crowd);
+        let mut next = self.frames[info.var as usize].next;
+        let found = loop {
+            let Some(&member) = members.list.get(next) else { break None };
+            next += 1;
+            let present = self.view.present(member as usize);
+            if member != members.except && !present.is_empty() {
+                break Some(Frame { agent: member, next, present });
+            }
+        };
+        found.inspect(|&frame| self.frames[info.var as usize] = frame).is_some()
+    }
+
+    /// Joins the body's value; whether nothing can change the result any more.
+    #[inline(always)]
+    fn join(&mut self, info: &Loop) -> bool {
+        let present = self.frames[info.var as usize].present;
+        let into = info.into as usize;
+        let fold = match info.join {
+            Join::Forall => {
+                self.truths[into] &= self.truth(info.body) | !present;
+                return self.truths[into].is_empty();
+            }
+            Join::Exists => {
+                self.truths[into] |= self.truth(info.body) & present;
+                return self.truths[into] == Mask::ALL;
+            }
+            Join::Count => {
+                self.add_one(info.into, self.truth(info.body) & present);
+                return false;
+            }
+            Join::Fold(fold) => fold,
+        };
+        let (before, value) = (self.number(info.into), self.number(info.body));
+        let after = match fold {
+            Fold::Min => lesser(before, value),
+            Fold::Max => greater(before, value),
+            Fold::Sum | Fold::Mean => before + value,
+        };
+        self.put(info.into, widen(self.view.simd, present).select(after, before));
+        if fold == Fold::Mean {
+            self.add_one(info.count, present);
+        }
+        false
+    }
+
+    #[inline(always)]
+    fn add_one(&mut self, register: Id, lanes: Mask) {
+        let before = self.number(register);
+        self.put(register, widen(self.view.simd, lanes).select(before + 1.0, before));
+    }
+
+    /// Ends a loop; where to go on.
+    #[inline(always)]
+    fn finish(&mut self, info: &Loop) -> usize {
+        if info.join == Join::Fold(Fold::Mean) {
+            self.put(info.into, self.number(info.into) / self.number(info.count));
+        }
+        info.exit
+    }
+
+    #[inline(always)]
+    fn time(&self) -> Vector<S> {
+        let (numerator, denominator) = self.code.step;
+        let ticks = &self.view.state.ticks;
+        let mut now = self.view.splat(ticks[0] as f64);
+        if !ONE {
+            for k in 0..LANES {
+                now[k] = ticks[k] as f64;
+            }
+        }
+        now * numerator / denominator
+    }
+
+    /// One instruction.
+    #[inline(always)]
+    fn step(&mut self, into: Id, node: &Node) {
+        let view = self.view;
+        let state = view.state;
+        let value = match *node {
+            Node::Constant(_) | Node::Loop(..) => return,
+            Node::Time => self.time(),
+            Node::Of(reading, who) => crowd::reading(&view, reading, self.who(who)),
+            Node::Distance(a, b) => {
+                let (a, b) = (self.who(a), self.who(b));
+                let at = |agent| (view.load(&state.x, agent), view.load(&state.y, agent));
+                let ((ax, ay), (bx, by)) = (at(a), at(b));
+                distance(ax - bx, ay - by)
+            }
+            Node::Between([ax, ay, bx, by]) => {
+                distance(self.number(ax) - self.number(bx), self.number(ay) - self.number(by))
+            }
+            Node::ToRegion(x, y, region) => {
+                self.code.regions[region as usize].distance(self.number(x), self.number(y))
+            }
+            Node::ToBarrier(x, y, barrier) => {
+                self.code.barriers[barrier as usize].signed_distance(self.number(x), self.number(y))
+            }
+            Node::ToScene(x, y) => {
+                let (x, y) = (self.number(x), self.number(y));
+                let mut best = view.splat(f64::INFINITY);
+                for barrier in &self.code.barriers {
+                    best = barrier.nearer(best, x, y);
+                }
+                best
+            }
+            Node::TimeToCollision(a, b) => crowd::time_to_collision(&view, self.who(a), self.who(b)),
+            Node::Mean(reading, crowd) => crowd::mean_reading(&view, self.members(crowd), reading),
+            Node::Spread(crowd, x, y) => {
+                crowd::spread(&view, self.members(crowd), self.number(x), self.number(y))
+            }
+            Node::Nearest(who, crowd, measure) => {
+                Probe::new(&view, self.who(who), measure).nearest(&view, self.members(crowd))
+            }
+            Node::Apply(function, a) => apply_all(function, self.number(a)),
+            Node::Combine(operator, a, b) => combine_all(operator, self.number(a), self.number(b)),
+            Node::Select(c, a, b) => widen(view.simd, self.truth(c)).select(self.number(a), self.number(b)),
+            _ => {
+                self.truths[into as usize] = self.decide(node);
+                return;
+            }
+        };
+        self.put(into, value);
+    }
+
+    /// One instruction with a truth value.
+    #[inline(always)]
+    fn decide(&self, node: &Node) -> Mask {
+        let view = self.view;
+        match *node {
+            Node::Truth(true) => Mask::ALL,
+            Node::Compare(comparison, a, b) => compare_all(comparison, self.number(a), self.number(b)),
+            Node::Not(a) => !self.truth(a),
+            Node::And(ref all) => all.iter().fold(Mask::ALL, |mask, &id| mask & self.truth(id)),
+            Node::Or(ref all) => all.iter().fold(Mask::NONE, |mask, &id| mask | self.truth(id)),
+            Node::Inside(who, region) => {
+                let who = self.who(who);
+                let (x, y) = (view.load(&view.state.x, who), view.load(&view.state.y, who));
+                narrow(self.code.regions[region as usize].contains(x, y))
+            }
+            Node::Present(who) => view.present(self.who(who)),
+            Node::Somebody(crowd) => crowd::somebody(&view, self.members(crowd)),
+            Node::AllFar { who, crowd, measure, test, wanted, bound } => {
+                let probe = Probe::new(&view, self.who(who), measure);
+                probe.all_far(&view, self.members(crowd), self.number(bound), test, wanted)
+            }
+            _ => Mask::NONE,
+        }
+    }
+}
+
+#[inline(always)]
+fn distance<S: Simd>(dx: Vector<S>, dy: Vector<S>) -> Vector<S> {
+    (dx * dx + dy * dy).sqrt()
+}
+
+/// A function of all lanes. What is exact on every machine is vector code.
+#[inline(always)]
+fn apply_all<S: Simd>(function: Function, a: Vector<S>) -> Vector<S> {
+    match function {
+        Function::Negate => -a,
+        Function::Abs => a.abs(),
+        Function::Sqrt => a.sqrt(),
+        Function::Exp => by_lane(a, |x| apply(Function::Exp, x)),
+        Function::Ln => by_lane(a, |x| apply(Function::Ln, x)),
+        _ => by_lane(a, |x| apply(function, x)),
+    }
+}
+
+/// Arithmetic of all lanes.
+#[inline(always)]
+fn combine_all<S: Simd>(operator: Arithmetic, a: Vector<S>, b: Vector<S>) -> Vector<S> {
+    match operator {
+        Arithmetic::Add => a + b,
+        Arithmetic::Subtract => a - b,
+        Arithmetic::Multiply => a * b,
+        Arithmetic::Divide => a / b,
+        Arithmetic::Min => lesser(a, b),
+        Arithmetic::Max => greater(a, b),
+        _ => by_lane_of_two(a, b, |a, b| combine(operator, a, b)),
+    }
+}
+
+/// A comparison of all lanes; false where a side is not a number.
+#[inline(always)]
+pub(super) fn compare_all<S: Simd>(comparison: Comparison, a: Vector<S>, b: Vector<S>) -> Mask {
+    narrow(match comparison {
+        Comparison::Less => a.simd_lt(b),
+        Comparison::AtMost => a.simd_le(b),
+        Comparison::Greater => a.simd_gt(b),
+        Comparison::AtLeast => a.simd_ge(b),
+        Comparison::Equal => a.simd_eq(b),
+        // Not `simd_ne`, which holds of a NaN.
+        Comparison::Unequal => a.simd_lt(b) | a.simd_gt(b),
+    })
+}
+
+/// Copies the values asked for out of the registers.
+pub(super) fn collect(code: &Code, state: &State, readings: &mut Readings) {
+    readings.atoms.clear();
+    readings.atoms.extend(code.atoms.iter().map(|&id| readings.truths[id as usize]));
+    readings.signals.clear();
+    readings.signals.extend(code.signals.iter().map(|&id| readings.numbers[id as usize]));
+    let open = code.unresolved.map_or(Mask::NONE, |id| readings.truths[id as usize]);
+    readings.unresolved = open & state.occupied;
+}

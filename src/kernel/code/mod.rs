@@ -1,0 +1,127 @@
+//! Expressions over one state, compiled once and run for all lanes.
+//!
+//! The trees of `model::expression` become a graph without duplicates, the graph becomes linear code over
+//! registers of eight lanes, and folds become loops in it whose bodies stand there once. The shapes
+//! that nearly every property has (the gap to everybody else against a bound) are single instructions.
+//!
+//! Meaning: only agents in the scene count in sets, contacts, clearance and times to collision; a fixed
+//! agent that has left keeps its last position and numbers. Sums are ascending over agents. `min` and
+//! `max` of something that is no number are no number; comparisons with it are false.
+
+mod arithmetic;
+mod crowd;
+pub(crate) mod ground;
+mod lanes;
+mod lower;
+mod machine;
+mod node;
+mod schedule;
+mod span;
+
+use super::program::Program;
+use super::state::{Layout, State};
+use crate::base::lanes::{Lanes, Mask};
+use crate::base::tick::Clock;
+use crate::model::{Bool, Num, Scenario};
+use fearless_simd::{Level, dispatch};
+use ground::Ground;
+use machine::Frame;
+use node::{Id, Node};
+use schedule::Schedule;
+use std::sync::Arc;
+
+/// Compiled expressions.
+#[derive(Clone, Debug)]
+pub struct Code {
+    schedule: Schedule,
+    /// Registers with the constants in place.
+    registers: Arc<Vec<Lanes>>,
+    lists: Vec<Vec<u32>>,
+    regions: Vec<Ground>,
+    barriers: Vec<Ground>,
+    atoms: Vec<Id>,
+    signals: Vec<Id>,
+    unresolved: Option<Id>,
+    /// Numerator and denominator of the step in seconds.
+    step: (f64, f64),
+    level: Level,
+}
+
+/// What code read from a state. Reused from run to run; starts empty with `default()`.
+#[derive(Clone, Debug, Default)]
+pub struct Readings {
+    /// The lanes in which each atom holds.
+    pub atoms: Vec<Mask>,
+    /// The value of each signal, SI units.
+    pub signals: Vec<Lanes>,
+    /// Occupied lanes in which some atom or signal has no value: a mean or centroid of nobody.
+    pub unresolved: Mask,
+    /// The code whose constants are in the registers.
+    loaded: Option<Arc<Vec<Lanes>>>,
+    numbers: Vec<Lanes>,
+    truths: Vec<Mask>,
+    frames: Vec<Frame>,
+}
+
+impl Code {
+    /// Compiles the truth values and numbers that monitors and metrics want to know of each state.
+    pub fn compile(scenario: &Scenario, atoms: &[Bool], signals: &[Num]) -> Self {
+        let mut lowering = lower::Lowering::new(scenario);
+        let atoms: Vec<lower::Value> = atoms.iter().map(|atom| lowering.truth(atom)).collect();
+        let signals: Vec<lower::Value> = signals.iter().map(|signal| lowering.number(signal)).collect();
+        let mut open: Vec<Id> = atoms.iter().chain(&signals).filter_map(|value| value.open).collect();
+        open.sort_unstable();
+        open.dedup();
+        let unresolved = (!open.is_empty()).then(|| lowering.graph.enter(Node::Or(open)));
+        let mut roots: Vec<Id> = atoms.iter().chain(&signals).map(|value| value.id).collect();
+        roots.extend(unresolved);
+        let schedule = schedule::schedule(&lowering.graph, &roots);
+        let mut registers = vec![Lanes::ZERO; schedule.numbers as usize];
+        for &(register, value) in &schedule.constants {
+            registers[register as usize] = Lanes::splat(value);
+        }
+        let register = |value: &lower::Value| schedule.registers[value.id as usize];
+        Self {
+            atoms: atoms.iter().map(register).collect(),
+            signals: signals.iter().map(register).collect(),
+            unresolved: unresolved.map(|id| schedule.registers[id as usize]),
+            registers: Arc::new(registers),
+            lists: lowering.lists,
+            regions: scenario.scene.regions.iter().map(|region| Ground::region(&region.shape)).collect(),
+            barriers: Ground::barriers(&scenario.scene),
+            schedule,
+            step: match scenario.clock {
+                Clock::Stepped(step) => (step.numerator() as f64, step.denominator() as f64),
+                Clock::Steps | Clock::Jumps => (1.0, 1.0),
+            },
+            level: Level::new(),
+        }
+    }
+
+    /// Reads all lanes of a state. Values of lanes without a trial mean nothing; in `Layout::Agents` every
+    /// lane has the value of the only trial.
+    pub fn run(&self, program: &Program, state: &State, readings: &mut Readings) {
+        let known = readings.loaded.as_ref().is_some_and(|loaded| Arc::ptr_eq(loaded, &self.registers));
+        if !known {
+            readings.numbers.clone_from(&self.registers);
+            readings.truths = vec![Mask::NONE; self.schedule.truths as usize];
+            readings.frames = vec![Frame::default(); self.schedule.running as usize];
+            readings.loaded = Some(Arc::clone(&self.registers));
+        }
+        match program.layout {
+            Layout::Trials => {
+                dispatch!(self.level, simd => machine::execute::<_, false>(simd, self, state, readings));
+            }
+            Layout::Agents => {
+                dispatch!(self.level, simd => machine::execute::<_, true>(simd, self, state, readings));
+            }
+        }
+        machine::collect(self, state, readings);
+    }
+
+    /// The same code for the plainest vectors of the machine: the same bits, slower.
+    pub fn at_baseline(mut self) -> Self {
+        self.level = Level::baseline();
+        self
+    }
+}

@@ -1,0 +1,111 @@
+//! From the graph of values to linear code: every value in the outermost loop that its running agents
+//! allow, operands before users, one register each.
+
+use super::node::{Crowd, Graph, Id, Join, Node};
+
+/// An instruction.
+#[derive(Clone, Debug)]
+pub(super) enum Instruction {
+    /// Compute a value from registers into a register.
+    Do(Id, Node),
+    /// Begin of loop number so and so.
+    Enter(u32),
+    /// End of it.
+    Leave(u32),
+}
+
+/// A loop.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Loop {
+    pub(super) join: Join,
+    pub(super) crowd: Crowd,
+    /// The running agent that it moves.
+    pub(super) var: u32,
+    /// Register of the body's value.
+    pub(super) body: Id,
+    /// Register of the result.
+    pub(super) into: Id,
+    /// Register that counts members, for means.
+    pub(super) count: Id,
+    /// First instruction of the body.
+    pub(super) start: usize,
+    /// First instruction after the loop.
+    pub(super) exit: usize,
+}
+
+/// Linear code.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Schedule {
+    pub(super) instructions: Vec<Instruction>,
+    pub(super) loops: Vec<Loop>,
+    /// Register of each node, numbers and truth values counted apart.
+    pub(super) registers: Vec<Id>,
+    /// How many registers of numbers there are.
+    pub(super) numbers: u32,
+    /// How many registers of truth values there are.
+    pub(super) truths: u32,
+    /// How many running agents there are.
+    pub(super) running: u32,
+    /// Registers of numbers that never change.
+    pub(super) constants: Vec<(Id, f64)>,
+}
+
+/// Makes linear code that computes the roots.
+pub(super) fn schedule(graph: &Graph, roots: &[Id]) -> Schedule {
+    let mut out = Schedule::default();
+    for (id, node) in graph.nodes.iter().enumerate() {
+        let bank = if node.is_truth() { &mut out.truths } else { &mut out.numbers };
+        out.registers.push(*bank);
+        *bank += 1;
+        match *node {
+            Node::Constant(bits) => out.constants.push((out.registers[id], f64::from_bits(bits))),
+            Node::Loop(_, _, var, _) => out.running = out.running.max(var + 1),
+            _ => {}
+        }
+    }
+    emit(graph, roots, 0, &mut out);
+    out
+}
+
+/// Appends all values that the roots need and that belong exactly `level` loops deep.
+fn emit(graph: &Graph, roots: &[Id], level: u32, out: &mut Schedule) {
+    let mut needed = vec![false; graph.nodes.len()];
+    for &root in roots {
+        needed[root as usize] = true;
+    }
+    for id in (0..graph.nodes.len()).rev() {
+        if needed[id] {
+            for operand in graph.nodes[id].operands() {
+                needed[operand as usize] = true;
+            }
+        }
+    }
+    for id in 0..graph.nodes.len() {
+        if !needed[id] || graph.level(id as Id) != level {
+            continue;
+        }
+        let mut node = graph.nodes[id].clone();
+        let into = out.registers[id];
+        match node {
+            Node::Constant(_) => {}
+            Node::Loop(join, crowd, var, body) => {
+                let number = out.loops.len();
+                let count = out.numbers;
+                out.numbers += 1;
+                let register = out.registers[body as usize];
+                out.instructions.push(Instruction::Enter(number as u32));
+                let start = out.instructions.len();
+                out.loops.push(Loop { join, crowd, var, body: register, into, count, start, exit: start });
+                emit(graph, &[body], var + 1, out);
+                out.instructions.push(Instruction::Leave(number as u32));
+                out.loops[number].exit = out.instructions.len();
+            }
+            _ => {
+                for operand in node.operands_mut() {
+                    *operand = out.registers[*operand as usize];
+                }
+                out.instructions.push(Instruction::Do(into, node));
+            }
+        }
+    }
+}
