@@ -3,8 +3,13 @@
 //! The three rules: a trial is a pure function of (model, seed, index); one lane is one trial; what one
 //! lane does never moves a byte of another.
 
+mod barrier;
+pub mod drive;
+pub mod forces;
+mod noise;
 pub mod program;
 pub mod state;
+mod vector;
 
 pub use program::Program;
 pub use state::{Layout, Slot, State};
