@@ -4,12 +4,17 @@
 //! lane does never moves a byte of another.
 
 mod barrier;
+mod cells;
+mod contact;
 pub mod drive;
+pub mod dynamics;
 pub mod forces;
+mod lanewise;
 mod noise;
 pub mod program;
 pub mod state;
 mod vector;
 
+pub use dynamics::{Scratch, refresh, step};
 pub use program::Program;
 pub use state::{Layout, Slot, State};
