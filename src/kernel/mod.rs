@@ -3,10 +3,20 @@
 //! The three rules: a trial is a pure function of (model, seed, index); one lane is one trial; what one
 //! lane does never moves a byte of another.
 
+mod barrier;
+mod cells;
 pub mod code;
+mod contact;
+pub mod drive;
+pub mod dynamics;
+pub mod forces;
+mod lanewise;
+mod noise;
 pub mod program;
 pub mod state;
+mod vector;
 
 pub use code::{Code, Readings};
+pub use dynamics::{Scratch, refresh, step};
 pub use program::Program;
 pub use state::{Layout, Slot, State};

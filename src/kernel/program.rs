@@ -1,5 +1,6 @@
 //! A scenario made ready to run: everything that is the same in every trial.
 
+use super::forces::Forces;
 use super::state::Layout;
 use crate::model::Scenario;
 use std::sync::Arc;
@@ -17,6 +18,8 @@ pub struct Program {
     pub layout: Layout,
     /// Length of a step, s.
     pub dt: f64,
+    /// What the forces need.
+    pub forces: Forces,
 }
 
 impl Program {
@@ -24,6 +27,7 @@ impl Program {
     pub fn new(scenario: Arc<Scenario>) -> Self {
         let layout = if scenario.agents.len() <= LARGEST_IN_LANES { Layout::Trials } else { Layout::Agents };
         let dt = scenario.clock.step_seconds();
-        Self { scenario, layout, dt }
+        let forces = Forces::new(&scenario, dt);
+        Self { scenario, layout, dt, forces }
     }
 }

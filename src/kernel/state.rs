@@ -89,6 +89,13 @@ pub struct State {
     /// its persons).
     pub noise: Vec<Lanes>,
 
+    /// What is left of a deviation from the driving velocity after a step, exp(-dt/tau); from `refresh`.
+    pub decay: Vec<Lanes>,
+    /// Standard deviation that the noise of a step adds, noise sqrt(1 - decay^2), m/s; from `refresh`.
+    pub kick: Vec<Lanes>,
+    /// Half a step over the mass, s/kg; from `refresh`.
+    pub push: Vec<Lanes>,
+
     /// Force of everything but contact at the present positions, N; kept from step to step.
     pub fx: Vec<Lanes>,
     /// Force, second component, N.
@@ -133,6 +140,9 @@ impl State {
             k1: zero(),
             k2: zero(),
             noise: zero(),
+            decay: one(),
+            kick: zero(),
+            push: zero(),
             fx: zero(),
             fy: zero(),
         }

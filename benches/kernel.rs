@@ -1,0 +1,280 @@
+//! Speed of the moving part: million agent-steps per second on one core, with noise, per-agent parameters
+//! and contact. The scenes are rebuilt bit for bit by `splitmix64`: corridor20 (20 m x 4 m, ten against
+//! ten), room200 (20 m x 20 m, both directions), open2000 and open20000 (one person a square metre, two
+//! streams, no walls), dense200 (four persons a square metre in a box).
+//!
+//! `cargo bench --bench kernel [-- scene] [base|avx2|best]`; best of several, each from the start.
+
+use fearless_simd::Level;
+use smc::base::decimal::Decimal;
+use smc::base::geometry::{Segment, Vec2};
+use smc::base::lanes::Mask;
+use smc::base::random::TrialKey;
+use smc::base::tick::{Clock, Tick};
+use smc::kernel::{Layout, Program, Scratch, State, refresh, step};
+use smc::model::{
+    Agent, Barrier, Body, Family, Law, Obstacle, Position, Route, Scenario, Scene as Surroundings, Start,
+};
+use std::io::Write;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+struct SplitMix64(u64);
+
+impl SplitMix64 {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    fn uniform(&mut self) -> f64 {
+        (self.next() >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
+    }
+}
+
+/// Points on a near-square lattice, each moved by at most `jitter` times half the gap.
+fn lattice(n: usize, low: (f64, f64), high: (f64, f64), jitter: f64, rng: &mut SplitMix64) -> Vec<Vec2> {
+    let (w, h) = (high.0 - low.0, high.1 - low.1);
+    let columns = ((n as f64 * w / h).sqrt().round() as usize).max(1);
+    let (dx, dy) = (w / columns as f64, h / n.div_ceil(columns) as f64);
+    (0..n)
+        .map(|k| {
+            let (i, j) = ((k % columns) as f64, (k / columns) as f64);
+            let x = low.0 + (i + 0.5) * dx + jitter * dx * (rng.uniform() - 0.5);
+            let y = low.1 + (j + 0.5) * dy + jitter * dy * (rng.uniform() - 0.5);
+            Vec2::new(x, y)
+        })
+        .collect()
+}
+
+struct Walker {
+    at: Vec2,
+    speed: f64,
+    /// Abscissa of the goal, straight ahead.
+    goal: f64,
+}
+
+struct Scene {
+    name: String,
+    walkers: Vec<Walker>,
+    walls: Vec<Segment>,
+    steps: usize,
+}
+
+fn room(w: f64, h: f64) -> Vec<Segment> {
+    let p = |x, y| Vec2::new(x, y);
+    vec![
+        Segment::new(p(0.0, 0.0), p(w, 0.0)),
+        Segment::new(p(w, 0.0), p(w, h)),
+        Segment::new(p(w, h), p(0.0, h)),
+        Segment::new(p(0.0, h), p(0.0, 0.0)),
+    ]
+}
+
+fn corridor20() -> Scene {
+    let mut rng = SplitMix64(1);
+    let mut walkers = Vec::new();
+    for (low, high, goal) in [(0.5, 5.5, 19.6), (14.5, 19.5, 0.4)] {
+        for at in lattice(10, (low, 0.4), (high, 3.6), 0.3, &mut rng) {
+            walkers.push(Walker { at, speed: 1.1 + 0.5 * rng.uniform(), goal });
+        }
+    }
+    Scene { name: "corridor20".into(), walkers, walls: room(20.0, 4.0), steps: 1000 }
+}
+
+fn by_coin(points: Vec<Vec2>, goals: impl Fn(Vec2) -> (f64, f64), rng: &mut SplitMix64) -> Vec<Walker> {
+    let walker = |at: Vec2| {
+        let (right, left) = goals(at);
+        let goal = if rng.next() & 1 == 1 { right } else { left };
+        Walker { at, speed: 1.1 + 0.5 * rng.uniform(), goal }
+    };
+    points.into_iter().map(walker).collect()
+}
+
+fn room200() -> Scene {
+    let mut rng = SplitMix64(2);
+    let points = lattice(200, (0.5, 0.5), (19.5, 19.5), 0.3, &mut rng);
+    let walkers = by_coin(points, |_| (19.5, 0.5), &mut rng);
+    Scene { name: "room200".into(), walkers, walls: room(20.0, 20.0), steps: 600 }
+}
+
+fn dense200() -> Scene {
+    let mut rng = SplitMix64(4);
+    let points = lattice(200, (0.3, 0.3), (9.7, 4.7), 0.1, &mut rng);
+    let walkers = by_coin(points, |_| (9.5, 0.5), &mut rng);
+    Scene { name: "dense200".into(), walkers, walls: room(10.0, 5.0), steps: 200 }
+}
+
+fn open(n: usize) -> Scene {
+    let mut rng = SplitMix64(3);
+    let side = (n as f64).sqrt();
+    let points = lattice(n, (0.0, 0.0), (side, side), 0.3, &mut rng);
+    let walkers = by_coin(points, |at| (at.x + 60.0, at.x - 60.0), &mut rng);
+    Scene { name: format!("open{n}"), walkers, walls: Vec::new(), steps: (2_000_000 / n).clamp(20, 400) }
+}
+
+fn uniform(low: f64, high: f64) -> Law {
+    Law::Random { family: Family::Uniform { low, high }, low, high }
+}
+
+fn scenario(scene: &Scene, own_b: bool) -> Scenario {
+    let constant = Law::Constant;
+    let body = Arc::new(Body {
+        mass: uniform(60.0, 90.0),
+        radius: uniform(0.2, 0.28),
+        speed: uniform(1.1, 1.6),
+        tau: uniform(0.4, 0.6),
+        a: uniform(1800.0, 2200.0),
+        b: if own_b { uniform(0.07, 0.09) } else { constant(0.08) },
+        lambda: uniform(0.2, 0.4),
+        a2: constant(0.0),
+        b2: constant(1.0),
+        lambda2: constant(1.0),
+        k1: constant(1.2e5),
+        k2: constant(2.4e5),
+        noise: constant(0.08),
+    });
+    let agent = |(k, walker): (usize, &Walker)| Agent {
+        name: format!("walker[{}]", k + 1),
+        entity: k as u32,
+        body: body.clone(),
+        start: Start { position: Position::Point(walker.at), velocity: Vec2::zeros() },
+        route: Route::Onward,
+        group: None,
+        particle: None,
+    };
+    Scenario {
+        title: scene.name.clone(),
+        clock: Clock::Stepped(Decimal::parse("0.01").expect("a number")),
+        horizon: Tick(100_000),
+        scene: Surroundings {
+            barriers: scene
+                .walls
+                .iter()
+                .map(|&wall| Barrier { name: String::new(), obstacle: Obstacle::Wall(vec![wall]) })
+                .collect(),
+            regions: Vec::new(),
+        },
+        agents: scene.walkers.iter().enumerate().map(agent).collect(),
+        groups: Vec::new(),
+        moves: Vec::new(),
+    }
+}
+
+fn loaded(scene: &Scene, layout: Layout, own_b: bool) -> State {
+    let mut state = State::new(layout, scene.walkers.len());
+    let width = state.width();
+    let mut rng = SplitMix64(77);
+    for lane in 0..width {
+        state.occupied |= Mask::lane(lane);
+        state.keys[lane] = TrialKey { seed: 1, index: lane as u64, branch: 0 };
+        for (k, walker) in scene.walkers.iter().enumerate() {
+            let slot = state.slot(k, lane);
+            let (b, l) = (slot.block, slot.lane);
+            let ahead = if walker.goal > walker.at.x { 1.0 } else { -1.0 };
+            let mut between = |low: f64, high: f64| low + (high - low) * rng.uniform();
+            state.present[b] |= Mask::lane(l);
+            state.x[b].0[l] = walker.at.x;
+            state.y[b].0[l] = walker.at.y;
+            state.vx[b].0[l] = ahead * walker.speed;
+            state.ex[b].0[l] = ahead;
+            state.ey[b].0[l] = 0.0;
+            state.drive[b].0[l] = walker.speed;
+            state.speed[b].0[l] = walker.speed;
+            state.mass[b].0[l] = between(60.0, 90.0);
+            state.radius[b].0[l] = between(0.2, 0.28);
+            state.tau[b].0[l] = between(0.4, 0.6);
+            state.a[b].0[l] = between(1800.0, 2200.0);
+            state.b[b].0[l] = if own_b { between(0.07, 0.09) } else { 0.08 };
+            state.lambda[b].0[l] = between(0.2, 0.4);
+            state.k1[b].0[l] = 1.2e5;
+            state.k2[b].0[l] = 2.4e5;
+            state.noise[b].0[l] = 0.08;
+        }
+    }
+    state
+}
+
+/// Who is at the goal stands.
+fn arrive(scene: &Scene, state: &mut State) {
+    for lane in 0..state.width() {
+        for (k, walker) in scene.walkers.iter().enumerate() {
+            let slot = state.slot(k, lane);
+            if (state.x[slot.block].0[slot.lane] - walker.goal) * state.ex[slot.block].0[slot.lane] > -0.5 {
+                state.drive[slot.block].0[slot.lane] = 0.0;
+            }
+        }
+    }
+}
+
+fn measure(scene: &Scene, layout: Layout, own_b: bool, level: Level) -> (f64, State) {
+    let program = Program::new(Arc::new(scenario(scene, own_b)));
+    let start = loaded(scene, layout, own_b);
+    let mut best = Duration::MAX;
+    let mut state = start.clone();
+    for _ in 0..5 {
+        state.clone_from(&start);
+        let mut scratch = Scratch::at_level(level);
+        refresh(&program, &mut state, &mut scratch, Mask::ALL);
+        #[allow(clippy::disallowed_methods, reason = "this measures time")]
+        let clock = Instant::now();
+        for k in 0..scene.steps {
+            if k % 25 == 0 {
+                arrive(scene, &mut state);
+            }
+            step(&program, &mut state, &mut scratch);
+        }
+        best = best.min(clock.elapsed());
+    }
+    let agent_steps = scene.walkers.len() * state.width() * scene.steps;
+    (agent_steps as f64 / best.as_secs_f64() / 1e6, state)
+}
+
+fn main() {
+    let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with("--")).collect();
+    let level = |word: &str| match word {
+        "base" => Some(Level::baseline()),
+        "best" => Some(Level::new()),
+        #[cfg(target_arch = "x86_64")]
+        "avx2" => Level::new().as_avx2().map(Level::Avx2),
+        _ => None,
+    };
+    let mut levels: Vec<Level> = words.iter().filter_map(|word| level(word)).collect();
+    if levels.is_empty() {
+        levels.extend(["base", "avx2", "best"].iter().filter_map(|word| level(word)));
+    }
+    let wanted: Vec<&String> = words.iter().filter(|word| level(word).is_none()).collect();
+    let scenes = [corridor20(), room200(), dense200(), open(2_000), open(20_000), open(100_000)];
+    let mut out = std::io::stdout().lock();
+    for scene in scenes {
+        if !wanted.is_empty() && !wanted.iter().any(|name| scene.name.starts_with(name.as_str())) {
+            continue;
+        }
+        for own_b in [false, true] {
+            for layout in [Layout::Trials, Layout::Agents] {
+                if layout == Layout::Trials && scene.walkers.len() > 500 {
+                    continue;
+                }
+                for &level in &levels {
+                    let (rate, state) = measure(&scene, layout, own_b, level);
+                    let checksum: f64 = state.x.iter().flat_map(|lanes| lanes.0).sum();
+                    let name = format!("{level:?}");
+                    let name = name.split('(').next().unwrap_or_default();
+                    let _ = writeln!(
+                        out,
+                        "{:<11} {:<7} {:<9} own B {:<5} {rate:7.1} M agent-steps/s  diverged {}  checksum {checksum}",
+                        scene.name,
+                        format!("{layout:?}"),
+                        name,
+                        own_b,
+                        state.diverged.iter().count(),
+                    );
+                }
+            }
+        }
+    }
+    let _ = out.flush();
+}

@@ -1,0 +1,257 @@
+//! Walls and obstacles as the forces see them: the nearest point of the surface, inside or outside.
+//!
+//! A barrier gives one force, from its nearest point: so a corner, where two segments are equally near,
+//! counts once, and an end repels along the line to that end. Inside a solid the normal points out.
+//! Given-Wilson et al. 2017, equations (5) and (6), with d_ib the distance from the centre of the body.
+
+use super::vector::{larger, smaller, splat};
+use crate::base::geometry::{Bounds, Segment, Shape, Vec2};
+use crate::model::{Barrier, Obstacle};
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f64x8, mask64x8};
+
+/// A straight piece of a surface.
+#[derive(Clone, Copy, Debug)]
+struct Edge {
+    a: Vec2,
+    along: Vec2,
+    /// One over the squared length; 0 for a point.
+    inverse_square: f64,
+    /// Ordinate of the other end.
+    end_y: f64,
+    /// Abscissa gained per ordinate, for the crossing test.
+    slope: f64,
+}
+
+impl Edge {
+    fn new(segment: Segment) -> Self {
+        let along = segment.b - segment.a;
+        let square = along.dot(&along);
+        Self {
+            a: segment.a,
+            along,
+            inverse_square: if square > 0.0 { 1.0 / square } else { 0.0 },
+            end_y: segment.b.y,
+            slope: if along.y == 0.0 { 0.0 } else { along.x / along.y },
+        }
+    }
+}
+
+#[derive(Clone, Debug)]
+enum Form {
+    Wall(Vec<Edge>),
+    Polygon(Vec<Edge>),
+    Disc { centre: Vec2, radius: f64 },
+}
+
+/// A barrier.
+#[derive(Clone, Debug)]
+pub(super) struct Surface {
+    form: Form,
+    /// The smallest upright rectangle around it.
+    pub(super) bounds: Bounds,
+}
+
+/// From the nearest point of a surface to each of eight places.
+#[derive(Clone, Copy)]
+pub(super) struct Nearest<S: Simd> {
+    /// Unit vector away from the surface; zero exactly on it.
+    pub(super) nx: f64x8<S>,
+    pub(super) ny: f64x8<S>,
+    /// Distance, negative inside a solid, m.
+    pub(super) distance: f64x8<S>,
+}
+
+impl Surface {
+    /// The surface of a barrier; `None` if it has no piece.
+    pub(super) fn new(barrier: &Barrier) -> Option<Self> {
+        let (form, bounds) = match &barrier.obstacle {
+            Obstacle::Wall(segments) => (
+                Form::Wall(segments.iter().copied().map(Edge::new).collect()),
+                Bounds::around(segments.iter().flat_map(|s| [s.a, s.b]))?,
+            ),
+            Obstacle::Solid(shape @ Shape::Circle { centre, radius }) => {
+                (Form::Disc { centre: *centre, radius: *radius }, shape.bounds())
+            }
+            Obstacle::Solid(Shape::Polygon(polygon)) => (
+                Form::Polygon(polygon.segments().map(Edge::new).collect()),
+                Bounds::around(polygon.segments().map(|s| s.a))?,
+            ),
+        };
+        Some(Self { form, bounds })
+    }
+
+    /// Squared distance from eight places to the rectangle around the surface.
+    #[inline(always)]
+    pub(super) fn squared_distance_to_bounds<S: Simd>(
+        &self,
+        simd: S,
+        x: f64x8<S>,
+        y: f64x8<S>,
+    ) -> f64x8<S> {
+        let c = |value: f64| splat(simd, value);
+        let beside = larger(larger(c(self.bounds.low.x) - x, x - c(self.bounds.high.x)), c(0.0));
+        let above = larger(larger(c(self.bounds.low.y) - y, y - c(self.bounds.high.y)), c(0.0));
+        beside * beside + above * above
+    }
+
+    /// The nearest points to eight places.
+    #[inline(always)]
+    pub(super) fn nearest<S: Simd>(&self, simd: S, x: f64x8<S>, y: f64x8<S>) -> Nearest<S> {
+        let c = |value: f64| splat(simd, value);
+        // Far below any square of a distance that matters: keeps 1/0 out where the centre is on the line.
+        let tiny = c(1e-300);
+        match &self.form {
+            Form::Disc { centre, radius } => {
+                let (dx, dy) = (x - c(centre.x), y - c(centre.y));
+                let d = (dx * dx + dy * dy + tiny).sqrt();
+                Nearest { nx: dx / d, ny: dy / d, distance: d - c(*radius) }
+            }
+            Form::Wall(edges) => {
+                let (dx, dy) = nearest_edge(simd, edges, x, y);
+                let d = (dx * dx + dy * dy + tiny).sqrt();
+                Nearest { nx: dx / d, ny: dy / d, distance: d }
+            }
+            Form::Polygon(edges) => {
+                let (dx, dy) = nearest_edge(simd, edges, x, y);
+                let d = (dx * dx + dy * dy + tiny).sqrt();
+                let inside = inside(simd, edges, x, y);
+                let sign = inside.select(c(-1.0), c(1.0));
+                Nearest { nx: sign * (dx / d), ny: sign * (dy / d), distance: sign * d }
+            }
+        }
+    }
+
+    /// The nearest point to one place: unit vector away from the surface and signed distance.
+    pub(super) fn nearest_to(&self, p: Vec2) -> (Vec2, f64) {
+        let normal = |d: Vec2| {
+            let distance = (d.x * d.x + d.y * d.y + 1e-300).sqrt();
+            (d / distance, distance)
+        };
+        match &self.form {
+            Form::Disc { centre, radius } => {
+                let (n, distance) = normal(p - centre);
+                (n, distance - radius)
+            }
+            Form::Wall(edges) => normal(from_edges(edges, p)),
+            Form::Polygon(edges) => {
+                let (n, distance) = normal(from_edges(edges, p));
+                let mut inside = false;
+                for e in edges {
+                    if (e.a.y > p.y) != (e.end_y > p.y) && p.x < e.a.x + (p.y - e.a.y) * e.slope {
+                        inside = !inside;
+                    }
+                }
+                if inside { (-n, -distance) } else { (n, distance) }
+            }
+        }
+    }
+}
+
+/// Vector from the nearest point of the edges.
+#[inline(always)]
+fn nearest_edge<S: Simd>(
+    simd: S,
+    edges: &[Edge],
+    x: f64x8<S>,
+    y: f64x8<S>,
+) -> (f64x8<S>, f64x8<S>) {
+    let c = |value: f64| splat(simd, value);
+    let (mut best, mut bx, mut by) = (c(f64::INFINITY), c(0.0), c(0.0));
+    for e in edges {
+        let (px, py) = (x - c(e.a.x), y - c(e.a.y));
+        let share = (px * c(e.along.x) + py * c(e.along.y)) * c(e.inverse_square);
+        let share = smaller(larger(share, c(0.0)), c(1.0));
+        let (dx, dy) = (px - share * c(e.along.x), py - share * c(e.along.y));
+        let square = dx * dx + dy * dy;
+        let closer = square.simd_lt(best);
+        best = closer.select(square, best);
+        bx = closer.select(dx, bx);
+        by = closer.select(dy, by);
+    }
+    (bx, by)
+}
+
+/// Even-odd rule over all edges, so that the holes of a polygon are outside.
+#[inline(always)]
+fn inside<S: Simd>(simd: S, edges: &[Edge], x: f64x8<S>, y: f64x8<S>) -> mask64x8<S> {
+    let c = |value: f64| splat(simd, value);
+    let mut inside = mask64x8::splat(simd, false);
+    for e in edges {
+        let straddles = c(e.a.y).simd_gt(y) ^ c(e.end_y).simd_gt(y);
+        let left = x.simd_lt(c(e.a.x) + (y - c(e.a.y)) * c(e.slope));
+        inside = inside ^ (straddles & left);
+    }
+    inside
+}
+
+fn from_edges(edges: &[Edge], p: Vec2) -> Vec2 {
+    let mut best = (f64::INFINITY, Vec2::zeros());
+    for e in edges {
+        let from = p - e.a;
+        let share = from.dot(&e.along) * e.inverse_square;
+        let share = if share > 0.0 { share } else { 0.0 };
+        let share = if share < 1.0 { share } else { 1.0 };
+        let d = from - e.along * share;
+        let square = d.dot(&d);
+        if square < best.0 {
+            best = (square, d);
+        }
+    }
+    best.1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::geometry::Polygon;
+    use fearless_simd::{Level, dispatch};
+
+    #[inline(always)]
+    fn eight<S: Simd>(simd: S, surface: &Surface, x: [f64; 8], y: [f64; 8]) -> [[f64; 8]; 3] {
+        let n = surface.nearest(simd, f64x8::load_array(simd, x), f64x8::load_array(simd, y));
+        [n.nx.to_array(), n.ny.to_array(), n.distance.to_array()]
+    }
+
+    #[test]
+    fn eight_at_once_are_as_one_by_one_and_as_the_scene_says() {
+        let p = |x: f64, y: f64| Vec2::new(x, y);
+        let mut ring = Polygon::rectangle(p(0.0, 0.0), p(4.0, 4.0));
+        ring.holes.push(Polygon::rectangle(p(1.0, 1.0), p(3.0, 2.5)).outline);
+        let obstacles = [
+            Obstacle::Wall(vec![
+                Segment::new(p(0.0, 0.0), p(4.0, 0.0)),
+                Segment::new(p(4.0, 0.0), p(4.0, 3.0)),
+                Segment::new(p(1.0, 2.0), p(1.0, 2.0)),
+            ]),
+            Obstacle::Solid(Shape::Circle { centre: p(2.0, 2.0), radius: 1.5 }),
+            Obstacle::Solid(Shape::Polygon(ring)),
+        ];
+        for obstacle in obstacles {
+            let barrier = Barrier { name: String::new(), obstacle };
+            let surface = Surface::new(&barrier).unwrap();
+            for k in 0..500 {
+                let x: [f64; 8] = std::array::from_fn(|lane| f64::from(k % 25) * 0.3 - 1.7 + lane as f64 * 0.03);
+                let y: [f64; 8] = std::array::from_fn(|lane| f64::from(k / 25) * 0.33 - 1.3 - lane as f64 * 0.02);
+                let [nx, ny, distance] = dispatch!(Level::new(), simd => eight(simd, &surface, x, y));
+                for lane in 0..8 {
+                    let place = p(x[lane], y[lane]);
+                    let (n, d) = surface.nearest_to(place);
+                    assert_eq!((n.x, n.y, d), (nx[lane], ny[lane], distance[lane]));
+                    assert!((d - barrier.obstacle.distance(place)).abs() < 1e-14);
+                    // A step towards the nearest point is a step nearer (on the surface there is none).
+                    if d.abs() > 1e-5 {
+                        let (_, nearer) = surface.nearest_to(place - n * (d.signum() * 1e-6));
+                        assert!((d.abs() - nearer.abs() - 1e-6).abs() < 1e-12, "{place} {d} {nearer}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_barrier_without_pieces_is_none() {
+        let barrier = Barrier { name: String::new(), obstacle: Obstacle::Wall(Vec::new()) };
+        assert!(Surface::new(&barrier).is_none());
+    }
+}
