@@ -1,12 +1,14 @@
 //! The statistical procedure of a check or an estimate, fed with cells in index order.
 
+use super::budget::DEFAULT_TRIALS;
 use super::cell::{Cell, Reading};
 use super::outcome::{Distribution, Histogram, Interval, Method, Quantile};
 use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Test};
 use crate::stats::quantile::Sample;
 use crate::stats::test::Verdict as TestVerdict;
+use super::fault::Fault;
 use crate::stats::{
-    self, AnyEstimator, AnyTest, Coverage, Decision, EstimatorReadings, Evidence, FixedSize, Gbas, Invalid, Massart,
+    self, AnyEstimator, AnyTest, Coverage, Decision, EstimatorReadings, Evidence, FixedSize, Gbas, Massart,
     Mean, Okamoto, Outcome, Plan, Spending, Sprt, Statement, TestReadings, ThreeWay, TwoSprt,
 };
 use stats::Estimator as _;
@@ -61,15 +63,15 @@ pub(super) fn value(cell: &Cell) -> Option<f64> {
 
 impl Procedure {
     /// The procedure of a check or an estimate. `seed` addresses what a procedure draws for itself.
-    pub(super) fn new(ask: &Ask, max_trials: u64, seed: u64) -> Result<Self, Invalid> {
+    pub(super) fn new(ask: &Ask, seed: u64) -> Result<Self, Fault> {
         match ask {
-            Ask::Check { measure, threshold, test, .. } => Self::test(measure, *threshold, test, max_trials),
-            Ask::Estimate { measure, estimator } => Self::estimate(measure, estimator, max_trials, seed),
-            Ask::Compare { .. } | Ask::Rank { .. } => Err(Invalid::Unsuitable),
+            Ask::Check { measure, threshold, test, .. } => Self::test(measure, *threshold, test),
+            Ask::Estimate { measure, estimator } => Self::estimate(measure, estimator, seed),
+            Ask::Compare { .. } | Ask::Rank { .. } => Err(Fault::Unsuitable),
         }
     }
 
-    fn test(measure: &Measure, theta: f64, test: &Test, max_trials: u64) -> Result<Self, Invalid> {
+    fn test(measure: &Measure, theta: f64, test: &Test) -> Result<Self, Fault> {
         let test = match *test {
             Test::Sprt { alpha, beta, indifference } => AnyTest::Sprt(Sprt::new(theta, indifference, alpha, beta)?),
             Test::Sprt2 { alpha, beta, indifference } => {
@@ -80,16 +82,16 @@ impl Procedure {
             Test::ThreeWay { alpha, indifference } => AnyTest::ThreeWay(ThreeWay::new(theta, indifference, alpha)?),
             Test::Interval { delta, .. } => {
                 let MeasureKind::Expectation { range: (low, high), .. } = measure.kind else {
-                    return Err(Invalid::Unsuitable);
+                    return Err(Fault::Unsuitable);
                 };
-                let mean = Box::new(Mean::fixed(low, high, max_trials, delta)?);
+                let mean = Box::new(Mean::fixed(low, high, DEFAULT_TRIALS, delta)?);
                 return Ok(Self::Mean { mean, threshold: Some(theta), values: Vec::new() });
             }
         };
         Ok(Self::Test(Box::new(TestReadings::new(test))))
     }
 
-    fn estimate(measure: &Measure, estimator: &Estimator, max_trials: u64, seed: u64) -> Result<Self, Invalid> {
+    fn estimate(measure: &Measure, estimator: &Estimator, seed: u64) -> Result<Self, Fault> {
         match (&measure.kind, *estimator) {
             (MeasureKind::Probability, estimator) => {
                 let estimator = match estimator {
@@ -101,7 +103,7 @@ impl Procedure {
                     Estimator::Spending { epsilon, delta } => AnyEstimator::Spending(Spending::new(epsilon, delta)?),
                     Estimator::Fixed { trials, delta } => AnyEstimator::FixedSize(FixedSize::new(trials, delta)?),
                     Estimator::Relative { epsilon, delta } => {
-                        AnyEstimator::Gbas(Gbas::new(epsilon, delta, Some(max_trials), seed)?)
+                        AnyEstimator::Gbas(Gbas::new(epsilon, delta, Some(DEFAULT_TRIALS), seed)?)
                     }
                 };
                 Ok(Self::Probability(Box::new(EstimatorReadings::new(estimator))))
@@ -123,7 +125,7 @@ impl Procedure {
             (MeasureKind::Quantile { level, .. }, Estimator::Fixed { trials, delta }) => {
                 Ok(Self::Quantile { sample: Box::new(Sample::new(trials)?), level: *level, delta })
             }
-            (MeasureKind::Quantile { .. }, _) => Err(Invalid::Unsuitable),
+            (MeasureKind::Quantile { .. }, _) => Err(Fault::Unsuitable),
         }
     }
 

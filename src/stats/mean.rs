@@ -163,6 +163,11 @@ impl Mean {
         self.lower.finished && self.upper.as_ref().is_none_or(|upper| upper.finished)
     }
 
+    /// Whether the number of trials is fixed beforehand.
+    pub const fn is_fixed(&self) -> bool {
+        self.epsilon.is_none()
+    }
+
     /// The number of trials after which it has surely stopped.
     pub const fn limit(&self) -> u64 {
         self.limit

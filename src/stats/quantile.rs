@@ -83,6 +83,11 @@ impl Sample {
         self.finished()
     }
 
+    /// The number of trials it is for.
+    pub const fn size(&self) -> u64 {
+        self.size
+    }
+
     /// Whether all trials are there.
     pub fn finished(&self) -> bool {
         self.trials() >= self.size
