@@ -36,8 +36,7 @@ pub fn ln_beta(a: f64, b: f64) -> f64 {
 fn ln_weight(a: f64, b: f64, x: f64, y: f64) -> f64 {
     let sum = a + b;
     let shift = x * b - y * a;
-    let divergence =
-        a * ln_1p_less(shift / a, x * (sum / a)) + b * ln_1p_less(-shift / b, y * (sum / b));
+    let divergence = a * ln_1p_less(shift / a, x * (sum / a)) + b * ln_1p_less(-shift / b, y * (sum / b));
     0.5 * math::ln(a / (2.0 * PI) * (b / sum)) + divergence + stirling_remainder(sum)
         - stirling_remainder(a)
         - stirling_remainder(b)

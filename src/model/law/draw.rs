@@ -37,7 +37,8 @@ pub(super) fn interval_mass(family: &Family, low: f64, high: f64) -> f64 {
         }
         (None, Family::UniformInt { low: first, high: last }) => {
             let (clipped_low, clipped_high) = clip(*first, *last, low, high);
-            let count = (clipped_high as f64 - clipped_low as f64 + 1.0) / (*last as f64 - *first as f64 + 1.0);
+            let count =
+                (clipped_high as f64 - clipped_low as f64 + 1.0) / (*last as f64 - *first as f64 + 1.0);
             math::at_least(count, 0.0)
         }
         (None, _) => kept(family, low, high).iter().map(|(_, weight)| weight).sum(),

@@ -12,13 +12,31 @@ use crate::base::special::{
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Shape {
     Point(f64),
-    Normal { mean: f64, sd: f64 },
+    Normal {
+        mean: f64,
+        sd: f64,
+    },
     /// The logarithm has mean `mu` and standard deviation `sigma`.
-    LogNormal { mu: f64, sigma: f64 },
-    Uniform { low: f64, high: f64 },
-    Gamma { shape: f64, scale: f64 },
-    Weibull { shape: f64, scale: f64 },
-    Beta { a: f64, b: f64 },
+    LogNormal {
+        mu: f64,
+        sigma: f64,
+    },
+    Uniform {
+        low: f64,
+        high: f64,
+    },
+    Gamma {
+        shape: f64,
+        scale: f64,
+    },
+    Weibull {
+        shape: f64,
+        scale: f64,
+    },
+    Beta {
+        a: f64,
+        b: f64,
+    },
 }
 
 impl Shape {

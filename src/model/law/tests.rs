@@ -172,7 +172,8 @@ fn truncation_keeps_the_interval_and_the_conditional_law() {
     }
     // Far in the tail the law is nearly exponential with rate 10: P(X > 10.1 | X > 10).
     let far = cut(Family::Normal { mean: 0.0, sd: 1.0 }, 10.0, 12.0);
-    let ratio = crate::base::special::erfc(10.1 / 2f64.sqrt()) / crate::base::special::erfc(10.0 / 2f64.sqrt());
+    let ratio =
+        crate::base::special::erfc(10.1 / 2f64.sqrt()) / crate::base::special::erfc(10.0 / 2f64.sqrt());
     assert!((far.draw(1.0 - ratio) - 10.1).abs() < 1e-9);
 }
 

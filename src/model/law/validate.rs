@@ -113,7 +113,9 @@ impl Family {
                 for (value, weight) in options {
                     finite("value", *value)?;
                     if !(0.0..=1.0).contains(weight) {
-                        return Err(format!("probability of {value} is {weight}; it must lie between 0 and 1"));
+                        return Err(format!(
+                            "probability of {value} is {weight}; it must lie between 0 and 1"
+                        ));
                     }
                 }
                 let sum: f64 = options.iter().map(|(_, weight)| weight).sum();
