@@ -51,9 +51,9 @@ impl Estimator for Calibrated {
         if !self.finished {
             self.counts.add(success);
             let (gamma, width) = (self.gamma, 2.0 * self.epsilon);
-            self.finished = self.ahead.reached(self.counts, self.limit, |counts| {
-                clopper_pearson::narrow(counts, gamma, width)
-            });
+            self.finished = self
+                .ahead
+                .reached(self.counts, self.limit, |counts| clopper_pearson::narrow(counts, gamma, width));
         }
         self.finished
     }

@@ -196,9 +196,11 @@ impl Boundary {
         cuts.dedup();
         // A cheap look first: just above each upper end and just below each lower end it misses most.
         let stride = 1 + cuts.len() / 500;
-        if cuts.iter().step_by(stride).any(|p| {
-            self.miss(p.next_up()) > allowed || (*p > 0.0 && self.miss(p.next_down()) > allowed)
-        }) {
+        if cuts
+            .iter()
+            .step_by(stride)
+            .any(|p| self.miss(p.next_up()) > allowed || (*p > 0.0 && self.miss(p.next_down()) > allowed))
+        {
             return false;
         }
         let mut open = vec![(0, cuts.len() - 1)];

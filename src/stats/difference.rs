@@ -197,8 +197,7 @@ mod tests {
             let pairs = Pairs { first: 5, alike: 9, second: 3 };
             let now = log_against(pairs, m, &bets());
             let then = |first: u64, alike: u64, second: u64| {
-                let next =
-                    Pairs { first: 5 + first, alike: 9 + alike, second: 3 + second };
+                let next = Pairs { first: 5 + first, alike: 9 + alike, second: 3 + second };
                 math::exp(log_against(next, m, &bets()) - now)
             };
             let (win, tie, lose) = (then(1, 0, 0), then(0, 1, 0), then(0, 0, 1));

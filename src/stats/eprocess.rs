@@ -160,9 +160,7 @@ impl Test for Evidence {
         match decision {
             Decision::Above => Statement { claim: Claim::Above(self.theta), error: self.beta },
             Decision::Below => Statement { claim: Claim::Below(self.theta), error: self.alpha },
-            Decision::Within => {
-                Statement { claim: Claim::Between(self.theta, self.theta), error: 1.0 }
-            }
+            Decision::Within => Statement { claim: Claim::Between(self.theta, self.theta), error: 1.0 },
         }
     }
 

@@ -109,11 +109,7 @@ impl AnyEstimator {
         if let Some(gamma) = calibration::calibrate(epsilon, delta) {
             return Ok(Self::Calibrated(Calibrated::at_level(epsilon, delta, gamma)?));
         }
-        Ok(if spending.limit() < okamoto.limit() {
-            Self::Spending(spending)
-        } else {
-            Self::Okamoto(okamoto)
-        })
+        Ok(if spending.limit() < okamoto.limit() { Self::Spending(spending) } else { Self::Okamoto(okamoto) })
     }
 
     fn inner(&self) -> &dyn Estimator {

@@ -8,7 +8,7 @@ use super::invalid::{Invalid, probability, range};
 use super::{Counts, Coverage, Estimator, Interval, clopper_pearson, sequence};
 use crate::base::math;
 use crate::base::random::{Purpose, Stream, TrialKey};
-use crate::base::special::{gamma_quantile, gamma_reg, gamma_upper_quantile, gamma_tails};
+use crate::base::special::{gamma_quantile, gamma_reg, gamma_tails, gamma_upper_quantile};
 
 /// The share of the error kept for the interval at the cap.
 const CAP_SHARE: f64 = 0.1;

@@ -148,7 +148,8 @@ impl Mean {
         let step = |sequence: &mut Sequence, x: f64| {
             if !sequence.finished {
                 sequence.push(x);
-                sequence.finished = sequence.n >= limit || epsilon.is_some_and(|e| sequence.interval().1 <= e);
+                sequence.finished =
+                    sequence.n >= limit || epsilon.is_some_and(|e| sequence.interval().1 <= e);
             }
         };
         step(&mut self.lower, scaled.unwrap_or(0.0));
@@ -196,12 +197,12 @@ impl Mean {
                 // At the number of trials fixed in advance Hoeffding's interval holds too.
                 let n = sequence.n as f64;
                 let mean = sequence.sum / n;
-                let reach =
-                    (math::ln(2.0 / ((1.0 - SEQUENCE_SHARE) * self.delta)) / (2.0 * n)).sqrt();
+                let reach = (math::ln(2.0 / ((1.0 - SEQUENCE_SHARE) * self.delta)) / (2.0 * n)).sqrt();
                 low = math::at_least(low, mean - reach);
                 high = math::at_most(high, mean + reach);
             }
-            let scale = |x: f64| self.low + (self.high - self.low) * math::at_most(math::at_least(x, 0.0), 1.0);
+            let scale =
+                |x: f64| self.low + (self.high - self.low) * math::at_most(math::at_least(x, 0.0), 1.0);
             Interval {
                 low: scale(low),
                 high: scale(high),

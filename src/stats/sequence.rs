@@ -16,6 +16,12 @@ fn times_ln(k: u64, ln_x: f64) -> f64 {
     if k == 0 { 0.0 } else { k as f64 * ln_x }
 }
 
+/// Whether `m`, in (0, 1), lies in the interval: the same as the interval's ends say, without finding them.
+pub fn holds(counts: Counts, delta: f64, m: f64) -> bool {
+    ln_mixture(counts) - times_ln(counts.successes, math::ln(m)) - times_ln(counts.failures, math::ln_1p(-m))
+        < -math::ln(delta) + 1e-12
+}
+
 /// The interval at all times that misses with probability at most `delta`.
 pub fn interval(counts: Counts, delta: f64) -> Interval {
     let limit = -math::ln(delta) - ln_mixture(counts) + 1e-12;
@@ -122,7 +128,10 @@ mod tests {
             }
             assert!(found.holds(counts.share()));
         }
-        assert_eq!((interval(Counts::default(), 0.05).low, interval(Counts::default(), 0.05).high), (0.0, 1.0));
+        assert_eq!(
+            (interval(Counts::default(), 0.05).low, interval(Counts::default(), 0.05).high),
+            (0.0, 1.0)
+        );
     }
 
     #[test]

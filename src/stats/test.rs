@@ -155,8 +155,7 @@ impl<T: Test + Clone> TestReadings<T> {
             Some(test) => test.observe(outcome != Outcome::False),
         };
         if let (Some(low), Some(high)) = (low, high) {
-            self.verdict =
-                Some(if low == high { Verdict::Agreed(low) } else { Verdict::Split(low, high) });
+            self.verdict = Some(if low == high { Verdict::Agreed(low) } else { Verdict::Split(low, high) });
         }
         self.verdict
     }
@@ -201,10 +200,7 @@ mod tests {
         for _ in 0..7 {
             assert_eq!(test.observe(Outcome::Unresolved), None);
         }
-        assert_eq!(
-            test.observe(Outcome::Unresolved),
-            Some(Verdict::Split(Decision::Below, Decision::Above))
-        );
+        assert_eq!(test.observe(Outcome::Unresolved), Some(Verdict::Split(Decision::Below, Decision::Above)));
         assert_eq!(test.read(), (8, 8));
     }
 

@@ -35,13 +35,7 @@ impl TwoSprt {
         let over = |end: f64| (math::ln(theta / end), math::ln((1.0 - theta) / (1.0 - end)));
         let (over_high, over_low) = (over(high), over(low));
         let thresholds = (-math::ln(alpha) + SLACK, -math::ln(beta) + SLACK);
-        // The two boundary lines meet where both ratios are at their thresholds; beyond that number of
-        // trials every point lies outside one of them.
-        let determinant = over_high.0 * over_low.1 - over_high.1 * over_low.0;
-        let successes = (thresholds.0 * over_low.1 - thresholds.1 * over_high.1) / determinant;
-        let failures = (over_high.0 * thresholds.1 - over_low.0 * thresholds.0) / determinant;
-        let limit = (successes + failures).ceil() as u64;
-        Ok(Self {
+        let mut test = Self {
             low,
             high,
             alpha,
@@ -49,10 +43,35 @@ impl TwoSprt {
             over_high,
             over_low,
             thresholds,
-            limit,
+            limit: 0,
             counts: Counts::default(),
             decision: None,
-        })
+        };
+        test.limit = test.closed_at();
+        Ok(test)
+    }
+
+    /// The first number of trials at which no count of successes is undecided.
+    fn closed_at(&self) -> u64 {
+        let ((a, b), (c, d), (below, above)) = (self.over_high, self.over_low, self.thresholds);
+        // At n trials the undecided counts of successes lie between two lines in n, which meet where both
+        // ratios are at their thresholds. As long as they are more than one apart there is such a count.
+        let from = |n: f64| (b * n - below) / (b - a);
+        let to = |n: f64| (above - d * n) / (c - d);
+        let apart = |n: f64| to(n) - from(n);
+        let slope = apart(0.0) - apart(1.0);
+        let mut n = math::at_least(((apart(0.0) - 1.0) / slope).floor() - 1.0, 1.0);
+        loop {
+            let middle = 0.5 * (from(n) + to(n));
+            let undecided = |s: f64| {
+                let f = n - s;
+                s >= 0.0 && f >= 0.0 && s * a + f * b < below && s * c + f * d < above
+            };
+            if apart(n) <= 1.0 && !undecided(middle.floor()) && !undecided(middle.ceil()) {
+                return n as u64;
+            }
+            n += 1.0;
+        }
     }
 }
 
@@ -96,14 +115,13 @@ mod tests {
     fn the_region_is_closed_at_the_limit_and_open_before_it() {
         let test = TwoSprt::new(0.9, 0.01, 0.01, 0.01).unwrap();
         let limit = test.limit().unwrap();
-        assert!(limit == 8189 || limit == 8190, "{limit}");
+        assert_eq!(limit, 8189);
         let outside = |s: u64, f: u64| {
             let (s, f) = (s as f64, f as f64);
             s * test.over_high.0 + f * test.over_high.1 >= test.thresholds.0
                 || s * test.over_low.0 + f * test.over_low.1 >= test.thresholds.1
         };
         assert!((0..=limit).all(|s| outside(s, limit - s)));
-        let near = limit - 30;
-        assert!((0..=near).any(|s| !outside(s, near - s)));
+        assert!((1..limit).all(|n| (0..=n).any(|s| !outside(s, n - s))));
     }
 }

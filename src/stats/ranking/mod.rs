@@ -11,7 +11,7 @@ mod race;
 mod scores;
 
 pub use booleans::Booleans;
-pub use each::Each;
+pub use each::{Each, size};
 pub use race::{Allocation, Race};
 pub use scores::Scores;
 

@@ -205,8 +205,7 @@ impl<T: Table> Race<T> {
         if self.finished {
             for arm in &live {
                 let passes = live.iter().all(|rival| {
-                    rival == arm
-                        || self.table.evidence(*rival, *arm, self.threshold).1 >= self.threshold
+                    rival == arm || self.table.evidence(*rival, *arm, self.threshold).1 >= self.threshold
                 });
                 if passes {
                     certified.push(*arm);

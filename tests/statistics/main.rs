@@ -1,0 +1,15 @@
+//! Calibration of the statistical procedures against exact targets: the tests T1 to T25 of the reference
+//! measurements, with the negative controls that must fail.
+//!
+//! Each check takes its number of replications. A part with few of them runs always; the full numbers are
+//! behind `--ignored` (`cargo test --release --test statistics -- --ignored`).
+
+#![allow(clippy::disallowed_methods, reason = "the platform's functions serve as the reference")]
+
+mod arrival;
+mod drift;
+mod estimators;
+mod metrics;
+mod ranking;
+mod tally;
+mod tests_of_p;
