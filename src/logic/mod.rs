@@ -3,7 +3,12 @@
 //! The logic reads truth values and numbers of each state by index; it knows nothing of people.
 
 pub mod formula;
+pub mod invalid;
+pub mod monitor;
+mod reach;
 
 pub use formula::{
     Aggregation, AtomId, Node, NodeId, Operation, Relation, SignalId, Term, TermId, Tree, Window,
 };
+pub use invalid::Invalid;
+pub use monitor::{Antecedent, Monitor};

@@ -1,0 +1,46 @@
+//! Why a formula or metric cannot be monitored.
+
+use thiserror::Error;
+
+/// Why a formula or metric cannot be monitored. Numbers are ticks unless they say otherwise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum Invalid {
+    /// A bound reaches beyond the last state of a trial.
+    #[error("the formula needs {needed} steps, the horizon is {horizon} steps")]
+    BeyondHorizon {
+        /// Last state that is looked at.
+        needed: u64,
+        /// Last state that a trial has.
+        horizon: u64,
+    },
+    /// A window that holds no state.
+    #[error("a window from step {from} to step {to} holds no state")]
+    EmptyWindow {
+        /// First state.
+        from: u64,
+        /// Last state, before the first.
+        to: u64,
+    },
+    /// A part names a part that does not exist or that contains it.
+    #[error("a part of the formula refers to a part that does not exist or that contains it")]
+    Malformed,
+    /// Too many levels of parts.
+    #[error("the formula is nested {depth} levels deep, at most {limit} are possible")]
+    TooDeep {
+        /// Levels.
+        depth: u64,
+        /// Most levels.
+        limit: u64,
+    },
+    /// Nested windows that would need too many stored states.
+    #[error("the nested windows of the formula need {needed} stored states, at most {limit} are possible")]
+    TooLarge {
+        /// Stored states.
+        needed: u64,
+        /// Most stored states.
+        limit: u64,
+    },
+    /// The clock has no steps.
+    #[error("a clock without steps has no states to count")]
+    NoSteps,
+}

@@ -1,0 +1,87 @@
+//! Any of several formulas, comparisons, and single answers.
+
+use super::cell::{Cell, Context, Machine, Ref, events, planes, truth};
+use super::numbers;
+
+pub(super) fn step(cell: &mut Cell, before: &[Cell], cx: &Context) {
+    match &cell.machine {
+        Machine::Capture(child) => {
+            let asked = cell.need & cx.work;
+            let (t, f) = truth(before, *child);
+            cell.t |= t & asked;
+            cell.f |= f & asked;
+        }
+        Machine::AnyHeld(children) => {
+            let (mut t, mut f) = (0, 0xff);
+            for child in children {
+                let (child_t, child_f) = truth(before, *child);
+                t |= child_t;
+                f &= child_f;
+            }
+            (cell.t, cell.f) = (t, f);
+        }
+        Machine::CompareHeld(relation, x, y) => {
+            let known = numbers::known(before, *x) & numbers::known(before, *y);
+            if known & !(cell.t | cell.f) != 0 {
+                let t = numbers::compare(*relation, before[x.cell].value, before[y.cell].value);
+                (cell.t, cell.f) = (known & t, known & !t);
+            }
+        }
+        Machine::AnyLate(children) => {
+            let track = &mut cell.track;
+            track.begin(cx.now, !cell.live, cell.need);
+            for child in children {
+                for (at, t, f) in events(before, *child, cx.now) {
+                    let open = track.open(at, cx.now);
+                    let t = t & open;
+                    // False only if all the others are too; they may have settled long ago.
+                    let mut f = f & open;
+                    for other in children {
+                        if f == 0 {
+                            break;
+                        }
+                        f &= planes(before, *other, at, cx.now).1;
+                    }
+                    if t | f != 0 {
+                        track.settle(at, cx.now, t, f);
+                    }
+                }
+            }
+        }
+        Machine::CompareLate(relation, x, y) => {
+            let track = &mut cell.track;
+            track.begin(cx.now, !cell.live, cell.need);
+            for child in [x, y] {
+                for (at, ..) in numbers::events_of(before, *child, cx.now) {
+                    compare_late(track, before, (*relation, *x, *y), at, cx.now);
+                }
+            }
+            track.ascend();
+        }
+        Machine::Watch(child) => match child.place {
+            super::cell::Place::Held => cell.t |= truth(before, *child).0 & cx.work,
+            super::cell::Place::Now => cell.t |= truth(before, *child).0 & cell.need & cx.work,
+            _ => {
+                for (_, t, _) in events(before, *child, cx.now) {
+                    cell.t |= t & cx.work;
+                }
+            }
+        },
+        _ => {}
+    }
+}
+
+fn compare_late(
+    track: &mut super::track::Track,
+    before: &[Cell],
+    (relation, x, y): (crate::logic::formula::Relation, Ref, Ref),
+    at: u64,
+    now: u64,
+) {
+    let open = track.open(at, now);
+    let known = open & numbers::known_at(before, x, at, now) & numbers::known_at(before, y, at, now);
+    if known != 0 {
+        let t = numbers::compare(relation, numbers::number(before, x, at), numbers::number(before, y, at));
+        track.settle(at, now, known & t, known & !t);
+    }
+}

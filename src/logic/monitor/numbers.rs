@@ -1,0 +1,270 @@
+//! Numbers: arithmetic, aggregates over windows, times, and comparisons.
+//!
+//! A number that is none (NaN) makes every comparison with it false, and every aggregate, smaller and
+//! larger of it none. Sums run over the states in ascending order.
+
+use super::cell::{Arithmetic, Cell, Context, Machine, Place, Ref, events, planes, truth};
+use super::track::{Numbers, Track, select};
+use crate::base::lanes::{Lanes, Mask};
+use crate::logic::formula::{Aggregation, Operation, Relation};
+
+/// Lanes in which the relation holds.
+#[inline(always)]
+pub(super) fn compare(relation: Relation, x: Lanes, y: Lanes) -> u8 {
+    match relation {
+        Relation::Less => x.compare(y, |x, y| x < y),
+        Relation::AtMost => x.compare(y, |x, y| x <= y),
+        Relation::Greater => x.compare(y, |x, y| x > y),
+        Relation::AtLeast => x.compare(y, |x, y| x >= y),
+        Relation::Equal => x.compare(y, |x, y| x == y),
+        // Not `!=`, which holds of what is no number.
+        Relation::Unequal => x.compare(y, |x, y| x < y || x > y),
+    }
+    .0
+}
+
+/// The smaller; none if one is none.
+#[inline(always)]
+fn smaller(x: f64, y: f64) -> f64 {
+    if y < x || y.is_nan() { y } else { x }
+}
+
+/// The larger; none if one is none.
+#[inline(always)]
+fn larger(x: f64, y: f64) -> f64 {
+    if y > x || y.is_nan() { y } else { x }
+}
+
+/// Arithmetic, lane by lane.
+#[inline(always)]
+pub(super) fn combine(arithmetic: Arithmetic, x: Lanes, y: Lanes) -> Lanes {
+    match arithmetic {
+        Arithmetic::Of(Operation::Add) => x.zip(y, |x, y| x + y),
+        Arithmetic::Of(Operation::Subtract) => x.zip(y, |x, y| x - y),
+        Arithmetic::Of(Operation::Multiply) => x.zip(y, |x, y| x * y),
+        Arithmetic::Of(Operation::Divide) => x.zip(y, |x, y| x / y),
+        Arithmetic::Of(Operation::Min) => x.zip(y, |x, y| smaller(x, y)),
+        Arithmetic::Of(Operation::Max) => x.zip(y, |x, y| larger(x, y)),
+        Arithmetic::Abs => x.map(f64::abs),
+    }
+}
+
+/// What an aggregate starts from. Adding to minus zero changes nothing, not even the sign of a zero.
+pub(super) fn identity(aggregation: Aggregation) -> f64 {
+    match aggregation {
+        Aggregation::Min => f64::INFINITY,
+        Aggregation::Max => f64::NEG_INFINITY,
+        Aggregation::Sum | Aggregation::Mean => -0.0,
+    }
+}
+
+#[inline(always)]
+fn gather(aggregation: Aggregation, so_far: Lanes, next: Lanes) -> Lanes {
+    match aggregation {
+        Aggregation::Min => so_far.zip(next, smaller),
+        Aggregation::Max => so_far.zip(next, larger),
+        Aggregation::Sum | Aggregation::Mean => so_far.zip(next, |x, y| x + y),
+    }
+}
+
+#[inline(always)]
+fn finish(aggregation: Aggregation, so_far: Lanes, states: u64) -> Lanes {
+    if aggregation == Aggregation::Mean { so_far.map(|sum| sum / states as f64) } else { so_far }
+}
+
+/// The lanes in which an answer is known.
+#[inline(always)]
+pub(super) fn known(before: &[Cell], child: Ref) -> u8 {
+    if child.place == Place::Fixed { 0xff } else { before[child.cell].t }
+}
+
+/// The lanes in which a number is known at a position of the parent.
+#[inline(always)]
+pub(super) fn known_at(before: &[Cell], child: Ref, at: u64, now: u64) -> u8 {
+    if child.place == Place::Fixed {
+        return 0xff;
+    }
+    let (t, f) = planes(before, child, at, now);
+    if child.place == Place::Now { t } else { t & !f }
+}
+
+/// The number at a position of the parent at which it is known.
+#[inline(always)]
+pub(super) fn number(before: &[Cell], child: Ref, at: u64) -> Lanes {
+    let cell = &before[child.cell];
+    if child.place == Place::Fixed { cell.value } else { cell.numbers.at(at.wrapping_add(child.ahead)) }
+}
+
+/// The positions of the parent at which a number became known in this step, and the lanes.
+#[inline(always)]
+pub(super) fn events_of(before: &[Cell], child: Ref, now: u64) -> impl Iterator<Item = (u64, u8)> {
+    let cell = &before[child.cell];
+    let present = (child.place == Place::Now).then_some((now, 0xff));
+    let changes = if child.place == Place::Late { cell.track.changes.as_slice() } else { &[] };
+    let late = changes.iter().map(move |change| (now.wrapping_sub(u64::from(change.back)), change.t));
+    present.into_iter().chain(late).map(move |(at, lanes)| (at.wrapping_sub(child.ahead), lanes))
+}
+
+pub(super) fn step(cell: &mut Cell, before: &[Cell], cx: &Context) {
+    let now = cx.now;
+    match &mut cell.machine {
+        Machine::CaptureNumber(child) => {
+            let asked = cell.need & cx.work;
+            cell.value = select(asked, before[child.cell].value, cell.value);
+            cell.t |= asked;
+        }
+        Machine::CombineHeld(arithmetic, x, y) => {
+            let fresh = known(before, *x) & known(before, *y) & !cell.t;
+            if fresh != 0 {
+                let value = combine(*arithmetic, before[x.cell].value, before[y.cell].value);
+                cell.value = select(fresh, value, cell.value);
+                cell.t |= fresh;
+            }
+        }
+        Machine::Fold { aggregation, child, states } => {
+            let asked = cell.need & cx.work;
+            let mut value = gather(*aggregation, cell.value, before[*child].value);
+            let done = asked & cell.last;
+            if done != 0 {
+                value = select(done, finish(*aggregation, value, *states), value);
+                cell.t |= done;
+            }
+            cell.value = select(asked, value, cell.value);
+        }
+        Machine::Time { child, from } => {
+            let open = cell.need & cx.work & !cell.t;
+            let hit = open & truth(before, *child).0;
+            for lane in Mask(hit).iter() {
+                cell.value.0[lane] = cx.seconds(now - cx.starts[lane] - *from);
+            }
+            let never = open & !hit & cell.last;
+            cell.value = select(never, Lanes::splat(f64::INFINITY), cell.value);
+            cell.t |= hit | never;
+        }
+        Machine::TimeHeld(child) => {
+            let (t, f) = truth(before, *child);
+            let value = select(t, Lanes::ZERO, Lanes::splat(f64::INFINITY));
+            cell.value = select((t | f) & !cell.t, value, cell.value);
+            cell.t |= t | f;
+        }
+        Machine::CombineLate(arithmetic, x, y) => {
+            cell.track.begin(now, !cell.live, cell.need);
+            for child in [*x, *y] {
+                for (at, _) in events_of(before, child, now) {
+                    let fresh = cell.track.open(at, now)
+                        & known_at(before, *x, at, now)
+                        & known_at(before, *y, at, now);
+                    if fresh != 0 {
+                        let value = combine(*arithmetic, number(before, *x, at), number(before, *y, at));
+                        cell.numbers.store(at, fresh, value);
+                        cell.track.settle(at, now, fresh, 0);
+                    }
+                }
+            }
+            cell.track.ascend();
+        }
+        Machine::FoldLate { aggregation, child, width: Some(width), in_order } => {
+            cell.track.begin(now, !cell.live, cell.need);
+            for (at, lanes) in events_of(before, *child, now) {
+                // In order, the last state of a window is the last to be known.
+                let oldest = at.wrapping_sub(*width);
+                let newest = if *in_order { oldest } else { at };
+                for position in oldest..=newest {
+                    let mut fresh = lanes & cell.track.open(position, now);
+                    if !*in_order {
+                        for state in position..=position + *width {
+                            fresh &= known_at(before, *child, state, now);
+                        }
+                    }
+                    if fresh != 0 {
+                        let end = position + *width;
+                        let value = fold(*aggregation, before, *child, position, end);
+                        cell.numbers.store(position, fresh, value);
+                        cell.track.settle(position, now, fresh, 0);
+                    }
+                }
+            }
+            cell.track.ascend();
+        }
+        Machine::FoldLate { aggregation, child, width: None, .. } => {
+            cell.track.begin(now, !cell.live, cell.need);
+            let mut position = now;
+            while cx.ending & cell.track.open(position, now) != 0 {
+                let fresh = cx.ending & cell.track.open(position, now);
+                if fresh & cell.track.needed(position) != 0 {
+                    let value = fold(*aggregation, before, *child, position, now);
+                    cell.numbers.store(position, fresh, value);
+                }
+                cell.track.settle(position, now, fresh, 0);
+                position = position.wrapping_sub(1);
+            }
+            cell.track.ascend();
+        }
+        Machine::TimeLate { child, ticks } => {
+            cell.track.begin(now, !cell.live, cell.need);
+            for (at, ..) in events(before, *child, now) {
+                settle_time(&mut cell.track, (&mut cell.numbers, ticks), before, *child, at, cx);
+            }
+            cell.track.ascend();
+        }
+        Machine::EndLate(end) => {
+            cell.track.begin(now, !cell.live, cell.need);
+            let (known, value) = (before[*end].t, before[*end].value);
+            let mut position = now;
+            while cx.ending & known & cell.track.open(position, now) != 0 {
+                let fresh = cx.ending & known & cell.track.open(position, now);
+                cell.numbers.store(position, fresh, value);
+                cell.track.settle(position, now, fresh, 0);
+                position = position.wrapping_sub(1);
+            }
+            cell.track.ascend();
+        }
+        _ => {}
+    }
+}
+
+/// The aggregate over the states `from ..= to`, ascending.
+fn fold(aggregation: Aggregation, before: &[Cell], child: Ref, from: u64, to: u64) -> Lanes {
+    let mut value = Lanes::splat(identity(aggregation));
+    for at in from..=to {
+        value = gather(aggregation, value, number(before, child, at));
+    }
+    finish(aggregation, value, to - from + 1)
+}
+
+/// The recurrence of the time until a truth: none if it holds, else one tick more than at the next
+/// position, for ever after the horizon.
+fn settle_time(
+    track: &mut Track,
+    (seconds, ticks): (&mut Numbers, &mut Numbers),
+    before: &[Cell],
+    child: Ref,
+    mut at: u64,
+    cx: &Context,
+) {
+    loop {
+        let open = track.open(at, cx.now);
+        let (next, later) = if at == cx.now {
+            (cx.ending, Lanes::splat(f64::INFINITY))
+        } else {
+            let (t, f) = track.planes(at.wrapping_add(1));
+            (t & !f, ticks.at(at.wrapping_add(1)))
+        };
+        let (t, f) = planes(before, child, at, cx.now);
+        let fresh = open & (t | f & next);
+        if fresh == 0 {
+            return;
+        }
+        let mut count = Lanes::ZERO;
+        let mut value = Lanes::ZERO;
+        for lane in Mask(fresh & !t).iter() {
+            count.0[lane] = later.0[lane] + 1.0;
+            value.0[lane] =
+                if count.0[lane] == f64::INFINITY { f64::INFINITY } else { cx.seconds(count.0[lane] as u64) };
+        }
+        ticks.store(at, fresh, count);
+        seconds.store(at, fresh, value);
+        track.settle(at, cx.now, fresh, 0);
+        at = at.wrapping_sub(1);
+    }
+}

@@ -1,0 +1,376 @@
+//! Cells of numbers, and comparisons.
+
+use super::{Builder, Made, NowKey};
+use crate::base::lanes::Lanes;
+use crate::base::tick::Tick;
+use crate::logic::formula::{Aggregation, NodeId, Operation, Relation, Term, TermId, Window};
+use crate::logic::invalid::Invalid;
+use crate::logic::monitor::cell::{Arithmetic, Machine, Place, Ref};
+use crate::logic::monitor::numbers::{combine, compare};
+use crate::logic::monitor::track::Numbers;
+
+/// Whether the relation holds.
+fn holds(relation: Relation, x: f64, y: f64) -> bool {
+    compare(relation, Lanes::splat(x), Lanes::splat(y)) != 0
+}
+
+/// `x r y` as `y r' x`.
+fn flipped(relation: Relation) -> Relation {
+    match relation {
+        Relation::Less => Relation::Greater,
+        Relation::AtMost => Relation::AtLeast,
+        Relation::Greater => Relation::Less,
+        Relation::AtLeast => Relation::AtMost,
+        Relation::Equal | Relation::Unequal => relation,
+    }
+}
+
+impl Builder<'_> {
+    /// The value of a term that is the same everywhere; its operands have been looked at.
+    pub(super) fn constant(&self, id: TermId) -> Option<f64> {
+        let of = |id: &TermId| self.constants[id.0 as usize];
+        let apply = |arithmetic, x, y| combine(arithmetic, Lanes::splat(x), Lanes::splat(y)).0[0];
+        match &self.tree.terms[id.0 as usize] {
+            Term::Constant(value) => Some(*value),
+            Term::Combine(operation, x, y) => Some(apply(Arithmetic::Of(*operation), of(x)?, of(y)?)),
+            Term::Abs(x) => Some(apply(Arithmetic::Abs, of(x)?, 0.0)),
+            Term::Later(_, x) | Term::AtEnd(x) => of(x),
+            Term::Signal(_) | Term::Window(..) | Term::TimeUntil(_) => None,
+        }
+    }
+
+    /// A comparison at the positions `lo ..= hi`.
+    pub(super) fn compare(
+        &mut self,
+        relation: Relation,
+        x: TermId,
+        y: TermId,
+        lo: u64,
+        hi: u64,
+    ) -> Result<Made<bool>, Invalid> {
+        match (self.constants[x.0 as usize], self.constants[y.0 as usize]) {
+            (Some(x), Some(y)) => Ok(Made::Constant(holds(relation, x, y))),
+            (None, Some(y)) => self.against(relation, x, y, lo, hi),
+            (Some(x), None) => self.against(flipped(relation), y, x, lo, hi),
+            (None, None) => {
+                let (x, y) = (self.number(x, lo, hi)?, self.number(y, lo, hi)?);
+                let (x, y) = (self.of(x), self.of(y));
+                Ok(Made::Of(self.compared(relation, x, y, lo, hi)))
+            }
+        }
+    }
+
+    /// A comparison with a constant. The smallest and the largest number of a window, and times, are
+    /// compared state by state, so that the verdict falls as soon as a state forces it.
+    fn against(
+        &mut self,
+        relation: Relation,
+        x: TermId,
+        c: f64,
+        lo: u64,
+        hi: u64,
+    ) -> Result<Made<bool>, Invalid> {
+        use Aggregation::{Max, Min};
+        use Relation::{AtLeast, AtMost, Greater, Less};
+        if let Some(x) = self.constants[x.0 as usize] {
+            return Ok(Made::Constant(holds(relation, x, c)));
+        }
+        match (&self.tree.terms[x.0 as usize], relation) {
+            (Term::Later(by, x), _) => Ok(self.against(relation, *x, c, lo + by.0, hi + by.0)?.later(by.0)),
+            (Term::Window(Min, w, x), Less | AtMost) | (Term::Window(Max, w, x), Greater | AtLeast) => {
+                let below = self.stretch(*w, lo, hi);
+                let child = self.against(relation, *x, c, below.lo, below.hi)?;
+                Ok(self.some_state(child, w.from, below.width, lo, hi))
+            }
+            (Term::Window(Min, w, x), Greater | AtLeast) | (Term::Window(Max, w, x), Less | AtMost) => {
+                let below = self.stretch(*w, lo, hi);
+                let child = self.against(relation, *x, c, below.lo, below.hi)?;
+                Ok(!self.some_state(!child, w.from, below.width, lo, hi))
+            }
+            (Term::TimeUntil(goal), Less | AtMost) if !c.is_nan() => {
+                let made = self.in_time(relation, *goal, c, lo, hi)?;
+                made.map_or_else(|| self.against_number(relation, x, c, lo, hi), Ok)
+            }
+            (Term::TimeUntil(goal), Greater | AtLeast) if !c.is_nan() => {
+                let opposite = if relation == Greater { AtMost } else { Less };
+                let made = self.in_time(opposite, *goal, c, lo, hi)?;
+                made.map_or_else(|| self.against_number(relation, x, c, lo, hi), |made| Ok(!made))
+            }
+            _ => self.against_number(relation, x, c, lo, hi),
+        }
+    }
+
+    fn against_number(
+        &mut self,
+        relation: Relation,
+        x: TermId,
+        c: f64,
+        lo: u64,
+        hi: u64,
+    ) -> Result<Made<bool>, Invalid> {
+        let x = self.number(x, lo, hi)?;
+        let (x, c) = (self.of(x), self.fixed(c));
+        Ok(Made::Of(self.compared(relation, x, c, lo, hi)))
+    }
+
+    /// `time until goal < c` or `<= c` as finally within the ticks that fulfil it. `None` where that
+    /// window would be cut by the horizon at some positions only.
+    fn in_time(
+        &mut self,
+        relation: Relation,
+        goal: NodeId,
+        c: f64,
+        lo: u64,
+        hi: u64,
+    ) -> Result<Option<Made<bool>>, Invalid> {
+        let fulfils = |ticks: u64| holds(relation, self.clock.seconds(Tick(ticks)), c);
+        if holds(relation, f64::INFINITY, c) {
+            return Ok(Some(Made::Constant(true)));
+        }
+        if !fulfils(0) {
+            return Ok(Some(Made::Constant(false)));
+        }
+        // The last tick that fulfils it, by bisection.
+        let (mut within, mut beyond) = (0, self.horizon - lo + 1);
+        while beyond - within > 1 {
+            let middle = within + (beyond - within) / 2;
+            if fulfils(middle) {
+                within = middle;
+            } else {
+                beyond = middle;
+            }
+        }
+        let to = if within == self.horizon - lo {
+            None
+        } else if hi + within <= self.horizon {
+            Some(Tick(within))
+        } else {
+            return Ok(None);
+        };
+        let window = Window { from: Tick(0), to };
+        let below = self.stretch(window, lo, hi);
+        let child = self.formula(goal, below.lo, below.hi)?;
+        Ok(Some(self.some_state(child, Tick(0), below.width, lo, hi)))
+    }
+
+    fn compared(&mut self, relation: Relation, x: Ref, y: Ref, lo: u64, hi: u64) -> Ref {
+        let ahead = self.common(x, y);
+        if let (Some(ahead), true) = (ahead, self.of_now(x, y)) {
+            let key = NowKey::Compare(relation as u8, x.cell, y.cell);
+            let now = self.present(key, Machine::CompareNow(relation, x.cell, y.cell), false);
+            return super::later(now, ahead);
+        }
+        if lo == hi {
+            let (x, y) = (self.held_number(x, lo), self.held_number(y, lo));
+            return self.answer(Machine::CompareHeld(relation, x, y), (lo, lo), self.horizon, false);
+        }
+        let pair = self.pair(x, y, lo, hi);
+        let machine = Machine::CompareLate(relation, pair.x, pair.y);
+        super::later(self.late(machine, pair.range, pair.latency, pair.in_order, false), pair.ahead)
+    }
+
+    /// How far ahead both look, if both do alike.
+    fn common(&self, x: Ref, y: Ref) -> Option<u64> {
+        match (x.place, y.place) {
+            (Place::Fixed, _) => Some(y.ahead),
+            (_, Place::Fixed) => Some(x.ahead),
+            _ => (x.ahead == y.ahead).then_some(x.ahead),
+        }
+    }
+
+    fn of_now(&self, x: Ref, y: Ref) -> bool {
+        [x, y].iter().all(|child| matches!(child.place, Place::Now | Place::Fixed))
+    }
+
+    /// Two operands of a late cell.
+    fn pair(&mut self, x: Ref, y: Ref, lo: u64, hi: u64) -> Pair {
+        let aheads = [x, y].into_iter().filter(|child| child.place != Place::Fixed).map(|child| child.ahead);
+        let ahead = aheads.min().unwrap_or(0);
+        let less = |child: Ref| Ref { ahead: child.ahead.saturating_sub(ahead), ..child };
+        let (x, y) = (less(x), less(y));
+        let range = (lo + ahead, hi + ahead);
+        let latency = self.delay(x).max(self.delay(y));
+        for child in [x, y] {
+            self.touch(child, range);
+            self.keep(child, latency);
+        }
+        let in_order = self.facts[x.cell].in_order && self.facts[y.cell].in_order;
+        Pair { x, y, ahead, range, latency, in_order }
+    }
+
+    fn of(&mut self, made: Made<f64>) -> Ref {
+        match made {
+            Made::Constant(value) => self.fixed(value),
+            Made::Of(child) => child,
+        }
+    }
+
+    /// The answer at position `at` to a number that is asked about there alone.
+    pub(super) fn held_number(&mut self, child: Ref, at: u64) -> Ref {
+        if child.place != Place::Now {
+            return child;
+        }
+        self.touch(child, (at, at));
+        let at = at + child.ahead;
+        self.answer(Machine::CaptureNumber(child), (at, at), 0, true)
+    }
+
+    /// The number `id`, asked about at the positions `lo ..= hi`.
+    pub(super) fn number(&mut self, id: TermId, lo: u64, hi: u64) -> Result<Made<f64>, Invalid> {
+        if let Some(value) = self.constants[id.0 as usize] {
+            return Ok(Made::Constant(value));
+        }
+        if let Some(&made) = self.numbers.get(&(id.0, lo, hi)) {
+            return Ok(made);
+        }
+        self.check_size()?;
+        let tree = self.tree;
+        let made = match &tree.terms[id.0 as usize] {
+            Term::Constant(value) => Made::Constant(*value),
+            Term::Signal(signal) => {
+                Made::Of(self.present(NowKey::Signal(signal.0), Machine::Signal(signal.0 as usize), true))
+            }
+            Term::Combine(operation, x, y) => {
+                let (x, y) = (self.number(*x, lo, hi)?, self.number(*y, lo, hi)?);
+                Made::Of(self.combined(Arithmetic::Of(*operation), x, y, lo, hi))
+            }
+            Term::Abs(x) => {
+                let x = self.number(*x, lo, hi)?;
+                Made::Of(self.combined(Arithmetic::Abs, x, x, lo, hi))
+            }
+            Term::Later(by, x) => self.number(*x, lo + by.0, hi + by.0)?.later(by.0),
+            Term::Window(aggregation, w, x) => self.window(*aggregation, *w, *x, lo, hi)?,
+            Term::AtEnd(x) => match self.number(*x, self.horizon, self.horizon)? {
+                Made::Constant(value) => Made::Constant(value),
+                Made::Of(end) => {
+                    let end = self.held_number(end, self.horizon);
+                    Made::Of(if lo == hi {
+                        end
+                    } else {
+                        self.late(Machine::EndLate(end.cell), (lo, hi), self.horizon, true, true)
+                    })
+                }
+            },
+            Term::TimeUntil(goal) => match self.formula(*goal, lo, self.horizon)? {
+                Made::Constant(true) => Made::Constant(0.0),
+                Made::Constant(false) => Made::Constant(f64::INFINITY),
+                Made::Of(child) => Made::Of(self.time(child, lo, hi)),
+            },
+        };
+        self.numbers.insert((id.0, lo, hi), made);
+        Ok(made)
+    }
+
+    fn combined(&mut self, arithmetic: Arithmetic, x: Made<f64>, y: Made<f64>, lo: u64, hi: u64) -> Ref {
+        let (x, y) = (self.of(x), self.of(y));
+        if let (Some(ahead), true) = (self.common(x, y), self.of_now(x, y)) {
+            return super::later(self.combined_now(arithmetic, x, y), ahead);
+        }
+        if lo == hi {
+            let (x, y) = (self.held_number(x, lo), self.held_number(y, lo));
+            return self.answer(Machine::CombineHeld(arithmetic, x, y), (lo, lo), self.horizon, true);
+        }
+        self.combined_late(arithmetic, x, y, lo, hi)
+    }
+
+    fn combined_now(&mut self, arithmetic: Arithmetic, x: Ref, y: Ref) -> Ref {
+        let code = match arithmetic {
+            Arithmetic::Of(operation) => operation as u8,
+            Arithmetic::Abs => u8::MAX,
+        };
+        let key = NowKey::Combine(code, x.cell, y.cell);
+        self.present(key, Machine::CombineNow(arithmetic, x.cell, y.cell), true)
+    }
+
+    fn combined_late(&mut self, arithmetic: Arithmetic, x: Ref, y: Ref, lo: u64, hi: u64) -> Ref {
+        let pair = self.pair(x, y, lo, hi);
+        let machine = Machine::CombineLate(arithmetic, pair.x, pair.y);
+        super::later(self.late(machine, pair.range, pair.latency, pair.in_order, true), pair.ahead)
+    }
+
+    fn window(
+        &mut self,
+        aggregation: Aggregation,
+        window: Window,
+        x: TermId,
+        lo: u64,
+        hi: u64,
+    ) -> Result<Made<f64>, Invalid> {
+        let below = self.stretch(window, lo, hi);
+        let child = match self.number(x, below.lo, below.hi)? {
+            Made::Of(child) => child,
+            // A sum of constants has as many states as the window; they count once they are seen.
+            Made::Constant(value) => {
+                let fixed = self.fixed(value);
+                self.combined_now(Arithmetic::Of(Operation::Max), fixed, fixed)
+            }
+        };
+        if below.width == Some(0) {
+            return Ok(Made::Of(child).later(window.from.0));
+        }
+        let ahead = window.from.0 + child.ahead;
+        let (lo, hi) = (lo + ahead, hi + ahead);
+        let child = Ref { ahead: 0, ..child };
+        let reach = below.width.map_or(self.horizon, |width| hi + width);
+        self.touch(child, (lo, reach));
+        if lo == hi && child.place == Place::Now {
+            let machine = Machine::Fold { aggregation, child: child.cell, states: reach - lo + 1 };
+            return Ok(Made::Of(self.answer(machine, (lo, reach), 0, true)));
+        }
+        let smallest = match aggregation {
+            Aggregation::Min => Some(Operation::Min),
+            Aggregation::Max => Some(Operation::Max),
+            Aggregation::Sum | Aggregation::Mean => None,
+        };
+        if let (Some(operation), Some(width), true) = (smallest, below.width, lo < hi) {
+            // Windows of 2, 4, 8, … states, each of two of the last size.
+            let states = width + 1;
+            let arithmetic = Arithmetic::Of(operation);
+            let (mut size, mut half) = (1, child);
+            while size * 2 <= states {
+                let (next, end) = (super::later(half, size), hi + states - 2 * size);
+                half = self.combined_late(arithmetic, half, next, lo, end);
+                size *= 2;
+            }
+            if size < states {
+                let next = super::later(half, states - size);
+                half = self.combined_late(arithmetic, half, next, lo, hi);
+            }
+            return Ok(Made::Of(super::later(half, ahead)));
+        }
+        let in_order = self.facts[child.cell].in_order;
+        let latency = match below.width {
+            Some(width) => width.saturating_add(self.delay(child)),
+            None => self.horizon - lo,
+        };
+        self.keep(child, latency);
+        let machine = Machine::FoldLate { aggregation, child, width: below.width, in_order };
+        let all = in_order || below.width.is_none();
+        Ok(Made::Of(super::later(self.late(machine, (lo, hi), latency, all, true), ahead)))
+    }
+
+    fn time(&mut self, child: Ref, lo: u64, hi: u64) -> Ref {
+        self.touch(child, (lo, self.horizon));
+        if child.place == Place::Held {
+            return self.answer(Machine::TimeHeld(child), (lo, lo), self.horizon, true);
+        }
+        if lo == hi && child.place == Place::Now {
+            return self.answer(Machine::Time { child, from: lo }, (lo, self.horizon), 0, true);
+        }
+        let latency = self.horizon - lo;
+        self.keep(child, latency);
+        let in_order = self.facts[child.cell].in_order;
+        let machine = Machine::TimeLate { child, ticks: Numbers::default() };
+        self.late(machine, (lo, hi), latency, in_order, true)
+    }
+}
+
+/// Two operands of a late cell, and what follows for it.
+struct Pair {
+    x: Ref,
+    y: Ref,
+    ahead: u64,
+    range: (u64, u64),
+    latency: u64,
+    in_order: bool,
+}

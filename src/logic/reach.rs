@@ -1,0 +1,201 @@
+//! How far into a trial a formula looks: the order of its parts, and the last state that each of them is
+//! asked about.
+
+use super::formula::{Node, NodeId, Term, TermId, Tree, Window};
+use super::invalid::Invalid;
+use crate::base::tick::Tick;
+
+/// Most levels of a formula: 256 levels of the language and what they are lowered to.
+pub(super) const DEEPEST: u64 = 1024;
+
+/// A part of a tree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Part {
+    /// A formula.
+    Node(NodeId),
+    /// A number.
+    Term(TermId),
+}
+
+/// Where a part is asked about, seen from the part above it.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Ask {
+    /// In the same state.
+    Here,
+    /// In the states of a window.
+    Within(Window),
+    /// From the present state to the last one of a window.
+    Until(Option<Tick>),
+    /// From the present state to the last but one of a window: nothing depends on the left operand of
+    /// an until in the last state.
+    Before(Option<Tick>),
+    /// At the horizon.
+    AtEnd,
+}
+
+/// The parts directly below one part.
+pub(super) fn below(tree: &Tree, part: Part) -> Result<Vec<(Part, Ask)>, Invalid> {
+    let node = |id: &NodeId, ask| (Part::Node(*id), ask);
+    let term = |id: &TermId, ask| (Part::Term(*id), ask);
+    Ok(match part {
+        Part::Node(id) => match tree.nodes.get(id.0 as usize).ok_or(Invalid::Malformed)? {
+            Node::Constant(_) | Node::Atom(_) => Vec::new(),
+            Node::Compare(_, x, y) => vec![term(x, Ask::Here), term(y, Ask::Here)],
+            Node::Not(x) => vec![node(x, Ask::Here)],
+            Node::And(all) | Node::Or(all) => all.iter().map(|x| node(x, Ask::Here)).collect(),
+            Node::Finally(w, x) | Node::Globally(w, x) => vec![node(x, Ask::Within(*w))],
+            Node::Until(w, p, q) | Node::Release(w, p, q) => {
+                vec![node(q, Ask::Within(*w)), node(p, Ask::Before(w.to))]
+            }
+            Node::WeakUntil(w, p, q) => vec![node(q, Ask::Within(*w)), node(p, Ask::Until(w.to))],
+        },
+        Part::Term(id) => match tree.terms.get(id.0 as usize).ok_or(Invalid::Malformed)? {
+            Term::Constant(_) | Term::Signal(_) => Vec::new(),
+            Term::Combine(_, x, y) => vec![term(x, Ask::Here), term(y, Ask::Here)],
+            Term::Abs(x) => vec![term(x, Ask::Here)],
+            Term::Window(_, w, x) => vec![term(x, Ask::Within(*w))],
+            Term::Later(k, x) => vec![term(x, Ask::Within(Window { from: *k, to: Some(*k) }))],
+            Term::AtEnd(x) => vec![term(x, Ask::AtEnd)],
+            Term::TimeUntil(x) => vec![node(x, Ask::Within(Window { from: Tick(0), to: None }))],
+        },
+    })
+}
+
+/// All parts below `root` and itself, children first.
+pub(super) fn children_first(tree: &Tree, root: Part) -> Result<Vec<Part>, Invalid> {
+    const NEW: u8 = 0;
+    const OPEN: u8 = 1;
+    let slot = |part: Part| match part {
+        Part::Node(id) => id.0 as usize,
+        Part::Term(id) => tree.nodes.len() + id.0 as usize,
+    };
+    // 0: not seen, 1: being visited (meeting it again is a circle), 2 + n: done, n levels below it.
+    let mut state = vec![0u64; tree.nodes.len() + tree.terms.len()];
+    let mut order = Vec::new();
+    let mut path = vec![(root, below(tree, root)?, 0usize)];
+    state[slot(root)] = u64::from(OPEN);
+    while let Some((part, parts, next)) = path.last_mut() {
+        if let Some(&(child, _)) = parts.get(*next) {
+            *next += 1;
+            let inner = below(tree, child)?;
+            if state[slot(child)] == u64::from(NEW) {
+                state[slot(child)] = u64::from(OPEN);
+                path.push((child, inner, 0));
+            } else if state[slot(child)] == u64::from(OPEN) {
+                return Err(Invalid::Malformed);
+            }
+        } else {
+            let levels = parts.iter().map(|(child, _)| state[slot(*child)] - 1).max().unwrap_or(0);
+            if levels >= DEEPEST {
+                return Err(Invalid::TooDeep { depth: levels + 1, limit: DEEPEST });
+            }
+            state[slot(*part)] = 2 + levels;
+            order.push(*part);
+            path.pop();
+        }
+    }
+    Ok(order)
+}
+
+/// The last state that `root`, asked about at state 0, looks at through bounds alone, and whether some
+/// part ranges up to the horizon. With a horizon, parts below such a part are asked about at the horizon
+/// too, so that a bound there looks beyond it.
+pub(super) fn last_state(tree: &Tree, root: Part, horizon: Option<Tick>) -> Result<(Tick, bool), Invalid> {
+    let order = children_first(tree, root)?;
+    let slot = |part: Part| match part {
+        Part::Node(id) => id.0 as usize,
+        Part::Term(id) => tree.nodes.len() + id.0 as usize,
+    };
+    let end = |at: u64| horizon.map_or(at, |horizon| horizon.0);
+    let mut asked: Vec<Option<u64>> = vec![None; tree.nodes.len() + tree.terms.len()];
+    asked[slot(root)] = Some(0);
+    let (mut last, mut to_horizon) = (0, false);
+    for part in order.into_iter().rev() {
+        let Some(at) = asked[slot(part)] else { continue };
+        last = last.max(at);
+        for (child, ask) in below(tree, part)? {
+            let latest = match ask {
+                Ask::Here => Some(at),
+                Ask::Within(Window { from, to: Some(to) }) => {
+                    if to < from {
+                        return Err(Invalid::EmptyWindow { from: from.0, to: to.0 });
+                    }
+                    Some(at.saturating_add(to.0))
+                }
+                Ask::Within(Window { from, to: None }) => {
+                    last = last.max(at.saturating_add(from.0));
+                    Some(end(at.saturating_add(from.0)))
+                }
+                Ask::Until(Some(to)) => Some(at.saturating_add(to.0)),
+                Ask::Before(Some(to)) => (to.0 > 0).then(|| at.saturating_add(to.0 - 1)),
+                Ask::Until(None) | Ask::AtEnd => Some(end(at)),
+                Ask::Before(None) => Some(horizon.map_or(at, |h| h.0.saturating_sub(1).max(at))),
+            };
+            to_horizon |= matches!(
+                ask,
+                Ask::Within(Window { to: None, .. }) | Ask::Until(None) | Ask::Before(None) | Ask::AtEnd
+            );
+            if let Some(latest) = latest {
+                let known = &mut asked[slot(child)];
+                *known = Some(known.map_or(latest, |k| k.max(latest)));
+            }
+        }
+    }
+    Ok((Tick(last), to_horizon))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::logic::formula::AtomId;
+
+    fn window(from: u64, to: Option<u64>) -> Window {
+        Window { from: Tick(from), to: to.map(Tick) }
+    }
+
+    #[test]
+    fn bounds_add_up_along_the_deepest_path() {
+        let mut tree = Tree::default();
+        let a = tree.node(Node::Atom(AtomId(0)));
+        let inner = tree.node(Node::Finally(window(1, Some(4)), a));
+        let outer = tree.node(Node::Globally(window(0, Some(10)), inner));
+        assert_eq!(last_state(&tree, Part::Node(outer), None), Ok((Tick(14), false)));
+        let until = tree.node(Node::Until(window(0, Some(3)), inner, a));
+        assert_eq!(
+            last_state(&tree, Part::Node(until), None),
+            Ok((Tick(6), false)),
+            "nothing depends on the left operand of an until in its last state"
+        );
+    }
+
+    #[test]
+    fn circles_and_missing_parts_are_found() {
+        let mut tree = Tree::default();
+        let a = tree.node(Node::Not(NodeId(1)));
+        tree.node(Node::Not(a));
+        assert_eq!(last_state(&tree, Part::Node(a), None), Err(Invalid::Malformed));
+        assert_eq!(last_state(&tree, Part::Node(NodeId(9)), None), Err(Invalid::Malformed));
+        let empty = tree.node(Node::Finally(window(3, Some(2)), NodeId(4)));
+        tree.node(Node::Constant(true));
+        let _ = empty;
+        assert_eq!(
+            last_state(&tree, Part::Node(NodeId(2)), None),
+            Err(Invalid::Malformed),
+            "a child that does not exist"
+        );
+    }
+
+    #[test]
+    fn shared_parts_do_not_cost_exponential_time() {
+        let mut tree = Tree::default();
+        let mut x = tree.node(Node::Atom(AtomId(0)));
+        for _ in 0..500 {
+            x = tree.node(Node::And(vec![x, x]));
+        }
+        assert_eq!(last_state(&tree, Part::Node(x), None), Ok((Tick(0), false)));
+        for _ in 0..600 {
+            x = tree.node(Node::Not(x));
+        }
+        assert!(matches!(last_state(&tree, Part::Node(x), None), Err(Invalid::TooDeep { .. })));
+    }
+}

@@ -1,0 +1,6 @@
+//! The monitor against the definition.
+
+mod exhaustive;
+mod random;
+mod reference;
+mod rows;

@@ -1,0 +1,1 @@
+//! Random formulas and metrics over lanes that start at different times and are filled again.
