@@ -84,7 +84,6 @@ impl<'t> Reaches<'t> {
             }
             Term::AtEnd(a) => self.term(*a).at_every_state(0, self.horizon),
             Term::TimeUntil(node) => self.node(*node).at_every_state(0, self.horizon),
-            Term::Indicator(node) => self.node(*node),
         };
         self.terms[at] = Some(reach);
         reach

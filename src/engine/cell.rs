@@ -18,8 +18,8 @@ pub struct Cell {
     pub reading: Reading,
     /// Steps of the model until it was decided.
     pub steps: u64,
-    /// Whether an implication in it was triggered.
-    pub triggered: bool,
+    /// The implications in it that were triggered, bit k for the k-th (the 64th stands for all beyond).
+    pub triggered: u64,
     /// Whether radii were shrunk to part people who overlap at the start.
     pub shrunk: bool,
 }

@@ -1,3 +1,25 @@
 //! Floor 5: trials, executors, and the outcomes of queries.
 
+pub mod budget;
+pub mod cell;
+mod contrast;
+pub mod executor;
+mod fault;
 pub mod outcome;
+mod procedure;
+mod race;
+mod session;
+pub mod subject;
+mod survey;
+mod tally;
+mod watch;
+mod witness;
+mod words;
+mod worker;
+
+pub use budget::Budget;
+pub use executor::{Executor, Threads};
+pub use fault::Fault;
+pub use session::{Call, run};
+pub use subject::Subject;
+pub use watch::{Forecast, Nobody, Watch};

@@ -16,8 +16,6 @@ pub struct Subject {
     pub columns: Vec<Root>,
     /// Last tick.
     pub horizon: Tick,
-    /// Seconds of a tick (1 where steps have no length).
-    pub seconds: f64,
     atoms: Vec<Bool>,
     signals: Vec<Num>,
 }
@@ -39,7 +37,6 @@ impl Subject {
         let scenario = world.scenario.clone();
         Self {
             horizon: scenario.horizon,
-            seconds: scenario.clock.step_seconds(),
             program: Program::new(scenario),
             tree: world.tree.clone(),
             columns: world.columns.iter().map(|c| c.root).collect(),
@@ -51,8 +48,8 @@ impl Subject {
     /// A monitor of a column.
     pub fn monitor(&self, column: usize) -> Result<Monitor, Invalid> {
         match self.columns[column] {
-            Root::Formula(node) => Monitor::formula(&self.tree, node, self.horizon, self.seconds),
-            Root::Metric(term) => Monitor::metric(&self.tree, term, self.horizon, self.seconds),
+            Root::Formula(node) => Monitor::formula(&self.tree, node, self.horizon, self.program.scenario.clock),
+            Root::Metric(term) => Monitor::metric(&self.tree, term, self.horizon, self.program.scenario.clock),
         }
     }
 
@@ -133,7 +130,7 @@ impl Used<'_> {
                 self.term(*b);
             }
             Term::Abs(a) | Term::Window(_, _, a) | Term::Later(_, a) | Term::AtEnd(a) => self.term(*a),
-            Term::TimeUntil(node) | Term::Indicator(node) => self.node(*node),
+            Term::TimeUntil(node) => self.node(*node),
         }
     }
 }

@@ -14,7 +14,7 @@ pub(super) struct Tally {
     pub(super) clipped: u64,
     /// Trials in which radii were shrunk.
     pub(super) shrunk: u64,
-    /// Trials in which an implication was triggered.
+    /// Implications that were triggered in some trial.
     pub(super) triggered: u64,
     /// Index of the first trial that passes, of the first that fails, and of the first that is unresolved.
     pub(super) first: [Option<u64>; 3],
@@ -26,7 +26,7 @@ impl Tally {
         self.counts.trials += 1;
         self.steps += cell.steps;
         self.shrunk += u64::from(cell.shrunk);
-        self.triggered += u64::from(cell.triggered);
+        self.triggered |= cell.triggered;
         let place = match cell.reading {
             Reading::Truth(true) => {
                 self.counts.successes += 1;

@@ -8,7 +8,8 @@ use super::subject::{Sheet, Subject};
 use crate::base::lanes::{LANES, Mask};
 use crate::base::random::TrialKey;
 use crate::kernel::{Readings, Scratch, State, dynamics, start};
-use crate::logic::Invalid;
+use crate::compile::study::Root;
+use crate::logic::{Invalid, Monitor};
 
 /// Steps between two looks at the clock.
 const CLOCK_EVERY: u32 = 32;
@@ -74,7 +75,7 @@ impl Worker {
         let program = &subject.program;
         let mut finished: Vec<Finished> = Vec::new();
         let mut cells: [Vec<Cell>; LANES] = std::array::from_fn(|_| Vec::new());
-        let blank = Cell { reading: Reading::Unresolved, steps: 0, triggered: false, shrunk: false };
+        let blank = Cell { reading: Reading::Unresolved, steps: 0, triggered: 0, shrunk: false };
         let mut exhausted = false;
         let mut rounds = 0u32;
         loop {
@@ -156,11 +157,11 @@ impl Worker {
                 for lane in decided.iter() {
                     let Some(busy) = &mut self.busy[lane] else { continue };
                     busy.open -= 1;
-                    let reading = if lost.has(lane) { Reading::Unresolved } else { reading(monitor, lane) };
+                    let reading = if lost.has(lane) { Reading::Unresolved } else { reading(monitor, subject.columns[self.columns[place]], lane) };
                     cells[lane][place] = Cell {
                         reading,
                         steps: self.state.ticks[lane],
-                        triggered: monitor.triggered(lane),
+                        triggered: triggered(monitor, lane),
                         shrunk: busy.shrunk,
                     };
                 }
@@ -182,8 +183,14 @@ impl Worker {
     }
 }
 
-fn reading(monitor: &crate::logic::Monitor, lane: usize) -> Reading {
-    if monitor.is_formula() {
+/// The implications that the trial of a lane triggered, as bits.
+fn triggered(monitor: &Monitor, lane: usize) -> u64 {
+    let bits = monitor.antecedents().enumerate().filter(|(_, a)| a.triggered.has(lane));
+    bits.fold(0, |all, (k, _)| all | 1 << k.min(63))
+}
+
+fn reading(monitor: &Monitor, root: Root, lane: usize) -> Reading {
+    if matches!(root, Root::Formula(_)) {
         return Reading::Truth(monitor.truth().has(lane));
     }
     let value = monitor.value().0[lane];

@@ -127,8 +127,6 @@ pub enum Term {
     /// Seconds until the formula first holds, counted from the present state; infinite if it never does
     /// up to the horizon.
     TimeUntil(NodeId),
-    /// 1 where the formula holds, else 0.
-    Indicator(NodeId),
 }
 
 /// A formula or metric with all its parts.

@@ -91,13 +91,9 @@ impl Elaborator<'_> {
                 })))
             }
             Quantifier::Count => {
-                let mut sum = self.term(Term::Constant(0.0));
-                for typed in each {
-                    let node = self.as_formula(typed, body.span)?;
-                    let one = self.term(Term::Indicator(node));
-                    sum = self.term(Term::Combine(Operation::Add, sum, one));
-                }
-                Ok(Typed::Term(sum, Dimension::NONE))
+                let error = Diagnostic::error("E0504", span, "only conditions on one state can be counted")
+                    .hint("count states, as in `F<=10 s (count(a in crowd: a in exit) >= 3)`");
+                self.report(error)
             }
             Quantifier::Fold(aggregate) => self.fold_terms(aggregate, each, body.span),
         }
