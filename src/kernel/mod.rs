@@ -4,7 +4,9 @@
 //! lane does never moves a byte of another.
 
 pub mod code;
+pub mod drive;
 pub mod program;
+pub mod start;
 pub mod state;
 
 pub use code::{Code, Readings};

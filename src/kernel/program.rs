@@ -1,5 +1,7 @@
 //! A scenario made ready to run: everything that is the same in every trial.
 
+use super::drive::Drive;
+use super::start::Starts;
 use super::state::Layout;
 use crate::model::Scenario;
 use std::sync::Arc;
@@ -17,6 +19,10 @@ pub struct Program {
     pub layout: Layout,
     /// Length of a step, s.
     pub dt: f64,
+    /// The routes.
+    pub drive: Drive,
+    /// The placements.
+    pub starts: Starts,
 }
 
 impl Program {
@@ -24,6 +30,8 @@ impl Program {
     pub fn new(scenario: Arc<Scenario>) -> Self {
         let layout = if scenario.agents.len() <= LARGEST_IN_LANES { Layout::Trials } else { Layout::Agents };
         let dt = scenario.clock.step_seconds();
-        Self { scenario, layout, dt }
+        let drive = Drive::new(&scenario);
+        let starts = Starts::new(&scenario);
+        Self { scenario, layout, dt, drive, starts }
     }
 }
