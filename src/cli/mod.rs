@@ -69,5 +69,8 @@ fn diagnose(inputs: &inputs::Inputs, colors: Colors) {
 
 /// Whether everybody can be placed, as far as areas tell.
 fn placeable(scenario: &Scenario) -> Result<(), String> {
-    crate::kernel::start::check_area(scenario).map_err(|fault| fault.to_string())
+    match crate::kernel::start::check_area(scenario).first() {
+        Some(crowding) => Err(crate::engine::crowded(scenario, crowding)),
+        None => Ok(()),
+    }
 }

@@ -20,6 +20,6 @@ mod worker;
 pub use budget::Budget;
 pub use executor::{Executor, Threads};
 pub use fault::Fault;
-pub use session::{Call, run};
+pub use session::{Call, crowded, run};
 pub use subject::Subject;
 pub use watch::{Forecast, Nobody, Watch};

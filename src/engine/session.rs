@@ -46,7 +46,7 @@ pub fn run(study: &Study, call: &Call<'_>, executor: &dyn Executor, budget: &Bud
                 let subject = Subject::new(&study.worlds[world]);
                 let crowding = start::check_area(&subject.program.scenario);
                 if let Some(first) = crowding.first() {
-                    return Err(Fault::Placement(first.to_string()));
+                    return Err(Fault::Placement(crowded(&subject.program.scenario, first)));
                 }
                 subjects[world] = Some(subject);
             }
@@ -86,6 +86,21 @@ pub fn run(study: &Study, call: &Call<'_>, executor: &dyn Executor, budget: &Bud
         replay: format!("{} --seed {}", call.command, call.seed),
         elapsed_s: budget.elapsed(),
     })
+}
+
+/// More people than fit, in words.
+pub fn crowded(scenario: &crate::model::Scenario, crowding: &start::Crowding) -> String {
+    let names: Vec<&str> =
+        crowding.agents.iter().filter_map(|id| scenario.agents.get(id.0 as usize)).map(|a| a.name.as_str()).collect();
+    let who = match names.as_slice() {
+        [] => "nobody".to_owned(),
+        [one] => (*one).to_owned(),
+        [first, .., last] => format!("{first} to {last} ({} people)", names.len()),
+    };
+    format!(
+        "{who} cannot be placed: their bodies take {:.1} m^2, and there is room for {:.1} m^2 where they start",
+        crowding.bodies, crowding.free
+    )
 }
 
 fn worlds(ask: &Ask) -> Vec<usize> {

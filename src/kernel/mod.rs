@@ -13,6 +13,7 @@ pub mod forces;
 mod lanewise;
 mod noise;
 pub mod program;
+pub mod start;
 pub mod state;
 mod vector;
 

@@ -1,6 +1,8 @@
 //! A scenario made ready to run: everything that is the same in every trial.
 
+use super::drive::Drive;
 use super::forces::Forces;
+use super::start::Starts;
 use super::state::Layout;
 use crate::model::Scenario;
 use std::sync::Arc;
@@ -20,6 +22,10 @@ pub struct Program {
     pub dt: f64,
     /// What the forces need.
     pub forces: Forces,
+    /// The routes.
+    pub drive: Drive,
+    /// The placements.
+    pub starts: Starts,
 }
 
 impl Program {
@@ -28,6 +34,8 @@ impl Program {
         let layout = if scenario.agents.len() <= LARGEST_IN_LANES { Layout::Trials } else { Layout::Agents };
         let dt = scenario.clock.step_seconds();
         let forces = Forces::new(&scenario, dt);
-        Self { scenario, layout, dt, forces }
+        let drive = Drive::new(&scenario);
+        let starts = Starts::new(&scenario);
+        Self { scenario, layout, dt, forces, drive, starts }
     }
 }

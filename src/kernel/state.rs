@@ -7,6 +7,7 @@
 
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::random::TrialKey;
+use super::drive::Routes;
 
 /// What the eight slots of a block are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -100,6 +101,9 @@ pub struct State {
     pub fx: Vec<Lanes>,
     /// Force, second component, N.
     pub fy: Vec<Lanes>,
+
+    /// Where everyone is on the way.
+    pub route: Routes,
 }
 
 impl State {
@@ -145,6 +149,7 @@ impl State {
             push: zero(),
             fx: zero(),
             fy: zero(),
+            route: Routes::new(blocks),
         }
     }
 

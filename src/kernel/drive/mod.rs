@@ -1,0 +1,60 @@
+//! The driver of social-force agents: where each wants to go and how fast.
+//!
+//! A route is a list of stages. The aim is the nearest point of a goal's region a body radius inside;
+//! driving velocity is zero inside the last goal. A region is reached when the centre is inside, a point
+//! within two radii, or when the line across it, perpendicular to the way from where the leg began, has
+//! been passed within 2 m of it. Advice replaces direction and speed for its time; waypoints passed
+//! meanwhile count.
+
+mod lanes;
+mod person;
+mod route;
+mod stage;
+
+pub use route::{Routes, Way};
+pub use stage::Drive;
+
+use super::program::Program;
+use super::state::{Layout, State};
+use crate::base::lanes::Mask;
+use crate::model::Move;
+use fearless_simd::{Level, Simd, dispatch};
+use person::Person;
+
+/// Puts agent `agent` of the trial in lane `lane` at the beginning of its way: direction, driving speed and
+/// route. Position, parameters, key and tick of the trial must be in the state. `advice` is a move and the
+/// number of ticks for which it holds.
+pub fn begin(program: &Program, state: &mut State, agent: usize, lane: usize, advice: Option<(Move, u64)>) {
+    let slot = state.slot(agent, lane);
+    let start = &program.scenario.agents[agent].start;
+    Person::new(program, state, slot.block, slot.lane).begin(start, advice);
+}
+
+/// Updates driving direction, driving speed and presence of all agents in all occupied lanes. To be called
+/// once a step, with the new positions and the ticks that belong to them.
+pub fn steer(program: &Program, state: &mut State) {
+    dispatch!(Level::new(), simd => steer_all(simd, program, state));
+}
+
+#[inline(always)]
+fn steer_all<S: Simd>(simd: S, program: &Program, state: &mut State) {
+    let occupied = match state.layout {
+        Layout::Trials => state.occupied,
+        Layout::Agents if state.occupied.has(0) => Mask::ALL,
+        Layout::Agents => Mask::NONE,
+    };
+    for block in 0..state.route.blocks() {
+        let active = state.present[block] & occupied;
+        let (parties, count) = state.route.parties(block);
+        let mut events = Mask::NONE;
+        for party in &parties[..count] {
+            let Some(stage) = program.drive.stages.get(party.stage as usize) else { continue };
+            events |= lanes::steer(simd, state, block, *party, stage, active);
+        }
+        if !events.is_empty() {
+            for lane in events.iter() {
+                Person::new(program, state, block, lane).step();
+            }
+        }
+    }
+}

@@ -1,0 +1,255 @@
+//! One agent of one trial on its way: begin, next leg, advice, pauses. The plain counterpart of the vector
+//! code in `lanes`, which hands over to it whenever something happens.
+
+use super::route::Way;
+use super::stage::{Stage, Target};
+use crate::base::geometry::{Shape, Vec2, rotated};
+use crate::base::random::{Purpose, Stream, TrialKey};
+use crate::kernel::program::Program;
+use crate::kernel::state::{Layout, State};
+use crate::model::{Move, Start};
+
+/// How far from a point the line across it may be passed so that it counts as reached, m.
+pub(super) const PASSING: f64 = 2.0;
+
+/// Squared length below which a vector has no direction.
+pub(super) const NO_LENGTH: f64 = 1e-24;
+
+/// The unit vector along `v`, if it has a direction.
+pub(super) fn unit(v: Vec2) -> Option<Vec2> {
+    let square = v.x * v.x + v.y * v.y;
+    (square > NO_LENGTH && square.is_finite()).then(|| v / square.sqrt())
+}
+
+/// The trial that a slot belongs to, as lane of keys and ticks.
+pub(super) fn trial_of(layout: Layout, lane: usize) -> usize {
+    match layout {
+        Layout::Trials => lane,
+        Layout::Agents => 0,
+    }
+}
+
+/// Where a body heads for: the nearest point of the target at least its radius inside, if there is room.
+pub(super) fn aim(target: &Target, at: Vec2, radius: f64) -> Option<Vec2> {
+    match target {
+        Target::Rectangle(bounds) => {
+            let inset = |v: f64, low: f64, high: f64| {
+                let middle = 0.5 * (low + high);
+                let low = if low + radius > middle { middle } else { low + radius };
+                let high = if high - radius < middle { middle } else { high - radius };
+                let v = if v < low { low } else { v };
+                if v > high { high } else { v }
+            };
+            let (low, high) = (bounds.low, bounds.high);
+            Some(Vec2::new(inset(at.x, low.x, high.x), inset(at.y, low.y, high.y)))
+        }
+        // The nearest point of a smaller disc lies on the line to the centre.
+        Target::Disc { centre, .. } => Some(*centre),
+        Target::Point(point) => Some(*point),
+        Target::Form { shape, inner } => Some(aim_at_form(shape, *inner, at, radius)),
+        Target::Pause(_) | Target::Onward | Target::Rest => None,
+    }
+}
+
+/// A radius behind the nearest point of the outline, straight on or else towards the middle.
+fn aim_at_form(shape: &Shape, inner: Vec2, at: Vec2, radius: f64) -> Vec2 {
+    if shape.contains(at) {
+        return inner;
+    }
+    let rim = shape.nearest(at);
+    let behind = |direction: Vec2| unit(direction).map(|e| rim + e * radius).filter(|&q| shape.contains(q));
+    behind(rim - at).or_else(|| behind(inner - rim)).unwrap_or(inner)
+}
+
+/// Whether a waypoint or goal is reached.
+fn reached(stage: &Stage, at: Vec2, radius: f64, origin: Vec2) -> bool {
+    match &stage.target {
+        Target::Rectangle(b) => at.x >= b.low.x && at.x <= b.high.x && at.y >= b.low.y && at.y <= b.high.y,
+        Target::Disc { centre, radius } => {
+            let (dx, dy) = (at.x - centre.x, at.y - centre.y);
+            dx * dx + dy * dy <= radius * radius
+        }
+        Target::Point(point) => {
+            let (dx, dy) = (at.x - point.x, at.y - point.y);
+            let square = dx * dx + dy * dy;
+            // Who stays at a point is there only while near it; who goes on may also pass by.
+            let passes = !stage.last || stage.leaves;
+            let along = dx * (point.x - origin.x) + dy * (point.y - origin.y);
+            square <= 4.0 * radius * radius || (passes && along >= 0.0 && square <= PASSING * PASSING)
+        }
+        Target::Form { shape, .. } => shape.contains(at),
+        Target::Pause(_) | Target::Onward | Target::Rest => false,
+    }
+}
+
+/// One slot of a state.
+pub(super) struct Person<'a> {
+    program: &'a Program,
+    state: &'a mut State,
+    agent: usize,
+    block: usize,
+    lane: usize,
+    way: Way,
+}
+
+impl<'a> Person<'a> {
+    pub(super) fn new(program: &'a Program, state: &'a mut State, block: usize, lane: usize) -> Self {
+        let agent = match state.layout {
+            Layout::Trials => block,
+            Layout::Agents => block * crate::base::lanes::LANES + lane,
+        };
+        let way = state.route.way(block, lane);
+        Self { program, state, agent, block, lane, way }
+    }
+
+    fn at(&self) -> Vec2 {
+        Vec2::new(self.state.x[self.block].0[self.lane], self.state.y[self.block].0[self.lane])
+    }
+
+    fn radius(&self) -> f64 {
+        self.state.radius[self.block].0[self.lane]
+    }
+
+    fn speed(&self) -> f64 {
+        self.state.speed[self.block].0[self.lane]
+    }
+
+    fn direction(&self) -> Vec2 {
+        Vec2::new(self.state.ex[self.block].0[self.lane], self.state.ey[self.block].0[self.lane])
+    }
+
+    fn key(&self) -> TrialKey {
+        self.state.keys[trial_of(self.state.layout, self.lane)]
+    }
+
+    fn tick(&self) -> u64 {
+        self.state.ticks[trial_of(self.state.layout, self.lane)]
+    }
+
+    fn drive(&mut self, direction: Option<Vec2>, speed: f64) {
+        if let Some(e) = direction {
+            self.state.ex[self.block].0[self.lane] = e.x;
+            self.state.ey[self.block].0[self.lane] = e.y;
+        }
+        self.state.drive[self.block].0[self.lane] = speed;
+    }
+
+    fn keep(self) {
+        self.state.route.set_way(self.block, self.lane, self.way);
+    }
+
+    /// Enters a stage: a pause is drawn, a leg remembers where it began.
+    fn enter(&mut self, stage: u32) {
+        self.way.stage = stage;
+        self.way.origin = self.at();
+        let stage = &self.program.drive.stages[stage as usize];
+        if let Target::Pause(law) = &stage.target {
+            let entity = self.program.scenario.agents[self.agent].entity;
+            let uniform = Stream::of(self.key(), entity, Purpose::Pause).uniform(stage.leg);
+            // A negative time or NaN is no pause; one that never ends is cut at the end of all ticks.
+            let ticks = (law.draw(uniform) / self.program.dt).ceil() as u64;
+            self.way.until = self.tick().saturating_add(ticks);
+        }
+    }
+
+    /// Goes on to the stage that holds now; whether the agent leaves.
+    fn proceed(&mut self) -> bool {
+        loop {
+            let stage = &self.program.drive.stages[self.way.stage as usize];
+            let done = match stage.target {
+                Target::Pause(_) => self.tick() >= self.way.until,
+                _ => reached(stage, self.at(), self.radius(), self.way.origin),
+            };
+            if !done {
+                return false;
+            }
+            if stage.last {
+                return stage.leaves;
+            }
+            self.enter(self.way.stage + 1);
+        }
+    }
+
+    /// Sets the driving direction and speed that the route wants now.
+    fn head(&mut self) {
+        let stage = &self.program.drive.stages[self.way.stage as usize];
+        if stage.target == Target::Onward {
+            let (direction, speed) = self.way.onward;
+            self.drive(Some(direction), speed);
+            return;
+        }
+        let at = self.at();
+        let arrived = stage.last && reached(stage, at, self.radius(), self.way.origin);
+        match aim(&stage.target, at, self.radius()) {
+            Some(aim) if !arrived => {
+                let speed = self.speed();
+                self.drive(unit(aim - at), speed);
+            }
+            _ => self.drive(None, 0.0),
+        }
+    }
+
+    /// Sets driving direction and speed, under advice or not.
+    fn follow(&mut self) {
+        if self.way.advised_until > 0 && self.tick() >= self.way.advised_until {
+            self.way.advised_until = 0;
+        }
+        if self.way.advised_until > 0 {
+            let (direction, speed) = self.way.advice;
+            self.drive(unit(direction), speed);
+        } else {
+            self.head();
+        }
+    }
+
+    /// Puts an agent at the beginning of its way. Its position, parameters and key must be in the state.
+    pub(super) fn begin(mut self, start: &Start, advice: Option<(Move, u64)>) {
+        let moving = unit(start.velocity);
+        let speed = start.velocity.norm();
+        self.way = Way::default();
+        let first = self.program.drive.first[self.agent];
+        self.enter(first);
+        // The first goal, past the pauses before it.
+        let stages = &self.program.drive.stages[first as usize..];
+        let towards = stages
+            .iter()
+            .take(stages.iter().position(|stage| stage.last).map_or(0, |last| last + 1))
+            .find_map(|stage| aim(&stage.target, self.at(), self.radius()))
+            .and_then(|aim| unit(aim - self.at()));
+        let onward = self.program.drive.stages[first as usize].target == Target::Onward;
+        if onward && moving.is_some() {
+            // Who goes on as recorded has the recorded speed as driving speed.
+            self.state.speed[self.block].0[self.lane] = speed;
+        }
+        let direction = towards.or(moving).unwrap_or_else(|| Vec2::new(1.0, 0.0));
+        self.way.onward = (direction, if moving.is_some() { speed } else { 0.0 });
+        self.drive(Some(direction), 0.0);
+        // Who starts at a goal goes on to the next; nobody leaves before the first step.
+        self.proceed();
+        if let Some((advice, ticks)) = advice
+            && ticks > 0
+        {
+            self.head();
+            let ahead = self.direction();
+            self.way.advice = match advice {
+                Move::Heading(angle) => (rotated(ahead, angle), self.speed()),
+                Move::Stop => (Vec2::zeros(), 0.0),
+            };
+            self.way.advised_until = self.tick().saturating_add(ticks);
+        }
+        self.follow();
+        self.keep();
+    }
+
+    /// Does whatever is due at the present position and tick.
+    pub(super) fn step(mut self) {
+        if self.proceed() {
+            let (block, slot) = (self.block, crate::base::lanes::Mask::lane(self.lane));
+            self.drive(None, 0.0);
+            self.state.present[block] &= !slot;
+        } else {
+            self.follow();
+        }
+        self.keep();
+    }
+}

@@ -1,0 +1,109 @@
+//! Where everyone is on the way: kept in the state, one entry a slot.
+
+use crate::base::geometry::Vec2;
+use crate::base::lanes::{LANES, Lanes, Mask};
+
+/// Where one agent of one trial is on its route.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Way {
+    /// Index into the scenario's stages.
+    pub(super) stage: u32,
+    /// Tick at which a pause ends.
+    pub(super) until: u64,
+    /// Tick at which advice ends; 0 without any.
+    pub(super) advised_until: u64,
+    /// Driving direction and speed under advice.
+    pub(super) advice: (Vec2, f64),
+    /// Where the present leg began, m.
+    pub(super) origin: Vec2,
+    /// Direction and speed of someone without a goal.
+    pub(super) onward: (Vec2, f64),
+}
+
+impl Default for Way {
+    fn default() -> Self {
+        let nothing = (Vec2::zeros(), 0.0);
+        Self { stage: 0, until: 0, advised_until: 0, advice: nothing, origin: Vec2::zeros(), onward: nothing }
+    }
+}
+
+/// The slots of a block that are on the same stage.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Party {
+    pub(super) stage: u32,
+    pub(super) slots: Mask,
+}
+
+/// The ways of a batch of trials.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Routes {
+    ways: Vec<[Way; LANES]>,
+    /// Parties of each block, those in use first.
+    parties: Vec<([Party; LANES], usize)>,
+    /// Slots under advice.
+    pub(super) advised: Vec<Mask>,
+    /// Where the present leg began, in lanes, m.
+    pub(super) from_x: Vec<Lanes>,
+    /// Where the present leg began, second coordinate, m.
+    pub(super) from_y: Vec<Lanes>,
+}
+
+impl Routes {
+    /// Ways of so many blocks, all at their beginning.
+    pub fn new(blocks: usize) -> Self {
+        let mut parties = [Party::default(); LANES];
+        parties[0].slots = Mask::ALL;
+        Self {
+            ways: vec![[Way::default(); LANES]; blocks],
+            parties: vec![(parties, 1); blocks],
+            advised: vec![Mask::NONE; blocks],
+            from_x: vec![Lanes::ZERO; blocks],
+            from_y: vec![Lanes::ZERO; blocks],
+        }
+    }
+
+    /// The way of one slot.
+    pub fn way(&self, block: usize, lane: usize) -> Way {
+        self.ways[block][lane]
+    }
+
+    /// Puts a way into a slot; with [`Routes::way`] this saves and restores a trial.
+    pub fn set_way(&mut self, block: usize, lane: usize, way: Way) {
+        let moved = self.ways[block][lane].stage != way.stage;
+        self.ways[block][lane] = way;
+        self.from_x[block].0[lane] = way.origin.x;
+        self.from_y[block].0[lane] = way.origin.y;
+        let slot = Mask::lane(lane);
+        let advised = if way.advised_until > 0 { slot } else { Mask::NONE };
+        self.advised[block] = self.advised[block] & !slot | advised;
+        if moved {
+            self.gather(block);
+        }
+    }
+
+    /// Collects the slots that are on the same stage, in order of their first slot.
+    fn gather(&mut self, block: usize) {
+        let (parties, count) = &mut self.parties[block];
+        *count = 0;
+        for (lane, way) in self.ways[block].iter().enumerate() {
+            let known = parties[..*count].iter_mut().find(|party| party.stage == way.stage);
+            if let Some(party) = known {
+                party.slots |= Mask::lane(lane);
+            } else {
+                parties[*count] = Party { stage: way.stage, slots: Mask::lane(lane) };
+                *count += 1;
+            }
+        }
+    }
+
+    /// The parties of a block.
+    #[inline(always)]
+    pub(super) fn parties(&self, block: usize) -> ([Party; LANES], usize) {
+        self.parties[block]
+    }
+
+    /// Number of blocks.
+    pub(super) fn blocks(&self) -> usize {
+        self.ways.len()
+    }
+}

@@ -1,0 +1,96 @@
+//! Placements that no trial can make: more bodies than fit into a shape.
+
+use crate::base::geometry::{Bounds, Shape, Vec2};
+use crate::model::{AgentId, Law, Obstacle, Position, Scenario};
+use std::f64::consts::PI;
+
+/// Discs that are thrown and pushed jam at about this share of an area.
+const JAMMED: f64 = 0.84;
+
+/// Points of the grid along each axis on which free area is measured.
+const GRID: u32 = 160;
+
+/// A shape into which more bodies are to be placed than fit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Crowding {
+    /// Those who start in it.
+    pub agents: Vec<AgentId>,
+    /// Expected area of their bodies, m^2.
+    pub bodies: f64,
+    /// Free area that bodies with their centres in the shape can cover, m^2.
+    pub free: f64,
+}
+
+/// The mean of the square of a law, by the midpoint rule on its inverse distribution function.
+fn mean_square(law: &Law) -> f64 {
+    const POINTS: u32 = 64;
+    if let Some(value) = law.constant() {
+        return value * value;
+    }
+    let draw = |k| law.draw((f64::from(k) + 0.5) / f64::from(POINTS));
+    (0..POINTS).map(draw).map(|r| r * r).sum::<f64>() / f64::from(POINTS)
+}
+
+/// The solids that reach into the surroundings of a shape. Walls take no area.
+fn solids<'a>(scenario: &'a Scenario, bounds: &Bounds) -> Vec<&'a Obstacle> {
+    let reaches = |obstacle: &&Obstacle| match obstacle {
+        Obstacle::Wall(_) => false,
+        Obstacle::Solid(shape) => {
+            let other = shape.bounds();
+            other.low.x < bounds.high.x
+                && other.high.x > bounds.low.x
+                && other.low.y < bounds.high.y
+                && other.high.y > bounds.low.y
+        }
+    };
+    scenario.scene.barriers.iter().map(|barrier| &barrier.obstacle).filter(reaches).collect()
+}
+
+/// Area of what lies within `reach` of the shape and in none of the solids, by a grid over `bounds`.
+fn free_area(shape: &Shape, reach: f64, bounds: &Bounds, solids: &[&Obstacle]) -> f64 {
+    let cell = (bounds.high - bounds.low) / f64::from(GRID);
+    let mut count = 0u32;
+    for row in 0..GRID {
+        for column in 0..GRID {
+            let place = Vec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5);
+            let p = bounds.low + place.component_mul(&cell);
+            let free = || solids.iter().all(|solid| solid.distance(p) >= 0.0);
+            count += u32::from(shape.distance(p) <= reach && free());
+        }
+    }
+    f64::from(count) * cell.x * cell.y
+}
+
+/// The shapes whose bodies cannot all fit, judged by area before anything is drawn. A body counts as in the
+/// shape when its centre is, so what lies within a radius of the shape counts as room.
+pub fn check_area(scenario: &Scenario) -> Vec<Crowding> {
+    let mut groups: Vec<(&Shape, Vec<AgentId>, f64, f64)> = Vec::new();
+    for (k, agent) in scenario.agents.iter().enumerate() {
+        let Position::Within(shape) = &agent.start.position else { continue };
+        let square = mean_square(&agent.body.radius);
+        let index = groups.iter().rposition(|group| group.0 == shape).unwrap_or_else(|| {
+            groups.push((shape, Vec::new(), 0.0, 0.0));
+            groups.len() - 1
+        });
+        let group = &mut groups[index];
+        group.1.push(AgentId(k as u32));
+        group.2 += PI * square;
+        group.3 = if square > group.3 { square } else { group.3 };
+    }
+    let mut out = Vec::new();
+    for (shape, agents, bodies, square) in groups {
+        let reach = square.sqrt();
+        let (around, bounds) = (Vec2::new(reach, reach), shape.bounds());
+        let bounds = Bounds { low: bounds.low - around, high: bounds.high + around };
+        let solids = solids(scenario, &bounds);
+        // The grid is needed only where it may be tight.
+        if solids.is_empty() && bodies <= JAMMED * shape.area() {
+            continue;
+        }
+        let free = free_area(shape, reach, &bounds, &solids);
+        if bodies > JAMMED * free {
+            out.push(Crowding { agents, bodies, free });
+        }
+    }
+    out
+}

@@ -1,0 +1,141 @@
+//! The beginning of a trial: parameters are drawn, bodies placed, routes begun.
+//!
+//! Every draw is addressed by the agent's entity and the parameter's name, so an agent, a parameter or a
+//! move more changes nobody else's. Placement is random sequential (Widom 1966) with a fixed number of
+//! attempts, then relaxation; what still overlaps, or was recorded so, shrinks to touch.
+
+mod area;
+mod body;
+mod crowd;
+mod placement;
+mod relaxation;
+mod sampler;
+
+pub use area::{Crowding, check_area};
+pub use placement::Starts;
+
+use super::drive;
+use super::program::Program;
+use super::state::{Layout, State};
+use crate::base::lanes::Mask;
+use crate::base::random::TrialKey;
+use crate::model::AgentId;
+use body::Parameters;
+
+/// What loading a trial found worth counting.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Loaded {
+    /// Pairs of neighbours that overlapped at the start and whose radii were shrunk to touch.
+    pub shrunk_pairs: u32,
+    /// Bodies that overlapped a wall or obstacle at the start and whose radius was shrunk to touch it.
+    pub shrunk_at_barriers: u32,
+    /// Bodies that found no free place by chance and were pushed apart.
+    pub pushed: u32,
+}
+
+/// Why a trial cannot begin.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Fault {
+    /// A parameter has a value with which nobody can move.
+    #[error("parameter `{name}` of agent {} is {value}", agent.0)]
+    Parameter {
+        /// Whose.
+        agent: AgentId,
+        /// Which.
+        name: &'static str,
+        /// Its value, SI units.
+        value: f64,
+    },
+    /// A start that is no point of the plane.
+    #[error("agent {} has no place to start", agent.0)]
+    Nowhere {
+        /// Whose.
+        agent: AgentId,
+    },
+    /// An agent is to start near one that is placed after it.
+    #[error("agent {} starts near an agent that is placed after it", agent.0)]
+    Order {
+        /// Whose start it is.
+        agent: AgentId,
+    },
+    /// There is no such option.
+    #[error("there is no option {option} in declaration {declaration} of moves")]
+    Advice {
+        /// Which declaration of moves.
+        declaration: usize,
+        /// Which of its options.
+        option: usize,
+    },
+}
+
+/// Loads the initial state of a trial into a lane (in `Layout::Agents`: as the only trial). No other lane is
+/// touched, and on a fault nothing is. `advice` is a declaration of moves and one of its options.
+pub fn load(
+    program: &Program,
+    state: &mut State,
+    lane: usize,
+    key: TrialKey,
+    advice: Option<(usize, usize)>,
+) -> Result<Loaded, Fault> {
+    let scenario = &program.scenario;
+    let advised = match advice {
+        None => None,
+        Some((declaration, option)) => {
+            let moves = scenario.moves.get(declaration);
+            let chosen = moves.and_then(|moves| Some((moves, moves.options.get(option)?.1)));
+            let (moves, chosen) = chosen.ok_or(Fault::Advice { declaration, option })?;
+            Some((moves.agent, (chosen, moves.duration.0)))
+        }
+    };
+    let mut bodies = Vec::with_capacity(scenario.agents.len());
+    for (k, agent) in scenario.agents.iter().enumerate() {
+        bodies.push(Parameters::draw(AgentId(k as u32), agent, key)?);
+    }
+    let radii: Vec<f64> = bodies.iter().map(|body| body.radius).collect();
+    let placed = placement::place(scenario, &program.starts, key, radii)?;
+
+    let lane = if state.layout == Layout::Agents { 0 } else { lane };
+    state.keys[lane] = key;
+    state.ticks[lane] = 0;
+    state.occupied |= Mask::lane(lane);
+    state.diverged &= !Mask::lane(lane);
+    for (k, agent) in scenario.agents.iter().enumerate() {
+        bodies[k].radius = placed.radii[k];
+        write(state, k, lane, &bodies[k]);
+        let slot = state.slot(k, lane);
+        let put = |field: &mut [crate::base::lanes::Lanes], value| field[slot.block].0[slot.lane] = value;
+        put(&mut state.x, placed.positions[k].x);
+        put(&mut state.y, placed.positions[k].y);
+        put(&mut state.vx, agent.start.velocity.x);
+        put(&mut state.vy, agent.start.velocity.y);
+        for field in [&mut state.travelled, &mut state.fx, &mut state.fy] {
+            put(field, 0.0);
+        }
+        state.present[slot.block] |= Mask::lane(slot.lane);
+        let own = advised.filter(|(whose, _)| whose.0 as usize == k).map(|(_, advice)| advice);
+        drive::begin(program, state, k, lane, own);
+    }
+    Ok(placed.counts)
+}
+
+/// Writes the parameters of an agent.
+fn write(state: &mut State, agent: usize, lane: usize, body: &Parameters) {
+    let slot = state.slot(agent, lane);
+    for (field, value) in [
+        (&mut state.mass, body.mass),
+        (&mut state.radius, body.radius),
+        (&mut state.speed, body.speed),
+        (&mut state.tau, body.tau),
+        (&mut state.a, body.a),
+        (&mut state.b, body.b),
+        (&mut state.lambda, body.lambda),
+        (&mut state.a2, body.a2),
+        (&mut state.b2, body.b2),
+        (&mut state.lambda2, body.lambda2),
+        (&mut state.k1, body.k1),
+        (&mut state.k2, body.k2),
+        (&mut state.noise, body.noise),
+    ] {
+        field[slot.block].0[slot.lane] = value;
+    }
+}

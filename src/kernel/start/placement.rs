@@ -1,0 +1,186 @@
+//! Where everyone starts: points first, then at random without overlaps.
+
+use super::crowd::Crowd;
+use super::relaxation::{self, Room};
+use super::sampler::Sampler;
+use super::{Fault, Loaded};
+use crate::base::geometry::{Bounds, Shape, Vec2};
+use crate::base::random::{Purpose, Stream, TrialKey};
+use crate::model::{AgentId, Obstacle, Position, Scenario, Scene};
+
+/// How often a free place is sought by chance.
+const ATTEMPTS: u32 = 96;
+
+/// A radius shrunk to touch is this much smaller, so that rounding leaves no overlap.
+const TOUCH: f64 = 1.0 - 8.0 * f64::EPSILON;
+
+/// What all trials share: the samplers of the shapes and the bounds of the barriers.
+#[derive(Clone, Debug, Default)]
+pub struct Starts {
+    samplers: Vec<Sampler>,
+    /// Which sampler an agent uses.
+    sampler_of: Vec<Option<u32>>,
+    /// The order of placement.
+    order: Vec<u32>,
+    barriers: Vec<Option<Bounds>>,
+}
+
+impl Starts {
+    /// Prepares the placement of a scenario.
+    pub fn new(scenario: &Scenario) -> Self {
+        let mut out = Self::default();
+        let mut shapes: Vec<&Shape> = Vec::new();
+        for agent in &scenario.agents {
+            out.sampler_of.push(match &agent.start.position {
+                Position::Within(shape) => {
+                    // Members of one declaration are neighbours and share a shape: look at the last first.
+                    let known = shapes.iter().rposition(|known| *known == shape);
+                    let index = known.unwrap_or_else(|| {
+                        shapes.push(shape);
+                        out.samplers.push(Sampler::new(shape));
+                        shapes.len() - 1
+                    });
+                    Some(index as u32)
+                }
+                Position::Point(_) | Position::Near { .. } => None,
+            });
+        }
+        let fixed = |k: &u32| matches!(scenario.agents[*k as usize].start.position, Position::Point(_));
+        let all = 0..scenario.agents.len() as u32;
+        out.order = all.clone().filter(fixed).chain(all.filter(|k| !fixed(k))).collect();
+        out.barriers = scenario.scene.barriers.iter().map(|barrier| bounds(&barrier.obstacle)).collect();
+        out
+    }
+}
+
+fn bounds(obstacle: &Obstacle) -> Option<Bounds> {
+    match obstacle {
+        Obstacle::Wall(segments) => Bounds::around(segments.iter().flat_map(|s| [s.a, s.b])),
+        Obstacle::Solid(shape) => Some(shape.bounds()),
+    }
+}
+
+/// Walls and obstacles near a body.
+#[derive(Clone, Copy)]
+pub(super) struct Ground<'a> {
+    scene: &'a Scene,
+    bounds: &'a [Option<Bounds>],
+}
+
+impl<'a> Ground<'a> {
+    /// The barriers whose bounds are within `reach` of a point.
+    pub(super) fn near(self, p: Vec2, reach: f64) -> impl Iterator<Item = &'a Obstacle> {
+        let close = move |b: &Bounds| {
+            p.x > b.low.x - reach && p.x < b.high.x + reach && p.y > b.low.y - reach && p.y < b.high.y + reach
+        };
+        let pairs = self.scene.barriers.iter().zip(self.bounds);
+        pairs.filter(move |(_, b)| b.as_ref().is_some_and(close)).map(|(barrier, _)| &barrier.obstacle)
+    }
+
+    /// Smallest gap between a disc and the barriers within its reach; infinite without any.
+    fn gap(self, p: Vec2, radius: f64) -> f64 {
+        self.near(p, radius).map(|o| o.distance(p) - radius).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// Everyone placed.
+pub(super) struct Placed {
+    pub(super) positions: Vec<Vec2>,
+    /// Radii, shrunk where bodies overlapped.
+    pub(super) radii: Vec<f64>,
+    pub(super) counts: Loaded,
+}
+
+/// Places all agents of a trial.
+pub(super) fn place(
+    scenario: &Scenario,
+    starts: &Starts,
+    key: TrialKey,
+    radii: Vec<f64>,
+) -> Result<Placed, Fault> {
+    let ground = Ground { scene: &scenario.scene, bounds: &starts.barriers };
+    let mut crowd = Crowd::new(radii);
+    let mut rooms = vec![Room::Fixed; scenario.agents.len()];
+    let mut counts = Loaded::default();
+    let mut done = vec![false; scenario.agents.len()];
+    for &k in &starts.order {
+        let k = k as usize;
+        let agent = &scenario.agents[k];
+        let id = AgentId(k as u32);
+        let around;
+        let sampler = match &agent.start.position {
+            Position::Point(p) => {
+                if !(p.x.is_finite() && p.y.is_finite()) {
+                    return Err(Fault::Nowhere { agent: id });
+                }
+                crowd.put(k, *p);
+                done[k] = true;
+                continue;
+            }
+            Position::Within(shape) => {
+                rooms[k] = Room::Within(shape);
+                starts.sampler_of[k].and_then(|index| starts.samplers.get(index as usize))
+            }
+            Position::Near { agent: anchor, within } => {
+                let anchor = anchor.0 as usize;
+                if !done.get(anchor).copied().unwrap_or(false) {
+                    return Err(Fault::Order { agent: id });
+                }
+                rooms[k] = Room::Near { anchor, within: *within };
+                around = Sampler::Disc { centre: crowd.positions[anchor], radius: *within };
+                Some(&around)
+            }
+        };
+        let sampler = sampler.ok_or(Fault::Nowhere { agent: id })?;
+        let stream = Stream::of(key, agent.entity, Purpose::Placement);
+        let mut best: Option<(f64, Vec2)> = None;
+        for attempt in 0..ATTEMPTS {
+            let Some(p) = sampler.point(stream.uniform_pair(attempt)) else { break };
+            let radius = crowd.radii[k];
+            let gap = crowd.gap(k, p).min(ground.gap(p, radius));
+            if best.is_none_or(|(so_far, _)| gap > so_far) {
+                best = Some((gap, p));
+            }
+            if gap >= 0.0 {
+                break;
+            }
+        }
+        let Some((gap, p)) = best else { return Err(Fault::Nowhere { agent: id }) };
+        counts.pushed += u32::from(gap < 0.0);
+        crowd.put(k, p);
+        done[k] = true;
+    }
+    if counts.pushed > 0 {
+        relaxation::relax(&mut crowd, &rooms, ground);
+    }
+    shrink(&mut crowd, ground, &mut counts);
+    Ok(Placed { positions: crowd.positions, radii: crowd.radii, counts })
+}
+
+/// Shrinks the radii of bodies that overlap a neighbour or a barrier until they touch.
+fn shrink(crowd: &mut Crowd, ground: Ground<'_>, counts: &mut Loaded) {
+    let mut near: Vec<u32> = Vec::new();
+    for body in 0..crowd.positions.len() {
+        let p = crowd.positions[body];
+        near.clear();
+        crowd.around(body, p, |other| near.push(other as u32));
+        near.sort_unstable();
+        for other in near.iter().map(|&other| other as usize).filter(|&other| other > body) {
+            let (distance, sum) =
+                ((p - crowd.positions[other]).norm(), crowd.radii[body] + crowd.radii[other]);
+            if distance < sum {
+                let factor = distance / sum * TOUCH;
+                crowd.radii[body] *= factor;
+                crowd.radii[other] *= factor;
+                counts.shrunk_pairs += 1;
+            }
+        }
+        let radius = crowd.radii[body];
+        let room = ground.gap(p, radius) + radius;
+        // Whoever starts inside a solid does not touch it from outside: nothing helps there.
+        if room < radius && room > 0.0 {
+            crowd.radii[body] = room * TOUCH;
+            counts.shrunk_at_barriers += 1;
+        }
+    }
+}

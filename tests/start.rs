@@ -1,0 +1,329 @@
+//! The beginning of trials: draws that nobody else disturbs, places without overlaps, lanes apart.
+
+use smc::base::decimal::Decimal;
+use smc::base::geometry::{Polygon, Segment, Shape, Vec2};
+use smc::base::lanes::{LANES, Lanes, Mask};
+use smc::base::random::{Purpose, Stream, TrialKey, name_hash};
+use smc::base::tick::{Clock, Tick};
+use smc::kernel::start::{Fault, check_area, load};
+use smc::kernel::{Layout, Program, State};
+use smc::model::{
+    Agent, AgentId, Barrier, Body, Family, Goal, Law, Leg, Move, Moves, Obstacle, Particle, Position, Region,
+    RegionId, Route, Scenario, Scene, Start,
+};
+use std::sync::Arc;
+
+fn p(x: f64, y: f64) -> Vec2 {
+    Vec2::new(x, y)
+}
+
+fn uniform(low: f64, high: f64) -> Law {
+    Law::Random { family: Family::Uniform { low, high }, low, high }
+}
+
+fn body() -> Body {
+    let c = Law::Constant;
+    Body {
+        mass: uniform(60.0, 90.0),
+        radius: uniform(0.2, 0.28),
+        speed: uniform(1.0, 1.6),
+        tau: c(0.5),
+        a: c(2000.0),
+        b: c(0.08),
+        lambda: c(0.5),
+        a2: c(0.0),
+        b2: c(1.0),
+        lambda2: c(1.0),
+        k1: c(1.2e5),
+        k2: c(2.4e5),
+        noise: c(0.08),
+    }
+}
+
+fn agent(entity: u32, position: Position) -> Agent {
+    Agent {
+        name: format!("a{entity}"),
+        entity,
+        body: Arc::new(body()),
+        start: Start { position, velocity: p(0.0, 0.0) },
+        route: Route::Legs { legs: vec![Leg::To(Goal::Region(RegionId(0)))], then_leave: false },
+        group: None,
+        particle: None,
+    }
+}
+
+fn hall() -> Shape {
+    Shape::rectangle(p(8.0, 0.3), p(19.0, 3.7))
+}
+
+fn scenario(agents: Vec<Agent>) -> Scenario {
+    let wall = |a, b| Barrier { name: String::new(), obstacle: Obstacle::Wall(vec![Segment::new(a, b)]) };
+    let pillar = Obstacle::Solid(Shape::Circle { centre: p(12.0, 2.0), radius: 0.4 });
+    Scenario {
+        title: String::new(),
+        clock: Clock::Stepped(Decimal::parse("0.02").unwrap()),
+        horizon: Tick(1500),
+        scene: Scene {
+            barriers: vec![
+                wall(p(0.0, 0.0), p(20.0, 0.0)),
+                wall(p(0.0, 4.0), p(20.0, 4.0)),
+                Barrier { name: "pillar".into(), obstacle: pillar },
+            ],
+            regions: vec![Region { name: "west".into(), shape: Shape::rectangle(p(0.0, 0.0), p(1.0, 4.0)) }],
+        },
+        agents,
+        groups: Vec::new(),
+        moves: Vec::new(),
+    }
+}
+
+fn crowd(n: u32) -> Vec<Agent> {
+    let mut agents = vec![agent(1, Position::Point(p(1.0, 2.0)))];
+    agents.extend((0..n).map(|k| agent(100 + k, Position::Within(hall()))));
+    agents
+}
+
+fn key(index: u64) -> TrialKey {
+    TrialKey { seed: 42, index, branch: 0 }
+}
+
+fn empty(program: &Program) -> State {
+    State::new(program.layout, program.scenario.agents.len())
+}
+
+/// All bytes of one agent in one lane.
+fn bytes(state: &State, agent: usize, lane: usize) -> Vec<u64> {
+    let slot = state.slot(agent, lane);
+    let mut out: Vec<u64> = fields(state).iter().map(|f| f[slot.block].0[slot.lane].to_bits()).collect();
+    out.push(u64::from(state.present[slot.block].has(slot.lane)));
+    out
+}
+
+fn fields(s: &State) -> Vec<&Vec<Lanes>> {
+    vec![
+        &s.x, &s.y, &s.vx, &s.vy, &s.ex, &s.ey, &s.drive, &s.travelled, &s.speed, &s.mass, &s.radius, &s.tau,
+        &s.a, &s.b, &s.lambda, &s.a2, &s.b2, &s.lambda2, &s.k1, &s.k2, &s.noise, &s.fx, &s.fy,
+    ]
+}
+
+fn overlaps(state: &State, lane: usize) -> usize {
+    let at = |k: usize| {
+        let slot = state.slot(k, lane);
+        let of = |f: &Vec<Lanes>| f[slot.block].0[slot.lane];
+        (p(of(&state.x), of(&state.y)), of(&state.radius))
+    };
+    let all: Vec<_> = (0..state.agents).map(at).collect();
+    let mut count = 0;
+    for (i, a) in all.iter().enumerate() {
+        count += all[i + 1..].iter().filter(|b| (a.0 - b.0).norm() < a.1 + b.1).count();
+    }
+    count
+}
+
+#[test]
+fn every_number_is_drawn_from_its_address() {
+    let program = Program::new(Arc::new(scenario(crowd(5))));
+    let mut state = empty(&program);
+    load(&program, &mut state, 3, key(7), None).unwrap();
+    for (k, agent) in program.scenario.agents.iter().enumerate() {
+        let stream = Stream::of(key(7), agent.entity, Purpose::Parameter);
+        let of = |name: &str, law: &Law| law.draw(stream.uniform(name_hash(name) as u32));
+        assert_eq!(state.mass[k].0[3], of("mass", &agent.body.mass));
+        assert_eq!(state.speed[k].0[3], of("speed", &agent.body.speed));
+        assert_eq!(state.radius[k].0[3], of("radius", &agent.body.radius));
+    }
+}
+
+#[test]
+fn a_lane_is_like_any_other_and_disturbs_none() {
+    let program = Program::new(Arc::new(scenario(crowd(20))));
+    let (mut one, mut many) = (empty(&program), empty(&program));
+    load(&program, &mut one, 0, key(5), None).unwrap();
+    for lane in [2, 7, 0] {
+        load(&program, &mut many, lane, key(lane as u64 + 90), None).unwrap();
+    }
+    let before = many.clone();
+    load(&program, &mut many, 5, key(5), None).unwrap();
+    for agent in 0..21 {
+        assert_eq!(bytes(&one, agent, 0), bytes(&many, agent, 5));
+        for lane in (0..LANES).filter(|&lane| lane != 5) {
+            assert_eq!(bytes(&before, agent, lane), bytes(&many, agent, lane));
+        }
+    }
+    assert_eq!(many.occupied, Mask(0b1010_0101));
+    assert_eq!((many.keys[5], many.keys[7]), (key(5), key(97)));
+    // A used lane is as good as a new one.
+    load(&program, &mut many, 7, key(5), None).unwrap();
+    assert_eq!(many.route.way(3, 7), many.route.way(3, 5));
+    assert_eq!(bytes(&many, 3, 7), bytes(&many, 3, 5));
+}
+
+#[test]
+fn an_agent_more_and_a_move_change_nobody_elses_start() {
+    let few = Program::new(Arc::new(scenario(crowd(12))));
+    let mut more = scenario(crowd(12));
+    // In the middle of the list, far from everybody.
+    more.agents.insert(4, agent(999, Position::Point(p(5.0, 2.0))));
+    more.moves.push(Moves {
+        agent: AgentId(0),
+        duration: Tick(100),
+        options: vec![("stop".into(), Move::Stop), ("left".into(), Move::Heading(0.5))],
+    });
+    let more = Program::new(Arc::new(more));
+    for index in 0..20 {
+        let (mut a, mut b, mut c) = (empty(&few), empty(&more), empty(&more));
+        load(&few, &mut a, 0, key(index), None).unwrap();
+        load(&more, &mut b, 0, key(index), None).unwrap();
+        load(&more, &mut c, 0, key(index), Some((0, 1))).unwrap();
+        for agent in 0..13 {
+            let shifted = if agent < 4 { agent } else { agent + 1 };
+            assert_eq!(bytes(&a, agent, 0), bytes(&b, shifted, 0));
+            if agent > 0 {
+                assert_eq!(bytes(&b, shifted, 0), bytes(&c, shifted, 0));
+            }
+        }
+        assert_eq!((b.ex[0].0[0], b.drive[0].0[0]), (-1.0, 0.0), "the user starts in the region it goes to");
+        assert!(c.drive[0].0[0] > 0.9 && (c.ex[0].0[0] + smc::base::math::sin_cos(0.5).1).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn bodies_are_apart_in_their_shape_and_off_the_barriers() {
+    let program = Program::new(Arc::new(scenario(crowd(40))));
+    let mut state = empty(&program);
+    let mut means = p(0.0, 0.0);
+    for index in 0..200 {
+        let lane = index as usize % LANES;
+        let loaded = load(&program, &mut state, lane, key(index), None).unwrap();
+        assert_eq!((loaded.shrunk_pairs, loaded.shrunk_at_barriers), (0, 0));
+        assert_eq!(overlaps(&state, lane), 0);
+        for k in 1..41 {
+            let at = p(state.x[k].0[lane], state.y[k].0[lane]);
+            assert!(hall().distance(at) < 1e-9);
+            for barrier in &program.scenario.scene.barriers {
+                assert!(barrier.obstacle.distance(at) >= state.radius[k].0[lane]);
+            }
+            means += at / (200.0 * 40.0);
+        }
+    }
+    assert!((means - p(13.5, 2.0)).norm() < 0.1, "{means}");
+}
+
+#[test]
+fn a_crowded_shape_is_relaxed() {
+    // 26 discs of mean radius 0.24 on 2.6 m x 2.6 m: about 0.7 of the area, far above what throwing reaches.
+    let shape = Shape::rectangle(p(2.0, 1.0), p(4.4, 3.4));
+    let agents = (0..26).map(|k| agent(k, Position::Within(shape.clone()))).collect();
+    let program = Program::new(Arc::new(scenario(agents)));
+    let mut state = empty(&program);
+    for index in 0..20 {
+        let loaded = load(&program, &mut state, 0, key(index), None).unwrap();
+        assert!(loaded.pushed > 0);
+        assert_eq!(loaded.shrunk_pairs, 0, "trial {index}");
+        assert_eq!(overlaps(&state, 0), 0);
+        for k in 0..26 {
+            assert!(shape.distance(p(state.x[k].0[0], state.y[k].0[0])) < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn overlapping_points_shrink_to_touch() {
+    let mut agents = vec![
+        agent(1, Position::Point(p(5.0, 2.0))),
+        agent(2, Position::Point(p(5.3, 2.0))),
+        agent(3, Position::Point(p(7.0, 2.0))),
+        agent(4, Position::Point(p(16.0, 0.1))),
+    ];
+    let law = Law::Constant(0.25);
+    for agent in &mut agents {
+        agent.body = Arc::new(Body { radius: law.clone(), ..body() });
+    }
+    let program = Program::new(Arc::new(scenario(agents)));
+    let mut state = empty(&program);
+    let loaded = load(&program, &mut state, 0, key(1), None).unwrap();
+    assert_eq!((loaded.shrunk_pairs, loaded.shrunk_at_barriers, loaded.pushed), (1, 1, 0));
+    let radius = |k: usize| state.radius[k].0[0];
+    assert!((radius(0) - 0.15).abs() < 1e-12 && (radius(1) - 0.15).abs() < 1e-12);
+    assert!(radius(0) + radius(1) <= 0.3);
+    assert_eq!(radius(2), 0.25);
+    assert!((radius(3) - 0.1).abs() < 1e-12);
+}
+
+#[test]
+fn near_is_near_and_needs_its_anchor() {
+    let mut agents = crowd(8);
+    agents.push(agent(500, Position::Near { agent: AgentId(2), within: 1.5 }));
+    let program = Program::new(Arc::new(scenario(agents.clone())));
+    let mut state = empty(&program);
+    for index in 0..50 {
+        load(&program, &mut state, 0, key(index), None).unwrap();
+        let at = |k: usize| p(state.x[k].0[0], state.y[k].0[0]);
+        assert!((at(9) - at(2)).norm() <= 1.5 + 1e-9);
+        assert_eq!(overlaps(&state, 0), 0);
+    }
+    agents.swap(1, 9);
+    let program = Program::new(Arc::new(scenario(agents)));
+    let fault = load(&program, &mut state, 0, key(0), None).unwrap_err();
+    assert_eq!(fault, Fault::Order { agent: AgentId(1) });
+}
+
+#[test]
+fn a_particle_is_the_sum_of_its_persons() {
+    let mut four = agent(9, Position::Point(p(3.0, 2.0)));
+    four.particle = Some(Particle { persons: 4, repulsion: 1.0, friction: 0.0 });
+    let program = Program::new(Arc::new(scenario(vec![four.clone()])));
+    let mut state = empty(&program);
+    load(&program, &mut state, 0, key(0), None).unwrap();
+    let stream = Stream::of(key(0), 9, Purpose::Parameter);
+    let base = name_hash("mass") as u32;
+    let mass: f64 = (0..4).map(|k| four.body.mass.draw(stream.uniform(base.wrapping_add(k)))).sum();
+    assert_eq!(state.mass[0].0[0], mass);
+    assert_eq!((state.a[0].0[0], state.noise[0].0[0]), (8000.0, 0.04));
+    assert_eq!((state.k1[0].0[0], state.k2[0].0[0]), (1.2e5, 2.4e5));
+}
+
+#[test]
+fn impossible_parameters_are_faults_and_leave_the_state_alone() {
+    let mut bad = agent(9, Position::Point(p(3.0, 2.0)));
+    bad.body = Arc::new(Body { tau: Law::Constant(0.0), ..body() });
+    let program = Program::new(Arc::new(scenario(vec![bad])));
+    let mut state = empty(&program);
+    let before = state.clone();
+    let fault = load(&program, &mut state, 0, key(0), None).unwrap_err();
+    assert_eq!(fault, Fault::Parameter { agent: AgentId(0), name: "tau", value: 0.0 });
+    assert_eq!(state, before);
+    let fault = load(&program, &mut state, 0, key(0), Some((0, 0))).unwrap_err();
+    assert_eq!(fault, Fault::Advice { declaration: 0, option: 0 });
+}
+
+#[test]
+fn a_large_crowd_has_its_own_layout_and_no_overlaps() {
+    let shape = Shape::rectangle(p(0.0, 10.0), p(40.0, 40.0));
+    let agents = (0..1000).map(|k| agent(k, Position::Within(shape.clone()))).collect();
+    let program = Program::new(Arc::new(scenario(agents)));
+    assert_eq!(program.layout, Layout::Agents);
+    let mut state = empty(&program);
+    let loaded = load(&program, &mut state, 0, key(0), None).unwrap();
+    assert_eq!((loaded.shrunk_pairs, overlaps(&state, 0)), (0, 0));
+    assert!(state.present[..1000 / LANES].iter().all(|&mask| mask == Mask::ALL));
+    assert_eq!(state.occupied, Mask::lane(0));
+}
+
+#[test]
+fn only_what_cannot_fit_is_refused() {
+    assert_eq!(check_area(&scenario(crowd(100))), []);
+    let too_many = check_area(&scenario(crowd(260)));
+    assert_eq!(too_many.len(), 1);
+    assert_eq!(too_many[0].agents.len(), 260);
+    assert!(too_many[0].bodies > 0.84 * too_many[0].free);
+    // One body fits into a shape smaller than itself, two do not.
+    let tiny = Shape::Circle { centre: p(5.0, 2.0), radius: 0.05 };
+    let alone = vec![agent(1, Position::Within(tiny.clone()))];
+    assert_eq!(check_area(&scenario(alone.clone())), []);
+    let two = vec![alone[0].clone(), agent(2, Position::Within(tiny))];
+    assert_eq!(check_area(&scenario(two)).len(), 1);
+    // Inside an obstacle nobody fits.
+    let inside = Shape::Polygon(Polygon::rectangle(p(11.95, 1.95), p(12.05, 2.05)));
+    assert_eq!(check_area(&scenario(vec![agent(1, Position::Within(inside))])).len(), 1);
+}
