@@ -119,6 +119,11 @@ impl Code {
         machine::collect(self, state, readings);
     }
 
+    /// Whether some atom or signal can lack a value: a mean or centroid of a set that may be empty.
+    pub const fn may_be_unresolved(&self) -> bool {
+        self.unresolved.is_some()
+    }
+
     /// The same code for the plainest vectors of the machine: the same bits, slower.
     pub fn at_baseline(mut self) -> Self {
         self.level = Level::baseline();

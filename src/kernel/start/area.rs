@@ -67,7 +67,8 @@ pub fn check_area(scenario: &Scenario) -> Vec<Crowding> {
     let mut groups: Vec<(&Shape, Vec<AgentId>, f64, f64)> = Vec::new();
     for (k, agent) in scenario.agents.iter().enumerate() {
         let Position::Within(shape) = &agent.start.position else { continue };
-        let square = mean_square(&agent.body.radius);
+        let wider = agent.particle.map_or(1.0, |particle| particle.radius_factor);
+        let square = mean_square(&agent.body.radius) * wider * wider;
         let index = groups.iter().rposition(|group| group.0 == shape).unwrap_or_else(|| {
             groups.push((shape, Vec::new(), 0.0, 0.0));
             groups.len() - 1

@@ -1,0 +1,239 @@
+//! What decided a trial: the atom, and the agents in it.
+
+use super::subject::Subject;
+use crate::compile::study::Root;
+use crate::kernel::{Code, Readings, State};
+use crate::logic::explain::{Reason, explain};
+use crate::model::{AgentId, Bool, Num, Place, Scenario, Set, Who};
+
+/// Truth values and numbers of the states of one trial.
+#[derive(Default)]
+pub(super) struct Record {
+    atoms: Vec<Vec<bool>>,
+    signals: Vec<Vec<f64>>,
+}
+
+impl Record {
+    /// Keeps what was read of lane 0.
+    pub(super) fn push(&mut self, readings: &Readings) {
+        self.atoms.push(readings.atoms.iter().map(|mask| mask.has(0)).collect());
+        self.signals.push(readings.signals.iter().map(|lanes| lanes.0[0]).collect());
+    }
+}
+
+/// How many agents are named at most.
+const NAMED: usize = 3;
+
+/// What decided a trial at `decided`, in words; empty where nothing in particular did.
+pub(super) fn reasons(
+    subject: &Subject,
+    column: usize,
+    record: &Record,
+    decided: u64,
+    state_at: impl Fn(u64) -> Option<State>,
+) -> String {
+    let Root::Formula(root) = subject.columns[column] else { return String::new() };
+    let atoms = |atom: crate::logic::AtomId, at: u64| record.atoms.get(at as usize).is_some_and(|row| row[atom.0 as usize]);
+    let signals = |signal: crate::logic::SignalId, at: u64| {
+        record.signals.get(at as usize).map_or(f64::NAN, |row| row[signal.0 as usize])
+    };
+    let clock = subject.program.scenario.clock;
+    let Ok(reasons) = explain(&subject.tree, root, &atoms, &signals, subject.horizon, decided, clock) else {
+        return String::new();
+    };
+    // The last reason in time is the one that closed the case.
+    let Some(reason) = reasons.iter().max_by_key(|reason| reason.at()) else { return String::new() };
+    describe(subject, reason, state_at)
+}
+
+fn describe(subject: &Subject, reason: &Reason, state_at: impl Fn(u64) -> Option<State>) -> String {
+    match reason {
+        Reason::Atom { atom, truth, at } => {
+            let Some(text) = subject.atom_texts.get(atom.0 as usize) else { return String::new() };
+            let word = if *truth { "holds" } else { "fails" };
+            let who = state_at(*at).map_or_else(Vec::new, |state| blamed(subject, &subject.atoms()[atom.0 as usize], *truth, &state));
+            let names: Vec<&str> = who
+                .iter()
+                .filter_map(|id| subject.program.scenario.agents.get(id.0 as usize))
+                .map(|agent| agent.name.as_str())
+                .collect();
+            if names.is_empty() { format!("`{text}` {word}") } else { format!("`{text}` {word}: {}", names.join(", ")) }
+        }
+        Reason::Compare { x, y, .. } => format!("the compared numbers are {} and {}", super::words::number(*x), super::words::number(*y)),
+    }
+}
+
+/// The agents that make an atom true or false in a state.
+fn blamed(subject: &Subject, atom: &Bool, truth: bool, state: &State) -> Vec<AgentId> {
+    let mut search = Search { subject, state, found: Vec::new() };
+    search.walk(atom, truth);
+    search.found.truncate(NAMED);
+    search.found
+}
+
+struct Search<'s> {
+    subject: &'s Subject,
+    state: &'s State,
+    found: Vec<AgentId>,
+}
+
+impl Search<'_> {
+    fn holds(&self, atom: &Bool) -> bool {
+        let scenario: &Scenario = &self.subject.program.scenario;
+        let code = Code::compile(scenario, std::slice::from_ref(atom), &[]);
+        let mut readings = Readings::default();
+        code.run(&self.subject.program, self.state, &mut readings);
+        readings.atoms.first().is_some_and(|mask| mask.has(0))
+    }
+
+    fn name(&mut self, id: AgentId) {
+        if !self.found.contains(&id) {
+            self.found.push(id);
+        }
+    }
+
+    fn members(set: &Set) -> Vec<AgentId> {
+        let out = match set.except {
+            Some(Who::Agent(id)) => Some(id),
+            _ => None,
+        };
+        set.members.iter().copied().filter(|id| Some(*id) != out).collect()
+    }
+
+    fn walk(&mut self, atom: &Bool, truth: bool) {
+        match atom {
+            Bool::Constant(_) => {}
+            Bool::Not(inner) => self.walk(inner, !truth),
+            Bool::And(list) | Bool::Or(list) => {
+                for part in list {
+                    if self.holds(part) == truth {
+                        self.walk(part, truth);
+                        // A false conjunct, or a true disjunct, is enough.
+                        if matches!(atom, Bool::And(_)) != truth {
+                            break;
+                        }
+                    }
+                }
+            }
+            Bool::Forall(set, body) | Bool::Exists(set, body) => {
+                if matches!(atom, Bool::Forall(..)) == truth {
+                    return;
+                }
+                for id in Self::members(set) {
+                    let one = instantiate_bool(body, 0, id);
+                    if self.holds(&one) == truth {
+                        self.name(id);
+                        self.walk(&one, truth);
+                        if self.found.len() >= NAMED {
+                            return;
+                        }
+                    }
+                }
+            }
+            Bool::Compare(_, a, b) => {
+                self.extremum(a);
+                self.extremum(b);
+            }
+            Bool::In(Who::Agent(id), _) => self.name(*id),
+            Bool::Contact(Who::Agent(id)) => {
+                let id = *id;
+                self.name(id);
+                for other in 0..self.subject.program.scenario.agents.len() as u32 {
+                    let other = AgentId(other);
+                    if truth && other != id && self.holds(&Bool::Touching(Who::Agent(id), Who::Agent(other))) {
+                        self.name(other);
+                    }
+                }
+            }
+            Bool::Touching(Who::Agent(a), Who::Agent(b)) => {
+                self.name(*a);
+                self.name(*b);
+            }
+            Bool::In(..) | Bool::Contact(_) | Bool::Touching(..) => {}
+        }
+    }
+
+    /// The member with the smallest or largest value of a fold names itself.
+    fn extremum(&mut self, num: &Num) {
+        let Num::Fold(fold, set, body) = num else { return };
+        let smallest = match fold {
+            crate::model::Fold::Min => true,
+            crate::model::Fold::Max => false,
+            crate::model::Fold::Sum | crate::model::Fold::Mean => return,
+        };
+        let members = Self::members(set);
+        let values: Vec<Num> = members.iter().map(|id| instantiate_num(body, 0, *id)).collect();
+        let code = Code::compile(&self.subject.program.scenario, &[], &values);
+        let mut readings = Readings::default();
+        code.run(&self.subject.program, self.state, &mut readings);
+        let value = |k: &usize| readings.signals[*k].0[0];
+        let best = (0..members.len()).min_by(|a, b| {
+            let (a, b) = if smallest { (value(a), value(b)) } else { (value(b), value(a)) };
+            a.total_cmp(&b)
+        });
+        if let Some(best) = best {
+            self.name(members[best]);
+        }
+    }
+}
+
+/// The running agent of `depth` becomes a fixed one; deeper ones move up a place.
+fn who(who: Who, depth: u32, id: AgentId) -> Who {
+    match who {
+        Who::Running(n) if n == depth => Who::Agent(id),
+        Who::Running(n) if n > depth => Who::Running(n - 1),
+        other => other,
+    }
+}
+
+fn set(from: &Set, depth: u32, id: AgentId) -> Set {
+    Set { members: from.members.clone(), except: from.except.map(|w| who(w, depth, id)) }
+}
+
+fn place(from: &Place, depth: u32, id: AgentId) -> Place {
+    match from {
+        Place::Agent(w) => Place::Agent(who(*w, depth, id)),
+        Place::Point(x, y) => {
+            Place::Point(Box::new(instantiate_num(x, depth, id)), Box::new(instantiate_num(y, depth, id)))
+        }
+        Place::Centroid(s) => Place::Centroid(set(s, depth, id)),
+        Place::Region(_) | Place::Barrier(_) => from.clone(),
+    }
+}
+
+fn instantiate_num(num: &Num, depth: u32, id: AgentId) -> Num {
+    let n = |inner: &Num| Box::new(instantiate_num(inner, depth, id));
+    let b = |inner: &Bool| Box::new(instantiate_bool(inner, depth, id));
+    match num {
+        Num::Constant(_) | Num::Time => num.clone(),
+        Num::Of(field, w) => Num::Of(*field, who(*w, depth, id)),
+        Num::Coordinate(axis, p) => Num::Coordinate(*axis, place(p, depth, id)),
+        Num::MeanVelocity(axis, s) => Num::MeanVelocity(*axis, set(s, depth, id)),
+        Num::Distance(p, q) => Num::Distance(place(p, depth, id), place(q, depth, id)),
+        Num::Clearance(w) => Num::Clearance(who(*w, depth, id)),
+        Num::TimeToCollision(v, w) => Num::TimeToCollision(who(*v, depth, id), who(*w, depth, id)),
+        Num::Spread(s) => Num::Spread(set(s, depth, id)),
+        Num::Apply(function, x) => Num::Apply(*function, n(x)),
+        Num::Combine(op, x, y) => Num::Combine(*op, n(x), n(y)),
+        Num::Fold(fold, s, body) => Num::Fold(*fold, set(s, depth, id), n(body)),
+        Num::Count(s, body) => Num::Count(set(s, depth, id), b(body)),
+        Num::If(c, x, y) => Num::If(b(c), n(x), n(y)),
+    }
+}
+
+fn instantiate_bool(truth: &Bool, depth: u32, id: AgentId) -> Bool {
+    let n = |inner: &Num| Box::new(instantiate_num(inner, depth, id));
+    let b = |inner: &Bool| instantiate_bool(inner, depth, id);
+    match truth {
+        Bool::Constant(_) => truth.clone(),
+        Bool::Compare(op, x, y) => Bool::Compare(*op, n(x), n(y)),
+        Bool::Not(inner) => Bool::Not(Box::new(b(inner))),
+        Bool::And(list) => Bool::And(list.iter().map(b).collect()),
+        Bool::Or(list) => Bool::Or(list.iter().map(b).collect()),
+        Bool::In(w, region) => Bool::In(who(*w, depth, id), *region),
+        Bool::Contact(w) => Bool::Contact(who(*w, depth, id)),
+        Bool::Touching(v, w) => Bool::Touching(who(*v, depth, id), who(*w, depth, id)),
+        Bool::Forall(s, body) => Bool::Forall(set(s, depth, id), Box::new(b(body))),
+        Bool::Exists(s, body) => Bool::Exists(set(s, depth, id), Box::new(b(body))),
+    }
+}
