@@ -20,6 +20,8 @@ use std::collections::BTreeMap;
 
 /// Most positions that all tracks may hold together.
 const MOST_STATES: u64 = 1 << 24;
+/// Longest horizon: sums of positions and bounds stay far from the largest number.
+const LONGEST_HORIZON: u64 = 1 << 40;
 /// Most cells.
 const MOST_CELLS: usize = 1 << 18;
 
@@ -132,6 +134,9 @@ impl Plan {
     pub(super) fn new(tree: &Tree, root: Part, horizon: Tick, clock: Clock) -> Result<Self, Invalid> {
         if clock == Clock::Jumps {
             return Err(Invalid::NoSteps);
+        }
+        if horizon.0 > LONGEST_HORIZON {
+            return Err(Invalid::TooLong { horizon: horizon.0, limit: LONGEST_HORIZON });
         }
         let order = children_first(tree, root)?;
         let (needed, _) = last_state(tree, root, Some(horizon))?;
