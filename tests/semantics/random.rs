@@ -13,7 +13,7 @@ const SIGNALS: usize = 2;
 
 /// A formula or number before it is put into a tree.
 #[derive(Clone, Debug)]
-enum Sketch {
+pub(crate) enum Sketch {
     Constant(bool),
     Atom(u32),
     Compare(u8, Box<Sketch>, Box<Sketch>),
@@ -32,7 +32,7 @@ enum Sketch {
 }
 
 impl Sketch {
-    fn node(&self, tree: &mut Tree) -> NodeId {
+    pub(crate) fn node(&self, tree: &mut Tree) -> NodeId {
         let w =
             |(from, to): &(u64, Option<u64>)| Window { from: Tick(*from), to: to.map(|to| Tick(from + to)) };
         let node = match self {
@@ -115,7 +115,7 @@ impl Sketch {
         }
     }
 
-    fn formula(depth: u32, numbers: bool, endless: bool) -> BoxedStrategy<Sketch> {
+    pub(crate) fn formula(depth: u32, numbers: bool, endless: bool) -> BoxedStrategy<Sketch> {
         let atom = prop_oneof![
             20 => (0..ATOMS as u32).prop_map(Sketch::Atom),
             1 => any::<bool>().prop_map(Sketch::Constant),
@@ -233,7 +233,15 @@ enum Root {
 /// What the definition says, and at which state.
 fn expected(tree: &Tree, root: Root, trial: &Trial, horizon: u64, seconds: f64) -> (u64, bool, f64) {
     for seen in 1..=horizon + 1 {
-        let prefix = Prefix { tree, atoms: &trial.atoms, signals: &trial.signals, seen, horizon, seconds };
+        let prefix = Prefix {
+            tree,
+            atoms: &trial.atoms,
+            signals: &trial.signals,
+            seen,
+            horizon,
+            seconds,
+            known: None,
+        };
         match root {
             Root::Formula(node) => {
                 if let Some(verdict) = prefix.truth(node, 0) {
