@@ -40,6 +40,14 @@ pub enum Invalid {
         /// Most stored states.
         limit: u64,
     },
+    /// A horizon that no trial ever reaches.
+    #[error("the horizon of {horizon} steps is longer than {limit} steps")]
+    TooLong {
+        /// Last state of a trial.
+        horizon: u64,
+        /// Longest horizon.
+        limit: u64,
+    },
     /// The clock has no steps.
     #[error("a clock without steps has no states to count")]
     NoSteps,

@@ -2,13 +2,17 @@
 //!
 //! The logic reads truth values and numbers of each state by index; it knows nothing of people.
 
+pub mod explain;
 pub mod formula;
 pub mod invalid;
 pub mod monitor;
+pub mod offline;
 mod reach;
 
+pub use explain::{Explanation, Reason, explain};
 pub use formula::{
     Aggregation, AtomId, Node, NodeId, Operation, Relation, SignalId, Term, TermId, Tree, Window,
 };
 pub use invalid::Invalid;
 pub use monitor::{Antecedent, Monitor};
+pub use offline::Recording;

@@ -50,7 +50,8 @@ fn check(tree: &Tree, root: NodeId, atoms: usize, length: usize) -> usize {
     let traces: Vec<_> = all_traces(atoms, length).collect();
     for eight in traces.chunks(LANES) {
         for (trace, (verdict, index)) in eight.iter().zip(monitored(tree, root, horizon, eight)) {
-            let prefix = |seen| Prefix { tree, atoms: trace, signals: &[], seen, horizon, seconds: 1.0 };
+            let prefix =
+                |seen| Prefix { tree, atoms: trace, signals: &[], seen, horizon, seconds: 1.0, known: None };
             let context = || format!("{:?} of {:?} on {trace:?}", root, tree.nodes);
             assert_eq!(prefix(index + 1).truth(root, 0), Some(verdict), "{}", context());
             assert_eq!(holds(tree, root, trace, 0, horizon), verdict, "{}", context());

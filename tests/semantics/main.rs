@@ -4,3 +4,4 @@ mod exhaustive;
 mod random;
 mod reference;
 mod rows;
+mod whole;

@@ -18,6 +18,8 @@ pub(crate) struct Prefix<'a> {
     pub(crate) seen: u64,
     pub(crate) horizon: u64,
     pub(crate) seconds: f64,
+    /// If given, no other atoms are known than these at these states.
+    pub(crate) known: Option<&'a dyn Fn(u32, u64) -> bool>,
 }
 
 /// All true, some false, else open.
@@ -66,7 +68,10 @@ impl Prefix<'_> {
     pub(crate) fn truth(&self, node: NodeId, at: u64) -> Option<bool> {
         match &self.tree.nodes[node.0 as usize] {
             Node::Constant(value) => Some(*value),
-            Node::Atom(AtomId(k)) => (at < self.seen).then(|| self.atoms[*k as usize][at as usize]),
+            Node::Atom(AtomId(k)) => {
+                let known = at < self.seen && self.known.is_none_or(|known| known(*k, at));
+                known.then(|| self.atoms[*k as usize][at as usize])
+            }
             Node::Compare(relation, x, y) => self.compare(*relation, *x, *y, at),
             Node::Not(x) => self.truth(*x, at).map(|v| !v),
             Node::And(parts) => all(parts.iter().map(|x| self.truth(*x, at))),

@@ -2,6 +2,8 @@
 
 use super::cell::{Cell, Context, Machine, Ref, events, planes, truth};
 use super::numbers;
+use super::track::Track;
+use crate::logic::formula::Relation;
 
 pub(super) fn step(cell: &mut Cell, before: &[Cell], cx: &Context) {
     match &cell.machine {
@@ -27,7 +29,7 @@ pub(super) fn step(cell: &mut Cell, before: &[Cell], cx: &Context) {
                 (cell.t, cell.f) = (known & t, known & !t);
             }
         }
-        Machine::AnyLate(children) => {
+        Machine::AnyLate { children, cut } => {
             let track = &mut cell.track;
             track.begin(cx.now, !cell.live, cell.need);
             for child in children {
@@ -46,6 +48,9 @@ pub(super) fn step(cell: &mut Cell, before: &[Cell], cx: &Context) {
                         track.settle(at, cx.now, t, f);
                     }
                 }
+            }
+            if *cut && cx.ending != 0 {
+                cut_off(track, before, children, cx);
             }
         }
         Machine::CompareLate(relation, x, y) => {
@@ -71,10 +76,26 @@ pub(super) fn step(cell: &mut Cell, before: &[Cell], cx: &Context) {
     }
 }
 
+/// At the horizon, children beyond it are false.
+fn cut_off(track: &mut Track, before: &[Cell], children: &[Ref], cx: &Context) {
+    let furthest = children.iter().map(|child| child.ahead).max().unwrap_or(0);
+    for at in cx.now.saturating_sub(furthest)..=cx.now {
+        let mut f = track.open(at, cx.now) & cx.ending;
+        for child in children {
+            if at + child.ahead <= cx.now {
+                f &= planes(before, *child, at, cx.now).1;
+            }
+        }
+        if f != 0 {
+            track.settle(at, cx.now, 0, f);
+        }
+    }
+}
+
 fn compare_late(
-    track: &mut super::track::Track,
+    track: &mut Track,
     before: &[Cell],
-    (relation, x, y): (crate::logic::formula::Relation, Ref, Ref),
+    (relation, x, y): (Relation, Ref, Ref),
     at: u64,
     now: u64,
 ) {

@@ -67,10 +67,10 @@ pub(super) enum Machine {
     Scan { first: Option<Ref>, second: Ref },
     /// Finally, from the only position on, over a late child: false once all states are.
     Count { child: Ref, states: u64, left: [u64; LANES] },
-    /// Finally at many positions over a child that settles in order.
-    Slide { child: Ref, width: u64 },
-    /// Any, at many positions.
-    AnyLate(Box<[Ref]>),
+    /// Finally at many positions over a child that settles in order; perhaps the horizon cuts windows.
+    Slide { child: Ref, width: u64, cut: bool },
+    /// Any, at many positions; perhaps with children beyond the horizon, which are false.
+    AnyLate { children: Box<[Ref]>, cut: bool },
     /// Until without a bound, at many positions.
     Chain { first: Option<Ref>, second: Ref },
     /// Comparison at many positions.
@@ -256,7 +256,7 @@ impl Cell {
             }
             Machine::Capture(_)
             | Machine::AnyHeld(_)
-            | Machine::AnyLate(_)
+            | Machine::AnyLate { .. }
             | Machine::CompareHeld(..)
             | Machine::CompareLate(..)
             | Machine::Watch(_) => boolean::step(self, before, cx),
@@ -301,7 +301,9 @@ impl Cell {
     /// Bytes, on the heap too.
     pub(super) fn bytes(&self) -> usize {
         let own = match &self.machine {
-            Machine::AnyNow(all) | Machine::AnyHeld(all) | Machine::AnyLate(all) => size_of_val(&**all),
+            Machine::AnyNow(all) | Machine::AnyHeld(all) | Machine::AnyLate { children: all, .. } => {
+                size_of_val(&**all)
+            }
             Machine::TimeLate { ticks, .. } => ticks.bytes(),
             _ => 0,
         };

@@ -31,14 +31,30 @@ pub(super) fn step(cell: &mut Cell, before: &[Cell], cx: &Context) {
                 }
             }
         }
-        Machine::Slide { child, width } => {
+        Machine::Slide { child, width, cut } => {
             cell.track.begin(cx.now, !cell.live, cell.need);
             for (at, t, f) in events(before, *child, cx.now) {
                 slide(&mut cell.track, cx.now, *width, at, t, f);
             }
+            if *cut && cx.ending != 0 {
+                cut_off(&mut cell.track, cx);
+            }
             cell.track.ascend();
         }
         _ => {}
+    }
+}
+
+/// At the horizon what is still open never comes.
+fn cut_off(track: &mut Track, cx: &Context) {
+    let mut at = cx.now;
+    loop {
+        let never = track.open(at, cx.now) & cx.ending;
+        if never == 0 {
+            return;
+        }
+        track.settle(at, cx.now, 0, never);
+        at = at.wrapping_sub(1);
     }
 }
 

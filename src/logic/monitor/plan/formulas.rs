@@ -179,11 +179,11 @@ impl Builder<'_> {
                 let held = children.into_iter().map(|child| self.held(child, lo)).collect();
                 Made::Of(self.answer(Machine::AnyHeld(held), (lo, lo), self.horizon, false))
             }
-            _ => Made::Of(self.any_late(&children, lo, hi)),
+            _ => Made::Of(self.any_late(&children, lo, hi, false)),
         }
     }
 
-    fn any_late(&mut self, children: &[Ref], lo: u64, hi: u64) -> Ref {
+    fn any_late(&mut self, children: &[Ref], lo: u64, hi: u64, cut: bool) -> Ref {
         let ahead = children.iter().map(|child| child.ahead).min().unwrap_or(0);
         let (lo, hi) = (lo + ahead, hi + ahead);
         let children: Box<[Ref]> =
@@ -193,10 +193,11 @@ impl Builder<'_> {
             self.touch(child, (lo, hi));
             self.keep(child, latency);
         }
-        later(self.late(Machine::AnyLate(children), (lo, hi), latency, false, false), ahead)
+        later(self.late(Machine::AnyLate { children, cut }, (lo, hi), latency, false, false), ahead)
     }
 
-    /// The child holds at some state of the window that begins `from` after each of `lo ..= hi`.
+    /// The child holds at some state of the window that begins `from` after each of `lo ..= hi`; a window
+    /// that reaches beyond the horizon ends there.
     pub(super) fn some_state(
         &mut self,
         child: Made<bool>,
@@ -214,7 +215,8 @@ impl Builder<'_> {
         let ahead = from.0 + child.ahead;
         let (lo, hi) = (lo + ahead, hi + ahead);
         let child = Ref { ahead: 0, ..child };
-        let reach = width.map_or(self.horizon, |width| hi + width);
+        let reach = width.map_or(self.horizon, |width| (hi + width).min(self.horizon));
+        let cut = width.is_some_and(|width| hi + width > self.horizon);
         self.touch(child, (lo, reach));
         let delay = self.delay(child);
         if lo == hi {
@@ -235,23 +237,23 @@ impl Builder<'_> {
             }
             Some(width) if self.facts[child.cell].in_order => {
                 let latency = width.saturating_add(delay);
-                self.late(Machine::Slide { child, width }, (lo, hi), latency, true, false)
+                self.late(Machine::Slide { child, width, cut }, (lo, hi), latency, true, false)
             }
-            Some(width) => self.doubled(child, width, lo, hi),
+            Some(width) => self.doubled(child, width, (lo, hi), cut),
         };
         Made::Of(later(cell, ahead))
     }
 
     /// Finally over a child that settles out of order: windows of 2, 4, 8, … states, each of two of the
     /// last size, so that a change costs the logarithm of the width.
-    fn doubled(&mut self, child: Ref, width: u64, lo: u64, hi: u64) -> Ref {
+    fn doubled(&mut self, child: Ref, width: u64, (lo, hi): (u64, u64), cut: bool) -> Ref {
         let states = width + 1;
         let (mut size, mut half) = (1, child);
         while size * 2 <= states {
-            half = self.any_late(&[half, later(half, size)], lo, hi + states - 2 * size);
+            half = self.any_late(&[half, later(half, size)], lo, hi + states - 2 * size, cut);
             size *= 2;
         }
-        if size == states { half } else { self.any_late(&[half, later(half, states - size)], lo, hi) }
+        if size == states { half } else { self.any_late(&[half, later(half, states - size)], lo, hi, cut) }
     }
 
     fn side(&mut self, side: Side, lo: u64, hi: u64) -> Result<Made<bool>, Invalid> {

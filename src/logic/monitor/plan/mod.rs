@@ -20,6 +20,8 @@ use std::collections::BTreeMap;
 
 /// Most positions that all tracks may hold together.
 const MOST_STATES: u64 = 1 << 24;
+/// Longest horizon: sums of positions and bounds stay far from the largest number.
+const LONGEST_HORIZON: u64 = 1 << 40;
 /// Most cells.
 const MOST_CELLS: usize = 1 << 18;
 
@@ -118,6 +120,8 @@ struct Builder<'t> {
     tree: &'t Tree,
     clock: Clock,
     horizon: u64,
+    /// The state at which everything is decided, if that does not depend on the horizon.
+    end: Option<u64>,
     cells: Vec<Cell>,
     facts: Vec<Facts>,
     present: BTreeMap<NowKey, usize>,
@@ -133,8 +137,11 @@ impl Plan {
         if clock == Clock::Jumps {
             return Err(Invalid::NoSteps);
         }
+        if horizon.0 > LONGEST_HORIZON {
+            return Err(Invalid::TooLong { horizon: horizon.0, limit: LONGEST_HORIZON });
+        }
         let order = children_first(tree, root)?;
-        let (needed, _) = last_state(tree, root, Some(horizon))?;
+        let (needed, endless) = last_state(tree, root, Some(horizon))?;
         if needed > horizon {
             return Err(Invalid::BeyondHorizon { needed: needed.0, horizon: horizon.0 });
         }
@@ -142,6 +149,7 @@ impl Plan {
             tree,
             clock,
             horizon: horizon.0,
+            end: if endless { None } else { Some(needed.0) },
             cells: Vec::new(),
             facts: Vec::new(),
             present: BTreeMap::new(),
@@ -293,7 +301,10 @@ impl Builder<'_> {
         if needed > MOST_STATES {
             return Err(Invalid::TooLarge { needed, limit: MOST_STATES });
         }
-        let mut turns = vec![(self.horizon, Turn::Horizon, usize::MAX)];
+        let mut turns = Vec::new();
+        if self.end.is_none() {
+            turns.push((self.horizon, Turn::Horizon, usize::MAX));
+        }
         for (k, (cell, facts)) in self.cells.iter_mut().zip(&self.facts).enumerate() {
             if let Some(kept) = facts.kept {
                 cell.track = Track::new(states(kept) as usize, facts.place != Place::Now);
@@ -310,7 +321,7 @@ impl Builder<'_> {
                 turns.push((hi + 1, Turn::Past, k));
             }
         }
-        turns.retain(|turn| turn.0 <= self.horizon);
+        turns.retain(|turn| turn.0 <= self.end.unwrap_or(self.horizon));
         for cell in &mut self.cells {
             cell.start(0xff);
         }

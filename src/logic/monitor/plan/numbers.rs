@@ -87,14 +87,10 @@ impl Builder<'_> {
                 let child = self.against(relation, *x, c, below.lo, below.hi)?;
                 Ok(!self.some_state(!child, w.from, below.width, lo, hi))
             }
-            (Term::TimeUntil(goal), Less | AtMost) if !c.is_nan() => {
-                let made = self.in_time(relation, *goal, c, lo, hi)?;
-                made.map_or_else(|| self.against_number(relation, x, c, lo, hi), Ok)
-            }
+            (Term::TimeUntil(goal), Less | AtMost) if !c.is_nan() => self.in_time(relation, *goal, c, lo, hi),
             (Term::TimeUntil(goal), Greater | AtLeast) if !c.is_nan() => {
                 let opposite = if relation == Greater { AtMost } else { Less };
-                let made = self.in_time(opposite, *goal, c, lo, hi)?;
-                made.map_or_else(|| self.against_number(relation, x, c, lo, hi), |made| Ok(!made))
+                Ok(!self.in_time(opposite, *goal, c, lo, hi)?)
             }
             _ => self.against_number(relation, x, c, lo, hi),
         }
@@ -113,8 +109,7 @@ impl Builder<'_> {
         Ok(Made::Of(self.compared(relation, x, c, lo, hi)))
     }
 
-    /// `time until goal < c` or `<= c` as finally within the ticks that fulfil it. `None` where that
-    /// window would be cut by the horizon at some positions only.
+    /// `time until goal < c` or `<= c` as finally within the ticks that fulfil it, up to the horizon.
     fn in_time(
         &mut self,
         relation: Relation,
@@ -122,13 +117,13 @@ impl Builder<'_> {
         c: f64,
         lo: u64,
         hi: u64,
-    ) -> Result<Option<Made<bool>>, Invalid> {
+    ) -> Result<Made<bool>, Invalid> {
         let fulfils = |ticks: u64| holds(relation, self.clock.seconds(Tick(ticks)), c);
         if holds(relation, f64::INFINITY, c) {
-            return Ok(Some(Made::Constant(true)));
+            return Ok(Made::Constant(true));
         }
         if !fulfils(0) {
-            return Ok(Some(Made::Constant(false)));
+            return Ok(Made::Constant(false));
         }
         // The last tick that fulfils it, by bisection.
         let (mut within, mut beyond) = (0, self.horizon - lo + 1);
@@ -140,17 +135,10 @@ impl Builder<'_> {
                 beyond = middle;
             }
         }
-        let to = if within == self.horizon - lo {
-            None
-        } else if hi + within <= self.horizon {
-            Some(Tick(within))
-        } else {
-            return Ok(None);
-        };
-        let window = Window { from: Tick(0), to };
-        let below = self.stretch(window, lo, hi);
-        let child = self.formula(goal, below.lo, below.hi)?;
-        Ok(Some(self.some_state(child, Tick(0), below.width, lo, hi)))
+        // Windows of the later positions may be cut; if all are, there is no bound.
+        let width = (lo + within < self.horizon || lo == self.horizon).then_some(within);
+        let child = self.formula(goal, lo, self.horizon.min(hi.saturating_add(within)))?;
+        Ok(self.some_state(child, Tick(0), width, lo, hi))
     }
 
     fn compared(&mut self, relation: Relation, x: Ref, y: Ref, lo: u64, hi: u64) -> Ref {
