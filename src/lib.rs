@@ -4,6 +4,7 @@
 //! The floors, low to high, are described in `ARCHITECTURE.md` and held by `tests/floors.rs`.
 
 pub mod base;
+pub mod cli;
 pub mod compile;
 pub mod data;
 pub mod engine;

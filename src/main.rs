@@ -1,2 +1,7 @@
 //! The command line; it only dispatches.
-fn main() {}
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    smc::cli::run()
+}

@@ -91,6 +91,9 @@ pub(super) struct Check {
     /// Format of the results on standard output.
     #[arg(long, value_enum, default_value_t = OutputFormat::Text)]
     pub(super) format: OutputFormat,
+    /// Also write a self-contained HTML page with charts.
+    #[arg(long, value_name = "FILE.html")]
+    pub(super) report: Option<PathBuf>,
     /// Ask only this query: the name of its property, or its number. May be given several times.
     #[arg(long, value_name = "NAME")]
     pub(super) only: Vec<String>,

@@ -46,7 +46,7 @@ impl<'p> Walk<'p> {
             advice,
             last,
             state: State::new(program.layout, program.scenario.agents.len()),
-            scratch: Scratch::new(program),
+            scratch: Scratch::new(),
             trial: arguments.trial,
             agent: 0,
             running: false,

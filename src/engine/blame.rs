@@ -3,7 +3,7 @@
 use super::subject::Subject;
 use crate::compile::study::Root;
 use crate::kernel::{Code, Readings, State};
-use crate::logic::explain::{Reason, explain};
+use crate::logic::{AtomId, Node, Reason, Recording, SignalId, explain};
 use crate::model::{AgentId, Bool, Num, Place, Scenario, Set, Who};
 
 /// Truth values and numbers of the states of one trial.
@@ -29,29 +29,35 @@ pub(super) fn reasons(
     subject: &Subject,
     column: usize,
     record: &Record,
-    decided: u64,
     state_at: impl Fn(u64) -> Option<State>,
 ) -> String {
     let Root::Formula(root) = subject.columns[column] else { return String::new() };
-    let atoms = |atom: crate::logic::AtomId, at: u64| record.atoms.get(at as usize).is_some_and(|row| row[atom.0 as usize]);
-    let signals = |signal: crate::logic::SignalId, at: u64| {
+    let atoms = |atom: AtomId, at: u64| record.atoms.get(at as usize).is_some_and(|row| row[atom.0 as usize]);
+    let signals = |signal: SignalId, at: u64| {
         record.signals.get(at as usize).map_or(f64::NAN, |row| row[signal.0 as usize])
     };
-    let clock = subject.program.scenario.clock;
-    let Ok(reasons) = explain(&subject.tree, root, &atoms, &signals, subject.horizon, decided, clock) else {
+    let recording = Recording {
+        atoms: &atoms,
+        signals: &signals,
+        seen: record.atoms.len() as u64,
+        horizon: subject.horizon,
+        clock: subject.program.scenario.clock,
+    };
+    let Ok(explanation) = explain(&subject.tree, root, &recording) else { return String::new() };
+    // The last reason in time is the one that closed the case.
+    let Some(reason) = explanation.reasons.iter().max_by_key(|reason| (reason.to, reason.from)) else {
         return String::new();
     };
-    // The last reason in time is the one that closed the case.
-    let Some(reason) = reasons.iter().max_by_key(|reason| reason.at()) else { return String::new() };
     describe(subject, reason, state_at)
 }
 
 fn describe(subject: &Subject, reason: &Reason, state_at: impl Fn(u64) -> Option<State>) -> String {
-    match reason {
-        Reason::Atom { atom, truth, at } => {
+    match &subject.tree.nodes[reason.leaf.0 as usize] {
+        Node::Atom(atom) => {
             let Some(text) = subject.atom_texts.get(atom.0 as usize) else { return String::new() };
-            let word = if *truth { "holds" } else { "fails" };
-            let who = state_at(*at).map_or_else(Vec::new, |state| blamed(subject, &subject.atoms()[atom.0 as usize], *truth, &state));
+            let word = if reason.value { "holds" } else { "fails" };
+            let blamed = |state| blamed(subject, &subject.atoms()[atom.0 as usize], reason.value, &state);
+            let who = state_at(reason.to.0).map_or_else(Vec::new, blamed);
             let names: Vec<&str> = who
                 .iter()
                 .filter_map(|id| subject.program.scenario.agents.get(id.0 as usize))
@@ -59,7 +65,8 @@ fn describe(subject: &Subject, reason: &Reason, state_at: impl Fn(u64) -> Option
                 .collect();
             if names.is_empty() { format!("`{text}` {word}") } else { format!("`{text}` {word}: {}", names.join(", ")) }
         }
-        Reason::Compare { x, y, .. } => format!("the compared numbers are {} and {}", super::words::number(*x), super::words::number(*y)),
+        Node::Compare(..) => format!("a comparison of numbers over time {}", if reason.value { "holds" } else { "fails" }),
+        _ => String::new(),
     }
 }
 

@@ -1,5 +1,6 @@
 //! Floor 5: trials, executors, and the outcomes of queries.
 
+mod blame;
 pub mod budget;
 pub mod cell;
 mod contrast;

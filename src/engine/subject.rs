@@ -16,6 +16,8 @@ pub struct Subject {
     pub columns: Vec<Root>,
     /// Last tick.
     pub horizon: Tick,
+    /// The source of each atom.
+    pub atom_texts: Vec<String>,
     atoms: Vec<Bool>,
     signals: Vec<Num>,
 }
@@ -40,9 +42,15 @@ impl Subject {
             program: Program::new(scenario),
             tree: world.tree.clone(),
             columns: world.columns.iter().map(|c| c.root).collect(),
+            atom_texts: world.atom_texts.clone(),
             atoms: world.atoms.clone(),
             signals: world.signals.clone(),
         }
+    }
+
+    /// Truth values observed in each state.
+    pub fn atoms(&self) -> &[Bool] {
+        &self.atoms
     }
 
     /// A monitor of a column.

@@ -43,7 +43,7 @@ fn witness(
     let code = subject.code(&[column]);
     let mut monitor = subject.monitor(column).ok()?;
     let mut state = State::new(program.layout, program.scenario.agents.len());
-    let mut scratch = Scratch::new(program);
+    let mut scratch = Scratch::new();
     let mut readings = Readings::default();
     let key = TrialKey { seed: call.seed, index: trial, branch: 0 };
     start::load(program, &mut state, 0, key, advice).ok()?;
@@ -66,7 +66,7 @@ fn witness(
     }
     let decided = monitor.decided_at()[0];
     let time = program.scenario.clock.seconds(Tick(decided));
-    let what = blame::reasons(subject, column, &record, decided, |tick| {
+    let what = blame::reasons(subject, column, &record, |tick| {
         // States beyond those kept are made again.
         states.get(tick as usize).cloned().or_else(|| replay(subject, key, advice, tick))
     });
@@ -89,7 +89,7 @@ const KEPT: usize = 64;
 fn replay(subject: &Subject, key: TrialKey, advice: Option<(usize, usize)>, tick: u64) -> Option<State> {
     let program = &subject.program;
     let mut state = State::new(program.layout, program.scenario.agents.len());
-    let mut scratch = Scratch::new(program);
+    let mut scratch = Scratch::new();
     start::load(program, &mut state, 0, key, advice).ok()?;
     dynamics::refresh(program, &mut state, &mut scratch, Mask::lane(0));
     for _ in 0..tick {

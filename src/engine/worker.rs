@@ -50,7 +50,7 @@ impl Worker {
         Ok(Self {
             columns: columns.to_vec(),
             state: State::new(program.layout, program.scenario.agents.len()),
-            scratch: Scratch::new(program),
+            scratch: Scratch::new(),
             readings: sheets.iter().map(|_| Readings::default()).collect(),
             sheets,
             busy: [None; LANES],

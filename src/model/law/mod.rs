@@ -100,24 +100,6 @@ pub enum Family {
 }
 
 impl Law {
-    /// The value at a uniform number in (0, 1), by the inverse distribution function.
-    pub fn draw(&self, uniform: f64) -> f64 {
-        let Self::Random { family, low, high } = self else { return self.constant().unwrap_or(f64::NAN) };
-        let value = match family {
-            Family::Uniform { low, high } => low + (high - low) * uniform,
-            Family::Normal { mean, sd } => {
-                // Abramowitz and Stegun 26.2.23, absolute error below 4.5e-4.
-                let tail = if uniform < 0.5 { uniform } else { 1.0 - uniform };
-                let t = (-2.0 * crate::base::math::ln(tail)).sqrt();
-                let z = t - (2.515_517 + t * (0.802_853 + t * 0.010_328))
-                    / (1.0 + t * (1.432_788 + t * (0.189_269 + t * 0.001_308)));
-                mean + sd * if uniform < 0.5 { -z } else { z }
-            }
-            _ => uniform,
-        };
-        value.clamp(*low, *high)
-    }
-
     /// The constant, if it is one.
     pub const fn constant(&self) -> Option<f64> {
         match self {

@@ -1,0 +1,160 @@
+//! `smc check`: decide, estimate, compare, rank.
+
+use super::arguments::{Check, OutputFormat};
+use super::inputs;
+use super::progress::Progress;
+use super::terminal::{Colors, print, say};
+use crate::compile::Study;
+use crate::compile::nearest::nearest;
+use crate::engine::budget::DEFAULT_TRIALS;
+use crate::engine::outcome::{Failure, Run};
+use crate::engine::{Budget, Call, Threads, run as run_study};
+use crate::report::{self, ExitCode as Exit, Format, Palette};
+use crate::syntax::source::{Source, Span};
+use std::sync::Arc;
+
+/// Runs the command.
+pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
+    let inputs = inputs::load(&arguments.model, &arguments.properties);
+    super::diagnose(&inputs, colors);
+    let Some(study) = &inputs.study else { return Exit::Wrong };
+    let only = match chosen(study, &arguments.only) {
+        Ok(only) => only,
+        Err(reason) => return refuse(&reason),
+    };
+    if arguments.threads == Some(0) {
+        return refuse("`--threads 0` runs nothing");
+    }
+    if arguments.max_trials == Some(0) {
+        return refuse("`--max-trials 0` runs nothing");
+    }
+    let threads = match Threads::new(arguments.threads) {
+        Ok(threads) => threads,
+        Err(error) => return refuse(&format!("no threads can be started: {error}")),
+    };
+    let budget = Arc::new(Budget::new(arguments.max_trials.unwrap_or(DEFAULT_TRIALS), arguments.timeout));
+    let interrupted = Arc::clone(&budget);
+    // Only the first interruption is gentle.
+    let _ = ctrlc::set_handler(move || {
+        if interrupted.is_interrupted() {
+            std::process::exit(i32::from(Exit::Interrupted.code()));
+        }
+        interrupted.interrupt();
+    });
+    let place = |span: Span| locate(&inputs.sources, span);
+    let call = Call {
+        seed: arguments.seed,
+        command: command("check", arguments, true),
+        simulate: command("simulate", arguments, false),
+        only,
+        place: &place,
+        file: arguments.model.scenario.clone(),
+    };
+    let progress = Progress::new(arguments.quiet);
+    let run = match run_study(study, &call, &threads, &budget, &progress) {
+        Ok(run) => run,
+        Err(fault) => return refuse(&fault.to_string()),
+    };
+    finish(arguments, &run, colors)
+}
+
+fn refuse(reason: &str) -> Exit {
+    say(&format!("error: {reason}\n"));
+    Exit::Wrong
+}
+
+#[allow(clippy::disallowed_methods, reason = "files are written by the command line")]
+fn finish(arguments: &Check, run: &Run, colors: Colors) -> Exit {
+    let format = match arguments.format {
+        OutputFormat::Text => Format::Text,
+        OutputFormat::Json => Format::Json,
+        OutputFormat::Junit => Format::Junit,
+        OutputFormat::Github => Format::Github,
+    };
+    let palette = if colors.out { Palette::ANSI } else { Palette::PLAIN };
+    if let Err(reason) = print(&report::render(run, format, palette)) {
+        return refuse(&reason);
+    }
+    if let Some(Failure::Input(reason) | Failure::Bug(reason)) = &run.failure {
+        say(&format!("error: {reason}\n"));
+    }
+    let mut exit = report::exit_code(run);
+    if let Some(path) = &arguments.report
+        && let Err(error) = std::fs::write(path, report::render(run, Format::Html, Palette::PLAIN))
+    {
+        say(&format!("error: `{}` cannot be written: {error}\n", path.display()));
+        exit = exit.worse(Exit::Wrong);
+    }
+    exit
+}
+
+/// Indices of the queries that `--only` names.
+fn chosen(study: &Study, only: &[String]) -> Result<Vec<usize>, String> {
+    let mut chosen = Vec::new();
+    for wanted in only {
+        let number = wanted.parse::<usize>().ok();
+        let found: Vec<usize> = study
+            .queries
+            .iter()
+            .filter(|q| Some(q.index) == number || q.name.as_deref() == Some(wanted.as_str()))
+            .map(|q| q.index)
+            .collect();
+        if found.is_empty() {
+            let names = study.queries.iter().filter_map(|q| q.name.as_deref());
+            let hint = nearest(wanted, names).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+            return Err(format!("no query is about `{wanted}`{hint}"));
+        }
+        chosen.extend(found);
+    }
+    chosen.sort_unstable();
+    chosen.dedup();
+    Ok(chosen)
+}
+
+/// File and line of a place.
+fn locate(sources: &[Source], span: Span) -> (String, usize) {
+    let source = sources.iter().find(|s| s.id == span.source);
+    source.map_or((String::new(), 0), |s| (s.name.clone(), s.line_column(span.start).0))
+}
+
+/// The call up to its options, as a shell would take it.
+fn command(verb: &str, arguments: &Check, properties: bool) -> String {
+    let mut words = vec!["smc".to_owned(), verb.to_owned(), quoted(&arguments.model.scenario)];
+    if properties {
+        words.extend(arguments.properties.iter().map(|p| quoted(p)));
+    }
+    for set in &arguments.model.set {
+        // A trial belongs to one setting; that of a sweep is named with the witness.
+        if properties || !set.contains("..") {
+            words.push("--set".to_owned());
+            words.push(quoted(set));
+        }
+    }
+    for data in &arguments.model.data {
+        words.push("--data".to_owned());
+        words.push(quoted(&data.display().to_string()));
+    }
+    words.join(" ")
+}
+
+/// A word as a shell would take it.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_./=:,+%@".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', "'\\''"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_quoted_where_a_shell_would_split_them() {
+        assert_eq!(quoted("models/a.scn"), "models/a.scn");
+        assert_eq!(quoted("a b"), "'a b'");
+        assert_eq!(quoted("it's"), "'it'\\''s'");
+    }
+}
