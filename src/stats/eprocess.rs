@@ -10,6 +10,9 @@ use super::{Claim, Counts, Decision, Statement, Test};
 use crate::base::math;
 use crate::base::special::{beta_tails, ln_beta};
 
+/// Beyond this no count is exact as a double; thresholds closer to 0 or 1 than that never decide.
+const MOST_TRIALS: u64 = 1 << 53;
+
 /// The evidence against P <= theta, and the number of successes at which it can first reach a threshold.
 #[derive(Clone, Debug, PartialEq)]
 struct OneSided {
@@ -69,6 +72,9 @@ impl OneSided {
         while !reached(low + step) {
             low += step;
             step *= 2;
+            if low > MOST_TRIALS {
+                return low;
+            }
         }
         let mut high = low + step;
         while high - low > 1 {
@@ -298,6 +304,17 @@ mod tests {
                 assert!((theta * win + (1.0 - theta) * lose - 1.0).abs() < 1e-9, "{theta} {s} {f}");
                 assert!(win >= 1.0 - 1e-12 && lose <= 1.0 + 1e-12);
             }
+        }
+    }
+
+    #[test]
+    fn thresholds_at_the_very_ends_do_no_harm() {
+        for theta in [f64::MIN_POSITIVE, 1e-16, 1.0 - f64::EPSILON] {
+            let mut test = Evidence::new(theta, 0.01, 0.01).unwrap();
+            for k in 0..100 {
+                test.observe(k % 2 == 0);
+            }
+            assert!(test.decision().is_some());
         }
     }
 

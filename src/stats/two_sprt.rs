@@ -3,7 +3,7 @@
 //!
 //! Errors are bounded as with the SPRT, and the number of trials has a bound: the test for hard deadlines.
 
-use super::invalid::{Invalid, probability, region};
+use super::invalid::{Invalid, probability, range, region};
 use super::sprt::{SLACK, region_statement};
 use super::{Counts, Decision, Statement, Test};
 use crate::base::math;
@@ -27,9 +27,10 @@ pub struct TwoSprt {
 }
 
 impl TwoSprt {
-    /// Parameters as those of the SPRT.
+    /// Parameters as those of the SPRT; the indifference must be at least 0.00001.
     pub fn new(theta: f64, indifference: f64, alpha: f64, beta: f64) -> Result<Self, Invalid> {
         let (low, high) = region(theta, indifference)?;
+        range("indifference", indifference, 1e-5, 0.5)?;
         probability("alpha", alpha)?;
         probability("beta", beta)?;
         let over = |end: f64| (math::ln(theta / end), math::ln((1.0 - theta) / (1.0 - end)));

@@ -99,10 +99,7 @@ fn deadline(runs: u32) {
             done[index as usize] = true;
         }
         let mut counts = Counts::default();
-        for index in 0..done.len() {
-            if !done[index] {
-                break;
-            }
+        for (index, _) in done.iter().enumerate().take_while(|(_, done)| **done) {
             counts.add(workers.outcome(index as u64));
         }
         (!sequence::interval(counts, 0.05).holds(0.9), 0.0)

@@ -1,6 +1,7 @@
 //! T8 to T13 and T23: estimators of a probability, and the rules that must fail.
 
 use super::tally::{Tally, uniform};
+use smc::stats::calibration::{Boundary, Table};
 use smc::stats::clopper_pearson;
 use smc::stats::difference::{self, Pairs};
 use smc::stats::{Calibrated, Counts, Estimator, Gbas, Massart, Outcome, Spending, sequence};
@@ -240,6 +241,18 @@ fn differences_are_covered_at_all_times() {
     paired_difference(25);
 }
 
+/// The narrow rows of the table, each by its own proof; the wide ones are proven in every run.
+#[test]
+#[ignore = "takes half a minute"]
+fn full_table() {
+    for row in Table::ROWS.into_iter().filter(|row| row.epsilon < 0.02) {
+        assert!(Boundary::new(row.epsilon, row.gamma).unwrap().proves(row.delta), "{row:?}");
+    }
+    assert_eq!(Boundary::new(0.01, 0.036).unwrap().limit(), 11_090);
+    assert_eq!(Boundary::new(0.01, 0.006).unwrap().limit(), 18_972);
+    assert_eq!(Boundary::new(0.01, 0.076).unwrap().limit(), 7_969);
+}
+
 #[test]
 #[ignore = "full number of replications"]
 fn full_estimators() {
@@ -248,5 +261,5 @@ fn full_estimators() {
     normal_stopping(20_000);
     other_estimators(1_000);
     gbas(2_000);
-    paired_difference(500);
+    paired_difference(150);
 }

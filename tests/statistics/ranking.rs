@@ -160,8 +160,7 @@ fn unresolved_trials_count_against_the_leader_and_for_the_rival() {
         for share in race.next_round().to_vec() {
             let outcomes: Vec<Outcome> = (share.from..share.to)
                 .map(|index| match (share.arm, index % 20) {
-                    (0, 0 | 10) => Outcome::False,
-                    (1, 0) => Outcome::False,
+                    (0, 0 | 10) | (1, 0) => Outcome::False,
                     (1, 5 | 7 | 10 | 15) => Outcome::Unresolved,
                     _ => Outcome::True,
                 })

@@ -42,7 +42,7 @@ fn ln_weight(a: f64, b: f64, x: f64, y: f64) -> f64 {
         - stirling_remainder(b)
 }
 
-/// The continued fraction of I_x(a, b), for x below about the mean, by Lentz's method.
+/// The continued fraction of `I_x(a, b)`, for x below about the mean, by Lentz's method.
 fn fraction(a: f64, b: f64, x: f64) -> f64 {
     let mut c = 1.0;
     let mut d = 1.0 / away_from_zero(1.0 - (a + b) * x / (a + 1.0));
@@ -92,12 +92,12 @@ pub fn beta_tails(a: f64, b: f64, x: f64, y: f64) -> Tails {
     tails_and_weight(a, b, x, y).0
 }
 
-/// I_x(a, b): the regularised incomplete beta function.
+/// `I_x(a, b)`: the regularised incomplete beta function.
 pub fn beta_reg(a: f64, b: f64, x: f64) -> f64 {
     beta_tails(a, b, x, 1.0 - x).lower()
 }
 
-/// The logit of the x with I_x(a, b) = p.
+/// The logit of the x with `I_x(a, b)` = p.
 fn quantile_logit(a: f64, b: f64, ln_p: f64, z: f64) -> f64 {
     // ln(X / (1 - X)) has about mean ln(a / b) and variance 1/a + 1/b; where a < 1 and p is small the
     // power law x^a / (a B) is the better start.
@@ -118,7 +118,7 @@ fn logistic(u: f64) -> (f64, f64) {
     if u < 0.0 { (small, large) } else { (large, small) }
 }
 
-/// The x with I_x(a, b) = p; NaN if p is no probability or a shape is not positive.
+/// The x with `I_x(a, b)` = p; NaN if p is no probability or a shape is not positive.
 pub fn beta_quantile(a: f64, b: f64, p: f64) -> f64 {
     if p.is_nan() || !(0.0..=1.0).contains(&p) || a.is_nan() || b.is_nan() || a <= 0.0 || b <= 0.0 {
         return f64::NAN;
@@ -129,7 +129,7 @@ pub fn beta_quantile(a: f64, b: f64, p: f64) -> f64 {
     logistic(quantile_logit(a, b, math::ln(p), normal_quantile(p))).0
 }
 
-/// The x with 1 - I_x(a, b) = q, accurate for small q.
+/// The x with 1 - `I_x(a, b)` = q, accurate for small q.
 pub fn beta_upper_quantile(a: f64, b: f64, q: f64) -> f64 {
     if q.is_nan() || !(0.0..=1.0).contains(&q) || a.is_nan() || b.is_nan() || a <= 0.0 || b <= 0.0 {
         return f64::NAN;

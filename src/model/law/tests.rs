@@ -1,4 +1,4 @@
-//! Laws against statrs, rand_distr and sums over a fine grid of uniform numbers.
+//! Laws against statrs, `rand_distr` and sums over a fine grid of uniform numbers.
 
 use super::*;
 use crate::base::random::{Purpose, Sequence, Stream, TrialKey};
@@ -62,10 +62,12 @@ fn draws_have_the_mean_and_deviation_that_were_asked_for() {
     }
 }
 
+type Reference = Box<dyn Fn(f64) -> f64>;
+
 #[test]
 fn distribution_functions_agree_with_statrs() {
     let sigma = (1.0 + 0.04f64).ln().sqrt();
-    let references: Vec<(Family, Box<dyn Fn(f64) -> f64>)> = vec![
+    let references: Vec<(Family, Reference)> = vec![
         (Family::Normal { mean: 1.3, sd: 0.26 }, {
             let d = statrs::distribution::Normal::new(1.3, 0.26).unwrap();
             Box::new(move |x| d.cdf(x))
