@@ -101,8 +101,29 @@ fn bytes(state: &State, agent: usize, lane: usize) -> Vec<u64> {
 
 fn fields(s: &State) -> Vec<&Vec<Lanes>> {
     vec![
-        &s.x, &s.y, &s.vx, &s.vy, &s.ex, &s.ey, &s.drive, &s.travelled, &s.speed, &s.mass, &s.radius, &s.tau,
-        &s.a, &s.b, &s.lambda, &s.a2, &s.b2, &s.lambda2, &s.k1, &s.k2, &s.noise, &s.fx, &s.fy,
+        &s.x,
+        &s.y,
+        &s.vx,
+        &s.vy,
+        &s.ex,
+        &s.ey,
+        &s.drive,
+        &s.travelled,
+        &s.speed,
+        &s.mass,
+        &s.radius,
+        &s.tau,
+        &s.a,
+        &s.b,
+        &s.lambda,
+        &s.a2,
+        &s.b2,
+        &s.lambda2,
+        &s.k1,
+        &s.k2,
+        &s.noise,
+        &s.fx,
+        &s.fy,
     ]
 }
 

@@ -104,8 +104,9 @@ impl Law {
                 // Abramowitz and Stegun 26.2.23, absolute error below 4.5e-4.
                 let tail = if uniform < 0.5 { uniform } else { 1.0 - uniform };
                 let t = (-2.0 * crate::base::math::ln(tail)).sqrt();
-                let z = t - (2.515_517 + t * (0.802_853 + t * 0.010_328))
-                    / (1.0 + t * (1.432_788 + t * (0.189_269 + t * 0.001_308)));
+                let z = t
+                    - (2.515_517 + t * (0.802_853 + t * 0.010_328))
+                        / (1.0 + t * (1.432_788 + t * (0.189_269 + t * 0.001_308)));
                 mean + sd * if uniform < 0.5 { -z } else { z }
             }
             _ => uniform,

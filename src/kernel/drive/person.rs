@@ -3,11 +3,14 @@
 
 use super::route::Way;
 use super::stage::{Stage, Target};
-use crate::base::geometry::{Shape, Vec2, rotated};
+use crate::base::geometry::{Vec2, rotated};
 use crate::base::random::{Purpose, Stream, TrialKey};
+use crate::kernel::code::ground::Ground;
+use crate::kernel::code::lanes::Vector;
 use crate::kernel::program::Program;
 use crate::kernel::state::{Layout, State};
 use crate::model::{Move, Start};
+use fearless_simd::{Level, dispatch, prelude::*};
 
 /// How far from a point the line across it may be passed so that it counts as reached, m.
 pub(super) const PASSING: f64 = 2.0;
@@ -46,19 +49,22 @@ pub(super) fn aim(target: &Target, at: Vec2, radius: f64) -> Option<Vec2> {
         // The nearest point of a smaller disc lies on the line to the centre.
         Target::Disc { centre, .. } => Some(*centre),
         Target::Point(point) => Some(*point),
-        Target::Form { shape, inner } => Some(aim_at_form(shape, *inner, at, radius)),
+        // Inside there is nowhere to go; outside straight on, over the rim.
+        Target::Form(ground) => {
+            let (inside, way) = form(ground, at);
+            (!inside).then(|| at + way)
+        }
         Target::Pause(_) | Target::Onward | Target::Rest => None,
     }
 }
 
-/// A radius behind the nearest point of the outline, straight on or else towards the middle.
-fn aim_at_form(shape: &Shape, inner: Vec2, at: Vec2, radius: f64) -> Vec2 {
-    if shape.contains(at) {
-        return inner;
-    }
-    let rim = shape.nearest(at);
-    let behind = |direction: Vec2| unit(direction).map(|e| rim + e * radius).filter(|&q| shape.contains(q));
-    behind(rim - at).or_else(|| behind(inner - rim)).unwrap_or(inner)
+/// Whether a point is in a form, and the way to the nearest point of its rim: the vector code, for one.
+fn form(ground: &Ground, at: Vec2) -> (bool, Vec2) {
+    dispatch!(Level::baseline(), simd => {
+        let (x, y) = (Vector::splat(simd, at.x), Vector::splat(simd, at.y));
+        let (dx, dy) = ground.way_to_rim(x, y);
+        (ground.contains(x, y).test(0), Vec2::new(dx[0], dy[0]))
+    })
 }
 
 /// Whether a waypoint or goal is reached.
@@ -77,7 +83,7 @@ fn reached(stage: &Stage, at: Vec2, radius: f64, origin: Vec2) -> bool {
             let along = dx * (point.x - origin.x) + dy * (point.y - origin.y);
             square <= 4.0 * radius * radius || (passes && along >= 0.0 && square <= PASSING * PASSING)
         }
-        Target::Form { shape, .. } => shape.contains(at),
+        Target::Form(ground) => form(ground, at).0,
         Target::Pause(_) | Target::Onward | Target::Rest => false,
     }
 }
@@ -173,7 +179,7 @@ impl<'a> Person<'a> {
     /// Sets the driving direction and speed that the route wants now.
     fn head(&mut self) {
         let stage = &self.program.drive.stages[self.way.stage as usize];
-        if stage.target == Target::Onward {
+        if matches!(stage.target, Target::Onward) {
             let (direction, speed) = self.way.onward;
             self.drive(Some(direction), speed);
             return;
@@ -216,7 +222,7 @@ impl<'a> Person<'a> {
             .take(stages.iter().position(|stage| stage.last).map_or(0, |last| last + 1))
             .find_map(|stage| aim(&stage.target, self.at(), self.radius()))
             .and_then(|aim| unit(aim - self.at()));
-        let onward = self.program.drive.stages[first as usize].target == Target::Onward;
+        let onward = matches!(self.program.drive.stages[first as usize].target, Target::Onward);
         if onward && moving.is_some() {
             // Who goes on as recorded has the recorded speed as driving speed.
             self.state.speed[self.block].0[self.lane] = speed;
