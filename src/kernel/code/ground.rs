@@ -27,7 +27,7 @@ impl Edge {
     /// The way from a point to the nearest point of the edge, as in [`Segment::nearest`], with its sign
     /// turned.
     #[inline(always)]
-    fn from_nearest<S: Simd>(&self, x: Vector<S>, y: Vector<S>) -> (Vector<S>, Vector<S>) {
+    fn offset<S: Simd>(&self, x: Vector<S>, y: Vector<S>) -> (Vector<S>, Vector<S>) {
         let zero = Vector::splat(x.simd, 0.0);
         let one = Vector::splat(x.simd, 1.0);
         let share = if self.square == 0.0 {
@@ -43,7 +43,7 @@ impl Edge {
     /// Squared distance of a point.
     #[inline(always)]
     fn distance_squared<S: Simd>(&self, x: Vector<S>, y: Vector<S>) -> Vector<S> {
-        let (dx, dy) = self.from_nearest(x, y);
+        let (dx, dy) = self.offset(x, y);
         dx * dx + dy * dy
     }
 
@@ -158,7 +158,7 @@ impl Ground {
         let mut best = (Vector::splat(x.simd, f64::INFINITY), zero, zero);
         if let Form::Polygon { edges, .. } | Form::Wall(edges) = &self.form {
             for edge in edges {
-                let (dx, dy) = edge.from_nearest(x, y);
+                let (dx, dy) = edge.offset(x, y);
                 let squared = dx * dx + dy * dy;
                 let nearer = squared.simd_lt(best.0);
                 best =
@@ -255,9 +255,9 @@ fn within<S: Simd>(edges: &[Edge], rings: &[usize], x: Vector<S>, y: Vector<S>) 
     for (ring, &end) in rings.iter().enumerate() {
         let mut odd = Truth::<S>::splat(x.simd, ring > 0);
         for edge in &edges[start..end] {
-            odd = odd ^ edge.crossed(x, y);
+            odd ^= edge.crossed(x, y);
         }
-        inside = inside & odd;
+        inside &= odd;
         start = end;
     }
     inside

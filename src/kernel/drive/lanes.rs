@@ -28,11 +28,10 @@ pub(super) fn steer<S: Simd>(
     let (dx, dy, reached): (Vector<S>, Vector<S>, Truth<S>) = match &stage.target {
         Target::Rectangle(bounds) => {
             let (low, high) = (bounds.low, bounds.high);
-            let inside = x.simd_ge(Vector::splat(simd, low.x))
-                & x.simd_le(Vector::splat(simd, high.x))
-                & y.simd_ge(Vector::splat(simd, low.y))
-                & y.simd_le(Vector::splat(simd, high.y));
-            (inset(x, low.x, high.x, radius) - x, inset(y, low.y, high.y, radius) - y, inside)
+            let (dx, outside_x) = interval(x, low.x, high.x, radius);
+            let (dy, outside_y) = interval(y, low.y, high.y, radius);
+            let outside = outside_x.simd_gt(outside_y).select(outside_x, outside_y);
+            (dx, dy, outside.simd_le(Vector::splat(simd, 0.0)))
         }
         Target::Disc { centre, radius } => {
             let (dx, dy) = (Vector::splat(simd, centre.x) - x, Vector::splat(simd, centre.y) - y);
@@ -48,9 +47,8 @@ pub(super) fn steer<S: Simd>(
                     (load(simd, block, &state.route.from_x), load(simd, block, &state.route.from_y));
                 let along =
                     dx * (Vector::splat(simd, point.x) - fx) + dy * (Vector::splat(simd, point.y) - fy);
-                near = near
-                    | along.simd_le(Vector::splat(simd, 0.0))
-                        & square.simd_le(Vector::splat(simd, PASSING * PASSING));
+                near |= along.simd_le(Vector::splat(simd, 0.0))
+                    & square.simd_le(Vector::splat(simd, PASSING * PASSING));
             }
             (dx, dy, near)
         }
@@ -69,7 +67,8 @@ pub(super) fn steer<S: Simd>(
     let length = square.sqrt();
     let inverse = Vector::splat(simd, 1.0) / length;
     // Without a direction the last one stays.
-    let turns = square.simd_gt(Vector::splat(simd, super::person::NO_LENGTH)) & square.is_finite();
+    let turns = square.simd_gt(Vector::splat(simd, super::person::NO_LENGTH))
+        & square.simd_lt(Vector::splat(simd, f64::INFINITY));
     let advised = state.route.advised[block];
     let walking = Truth::<S>::from_bitmask(simd, u64::from((slots & !advised).0));
     let (ex, ey) = (load(simd, block, &state.ex), load(simd, block, &state.ey));
@@ -91,14 +90,17 @@ fn load<S: Simd>(simd: S, block: usize, field: &[Lanes]) -> Vector<S> {
     Vector::from_slice(simd, &field[block].0)
 }
 
-/// The nearest coordinate a radius inside an interval, its middle where there is no room.
+/// The way to the nearest coordinate a radius inside an interval (to its middle where there is no room), and
+/// how far the coordinate is outside the interval itself: not above 0 within.
 #[inline(always)]
-fn inset<S: Simd>(v: Vector<S>, low: f64, high: f64, radius: Vector<S>) -> Vector<S> {
-    let middle = Vector::splat(v.simd, 0.5 * (low + high));
-    let inner = radius + low;
-    let inner = inner.simd_gt(middle).select(middle, inner);
-    let outer = Vector::splat(v.simd, high) - radius;
-    let outer = outer.simd_lt(middle).select(middle, outer);
-    let v = v.simd_lt(inner).select(inner, v);
-    v.simd_gt(outer).select(outer, v)
+fn interval<S: Simd>(v: Vector<S>, low: f64, high: f64, radius: Vector<S>) -> (Vector<S>, Vector<S>) {
+    let zero = Vector::splat(v.simd, 0.0);
+    let half = Vector::splat(v.simd, 0.5 * (high - low));
+    let inset = radius.simd_gt(half).select(half, radius);
+    let (to_low, to_high) = (Vector::splat(v.simd, low) - v, Vector::splat(v.simd, high) - v);
+    let (inner, outer) = (to_low + inset, to_high - inset);
+    let way = outer.simd_lt(zero).select(outer, zero);
+    let way = inner.simd_gt(zero).select(inner, way);
+    let beyond = -to_high;
+    (way, to_low.simd_gt(beyond).select(to_low, beyond))
 }

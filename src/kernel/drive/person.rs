@@ -21,7 +21,7 @@ pub(super) const NO_LENGTH: f64 = 1e-24;
 /// The unit vector along `v`, if it has a direction.
 pub(super) fn unit(v: Vec2) -> Option<Vec2> {
     let square = v.x * v.x + v.y * v.y;
-    (square > NO_LENGTH && square.is_finite()).then(|| v / square.sqrt())
+    (square > NO_LENGTH && square.is_finite()).then(|| v * (1.0 / square.sqrt()))
 }
 
 /// The trial that a slot belongs to, as lane of keys and ticks.
@@ -32,27 +32,28 @@ pub(super) fn trial_of(layout: Layout, lane: usize) -> usize {
     }
 }
 
-/// Where a body heads for: the nearest point of the target at least its radius inside, if there is room.
-pub(super) fn aim(target: &Target, at: Vec2, radius: f64) -> Option<Vec2> {
+/// The way to where a body heads for: the nearest point of the target at least its radius inside, if there is room.
+fn way_to(target: &Target, at: Vec2, radius: f64) -> Option<Vec2> {
     match target {
         Target::Rectangle(bounds) => {
-            let inset = |v: f64, low: f64, high: f64| {
-                let middle = 0.5 * (low + high);
-                let low = if low + radius > middle { middle } else { low + radius };
-                let high = if high - radius < middle { middle } else { high - radius };
-                let v = if v < low { low } else { v };
-                if v > high { high } else { v }
+            // In the same order as the vector code, so that both have the same bits.
+            let way = |v: f64, low: f64, high: f64| {
+                let half = 0.5 * (high - low);
+                let inset = if radius > half { half } else { radius };
+                let (inner, outer) = (low - v + inset, high - v - inset);
+                let way = if outer < 0.0 { outer } else { 0.0 };
+                if inner > 0.0 { inner } else { way }
             };
             let (low, high) = (bounds.low, bounds.high);
-            Some(Vec2::new(inset(at.x, low.x, high.x), inset(at.y, low.y, high.y)))
+            Some(Vec2::new(way(at.x, low.x, high.x), way(at.y, low.y, high.y)))
         }
         // The nearest point of a smaller disc lies on the line to the centre.
-        Target::Disc { centre, .. } => Some(*centre),
-        Target::Point(point) => Some(*point),
+        Target::Disc { centre, .. } => Some(centre - at),
+        Target::Point(point) => Some(point - at),
         // Inside there is nowhere to go; outside straight on, over the rim.
         Target::Form(ground) => {
             let (inside, way) = form(ground, at);
-            (!inside).then(|| at + way)
+            (!inside).then_some(way)
         }
         Target::Pause(_) | Target::Onward | Target::Rest => None,
     }
@@ -186,10 +187,10 @@ impl<'a> Person<'a> {
         }
         let at = self.at();
         let arrived = stage.last && reached(stage, at, self.radius(), self.way.origin);
-        match aim(&stage.target, at, self.radius()) {
-            Some(aim) if !arrived => {
+        match way_to(&stage.target, at, self.radius()) {
+            Some(way) if !arrived => {
                 let speed = self.speed();
-                self.drive(unit(aim - at), speed);
+                self.drive(unit(way), speed);
             }
             _ => self.drive(None, 0.0),
         }
@@ -220,8 +221,8 @@ impl<'a> Person<'a> {
         let towards = stages
             .iter()
             .take(stages.iter().position(|stage| stage.last).map_or(0, |last| last + 1))
-            .find_map(|stage| aim(&stage.target, self.at(), self.radius()))
-            .and_then(|aim| unit(aim - self.at()));
+            .find_map(|stage| way_to(&stage.target, self.at(), self.radius()))
+            .and_then(unit);
         let onward = matches!(self.program.drive.stages[first as usize].target, Target::Onward);
         if onward && moving.is_some() {
             // Who goes on as recorded has the recorded speed as driving speed.
