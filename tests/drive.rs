@@ -347,10 +347,10 @@ fn lanes_do_not_see_one_another() {
     let program = Program::new(Arc::new(scenario));
     let mut together = State::new(program.layout, 4);
     // Lanes start at different times and with different advice.
-    let advice = |index: u64| (index % 2 == 0).then_some((0, 0));
+    let advice = |index: u64| index.is_multiple_of(2).then_some((0, 0));
     let mut alone: Vec<State> = Vec::new();
     for step in 0..600u64 {
-        if step % 40 == 0 && alone.len() < LANES {
+        if step.is_multiple_of(40) && alone.len() < LANES {
             let index = alone.len() as u64;
             let mut single = State::new(program.layout, 4);
             load(&program, &mut single, 2, key(index), advice(index)).unwrap();

@@ -5,9 +5,9 @@
 //! trial k); in `Layout::Agents` it is eight agents of the only trial. All code that treats slots one by
 //! one (noise, integration) is the same for both.
 
+use super::drive::Routes;
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::random::TrialKey;
-use super::drive::Routes;
 
 /// What the eight slots of a block are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -196,26 +196,28 @@ pub(super) fn reading<S: Simd, const ONE: bool>(
     agent: usize,
 ) -> Vector<S> {
     let state = view.state;
-    let of = |field: &[Lanes]| view.load(field, agent);
     match reading {
-        Reading::X => of(&state.x),
-        Reading::Y => of(&state.y),
-        Reading::Field(Field::VelocityX) => of(&state.vx),
-        Reading::Field(Field::VelocityY) => of(&state.vy),
+        Reading::X => view.load(&state.x, agent),
+        Reading::Y => view.load(&state.y, agent),
+        Reading::Field(Field::VelocityX) => view.load(&state.vx, agent),
+        Reading::Field(Field::VelocityY) => view.load(&state.vy, agent),
         Reading::Field(Field::Speed) => {
-            let (x, y) = (of(&state.vx), of(&state.vy));
+            let (x, y) = (view.load(&state.vx, agent), view.load(&state.vy, agent));
             (x * x + y * y).sqrt()
         }
         Reading::Field(Field::Heading) => {
-            let (x, y, zero) = (of(&state.vx), of(&state.vy), view.splat(0.0));
+            let (x, y, zero) = (view.load(&state.vx, agent), view.load(&state.vy, agent), view.splat(0.0));
             let stands = x.simd_eq(zero) & y.simd_eq(zero);
-            let (x, y) = (stands.select(of(&state.ex), x), stands.select(of(&state.ey), y));
+            let (x, y) = (
+                stands.select(view.load(&state.ex, agent), x),
+                stands.select(view.load(&state.ey, agent), y),
+            );
             by_lane_of_two(y, x, math::atan2)
         }
-        Reading::Field(Field::Radius) => of(&state.radius),
-        Reading::Field(Field::Mass) => of(&state.mass),
-        Reading::Field(Field::DrivingSpeed) => of(&state.speed),
-        Reading::Field(Field::Travelled) => of(&state.travelled),
+        Reading::Field(Field::Radius) => view.load(&state.radius, agent),
+        Reading::Field(Field::Mass) => view.load(&state.mass, agent),
+        Reading::Field(Field::DrivingSpeed) => view.load(&state.speed, agent),
+        Reading::Field(Field::Travelled) => view.load(&state.travelled, agent),
     }
 }
 
@@ -284,6 +286,17 @@ pub(super) fn somebody<S: Simd, const ONE: bool>(view: &View<'_, S, ONE>, member
     some
 }
 
+/// A field of one agent less that of another.
+#[inline(always)]
+fn apart<S: Simd, const ONE: bool>(
+    view: &View<'_, S, ONE>,
+    field: &[Lanes],
+    a: usize,
+    b: usize,
+) -> Vector<S> {
+    view.load(field, a) - view.load(field, b)
+}
+
 /// Seconds until two bodies touch if both keep their velocity. Touching discs: 0. Else the first root of
 /// |p + v t| = R with p and v of one relative to the other, in the form without cancellation.
 #[inline(always)]
@@ -294,8 +307,12 @@ pub(super) fn time_to_collision<S: Simd, const ONE: bool>(
 ) -> Vector<S> {
     let state = view.state;
     let (zero, never) = (view.splat(0.0), view.splat(f64::INFINITY));
-    let apart = |field: &[Lanes]| view.load(field, a) - view.load(field, b);
-    let (px, py, vx, vy) = (apart(&state.x), apart(&state.y), apart(&state.vx), apart(&state.vy));
+    let (px, py, vx, vy) = (
+        apart(view, &state.x, a, b),
+        apart(view, &state.y, a, b),
+        apart(view, &state.vx, a, b),
+        apart(view, &state.vy, a, b),
+    );
     let (ra, rb) = (view.load(&state.radius, a), view.load(&state.radius, b));
     let (squared, reach) = (px * px + py * py, ra + rb);
     let (speed, along, beyond) = (vx * vx + vy * vy, px * vx + py * vy, squared - reach * reach);

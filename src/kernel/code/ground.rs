@@ -24,9 +24,10 @@ impl Edge {
         Self { a: segment.a, b: segment.b, along, square: along.dot(&along) }
     }
 
-    /// Squared distance of a point, with the nearest point as in [`Segment::nearest`].
+    /// The way from a point to the nearest point of the edge, as in [`Segment::nearest`], with its sign
+    /// turned.
     #[inline(always)]
-    fn distance_squared<S: Simd>(&self, x: Vector<S>, y: Vector<S>) -> Vector<S> {
+    fn offset<S: Simd>(&self, x: Vector<S>, y: Vector<S>) -> (Vector<S>, Vector<S>) {
         let zero = Vector::splat(x.simd, 0.0);
         let one = Vector::splat(x.simd, 1.0);
         let share = if self.square == 0.0 {
@@ -36,8 +37,13 @@ impl Edge {
             let share = share.simd_lt(zero).select(zero, share);
             share.simd_gt(one).select(one, share)
         };
-        let dx = x - (share * self.along.x + self.a.x);
-        let dy = y - (share * self.along.y + self.a.y);
+        (x - (share * self.along.x + self.a.x), y - (share * self.along.y + self.a.y))
+    }
+
+    /// Squared distance of a point.
+    #[inline(always)]
+    fn distance_squared<S: Simd>(&self, x: Vector<S>, y: Vector<S>) -> Vector<S> {
+        let (dx, dy) = self.offset(x, y);
         dx * dx + dy * dy
     }
 
@@ -69,7 +75,7 @@ enum Form {
 
 /// A region or barrier.
 #[derive(Clone, Debug)]
-pub(super) struct Ground {
+pub(crate) struct Ground {
     form: Form,
     bounds: Option<Bounds>,
 }
@@ -94,7 +100,7 @@ impl Ground {
     }
 
     /// A region.
-    pub(super) fn region(shape: &Shape) -> Self {
+    pub(crate) fn region(shape: &Shape) -> Self {
         let form = match shape {
             Shape::Circle { centre, radius } => Form::Disc { centre: *centre, radius: *radius },
             Shape::Polygon(polygon) => match upright(polygon) {
@@ -126,24 +132,40 @@ impl Ground {
 
     /// The lanes whose point is inside or on the rim.
     #[inline(always)]
-    pub(super) fn contains<S: Simd>(&self, x: Vector<S>, y: Vector<S>) -> Truth<S> {
-        let splat = |value: f64| Vector::splat(x.simd, value);
+    pub(crate) fn contains<S: Simd>(&self, x: Vector<S>, y: Vector<S>) -> Truth<S> {
         match &self.form {
             Form::Rectangle(Bounds { low, high }) => {
-                x.simd_ge(splat(low.x))
-                    & x.simd_le(splat(high.x))
-                    & y.simd_ge(splat(low.y))
-                    & y.simd_le(splat(high.y))
+                x.simd_ge(Vector::splat(x.simd, low.x))
+                    & x.simd_le(Vector::splat(x.simd, high.x))
+                    & y.simd_ge(Vector::splat(x.simd, low.y))
+                    & y.simd_le(Vector::splat(x.simd, high.y))
             }
             Form::Disc { centre, radius } => {
                 let (dx, dy) = (x - centre.x, y - centre.y);
-                (dx * dx + dy * dy).simd_le(splat(radius * radius))
+                (dx * dx + dy * dy).simd_le(Vector::splat(x.simd, radius * radius))
             }
             Form::Polygon { edges, rings } => {
-                nearest_squared(edges, x, y).simd_eq(splat(0.0)) | within(edges, rings, x, y)
+                nearest_squared(edges, x, y).simd_eq(Vector::splat(x.simd, 0.0)) | within(edges, rings, x, y)
             }
             Form::Wall(_) => Truth::<S>::splat(x.simd, false),
         }
+    }
+
+    /// The way from a point to the nearest point of the rim of a region with edges; zero for others.
+    #[inline(always)]
+    pub(crate) fn way_to_rim<S: Simd>(&self, x: Vector<S>, y: Vector<S>) -> (Vector<S>, Vector<S>) {
+        let zero = Vector::splat(x.simd, 0.0);
+        let mut best = (Vector::splat(x.simd, f64::INFINITY), zero, zero);
+        if let Form::Polygon { edges, .. } | Form::Wall(edges) = &self.form {
+            for edge in edges {
+                let (dx, dy) = edge.offset(x, y);
+                let squared = dx * dx + dy * dy;
+                let nearer = squared.simd_lt(best.0);
+                best =
+                    (nearer.select(squared, best.0), nearer.select(-dx, best.1), nearer.select(-dy, best.2));
+            }
+        }
+        (best.1, best.2)
     }
 
     /// Distance from the region: 0 inside.
@@ -198,14 +220,17 @@ fn nothing<S: Simd>(x: Vector<S>, y: Vector<S>) -> Vector<S> {
     (x + y) * 0.0
 }
 
+/// How far a coordinate is beyond an interval; 0 inside.
+#[inline(always)]
+fn beyond<S: Simd>(v: Vector<S>, low: f64, high: f64) -> Vector<S> {
+    let (low, high) = (Vector::splat(v.simd, low), Vector::splat(v.simd, high));
+    let below = v.simd_lt(low).select(low - v, Vector::splat(v.simd, 0.0));
+    v.simd_gt(high).select(v - high, below)
+}
+
 /// Squared distance from an upright rectangle; 0 inside.
 #[inline(always)]
 fn box_squared<S: Simd>(bounds: &Bounds, x: Vector<S>, y: Vector<S>) -> Vector<S> {
-    let beyond = |v: Vector<S>, low: f64, high: f64| {
-        let (low, high) = (Vector::splat(v.simd, low), Vector::splat(v.simd, high));
-        let below = v.simd_lt(low).select(low - v, Vector::splat(v.simd, 0.0));
-        v.simd_gt(high).select(v - high, below)
-    };
     let dx = beyond(x, bounds.low.x, bounds.high.x);
     let dy = beyond(y, bounds.low.y, bounds.high.y);
     dx * dx + dy * dy + nothing(x, y)
@@ -230,9 +255,9 @@ fn within<S: Simd>(edges: &[Edge], rings: &[usize], x: Vector<S>, y: Vector<S>) 
     for (ring, &end) in rings.iter().enumerate() {
         let mut odd = Truth::<S>::splat(x.simd, ring > 0);
         for edge in &edges[start..end] {
-            odd = odd ^ edge.crossed(x, y);
+            odd ^= edge.crossed(x, y);
         }
-        inside = inside & odd;
+        inside &= odd;
         start = end;
     }
     inside

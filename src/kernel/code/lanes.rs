@@ -5,9 +5,9 @@ use crate::kernel::state::State;
 use fearless_simd::{Simd, f64x8, mask64x8, prelude::*};
 
 /// A number of each lane.
-pub(super) type Vector<S> = f64x8<S>;
+pub(crate) type Vector<S> = f64x8<S>;
 /// A truth value of each lane.
-pub(super) type Truth<S> = mask64x8<S>;
+pub(crate) type Truth<S> = mask64x8<S>;
 
 /// One bit of each lane.
 #[inline(always)]

@@ -204,8 +204,8 @@ impl<S: Simd, const ONE: bool> Machine<'_, S, ONE> {
             Node::Of(reading, who) => crowd::reading(&view, reading, self.who(who)),
             Node::Distance(a, b) => {
                 let (a, b) = (self.who(a), self.who(b));
-                let at = |agent| (view.load(&state.x, agent), view.load(&state.y, agent));
-                let ((ax, ay), (bx, by)) = (at(a), at(b));
+                let (ax, bx) = (view.load(&state.x, a), view.load(&state.x, b));
+                let (ay, by) = (view.load(&state.y, a), view.load(&state.y, b));
                 distance(ax - bx, ay - by)
             }
             Node::Between([ax, ay, bx, by]) => {
@@ -282,9 +282,21 @@ fn apply_all<S: Simd>(function: Function, a: Vector<S>) -> Vector<S> {
         Function::Negate => -a,
         Function::Abs => a.abs(),
         Function::Sqrt => a.sqrt(),
-        Function::Exp => by_lane(a, |x| apply(Function::Exp, x)),
-        Function::Ln => by_lane(a, |x| apply(Function::Ln, x)),
-        _ => by_lane(a, |x| apply(function, x)),
+        Function::Exp => by_lane(
+            a,
+            #[inline(always)]
+            |x| apply(Function::Exp, x),
+        ),
+        Function::Ln => by_lane(
+            a,
+            #[inline(always)]
+            |x| apply(Function::Ln, x),
+        ),
+        _ => by_lane(
+            a,
+            #[inline(always)]
+            |x| apply(function, x),
+        ),
     }
 }
 
@@ -298,7 +310,12 @@ fn combine_all<S: Simd>(operator: Arithmetic, a: Vector<S>, b: Vector<S>) -> Vec
         Arithmetic::Divide => a / b,
         Arithmetic::Min => lesser(a, b),
         Arithmetic::Max => greater(a, b),
-        _ => by_lane_of_two(a, b, |a, b| combine(operator, a, b)),
+        _ => by_lane_of_two(
+            a,
+            b,
+            #[inline(always)]
+            |a, b| combine(operator, a, b),
+        ),
     }
 }
 

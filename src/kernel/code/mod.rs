@@ -11,7 +11,7 @@
 mod arithmetic;
 mod crowd;
 pub(crate) mod ground;
-mod lanes;
+pub(crate) mod lanes;
 mod lower;
 mod machine;
 mod node;

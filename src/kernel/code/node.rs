@@ -145,8 +145,10 @@ impl Node {
     pub(super) fn operands_mut(&mut self) -> Vec<&mut Id> {
         match self {
             Self::Between(four) => four.iter_mut().collect(),
-            Self::ToRegion(x, y, _) | Self::ToBarrier(x, y, _) | Self::ToScene(x, y) => vec![x, y],
-            Self::Spread(_, x, y) => vec![x, y],
+            Self::ToRegion(x, y, _)
+            | Self::ToBarrier(x, y, _)
+            | Self::ToScene(x, y)
+            | Self::Spread(_, x, y) => vec![x, y],
             Self::Apply(_, a) | Self::Loop(_, _, _, a) | Self::Not(a) => vec![a],
             Self::Combine(_, a, b) | Self::Compare(_, a, b) => vec![a, b],
             Self::Select(c, a, b) => vec![c, a, b],

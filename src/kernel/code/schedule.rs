@@ -80,11 +80,11 @@ fn emit(graph: &Graph, roots: &[Id], level: u32, out: &mut Schedule) {
             }
         }
     }
-    for id in 0..graph.nodes.len() {
+    for (id, node) in graph.nodes.iter().enumerate() {
         if !needed[id] || graph.level(id as Id) != level {
             continue;
         }
-        let mut node = graph.nodes[id].clone();
+        let mut node = node.clone();
         let into = out.registers[id];
         match node {
             Node::Constant(_) => {}

@@ -5,11 +5,9 @@ use super::person::PASSING;
 use super::route::Party;
 use super::stage::{Stage, Target};
 use crate::base::lanes::{Lanes, Mask};
+use crate::kernel::code::lanes::{Truth, Vector};
 use crate::kernel::state::State;
-use fearless_simd::{Simd, f64x8, mask64x8, prelude::*};
-
-type Vector<S> = f64x8<S>;
-type Truth<S> = mask64x8<S>;
+use fearless_simd::{Simd, prelude::*};
 
 /// Steers the slots of one party; the slots that the plain code must look at.
 #[inline(always)]
@@ -21,67 +19,88 @@ pub(super) fn steer<S: Simd>(
     stage: &Stage,
     active: Mask,
 ) -> Mask {
-    let load = |field: &[Lanes]| Vector::from_slice(simd, &field[block].0);
-    let splat = |value: f64| Vector::splat(simd, value);
     let slots = party.slots & active;
     if slots.is_empty() {
         return Mask::NONE;
     }
-    let (x, y, radius) = (load(&state.x), load(&state.y), load(&state.radius));
+    let (x, y, radius) =
+        (load(simd, block, &state.x), load(simd, block, &state.y), load(simd, block, &state.radius));
     let (dx, dy, reached): (Vector<S>, Vector<S>, Truth<S>) = match &stage.target {
         Target::Rectangle(bounds) => {
             let (low, high) = (bounds.low, bounds.high);
-            let aim = |v: Vector<S>, low: f64, high: f64| {
-                let middle = splat(0.5 * (low + high));
-                let inner = radius + low;
-                let inner = inner.simd_gt(middle).select(middle, inner);
-                let outer = splat(high) - radius;
-                let outer = outer.simd_lt(middle).select(middle, outer);
-                let v = v.simd_lt(inner).select(inner, v);
-                v.simd_gt(outer).select(outer, v)
-            };
-            let inside = x.simd_ge(splat(low.x))
-                & x.simd_le(splat(high.x))
-                & y.simd_ge(splat(low.y))
-                & y.simd_le(splat(high.y));
-            (aim(x, low.x, high.x) - x, aim(y, low.y, high.y) - y, inside)
+            let (dx, outside_x) = interval(x, low.x, high.x, radius);
+            let (dy, outside_y) = interval(y, low.y, high.y, radius);
+            let outside = outside_x.simd_gt(outside_y).select(outside_x, outside_y);
+            (dx, dy, outside.simd_le(Vector::splat(simd, 0.0)))
         }
         Target::Disc { centre, radius } => {
-            let (dx, dy) = (splat(centre.x) - x, splat(centre.y) - y);
-            let inside = (dx * dx + dy * dy).simd_le(splat(radius * radius));
+            let (dx, dy) = (Vector::splat(simd, centre.x) - x, Vector::splat(simd, centre.y) - y);
+            let inside = (dx * dx + dy * dy).simd_le(Vector::splat(simd, radius * radius));
             (dx, dy, inside)
         }
         Target::Point(point) => {
-            let (dx, dy) = (splat(point.x) - x, splat(point.y) - y);
+            let (dx, dy) = (Vector::splat(simd, point.x) - x, Vector::splat(simd, point.y) - y);
             let square = dx * dx + dy * dy;
             let mut near = square.simd_le(radius * 4.0 * radius);
             if !stage.last || stage.leaves {
-                let (fx, fy) = (load(&state.route.from_x), load(&state.route.from_y));
-                let along = dx * (splat(point.x) - fx) + dy * (splat(point.y) - fy);
-                near = near | along.simd_le(splat(0.0)) & square.simd_le(splat(PASSING * PASSING));
+                let (fx, fy) =
+                    (load(simd, block, &state.route.from_x), load(simd, block, &state.route.from_y));
+                let along =
+                    dx * (Vector::splat(simd, point.x) - fx) + dy * (Vector::splat(simd, point.y) - fy);
+                near |= along.simd_le(Vector::splat(simd, 0.0))
+                    & square.simd_le(Vector::splat(simd, PASSING * PASSING));
             }
             (dx, dy, near)
         }
-        // Nothing that the next step changes: who goes on or rests has been told once.
-        Target::Onward | Target::Rest => return slots & state.route.advised[block],
-        Target::Form { .. } | Target::Pause(_) => return slots,
+        Target::Form(ground) => {
+            let (dx, dy) = ground.way_to_rim(x, y);
+            (dx, dy, ground.contains(x, y))
+        }
+        // Nothing that a step changes: who goes on, rests or waits has been told once.
+        Target::Onward | Target::Rest => return state.route.advice_over(block, slots, state),
+        Target::Pause(_) => {
+            return state.route.advice_over(block, slots, state)
+                | state.route.pause_over(block, slots, state);
+        }
     };
     let square = dx * dx + dy * dy;
     let length = square.sqrt();
-    let inverse = splat(1.0) / length;
+    let inverse = Vector::splat(simd, 1.0) / length;
     // Without a direction the last one stays.
-    let turns = square.simd_gt(splat(super::person::NO_LENGTH)) & square.is_finite();
+    let turns = square.simd_gt(Vector::splat(simd, super::person::NO_LENGTH))
+        & square.simd_lt(Vector::splat(simd, f64::INFINITY));
     let advised = state.route.advised[block];
     let walking = Truth::<S>::from_bitmask(simd, u64::from((slots & !advised).0));
-    let (ex, ey) = (load(&state.ex), load(&state.ey));
-    let drive = load(&state.drive);
-    let speed = load(&state.speed);
+    let (ex, ey) = (load(simd, block, &state.ex), load(simd, block, &state.ey));
+    let drive = load(simd, block, &state.drive);
+    let speed = load(simd, block, &state.speed);
     let turning = walking & turns & !reached;
     turning.select(dx * inverse, ex).store_slice(&mut state.ex[block].0);
     turning.select(dy * inverse, ey).store_slice(&mut state.ey[block].0);
-    let wanted = reached.select(splat(0.0), speed);
+    let wanted = reached.select(Vector::splat(simd, 0.0), speed);
     walking.select(wanted, drive).store_slice(&mut state.drive[block].0);
     let done = Mask(reached.to_bitmask() as u8);
     let stays = stage.last && !stage.leaves;
-    slots & (advised | if stays { Mask::NONE } else { done })
+    state.route.advice_over(block, slots, state) | slots & if stays { Mask::NONE } else { done }
+}
+
+/// A field of a block.
+#[inline(always)]
+fn load<S: Simd>(simd: S, block: usize, field: &[Lanes]) -> Vector<S> {
+    Vector::from_slice(simd, &field[block].0)
+}
+
+/// The way to the nearest coordinate a radius inside an interval (to its middle where there is no room), and
+/// how far the coordinate is outside the interval itself: not above 0 within.
+#[inline(always)]
+fn interval<S: Simd>(v: Vector<S>, low: f64, high: f64, radius: Vector<S>) -> (Vector<S>, Vector<S>) {
+    let zero = Vector::splat(v.simd, 0.0);
+    let half = Vector::splat(v.simd, 0.5 * (high - low));
+    let inset = radius.simd_gt(half).select(half, radius);
+    let (to_low, to_high) = (Vector::splat(v.simd, low) - v, Vector::splat(v.simd, high) - v);
+    let (inner, outer) = (to_low + inset, to_high - inset);
+    let way = outer.simd_lt(zero).select(outer, zero);
+    let way = inner.simd_gt(zero).select(inner, way);
+    let beyond = -to_high;
+    (way, to_low.simd_gt(beyond).select(to_low, beyond))
 }

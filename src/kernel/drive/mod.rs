@@ -45,11 +45,11 @@ fn steer_all<S: Simd>(simd: S, program: &Program, state: &mut State) {
     };
     for block in 0..state.route.blocks() {
         let active = state.present[block] & occupied;
-        let (parties, count) = state.route.parties(block);
         let mut events = Mask::NONE;
-        for party in &parties[..count] {
+        for number in 0..state.route.count(block) {
+            let party = state.route.party(block, number);
             let Some(stage) = program.drive.stages.get(party.stage as usize) else { continue };
-            events |= lanes::steer(simd, state, block, *party, stage, active);
+            events |= lanes::steer(simd, state, block, party, stage, active);
         }
         if !events.is_empty() {
             for lane in events.iter() {

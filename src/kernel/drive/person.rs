@@ -3,11 +3,14 @@
 
 use super::route::Way;
 use super::stage::{Stage, Target};
-use crate::base::geometry::{Shape, Vec2, rotated};
+use crate::base::geometry::{Vec2, rotated};
 use crate::base::random::{Purpose, Stream, TrialKey};
+use crate::kernel::code::ground::Ground;
+use crate::kernel::code::lanes::Vector;
 use crate::kernel::program::Program;
 use crate::kernel::state::{Layout, State};
 use crate::model::{Move, Start};
+use fearless_simd::{Level, dispatch, prelude::*};
 
 /// How far from a point the line across it may be passed so that it counts as reached, m.
 pub(super) const PASSING: f64 = 2.0;
@@ -18,7 +21,7 @@ pub(super) const NO_LENGTH: f64 = 1e-24;
 /// The unit vector along `v`, if it has a direction.
 pub(super) fn unit(v: Vec2) -> Option<Vec2> {
     let square = v.x * v.x + v.y * v.y;
-    (square > NO_LENGTH && square.is_finite()).then(|| v / square.sqrt())
+    (square > NO_LENGTH && square.is_finite()).then(|| v * (1.0 / square.sqrt()))
 }
 
 /// The trial that a slot belongs to, as lane of keys and ticks.
@@ -29,36 +32,40 @@ pub(super) fn trial_of(layout: Layout, lane: usize) -> usize {
     }
 }
 
-/// Where a body heads for: the nearest point of the target at least its radius inside, if there is room.
-pub(super) fn aim(target: &Target, at: Vec2, radius: f64) -> Option<Vec2> {
+/// The way to where a body heads for: the nearest point of the target at least its radius inside, if there is room.
+fn way_to(target: &Target, at: Vec2, radius: f64) -> Option<Vec2> {
     match target {
         Target::Rectangle(bounds) => {
-            let inset = |v: f64, low: f64, high: f64| {
-                let middle = 0.5 * (low + high);
-                let low = if low + radius > middle { middle } else { low + radius };
-                let high = if high - radius < middle { middle } else { high - radius };
-                let v = if v < low { low } else { v };
-                if v > high { high } else { v }
+            // In the same order as the vector code, so that both have the same bits.
+            let way = |v: f64, low: f64, high: f64| {
+                let half = 0.5 * (high - low);
+                let inset = if radius > half { half } else { radius };
+                let (inner, outer) = (low - v + inset, high - v - inset);
+                let way = if outer < 0.0 { outer } else { 0.0 };
+                if inner > 0.0 { inner } else { way }
             };
             let (low, high) = (bounds.low, bounds.high);
-            Some(Vec2::new(inset(at.x, low.x, high.x), inset(at.y, low.y, high.y)))
+            Some(Vec2::new(way(at.x, low.x, high.x), way(at.y, low.y, high.y)))
         }
         // The nearest point of a smaller disc lies on the line to the centre.
-        Target::Disc { centre, .. } => Some(*centre),
-        Target::Point(point) => Some(*point),
-        Target::Form { shape, inner } => Some(aim_at_form(shape, *inner, at, radius)),
+        Target::Disc { centre, .. } => Some(centre - at),
+        Target::Point(point) => Some(point - at),
+        // Inside there is nowhere to go; outside straight on, over the rim.
+        Target::Form(ground) => {
+            let (inside, way) = form(ground, at);
+            (!inside).then_some(way)
+        }
         Target::Pause(_) | Target::Onward | Target::Rest => None,
     }
 }
 
-/// A radius behind the nearest point of the outline, straight on or else towards the middle.
-fn aim_at_form(shape: &Shape, inner: Vec2, at: Vec2, radius: f64) -> Vec2 {
-    if shape.contains(at) {
-        return inner;
-    }
-    let rim = shape.nearest(at);
-    let behind = |direction: Vec2| unit(direction).map(|e| rim + e * radius).filter(|&q| shape.contains(q));
-    behind(rim - at).or_else(|| behind(inner - rim)).unwrap_or(inner)
+/// Whether a point is in a form, and the way to the nearest point of its rim: the vector code, for one.
+fn form(ground: &Ground, at: Vec2) -> (bool, Vec2) {
+    dispatch!(Level::baseline(), simd => {
+        let (x, y) = (Vector::splat(simd, at.x), Vector::splat(simd, at.y));
+        let (dx, dy) = ground.way_to_rim(x, y);
+        (ground.contains(x, y).test(0), Vec2::new(dx[0], dy[0]))
+    })
 }
 
 /// Whether a waypoint or goal is reached.
@@ -77,7 +84,7 @@ fn reached(stage: &Stage, at: Vec2, radius: f64, origin: Vec2) -> bool {
             let along = dx * (point.x - origin.x) + dy * (point.y - origin.y);
             square <= 4.0 * radius * radius || (passes && along >= 0.0 && square <= PASSING * PASSING)
         }
-        Target::Form { shape, .. } => shape.contains(at),
+        Target::Form(ground) => form(ground, at).0,
         Target::Pause(_) | Target::Onward | Target::Rest => false,
     }
 }
@@ -173,17 +180,17 @@ impl<'a> Person<'a> {
     /// Sets the driving direction and speed that the route wants now.
     fn head(&mut self) {
         let stage = &self.program.drive.stages[self.way.stage as usize];
-        if stage.target == Target::Onward {
+        if matches!(stage.target, Target::Onward) {
             let (direction, speed) = self.way.onward;
             self.drive(Some(direction), speed);
             return;
         }
         let at = self.at();
         let arrived = stage.last && reached(stage, at, self.radius(), self.way.origin);
-        match aim(&stage.target, at, self.radius()) {
-            Some(aim) if !arrived => {
+        match way_to(&stage.target, at, self.radius()) {
+            Some(way) if !arrived => {
                 let speed = self.speed();
-                self.drive(unit(aim - at), speed);
+                self.drive(unit(way), speed);
             }
             _ => self.drive(None, 0.0),
         }
@@ -214,9 +221,9 @@ impl<'a> Person<'a> {
         let towards = stages
             .iter()
             .take(stages.iter().position(|stage| stage.last).map_or(0, |last| last + 1))
-            .find_map(|stage| aim(&stage.target, self.at(), self.radius()))
-            .and_then(|aim| unit(aim - self.at()));
-        let onward = self.program.drive.stages[first as usize].target == Target::Onward;
+            .find_map(|stage| way_to(&stage.target, self.at(), self.radius()))
+            .and_then(unit);
+        let onward = matches!(self.program.drive.stages[first as usize].target, Target::Onward);
         if onward && moving.is_some() {
             // Who goes on as recorded has the recorded speed as driving speed.
             self.state.speed[self.block].0[self.lane] = speed;

@@ -1,7 +1,9 @@
 //! Where everyone is on the way: kept in the state, one entry a slot.
 
+use super::person::trial_of;
 use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Lanes, Mask};
+use crate::kernel::state::State;
 
 /// Where one agent of one trial is on its route.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,14 +98,41 @@ impl Routes {
         }
     }
 
-    /// The parties of a block.
+    /// How many parties a block has.
     #[inline(always)]
-    pub(super) fn parties(&self, block: usize) -> ([Party; LANES], usize) {
-        self.parties[block]
+    pub(super) fn count(&self, block: usize) -> usize {
+        self.parties[block].1
+    }
+
+    /// One party of a block.
+    #[inline(always)]
+    pub(super) fn party(&self, block: usize, number: usize) -> Party {
+        self.parties[block].0[number]
     }
 
     /// Number of blocks.
     pub(super) fn blocks(&self) -> usize {
         self.ways.len()
+    }
+
+    /// The slots among these whose advice ends with the present tick.
+    #[inline(always)]
+    pub(super) fn advice_over(&self, block: usize, slots: Mask, state: &State) -> Mask {
+        let advised = slots & self.advised[block];
+        if advised.is_empty() {
+            Mask::NONE
+        } else {
+            self.over(block, advised, state, |way| way.advised_until)
+        }
+    }
+
+    /// The slots among these whose pause ends with the present tick.
+    pub(super) fn pause_over(&self, block: usize, slots: Mask, state: &State) -> Mask {
+        self.over(block, slots, state, |way| way.until)
+    }
+
+    fn over(&self, block: usize, slots: Mask, state: &State, end: impl Fn(&Way) -> u64) -> Mask {
+        let ended = |&lane: &usize| state.ticks[trial_of(state.layout, lane)] >= end(&self.ways[block][lane]);
+        slots.iter().filter(ended).fold(Mask::NONE, |mask, lane| mask | Mask::lane(lane))
     }
 }

@@ -1,11 +1,11 @@
 //! Routes as tables of stages: what every trial needs to know of them, worked out once.
 
 use crate::base::geometry::{Bounds, Shape, Vec2};
-use crate::kernel::code::ground::upright;
+use crate::kernel::code::ground::{Ground, upright};
 use crate::model::{Agent, Goal, Law, Leg, Route, Scenario};
 
 /// Where a stage leads.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(super) enum Target {
     /// An upright rectangle.
     Rectangle(Bounds),
@@ -18,13 +18,8 @@ pub(super) enum Target {
     },
     /// A point.
     Point(Vec2),
-    /// Any other form, with a point well inside.
-    Form {
-        /// The form.
-        shape: Shape,
-        /// A point well inside.
-        inner: Vec2,
-    },
+    /// Any other form.
+    Form(Ground),
     /// Nowhere: stand for a time, s.
     Pause(Law),
     /// On as one started.
@@ -34,7 +29,7 @@ pub(super) enum Target {
 }
 
 /// One leg of a route.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(super) struct Stage {
     pub(super) target: Target,
     /// Number of the leg in its route; addresses the draw of a pause.
@@ -46,7 +41,7 @@ pub(super) struct Stage {
 }
 
 /// All routes of a scenario.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct Drive {
     pub(super) stages: Vec<Stage>,
     /// First stage of each agent.
@@ -61,7 +56,7 @@ fn target(scenario: &Scenario, leg: &Leg) -> Target {
             Some(Shape::Circle { centre, radius }) => Target::Disc { centre: *centre, radius: *radius },
             Some(shape @ Shape::Polygon(polygon)) => match upright(polygon) {
                 Some(bounds) => Target::Rectangle(bounds),
-                None => Target::Form { shape: shape.clone(), inner: shape.inner_point() },
+                None => Target::Form(Ground::region(shape)),
             },
             None => Target::Rest,
         },

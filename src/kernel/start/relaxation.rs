@@ -119,7 +119,11 @@ fn nearest_on_surface(obstacle: &Obstacle, p: Vec2) -> Vec2 {
         Obstacle::Solid(Shape::Circle { centre, radius }) => {
             let from = p - centre;
             let distance = from.norm();
-            if distance > 0.0 { centre + from * (radius / distance) } else { centre + Vec2::new(*radius, 0.0) }
+            if distance > 0.0 {
+                centre + from * (radius / distance)
+            } else {
+                centre + Vec2::new(*radius, 0.0)
+            }
         }
         Obstacle::Solid(Shape::Polygon(polygon)) => polygon.nearest_on_outline(p),
     }
