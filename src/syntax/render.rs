@@ -30,7 +30,8 @@ fn group<'a>(diagnostic: &'a Diagnostic, sources: &'a [Source]) -> Group<'a> {
         // One snippet a source: that of the place first, then those of other files.
         let mut of = Some((place.span.source, Some(place)));
         while let Some((id, primary)) = of {
-            let (here, elsewhere): (Vec<_>, Vec<_>) = rest.into_iter().partition(|label| label.span.source == id);
+            let (here, elsewhere): (Vec<_>, Vec<_>) =
+                rest.into_iter().partition(|label| label.span.source == id);
             if let Some(source) = sources.iter().find(|source| source.id == id) {
                 let mut snippet = Snippet::source(source.text.as_str()).path(source.name.as_str());
                 if let Some(label) = primary {
@@ -84,8 +85,15 @@ mod tests {
             .label("this is a length")
             .related(Span::new(SourceId(1), 1, 900), "used here")
             .hint("write `3 s`");
-        let text = render(&[diagnostic, Diagnostic::placeless("E0701", "no such file")], &[first, second], false);
-        for part in ["error[E0101]: expected a time", "--> a.scn:1:11", "b.bltl:1:1", "write `3 s`", "error[E0701]: no such file"] {
+        let text =
+            render(&[diagnostic, Diagnostic::placeless("E0701", "no such file")], &[first, second], false);
+        for part in [
+            "error[E0101]: expected a time",
+            "--> a.scn:1:11",
+            "b.bltl:1:1",
+            "write `3 s`",
+            "error[E0701]: no such file",
+        ] {
             assert!(text.contains(part), "{part}\n{text}");
         }
     }

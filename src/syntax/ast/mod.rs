@@ -10,8 +10,8 @@ pub use expression::{
     Text, UnaryOp, UnitExpr, UnitFactor,
 };
 pub use process::{
-    BehaviourDecl, BehaviourItem, Branch, Choice, Command, Domain, OnDecl, ProcessDecl, ProcessItem, SourceDecl,
-    StateDecl, Timing, Transition, Update, VarDecl,
+    BehaviourDecl, BehaviourItem, Branch, Choice, Command, Domain, OnDecl, ProcessDecl, ProcessItem,
+    SourceDecl, StateDecl, Timing, Transition, Update, VarDecl,
 };
 pub use property::{
     Binding, Clauses, Measure, MeasureKind, Method, PropertyFile, PropertyItem, Query, QueryKind,

@@ -100,8 +100,8 @@ pub(super) fn is_open_text(token: &str) -> bool {
 /// The word or number that ends right before `at`, blanks skipped, and where it starts.
 pub(super) fn word_before(text: &str, at: usize) -> Option<(usize, &str)> {
     let trimmed = text[..at].trim_end();
-    let start = trimmed.rfind(|c: char| !continues_name(c) && c != '.').map_or(0, |before| {
-        before + trimmed[before..].chars().next().map_or(1, char::len_utf8)
-    });
+    let start = trimmed
+        .rfind(|c: char| !continues_name(c) && c != '.')
+        .map_or(0, |before| before + trimmed[before..].chars().next().map_or(1, char::len_utf8));
     (start < trimmed.len()).then(|| (start, &trimmed[start..]))
 }

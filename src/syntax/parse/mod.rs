@@ -60,15 +60,13 @@ pub fn decode(id: SourceId, name: &str, bytes: &[u8]) -> Result<Source, Diagnost
 
 /// Parses a scenario (`.scn`). What could not be read is missing from the tree and reported.
 pub fn parse_scenario(source: &Source) -> (ScenarioFile, Vec<Diagnostic>) {
-    let (file, diagnostics) =
-        parse(source, Rule::scenario_file, |builder, file| builder.scenario_file(file));
+    let (file, diagnostics) = parse(source, Rule::scenario_file, |builder, file| builder.scenario_file(file));
     (file.unwrap_or_default(), diagnostics)
 }
 
 /// Parses a property file (`.bltl`). What could not be read is missing from the tree and reported.
 pub fn parse_properties(source: &Source) -> (PropertyFile, Vec<Diagnostic>) {
-    let (file, diagnostics) =
-        parse(source, Rule::property_file, |builder, file| builder.property_file(file));
+    let (file, diagnostics) = parse(source, Rule::property_file, |builder, file| builder.property_file(file));
     (file.unwrap_or_default(), diagnostics)
 }
 
@@ -123,10 +121,13 @@ fn parse<T>(
     if text.len() < source.text.len() {
         let last = text.trim_end().len() as u32;
         diagnostics.retain(|diagnostic| {
-            diagnostic.code == code::COMMENT || diagnostic.place.as_ref().is_none_or(|place| place.span.start < last)
+            diagnostic.code == code::COMMENT
+                || diagnostic.place.as_ref().is_none_or(|place| place.span.start < last)
         });
     }
     diagnostics.sort_by_key(|diagnostic| diagnostic.place.as_ref().map(|place| place.span));
-    diagnostics.dedup_by_key(|diagnostic| diagnostic.place.as_ref().map(|place| (place.span.start, diagnostic.severity)));
+    diagnostics.dedup_by_key(|diagnostic| {
+        diagnostic.place.as_ref().map(|place| (place.span.start, diagnostic.severity))
+    });
     (built, diagnostics)
 }

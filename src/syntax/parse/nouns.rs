@@ -79,6 +79,7 @@ fn mark(rule: Rule) -> Option<&'static str> {
     Some(match rule {
         Rule::t_lparen => "(",
         Rule::t_rparen => ")",
+        Rule::t_lbracket => "[",
         Rule::t_rbracket => "]",
         Rule::t_lbrace => "{",
         Rule::t_rbrace => "}",
@@ -124,8 +125,22 @@ pub(super) fn is_operator(rule: Rule) -> bool {
 pub(super) fn words(rule: Rule) -> &'static [&'static str] {
     match rule {
         Rule::item | Rule::item_end => &[
-            "scenario", "horizon", "step", "const", "param", "let", "tracks", "scene", "kind", "agent", "agents",
-            "group", "moves", "process", "behaviour", "source",
+            "scenario",
+            "horizon",
+            "step",
+            "const",
+            "param",
+            "let",
+            "tracks",
+            "scene",
+            "kind",
+            "agent",
+            "agents",
+            "group",
+            "moves",
+            "process",
+            "behaviour",
+            "source",
         ],
         Rule::property_item | Rule::property_item_end => {
             &["property", "let", "const", "family", "check", "estimate", "compare", "rank"]
@@ -191,7 +206,11 @@ pub(super) fn noun(rule: Rule) -> Option<(u8, String)> {
         Rule::unit | Rule::unit_factor | Rule::point_unit => (2, "a unit".to_owned()),
         Rule::item | Rule::property_item => (6, "a declaration".to_owned()),
         Rule::item_end | Rule::property_item_end => (6, "the next declaration".to_owned()),
-        Rule::scene_item | Rule::process_item | Rule::behaviour_item | Rule::state_item | Rule::move_option => {
+        Rule::scene_item
+        | Rule::process_item
+        | Rule::behaviour_item
+        | Rule::state_item
+        | Rule::move_option => {
             let words = words(rule).iter().map(|word| format!("`{word}`")).collect::<Vec<_>>();
             (6, list(&words))
         }
@@ -206,10 +225,17 @@ pub(super) fn noun(rule: Rule) -> Option<(u8, String)> {
         Rule::fields | Rule::no_body => (4, "`{`".to_owned()),
         Rule::update | Rule::updates | Rule::branch | Rule::branches => (0, "an update".to_owned()),
         Rule::choice | Rule::choices => (0, "a name".to_owned()),
-        Rule::recorded | Rule::with | Rule::preset | Rule::only | Rule::except | Rule::then_leave | Rule::rate
-        | Rule::delay | Rule::moment | Rule::measure_range | Rule::particle => {
-            (8, format!("`{}`", words(rule).first()?))
-        }
+        Rule::recorded
+        | Rule::with
+        | Rule::preset
+        | Rule::only
+        | Rule::except
+        | Rule::then_leave
+        | Rule::rate
+        | Rule::delay
+        | Rule::moment
+        | Rule::measure_range
+        | Rule::particle => (8, format!("`{}`", words(rule).first()?)),
         _ => return None,
     })
 }
@@ -232,7 +258,9 @@ pub(super) fn nearest<'w>(word: &str, known: impl Iterator<Item = &'w str>) -> O
     let allowed = (length / 3).clamp(1, 3);
     known
         .map(|candidate| (edits(word, candidate), candidate))
-        .filter(|&(distance, candidate)| distance <= allowed && candidate.chars().count() > distance && candidate != word)
+        .filter(|&(distance, candidate)| {
+            distance <= allowed && candidate.chars().count() > distance && candidate != word
+        })
         .min_by_key(|&(distance, _)| distance)
         .map(|(_, candidate)| candidate)
 }

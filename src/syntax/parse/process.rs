@@ -3,8 +3,8 @@
 use super::builder::{Builder, Pair, Parts};
 use super::grammar::Rule;
 use crate::syntax::ast::{
-    BehaviourDecl, BehaviourItem, Branch, Choice, Command, Domain, OnDecl, ProcessDecl, ProcessItem, StateDecl,
-    Timing, Transition, Update, Value, VarDecl,
+    BehaviourDecl, BehaviourItem, Branch, Choice, Command, Domain, OnDecl, ProcessDecl, ProcessItem,
+    StateDecl, Timing, Transition, Update, Value, VarDecl,
 };
 use crate::syntax::codes::syntax as code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -110,7 +110,8 @@ impl Builder<'_> {
         let span = self.span(&pair);
         let mut parts = Parts::of(pair);
         let name = self.ident(&parts.part(Rule::name)?);
-        let arguments = parts.part(Rule::parameters).map(|parameters| self.parameters(parameters)).unwrap_or_default();
+        let arguments =
+            parts.part(Rule::parameters).map(|parameters| self.parameters(parameters)).unwrap_or_default();
         let items = parts
             .filter(|part| part.as_rule() == Rule::behaviour_item)
             .filter_map(|part| self.behaviour_item(part.into_inner().next()?))

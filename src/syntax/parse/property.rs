@@ -3,8 +3,8 @@
 use super::builder::{Builder, Pair, Parts};
 use super::grammar::Rule;
 use crate::syntax::ast::{
-    BinaryOp, Binding, Clauses, Expr, Measure, MeasureKind, Method, Moment, PropertyFile, PropertyItem, Query,
-    QueryKind, ExprKind,
+    BinaryOp, Binding, Clauses, Expr, ExprKind, Measure, MeasureKind, Method, Moment, PropertyFile,
+    PropertyItem, Query, QueryKind,
 };
 use crate::syntax::codes::syntax as code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -123,7 +123,9 @@ impl Builder<'_> {
             let mut parts = Parts::of(clause);
             let twice = match rule {
                 Rule::within => clauses.within.replace(self.expr(parts.part(Rule::arith)?)?).is_some(),
-                Rule::confidence => clauses.confidence.replace(self.expr(parts.part(Rule::arith)?)?).is_some(),
+                Rule::confidence => {
+                    clauses.confidence.replace(self.expr(parts.part(Rule::arith)?)?).is_some()
+                }
                 Rule::method => {
                     let name = self.ident(&parts.part(Rule::name)?);
                     let arguments = parts.map(|binding| self.binding(binding)).collect::<Option<_>>()?;

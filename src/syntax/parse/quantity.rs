@@ -10,7 +10,8 @@ use crate::syntax::source::Span;
 
 /// The units of both languages, as in `grammar/common.pest`.
 pub(super) const UNITS: [&str; 18] = [
-    "m", "cm", "mm", "km", "s", "ms", "min", "h", "kg", "g", "N", "kN", "deg", "rad", "Hz", "%", "step", "steps",
+    "m", "cm", "mm", "km", "s", "ms", "min", "h", "kg", "g", "N", "kN", "deg", "rad", "Hz", "%", "step",
+    "steps",
 ];
 
 /// What people write for a unit, and the unit.
@@ -81,10 +82,9 @@ impl Builder<'_> {
     }
 
     fn number_too_long(&mut self, span: Span) {
-        self.say(
-            Diagnostic::error(code::NUMBER, span, "the number has too many digits")
-                .hint("numbers are kept exactly; about 37 digits fit, places after the point and exponent included"),
-        );
+        self.say(Diagnostic::error(code::NUMBER, span, "the number has too many digits").hint(
+            "numbers are kept exactly; about 37 digits fit, places after the point and exponent included",
+        ));
     }
 
     /// `kg/(m s)`, of a quantity or a point.

@@ -60,7 +60,8 @@ impl Builder<'_> {
     pub(super) fn let_decl(&mut self, pair: Pair<'_>) -> Option<LetDecl> {
         let mut parts = Parts::of(pair);
         let name = self.declared(&parts.part(Rule::name)?);
-        let arguments = parts.part(Rule::parameters).map(|parameters| self.parameters(parameters)).unwrap_or_default();
+        let arguments =
+            parts.part(Rule::parameters).map(|parameters| self.parameters(parameters)).unwrap_or_default();
         Some(LetDecl { name, arguments, body: self.expr(parts.part(Rule::expr)?)? })
     }
 

@@ -31,8 +31,12 @@ impl Builder<'_> {
                 let points = parts.map(|point| self.expr(point)).collect::<Option<_>>()?;
                 Some(SceneItem::Wall { name, points, span })
             }
-            Rule::obstacle => Some(SceneItem::Obstacle { name, shape: self.shape(parts.part(Rule::shape)?)? }),
-            Rule::region => Some(SceneItem::Region { name: name?, shape: self.shape(parts.part(Rule::shape)?)? }),
+            Rule::obstacle => {
+                Some(SceneItem::Obstacle { name, shape: self.shape(parts.part(Rule::shape)?)? })
+            }
+            Rule::region => {
+                Some(SceneItem::Region { name: name?, shape: self.shape(parts.part(Rule::shape)?)? })
+            }
             _ => Some(SceneItem::Point { name: name?, at: self.expr(parts.part(Rule::place)?)? }),
         }
     }

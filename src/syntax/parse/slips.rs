@@ -59,7 +59,9 @@ impl Builder<'_> {
                     .hint(format!("write `{word}<=` and a time, or an interval: `{word}[1 s, 5 s]`")),
             );
         }
-        if !(comparison || matches!(fault.found, "+" | "*" | "/" | "^" | "-" | "in")) || !quantity::UNITS.contains(&word) {
+        if !(comparison || matches!(fault.found, "+" | "*" | "/" | "^" | "-" | "in"))
+            || !quantity::UNITS.contains(&word)
+        {
             return None;
         }
         let (number_at, number) = lexeme::word_before(self.text, unit_at)?;
@@ -70,9 +72,16 @@ impl Builder<'_> {
         }
         let unit = Span::new(self.source.id, unit_at, unit_at + word.len());
         Some(
-            Diagnostic::error(code::BOUND_TOOK_NAME, place, format!("expected a formula, found {}", quote(fault.found)))
-                .related(unit, "read as the unit of the bound")
-                .hint(format!("write `#{number}` for so many steps, or parentheses: `({word} {} …)`", fault.found)),
+            Diagnostic::error(
+                code::BOUND_TOOK_NAME,
+                place,
+                format!("expected a formula, found {}", quote(fault.found)),
+            )
+            .related(unit, "read as the unit of the bound")
+            .hint(format!(
+                "write `#{number}` for so many steps, or parentheses: `({word} {} …)`",
+                fault.found
+            )),
         )
     }
 
@@ -86,8 +95,12 @@ impl Builder<'_> {
         if fault.found == "===" || fault.found == "==" && fault.expected.contains(&Rule::t_assign) {
             let wanted = if fault.found == "===" { "==" } else { "=" };
             return Some(
-                Diagnostic::error(code::EQUALS, place, format!("expected `{wanted}`, found `{}`", fault.found))
-                    .hint("`=` sets, `==` compares"),
+                Diagnostic::error(
+                    code::EQUALS,
+                    place,
+                    format!("expected `{wanted}`, found `{}`", fault.found),
+                )
+                .hint("`=` sets, `==` compares"),
             );
         }
         if fault.found != "=" || !fault.after_value() {
@@ -115,8 +128,12 @@ impl Builder<'_> {
     /// Operators of other languages.
     fn slip_of_operator(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
         let say = |at: usize, found: &str, plain: &str| {
-            Diagnostic::error(code::OPERATOR, self.place(at, found), format!("`{found}` is not an operator here"))
-                .hint(format!("write `{plain}`"))
+            Diagnostic::error(
+                code::OPERATOR,
+                self.place(at, found),
+                format!("`{found}` is not an operator here"),
+            )
+            .hint(format!("write `{plain}`"))
         };
         let after_value = fault.after_value();
         let plain = match fault.found {
@@ -126,7 +143,9 @@ impl Builder<'_> {
             "or" | "OR" if after_value => "|",
             "implies" | "->" if after_value => "=>",
             "iff" if after_value => "<=>",
-            "**" => "^",
+            "*" if !after_value && self.text[..fault.at].ends_with('*') => {
+                return Some(say(fault.at - 1, "**", "^"));
+            }
             "~" if !after_value => "!",
             "is" if after_value => "==",
             _ => {
@@ -153,25 +172,46 @@ impl Builder<'_> {
         if between.contains('\n') || !number.starts_with(|c: char| c.is_ascii_digit()) {
             return None;
         }
+        let after = fault.at + fault.found.len();
+        let rest = self.text[after..].trim_start();
+        if quantity::UNITS.contains(&fault.found) && rest.starts_with('=') && !rest.starts_with("==") {
+            // A name that is set is no unit, so that the grammar stopped before it.
+            let at = self.text.len() - rest.len();
+            let said = Diagnostic::error(
+                code::UNEXPECTED,
+                self.place(at, "="),
+                format!("unexpected `=` after `{number} {}`", fault.found),
+            );
+            return Some(said.hint("`=` sets the name before it; `==` compares"));
+        }
         let unit = quantity::nearest_unit(fault.found);
         let near_keyword = fault.expected.iter().any(|&rule| {
-            let words = super::nouns::keyword(rule).into_iter().chain(super::nouns::words(rule).iter().copied());
+            let words =
+                super::nouns::keyword(rule).into_iter().chain(super::nouns::words(rule).iter().copied());
             super::nouns::nearest(fault.found, words).is_some()
         });
-        if near_keyword || quantity::UNITS.contains(&fault.found) || unit.is_none() && !between.is_empty() && !fault.after_value() {
+        if near_keyword
+            || quantity::UNITS.contains(&fault.found)
+            || unit.is_none() && !between.is_empty() && !fault.after_value()
+        {
             return None;
         }
         let place = self.place(fault.at, fault.found);
         let hint = match unit {
             Some(unit) => format!("did you mean `{number} {unit}`?"),
-            None => format!("units are {}; to multiply write `{number} * {}`", quantity::UNITS.join(", "), fault.found),
+            None => format!(
+                "units are {}; to multiply write `{number} * {}`",
+                quantity::UNITS.join(", "),
+                fault.found
+            ),
         };
         Some(Diagnostic::error(code::UNIT, place, format!("unknown unit `{}`", fault.found)).hint(hint))
     }
 
     /// `process p { n = 3 }`
     fn slip_of_process(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
-        let expects = fault.expected.contains(&Rule::process_item) || fault.expected.contains(&Rule::process_item_end);
+        let expects =
+            fault.expected.contains(&Rule::process_item) || fault.expected.contains(&Rule::process_item_end);
         let rest = self.text[fault.at + fault.found.len()..].trim_start();
         let sets = rest.starts_with('=') && !rest.starts_with("==") && !rest.starts_with("=>");
         if !expects || !sets || !fault.found.starts_with(lexeme::starts_name) {
