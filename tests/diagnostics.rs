@@ -1,5 +1,6 @@
 //! Planted errors: each file of `planted/` and what is said about it.
 
+#![allow(clippy::case_sensitive_file_extension_comparisons, reason = "names are given in lower case")]
 #![allow(clippy::disallowed_methods, reason = "a test reads its own files")]
 
 use smc::syntax::diagnostic::Diagnostic;

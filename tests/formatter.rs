@@ -1,5 +1,6 @@
 //! The formatter: what it keeps, and that a second run changes nothing.
 
+#![allow(clippy::case_sensitive_file_extension_comparisons, reason = "names are given in lower case")]
 #![allow(clippy::disallowed_methods, reason = "a test reads its own files")]
 
 use proptest::prelude::*;

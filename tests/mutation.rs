@@ -1,6 +1,7 @@
 //! Mutations of every token of every example, and noise: nothing panics, and the first error lies where the
 //! text was changed.
 
+#![allow(clippy::case_sensitive_file_extension_comparisons, reason = "names are given in lower case")]
 #![allow(clippy::disallowed_methods, reason = "a test reads its own files")]
 
 use proptest::prelude::*;

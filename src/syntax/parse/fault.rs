@@ -167,25 +167,21 @@ impl Builder<'_> {
             Diagnostic::error(code::UNEXPECTED, place, title)
         };
         let closes = fault.expected.contains(&Rule::t_rparen) || fault.expected.contains(&Rule::t_rbracket);
-        if closes || starts_declaration(fault.found) {
-            if let Some((open, bracket)) = nesting::open_bracket(self.text, fault.from, fault.at) {
-                let span = Span::new(self.source.id, open, open + 1);
-                if bracket != '{' && self.text[open..fault.at].contains('\n') {
-                    // What follows on a later line belongs to something else: the bracket is the error.
-                    let close = if bracket == '(' { ')' } else { ']' };
-                    return Diagnostic::error(
-                        code::UNCLOSED,
-                        span,
-                        format!("this `{bracket}` is not closed"),
-                    )
+        if (closes || starts_declaration(fault.found))
+            && let Some((open, bracket)) = nesting::open_bracket(self.text, fault.from, fault.at)
+        {
+            let span = Span::new(self.source.id, open, open + 1);
+            if bracket != '{' && self.text[open..fault.at].contains('\n') {
+                // What follows on a later line belongs to something else: the bracket is the error.
+                let close = if bracket == '(' { ')' } else { ']' };
+                return Diagnostic::error(code::UNCLOSED, span, format!("this `{bracket}` is not closed"))
                     .related(self.place(fault.at, fault.found), format!("expected `{close}` before this"));
-                }
-                if closes {
-                    diagnostic = diagnostic.related(span, format!("this `{bracket}` is still open"));
-                }
+            }
+            if closes {
+                diagnostic = diagnostic.related(span, format!("this `{bracket}` is still open"));
             }
         }
-        if let Some(word) = self.meant(&fault) {
+        if let Some(word) = Self::meant(&fault) {
             diagnostic = diagnostic.hint(format!("did you mean `{word}`?"));
         }
         diagnostic
@@ -203,7 +199,7 @@ impl Builder<'_> {
     }
 
     /// The keyword that was probably meant.
-    fn meant(&self, fault: &Fault<'_>) -> Option<&'static str> {
+    fn meant(fault: &Fault<'_>) -> Option<&'static str> {
         if !fault.found.starts_with(lexeme::starts_name) {
             return None;
         }
@@ -282,7 +278,13 @@ pub(super) fn quote(found: &str) -> String {
 }
 
 fn expected_nouns(expected: &[Rule]) -> String {
-    let mut nouns: Vec<_> = expected.iter().filter_map(|&rule| nouns::noun(rule)).collect();
+    // A point or name may always go on with `.` or `[`: that helps nobody.
+    let goes_on = expected.contains(&Rule::t_dot);
+    let mut nouns: Vec<_> = expected
+        .iter()
+        .filter(|&&rule| !(goes_on && rule == Rule::t_lbracket))
+        .filter_map(|&rule| nouns::noun(rule))
+        .collect();
     nouns.sort();
     nouns.dedup();
     // After a value there is always more that could follow; an operator stands for all of it.

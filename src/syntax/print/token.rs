@@ -4,6 +4,7 @@ use crate::syntax::parse::Pair;
 use crate::syntax::parse::grammar::Rule;
 
 /// A token and how it stands beside others.
+#[allow(clippy::struct_excessive_bools, reason = "four independent marks")]
 pub(super) struct Token {
     /// As it is written out.
     pub(super) text: String,
@@ -91,11 +92,12 @@ fn collect(pair: Pair<'_>, parent: Rule, out: &mut Vec<Node>) {
                 _ => {}
             }
         }
-        if part.as_rule() == Rule::op_power && !follows_unit(out, first) {
-            if let Some(Node::Token(token)) = out.get_mut(first) {
-                token.glued_left = true;
-                token.glued_right = true;
-            }
+        if part.as_rule() == Rule::op_power
+            && !follows_unit(out, first)
+            && let Some(Node::Token(token)) = out.get_mut(first)
+        {
+            token.glued_left = true;
+            token.glued_right = true;
         }
         wants_operand = !matches!(part.as_rule(), Rule::primary | Rule::member | Rule::index);
     }
