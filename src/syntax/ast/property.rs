@@ -12,6 +12,7 @@ pub struct PropertyFile {
 
 /// One declaration or query.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant, reason = "a file has few items")]
 pub enum PropertyItem {
     /// `let gap(a) = …`
     Let(LetDecl),

@@ -289,6 +289,7 @@ pub struct MovesDecl {
 
 /// Options of a move.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant, reason = "a scenario has few moves")]
 pub enum MoveOption {
     /// `heading from a to b by c`
     Headings {

@@ -4,7 +4,7 @@ use super::Page;
 
 /// Something else should stand here.
 pub(in crate::syntax) const UNEXPECTED: &str = "E0101";
-/// A block is not closed.
+/// A bracket or block is not closed.
 pub(in crate::syntax) const UNCLOSED: &str = "E0102";
 /// A bracket closes nothing.
 pub(in crate::syntax) const STRAY: &str = "E0103";
@@ -69,9 +69,9 @@ Right:\n\
     },
     Page {
         code: UNCLOSED,
-        title: "a block is not closed",
+        title: "a bracket or block is not closed",
         text: "\
-A block opened with `{` runs into the next declaration or the end of the file. The related mark shows which `{` is open.\n\
+A block opened with `{`, or a bracket, runs into the next declaration or the end of the file. The other mark shows how far.\n\
 \n\
 Wrong:\n\
 \x20   kind adult: sfm { mass = 75 kg\n\

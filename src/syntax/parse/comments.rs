@@ -20,8 +20,8 @@ pub(in crate::syntax) fn comments(gap: &str) -> Vec<Comment> {
         let rest = &gap[start..];
         let (end, to_line_end) = if rest.starts_with("//") {
             (rest.find('\n').map_or(gap.len(), |length| start + length), true)
-        } else if rest.starts_with("/*") {
-            (rest[2..].find("*/").map_or(gap.len(), |length| start + length + 4), false)
+        } else if let Some(inside) = rest.strip_prefix("/*") {
+            (inside.find("*/").map_or(gap.len(), |length| start + length + 4), false)
         } else {
             at = start + 1;
             continue;

@@ -23,7 +23,7 @@ struct Built {
     expr: Expr,
     /// Nodes on the longest way down.
     height: u16,
-    /// Prefixes and brackets on the longest way down.
+    /// Prefixes on the longest way down; brackets are counted before parsing.
     nesting: u16,
     /// Not in parentheses.
     bare: bool,
@@ -51,9 +51,25 @@ enum Infix {
     Temporal(TemporalPair, Option<Bound>),
 }
 
+/// How deep the bound or set of an operator is.
+#[derive(Clone, Copy, Default)]
+struct Extra {
+    height: u16,
+    nesting: u16,
+}
+
+impl Extra {
+    fn of<'b>(parts: impl Iterator<Item = &'b Built>) -> Self {
+        parts.fold(Self::default(), |extra, part| Self {
+            height: extra.height.max(part.height),
+            nesting: extra.nesting.max(part.nesting),
+        })
+    }
+}
+
 enum Operator {
-    Prefix { what: Prefix, span: Span, extra: u16 },
-    Infix { what: Infix, level: u8, extra: u16 },
+    Prefix { what: Prefix, span: Span, extra: Extra },
+    Infix { what: Infix, level: u8, extra: Extra },
 }
 
 impl Operator {
@@ -174,7 +190,7 @@ impl Builder<'_> {
 
     fn prefix(&mut self, pair: Pair<'_>) -> Option<Operator> {
         let span = self.span(&pair);
-        let mut extra = 0;
+        let mut extra = Extra::default();
         let what = match pair.as_rule() {
             Rule::op_not => Prefix::Unary(UnaryOp::Not),
             Rule::op_minus => Prefix::Unary(UnaryOp::Minus),
@@ -199,7 +215,7 @@ impl Builder<'_> {
                 let mut parts = Parts::of(pair);
                 let variable = self.declared(&parts.part(Rule::name)?);
                 let set = self.sequence(parts.part(Rule::set)?)?;
-                extra = set.height.max(set.nesting);
+                extra = Extra::of(std::iter::once(&set));
                 let quantifier = if forall { Quantifier::Forall } else { Quantifier::Exists };
                 Prefix::Binder(quantifier, variable, set.expr)
             }
@@ -209,7 +225,7 @@ impl Builder<'_> {
 
     fn infix(&mut self, pair: Pair<'_>) -> Option<Operator> {
         if let Some((operator, level)) = plain_infix(pair.as_rule()) {
-            return Some(Operator::Infix { what: Infix::Plain(operator), level, extra: 0 });
+            return Some(Operator::Infix { what: Infix::Plain(operator), level, extra: Extra::default() });
         }
         let mut parts = pair.into_inner();
         let operator = match parts.next()?.as_rule() {
@@ -217,14 +233,14 @@ impl Builder<'_> {
             Rule::op_release => TemporalPair::Release,
             _ => TemporalPair::WeakUntil,
         };
-        let mut extra = 0;
+        let mut extra = Extra::default();
         let bound = self.bound(parts.next(), &mut extra)?;
         Some(Operator::Infix { what: Infix::Temporal(operator, bound), level: 5, extra })
     }
 
     /// A bound; the outer `None` is a failure, the inner one is no bound.
     #[allow(clippy::option_option, reason = "a failure is not the absence of a bound")]
-    fn bound(&mut self, pair: Option<Pair<'_>>, height: &mut u16) -> Option<Option<Bound>> {
+    fn bound(&mut self, pair: Option<Pair<'_>>, extra: &mut Extra) -> Option<Option<Bound>> {
         let Some(pair) = pair else { return Some(None) };
         let mut ends = Vec::new();
         for part in pair.into_inner() {
@@ -234,7 +250,7 @@ impl Builder<'_> {
                 _ => {}
             }
         }
-        *height = ends.iter().map(|end| end.height.max(end.nesting)).max().unwrap_or(0);
+        *extra = Extra::of(ends.iter());
         let mut ends = ends.into_iter().map(|end| Box::new(end.expr));
         let first = ends.next()?;
         Some(Some(match ends.next() {
@@ -248,7 +264,8 @@ impl Builder<'_> {
         let built = match operator {
             Operator::Prefix { what, span, extra } => {
                 let open = matches!(what, Prefix::Temporal(..)) && right.bare;
-                let (height, nesting) = (right.height.max(extra) + 1, right.nesting.max(extra) + 1);
+                let (height, nesting) =
+                    (right.height.max(extra.height) + 1, right.nesting.max(extra.nesting) + 1);
                 let span = span.to(right.expr.span);
                 let body = Box::new(right.expr);
                 let kind = match what {
@@ -265,8 +282,8 @@ impl Builder<'_> {
                 let left = operands.pop()?;
                 self.lint(&what, &left, &right);
                 let span = left.expr.span.to(right.expr.span);
-                let height = left.height.max(right.height).max(extra) + 1;
-                let nesting = left.nesting.max(right.nesting).max(extra);
+                let height = left.height.max(right.height).max(extra.height) + 1;
+                let nesting = left.nesting.max(right.nesting).max(extra.nesting);
                 let (left, right) = (Box::new(left.expr), Box::new(right.expr));
                 let kind = match what {
                     Infix::Plain(operator) => ExprKind::Binary(operator, left, right),
@@ -341,7 +358,7 @@ impl Builder<'_> {
             (
                 ExprKind::Index(Box::new(target.expr), Box::new(inner.expr)),
                 target.height.max(inner.height) + 1,
-                target.nesting.max(inner.nesting + 1),
+                target.nesting.max(inner.nesting),
             )
         };
         self.limited(Built { expr: Expr { kind, span }, height, nesting, bare: true, open: false })
@@ -373,7 +390,7 @@ impl Builder<'_> {
                 None => None,
             };
             let height = first.height.max(second.height) + 1;
-            let nesting = first.nesting.max(second.nesting) + 1;
+            let nesting = first.nesting.max(second.nesting);
             let kind = ExprKind::Point { x: Box::new(first.expr), y: Box::new(second.expr), unit };
             return self.limited(Built {
                 expr: Expr { kind, span },
@@ -384,7 +401,6 @@ impl Builder<'_> {
             });
         }
         first.expr.span = span;
-        first.nesting += 1;
         first.bare = false;
         self.limited(first)
     }
@@ -409,7 +425,7 @@ impl Builder<'_> {
         span: Span,
     ) -> Option<Built> {
         let height = set.height.max(body.height) + 1;
-        let nesting = set.nesting.max(body.nesting) + 1;
+        let nesting = set.nesting.max(body.nesting);
         let kind =
             ExprKind::Quantified { quantifier, variable, set: Box::new(set.expr), body: Box::new(body.expr) };
         self.limited(Built { expr: Expr { kind, span }, height, nesting, bare: false, open: false })
@@ -437,7 +453,7 @@ impl Builder<'_> {
             return self.fold(Quantifier::Fold(fold), variable, set, arguments.pop()?, span);
         }
         let height = arguments.iter().map(|argument| argument.height).max().unwrap_or(0) + 1;
-        let nesting = arguments.iter().map(|argument| argument.nesting).max().unwrap_or(0) + 1;
+        let nesting = arguments.iter().map(|argument| argument.nesting).max().unwrap_or(0);
         let arguments = arguments.into_iter().map(|argument| argument.expr).collect();
         let kind = ExprKind::Call { function, arguments };
         self.limited(Built { expr: Expr { kind, span }, height, nesting, bare: false, open: false })

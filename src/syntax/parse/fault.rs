@@ -72,7 +72,8 @@ impl Builder<'_> {
                 before = None;
             } else {
                 last_bad_end = None;
-                let is_member = !super::builder::is_mark(rule) && part.as_span().start() < part.as_span().end();
+                let is_member =
+                    !super::builder::is_mark(rule) && part.as_span().start() < part.as_span().end();
                 before = is_member.then_some(part);
             }
         }
@@ -81,7 +82,8 @@ impl Builder<'_> {
     fn missing_brace(&mut self, block: &Pair<'_>, at: usize) {
         let found = lexeme::first(&self.text[at..]);
         let place = self.place(at, found);
-        let mut diagnostic = Diagnostic::error(code::UNCLOSED, place, format!("expected `}}`, found {}", quote(found)));
+        let mut diagnostic =
+            Diagnostic::error(code::UNCLOSED, place, format!("expected `}}`, found {}", quote(found)));
         if let Some((open, _)) = nesting::open_bracket(self.text, block.as_span().start(), at) {
             let span = Span::new(self.source.id, open, open + 1);
             diagnostic = diagnostic.related(span, "this `{` is not closed");
@@ -127,6 +129,21 @@ impl Builder<'_> {
         Span::new(self.source.id, at, at + found.len())
     }
 
+    /// The place of a fault. Where the next declaration stands on a later line, something lacks before it: that
+    /// is right after the token before.
+    fn place_of(&self, fault: &Fault<'_>) -> Span {
+        let expects_it = fault.expected.iter().any(|rule| {
+            matches!(rule, Rule::item | Rule::item_end | Rule::property_item | Rule::property_item_end)
+        });
+        if starts_declaration(fault.found) && !expects_it {
+            let end = last_token_end(self.text, fault.at);
+            if end > fault.from && self.text[end..fault.at].contains('\n') {
+                return Span::new(self.source.id, end, end);
+            }
+        }
+        self.place(fault.at, fault.found)
+    }
+
     fn describe(&self, fault: &Fault<'_>) -> Diagnostic {
         let fault = Fault {
             at: fault.at,
@@ -137,7 +154,7 @@ impl Builder<'_> {
         if let Some(slip) = self.slip(&fault) {
             return slip;
         }
-        let place = self.place(fault.at, fault.found);
+        let place = self.place_of(&fault);
         let mut diagnostic = if matches!(fault.found, ")" | "]" | "}") && self.closes_nothing(&fault) {
             Diagnostic::error(code::STRAY, place, format!("`{}` closes nothing", fault.found))
         } else {
@@ -149,13 +166,22 @@ impl Builder<'_> {
             };
             Diagnostic::error(code::UNEXPECTED, place, title)
         };
-        if fault.expected.contains(&Rule::t_rparen) || fault.expected.contains(&Rule::t_rbracket) {
-            if let Some((open, bracket)) = nesting::open_bracket(self.text, fault.from, fault.at) {
-                let span = Span::new(self.source.id, open, open + 1);
+        let closes = fault.expected.contains(&Rule::t_rparen) || fault.expected.contains(&Rule::t_rbracket);
+        if (closes || starts_declaration(fault.found))
+            && let Some((open, bracket)) = nesting::open_bracket(self.text, fault.from, fault.at)
+        {
+            let span = Span::new(self.source.id, open, open + 1);
+            if bracket != '{' && self.text[open..fault.at].contains('\n') {
+                // What follows on a later line belongs to something else: the bracket is the error.
+                let close = if bracket == '(' { ')' } else { ']' };
+                return Diagnostic::error(code::UNCLOSED, span, format!("this `{bracket}` is not closed"))
+                    .related(self.place(fault.at, fault.found), format!("expected `{close}` before this"));
+            }
+            if closes {
                 diagnostic = diagnostic.related(span, format!("this `{bracket}` is still open"));
             }
         }
-        if let Some(word) = self.meant(&fault) {
+        if let Some(word) = Self::meant(&fault) {
             diagnostic = diagnostic.hint(format!("did you mean `{word}`?"));
         }
         diagnostic
@@ -167,17 +193,20 @@ impl Builder<'_> {
             "]" => '[',
             _ => '{',
         };
-        nesting::open_bracket(self.text, fault.from, fault.at).is_none_or(|(_, open)| open != wanted)
+        // A block opens before its lines, other brackets within one.
+        let from = if wanted == '{' { 0 } else { fault.from };
+        nesting::open_bracket(self.text, from, fault.at).is_none_or(|(_, open)| open != wanted)
     }
 
     /// The keyword that was probably meant.
-    fn meant(&self, fault: &Fault<'_>) -> Option<&'static str> {
+    fn meant(fault: &Fault<'_>) -> Option<&'static str> {
         if !fault.found.starts_with(lexeme::starts_name) {
             return None;
         }
-        let known = fault.expected.iter().flat_map(|&rule| {
-            nouns::keyword(rule).into_iter().chain(nouns::words(rule).iter().copied())
-        });
+        let known = fault
+            .expected
+            .iter()
+            .flat_map(|&rule| nouns::keyword(rule).into_iter().chain(nouns::words(rule).iter().copied()));
         nouns::nearest(fault.found, known)
     }
 }
@@ -187,6 +216,7 @@ fn is_bare_word(text: &str, start: usize, at: usize, expected: &[Rule]) -> bool 
     let word = lexeme::first(&text[start..]);
     let after = start + word.len();
     word.starts_with(lexeme::starts_name)
+        && !matches!(word, "horizon" | "step")
         && expected.iter().all(|&rule| rule == Rule::t_assign)
         && at == after + lexeme::all_trivia(&text[after..])
 }
@@ -199,6 +229,11 @@ fn declaration(strict: Rule) -> Rule {
         Rule::strict_state_item => Rule::state_item,
         _ => Rule::field,
     }
+}
+
+/// Whether a word starts declarations of either language.
+fn starts_declaration(word: &str) -> bool {
+    [Rule::item, Rule::property_item].iter().any(|&rule| nouns::words(rule).contains(&word))
 }
 
 /// The farthest failure of a rule from a byte on, and what it would have taken there.
@@ -243,15 +278,34 @@ pub(super) fn quote(found: &str) -> String {
 }
 
 fn expected_nouns(expected: &[Rule]) -> String {
-    let mut nouns: Vec<_> = expected.iter().filter_map(|&rule| nouns::noun(rule)).collect();
+    // A point or name may always go on with `.` or `[`: that helps nobody.
+    let goes_on = expected.contains(&Rule::t_dot);
+    let mut nouns: Vec<_> = expected
+        .iter()
+        .filter(|&&rule| !(goes_on && rule == Rule::t_lbracket))
+        .filter_map(|&rule| nouns::noun(rule))
+        .collect();
     nouns.sort();
     nouns.dedup();
     // After a value there is always more that could follow; an operator stands for all of it.
     if nouns.iter().any(|(_, noun)| noun == "an operator") {
-        nouns.retain(|(rank, noun)| (3..9).contains(rank) && noun != "`(`" && noun != "a declaration");
+        nouns.retain(|(rank, noun)| {
+            (3..9).contains(rank) && !matches!(noun.as_str(), "`(`" | "`[`" | "a declaration")
+        });
     }
-    let nouns: Vec<_> = nouns.into_iter().map(|(_, noun)| noun).take(5).collect();
-    nouns::list(&nouns)
+    if nouns.len() > 1 {
+        nouns.retain(|(_, noun)| noun != "a unit");
+    }
+    let mut flat: Vec<String> = Vec::new();
+    for (_, noun) in &nouns {
+        for part in noun.split(", ").flat_map(|part| part.split(" or ")) {
+            if !flat.iter().any(|known| known == part) {
+                flat.push(part.to_owned());
+            }
+        }
+    }
+    flat.truncate(8);
+    nouns::list(&flat)
 }
 
 impl Builder<'_> {

@@ -24,10 +24,7 @@ pub(super) fn trivia(text: &str) -> Option<usize> {
     if text.starts_with("//") {
         return Some(text.find('\n').unwrap_or(text.len()));
     }
-    if text.starts_with("/*") {
-        return text[2..].find("*/").map(|at| at + 4);
-    }
-    None
+    text.strip_prefix("/*")?.find("*/").map(|at| at + 4)
 }
 
 /// Length of all blanks and comments at the start of a text.

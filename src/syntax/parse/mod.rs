@@ -33,6 +33,7 @@ use nesting::Scan;
 use pest::Parser;
 
 /// Reads bytes as a source text: UTF-8, not empty, below 4 GiB.
+#[allow(clippy::result_large_err, reason = "called once a file")]
 pub fn decode(id: SourceId, name: &str, bytes: &[u8]) -> Result<Source, Diagnostic> {
     if u32::try_from(bytes.len()).is_err() {
         return Err(Diagnostic::placeless(code::ENCODING, format!("{name} is larger than 4 GiB")));
@@ -59,12 +60,14 @@ pub fn decode(id: SourceId, name: &str, bytes: &[u8]) -> Result<Source, Diagnost
 }
 
 /// Parses a scenario (`.scn`). What could not be read is missing from the tree and reported.
+#[allow(clippy::redundant_closure_for_method_calls, reason = "the method has one lifetime, the closure any")]
 pub fn parse_scenario(source: &Source) -> (ScenarioFile, Vec<Diagnostic>) {
     let (file, diagnostics) = parse(source, Rule::scenario_file, |builder, file| builder.scenario_file(file));
     (file.unwrap_or_default(), diagnostics)
 }
 
 /// Parses a property file (`.bltl`). What could not be read is missing from the tree and reported.
+#[allow(clippy::redundant_closure_for_method_calls, reason = "the method has one lifetime, the closure any")]
 pub fn parse_properties(source: &Source) -> (PropertyFile, Vec<Diagnostic>) {
     let (file, diagnostics) = parse(source, Rule::property_file, |builder, file| builder.property_file(file));
     (file.unwrap_or_default(), diagnostics)

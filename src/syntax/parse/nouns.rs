@@ -79,6 +79,7 @@ fn mark(rule: Rule) -> Option<&'static str> {
     Some(match rule {
         Rule::t_lparen => "(",
         Rule::t_rparen => ")",
+        Rule::t_lbracket => "[",
         Rule::t_rbracket => "]",
         Rule::t_lbrace => "{",
         Rule::t_rbrace => "}",
@@ -160,9 +161,8 @@ pub(super) fn words(rule: Rule) -> &'static [&'static str] {
         Rule::wait => &["wait"],
         Rule::uniform_in => &["uniform"],
         Rule::near => &["near"],
-        Rule::rate => &["at"],
+        Rule::rate | Rule::moment => &["at"],
         Rule::delay => &["after"],
-        Rule::moment => &["at"],
         Rule::measure_range => &["in"],
         Rule::shape => &["circle", "rect", "polygon"],
         _ => &[],
@@ -182,7 +182,9 @@ pub(super) fn noun(rule: Rule) -> Option<(u8, String)> {
     }
     Some(match rule {
         Rule::number | Rule::quantity => (0, "a number".to_owned()),
-        Rule::name | Rule::ident => (1, "a name".to_owned()),
+        Rule::name | Rule::ident | Rule::attached | Rule::binding | Rule::bindings => {
+            (1, "a name".to_owned())
+        }
         Rule::text => (1, "a quoted text".to_owned()),
         Rule::expr
         | Rule::tight
@@ -251,7 +253,7 @@ pub(super) fn list(nouns: &[String]) -> String {
 /// The known word that is nearest to what was written, if near enough.
 pub(super) fn nearest<'w>(word: &str, known: impl Iterator<Item = &'w str>) -> Option<&'w str> {
     let length = word.chars().count();
-    if length < 2 || length > 40 {
+    if !(2..=40).contains(&length) {
         return None;
     }
     let allowed = (length / 3).clamp(1, 3);

@@ -143,7 +143,9 @@ impl Builder<'_> {
             "or" | "OR" if after_value => "|",
             "implies" | "->" if after_value => "=>",
             "iff" if after_value => "<=>",
-            "**" => "^",
+            "*" if !after_value && self.text[..fault.at].ends_with('*') => {
+                return Some(say(fault.at - 1, "**", "^"));
+            }
             "~" if !after_value => "!",
             "is" if after_value => "==",
             _ => {
@@ -169,6 +171,18 @@ impl Builder<'_> {
         let (_, number) = lexeme::word_before(self.text, fault.at)?;
         if between.contains('\n') || !number.starts_with(|c: char| c.is_ascii_digit()) {
             return None;
+        }
+        let after = fault.at + fault.found.len();
+        let rest = self.text[after..].trim_start();
+        if quantity::UNITS.contains(&fault.found) && rest.starts_with('=') && !rest.starts_with("==") {
+            // A name that is set is no unit, so that the grammar stopped before it.
+            let at = self.text.len() - rest.len();
+            let said = Diagnostic::error(
+                code::UNEXPECTED,
+                self.place(at, "="),
+                format!("unexpected `=` after `{number} {}`", fault.found),
+            );
+            return Some(said.hint("`=` sets the name before it; `==` compares"));
         }
         let unit = quantity::nearest_unit(fault.found);
         let near_keyword = fault.expected.iter().any(|&rule| {

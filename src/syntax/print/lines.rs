@@ -24,14 +24,22 @@ impl Line {
 
 /// Aligns and joins lines.
 pub(super) fn join(mut lines: Vec<Line>) -> String {
-    align(&mut lines, |line| line.assign.map(|at| line.text[..at].chars().count()), |line, blanks| {
-        if let Some(at) = line.assign {
-            line.text.insert_str(at, &" ".repeat(blanks));
-        }
-    });
-    align(&mut lines, |line| line.comment.as_ref().map(|_| line.width()), |line, blanks| {
-        line.text.push_str(&" ".repeat(blanks + 2));
-    });
+    align(
+        &mut lines,
+        |line| line.assign.map(|at| line.text[..at].chars().count()),
+        |line, blanks| {
+            if let Some(at) = line.assign {
+                line.text.insert_str(at, &" ".repeat(blanks));
+            }
+        },
+    );
+    align(
+        &mut lines,
+        |line| line.comment.as_ref().map(|_| line.width()),
+        |line, blanks| {
+            line.text.push_str(&" ".repeat(blanks + 2));
+        },
+    );
     let mut text = String::new();
     for line in lines {
         if line.empty_before {

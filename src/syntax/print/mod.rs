@@ -51,7 +51,9 @@ mod tests {
 
     #[test]
     fn blanks_are_set_by_what_stands_beside_them() {
-        let text = properties("property  p=G<=10 s(forall a in others( user ):gap(a)>0.1m&!q&-x^2<- -3)U [ 1s,2 s ]r");
+        let text = properties(
+            "property  p=G<=10 s(forall a in others( user ):gap(a)>0.1m&!q&-x^2<- -3)U [ 1s,2 s ]r",
+        );
         assert_eq!(
             text,
             "property p = G<=10 s (forall a in others(user): gap(a) > 0.1 m & !q & -x^2 < - -3) U[1 s, 2 s] r\n"
@@ -74,6 +76,9 @@ mod tests {
             scenario(text),
             "// top\n\nconst a  = 1  // one\nconst bb = 2  // two\n/* own */\nkind k: b {  // open\n  x = 1  // last\n  // alone\n}\n// end\n"
         );
-        assert_eq!(properties("let a = 1 + // why\n2 /* two */ + 3"), "let a = 1 +  // why\n    2 /* two */ + 3\n");
+        assert_eq!(
+            properties("let a = 1 + // why\n2 /* two */ + 3"),
+            "let a = 1 +  // why\n    2 /* two */ + 3\n"
+        );
     }
 }

@@ -4,6 +4,7 @@ use crate::syntax::parse::Pair;
 use crate::syntax::parse::grammar::Rule;
 
 /// A token and how it stands beside others.
+#[allow(clippy::struct_excessive_bools, reason = "four independent marks")]
 pub(super) struct Token {
     /// As it is written out.
     pub(super) text: String,
@@ -39,23 +40,28 @@ pub(super) fn members(file: Pair<'_>) -> Vec<Vec<Node>> {
 }
 
 fn has_block(rule: Rule) -> bool {
-    matches!(
-        rule,
-        Rule::scene | Rule::fields | Rule::moves | Rule::process | Rule::behaviour | Rule::state
-    )
+    matches!(rule, Rule::scene | Rule::fields | Rule::moves | Rule::process | Rule::behaviour | Rule::state)
 }
 
 fn aligns(rule: Rule) -> bool {
     matches!(
         rule,
-        Rule::field | Rule::setting | Rule::const_decl | Rule::param | Rule::let_decl | Rule::property | Rule::tracks
+        Rule::field
+            | Rule::setting
+            | Rule::const_decl
+            | Rule::param
+            | Rule::let_decl
+            | Rule::property
+            | Rule::tracks
     )
 }
 
 fn collect(pair: Pair<'_>, parent: Rule, out: &mut Vec<Node>) {
     let rule = pair.as_rule();
     if matches!(rule, Rule::unit | Rule::point_unit) || pair.clone().into_inner().next().is_none() {
-        if pair.as_span().start() < pair.as_span().end() && !matches!(rule, Rule::no_body | Rule::missing_brace) {
+        if pair.as_span().start() < pair.as_span().end()
+            && !matches!(rule, Rule::no_body | Rule::missing_brace)
+        {
             out.push(Node::Token(leaf(&pair, parent)));
         }
         return;
@@ -77,7 +83,8 @@ fn collect(pair: Pair<'_>, parent: Rule, out: &mut Vec<Node>) {
                     token.glued_right = next.is_none_or(|next| next.as_rule() != Rule::op_minus);
                 }
                 Rule::op_over => {
-                    let fraction = k > 0 && is_plain_number(&parts[k - 1]) && next.is_some_and(is_plain_number);
+                    let fraction =
+                        k > 0 && is_plain_number(&parts[k - 1]) && next.is_some_and(is_plain_number);
                     token.glued_left = fraction;
                     token.glued_right = fraction;
                 }
@@ -85,11 +92,12 @@ fn collect(pair: Pair<'_>, parent: Rule, out: &mut Vec<Node>) {
                 _ => {}
             }
         }
-        if part.as_rule() == Rule::op_power && !follows_unit(out, first) {
-            if let Some(Node::Token(token)) = out.get_mut(first) {
-                token.glued_left = true;
-                token.glued_right = true;
-            }
+        if part.as_rule() == Rule::op_power
+            && !follows_unit(out, first)
+            && let Some(Node::Token(token)) = out.get_mut(first)
+        {
+            token.glued_left = true;
+            token.glued_right = true;
         }
         wants_operand = !matches!(part.as_rule(), Rule::primary | Rule::member | Rule::index);
     }
@@ -126,7 +134,8 @@ fn collect_block(pair: Pair<'_>, out: &mut Vec<Node>) {
 
 /// A number without a unit.
 fn is_plain_number(pair: &Pair<'_>) -> bool {
-    pair.as_rule() == Rule::primary && pair.as_str().trim_end().bytes().all(|byte| byte.is_ascii_digit() || byte == b'.')
+    pair.as_rule() == Rule::primary
+        && pair.as_str().trim_end().bytes().all(|byte| byte.is_ascii_digit() || byte == b'.')
 }
 
 fn leaf(pair: &Pair<'_>, parent: Rule) -> Token {
@@ -160,7 +169,9 @@ fn leaf(pair: &Pair<'_>, parent: Rule) -> Token {
 /// A unit with no blanks but one between factors in parentheses.
 fn unit(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
-    for word in text.replace('(', "( ").replace(')', " )").replace('/', " / ").replace('*', " * ").split_whitespace() {
+    for word in
+        text.replace('(', "( ").replace(')', " )").replace('/', " / ").replace('*', " * ").split_whitespace()
+    {
         let tight = matches!(word, "/" | "*" | "(" | ")") || out.is_empty() || out.ends_with(['/', '*', '(']);
         if !tight {
             out.push(' ');

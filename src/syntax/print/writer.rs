@@ -20,11 +20,14 @@ struct Writer<'t> {
     opens: bool,
     /// No blank before the next token.
     glued: bool,
+    /// Inside a block on one line: its `=` are not aligned with those of other lines.
+    one_line: bool,
 }
 
 /// Writes the members of a file.
 pub(super) fn write(text: &str, members: &[Vec<Node>]) -> Vec<Line> {
-    let mut writer = Writer { text, lines: Vec::new(), at: 0, indent: 0, opens: true, glued: true };
+    let mut writer =
+        Writer { text, lines: Vec::new(), at: 0, indent: 0, opens: true, glued: true, one_line: false };
     writer.members(members);
     writer.own_lines(text.len());
     writer.lines
@@ -69,12 +72,14 @@ impl Writer<'_> {
         if !inside.contains('\n') {
             let lines = (self.lines.clone(), self.at);
             let count = self.lines.len();
+            let outer = std::mem::replace(&mut self.one_line, true);
             for (k, member) in members.iter().enumerate() {
                 if k > 0 {
                     self.push(";");
                 }
                 self.nodes(member);
             }
+            self.one_line = outer;
             self.inline_comments(close.start);
             self.push(" }");
             self.at = close.end;
@@ -103,10 +108,11 @@ impl Writer<'_> {
         } else if !self.glued && !token.glued_left {
             self.push(" ");
         }
-        if token.aligned {
-            if let Some(line) = self.lines.last_mut().filter(|line| line.assign.is_none()) {
-                line.assign = Some(line.text.len());
-            }
+        if token.aligned
+            && !self.one_line
+            && let Some(line) = self.lines.last_mut().filter(|line| line.assign.is_none())
+        {
+            line.assign = Some(line.text.len());
         }
         self.push(&token.text);
         self.at = token.end;

@@ -1,0 +1,235 @@
+//! Mutations of every token of every example, and noise: nothing panics, and the first error lies where the
+//! text was changed.
+
+#![allow(clippy::case_sensitive_file_extension_comparisons, reason = "names are given in lower case")]
+#![allow(clippy::disallowed_methods, reason = "a test reads its own files")]
+
+use proptest::prelude::*;
+use smc::syntax::diagnostic::{Diagnostic, Severity};
+use smc::syntax::parse::{parse_properties, parse_scenario};
+use smc::syntax::print::{format_properties, format_scenario};
+use smc::syntax::render::render;
+use smc::syntax::source::{Source, SourceId};
+use std::ops::Range;
+
+const EXAMPLES: [&str; 10] = [
+    "corridor.scn",
+    "corridor.bltl",
+    "die.scn",
+    "die.bltl",
+    "distracted.scn",
+    "distracted.bltl",
+    "hotel.scn",
+    "hotel.bltl",
+    "queue.scn",
+    "queue.bltl",
+];
+
+fn example(name: &str) -> Source {
+    Source::new(SourceId(0), name, std::fs::read_to_string(format!("tests/languages/{name}")).unwrap())
+}
+
+fn diagnostics(source: &Source) -> Vec<Diagnostic> {
+    if source.name.ends_with(".scn") { parse_scenario(source).1 } else { parse_properties(source).1 }
+}
+
+/// Words, numbers, texts and marks, comments left out: a scanner of its own, apart from the grammar's.
+fn tokens(text: &str) -> Vec<Range<usize>> {
+    let mut found = Vec::new();
+    let mut at = 0;
+    while at < text.len() {
+        let rest = &text[at..];
+        let first = rest.chars().next().unwrap();
+        let length = if first.is_whitespace() {
+            at += first.len_utf8();
+            continue;
+        } else if rest.starts_with("//") {
+            at += rest.find('\n').unwrap_or(rest.len());
+            continue;
+        } else if first == '"' {
+            rest[1..].find('"').unwrap() + 2
+        } else if first.is_ascii_digit() {
+            rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '.').unwrap_or(rest.len())
+        } else if first.is_alphabetic() || first == '_' {
+            rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len())
+        } else if ["==", "->", "--", "<=", ">=", "=>", ".."].iter().any(|mark| rest.starts_with(mark)) {
+            2
+        } else {
+            first.len_utf8()
+        };
+        found.push(at..at + length);
+        at += length;
+    }
+    found
+}
+
+fn line(text: &str, byte: usize) -> usize {
+    text[..byte.min(text.len())].matches('\n').count()
+}
+
+#[test]
+fn the_examples_are_accepted() {
+    for name in EXAMPLES {
+        let source = example(name);
+        let said = diagnostics(&source);
+        assert!(said.is_empty(), "{}", render(&said, &[source], false));
+    }
+}
+
+#[test]
+fn the_first_error_lies_where_the_text_was_changed() {
+    let replacements = ["", "=", ")", "}", "(", "{", "xyzzy", "42", ",", "->", "$", "\"", "&&", "é"];
+    let (mut mutants, mut refused) = (0, 0);
+    let mut misplaced = Vec::new();
+    for name in EXAMPLES {
+        let text = example(name).text;
+        let tokens = tokens(&text);
+        for (k, token) in tokens.iter().enumerate() {
+            let doubled = format!("{0} {0}", &text[token.clone()]);
+            // Each token is dropped and doubled, and replaced by every other of the rest.
+            let some = replacements.into_iter().enumerate().filter(|(r, _)| *r == 0 || (r + k) % 2 == 0);
+            for replacement in some.map(|(_, replacement)| replacement).chain([doubled.as_str()]) {
+                let mutant = format!("{}{replacement}{}", &text[..token.start], &text[token.end..]);
+                let source = Source::new(SourceId(0), name, mutant);
+                let said = diagnostics(&source);
+                mutants += 1;
+                let Some(error) = said.iter().find(|diagnostic| diagnostic.severity == Severity::Error)
+                else {
+                    continue;
+                };
+                refused += 1;
+                let place = error.place.as_ref().unwrap().span.start as usize;
+                let first = line(&text, token.start);
+                let last = tokens.get(k + 1).map_or(line(&text, text.len()), |next| line(&text, next.start));
+                let found = line(&source.text, place);
+                // At the end of the text the place is right after its last token.
+                let at_end = source.text[place..].trim().is_empty()
+                    || source.text[place..].trim_start().starts_with("//");
+                // A brace too many or too few is noticed where the outer block ends: later, and with a brace that
+                // closes a block early the rest of the block fails too.
+                let closes_early = replacement == "}" || &text[token.clone()] == "}";
+                let errors = said.iter().filter(|diagnostic| diagnostic.severity == Severity::Error).count();
+                let in_place = (first..=last).contains(&found) || found >= first && closes_early || at_end;
+                // No cascade: one change is at most two errors.
+                if !in_place || errors > if closes_early { 3 } else { 2 } {
+                    misplaced.push(format!(
+                        "{name}: `{}` -> `{replacement}` in line {}\n{}",
+                        &text[token.clone()],
+                        first + 1,
+                        render(&said, std::slice::from_ref(&source), false)
+                    ));
+                }
+            }
+        }
+    }
+    assert!(
+        misplaced.is_empty(),
+        "{} of {mutants}\n{}",
+        misplaced.len(),
+        misplaced[..misplaced.len().min(30)].join("\n")
+    );
+    assert!(refused * 2 > mutants, "{refused} of {mutants}");
+}
+
+const WORDS: [&str; 64] = [
+    "property",
+    "check",
+    "estimate",
+    "rank",
+    "compare",
+    "let",
+    "const",
+    "param",
+    "kind",
+    "agent",
+    "agents",
+    "group",
+    "scene",
+    "wall",
+    "region",
+    "process",
+    "behaviour",
+    "state",
+    "source",
+    "when",
+    "after",
+    "on",
+    "choose",
+    "moves",
+    "heading",
+    "forall",
+    "exists",
+    "min",
+    "count",
+    "F",
+    "G",
+    "X",
+    "U",
+    "P(",
+    "E(",
+    "Q(",
+    "in",
+    "for",
+    "at",
+    "with",
+    "under",
+    "a",
+    "s",
+    "queue.n",
+    "3",
+    "0.5 m",
+    "1 /s",
+    "#4",
+    "(",
+    ")",
+    "[",
+    "]",
+    "{",
+    "}",
+    "<=",
+    "=",
+    "==",
+    "=>",
+    "|",
+    "->",
+    "--",
+    "..",
+    ":",
+    ";",
+];
+
+fn never_panics(text: &str) {
+    for name in ["soup.scn", "soup.bltl"] {
+        let source = Source::new(SourceId(0), name, text);
+        let said = diagnostics(&source);
+        for diagnostic in &said {
+            let span = diagnostic.place.as_ref().unwrap().span;
+            assert!(span.start <= span.end && span.end as usize <= text.len());
+            assert!(text.is_char_boundary(span.start as usize) && text.is_char_boundary(span.end as usize));
+        }
+        let fails = said.iter().any(|diagnostic| diagnostic.severity == Severity::Error);
+        let formatted =
+            if name.ends_with("scn") { format_scenario(&source) } else { format_properties(&source) };
+        assert_eq!(formatted.is_err(), fails);
+        render(&said, std::slice::from_ref(&source), false);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn noise_never_panics(text in "\\PC{0,200}") {
+        never_panics(&text);
+    }
+
+    #[test]
+    fn bytes_never_panic(bytes in proptest::collection::vec(any::<u8>(), 0..200)) {
+        never_panics(&String::from_utf8_lossy(&bytes));
+    }
+
+    #[test]
+    fn soup_never_panics(words in proptest::collection::vec(proptest::sample::select(&WORDS[..]), 0..60)) {
+        never_panics(&words.join(" "));
+    }
+}

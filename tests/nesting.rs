@@ -1,0 +1,104 @@
+//! Depth: 200 levels of everything that nests in milliseconds, and what is too deep is refused with one error.
+
+#![allow(clippy::disallowed_methods, reason = "a test may read the clock")]
+
+use smc::syntax::parse::parse_properties;
+use smc::syntax::print::format_properties;
+use smc::syntax::source::{Source, SourceId};
+use std::time::{Duration, Instant};
+
+fn nested(depth: usize, before: &str, after: &str) -> Source {
+    let text = format!("property p = {}q{}\n", before.repeat(depth), after.repeat(depth));
+    Source::new(SourceId(0), "deep.bltl", text)
+}
+
+/// What opens and closes a level, and whether a level is a bracket or prefix.
+const LEVELS: [(&str, &str); 20] = [
+    ("(", ")"),
+    ("!(", ")"),
+    ("!", ""),
+    ("-", ""),
+    ("¬", ""),
+    ("F ", ""),
+    ("G<=2 s ", ""),
+    ("X (", ")"),
+    ("F[0 s, 2 s] (", ")"),
+    ("F<=(", ") r"),
+    ("G[0 s, ", "] r"),
+    ("forall a in s(b): ", ""),
+    ("forall a in s(", "): r"),
+    ("count(a in c: ", ")"),
+    ("count(a in c(", "): r)"),
+    ("min(", " for a in c)"),
+    ("f(", ", 1)"),
+    ("min<=2 s (", ")"),
+    ("min[1 s, ", "] r"),
+    ("(1, ", ") m"),
+];
+
+#[test]
+fn two_hundred_levels_are_quick() {
+    for (before, after) in LEVELS {
+        let before = before.replace("- ", "-");
+        let separated = if before == "-" { "- ".to_owned() } else { before };
+        let depth = if after.is_empty() || separated.matches(['(', '[']).count() < 2 { 200 } else { 120 };
+        let source = nested(depth, &separated, after);
+        let start = Instant::now();
+        let (file, said) = parse_properties(&source);
+        let took = start.elapsed();
+        assert!(said.is_empty() && file.items.len() == 1, "{separated}: {said:?}");
+        assert!(took < Duration::from_millis(200), "{separated}: {took:?}");
+        // Broken in the middle it is as quick.
+        let source = nested(depth, &separated, "$");
+        let start = Instant::now();
+        let (_, said) = parse_properties(&source);
+        let took = start.elapsed();
+        assert!(!said.is_empty() && took < Duration::from_millis(400), "{separated}: {took:?} {said:?}");
+    }
+}
+
+#[test]
+fn the_deepest_trees_fit_a_small_stack() {
+    std::thread::Builder::new()
+        .stack_size(2 << 20)
+        .spawn(|| {
+            for (before, after) in
+                [("(", ")"), ("!", ""), ("F<=2 s (", ")"), ("f(", ")"), ("forall a in c: (", ")")]
+            {
+                let source = nested(if before.contains(": (") { 255 } else { 256 }, before, after);
+                let (file, said) = parse_properties(&source);
+                assert!(said.is_empty(), "{said:?}");
+                let text = format!("{file:?}{:?}", file.clone() == file);
+                assert!(text.len() > 100);
+                assert!(format_properties(&source).is_ok());
+            }
+        })
+        .unwrap()
+        .join()
+        .unwrap();
+}
+
+#[test]
+fn what_is_too_deep_gives_one_error() {
+    for (depth, before, after) in
+        [(100_000, "(", ")"), (100_000, "!", ""), (100_000, "F ", ""), (257, "[", "]"), (100_000, "- ", "")]
+    {
+        let (file, said) = parse_properties(&nested(depth, before, after));
+        assert_eq!(said.len(), 1, "{before}");
+        assert_eq!(said[0].code, "E0106", "{before}");
+        assert!(file.items.is_empty());
+    }
+}
+
+#[test]
+fn long_chains_are_refused_before_they_overflow_anything() {
+    for operator in [" + ", " & ", " => ", " U "] {
+        let text = format!("let x = {}", vec!["a"; 100_000].join(operator));
+        let (_, said) = parse_properties(&Source::new(SourceId(0), "long.bltl", text));
+        assert_eq!(said.len(), 1);
+        assert_eq!(said[0].code, "E0120");
+        let text = format!("let x = {}", vec!["a"; 400].join(operator));
+        let (_, said) = parse_properties(&Source::new(SourceId(0), "long.bltl", text));
+        assert!(said.is_empty());
+    }
+}
