@@ -19,7 +19,7 @@ use crate::logic::reach::{Part, children_first, last_state};
 use std::collections::BTreeMap;
 
 /// Most positions that all tracks may hold together.
-const MOST_STATES: u64 = 1 << 24;
+const MOST_STATES: u64 = 1 << 21;
 /// Longest horizon: sums of positions and bounds stay far from the largest number.
 const LONGEST_HORIZON: u64 = 1 << 40;
 /// Most cells.
