@@ -3,7 +3,7 @@
 
 use super::formula::{Node, NodeId, Relation, TermId, Tree, Window};
 use super::invalid::Invalid;
-use super::offline::{Offline, Recording, States, flipped};
+use super::offline::{Offline, Recording, States};
 use super::reach::{Part, last_state};
 use crate::base::tick::Tick;
 use std::collections::{BTreeMap, BTreeSet};
@@ -51,7 +51,7 @@ pub fn explain(tree: &Tree, root: NodeId, recording: &Recording) -> Result<Expla
     for ((leaf, at), value) in witness.leaves {
         match reasons.last_mut() {
             Some(last) if last.leaf.0 == leaf && last.value == value && last.to.0 + 1 == at => {
-                last.to = Tick(at)
+                last.to = Tick(at);
             }
             _ => reasons.push(Reason { leaf: NodeId(leaf), value, from: Tick(at), to: Tick(at) }),
         }
@@ -139,7 +139,7 @@ impl Witness<'_> {
         match (self.offline.constant(x), self.offline.constant(y)) {
             (Some(_), Some(_)) => {}
             (None, Some(c)) => self.against(id, relation, (x, c), at, value),
-            (Some(c), None) => self.against(id, flipped(relation), (y, c), at, value),
+            (Some(c), None) => self.against(id, relation.flipped(), (y, c), at, value),
             (None, None) => {
                 self.leaves.insert((id.0, at), value);
             }

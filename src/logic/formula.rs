@@ -77,6 +77,32 @@ pub enum Relation {
     Unequal,
 }
 
+impl Relation {
+    /// Whether the relation holds; none holds of what is no number.
+    #[inline(always)]
+    pub fn holds(self, x: f64, y: f64) -> bool {
+        match self {
+            Self::Less => x < y,
+            Self::AtMost => x <= y,
+            Self::Greater => x > y,
+            Self::AtLeast => x >= y,
+            Self::Equal => x == y,
+            Self::Unequal => !(x.is_nan() || y.is_nan()) && x != y,
+        }
+    }
+
+    /// The relation with its sides exchanged.
+    pub fn flipped(self) -> Self {
+        match self {
+            Self::Less => Self::Greater,
+            Self::AtMost => Self::AtLeast,
+            Self::Greater => Self::Less,
+            Self::AtLeast => Self::AtMost,
+            Self::Equal | Self::Unequal => self,
+        }
+    }
+}
+
 /// Aggregates over a window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Aggregation {
@@ -105,6 +131,33 @@ pub enum Operation {
     Min,
     /// Larger.
     Max,
+}
+
+impl Operation {
+    /// The result; none (NaN) if a side is none, also of the smaller and the larger.
+    #[inline(always)]
+    pub fn apply(self, x: f64, y: f64) -> f64 {
+        match self {
+            Self::Add => x + y,
+            Self::Subtract => x - y,
+            Self::Multiply => x * y,
+            Self::Divide => x / y,
+            Self::Min => {
+                if y < x || y.is_nan() {
+                    y
+                } else {
+                    x
+                }
+            }
+            Self::Max => {
+                if y > x || y.is_nan() {
+                    y
+                } else {
+                    x
+                }
+            }
+        }
+    }
 }
 
 /// A number of the states from the present one on.

@@ -48,6 +48,10 @@ pub enum Invalid {
         /// Longest horizon.
         limit: u64,
     },
+    /// A comparison of numbers that look at other states than the present one has no margin, except
+    /// of the extremes of windows and of times with a constant.
+    #[error("a comparison of numbers of several states has no margin")]
+    NoMargin,
     /// The clock has no steps.
     #[error("a clock without steps has no states to count")]
     NoSteps,

@@ -14,5 +14,6 @@ pub use formula::{
     Aggregation, AtomId, Node, NodeId, Operation, Relation, SignalId, Term, TermId, Tree, Window,
 };
 pub use invalid::Invalid;
+pub use monitor::robustness::Robustness;
 pub use monitor::{Antecedent, Monitor};
 pub use offline::Recording;

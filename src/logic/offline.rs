@@ -62,52 +62,6 @@ fn not(value: Option<bool>) -> Option<bool> {
     value.map(|value| !value)
 }
 
-/// Whether the relation holds; never of what is no number.
-pub(super) fn holds(relation: Relation, x: f64, y: f64) -> bool {
-    match relation {
-        Relation::Less => x < y,
-        Relation::AtMost => x <= y,
-        Relation::Greater => x > y,
-        Relation::AtLeast => x >= y,
-        Relation::Equal => x == y,
-        Relation::Unequal => x < y || x > y,
-    }
-}
-
-/// `x r y` as `y r' x`.
-pub(super) fn flipped(relation: Relation) -> Relation {
-    match relation {
-        Relation::Less => Relation::Greater,
-        Relation::AtMost => Relation::AtLeast,
-        Relation::Greater => Relation::Less,
-        Relation::AtLeast => Relation::AtMost,
-        Relation::Equal | Relation::Unequal => relation,
-    }
-}
-
-fn combine(operation: Operation, x: f64, y: f64) -> f64 {
-    match operation {
-        Operation::Add => x + y,
-        Operation::Subtract => x - y,
-        Operation::Multiply => x * y,
-        Operation::Divide => x / y,
-        Operation::Min => {
-            if y < x || y.is_nan() {
-                y
-            } else {
-                x
-            }
-        }
-        Operation::Max => {
-            if y > x || y.is_nan() {
-                y
-            } else {
-                x
-            }
-        }
-    }
-}
-
 impl<'a> Offline<'a> {
     pub(super) fn new(tree: &'a Tree, recording: &'a Recording<'a>) -> Self {
         Self { tree, recording, truths: RefCell::default(), numbers: RefCell::default() }
@@ -176,9 +130,7 @@ impl<'a> Offline<'a> {
     pub(super) fn constant(&self, id: TermId) -> Option<f64> {
         match &self.tree.terms[id.0 as usize] {
             Term::Constant(value) => Some(*value),
-            Term::Combine(operation, x, y) => {
-                Some(combine(*operation, self.constant(*x)?, self.constant(*y)?))
-            }
+            Term::Combine(operation, x, y) => Some(operation.apply(self.constant(*x)?, self.constant(*y)?)),
             Term::Abs(x) => self.constant(*x).map(f64::abs),
             Term::Later(_, x) | Term::AtEnd(x) => self.constant(*x),
             Term::Signal(_) | Term::Window(..) | Term::TimeUntil(_) => None,
@@ -188,8 +140,8 @@ impl<'a> Offline<'a> {
     fn compare(&self, relation: Relation, x: TermId, y: TermId, at: u64) -> Option<bool> {
         match (self.constant(x), self.constant(y)) {
             (None, Some(c)) => self.against(relation, x, c, at),
-            (Some(c), None) => self.against(flipped(relation), y, c, at),
-            _ => Some(holds(relation, self.number(x, at)?, self.number(y, at)?)),
+            (Some(c), None) => self.against(relation.flipped(), y, c, at),
+            _ => Some(relation.holds(self.number(x, at)?, self.number(y, at)?)),
         }
     }
 
@@ -214,7 +166,7 @@ impl<'a> Offline<'a> {
                 };
                 let horizon = self.recording.horizon.0;
                 let seconds = |k: u64| self.recording.clock.seconds(Tick(k - at));
-                let count = (at..=horizon).take_while(|&k| holds(within, seconds(k), c)).count() as u64;
+                let count = (at..=horizon).take_while(|&k| within.holds(seconds(k), c)).count() as u64;
                 // An empty range where not even the present state is in time.
                 let states = if count == 0 { at + 1..=at } else { at..=at + count - 1 };
                 States::Within(states, *goal, positive)
@@ -226,7 +178,7 @@ impl<'a> Offline<'a> {
     /// A comparison with a constant.
     pub(super) fn against(&self, relation: Relation, x: TermId, c: f64, at: u64) -> Option<bool> {
         if let Some(x) = self.constant(x) {
-            return Some(holds(relation, x, c));
+            return Some(relation.holds(x, c));
         }
         match self.looks_at(relation, x, c, at) {
             States::Any(mut states, x) => {
@@ -237,7 +189,7 @@ impl<'a> Offline<'a> {
                 let within = kleene_any(states.map(|k| self.truth(goal, k)));
                 if positive { within } else { not(within) }
             }
-            States::Number => Some(holds(relation, self.number(x, at)?, c)),
+            States::Number => Some(relation.holds(self.number(x, at)?, c)),
         }
     }
 
@@ -253,7 +205,7 @@ impl<'a> Offline<'a> {
             Term::Constant(value) => Some(*value),
             Term::Signal(signal) => (at < self.recording.seen).then(|| (self.recording.signals)(*signal, at)),
             Term::Combine(operation, x, y) => {
-                self.number(*x, at).zip(self.number(*y, at)).map(|(x, y)| combine(*operation, x, y))
+                self.number(*x, at).zip(self.number(*y, at)).map(|(x, y)| operation.apply(x, y))
             }
             Term::Abs(x) => self.number(*x, at).map(f64::abs),
             Term::Window(aggregation, w, x) => self.aggregate(*aggregation, self.states(*w, at), *x),
@@ -285,8 +237,8 @@ impl<'a> Offline<'a> {
         for k in states {
             let next = self.number(x, k)?;
             result = Some(result.map_or(next, |so_far| match aggregation {
-                Aggregation::Min => combine(Operation::Min, so_far, next),
-                Aggregation::Max => combine(Operation::Max, so_far, next),
+                Aggregation::Min => Operation::Min.apply(so_far, next),
+                Aggregation::Max => Operation::Max.apply(so_far, next),
                 Aggregation::Sum | Aggregation::Mean => so_far + next,
             }));
         }

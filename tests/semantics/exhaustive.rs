@@ -92,7 +92,7 @@ fn single_operators_on_all_traces_up_to_length_8() {
             let p = tree.node(Node::Atom(AtomId(0)));
             let q = tree.node(Node::Atom(AtomId(1)));
             for root in operators(&mut tree, w, p, q) {
-                // Every trace of two atoms up to length 6, every trace of one beyond.
+                // Every trace of the atoms that the operator reads.
                 let two = matches!(
                     tree.nodes[root.0 as usize],
                     Node::Until(..) | Node::WeakUntil(..) | Node::Release(..)

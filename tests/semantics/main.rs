@@ -3,5 +3,6 @@
 mod exhaustive;
 mod random;
 mod reference;
+mod robust;
 mod rows;
 mod whole;

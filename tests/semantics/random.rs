@@ -215,10 +215,10 @@ fn trial(random: &mut TestRandom, states: u64) -> Trial {
 }
 
 /// A small generator of its own, so that one seed gives the whole run.
-struct TestRandom(u64);
+pub(crate) struct TestRandom(pub(crate) u64);
 
 impl TestRandom {
-    fn below(&mut self, n: u64) -> u64 {
+    pub(crate) fn below(&mut self, n: u64) -> u64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 33) % n
     }

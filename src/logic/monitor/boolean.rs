@@ -1,4 +1,4 @@
-//! Any of several formulas, comparisons, and single answers.
+//! Any of several formulas at many positions, comparisons, and single answers.
 
 use super::cell::{Cell, Context, Machine, Ref, events, planes, truth};
 use super::numbers;
@@ -12,15 +12,6 @@ pub(super) fn step(cell: &mut Cell, before: &[Cell], cx: &Context) {
             let (t, f) = truth(before, *child);
             cell.t |= t & asked;
             cell.f |= f & asked;
-        }
-        Machine::AnyHeld(children) => {
-            let (mut t, mut f) = (0, 0xff);
-            for child in children {
-                let (child_t, child_f) = truth(before, *child);
-                t |= child_t;
-                f &= child_f;
-            }
-            (cell.t, cell.f) = (t, f);
         }
         Machine::CompareHeld(relation, x, y) => {
             let known = numbers::known(before, *x) & numbers::known(before, *y);

@@ -251,11 +251,33 @@ impl Cell {
                 self.present_number(value, cx.now);
             }
             Machine::Fixed => {}
-            Machine::Scan { .. } | Machine::Count { .. } | Machine::Slide { .. } => {
-                window::step(self, before, cx)
+            Machine::Scan { first, second } => {
+                let open = self.need & cx.work & !(self.t | self.f);
+                let rest = open & !truth(before, *second).0;
+                let missed = first.map_or(0, |first| truth(before, first).1);
+                self.t |= open & !rest;
+                // At the last state of the window it is too late.
+                self.f |= rest & (missed | self.last);
             }
+            Machine::AnyHeld(children) => {
+                let (mut t, mut f) = (0, 0xff);
+                for child in children {
+                    let (child_t, child_f) = truth(before, *child);
+                    t |= child_t;
+                    f &= child_f;
+                }
+                (self.t, self.f) = (t, f);
+            }
+            _ => self.late_step(before, cx),
+        }
+    }
+
+    /// The cells that take longer, out of the way of those that do not.
+    #[inline(never)]
+    fn late_step(&mut self, before: &[Cell], cx: &Context) {
+        match &self.machine {
+            Machine::Count { .. } | Machine::Slide { .. } => window::step(self, before, cx),
             Machine::Capture(_)
-            | Machine::AnyHeld(_)
             | Machine::AnyLate { .. }
             | Machine::CompareHeld(..)
             | Machine::CompareLate(..)

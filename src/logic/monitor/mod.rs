@@ -11,6 +11,7 @@ mod calendar;
 mod cell;
 mod numbers;
 mod plan;
+pub mod robustness;
 mod track;
 mod until;
 mod window;
@@ -62,7 +63,7 @@ impl Monitor {
     /// When a bound looks beyond the horizon, a window is empty, the tree is malformed, too deep or too
     /// large, or the clock has no steps.
     pub fn formula(tree: &Tree, root: NodeId, horizon: Tick, clock: Clock) -> Result<Self, Invalid> {
-        Plan::new(tree, Part::Node(root), horizon, clock).map(|plan| Self::of(plan, clock))
+        Plan::new(tree, Part::Node(root), horizon, clock, true).map(|plan| Self::of(plan, clock))
     }
 
     /// The monitor of the metric `root`, with the same conditions. Times are in seconds of the clock.
@@ -70,7 +71,7 @@ impl Monitor {
     /// # Errors
     /// As for a formula.
     pub fn metric(tree: &Tree, root: TermId, horizon: Tick, clock: Clock) -> Result<Self, Invalid> {
-        Plan::new(tree, Part::Term(root), horizon, clock).map(|plan| Self::of(plan, clock))
+        Plan::new(tree, Part::Term(root), horizon, clock, true).map(|plan| Self::of(plan, clock))
     }
 
     /// How many states after the first one a formula needs at most; `None` if it ranges up to the

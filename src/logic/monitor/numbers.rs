@@ -17,22 +17,9 @@ pub(super) fn compare(relation: Relation, x: Lanes, y: Lanes) -> u8 {
         Relation::Greater => x.compare(y, |x, y| x > y),
         Relation::AtLeast => x.compare(y, |x, y| x >= y),
         Relation::Equal => x.compare(y, |x, y| x == y),
-        // Not `!=`, which holds of what is no number.
-        Relation::Unequal => x.compare(y, |x, y| x < y || x > y),
+        Relation::Unequal => x.compare(y, |x, y| Relation::Unequal.holds(x, y)),
     }
     .0
-}
-
-/// The smaller; none if one is none.
-#[inline(always)]
-fn smaller(x: f64, y: f64) -> f64 {
-    if y < x || y.is_nan() { y } else { x }
-}
-
-/// The larger; none if one is none.
-#[inline(always)]
-fn larger(x: f64, y: f64) -> f64 {
-    if y > x || y.is_nan() { y } else { x }
 }
 
 /// Arithmetic, lane by lane.
@@ -43,8 +30,8 @@ pub(super) fn combine(arithmetic: Arithmetic, x: Lanes, y: Lanes) -> Lanes {
         Arithmetic::Of(Operation::Subtract) => x.zip(y, |x, y| x - y),
         Arithmetic::Of(Operation::Multiply) => x.zip(y, |x, y| x * y),
         Arithmetic::Of(Operation::Divide) => x.zip(y, |x, y| x / y),
-        Arithmetic::Of(Operation::Min) => x.zip(y, |x, y| smaller(x, y)),
-        Arithmetic::Of(Operation::Max) => x.zip(y, |x, y| larger(x, y)),
+        Arithmetic::Of(Operation::Min) => x.zip(y, |x, y| Operation::Min.apply(x, y)),
+        Arithmetic::Of(Operation::Max) => x.zip(y, |x, y| Operation::Max.apply(x, y)),
         Arithmetic::Abs => x.map(f64::abs),
     }
 }
@@ -61,8 +48,8 @@ pub(super) fn identity(aggregation: Aggregation) -> f64 {
 #[inline(always)]
 fn gather(aggregation: Aggregation, so_far: Lanes, next: Lanes) -> Lanes {
     match aggregation {
-        Aggregation::Min => so_far.zip(next, smaller),
-        Aggregation::Max => so_far.zip(next, larger),
+        Aggregation::Min => so_far.zip(next, |x, y| Operation::Min.apply(x, y)),
+        Aggregation::Max => so_far.zip(next, |x, y| Operation::Max.apply(x, y)),
         Aggregation::Sum | Aggregation::Mean => so_far.zip(next, |x, y| x + y),
     }
 }

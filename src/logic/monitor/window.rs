@@ -1,30 +1,20 @@
 //! Windows over formulas: something holds at some state of a window. That it holds at every state is the
 //! negation of the negation.
 
-use super::cell::{Cell, Context, Machine, events, truth};
+use super::cell::{Cell, Context, Machine, events};
 use super::track::Track;
-use crate::base::lanes::{LANES, Mask};
+use crate::base::lanes::Mask;
 
-#[inline(always)]
 pub(super) fn step(cell: &mut Cell, before: &[Cell], cx: &Context) {
     match &mut cell.machine {
-        // Until (finally, if there is no first) from one position on: `need` is the window.
-        Machine::Scan { first, second } => {
-            let open = cell.need & cx.work & !(cell.t | cell.f);
-            let (hit, _) = truth(before, *second);
-            let rest = open & !hit;
-            cell.t |= open & hit;
-            let missed = first.map_or(0, |first| truth(before, first).1);
-            cell.f |= rest & (missed | cell.last);
-        }
         // The child reports each of its positions once, and they are those of the window.
         Machine::Count { child, left, .. } => {
             for (_, t, f) in events(before, *child, cx.now) {
                 cell.t |= t & cx.work;
                 let f = f & cx.work;
                 if f != 0 {
-                    for lane in 0..LANES {
-                        left[lane] -= u64::from(f >> lane & 1);
+                    for (lane, left) in left.iter_mut().enumerate() {
+                        *left -= u64::from(f >> lane & 1);
                     }
                     let done = Mask(f).iter().filter(|&lane| left[lane] == 0);
                     cell.f |= done.fold(0, |all, lane| all | 1 << lane);

@@ -19,7 +19,7 @@ use crate::logic::reach::{Part, children_first, last_state};
 use std::collections::BTreeMap;
 
 /// Most positions that all tracks may hold together.
-const MOST_STATES: u64 = 1 << 24;
+const MOST_STATES: u64 = 1 << 21;
 /// Longest horizon: sums of positions and bounds stay far from the largest number.
 const LONGEST_HORIZON: u64 = 1 << 40;
 /// Most cells.
@@ -54,6 +54,8 @@ pub(super) struct Plan {
     pub(super) turns: Vec<(u64, Turn, usize)>,
     pub(super) answer: Answer,
     pub(super) watches: Vec<Watched>,
+    /// Of each cell: a position is settled at most so many states later, and is looked at so long.
+    pub(super) spans: Vec<(u64, u64)>,
 }
 
 /// A part made: the same everywhere, or a cell.
@@ -130,10 +132,18 @@ struct Builder<'t> {
     /// The value of each term that is the same everywhere.
     constants: Vec<Option<f64>>,
     watches: BTreeMap<u32, Watched>,
+    /// Whether cells that settle in order may slide (else windows are doubled).
+    slides: bool,
 }
 
 impl Plan {
-    pub(super) fn new(tree: &Tree, root: Part, horizon: Tick, clock: Clock) -> Result<Self, Invalid> {
+    pub(super) fn new(
+        tree: &Tree,
+        root: Part,
+        horizon: Tick,
+        clock: Clock,
+        slides: bool,
+    ) -> Result<Self, Invalid> {
         if clock == Clock::Jumps {
             return Err(Invalid::NoSteps);
         }
@@ -157,6 +167,7 @@ impl Plan {
             numbers: BTreeMap::new(),
             constants: vec![None; tree.terms.len()],
             watches: BTreeMap::new(),
+            slides,
         };
         for part in order {
             builder.note(part);
@@ -325,7 +336,9 @@ impl Builder<'_> {
         for cell in &mut self.cells {
             cell.start(0xff);
         }
-        Ok(Plan { cells: self.cells, turns, answer, watches: self.watches.into_values().collect() })
+        let spans = self.facts.iter().map(|facts| (facts.latency, facts.kept.unwrap_or(0))).collect();
+        let watches = self.watches.into_values().collect();
+        Ok(Plan { cells: self.cells, turns, answer, watches, spans })
     }
 
     /// A number that is the same everywhere.

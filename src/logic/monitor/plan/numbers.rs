@@ -6,24 +6,8 @@ use crate::base::tick::Tick;
 use crate::logic::formula::{Aggregation, NodeId, Operation, Relation, Term, TermId, Window};
 use crate::logic::invalid::Invalid;
 use crate::logic::monitor::cell::{Arithmetic, Machine, Place, Ref};
-use crate::logic::monitor::numbers::{combine, compare};
+use crate::logic::monitor::numbers::combine;
 use crate::logic::monitor::track::Numbers;
-
-/// Whether the relation holds.
-fn holds(relation: Relation, x: f64, y: f64) -> bool {
-    compare(relation, Lanes::splat(x), Lanes::splat(y)) != 0
-}
-
-/// `x r y` as `y r' x`.
-fn flipped(relation: Relation) -> Relation {
-    match relation {
-        Relation::Less => Relation::Greater,
-        Relation::AtMost => Relation::AtLeast,
-        Relation::Greater => Relation::Less,
-        Relation::AtLeast => Relation::AtMost,
-        Relation::Equal | Relation::Unequal => relation,
-    }
-}
 
 impl Builder<'_> {
     /// The value of a term that is the same everywhere; its operands have been looked at.
@@ -49,9 +33,9 @@ impl Builder<'_> {
         hi: u64,
     ) -> Result<Made<bool>, Invalid> {
         match (self.constants[x.0 as usize], self.constants[y.0 as usize]) {
-            (Some(x), Some(y)) => Ok(Made::Constant(holds(relation, x, y))),
+            (Some(x), Some(y)) => Ok(Made::Constant(relation.holds(x, y))),
             (None, Some(y)) => self.against(relation, x, y, lo, hi),
-            (Some(x), None) => self.against(flipped(relation), y, x, lo, hi),
+            (Some(x), None) => self.against(relation.flipped(), y, x, lo, hi),
             (None, None) => {
                 let (x, y) = (self.number(x, lo, hi)?, self.number(y, lo, hi)?);
                 let (x, y) = (self.of(x), self.of(y));
@@ -73,7 +57,7 @@ impl Builder<'_> {
         use Aggregation::{Max, Min};
         use Relation::{AtLeast, AtMost, Greater, Less};
         if let Some(x) = self.constants[x.0 as usize] {
-            return Ok(Made::Constant(holds(relation, x, c)));
+            return Ok(Made::Constant(relation.holds(x, c)));
         }
         match (&self.tree.terms[x.0 as usize], relation) {
             (Term::Later(by, x), _) => Ok(self.against(relation, *x, c, lo + by.0, hi + by.0)?.later(by.0)),
@@ -118,8 +102,8 @@ impl Builder<'_> {
         lo: u64,
         hi: u64,
     ) -> Result<Made<bool>, Invalid> {
-        let fulfils = |ticks: u64| holds(relation, self.clock.seconds(Tick(ticks)), c);
-        if holds(relation, f64::INFINITY, c) {
+        let fulfils = |ticks: u64| relation.holds(self.clock.seconds(Tick(ticks)), c);
+        if relation.holds(f64::INFINITY, c) {
             return Ok(Made::Constant(true));
         }
         if !fulfils(0) {
@@ -142,8 +126,8 @@ impl Builder<'_> {
     }
 
     fn compared(&mut self, relation: Relation, x: Ref, y: Ref, lo: u64, hi: u64) -> Ref {
-        let ahead = self.common(x, y);
-        if let (Some(ahead), true) = (ahead, self.of_now(x, y)) {
+        let ahead = common(x, y);
+        if let (Some(ahead), true) = (ahead, of_now(x, y)) {
             let key = NowKey::Compare(relation as u8, x.cell, y.cell);
             let now = self.present(key, Machine::CompareNow(relation, x.cell, y.cell), false);
             return super::later(now, ahead);
@@ -155,19 +139,6 @@ impl Builder<'_> {
         let pair = self.pair(x, y, lo, hi);
         let machine = Machine::CompareLate(relation, pair.x, pair.y);
         super::later(self.late(machine, pair.range, pair.latency, pair.in_order, false), pair.ahead)
-    }
-
-    /// How far ahead both look, if both do alike.
-    fn common(&self, x: Ref, y: Ref) -> Option<u64> {
-        match (x.place, y.place) {
-            (Place::Fixed, _) => Some(y.ahead),
-            (_, Place::Fixed) => Some(x.ahead),
-            _ => (x.ahead == y.ahead).then_some(x.ahead),
-        }
-    }
-
-    fn of_now(&self, x: Ref, y: Ref) -> bool {
-        [x, y].iter().all(|child| matches!(child.place, Place::Now | Place::Fixed))
     }
 
     /// Two operands of a late cell.
@@ -251,7 +222,7 @@ impl Builder<'_> {
 
     fn combined(&mut self, arithmetic: Arithmetic, x: Made<f64>, y: Made<f64>, lo: u64, hi: u64) -> Ref {
         let (x, y) = (self.of(x), self.of(y));
-        if let (Some(ahead), true) = (self.common(x, y), self.of_now(x, y)) {
+        if let (Some(ahead), true) = (common(x, y), of_now(x, y)) {
             return super::later(self.combined_now(arithmetic, x, y), ahead);
         }
         if lo == hi {
@@ -351,6 +322,19 @@ impl Builder<'_> {
         let machine = Machine::TimeLate { child, ticks: Numbers::default() };
         self.late(machine, (lo, hi), latency, in_order, true)
     }
+}
+
+/// How far ahead both look, if both do alike.
+fn common(x: Ref, y: Ref) -> Option<u64> {
+    match (x.place, y.place) {
+        (Place::Fixed, _) => Some(y.ahead),
+        (_, Place::Fixed) => Some(x.ahead),
+        _ => (x.ahead == y.ahead).then_some(x.ahead),
+    }
+}
+
+fn of_now(x: Ref, y: Ref) -> bool {
+    [x, y].iter().all(|child| matches!(child.place, Place::Now | Place::Fixed))
 }
 
 /// Two operands of a late cell, and what follows for it.
