@@ -20,6 +20,7 @@ const fn gcd(mut a: u128, mut b: u128) -> u128 {
     a
 }
 
+#[allow(clippy::should_implement_trait, reason = "the operations are checked and yield an option")]
 impl Decimal {
     /// Zero.
     pub const ZERO: Self = Self::whole(0);

@@ -6,6 +6,7 @@
 pub mod decimal;
 pub mod geometry;
 pub mod lanes;
+#[allow(clippy::excessive_precision, reason = "coefficients stand as published")]
 pub mod math;
 pub mod random;
 pub mod special;

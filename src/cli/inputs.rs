@@ -2,7 +2,7 @@
 
 use super::arguments::Model;
 use crate::compile::{Files, Input, Setting, SettingValue, Study, compile, requests};
-use crate::syntax::ast::{PropertyFile, ScenarioFile};
+use crate::syntax::ast::ScenarioFile;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::source::{Source, SourceId, Span};
 use crate::syntax::parse::{decode, parse_properties, parse_scenario, parse_value};
@@ -13,21 +13,10 @@ use std::path::{Path, PathBuf};
 pub(super) struct Inputs {
     /// Texts.
     pub(super) sources: Vec<Source>,
-    /// Scenario.
-    pub(super) scenario: ScenarioFile,
-    /// Property files.
-    pub(super) properties: Vec<PropertyFile>,
     /// Errors and warnings.
     pub(super) diagnostics: Vec<Diagnostic>,
     /// What compilation yields, if nothing is wrong.
     pub(super) study: Option<Study>,
-}
-
-impl Inputs {
-    /// Whether something is wrong.
-    pub(super) fn failed(&self) -> bool {
-        self.diagnostics.iter().any(|d| d.severity == Severity::Error)
-    }
 }
 
 /// Bytes of a file, or of standard input for `-`.
@@ -217,5 +206,5 @@ pub(super) fn load(model: &Model, properties: &[String]) -> Inputs {
     if diagnostics.iter().any(|d| d.severity == Severity::Error) {
         study = None;
     }
-    Inputs { sources, scenario, properties: parsed, diagnostics, study }
+    Inputs { sources, diagnostics, study }
 }

@@ -62,12 +62,6 @@ impl<'a> Elaborator<'a> {
             if let Err(error) = self.scopes[0].declare(&name.name, name.span, meaning) {
                 self.note(error);
             }
-            if super::dimension::unit(&name.name).is_some() {
-                let warning =
-                    Diagnostic::warning("W0101", name.span, format!("`{}` is also a unit", name.name))
-                        .hint("after a number it is read as the unit; another name avoids surprises");
-                self.note(warning);
-            }
         }
     }
 

@@ -151,20 +151,6 @@ impl Procedure {
         }
     }
 
-    /// Whether it has stopped by itself.
-    pub(super) fn finished(&self) -> bool {
-        match self {
-            Self::Test(test) => test.verdict().is_some(),
-            Self::Probability(estimator) => estimator.finished(),
-            Self::Mean { mean, threshold: Some(theta), .. } => {
-                let interval = mean.interval();
-                interval.low > *theta || interval.high < *theta
-            }
-            Self::Mean { mean, threshold: None, .. } => mean.finished(),
-            Self::Quantile { sample, .. } => sample.finished(),
-        }
-    }
-
     /// The number of trials after which it has surely stopped, if there is one.
     pub(super) fn limit(&self) -> Option<u64> {
         match self {
