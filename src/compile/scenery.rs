@@ -191,10 +191,7 @@ impl<'a> Elaborator<'a> {
     }
 
     fn import(&mut self, path: &Text, filter: Option<&Expr>, files: &Files) {
-        let features = match self.features(path, files) {
-            Ok(features) => features,
-            Err(_) => return,
-        };
+        let Ok(features) = self.features(path, files) else { return };
         let total = features.len();
         let mut taken = 0;
         for feature in features {

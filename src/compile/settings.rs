@@ -22,6 +22,7 @@ pub struct Setting {
 
 /// One value or several.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant, reason = "there are as many as `--set` options in a call")]
 pub enum SettingValue {
     /// One.
     One(Expr),

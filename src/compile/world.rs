@@ -173,10 +173,10 @@ impl<'a> Elaborator<'a> {
                         ));
                     }
                 }
-                Item::Kind(decl) => {
-                    if self.scopes[0].get(&decl.name.name).is_some_and(|e| e.span == decl.name.span) {
-                        let _ = self.kind(&decl.name);
-                    }
+                Item::Kind(decl)
+                    if self.scopes[0].get(&decl.name.name).is_some_and(|e| e.span == decl.name.span) =>
+                {
+                    let _ = self.kind(&decl.name);
                 }
                 Item::Let(decl) if decl.arguments.is_empty() => {
                     self.temporal = true;

@@ -51,7 +51,7 @@ impl<'s> Job<'s> {
     }
 
     fn worker(&self) -> Result<Worker, Invalid> {
-        let warm = self.workers.lock().map(|mut list| list.pop()).unwrap_or(None);
+        let warm = self.workers.lock().ok().and_then(|mut list| list.pop());
         match warm {
             Some(worker) if worker.serves(&self.columns) => Ok(worker),
             _ => Worker::new(self.subject, &self.columns),

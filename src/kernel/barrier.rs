@@ -2,7 +2,7 @@
 //!
 //! A barrier gives one force, from its nearest point: so a corner, where two segments are equally near,
 //! counts once, and an end repels along the line to that end. Inside a solid the normal points out.
-//! Given-Wilson et al. 2017, equations (5) and (6), with d_ib the distance from the centre of the body.
+//! Given-Wilson et al. 2017, equations (5) and (6), with `d_ib` the distance from the centre of the body.
 
 use super::vector::{larger, smaller, splat};
 use crate::base::geometry::{Bounds, Segment, Shape, Vec2};
@@ -83,12 +83,7 @@ impl Surface {
 
     /// Squared distance from eight places to the rectangle around the surface.
     #[inline(always)]
-    pub(super) fn squared_distance_to_bounds<S: Simd>(
-        &self,
-        simd: S,
-        x: f64x8<S>,
-        y: f64x8<S>,
-    ) -> f64x8<S> {
+    pub(super) fn squared_distance_to_bounds<S: Simd>(&self, simd: S, x: f64x8<S>, y: f64x8<S>) -> f64x8<S> {
         let c = |value: f64| splat(simd, value);
         let beside = larger(larger(c(self.bounds.low.x) - x, x - c(self.bounds.high.x)), c(0.0));
         let above = larger(larger(c(self.bounds.low.y) - y, y - c(self.bounds.high.y)), c(0.0));
@@ -150,12 +145,7 @@ impl Surface {
 
 /// Vector from the nearest point of the edges.
 #[inline(always)]
-fn nearest_edge<S: Simd>(
-    simd: S,
-    edges: &[Edge],
-    x: f64x8<S>,
-    y: f64x8<S>,
-) -> (f64x8<S>, f64x8<S>) {
+fn nearest_edge<S: Simd>(simd: S, edges: &[Edge], x: f64x8<S>, y: f64x8<S>) -> (f64x8<S>, f64x8<S>) {
     let c = |value: f64| splat(simd, value);
     let (mut best, mut bx, mut by) = (c(f64::INFINITY), c(0.0), c(0.0));
     for e in edges {
@@ -180,7 +170,7 @@ fn inside<S: Simd>(simd: S, edges: &[Edge], x: f64x8<S>, y: f64x8<S>) -> mask64x
     for e in edges {
         let straddles = c(e.a.y).simd_gt(y) ^ c(e.end_y).simd_gt(y);
         let left = x.simd_lt(c(e.a.x) + (y - c(e.a.y)) * c(e.slope));
-        inside = inside ^ (straddles & left);
+        inside ^= (straddles & left);
     }
     inside
 }
@@ -231,8 +221,10 @@ mod tests {
             let barrier = Barrier { name: String::new(), obstacle };
             let surface = Surface::new(&barrier).unwrap();
             for k in 0..500 {
-                let x: [f64; 8] = std::array::from_fn(|lane| f64::from(k % 25) * 0.3 - 1.7 + lane as f64 * 0.03);
-                let y: [f64; 8] = std::array::from_fn(|lane| f64::from(k / 25) * 0.33 - 1.3 - lane as f64 * 0.02);
+                let x: [f64; 8] =
+                    std::array::from_fn(|lane| f64::from(k % 25) * 0.3 - 1.7 + lane as f64 * 0.03);
+                let y: [f64; 8] =
+                    std::array::from_fn(|lane| f64::from(k / 25) * 0.33 - 1.3 - lane as f64 * 0.02);
                 let [nx, ny, distance] = dispatch!(Level::new(), simd => eight(simd, &surface, x, y));
                 for lane in 0..8 {
                     let place = p(x[lane], y[lane]);

@@ -2,7 +2,7 @@
 //!
 //! The equation of motion (Given-Wilson et al. 2017, equation (1)) is split symmetrically (Strang 1968):
 //!
-//! 1. half a kick by the slow force F(x_n), social forces and attraction, kept in `fx`, `fy`;
+//! 1. half a kick by the slow force `F(x_n)`, social forces and attraction, kept in `fx`, `fy`;
 //! 2. half a drift: free bodies go straight on, bodies in contact by the flow of `contact`;
 //! 3. driving and noise over the whole step, an Ornstein-Uhlenbeck process solved exactly:
 //!    v <- v0 e + (v - v0 e) c + s sqrt(1 - c^2) xi with c = exp(-dt/tau), s the stationary standard
@@ -186,20 +186,12 @@ impl<S: Simd> Mover<'_, S> {
     fn kicked(&self, state: &State, block: usize) -> (f64x8<S>, f64x8<S>) {
         let l = |lanes: &Lanes| load(self.simd, lanes);
         let push = l(&state.push[block]);
-        (
-            l(&state.vx[block]) + l(&state.fx[block]) * push,
-            l(&state.vy[block]) + l(&state.fy[block]) * push,
-        )
+        (l(&state.vx[block]) + l(&state.fx[block]) * push, l(&state.vy[block]) + l(&state.fy[block]) * push)
     }
 
     /// Driving and noise over the whole step.
     #[inline(always)]
-    fn driven(
-        &self,
-        state: &State,
-        block: usize,
-        (vx, vy): (f64x8<S>, f64x8<S>),
-    ) -> (f64x8<S>, f64x8<S>) {
+    fn driven(&self, state: &State, block: usize, (vx, vy): (f64x8<S>, f64x8<S>)) -> (f64x8<S>, f64x8<S>) {
         let l = |lanes: &Lanes| load(self.simd, lanes);
         let (decay, drive) = (l(&state.decay[block]), l(&state.drive[block]));
         let (wish_x, wish_y) = (drive * l(&state.ex[block]), drive * l(&state.ey[block]));

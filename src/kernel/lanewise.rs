@@ -257,16 +257,16 @@ impl Lanewise {
                     let theirs2 = Loaded::of(simd, &seconds[j as usize]);
                     if SHARED {
                         let e = decay(simd, gap * rate2) * q;
-                        on_i = on_i + e * own2.towards(dx, dy, q);
-                        on_j = on_j + e * theirs2.away(dx, dy, q);
+                        on_i += e * own2.towards(dx, dy, q);
+                        on_j += e * theirs2.away(dx, dy, q);
                     } else {
                         let factor = q * splat(simd, forces.factor(i, j as usize));
-                        on_i = on_i + decay(simd, gap * own2.rate) * factor * own2.towards(dx, dy, q);
-                        on_j = on_j + decay(simd, gap * theirs2.rate) * factor * theirs2.away(dx, dy, q);
+                        on_i += decay(simd, gap * own2.rate) * factor * own2.towards(dx, dy, q);
+                        on_j += decay(simd, gap * theirs2.rate) * factor * theirs2.away(dx, dy, q);
                     }
                 }
-                fx = fx + on_i * dx;
-                fy = fy + on_i * dy;
+                fx += on_i * dx;
+                fy += on_i * dy;
                 let sum = &mut sums[j as usize];
                 store(load(simd, &sum.x) - on_j * dx, &mut sum.x);
                 store(load(simd, &sum.y) - on_j * dy, &mut sum.y);
@@ -304,8 +304,8 @@ impl Lanewise {
                     contacts.push_wall(i as u32, k, bits(touching));
                 }
                 let f = a * decay(simd, gap * rate);
-                fx = fx + f * nearest.nx;
-                fy = fy + f * nearest.ny;
+                fx += f * nearest.nx;
+                fy += f * nearest.ny;
             }
             store(fx, &mut sums[i].x);
             store(fy, &mut sums[i].y);
@@ -363,9 +363,9 @@ pub(super) fn cohesion<S: Simd>(simd: S, forces: &Forces, state: &State, sums: &
         for &member in &group.members {
             let i = member as usize;
             let here = mask(simd, state.present_in(i) & state.occupied);
-            n = n + here.select(c(1.0), c(0.0));
-            cx = cx + here.select(load(simd, &state.lanes_of(&state.x, i)), c(0.0));
-            cy = cy + here.select(load(simd, &state.lanes_of(&state.y, i)), c(0.0));
+            n += here.select(c(1.0), c(0.0));
+            cx += here.select(load(simd, &state.lanes_of(&state.x, i)), c(0.0));
+            cy += here.select(load(simd, &state.lanes_of(&state.y, i)), c(0.0));
         }
         let some = n.simd_gt(c(0.0)).select(n, c(1.0));
         let (cx, cy) = (cx / some, cy / some);

@@ -13,8 +13,8 @@ use std::f64::consts::FRAC_PI_2;
 
 /// 1.5 * 2^52: adding and subtracting it rounds to the nearest whole number.
 const ROUND: f64 = 6_755_399_441_055_744.0;
-const LN2_HIGH: f64 = 6.931_471_803_691_238_164_9e-1;
-const LN2_LOW: f64 = 1.908_214_929_270_587_700_02e-10;
+const LN2_HIGH: f64 = 6.931_471_803_691_238e-1;
+const LN2_LOW: f64 = 1.908_214_929_270_587_7e-10;
 
 #[inline(always)]
 pub(super) fn splat<S: Simd>(simd: S, value: f64) -> f64x8<S> {
@@ -76,7 +76,7 @@ pub(super) fn exp2<S: Simd>(simd: S, x: f64x8<S>) -> f64x8<S> {
         0.240_226_506_959_101_3,
         0.055_504_108_664_820_09,
         0.009_618_129_107_594_188,
-        0.001_333_355_814_677_401_2,
+        0.001_333_355_814_677_401,
         0.000_154_035_304_570_373_87,
         1.525_273_349_341_358_6e-5,
         1.321_543_531_575_366_6e-6,
@@ -100,22 +100,21 @@ pub(super) fn exp2<S: Simd>(simd: S, x: f64x8<S>) -> f64x8<S> {
 #[inline(always)]
 pub(super) fn ln<S: Simd>(simd: S, x: f64x8<S>) -> f64x8<S> {
     const L: [f64; 7] = [
-        6.666_666_666_666_735_130e-1,
-        3.999_999_999_940_941_908e-1,
-        2.857_142_874_366_239_149e-1,
-        2.222_219_843_214_978_396e-1,
-        1.818_357_216_161_805_012e-1,
-        1.531_383_769_920_937_332e-1,
-        1.479_819_860_511_658_591e-1,
+        6.666_666_666_666_735e-1,
+        3.999_999_999_940_942e-1,
+        2.857_142_874_366_239e-1,
+        2.222_219_843_214_978_4e-1,
+        1.818_357_216_161_805e-1,
+        1.531_383_769_920_937_3e-1,
+        1.479_819_860_511_658_6e-1,
     ];
     let l = |k: usize| splat(simd, L[k]);
     let one = splat(simd, 1.0);
     let shifted = x.to_bits() + words(simd, 0x3ff0_0000_0000_0000 - 0x3fe6_a09e_667f_3bcd);
     let k = f64x8::from_bits((shifted >> 52) | words(simd, 0x4330_0000_0000_0000))
         - splat(simd, 4_503_599_627_370_496.0 + 1023.0);
-    let m = f64x8::from_bits(
-        (shifted & words(simd, 0x000f_ffff_ffff_ffff)) + words(simd, 0x3fe6_a09e_667f_3bcd),
-    );
+    let m =
+        f64x8::from_bits((shifted & words(simd, 0x000f_ffff_ffff_ffff)) + words(simd, 0x3fe6_a09e_667f_3bcd));
     let f = m - one;
     let s = f / (splat(simd, 2.0) + f);
     let z = s * s;
@@ -135,16 +134,15 @@ pub(super) fn sin_cos_turn<S: Simd>(simd: S, turn: f64x8<S>) -> (f64x8<S>, f64x8
     let x = (quarters - (t - c(ROUND))) * c(FRAC_PI_2);
     let z = x * x;
     let w = z * z;
-    let sin_tail = c(8.333_333_333_322_489_46e-3)
-        + z * (c(-1.984_126_982_985_794_93e-4) + z * c(2.755_731_370_707_006_77e-6))
-        + z * w * (c(-2.505_076_025_340_686_34e-8) + z * c(1.589_690_995_211_550_10e-10));
-    let sin = x + x * z * (c(-1.666_666_666_666_663_24e-1) + z * sin_tail);
+    let sin_tail = c(8.333_333_333_322_49e-3)
+        + z * (c(-1.984_126_982_985_795e-4) + z * c(2.755_731_370_707_006_8e-6))
+        + z * w * (c(-2.505_076_025_340_686_3e-8) + z * c(1.589_690_995_211_55e-10));
+    let sin = x + x * z * (c(-1.666_666_666_666_663_2e-1) + z * sin_tail);
     let cos_tail = z
-        * (c(4.166_666_666_666_660_19e-2)
-            + z * (c(-1.388_888_888_887_410_96e-3) + z * c(2.480_158_728_947_672_94e-5)))
+        * (c(4.166_666_666_666_66e-2) + z * (c(-1.388_888_888_887_411e-3) + z * c(2.480_158_728_947_673e-5)))
         + w * w
-            * (c(-2.755_731_435_139_066_33e-7)
-                + z * (c(2.087_572_321_298_174_83e-9) + z * c(-1.135_964_755_778_819_48e-11)));
+            * (c(-2.755_731_435_139_066_3e-7)
+                + z * (c(2.087_572_321_298_175e-9) + z * c(-1.135_964_755_778_819_5e-11)));
     let half = c(0.5) * z;
     let one_less = c(1.0) - half;
     let cos = one_less + (((c(1.0) - one_less) - half) + z * cos_tail);
@@ -192,7 +190,12 @@ mod tests {
             let powers = dispatch!(Level::new(), simd => three(simd, x))[0];
             for lane in 0..8 {
                 let exact = x[lane].exp2();
-                assert!((powers[lane] - exact).abs() <= 4.4e-16 * exact, "{} {}", x[lane], powers[lane] / exact);
+                assert!(
+                    (powers[lane] - exact).abs() <= 4.4e-16 * exact,
+                    "{} {}",
+                    x[lane],
+                    powers[lane] / exact
+                );
             }
         }
         let ones = dispatch!(Level::new(), simd => three(simd, [0.0; 8]))[0];

@@ -131,7 +131,7 @@ impl Elaborator<'_> {
                 let declared: Vec<String> = [locals.scope, 0]
                     .iter()
                     .filter_map(|s| self.scopes.get(*s))
-                    .flat_map(|s| s.entries())
+                    .flat_map(super::super::symbols::Scope::entries)
                     .filter(|(_, e)| matches!(&e.meaning, Meaning::Let(d) if !d.arguments.is_empty()))
                     .map(|(n, _)| n.to_owned())
                     .collect();
