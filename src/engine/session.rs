@@ -225,7 +225,9 @@ impl Session<'_> {
             }
             if kind == Kind::Estimate {
                 let claim = match (result.censored, interval.low.is_infinite(), interval.high.is_infinite()) {
-                    (Some(horizon), true, true) if interval.low > 0.0 => format!("> {}", words::quantity(horizon, &result.unit)),
+                    (Some(horizon), true, true) if interval.low > 0.0 => {
+                        format!("> {}", words::quantity(horizon, &result.unit))
+                    }
                     (Some(_), false, true) => format!(">= {}", words::quantity(interval.low, &result.unit)),
                     _ => format!("in {}", words::ends(interval.low, interval.high, &result.unit)),
                 };
