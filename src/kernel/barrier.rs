@@ -8,8 +8,8 @@ use super::vector::{Doubles, Part, Truths, larger, smaller};
 use crate::base::geometry::{Bounds, Segment, Shape, Vec2};
 use crate::base::lanes::Mask;
 use crate::model::{Barrier, Obstacle};
-use fearless_simd::prelude::*;
 use fearless_simd::Simd;
+use fearless_simd::prelude::*;
 
 /// A straight piece of a surface.
 #[derive(Clone, Copy, Debug)]
@@ -90,8 +90,14 @@ impl Surface {
         x: Doubles<S>,
         y: Doubles<S>,
     ) -> Doubles<S> {
-        let beside = larger::<S>(larger::<S>(part.c(self.bounds.low.x) - x, x - part.c(self.bounds.high.x)), part.c(0.0));
-        let above = larger::<S>(larger::<S>(part.c(self.bounds.low.y) - y, y - part.c(self.bounds.high.y)), part.c(0.0));
+        let beside = larger::<S>(
+            larger::<S>(part.c(self.bounds.low.x) - x, x - part.c(self.bounds.high.x)),
+            part.c(0.0),
+        );
+        let above = larger::<S>(
+            larger::<S>(part.c(self.bounds.low.y) - y, y - part.c(self.bounds.high.y)),
+            part.c(0.0),
+        );
         beside * beside + above * above
     }
 
@@ -239,8 +245,10 @@ mod tests {
             let barrier = Barrier { name: String::new(), obstacle };
             let surface = Surface::new(&barrier).unwrap();
             for k in 0..500 {
-                let x: [f64; 8] = std::array::from_fn(|lane| f64::from(k % 25) * 0.3 - 1.7 + lane as f64 * 0.03);
-                let y: [f64; 8] = std::array::from_fn(|lane| f64::from(k / 25) * 0.33 - 1.3 - lane as f64 * 0.02);
+                let x: [f64; 8] =
+                    std::array::from_fn(|lane| f64::from(k % 25) * 0.3 - 1.7 + lane as f64 * 0.03);
+                let y: [f64; 8] =
+                    std::array::from_fn(|lane| f64::from(k / 25) * 0.33 - 1.3 - lane as f64 * 0.02);
                 let [nx, ny, distance] = dispatch!(Level::new(), simd => eight(simd, &surface, x, y));
                 for lane in 0..8 {
                     let place = p(x[lane], y[lane]);

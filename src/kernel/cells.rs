@@ -138,6 +138,7 @@ impl Cells {
             #[inline(always)]
             || self.walls(simd, &grid, forces, sums, contacts),
         );
+        contacts.arrange();
         cohesion(forces, state, sums);
     }
 
@@ -251,7 +252,9 @@ impl Cells {
                 let own = &self.feelers[i];
                 let (left, right) = (grid.column(own.x - grid.reach), grid.column(own.x + grid.reach));
                 let mut ranges = [(0, 0); 3];
-                for (range, other) in ranges.iter_mut().zip(strip.saturating_sub(1)..(strip + 2).min(grid.strips)) {
+                for (range, other) in
+                    ranges.iter_mut().zip(strip.saturating_sub(1)..(strip + 2).min(grid.strips))
+                {
                     let (start, end) = (other * row + left, other * row + right + 1);
                     *range = (self.start[start] as usize, self.start[end] as usize);
                 }
@@ -278,7 +281,8 @@ impl Cells {
                             let mut f = decay(part, gap * rate) * q * (even - (dx * ex + dy * ey) * q);
                             if SECOND {
                                 let own = &self.seconds[i];
-                                let weight = part.c(own.even) - (dx * part.c(own.ex) + dy * part.c(own.ey)) * q;
+                                let weight =
+                                    part.c(own.even) - (dx * part.c(own.ex) + dy * part.c(own.ey)) * q;
                                 f = f + decay(part, gap * part.c(own.rate)) * q * weight;
                             }
                             if TIES {

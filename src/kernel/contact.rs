@@ -112,6 +112,13 @@ impl Contacts {
         }
     }
 
+    /// Puts the candidates of the only trial into ascending order: they were found in an order that
+    /// depends on the width of the machine's vectors.
+    pub(super) fn arrange(&mut self) {
+        self.pairs[0].sort_unstable();
+        self.walls[0].sort_unstable();
+    }
+
     /// Moves, over `h` seconds, all bodies that touch something or may be touched by someone who does,
     /// and marks them in `moved`. All others are free: the caller drifts them.
     pub(super) fn advance(&mut self, program: &Program, state: &mut State, moved: &mut [Mask], h: f64) {

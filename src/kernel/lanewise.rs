@@ -422,7 +422,9 @@ pub(super) fn cohesion(forces: &Forces, state: &State, sums: &mut [Sum]) {
             let place = |member: u32| {
                 let slot = state.slot(member as usize, lane);
                 let here = state.present[slot.block].has(slot.lane);
-                here.then(|| (slot, Vec2::new(state.x[slot.block].0[slot.lane], state.y[slot.block].0[slot.lane])))
+                here.then(|| {
+                    (slot, Vec2::new(state.x[slot.block].0[slot.lane], state.y[slot.block].0[slot.lane]))
+                })
             };
             let (mut n, mut sum) = (0.0, Vec2::zeros());
             for (_, at) in group.members.iter().filter_map(|&member| place(member)) {

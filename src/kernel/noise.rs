@@ -8,8 +8,8 @@ use super::state::{Layout, State};
 use super::vector::{Doubles, Part, Words, ln, sin_cos_turn};
 use crate::base::lanes::LANES;
 use crate::base::random::{Purpose, Stream, TrialKey};
-use fearless_simd::prelude::*;
 use fearless_simd::Simd;
+use fearless_simd::prelude::*;
 
 const MULTIPLIER: [u64; 2] = [0xD251_1F53, 0xCD9E_8D57];
 const WEYL: [u32; 2] = [0x9E37_79B9, 0xBB67_AE85];
@@ -58,7 +58,12 @@ impl Draws {
     #[inline(always)]
     fn words<S: Simd>(&self, part: Part<S>, agents: Words<S>) -> (Words<S>, Words<S>) {
         let low = part.word(LOW);
-        let mut c = [part.words(&self.counter[0]), agents, part.words(&self.counter[1]), part.words(&self.counter[2])];
+        let mut c = [
+            part.words(&self.counter[0]),
+            agents,
+            part.words(&self.counter[1]),
+            part.words(&self.counter[2]),
+        ];
         // Above its low half a counter word may hold anything between rounds: the product takes the low
         // half only, and the end masks it off.
         for key in &self.keys {

@@ -140,8 +140,11 @@ pub(super) fn exp2<S: Simd>(part: Part<S>, x: Doubles<S>) -> Doubles<S> {
     let t = x + part.c(BIASED);
     let f = x - (t - part.c(BIASED));
     let f2 = f * f;
-    let even = part.c(C[0]) + f2 * (part.c(C[2]) + f2 * (part.c(C[4]) + f2 * (part.c(C[6]) + f2 * (part.c(C[8]) + f2 * part.c(C[10])))));
-    let odd = part.c(C[1]) + f2 * (part.c(C[3]) + f2 * (part.c(C[5]) + f2 * (part.c(C[7]) + f2 * part.c(C[9]))));
+    let even = part.c(C[0])
+        + f2 * (part.c(C[2])
+            + f2 * (part.c(C[4]) + f2 * (part.c(C[6]) + f2 * (part.c(C[8]) + f2 * part.c(C[10])))));
+    let odd =
+        part.c(C[1]) + f2 * (part.c(C[3]) + f2 * (part.c(C[5]) + f2 * (part.c(C[7]) + f2 * part.c(C[9]))));
     let power = part.c(1.0) + (f * even + f2 * odd);
     power * Doubles::<S>::from_bits(t.to_bits() << 52)
 }
@@ -247,7 +250,12 @@ mod tests {
             let powers = dispatch!(Level::new(), simd => four(simd, x))[0];
             for lane in 0..8 {
                 let exact = x[lane].exp2();
-                assert!((powers[lane] - exact).abs() <= 4.4e-16 * exact, "{} {}", x[lane], powers[lane] / exact);
+                assert!(
+                    (powers[lane] - exact).abs() <= 4.4e-16 * exact,
+                    "{} {}",
+                    x[lane],
+                    powers[lane] / exact
+                );
             }
         }
         let ones = dispatch!(Level::new(), simd => four(simd, [0.0; 8]))[0];
