@@ -231,7 +231,7 @@ impl Stopwatch {
 
     fn read(&self) -> Duration {
         match (self.on_core, Self::on_core()) {
-            (Some(start), Some(end)) if end > start => end - start,
+            (Some(start), Some(end)) => end.saturating_sub(start),
             _ => self.since.elapsed(),
         }
     }

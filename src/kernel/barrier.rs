@@ -2,7 +2,7 @@
 //!
 //! A barrier gives one force, from its nearest point: so a corner, where two segments are equally near,
 //! counts once, and an end repels along the line to that end. Inside a solid the normal points out.
-//! Given-Wilson et al. 2017, equations (5) and (6), with d_ib the distance from the centre of the body.
+//! Given-Wilson et al. 2017, equations (5) and (6), with `d_ib` the distance from the centre of the body.
 
 use super::vector::{Doubles, Part, Truths, larger, smaller};
 use crate::base::geometry::{Bounds, Segment, Shape, Vec2};
@@ -186,7 +186,7 @@ fn inside<S: Simd>(part: Part<S>, edges: &[Edge], x: Doubles<S>, y: Doubles<S>) 
     for e in edges {
         let straddles = part.c(e.a.y).simd_gt(y) ^ part.c(e.end_y).simd_gt(y);
         let left = x.simd_lt(part.c(e.a.x) + (y - part.c(e.a.y)) * part.c(e.slope));
-        inside = inside ^ (straddles & left);
+        inside ^= straddles & left;
     }
     inside
 }

@@ -15,6 +15,7 @@ use super::program::Program;
 use super::state::State;
 use super::vector::{Part, larger, parts, smaller};
 use crate::base::lanes::{LANES, Lanes, Mask};
+use crate::base::math::at_least;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
@@ -54,6 +55,9 @@ struct Grid {
     x: f64,
     y: f64,
     reach: f64,
+    /// What rounding may take off a distance, amply, m.
+    slack: f64,
+    height: f64,
     per_width: f64,
     per_height: f64,
     columns: usize,
@@ -66,6 +70,16 @@ impl Grid {
     fn column(&self, x: f64) -> usize {
         // The cast saturates, and takes NaN to 0.
         (((x - self.x) * self.per_width) as usize).min(self.columns - 1)
+    }
+
+    /// How far to the side others in strip `other` can be in reach of someone at `y` in `strip`: less,
+    /// the farther the near edge of that strip.
+    #[inline(always)]
+    fn reach_into(&self, strip: usize, other: usize, y: f64) -> f64 {
+        let edge = self.y + strip.max(other) as f64 * self.height;
+        let beside = if other == strip { 0.0 } else { at_least((y - edge).abs() - self.slack, 0.0) };
+        let square = at_least(self.reach * self.reach - beside * beside, 0.0);
+        square.sqrt() + self.slack
     }
 
     #[inline(always)]
@@ -173,13 +187,15 @@ impl Cells {
         }
         let total = total as usize;
         self.next.clone_from(&self.start);
-        self.feelers.clear();
         self.feelers.resize(total, NOBODY);
-        self.agent.clear();
         self.agent.resize(total, u32::MAX);
         if forces.second {
-            self.seconds.clear();
             self.seconds.resize(total, Second::default());
+        }
+        for strip in self.start.chunks_exact(row) {
+            let end = strip[grid.columns] as usize;
+            self.feelers[end..end + LANES].fill(NOBODY);
+            self.agent[end..end + LANES].fill(u32::MAX);
         }
         for block in 0..state.x.len() {
             let e = (&state.ex[block], &state.ey[block]);
@@ -245,16 +261,18 @@ impl Cells {
         contacts: &mut Contacts,
     ) {
         let row = grid.columns + 1;
+        let (xs, ys, rs) = (&self.x[..], &self.y[..], &self.r[..]);
+        let margin = -forces.margin;
         for strip in 0..grid.strips {
             let from = self.start[strip * row] as usize;
             let to = self.start[strip * row + grid.columns] as usize;
             for i in from..to {
                 let own = &self.feelers[i];
-                let (left, right) = (grid.column(own.x - grid.reach), grid.column(own.x + grid.reach));
                 let mut ranges = [(0, 0); 3];
-                for (range, other) in
-                    ranges.iter_mut().zip(strip.saturating_sub(1)..(strip + 2).min(grid.strips))
-                {
+                let strips = strip.saturating_sub(1)..(strip + 2).min(grid.strips);
+                for (range, other) in ranges.iter_mut().zip(strips) {
+                    let reach = grid.reach_into(strip, other, own.y);
+                    let (left, right) = (grid.column(own.x - reach), grid.column(own.x + reach));
                     let (start, end) = (other * row + left, other * row + right + 1);
                     *range = (self.start[start] as usize, self.start[end] as usize);
                 }
@@ -266,14 +284,14 @@ impl Cells {
                     for (start, end) in ranges {
                         let mut j = start;
                         while j + part.at() < end {
-                            let dx = x - part.slice(&self.x[j..j + LANES]);
-                            let dy = y - part.slice(&self.y[j..j + LANES]);
+                            let dx = x - part.slice(&xs[j..j + LANES]);
+                            let dy = y - part.slice(&ys[j..j + LANES]);
                             let d = (dx * dx + dy * dy + part.c(1e-300)).sqrt();
                             let q = part.c(1.0) / d;
-                            let gap = r + part.slice(&self.r[j..j + LANES]) - d;
+                            let gap = r + part.slice(&rs[j..j + LANES]) - d;
                             // Each pair is a candidate once, and nobody with themselves.
                             let later = if j > i { 0xff } else { 0xff << (i + 1 - j).min(LANES) };
-                            let touching = part.bits(gap.simd_gt(part.c(-forces.margin)));
+                            let touching = part.bits(gap.simd_gt(part.c(margin)));
                             let touching = touching & Mask((later & 0xff) as u8);
                             if !touching.is_empty() {
                                 self.candidates(i, j, touching, contacts);
@@ -283,15 +301,15 @@ impl Cells {
                                 let own = &self.seconds[i];
                                 let weight =
                                     part.c(own.even) - (dx * part.c(own.ex) + dy * part.c(own.ey)) * q;
-                                f = f + decay(part, gap * part.c(own.rate)) * q * weight;
+                                f += decay(part, gap * part.c(own.rate)) * q * weight;
                             }
                             if TIES {
                                 let both = part.c(self.tie[i]) + part.slice(&self.tie[j..j + LANES]);
                                 let mean = part.c(0.5) * both;
-                                f = f * mean.simd_eq(mean).select(mean, part.c(1.0));
+                                f *= mean.simd_eq(mean).select(mean, part.c(1.0));
                             }
-                            fx = fx + f * dx;
-                            fy = fy + f * dy;
+                            fx += f * dx;
+                            fy += f * dy;
                             j += LANES;
                         }
                     }
@@ -327,7 +345,7 @@ impl Cells {
             return;
         }
         let row = grid.columns + 1;
-        let height = 1.0 / grid.per_height;
+        let height = grid.height;
         let mut near = Vec::new();
         for strip in 0..grid.strips {
             // The last strip holds all that is above, the first all that is below.
@@ -434,10 +452,12 @@ fn survey<S: Simd>(simd: S, forces: &Forces, state: &State) -> Grid {
     let reach = (2.0 * most(widest) + most(farthest)) * (1.0 + 1e-9);
     let (x, y) = (least(low.0), least(low.1));
     let (wide, high) = (most(high.0) - x, most(high.1) - y);
-    let mut grid = Grid { x, y, reach, per_width: 0.0, per_height: 0.0, columns: 1, strips: 1 };
+    let slack = 1e-9 * (reach + wide + high);
+    let mut grid =
+        Grid { x, y, reach, slack, height: 1.0, per_width: 0.0, per_height: 0.0, columns: 1, strips: 1 };
     if !(wide.is_finite() && high.is_finite() && reach.is_finite() && reach > 0.0) {
         // Nobody there, or somebody infinitely far away: one cell holds all.
-        return Grid { x: 0.0, y: 0.0, ..grid };
+        return Grid { x: 0.0, y: 0.0, slack: 0.0, ..grid };
     }
     let mut height = reach;
     let mut width = reach / CELLS_PER_REACH;
@@ -447,6 +467,7 @@ fn survey<S: Simd>(simd: S, forces: &Forces, state: &State) -> Grid {
         height *= 2.0;
         width *= 2.0;
     }
+    grid.height = height;
     grid.per_width = 1.0 / width;
     grid.per_height = 1.0 / height;
     grid.columns = (wide * grid.per_width) as usize + 1;

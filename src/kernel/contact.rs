@@ -7,7 +7,7 @@
 //! contact alone (reversible multiple time steps, Tuckerman, Berne, Martyna 1992), taken in sub-steps of
 //! position Verlet: half a drift, friction, compression, friction, half a drift. Friction is solved
 //! exactly pair by pair: over a time t the relative tangential speed of a pair decays by
-//! exp(-k2 g (1/m_i + 1/m_j) t), at a wall by exp(-k2 g t/m). It can therefore never reverse a slip, and
+//! `exp(-k2 g (1/m_i + 1/m_j) t)`, at a wall by exp(-k2 g t/m). It can therefore never reverse a slip, and
 //! never adds energy. Pairs are visited in order and then in reverse order, which keeps it symmetric.
 //!
 //! The constants of a pair are the means of the two bodies'. Two bodies of several persons do not

@@ -2,14 +2,14 @@
 //!
 //! The equation of motion (Given-Wilson et al. 2017, equation (1)) is split symmetrically (Strang 1968):
 //!
-//! 1. half a kick by the slow force F(x_n), social forces and attraction, kept in `fx`, `fy`;
+//! 1. half a kick by the slow force `F(x_n)`, social forces and attraction, kept in `fx`, `fy`;
 //! 2. half a drift: free bodies go straight on, bodies in contact by the flow of `contact`;
 //! 3. driving and noise over the whole step, an Ornstein-Uhlenbeck process solved exactly:
-//!    v <- v0 e + (v - v0 e) c + s sqrt(1 - c^2) xi with c = exp(-dt/tau), s the stationary standard
+//!    `v <- v0 e + (v - v0 e) c + s sqrt(1 - c^2) xi` with c = exp(-dt/tau), s the stationary standard
 //!    deviation, xi two standard normal numbers: relaxation and variance are exact for every dt;
 //! 4. half a drift as in 2;
 //! 5. the driver looks at the new positions (`drive::steer`);
-//! 6. the slow force F(x_{n+1}), and half a kick by it.
+//! 6. the slow force `F(x_{n+1})`, and half a kick by it.
 //!
 //! One evaluation of the slow force and one draw of noise a step, second order in dt. Where a lane has no
 //! body near another, 1 to 4 run in one pass; where it has, in several with the same operations, so the
@@ -211,15 +211,6 @@ impl Mover<'_> {
         }
     }
 
-    #[inline(always)]
-    fn kicked<S: Simd>(&self, part: Part<S>, state: &State, block: usize) -> (Doubles<S>, Doubles<S>) {
-        let push = part.load(&state.push[block]);
-        (
-            part.load(&state.vx[block]) + part.load(&state.fx[block]) * push,
-            part.load(&state.vy[block]) + part.load(&state.fy[block]) * push,
-        )
-    }
-
     /// Driving and noise over the whole step.
     #[inline(always)]
     fn driven<S: Simd>(
@@ -241,19 +232,6 @@ impl Mover<'_> {
         (vx + kick * nx, vy + kick * ny)
     }
 
-    #[inline(always)]
-    fn travel<S: Simd>(
-        &self,
-        part: Part<S>,
-        state: &mut State,
-        block: usize,
-        moving: Mask,
-        (dx, dy): (Doubles<S>, Doubles<S>),
-    ) {
-        let way = part.load(&state.travelled[block]) + (dx * dx + dy * dy).sqrt();
-        part.store_in(part.mask(moving), way, &mut state.travelled[block]);
-    }
-
     /// All of it for a block without contact.
     #[inline(always)]
     fn whole<S: Simd>(
@@ -266,12 +244,12 @@ impl Mover<'_> {
     ) {
         let here = part.mask(moving);
         let half = part.c(self.half);
-        let (vx, vy) = self.kicked(part, state, block);
+        let (vx, vy) = kicked(part, state, block);
         let (x0, y0) = (part.load(&state.x[block]), part.load(&state.y[block]));
         let (x, y) = (x0 + vx * half, y0 + vy * half);
         let (vx, vy) = self.driven(part, state, block, part.words(words), (vx, vy));
         let (x, y) = (x + vx * half, y + vy * half);
-        self.travel(part, state, block, moving, (x - x0, y - y0));
+        travel(part, state, block, moving, (x - x0, y - y0));
         part.store_in(here, x, &mut state.x[block]);
         part.store_in(here, y, &mut state.y[block]);
         part.store_in(here, vx, &mut state.vx[block]);
@@ -280,7 +258,7 @@ impl Mover<'_> {
 
     #[inline(always)]
     fn kick<S: Simd>(&self, part: Part<S>, state: &mut State, block: usize, moving: Mask) {
-        let (vx, vy) = self.kicked(part, state, block);
+        let (vx, vy) = kicked(part, state, block);
         part.store_in(part.mask(moving), vx, &mut state.vx[block]);
         part.store_in(part.mask(moving), vy, &mut state.vy[block]);
     }
@@ -328,8 +306,31 @@ impl Mover<'_> {
         self.drift(part, state, block, moving & !moved);
         let dx = part.load(&state.x[block]) - part.load(x0);
         let dy = part.load(&state.y[block]) - part.load(y0);
-        self.travel(part, state, block, moving, (dx, dy));
+        travel(part, state, block, moving, (dx, dy));
     }
+}
+
+/// Velocities after half a kick.
+#[inline(always)]
+fn kicked<S: Simd>(part: Part<S>, state: &State, block: usize) -> (Doubles<S>, Doubles<S>) {
+    let push = part.load(&state.push[block]);
+    (
+        part.load(&state.vx[block]) + part.load(&state.fx[block]) * push,
+        part.load(&state.vy[block]) + part.load(&state.fy[block]) * push,
+    )
+}
+
+/// Adds to the ways gone.
+#[inline(always)]
+fn travel<S: Simd>(
+    part: Part<S>,
+    state: &mut State,
+    block: usize,
+    moving: Mask,
+    (dx, dy): (Doubles<S>, Doubles<S>),
+) {
+    let way = part.load(&state.travelled[block]) + (dx * dx + dy * dy).sqrt();
+    part.store_in(part.mask(moving), way, &mut state.travelled[block]);
 }
 
 /// The slow force at the new positions, half a kick by it, and a look at what came out.
@@ -344,14 +345,12 @@ fn finish<S: Simd>(simd: S, program: &Program, state: &mut State, scratch: &mut 
         let moving = state.present[block] & scratch.moving[block];
         for part in parts(simd) {
             let here = part.mask(moving);
-            let push = part.load(&state.push[block]);
-            let vx = part.load(&state.vx[block]) + part.load(&state.fx[block]) * push;
-            let vy = part.load(&state.vy[block]) + part.load(&state.fy[block]) * push;
+            let (vx, vy) = kicked(part, state, block);
             part.store_in(here, vx, &mut state.vx[block]);
             part.store_in(here, vy, &mut state.vy[block]);
-            // The difference of a position to itself is no number where the position is none.
+            // Zero times a position is no number where the position is none or infinite.
             let (x, y) = (part.load(&state.x[block]), part.load(&state.y[block]));
-            let square = vx * vx + vy * vy + ((x - x) + (y - y));
+            let square = vx * vx + vy * vy + (x + y) * part.c(0.0);
             let sound = square.simd_le(part.c(TOP_SPEED * TOP_SPEED));
             diverged |= part.bits(here & !sound);
         }

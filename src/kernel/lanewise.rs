@@ -9,7 +9,7 @@ use super::contact::Contacts;
 use super::forces::{Forces, REACH};
 use super::program::Program;
 use super::state::State;
-use super::vector::{Doubles, Part, exp2, larger, parts, smaller};
+use super::vector::{Doubles, Part, exp2, larger, parts};
 use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::random::TrialKey;
@@ -312,16 +312,16 @@ impl Lanewise {
                         let theirs2 = Loaded::of(part, &seconds[j as usize]);
                         if SHARED {
                             let e = decay(part, gap * rate2) * q;
-                            on_i = on_i + e * own2.towards(dx, dy, q);
-                            on_j = on_j + e * theirs2.away(dx, dy, q);
+                            on_i += e * own2.towards(dx, dy, q);
+                            on_j += e * theirs2.away(dx, dy, q);
                         } else {
                             let factor = q * part.c(forces.factor(i, j as usize));
-                            on_i = on_i + decay(part, gap * own2.rate) * factor * own2.towards(dx, dy, q);
-                            on_j = on_j + decay(part, gap * theirs2.rate) * factor * theirs2.away(dx, dy, q);
+                            on_i += decay(part, gap * own2.rate) * factor * own2.towards(dx, dy, q);
+                            on_j += decay(part, gap * theirs2.rate) * factor * theirs2.away(dx, dy, q);
                         }
                     }
-                    fx = fx + on_i * dx;
-                    fy = fy + on_i * dy;
+                    fx += on_i * dx;
+                    fy += on_i * dy;
                     let sum = &mut sums[j as usize];
                     part.store(part.load(&sum.x) - on_j * dx, &mut sum.x);
                     part.store(part.load(&sum.y) - on_j * dy, &mut sum.y);
@@ -363,8 +363,8 @@ impl Lanewise {
                         contacts.push_wall(i as u32, k, part.bits(touching));
                     }
                     let f = a * decay(part, gap * rate);
-                    fx = fx + f * nearest.nx;
-                    fy = fy + f * nearest.ny;
+                    fx += f * nearest.nx;
+                    fy += f * nearest.ny;
                 }
                 part.store(fx, &mut sums[i].x);
                 part.store(fy, &mut sums[i].y);
@@ -410,7 +410,8 @@ impl<S: Simd> Loaded<S> {
 #[inline(always)]
 pub(super) fn decay<S: Simd>(part: Part<S>, power: Doubles<S>) -> Doubles<S> {
     let in_reach = power.simd_gt(part.c(-REACH * LOG2_E));
-    in_reach.select(exp2(part, smaller::<S>(power, part.c(LARGEST_POWER))), part.c(0.0))
+    // What `min` makes of NaN does not matter: it is not in reach.
+    in_reach.select(exp2(part, power.min(part.c(LARGEST_POWER))), part.c(0.0))
 }
 
 /// Attraction within groups (Moussaid, Perozo, Garnier, Helbing, Theraulaz 2010): a constant force towards
