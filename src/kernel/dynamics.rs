@@ -166,7 +166,7 @@ fn move_on<S: Simd>(simd: S, program: &Program, state: &mut State, scratch: &mut
     }
     for (block, &moving) in scratch.moving.iter().enumerate() {
         for part in parts(simd) {
-            mover.kick(part, state, block, moving);
+            Mover::kick(part, state, block, moving);
         }
     }
     mover.contact(state, scratch);
@@ -257,7 +257,7 @@ impl Mover<'_> {
     }
 
     #[inline(always)]
-    fn kick<S: Simd>(&self, part: Part<S>, state: &mut State, block: usize, moving: Mask) {
+    fn kick<S: Simd>(part: Part<S>, state: &mut State, block: usize, moving: Mask) {
         let (vx, vy) = kicked(part, state, block);
         part.store_in(part.mask(moving), vx, &mut state.vx[block]);
         part.store_in(part.mask(moving), vy, &mut state.vy[block]);
