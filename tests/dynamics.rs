@@ -389,7 +389,9 @@ fn a_particle_of_one_is_a_person_and_two_of_several_have_their_own_law() {
             }
             scene
         };
-        let particle = |persons| Some(Particle { persons, repulsion: 0.25, friction: 0.0 });
+        let particle = |persons| {
+            Some(Particle { persons, repulsion: 0.25, friction: 0.0, radius_factor: 1.0, tau_factor: 1.0 })
+        };
         let (mut persons, mut ones) = (scene(None).start(layout), scene(particle(1)).start(layout));
         let (start, twos) = (scene(None).start(layout), scene(particle(2)).start(layout));
         for k in 0..10 {
@@ -405,7 +407,13 @@ fn a_particle_of_one_is_a_person_and_two_of_several_have_their_own_law() {
             a: 0.0,
             tau: NEVER,
             velocity: p(v, 0.0),
-            particle: Some(Particle { persons: 3, repulsion: 1.0, friction: 1e4 }),
+            particle: Some(Particle {
+                persons: 3,
+                repulsion: 1.0,
+                friction: 1e4,
+                radius_factor: 1.0,
+                tau_factor: 1.0,
+            }),
             ..person(p(0.0, y))
         };
         let mut run = crowd(vec![body(0.0, 0.5), body(0.4, -0.5)], "0.001").start(layout);
