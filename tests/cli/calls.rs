@@ -134,7 +134,7 @@ fn a_closed_pipe_is_no_error() {
 
 #[test]
 fn help_for_shells_and_manuals() {
-    let place = small("");
+    let place = small("check P(F<=3 s contact(user)) >= 0.5\n");
     for shell in ["bash", "zsh", "fish"] {
         let said = place.call(&["completions", shell]);
         assert!(said.code == Some(0) && said.out.contains("simulate"), "{shell}");

@@ -23,12 +23,11 @@ fn the_json_of_every_model_keeps_the_schema() {
         let stem = path.file_stem().unwrap().to_str().unwrap();
         let (model, properties) = (format!("models/{stem}.scn"), format!("properties/{stem}.bltl"));
         let mut words = vec!["check", &model, &properties, "-q", "--format", "json", "--max-trials", "20"];
-        let data = recordings();
-        let needs = std::fs::read_to_string(&path).unwrap().contains("tracks ");
-        match &data {
-            Some(data) => words.extend(["--data", data.to_str().unwrap()]),
-            None if needs => continue,
-            None => {}
+        let data;
+        if std::fs::read_to_string(&path).unwrap().contains("tracks ") {
+            let Some(found) = recordings() else { continue };
+            data = found;
+            words.extend(["--data", data.to_str().unwrap()]);
         }
         let said = at_root(&words);
         assert!(matches!(said.code, Some(0 | 1 | 3)), "{stem}\n{}", said.err);

@@ -96,6 +96,7 @@ pub(crate) fn recordings() -> Option<PathBuf> {
     there.then_some(found)
 }
 
+#[allow(dead_code, reason = "some tests compare whole reports, others do not")]
 /// Takes out what differs from run to run.
 pub(crate) fn timeless(value: &mut Value) {
     match value {

@@ -29,7 +29,9 @@ fn formats_agree() {
     assert_eq!(text.lines().count(), 1 + lines.len());
     for (line, row) in text.lines().skip(1).zip(&lines) {
         let cells: Vec<&str> = line.split(',').collect();
-        assert_eq!(cells[3].parse::<f64>().unwrap(), row["x"].as_f64().unwrap());
+        // serde_json reads numbers to within one unit in the last place.
+        let (cell, number) = (cells[3].parse::<f64>().unwrap(), row["x"].as_f64().unwrap());
+        assert!((cell - number).abs() <= f64::EPSILON * number.abs(), "{cell} {number}");
     }
     for words in [&["--until", "-1"][..], &["--move", "jump"], &["--set", "density=0..1 by 0.5"]] {
         assert_eq!(place.call(&[&["simulate", "a.scn"], words].concat()).code, Some(2), "{words:?}");
@@ -85,16 +87,19 @@ fn an_addition_changes_nobody_elses_draws() {
 
 #[test]
 fn comparisons_use_common_random_numbers() {
-    let query = "compare P(F<=3 s contact(user)) under density = 0.3 /m^2 with density = 0.4 /m^2\n";
-    let place = Place::new(&[("a.scn", SMALL), ("a.bltl", query)]);
+    let scenario = SMALL
+        .replace("param density", "param push = 2000 N\nparam density")
+        .replace("noise = 0.05 m/s", "noise = 0.05 m/s  A = push");
+    let query = "compare P(F<=3 s contact(user)) under push = 2000 N with push = 2300 N\n";
+    let place = Place::new(&[("a.scn", &scenario), ("a.bltl", query)]);
     let words = ["check", "a.scn", "a.bltl", "-q", "--format", "json", "--max-trials", "400"];
-    let json = place.call(&words).json();
-    let result = &json["results"][0];
+    let run = |seed: &str| place.call(&[&words[..], &["--seed", seed]].concat()).json()["results"][0].clone();
+    let result = run("0");
     let count = |side: &str, field: &str| result[side][field].as_f64().unwrap();
     let pairs = count("difference", "trials");
     let discordant = count("difference", "successes") + count("difference", "failures");
     let (p, q) = (count("first", "successes") / pairs, count("second", "successes") / pairs);
     let independent = pairs * (p * (1.0 - q) + q * (1.0 - p));
     assert!(pairs >= 100.0 && p > 0.02 && p < 0.98, "{result}");
-    assert!(discordant < 0.8 * independent, "{discordant} discordant pairs, {independent:.0} if independent");
+    assert!(discordant < 0.5 * independent, "{discordant} discordant pairs, {independent:.0} if independent");
 }
