@@ -1,4 +1,4 @@
-//! JSON by its schema, JUnit, GitHub annotations, the page of charts.
+//! JSON by its schema, `JUnit`, annotations of GitHub, the page of charts.
 
 use crate::program::{Place, SMALL, at_root, recordings};
 use std::path::Path;

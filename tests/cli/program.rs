@@ -16,7 +16,7 @@ pub(crate) struct Said {
 }
 
 impl Said {
-    fn of(output: Output) -> Self {
+    fn of(output: &Output) -> Self {
         Self {
             code: output.status.code(),
             out: String::from_utf8_lossy(&output.stdout).into_owned(),
@@ -56,7 +56,7 @@ impl Place {
     }
 
     pub(crate) fn call(&self, words: &[&str]) -> Said {
-        Said::of(self.command(words).output().unwrap())
+        Said::of(&self.command(words).output().unwrap())
     }
 
     pub(crate) fn fed(&self, words: &[&str], input: &str) -> Said {
@@ -68,14 +68,14 @@ impl Place {
             .spawn()
             .unwrap();
         child.stdin.take().unwrap().write_all(input.as_bytes()).unwrap();
-        Said::of(child.wait_with_output().unwrap())
+        Said::of(&child.wait_with_output().unwrap())
     }
 }
 
 /// A call at the root of the repository.
 pub(crate) fn at_root(words: &[&str]) -> Said {
     Said::of(
-        Command::new(env!("CARGO_BIN_EXE_smc"))
+        &Command::new(env!("CARGO_BIN_EXE_smc"))
             .args(words)
             .current_dir(env!("CARGO_MANIFEST_DIR"))
             .stdin(Stdio::null())
