@@ -2,7 +2,12 @@
 //!
 //! `cargo bench --bench share`. The corridor with all its properties; one core; best of several rounds.
 
-#![allow(missing_docs, clippy::print_stdout, clippy::disallowed_methods, reason = "a bench reads the clock and prints")]
+#![allow(
+    missing_docs,
+    clippy::print_stdout,
+    clippy::disallowed_methods,
+    reason = "a bench reads the clock and prints"
+)]
 
 use smc::base::lanes::Mask;
 use smc::base::random::TrialKey;

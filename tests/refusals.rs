@@ -7,7 +7,6 @@
 #![allow(clippy::disallowed_methods, reason = "a test writes files and calls the program")]
 
 use std::fmt::Write as _;
-use std::path::Path;
 use std::process::{Command, Output};
 
 #[derive(Default)]
@@ -78,7 +77,7 @@ fn planted_errors_are_refused_where_they_are() {
     let base = include_str!("refused/base.scn");
     let mut count = 0;
     insta::with_settings!({ prepend_module_to_snapshot => false, omit_expression => true }, {
-        insta::glob!("refused/*.case", |path: &Path| {
+        insta::glob!("refused/*.case", |path| {
             let text = std::fs::read_to_string(path).unwrap();
             let mut shown = String::new();
             for case in cases(&text) {

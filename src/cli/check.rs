@@ -136,6 +136,10 @@ fn command(verb: &str, arguments: &Check, properties: bool) -> String {
         words.push("--data".to_owned());
         words.push(quoted(&data.display().to_string()));
     }
+    // With its budget a call stops where it stopped; a deadline is no property of the input.
+    if let (true, Some(most)) = (properties, arguments.max_trials) {
+        words.push(format!("--max-trials {most}"));
+    }
     words.join(" ")
 }
 
