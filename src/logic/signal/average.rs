@@ -46,7 +46,7 @@ impl Average {
             let at = instant(*cursor);
             let (start, end) = self.window(at, x);
             if *cursor == at {
-                if x.known < end + Moment::from(start == end) {
+                if x.known <= end {
                     return;
                 }
                 let excess =
@@ -79,8 +79,9 @@ impl Average {
             let middle = self.integral(instant(from + (to - from) / 2), x);
             track.settle(from + 1, to, holds(middle));
         } else if (first < 0.0 && last > 0.0 || first > 0.0 && last < 0.0) && to - from > 2 {
-            let share = first / (first - last) * ((to - from) / 2) as f64;
-            let zero = (from + 2 * (share + 0.5).floor() as i64).max(from + 2).min(to - 2);
+            // In this order it is exact where the instant is a whole number.
+            let units = first * ((to - from) / 2) as f64 / (first - last);
+            let zero = (from + 2 * (units + 0.5).floor() as i64).max(from + 2).min(to - 2);
             track.settle(from + 1, zero, holds(first));
             track.settle(zero, zero + 1, holds(0.0));
             track.settle(zero + 1, to, holds(last));

@@ -64,7 +64,7 @@ impl Scale {
     /// The instant of a time in seconds, at most the end.
     pub(super) fn at(self, seconds: f64) -> Moment {
         let units = seconds * self.units_per_second;
-        if units < (self.end() / 2 + 1) as f64 { 2 * (units as i64).max(0) } else { self.end() }
+        if units <= (self.end() / 2) as f64 { 2 * (units as i64).max(0) } else { self.end() }
     }
 
     /// A finite number of seconds as a shift, to the nearest unit, kept within some horizons.
@@ -88,7 +88,7 @@ mod tests {
         for (quantum, horizon) in [("1", 10), ("0.1", 100), ("0.25", 1), ("60", 1 << 40), ("1", 0)] {
             let scale = Scale::new(Tick(horizon), Decimal::parse(quantum).unwrap());
             for ticks in [0, 1, horizon / 3, horizon] {
-                let seconds = Decimal::parse(quantum).unwrap().to_f64() * ticks as f64;
+                let seconds = scale.time(Tick(ticks));
                 assert_eq!(scale.at(seconds), scale.shift(Tick(ticks)).min(scale.end()), "{quantum} {ticks}");
                 assert_eq!(scale.seconds(scale.shift(Tick(ticks))), seconds);
                 assert_eq!(scale.span(seconds), scale.shift(Tick(ticks)));

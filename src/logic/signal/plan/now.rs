@@ -133,6 +133,8 @@ impl Builder<'_> {
             }
             Part::Term(id) => match &self.tree.terms[id.0 as usize] {
                 Term::Window(Aggregation::Sum, ..) => return None,
+                // Known at once.
+                Term::Window(_, _, x) if self.term_constants[x.0 as usize].is_some() => return None,
                 Term::Window(aggregation, w, x) => {
                     (Question::Fold { aggregation: *aggregation, of: self.term_slots[x.0 as usize]? }, *w)
                 }
