@@ -2,9 +2,9 @@
 
 use smc::compile::{Files, Input, Study, compile, requests};
 use smc::syntax::diagnostic::Diagnostic;
-use smc::syntax::source::{Source, SourceId};
 use smc::syntax::parse::{parse_properties, parse_scenario};
 use smc::syntax::render::render;
+use smc::syntax::source::{Source, SourceId};
 
 /// Compiles two texts; diagnostics as rendered.
 fn compiled(scenario: &str, properties: &str) -> (Option<Study>, String) {

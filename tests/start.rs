@@ -293,7 +293,8 @@ fn near_is_near_and_needs_its_anchor() {
 #[test]
 fn a_particle_is_the_sum_of_its_persons() {
     let mut four = agent(9, Position::Point(p(3.0, 2.0)));
-    four.particle = Some(Particle { persons: 4, repulsion: 1.0, friction: 0.0, radius_factor: 1.0, tau_factor: 1.0 });
+    four.particle =
+        Some(Particle { persons: 4, repulsion: 1.0, friction: 0.0, radius_factor: 1.0, tau_factor: 1.0 });
     let program = Program::new(Arc::new(scenario(vec![four.clone()])));
     let mut state = empty(&program);
     load(&program, &mut state, 0, key(0), None).unwrap();

@@ -101,7 +101,8 @@ fn chosen(study: &Study, only: &[String]) -> Result<Vec<usize>, String> {
             .collect();
         if found.is_empty() {
             let names = study.queries.iter().filter_map(|q| q.name.as_deref());
-            let hint = nearest(wanted, names).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+            let hint =
+                nearest(wanted, names).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
             return Err(format!("no query is about `{wanted}`{hint}"));
         }
         chosen.extend(found);

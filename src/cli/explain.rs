@@ -1,9 +1,9 @@
 //! `smc explain`: what a code means and what to do.
 
 use super::arguments::Explain;
-use crate::report::ExitCode as Exit;
 use super::terminal::{print, say};
 use crate::compile::nearest::nearest;
+use crate::report::ExitCode as Exit;
 use crate::syntax::codes;
 
 /// Runs the command.
@@ -17,7 +17,10 @@ pub(super) fn run(arguments: &Explain) -> Exit {
         Some(page) => finish(&format!("{}: {}\n\n{}\n", page.code, page.title, page.text.trim_end())),
         None => {
             let hint = nearest(&wanted, codes::pages().map(|page| page.code));
-            let hint = hint.map_or_else(|| "; `smc explain` lists all".to_owned(), |near| format!("; did you mean {near}?"));
+            let hint = hint.map_or_else(
+                || "; `smc explain` lists all".to_owned(),
+                |near| format!("; did you mean {near}?"),
+            );
             say(&format!("error: there is no code `{code}`{hint}\n"));
             Exit::Wrong
         }

@@ -2,13 +2,13 @@
 
 use super::arguments::{Format, Language};
 use super::inputs;
-use crate::report::ExitCode as Exit;
 use super::terminal::{Colors, print, say};
+use crate::report::ExitCode as Exit;
 use crate::syntax::diagnostic::Diagnostic;
-use crate::syntax::source::{Source, SourceId};
 use crate::syntax::parse::decode;
 use crate::syntax::print::{format_properties, format_scenario};
 use crate::syntax::render::render;
+use crate::syntax::source::{Source, SourceId};
 
 /// Runs the command.
 #[allow(clippy::disallowed_methods, reason = "files are opened by the command line")]
@@ -39,7 +39,10 @@ pub(super) fn run(arguments: &Format, colors: Colors) -> Exit {
         let source = match decode(SourceId(0), inputs::shown(name), &bytes) {
             Ok(source) => source,
             Err(found) => {
-                fail(&[found], &Source::new(SourceId(0), inputs::shown(name), String::from_utf8_lossy(&bytes)));
+                fail(
+                    &[found],
+                    &Source::new(SourceId(0), inputs::shown(name), String::from_utf8_lossy(&bytes)),
+                );
                 exit = Exit::Wrong;
                 continue;
             }

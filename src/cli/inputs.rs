@@ -4,8 +4,8 @@ use super::arguments::Model;
 use crate::compile::{Files, Input, Setting, SettingValue, Study, compile, requests};
 use crate::syntax::ast::{PropertyFile, ScenarioFile};
 use crate::syntax::diagnostic::{Diagnostic, Severity};
-use crate::syntax::source::{Source, SourceId, Span};
 use crate::syntax::parse::{decode, parse_properties, parse_scenario, parse_value};
+use crate::syntax::source::{Source, SourceId, Span};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -121,7 +121,8 @@ impl Reader {
                     self.diagnostics.push(error);
                     return None;
                 };
-                let parts = (self.expression(&label, from), self.expression(&label, to), self.expression(&label, by));
+                let parts =
+                    (self.expression(&label, from), self.expression(&label, to), self.expression(&label, by));
                 SettingValue::Sweep(parts.0?, parts.1?, parts.2?)
             }
         };
@@ -151,7 +152,10 @@ fn find(path: &str, scenario: &str, data: &[PathBuf]) -> Result<PathBuf, String>
         .iter()
         .map(|p| if p.as_os_str().is_empty() { ".".to_owned() } else { p.display().to_string() })
         .collect();
-    Err(format!("there is no file `{path}` under {}", if looked.is_empty() { "any --data directory".to_owned() } else { looked.join(", ") }))
+    Err(format!(
+        "there is no file `{path}` under {}",
+        if looked.is_empty() { "any --data directory".to_owned() } else { looked.join(", ") }
+    ))
 }
 
 /// Reads, parses and compiles what a call names.
@@ -188,26 +192,35 @@ pub(super) fn load(model: &Model, properties: &[String]) -> Inputs {
     let settings: Vec<Setting> = model.set.iter().filter_map(|text| reader.setting(text)).collect();
     let mut files = Files::default();
     for request in requests(&scenario) {
-        let contents = find(&request.path, &model.scenario, &model.data)
-            .and_then(|path| std::fs::read(&path).map_err(|e| format!("`{}` cannot be read: {e}", request.path)));
+        let contents = find(&request.path, &model.scenario, &model.data).and_then(|path| {
+            std::fs::read(&path).map_err(|e| format!("`{}` cannot be read: {e}", request.path))
+        });
         files.insert(request.path, contents);
     }
     let Reader { sources, mut diagnostics } = reader;
     let mut study = None;
     if complete {
-        let input = Input { sources: &sources, scenario: &scenario, properties: &parsed, files: &files, settings: &settings };
+        let input = Input {
+            sources: &sources,
+            scenario: &scenario,
+            properties: &parsed,
+            files: &files,
+            settings: &settings,
+        };
         let (compiled, found) = compile(&input);
         // What could not be parsed may be missed elsewhere: those errors would only confuse.
         let broken = |span: Option<Span>| {
-            diagnostics
-                .iter()
-                .any(|d| d.severity == Severity::Error && d.place.as_ref().map(|p| p.span.source) == span.map(|s| s.source))
+            diagnostics.iter().any(|d| {
+                d.severity == Severity::Error
+                    && d.place.as_ref().map(|p| p.span.source) == span.map(|s| s.source)
+            })
         };
         let scenario_broken = broken(Some(Span::default()));
         let found: Vec<Diagnostic> = found
             .into_iter()
             .filter(|d| {
-                let names = matches!(d.code, "E0201" | "E0203" | "E0205" | "E0208" | "E0209" | "E0505" | "E0606");
+                let names =
+                    matches!(d.code, "E0201" | "E0203" | "E0205" | "E0208" | "E0209" | "E0505" | "E0606");
                 !(names && (scenario_broken || broken(d.place.as_ref().map(|p| p.span))))
             })
             .collect();

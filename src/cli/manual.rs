@@ -1,8 +1,8 @@
 //! Completions and man pages.
 
 use super::arguments::Arguments;
-use crate::report::ExitCode as Exit;
 use super::terminal::{print, say};
+use crate::report::ExitCode as Exit;
 use clap::CommandFactory;
 use std::path::Path;
 

@@ -12,10 +12,10 @@ mod simulate;
 mod terminal;
 
 use crate::model::Scenario;
+use crate::report::ExitCode as Exit;
 use crate::syntax::render::render;
 use arguments::{Arguments, Command};
 use clap::Parser;
-use crate::report::ExitCode as Exit;
 use std::process;
 use terminal::{Colors, say};
 

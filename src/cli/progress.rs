@@ -30,7 +30,12 @@ impl Watch for Progress {
         if self.quiet || forecast.seconds < 2.0 {
             return;
         }
-        let line = format!("about {} trials, {}: {}", round(forecast.trials), duration(forecast.seconds), forecast.query);
+        let line = format!(
+            "about {} trials, {}: {}",
+            round(forecast.trials),
+            duration(forecast.seconds),
+            forecast.query
+        );
         match &self.bar {
             Some(bar) => bar.println(line),
             None => super::terminal::say(&format!("{line}\n")),

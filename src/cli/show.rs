@@ -2,8 +2,8 @@
 
 use super::arguments::Show;
 use super::inputs;
-use crate::report::ExitCode as Exit;
 use super::terminal::{Colors, print, say};
+use crate::report::ExitCode as Exit;
 use crate::report::model;
 
 /// Runs the command.

@@ -2,7 +2,6 @@
 
 use super::arguments::{Simulate, TableFormat};
 use super::inputs;
-use crate::report::ExitCode as Exit;
 use super::terminal::{Colors, say};
 use crate::base::geometry::Vec2;
 use crate::base::random::TrialKey;
@@ -10,6 +9,7 @@ use crate::compile::nearest::nearest;
 use crate::data::table::{Row, write_csv, write_json, write_json_lines};
 use crate::kernel::{Program, Scratch, State, dynamics, start};
 use crate::model::Scenario;
+use crate::report::ExitCode as Exit;
 use std::io::{BufWriter, Write};
 use std::sync::Arc;
 
@@ -131,7 +131,8 @@ fn option(scenario: &Scenario, name: &str) -> Result<(usize, usize), String> {
             return Ok((declaration, at));
         }
     }
-    let labels: Vec<&str> = scenario.moves.iter().flat_map(|m| m.options.iter().map(|(l, _)| l.as_str())).collect();
+    let labels: Vec<&str> =
+        scenario.moves.iter().flat_map(|m| m.options.iter().map(|(l, _)| l.as_str())).collect();
     let hint = match nearest(wanted, labels.iter().copied()) {
         Some(near) => format!("; did you mean `{near}`?"),
         None if labels.is_empty() => "; the scenario declares no moves".to_owned(),
@@ -197,7 +198,12 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
     }
 }
 
-fn write(format: TableFormat, out: impl Write, scenario: &Scenario, walk: &mut Walk<'_>) -> std::io::Result<u64> {
+fn write(
+    format: TableFormat,
+    out: impl Write,
+    scenario: &Scenario,
+    walk: &mut Walk<'_>,
+) -> std::io::Result<u64> {
     let rows = walk.map(|record| Row {
         time: record.time,
         trial: record.trial,

@@ -22,7 +22,9 @@ impl Colors {
             ColorChoice::Never => Self { out: false, err: false },
             ColorChoice::Auto if set("NO_COLOR") => Self { out: false, err: false },
             ColorChoice::Auto if set("CLICOLOR_FORCE") || set("FORCE_COLOR") => Self { out: true, err: true },
-            ColorChoice::Auto => Self { out: std::io::stdout().is_terminal(), err: std::io::stderr().is_terminal() },
+            ColorChoice::Auto => {
+                Self { out: std::io::stdout().is_terminal(), err: std::io::stderr().is_terminal() }
+            }
         }
     }
 }
@@ -31,7 +33,9 @@ impl Colors {
 pub(super) fn print(text: &str) -> Result<(), String> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(format!("standard output: {error}")),
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(format!("standard output: {error}"))
+        }
         _ => Ok(()),
     }
 }

@@ -63,9 +63,15 @@ fn describe(subject: &Subject, reason: &Reason, state_at: impl Fn(u64) -> Option
                 .filter_map(|id| subject.program.scenario.agents.get(id.0 as usize))
                 .map(|agent| agent.name.as_str())
                 .collect();
-            if names.is_empty() { format!("`{text}` {word}") } else { format!("`{text}` {word}: {}", names.join(", ")) }
+            if names.is_empty() {
+                format!("`{text}` {word}")
+            } else {
+                format!("`{text}` {word}: {}", names.join(", "))
+            }
         }
-        Node::Compare(..) => format!("a comparison of numbers over time {}", if reason.value { "holds" } else { "fails" }),
+        Node::Compare(..) => {
+            format!("a comparison of numbers over time {}", if reason.value { "holds" } else { "fails" })
+        }
         _ => String::new(),
     }
 }
@@ -147,7 +153,8 @@ impl Search<'_> {
                 self.name(id);
                 for other in 0..self.subject.program.scenario.agents.len() as u32 {
                     let other = AgentId(other);
-                    if truth && other != id && self.holds(&Bool::Touching(Who::Agent(id), Who::Agent(other))) {
+                    if truth && other != id && self.holds(&Bool::Touching(Who::Agent(id), Who::Agent(other)))
+                    {
                         self.name(other);
                     }
                 }

@@ -122,7 +122,12 @@ pub(super) fn run(
         Procedure::Probability(difference) => {
             let (low, high) = difference.pairs();
             let estimate = 0.5 * (low.mean() + high.mean());
-            (difference.interval(), estimate, (high.first.min(low.first), low.second.min(high.second)), difference.unresolved())
+            (
+                difference.interval(),
+                estimate,
+                (high.first.min(low.first), low.second.min(high.second)),
+                difference.unresolved(),
+            )
         }
         Procedure::Expectation(mean) => {
             let (low, high) = mean.estimate();

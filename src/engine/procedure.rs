@@ -2,11 +2,11 @@
 
 use super::budget::DEFAULT_TRIALS;
 use super::cell::{Cell, Reading};
+use super::fault::Fault;
 use super::outcome::{Distribution, Histogram, Interval, Method, Quantile};
 use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Test};
 use crate::stats::quantile::Sample;
 use crate::stats::test::Verdict as TestVerdict;
-use super::fault::Fault;
 use crate::stats::{
     self, AnyEstimator, AnyTest, Coverage, Decision, EstimatorReadings, Evidence, FixedSize, Gbas, Massart,
     Mean, Okamoto, Outcome, Plan, Spending, Sprt, Statement, TestReadings, ThreeWay, TwoSprt,
@@ -73,13 +73,19 @@ impl Procedure {
 
     fn test(measure: &Measure, theta: f64, test: &Test) -> Result<Self, Fault> {
         let test = match *test {
-            Test::Sprt { alpha, beta, indifference } => AnyTest::Sprt(Sprt::new(theta, indifference, alpha, beta)?),
+            Test::Sprt { alpha, beta, indifference } => {
+                AnyTest::Sprt(Sprt::new(theta, indifference, alpha, beta)?)
+            }
             Test::Sprt2 { alpha, beta, indifference } => {
                 AnyTest::TwoSprt(TwoSprt::new(theta, indifference, alpha, beta)?)
             }
-            Test::Plan { alpha, beta, indifference } => AnyTest::Plan(Plan::new(theta, indifference, alpha, beta)?),
+            Test::Plan { alpha, beta, indifference } => {
+                AnyTest::Plan(Plan::new(theta, indifference, alpha, beta)?)
+            }
             Test::EProcess { alpha, beta } => AnyTest::Evidence(Evidence::new(theta, alpha, beta)?),
-            Test::ThreeWay { alpha, indifference } => AnyTest::ThreeWay(ThreeWay::new(theta, indifference, alpha)?),
+            Test::ThreeWay { alpha, indifference } => {
+                AnyTest::ThreeWay(ThreeWay::new(theta, indifference, alpha)?)
+            }
             Test::Interval { delta, .. } => {
                 let MeasureKind::Expectation { range: (low, high), .. } = measure.kind else {
                     return Err(Fault::Unsuitable);
@@ -96,12 +102,18 @@ impl Procedure {
             (MeasureKind::Probability, estimator) => {
                 let estimator = match estimator {
                     Estimator::Default { epsilon, delta } => AnyEstimator::within(epsilon, delta)?,
-                    Estimator::Okamoto { epsilon, delta } => AnyEstimator::Okamoto(Okamoto::new(epsilon, delta)?),
+                    Estimator::Okamoto { epsilon, delta } => {
+                        AnyEstimator::Okamoto(Okamoto::new(epsilon, delta)?)
+                    }
                     Estimator::Massart { epsilon, delta } => {
                         AnyEstimator::Massart(Massart::new(epsilon, delta, MASSART_SHARE * delta)?)
                     }
-                    Estimator::Spending { epsilon, delta } => AnyEstimator::Spending(Spending::new(epsilon, delta)?),
-                    Estimator::Fixed { trials, delta } => AnyEstimator::FixedSize(FixedSize::new(trials, delta)?),
+                    Estimator::Spending { epsilon, delta } => {
+                        AnyEstimator::Spending(Spending::new(epsilon, delta)?)
+                    }
+                    Estimator::Fixed { trials, delta } => {
+                        AnyEstimator::FixedSize(FixedSize::new(trials, delta)?)
+                    }
                     Estimator::Relative { epsilon, delta } => {
                         AnyEstimator::Gbas(Gbas::new(epsilon, delta, Some(DEFAULT_TRIALS), seed)?)
                     }
@@ -254,13 +266,22 @@ impl Procedure {
             Self::Mean { mean, .. } => {
                 let interval = mean.interval();
                 let (low, high) = mean.estimate();
-                let coverage = if mean.finished() && mean.is_fixed() { Coverage::FixedSize } else { Coverage::TimeUniform };
+                let coverage = if mean.finished() && mean.is_fixed() {
+                    Coverage::FixedSize
+                } else {
+                    Coverage::TimeUniform
+                };
                 Some((around(0.5 * (low + high), interval), coverage, interval.error))
             }
             Self::Quantile { sample, level, delta } => {
                 let quantile = sample.quantiles(&[*level], *delta).ok()?.into_iter().next()?;
-                let estimate = if quantile.low_estimate.is_finite() { quantile.low_estimate } else { quantile.high_estimate };
-                let interval = Interval { estimate, low: quantile.interval.low, high: quantile.interval.high };
+                let estimate = if quantile.low_estimate.is_finite() {
+                    quantile.low_estimate
+                } else {
+                    quantile.high_estimate
+                };
+                let interval =
+                    Interval { estimate, low: quantile.interval.low, high: quantile.interval.high };
                 Some((interval, Coverage::FixedSize, *delta))
             }
         }
@@ -332,7 +353,9 @@ pub(super) fn method(ask: &Ask, procedure: Option<&Procedure>) -> Method {
                 Test::Plan { alpha, beta, indifference } => {
                     named("plan", &[("alpha", alpha), ("beta", beta), theta, ("indifference", indifference)])
                 }
-                Test::EProcess { alpha, beta } => named("eprocess", &[("alpha", alpha), ("beta", beta), theta]),
+                Test::EProcess { alpha, beta } => {
+                    named("eprocess", &[("alpha", alpha), ("beta", beta), theta])
+                }
                 Test::ThreeWay { alpha, indifference } => {
                     named("three_way", &[("alpha", alpha), theta, ("indifference", indifference)])
                 }
@@ -344,7 +367,10 @@ pub(super) fn method(ask: &Ask, procedure: Option<&Procedure>) -> Method {
                 let name = match procedure {
                     Some(Procedure::Probability(p)) => match p.readings().0 {
                         AnyEstimator::Calibrated(c) => {
-                            return named("calibrated", &[("epsilon", epsilon), ("delta", delta), ("gamma", c.gamma())]);
+                            return named(
+                                "calibrated",
+                                &[("epsilon", epsilon), ("delta", delta), ("gamma", c.gamma())],
+                            );
                         }
                         AnyEstimator::Spending(_) => "spending",
                         _ => "okamoto",
@@ -356,10 +382,18 @@ pub(super) fn method(ask: &Ask, procedure: Option<&Procedure>) -> Method {
             (Estimator::Default { epsilon, delta }, _) => {
                 named("empirical_bernstein", &[("epsilon", epsilon), ("delta", delta)])
             }
-            (Estimator::Okamoto { epsilon, delta }, _) => named("okamoto", &[("epsilon", epsilon), ("delta", delta)]),
-            (Estimator::Massart { epsilon, delta }, _) => named("massart", &[("epsilon", epsilon), ("delta", delta)]),
-            (Estimator::Spending { epsilon, delta }, _) => named("spending", &[("epsilon", epsilon), ("delta", delta)]),
-            (Estimator::Relative { epsilon, delta }, _) => named("gbas", &[("epsilon", epsilon), ("delta", delta)]),
+            (Estimator::Okamoto { epsilon, delta }, _) => {
+                named("okamoto", &[("epsilon", epsilon), ("delta", delta)])
+            }
+            (Estimator::Massart { epsilon, delta }, _) => {
+                named("massart", &[("epsilon", epsilon), ("delta", delta)])
+            }
+            (Estimator::Spending { epsilon, delta }, _) => {
+                named("spending", &[("epsilon", epsilon), ("delta", delta)])
+            }
+            (Estimator::Relative { epsilon, delta }, _) => {
+                named("gbas", &[("epsilon", epsilon), ("delta", delta)])
+            }
             (Estimator::Fixed { trials, delta }, kind) => {
                 let name = match kind {
                     MeasureKind::Probability => "clopper_pearson",

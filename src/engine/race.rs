@@ -64,11 +64,21 @@ impl Procedure {
     fn new(field: &Field<'_>) -> Result<Self, Fault> {
         let (epsilon, delta, ranking) = field.rule;
         let arms = field.deviations.len();
-        let allocation = if ranking == Ranking::OneChallenger { Allocation::OneChallenger } else { Allocation::AllFailing };
+        let allocation = if ranking == Ranking::OneChallenger {
+            Allocation::OneChallenger
+        } else {
+            Allocation::AllFailing
+        };
         match (&field.kind, ranking) {
-            (MeasureKind::Probability, Ranking::Okamoto) => Ok(Self::Each(Each::new(arms, epsilon, delta, 8 * WORD)?)),
-            (MeasureKind::Probability, _) => Ok(Self::Booleans(Race::new(arms, epsilon, delta, WORD, allocation)?)),
-            (MeasureKind::Expectation { .. }, Ranking::Okamoto) | (MeasureKind::Quantile { .. }, _) => Err(Fault::Unsuitable),
+            (MeasureKind::Probability, Ranking::Okamoto) => {
+                Ok(Self::Each(Each::new(arms, epsilon, delta, 8 * WORD)?))
+            }
+            (MeasureKind::Probability, _) => {
+                Ok(Self::Booleans(Race::new(arms, epsilon, delta, WORD, allocation)?))
+            }
+            (MeasureKind::Expectation { .. }, Ranking::Okamoto) | (MeasureKind::Quantile { .. }, _) => {
+                Err(Fault::Unsuitable)
+            }
             (MeasureKind::Expectation { range, .. }, _) => {
                 let scaled = epsilon / (range.1 - range.0);
                 Ok(Self::Scores { race: Race::new(arms, scaled, delta, WORD, allocation)?, range: *range })
@@ -140,9 +150,9 @@ pub(super) fn run(
     // Each option's interval is one of as many that hold jointly.
     let delta = field.rule.1 / arms as f64;
     let mut means: Vec<Mean> = match range {
-        Some((low, high)) => {
-            (0..arms).map(|_| Mean::fixed(low, high, super::budget::DEFAULT_TRIALS, delta)).collect::<Result<_, _>>()?
-        }
+        Some((low, high)) => (0..arms)
+            .map(|_| Mean::fixed(low, high, super::budget::DEFAULT_TRIALS, delta))
+            .collect::<Result<_, _>>()?,
         None => Vec::new(),
     };
     let job = Job::new(field.subject, vec![field.column], seed);

@@ -36,7 +36,13 @@ pub struct Call<'c> {
 }
 
 /// Runs a study.
-pub fn run(study: &Study, call: &Call<'_>, executor: &dyn Executor, budget: &Budget, watch: &dyn Watch) -> Result<Run, Fault> {
+pub fn run(
+    study: &Study,
+    call: &Call<'_>,
+    executor: &dyn Executor,
+    budget: &Budget,
+    watch: &dyn Watch,
+) -> Result<Run, Fault> {
     let asked: Vec<&Query> =
         study.queries.iter().filter(|q| call.only.is_empty() || call.only.contains(&q.index)).collect();
     let mut subjects: Vec<Option<Subject>> = study.worlds.iter().map(|_| None).collect();
@@ -90,8 +96,12 @@ pub fn run(study: &Study, call: &Call<'_>, executor: &dyn Executor, budget: &Bud
 
 /// More people than fit, in words.
 pub fn crowded(scenario: &crate::model::Scenario, crowding: &start::Crowding) -> String {
-    let names: Vec<&str> =
-        crowding.agents.iter().filter_map(|id| scenario.agents.get(id.0 as usize)).map(|a| a.name.as_str()).collect();
+    let names: Vec<&str> = crowding
+        .agents
+        .iter()
+        .filter_map(|id| scenario.agents.get(id.0 as usize))
+        .map(|a| a.name.as_str())
+        .collect();
     let who = match names.as_slice() {
         [] => "nobody".to_owned(),
         [one] => (*one).to_owned(),
@@ -105,7 +115,9 @@ pub fn crowded(scenario: &crate::model::Scenario, crowding: &start::Crowding) ->
 
 fn worlds(ask: &Ask) -> Vec<usize> {
     match ask {
-        Ask::Check { measure, .. } | Ask::Estimate { measure, .. } | Ask::Rank { measure, .. } => vec![measure.target.world],
+        Ask::Check { measure, .. } | Ask::Estimate { measure, .. } | Ask::Rank { measure, .. } => {
+            vec![measure.target.world]
+        }
         Ask::Compare { first, second, .. } => vec![first.target.world, second.target.world],
     }
 }
@@ -127,7 +139,9 @@ fn range(measure: &Measure) -> Option<(f64, f64)> {
 fn unit(measure: &Measure) -> String {
     match measure.kind {
         MeasureKind::Probability => String::new(),
-        MeasureKind::Expectation { dimension, .. } | MeasureKind::Quantile { dimension, .. } => dimension.to_string(),
+        MeasureKind::Expectation { dimension, .. } | MeasureKind::Quantile { dimension, .. } => {
+            dimension.to_string()
+        }
     }
 }
 
@@ -158,7 +172,10 @@ impl Session<'_> {
     }
 
     fn replay(&self, query: &Query, trials: u64) -> String {
-        format!("{} --only {} --seed {} --max-trials {trials}", self.call.command, query.index, self.call.seed)
+        format!(
+            "{} --only {} --seed {} --max-trials {trials}",
+            self.call.command, query.index, self.call.seed
+        )
     }
 
     fn survey(&self, queries: &[&Query], world: usize) -> Result<Vec<QueryResult>, Fault> {
@@ -215,7 +232,10 @@ impl Session<'_> {
                 );
                 let fixed = coverage == Coverage::FixedSize;
                 if fixed && matches!(stop, Stop::Deadline | Stop::Interrupt) {
-                    result.warnings.push("the interval is for a number of trials fixed in advance, but sampling was cut short".to_owned());
+                    result.warnings.push(
+                        "the interval is for a number of trials fixed in advance, but sampling was cut short"
+                            .to_owned(),
+                    );
                 }
             }
         }
@@ -237,7 +257,10 @@ impl Session<'_> {
                 ),
             };
             if inquiry.procedure.split() {
-                result.warnings.push("unresolved trials decide: read as failures and as successes they give opposite verdicts".to_owned());
+                result.warnings.push(
+                    "unresolved trials decide: read as failures and as successes they give opposite verdicts"
+                        .to_owned(),
+                );
             }
         }
         result.distribution = inquiry.procedure.distribution();
@@ -262,13 +285,23 @@ impl Session<'_> {
             let implications = monitor.antecedents().count();
             let idle = (0..implications.min(64)).filter(|k| tally.triggered >> k & 1 == 0).count();
             if idle > 0 {
-                let which = if implications == 1 { "the implication in it was".to_owned() } else { format!("{idle} of its {implications} implications were") };
-                result.warnings.push(format!("{which} never triggered: the left side was true in none of {} trials", tally.counts.trials));
+                let which = if implications == 1 {
+                    "the implication in it was".to_owned()
+                } else {
+                    format!("{idle} of its {implications} implications were")
+                };
+                result.warnings.push(format!(
+                    "{which} never triggered: the left side was true in none of {} trials",
+                    tally.counts.trials
+                ));
             }
         }
         if tally.counts.unresolved > 0 {
             let first = tally.first[2].map_or(String::new(), |index| {
-                format!("; see trial {index}: {} --trial {index} --seed {}", self.call.simulate, self.call.seed)
+                format!(
+                    "; see trial {index}: {} --trial {index} --seed {}",
+                    self.call.simulate, self.call.seed
+                )
             });
             result.warnings.push(format!(
                 "{} trials are unresolved: somebody left every human speed, or a mean was over nobody; a smaller step may help{first}",
@@ -278,7 +311,9 @@ impl Session<'_> {
     }
 
     fn compare(&self, query: &Query) -> Result<QueryResult, Fault> {
-        let Ask::Compare { first, second, settings, within, delta } = &query.ask else { return Err(Fault::Unsuitable) };
+        let Ask::Compare { first, second, settings, within, delta } = &query.ask else {
+            return Err(Fault::Unsuitable);
+        };
         let started = self.budget.elapsed();
         let sides = Sides {
             subjects: [self.subject(first.target.world)?, self.subject(second.target.world)?],
@@ -325,7 +360,9 @@ impl Session<'_> {
     }
 
     fn rank(&self, query: &Query) -> Result<QueryResult, Fault> {
-        let Ask::Rank { moves, measure, epsilon, delta, ranking } = &query.ask else { return Err(Fault::Unsuitable) };
+        let Ask::Rank { moves, measure, epsilon, delta, ranking } = &query.ask else {
+            return Err(Fault::Unsuitable);
+        };
         let started = self.budget.elapsed();
         let subject = self.subject(measure.target.world)?;
         let declared = &subject.program.scenario.moves[*moves];
@@ -438,7 +475,11 @@ fn sides_of(contrast: &Contrast, labels: &[String; 2], delta: f64) -> Comparison
     };
     let difference = Side {
         label: "first - second".to_owned(),
-        value: Interval { estimate: contrast.estimate, low: contrast.interval.low, high: contrast.interval.high },
+        value: Interval {
+            estimate: contrast.estimate,
+            low: contrast.interval.low,
+            high: contrast.interval.high,
+        },
         counts: Counts {
             trials: contrast.pairs,
             successes: contrast.alone.0,

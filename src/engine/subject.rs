@@ -56,14 +56,22 @@ impl Subject {
     /// A monitor of a column.
     pub fn monitor(&self, column: usize) -> Result<Monitor, Invalid> {
         match self.columns[column] {
-            Root::Formula(node) => Monitor::formula(&self.tree, node, self.horizon, self.program.scenario.clock),
-            Root::Metric(term) => Monitor::metric(&self.tree, term, self.horizon, self.program.scenario.clock),
+            Root::Formula(node) => {
+                Monitor::formula(&self.tree, node, self.horizon, self.program.scenario.clock)
+            }
+            Root::Metric(term) => {
+                Monitor::metric(&self.tree, term, self.horizon, self.program.scenario.clock)
+            }
         }
     }
 
     /// Code that reads what some columns use; what they do not use reads as a constant.
     pub fn code(&self, columns: &[usize]) -> Code {
-        let mut used = Used { tree: &self.tree, atoms: vec![false; self.atoms.len()], signals: vec![false; self.signals.len()] };
+        let mut used = Used {
+            tree: &self.tree,
+            atoms: vec![false; self.atoms.len()],
+            signals: vec![false; self.signals.len()],
+        };
         for &column in columns {
             match self.columns[column] {
                 Root::Formula(node) => used.node(node),

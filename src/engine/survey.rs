@@ -71,7 +71,10 @@ pub(super) fn run(
                 if inquiry.procedure.observe(cell) {
                     inquiry.stop = Some(if inquiry.procedure.is_planned() {
                         Stop::Plan
-                    } else if matches!(inquiry.procedure, Procedure::Test(_) | Procedure::Mean { threshold: Some(_), .. }) {
+                    } else if matches!(
+                        inquiry.procedure,
+                        Procedure::Test(_) | Procedure::Mean { threshold: Some(_), .. }
+                    ) {
                         Stop::Boundary
                     } else {
                         Stop::Width
@@ -153,23 +156,31 @@ fn expected(inquiry: &Inquiry<'_>) -> Option<u64> {
     let p = (counts.successes as f64 + 1.0) / (counts.trials as f64 + 2.0);
     let variance = p * (1.0 - p);
     let trials = match &inquiry.query.ask {
-        Ask::Check { threshold, test: Test::Sprt { alpha, beta, indifference } | Test::Sprt2 { alpha, beta, indifference }, .. } => {
+        Ask::Check {
+            threshold,
+            test: Test::Sprt { alpha, beta, indifference } | Test::Sprt2 { alpha, beta, indifference },
+            ..
+        } => {
             let (p0, p1) = (threshold + indifference, threshold - indifference);
             let ln = crate::base::math::ln;
             let drift = p * ln(p1 / p0) + (1.0 - p) * ln((1.0 - p1) / (1.0 - p0));
             let goal = if drift > 0.0 { -ln(*alpha) } else { -ln(*beta) };
             goal / drift.abs().max(1e-9)
         }
-        Ask::Check { threshold, test: Test::EProcess { alpha, .. } | Test::ThreeWay { alpha, .. }, .. } => {
+        Ask::Check {
+            threshold, test: Test::EProcess { alpha, .. } | Test::ThreeWay { alpha, .. }, ..
+        } => {
             let ln = crate::base::math::ln;
             let kl = p * ln(p / threshold) + (1.0 - p) * ln((1.0 - p) / (1.0 - threshold));
             (5.0 - ln(*alpha)) / kl.max(1e-9)
         }
-        Ask::Estimate { measure, estimator: Estimator::Default { epsilon, .. } | Estimator::Massart { epsilon, .. } | Estimator::Spending { epsilon, .. } }
-            if measure.kind == MeasureKind::Probability =>
-        {
-            4.4 * variance / (epsilon * epsilon) + 2.0 / epsilon
-        }
+        Ask::Estimate {
+            measure,
+            estimator:
+                Estimator::Default { epsilon, .. }
+                | Estimator::Massart { epsilon, .. }
+                | Estimator::Spending { epsilon, .. },
+        } if measure.kind == MeasureKind::Probability => 4.4 * variance / (epsilon * epsilon) + 2.0 / epsilon,
         Ask::Estimate { estimator: Estimator::Relative { epsilon, .. }, .. } => 4.0 / (epsilon * epsilon * p),
         _ => return inquiry.procedure.limit(),
     };

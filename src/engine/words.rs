@@ -28,7 +28,9 @@ pub(super) fn statement(subject: &str, statement: &Statement, unit: &str) -> Str
     let claim = match statement.claim {
         Claim::Above(bound) => format!("{subject} > {}", quantity(bound, unit)),
         Claim::Below(bound) => format!("{subject} < {}", quantity(bound, unit)),
-        Claim::Between(low, high) => format!("{} < {subject} < {}", quantity(low, unit), quantity(high, unit)),
+        Claim::Between(low, high) => {
+            format!("{} < {subject} < {}", quantity(low, unit), quantity(high, unit))
+        }
     };
     format!("{claim}, error at most {}", number(statement.error))
 }

@@ -7,8 +7,8 @@ use super::cell::{Cell, Item, Reading};
 use super::subject::{Sheet, Subject};
 use crate::base::lanes::{LANES, Mask};
 use crate::base::random::TrialKey;
-use crate::kernel::{Readings, Scratch, State, dynamics, start};
 use crate::compile::study::Root;
+use crate::kernel::{Readings, Scratch, State, dynamics, start};
 use crate::logic::{Invalid, Monitor};
 
 /// Steps between two looks at the clock.
@@ -157,7 +157,11 @@ impl Worker {
                 for lane in decided.iter() {
                     let Some(busy) = &mut self.busy[lane] else { continue };
                     busy.open -= 1;
-                    let reading = if lost.has(lane) { Reading::Unresolved } else { reading(monitor, subject.columns[self.columns[place]], lane) };
+                    let reading = if lost.has(lane) {
+                        Reading::Unresolved
+                    } else {
+                        reading(monitor, subject.columns[self.columns[place]], lane)
+                    };
                     cells[lane][place] = Cell {
                         reading,
                         steps: self.state.ticks[lane],

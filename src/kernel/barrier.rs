@@ -83,12 +83,7 @@ impl Surface {
 
     /// Squared distance from eight places to the rectangle around the surface.
     #[inline(always)]
-    pub(super) fn squared_distance_to_bounds<S: Simd>(
-        &self,
-        simd: S,
-        x: f64x8<S>,
-        y: f64x8<S>,
-    ) -> f64x8<S> {
+    pub(super) fn squared_distance_to_bounds<S: Simd>(&self, simd: S, x: f64x8<S>, y: f64x8<S>) -> f64x8<S> {
         let c = |value: f64| splat(simd, value);
         let beside = larger(larger(c(self.bounds.low.x) - x, x - c(self.bounds.high.x)), c(0.0));
         let above = larger(larger(c(self.bounds.low.y) - y, y - c(self.bounds.high.y)), c(0.0));
@@ -150,12 +145,7 @@ impl Surface {
 
 /// Vector from the nearest point of the edges.
 #[inline(always)]
-fn nearest_edge<S: Simd>(
-    simd: S,
-    edges: &[Edge],
-    x: f64x8<S>,
-    y: f64x8<S>,
-) -> (f64x8<S>, f64x8<S>) {
+fn nearest_edge<S: Simd>(simd: S, edges: &[Edge], x: f64x8<S>, y: f64x8<S>) -> (f64x8<S>, f64x8<S>) {
     let c = |value: f64| splat(simd, value);
     let (mut best, mut bx, mut by) = (c(f64::INFINITY), c(0.0), c(0.0));
     for e in edges {
@@ -231,8 +221,10 @@ mod tests {
             let barrier = Barrier { name: String::new(), obstacle };
             let surface = Surface::new(&barrier).unwrap();
             for k in 0..500 {
-                let x: [f64; 8] = std::array::from_fn(|lane| f64::from(k % 25) * 0.3 - 1.7 + lane as f64 * 0.03);
-                let y: [f64; 8] = std::array::from_fn(|lane| f64::from(k / 25) * 0.33 - 1.3 - lane as f64 * 0.02);
+                let x: [f64; 8] =
+                    std::array::from_fn(|lane| f64::from(k % 25) * 0.3 - 1.7 + lane as f64 * 0.03);
+                let y: [f64; 8] =
+                    std::array::from_fn(|lane| f64::from(k / 25) * 0.33 - 1.3 - lane as f64 * 0.02);
                 let [nx, ny, distance] = dispatch!(Level::new(), simd => eight(simd, &surface, x, y));
                 for lane in 0..8 {
                     let place = p(x[lane], y[lane]);

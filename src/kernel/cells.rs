@@ -173,7 +173,8 @@ impl Cells {
                 [even.to_array(), (odd * ex).to_array(), (odd * ey).to_array(), rate.to_array()]
             };
             let [even, tx, ty, rate] = term(&state.a[block], &state.lambda[block], &state.b[block]);
-            let second = forces.second.then(|| term(&state.a2[block], &state.lambda2[block], &state.b2[block]));
+            let second =
+                forces.second.then(|| term(&state.a2[block], &state.lambda2[block], &state.b2[block]));
             for lane in 0..LANES.min(state.agents - block * LANES) {
                 let agent = block * LANES + lane;
                 let cell = self.cell[agent];
@@ -260,7 +261,8 @@ impl Cells {
                             f = f + decay(simd, gap * c(own.rate)) * q * weight;
                         }
                         if TIES {
-                            let mean = c(0.5) * (c(self.tie[i]) + f64x8::from_slice(simd, &self.tie[j..j + LANES]));
+                            let mean =
+                                c(0.5) * (c(self.tie[i]) + f64x8::from_slice(simd, &self.tie[j..j + LANES]));
                             f = f * mean.simd_eq(mean).select(mean, one);
                         }
                         fx = fx + f * dx;
@@ -356,7 +358,8 @@ fn survey<S: Simd>(simd: S, forces: &Forces, state: &State) -> Grid {
         farthest = larger(here.select(c(REACH) * range, farthest), farthest);
     }
     let least = |v: f64x8<S>| v.to_array().into_iter().fold(f64::INFINITY, |a, b| if b < a { b } else { a });
-    let most = |v: f64x8<S>| v.to_array().into_iter().fold(f64::NEG_INFINITY, |a, b| if b > a { b } else { a });
+    let most =
+        |v: f64x8<S>| v.to_array().into_iter().fold(f64::NEG_INFINITY, |a, b| if b > a { b } else { a });
     // A little more, for what rounding may take off a distance.
     let reach = (2.0 * most(widest) + most(farthest)) * (1.0 + 1e-9);
     let (x, y) = (least(low_x), least(low_y));

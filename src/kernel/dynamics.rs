@@ -186,20 +186,12 @@ impl<S: Simd> Mover<'_, S> {
     fn kicked(&self, state: &State, block: usize) -> (f64x8<S>, f64x8<S>) {
         let l = |lanes: &Lanes| load(self.simd, lanes);
         let push = l(&state.push[block]);
-        (
-            l(&state.vx[block]) + l(&state.fx[block]) * push,
-            l(&state.vy[block]) + l(&state.fy[block]) * push,
-        )
+        (l(&state.vx[block]) + l(&state.fx[block]) * push, l(&state.vy[block]) + l(&state.fy[block]) * push)
     }
 
     /// Driving and noise over the whole step.
     #[inline(always)]
-    fn driven(
-        &self,
-        state: &State,
-        block: usize,
-        (vx, vy): (f64x8<S>, f64x8<S>),
-    ) -> (f64x8<S>, f64x8<S>) {
+    fn driven(&self, state: &State, block: usize, (vx, vy): (f64x8<S>, f64x8<S>)) -> (f64x8<S>, f64x8<S>) {
         let l = |lanes: &Lanes| load(self.simd, lanes);
         let (decay, drive) = (l(&state.decay[block]), l(&state.drive[block]));
         let (wish_x, wish_y) = (drive * l(&state.ex[block]), drive * l(&state.ey[block]));

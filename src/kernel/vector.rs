@@ -113,9 +113,8 @@ pub(super) fn ln<S: Simd>(simd: S, x: f64x8<S>) -> f64x8<S> {
     let shifted = x.to_bits() + words(simd, 0x3ff0_0000_0000_0000 - 0x3fe6_a09e_667f_3bcd);
     let k = f64x8::from_bits((shifted >> 52) | words(simd, 0x4330_0000_0000_0000))
         - splat(simd, 4_503_599_627_370_496.0 + 1023.0);
-    let m = f64x8::from_bits(
-        (shifted & words(simd, 0x000f_ffff_ffff_ffff)) + words(simd, 0x3fe6_a09e_667f_3bcd),
-    );
+    let m =
+        f64x8::from_bits((shifted & words(simd, 0x000f_ffff_ffff_ffff)) + words(simd, 0x3fe6_a09e_667f_3bcd));
     let f = m - one;
     let s = f / (splat(simd, 2.0) + f);
     let z = s * s;
@@ -192,7 +191,12 @@ mod tests {
             let powers = dispatch!(Level::new(), simd => three(simd, x))[0];
             for lane in 0..8 {
                 let exact = x[lane].exp2();
-                assert!((powers[lane] - exact).abs() <= 4.4e-16 * exact, "{} {}", x[lane], powers[lane] / exact);
+                assert!(
+                    (powers[lane] - exact).abs() <= 4.4e-16 * exact,
+                    "{} {}",
+                    x[lane],
+                    powers[lane] / exact
+                );
             }
         }
         let ones = dispatch!(Level::new(), simd => three(simd, [0.0; 8]))[0];

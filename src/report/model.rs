@@ -77,10 +77,17 @@ fn people(out: &mut String, scenario: &Scenario) {
         // Members of one declaration that differ in nothing but their number are told once.
         let stem = first.name.split('[').next().unwrap_or("").to_owned();
         let alike = |a: &Agent| {
-            a.name.split('[').next() == Some(stem.as_str()) && a.body == first.body && a.start == first.start && a.route == first.route
+            a.name.split('[').next() == Some(stem.as_str())
+                && a.body == first.body
+                && a.start == first.start
+                && a.route == first.route
         };
         let count = rest.iter().take_while(|a| alike(a)).count().max(1);
-        let name = if count > 1 { format!("{} to {}", first.name, rest[count - 1].name) } else { first.name.clone() };
+        let name = if count > 1 {
+            format!("{} to {}", first.name, rest[count - 1].name)
+        } else {
+            first.name.clone()
+        };
         let _ = writeln!(out, "  {name}");
         agent(out, scenario, first);
         rest = &rest[count..];
@@ -184,9 +191,18 @@ fn shape(shape: &Shape) -> String {
         Shape::Circle { centre, radius } => format!("circle {} radius {} m", point(*centre), number(*radius)),
         Shape::Polygon(polygon) => {
             let corners = polygon.outline.len();
-            let holes = if polygon.holes.is_empty() { String::new() } else { format!(", {} hole(s)", polygon.holes.len()) };
+            let holes = if polygon.holes.is_empty() {
+                String::new()
+            } else {
+                format!(", {} hole(s)", polygon.holes.len())
+            };
             let bounds = shape.bounds();
-            format!("{corners} corners{holes}, {} .. {}, {} m^2", point(bounds.low), point(bounds.high), number(polygon.area()))
+            format!(
+                "{corners} corners{holes}, {} .. {}, {} m^2",
+                point(bounds.low),
+                point(bounds.high),
+                number(polygon.area())
+            )
         }
     }
 }
@@ -233,7 +249,9 @@ fn procedure(ask: &Ask) -> String {
                     format!("2-SPRT, alpha {alpha}, beta {beta}, indifference {indifference}")
                 }
                 Test::Plan { alpha, beta, indifference } => {
-                    format!("exact plan of fixed size, alpha {alpha}, beta {beta}, indifference {indifference}")
+                    format!(
+                        "exact plan of fixed size, alpha {alpha}, beta {beta}, indifference {indifference}"
+                    )
                 }
                 Test::EProcess { alpha, beta } => format!("one-sided e-process, errors {alpha} and {beta}"),
                 Test::ThreeWay { alpha, indifference } => {
@@ -253,7 +271,9 @@ fn procedure(ask: &Ask) -> String {
                 Estimator::Default { epsilon, delta } => {
                     format!("fewest trials for ± {}, error {delta}", number(*epsilon))
                 }
-                Estimator::Okamoto { epsilon, delta } => format!("Okamoto bound for ± {}, error {delta}", number(*epsilon)),
+                Estimator::Okamoto { epsilon, delta } => {
+                    format!("Okamoto bound for ± {}, error {delta}", number(*epsilon))
+                }
                 Estimator::Massart { epsilon, delta } => {
                     format!("sequential Massart bound for ± {}, error {delta}", number(*epsilon))
                 }
@@ -268,7 +288,9 @@ fn procedure(ask: &Ask) -> String {
             format!("{what}: {how}")
         }
         Ask::Compare { within, delta, .. } => match within {
-            Some(within) => format!("difference to ± {}, error {delta}, common random numbers", number(*within)),
+            Some(within) => {
+                format!("difference to ± {}, error {delta}, common random numbers", number(*within))
+            }
             None => format!("difference from 1000 pairs, error {delta}, common random numbers"),
         },
         Ask::Rank { epsilon, delta, ranking, .. } => {

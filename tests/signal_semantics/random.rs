@@ -69,11 +69,7 @@ impl Draw {
                     }
                 };
                 let relation = RELATIONS[self.below(6) as usize];
-                if self.below(2) == 0 {
-                    Node::Compare(relation, x, y)
-                } else {
-                    Node::Compare(relation, y, x)
-                }
+                if self.below(2) == 0 { Node::Compare(relation, x, y) } else { Node::Compare(relation, y, x) }
             }
         };
         tree.node(node)
@@ -169,11 +165,25 @@ fn check(tree: &Tree, root: Root, horizon: u64, draw: &mut Draw) -> Result<(), T
             if at(middle).is_some() { decided = middle } else { open = middle }
         }
         let expected = at(decided).expect("known at the horizon");
-        prop_assert!(same(found.0, expected), "{:?} instead of {:?} for {:?} {:?}", found, expected, tree, jumps);
+        prop_assert!(
+            same(found.0, expected),
+            "{:?} instead of {:?} for {:?} {:?}",
+            found,
+            expected,
+            tree,
+            jumps
+        );
         let instant = (decided - 1) / 2;
         // An interval decides at its beginning, or as a whole.
         let late = if decided % 2 == 0 && found.1 > instant as f64 + 0.5 { 1 } else { 0 };
-        prop_assert!((found.1 - (instant + late) as f64).abs() < 1e-9, "at {} instead of {} {:?} {:?}", found.1, instant, tree, jumps);
+        prop_assert!(
+            (found.1 - (instant + late) as f64).abs() < 1e-9,
+            "at {} instead of {} {:?} {:?}",
+            found.1,
+            instant,
+            tree,
+            jumps
+        );
         // The same beginning with another end.
         let mut other = jumps.clone();
         other.retain(|jump| jump.at <= instant);

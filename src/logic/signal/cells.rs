@@ -1,11 +1,11 @@
 //! All cells of one formula or metric, in order, and the search for the moment of the decision.
 
+use super::Reading;
 use super::moment::Moment;
 use super::number::Number;
 use super::present::Present;
 use super::track::Known;
 use super::truth::{Ref, Step, Truth};
-use super::Reading;
 
 /// Most pieces that are stored; a trial that needs more is unresolved.
 const MOST_PIECES: usize = 1 << 20;

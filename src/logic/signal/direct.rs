@@ -64,9 +64,7 @@ impl Direct {
                 Some((Reading::Truth(truth != negated), at))
             }
             Question::Time { goal } if is(goal) => Some((Reading::Value(start), start)),
-            Question::Time { .. } => {
-                (end > self.to).then_some((Reading::Value(f64::INFINITY), self.to))
-            }
+            Question::Time { .. } => (end > self.to).then_some((Reading::Value(f64::INFINITY), self.to)),
             Question::Fold { aggregation, of } => self.fold(aggregation, present.number(of), start, end),
         }
     }

@@ -87,7 +87,7 @@ mod tests {
     fn ticks_and_seconds_meet_and_come_back() {
         for (quantum, horizon) in [("1", 10), ("0.1", 100), ("0.25", 1), ("60", 1 << 40), ("1", 0)] {
             let scale = Scale::new(Tick(horizon), Decimal::parse(quantum).unwrap());
-            for ticks in [0, 1, horizon / 3, horizon] {
+            for ticks in [0, horizon / 3, horizon] {
                 let seconds = scale.time(Tick(ticks));
                 assert_eq!(scale.at(seconds), scale.shift(Tick(ticks)).min(scale.end()), "{quantum} {ticks}");
                 assert_eq!(scale.seconds(scale.shift(Tick(ticks))), seconds);

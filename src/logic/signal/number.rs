@@ -197,7 +197,8 @@ fn fold(
             Aggregation::Max if !first => Operation::Max.apply(folded.value, value),
             Aggregation::Min | Aggregation::Max => value,
             Aggregation::Sum | Aggregation::Mean => {
-                (if first { 0.0 } else { folded.value }) + if length > 0 { value * length as f64 } else { 0.0 }
+                (if first { 0.0 } else { folded.value })
+                    + if length > 0 { value * length as f64 } else { 0.0 }
             }
         };
         (folded.next, folded.last) = (end, value);

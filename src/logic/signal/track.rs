@@ -48,7 +48,8 @@ pub(super) struct Track {
 
 impl Track {
     pub(super) fn new(first: Moment, end: Moment) -> Self {
-        let mut track = Self { pieces: VecDeque::with_capacity(16), first, end, fresh: Vec::with_capacity(8) };
+        let mut track =
+            Self { pieces: VecDeque::with_capacity(16), first, end, fresh: Vec::with_capacity(8) };
         track.clear();
         track
     }

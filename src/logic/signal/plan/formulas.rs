@@ -85,13 +85,7 @@ impl Builder<'_> {
         self.add_truth(Machine::Until { from, to, first, second }, range)
     }
 
-    fn compare(
-        &mut self,
-        relation: Relation,
-        x: TermId,
-        y: TermId,
-        range: Range,
-    ) -> Result<Ref, Invalid> {
+    fn compare(&mut self, relation: Relation, x: TermId, y: TermId, range: Range) -> Result<Ref, Invalid> {
         match (self.term_constants[x.0 as usize], self.term_constants[y.0 as usize]) {
             (None, Some(c)) => self.against(relation, x, c, range),
             (Some(c), None) => self.against(relation.flipped(), y, c, range),

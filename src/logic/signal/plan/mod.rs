@@ -1,8 +1,8 @@
 //! From a tree to cells: which part is asked about at which moments, and how it is answered.
 
 mod formulas;
-mod numbers;
 mod now;
+mod numbers;
 
 use super::Way;
 use super::cells::{Cell, Cells, Root};

@@ -35,9 +35,9 @@ impl Builder<'_> {
         let of = |id: &NodeId| self.node_constants[id.0 as usize];
         match &self.tree.nodes[id.0 as usize] {
             Node::Constant(truth) => Some(*truth),
-            Node::Compare(relation, x, y) => Some(
-                relation.holds(self.term_constants[x.0 as usize]?, self.term_constants[y.0 as usize]?),
-            ),
+            Node::Compare(relation, x, y) => {
+                Some(relation.holds(self.term_constants[x.0 as usize]?, self.term_constants[y.0 as usize]?))
+            }
             Node::Not(x) => of(x).map(|truth| !truth),
             Node::And(all) if all.iter().any(|x| of(x) == Some(false)) => Some(false),
             Node::And(all) => all.iter().all(|x| of(x) == Some(true)).then_some(true),
@@ -66,11 +66,9 @@ impl Builder<'_> {
         };
         match &self.tree.nodes[id.0 as usize] {
             Node::Atom(atom) => Some(Code::Atom(atom.0 as usize)),
-            Node::Compare(relation, x, y) => Some(Code::Compare(
-                *relation,
-                self.term_slots[x.0 as usize]?,
-                self.term_slots[y.0 as usize]?,
-            )),
+            Node::Compare(relation, x, y) => {
+                Some(Code::Compare(*relation, self.term_slots[x.0 as usize]?, self.term_slots[y.0 as usize]?))
+            }
             Node::Not(x) => slot(x).map(Code::Not),
             Node::And(parts) => all(parts).map(Code::All),
             Node::Or(parts) => all(parts).map(Code::Any),
