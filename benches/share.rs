@@ -47,7 +47,9 @@ fn main() {
             if start::load(program, &mut state, lane, key, None).is_err() {
                 return println!("a trial cannot start");
             }
-            monitors.iter_mut().for_each(|m| m.start(lane));
+            for m in &mut monitors {
+                m.start(lane);
+            }
         }
         dynamics::refresh(program, &mut state, &mut scratch, Mask::ALL);
         let (mut a, mut b, mut c) = (0.0, 0.0, 0.0);
