@@ -44,7 +44,7 @@ impl Draw {
             0 => Node::Atom(AtomId(self.below(3) as u32)),
             1 => Node::Not(self.node(tree, depth - 1, numbers, endless)),
             2 | 3 => {
-                let parts = (0..1 + self.below(3)).map(|_| self.node(tree, depth - 1, numbers, endless));
+                let parts = (0..=self.below(3)).map(|_| self.node(tree, depth - 1, numbers, endless));
                 let parts: Vec<NodeId> = parts.collect();
                 if kind == 2 { Node::And(parts) } else { Node::Or(parts) }
             }
@@ -175,7 +175,7 @@ fn check(tree: &Tree, root: Root, horizon: u64, draw: &mut Draw) -> Result<(), T
         );
         let instant = (decided - 1) / 2;
         // An interval decides at its beginning, or as a whole.
-        let late = if decided % 2 == 0 && found.1 > instant as f64 + 0.5 { 1 } else { 0 };
+        let late = u64::from(decided % 2 == 0 && found.1 > instant as f64 + 0.5);
         prop_assert!(
             (found.1 - (instant + late) as f64).abs() < 1e-9,
             "at {} instead of {} {:?} {:?}",
