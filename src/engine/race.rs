@@ -4,7 +4,7 @@
 //! address of a draw. Given-Wilson et al. 2017, Algorithm 1, is `by okamoto`.
 
 use super::budget::Budget;
-use super::cell::Item;
+use super::cell::{Item, Reading};
 use super::executor::{Executor, Job};
 use super::fault::Fault;
 use super::outcome::Stop;
@@ -177,7 +177,7 @@ pub(super) fn run(
             })
             .collect();
         let rows = executor.run(&job, &items, budget)?;
-        let mut rows = rows.into_iter();
+        let mut rows = rows.rows();
         let mut complete = true;
         for share in &shares {
             let mut cells = Vec::with_capacity((share.to - share.from) as usize);
@@ -185,6 +185,10 @@ pub(super) fn run(
             for (index, row) in (share.from..share.to).zip(rows.by_ref()) {
                 match row {
                     Some(row) if !broken => {
+                        if row[0].reading == Reading::Faulty {
+                            let item = Item { advice: Some((field.moves, share.arm)), index };
+                            return Err(super::trial::fault(field.subject, item, seed));
+                        }
                         tallies[share.arm].add(index, &row[0], range);
                         if let Some(mean) = means.get_mut(share.arm) {
                             mean.observe(value(&row[0]));

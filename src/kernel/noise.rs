@@ -82,7 +82,7 @@ impl Draws {
 
 /// `base::random::unit_open`.
 #[inline(always)]
-fn unit_open<S: Simd>(simd: S, word: u64x8<S>) -> f64x8<S> {
+pub(super) fn unit_open<S: Simd>(simd: S, word: u64x8<S>) -> f64x8<S> {
     let one_to_two = f64x8::from_bits((word >> 12) | words(simd, 0x3ff0_0000_0000_0000));
     (one_to_two - splat(simd, 1.0)) + splat(simd, f64::EPSILON * 0.5)
 }
