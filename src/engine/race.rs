@@ -170,26 +170,30 @@ pub(super) fn run(
         if shares.iter().any(|share| share.to > budget.max_trials) {
             break Stop::Cap;
         }
-        let items: Vec<Item> = shares
-            .iter()
-            .flat_map(|share| {
-                (share.from..share.to).map(|index| Item { advice: Some((field.moves, share.arm)), index })
-            })
-            .collect();
+        // All options advance side by side, so that a deadline finds every one of them as far as the others.
+        let most = shares.iter().map(|share| share.to - share.from).max().unwrap_or(0);
+        let mut items: Vec<Item> = Vec::new();
+        let mut places: Vec<Vec<usize>> = vec![Vec::new(); shares.len()];
+        for step in 0..most {
+            for (share, places) in shares.iter().zip(&mut places) {
+                if share.from + step < share.to {
+                    places.push(items.len());
+                    items.push(Item { advice: Some((field.moves, share.arm)), index: share.from + step });
+                }
+            }
+        }
         let rows = executor.run(&job, &items, budget)?;
-        let mut rows = rows.rows();
         let mut complete = true;
-        for share in &shares {
-            let mut cells = Vec::with_capacity((share.to - share.from) as usize);
+        for (share, places) in shares.iter().zip(&places) {
+            let mut cells = Vec::with_capacity(places.len());
             let mut broken = false;
-            for (index, row) in (share.from..share.to).zip(rows.by_ref()) {
-                match row {
+            for &place in places {
+                match rows.row(place) {
                     Some(row) if !broken => {
                         if row[0].reading == Reading::Faulty {
-                            let item = Item { advice: Some((field.moves, share.arm)), index };
-                            return Err(super::trial::fault(field.subject, item, seed));
+                            return Err(super::trial::fault(field.subject, items[place], seed));
                         }
-                        tallies[share.arm].add(index, &row[0], range);
+                        tallies[share.arm].add(items[place].index, &row[0], range);
                         if let Some(mean) = means.get_mut(share.arm) {
                             mean.observe(value(&row[0]));
                         }

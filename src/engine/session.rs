@@ -246,12 +246,14 @@ impl Session<'_> {
                 result.censored = Some(subject.program.scenario.clock.seconds(subject.horizon));
             }
             if kind == Kind::Estimate {
-                result.certifies = format!(
-                    "{subject_words} in {} .. {}, error at most {}",
-                    words::quantity(interval.low, &result.unit),
-                    words::quantity(interval.high, &result.unit),
-                    words::number(error)
-                );
+                let claim = match (result.censored, interval.low.is_infinite(), interval.high.is_infinite()) {
+                    (Some(horizon), true, true) if interval.low > 0.0 => {
+                        format!("> {}", words::quantity(horizon, &result.unit))
+                    }
+                    (Some(_), false, true) => format!(">= {}", words::quantity(interval.low, &result.unit)),
+                    _ => format!("in {}", words::ends(interval.low, interval.high, &result.unit)),
+                };
+                result.certifies = format!("{subject_words} {claim}, error at most {}", words::number(error));
                 let fixed = coverage == Coverage::FixedSize;
                 if fixed && matches!(stop, Stop::Deadline | Stop::Interrupt) {
                     result.warnings.push(
@@ -272,9 +274,8 @@ impl Session<'_> {
             result.certifies = match inquiry.procedure.statement() {
                 Some(statement) => words::statement(&subject_words, &statement, &result.unit),
                 None => format!(
-                    "{subject_words} in {} .. {}, error at most {}",
-                    words::quantity(result.low, &result.unit),
-                    words::quantity(result.high, &result.unit),
+                    "{subject_words} in {}, error at most {}",
+                    words::ends(result.low, result.high, &result.unit),
                     words::number(procedure::BESIDE)
                 ),
             };
@@ -368,11 +369,10 @@ impl Session<'_> {
         let labels = [label(&settings[0]), label(&settings[1])];
         let name = measured_words(query, first);
         result.certifies = format!(
-            "{name} under {} less that under {} in {} .. {}, error at most {}",
+            "{name} under {} less that under {} in {}, error at most {}",
             labels[0],
             labels[1],
-            words::quantity(result.low, &unit),
-            words::quantity(result.high, &unit),
+            words::ends(result.low, result.high, &unit),
             words::number(*delta)
         );
         result.unit = unit;
@@ -414,7 +414,7 @@ impl Session<'_> {
             format!(
                 "{score} of `{}` is within {} of the best, error at most {}",
                 ranked.choice,
-                words::quantity(gap, &result.unit),
+                words::quantity(words::at_most(gap), &result.unit),
                 words::number(*delta)
             )
         } else {

@@ -72,7 +72,11 @@ pub(super) fn run(
                 }
                 inquiry.tally.add(item.index, cell, inquiry.range);
                 if inquiry.procedure.observe(cell) {
-                    inquiry.stop = Some(if inquiry.procedure.is_planned() {
+                    let capped = matches!(&inquiry.procedure, Procedure::Mean { threshold: Some(_), .. })
+                        && inquiry.procedure.decision().is_none();
+                    inquiry.stop = Some(if capped {
+                        Stop::Cap
+                    } else if inquiry.procedure.is_planned() {
                         Stop::Plan
                     } else if matches!(
                         inquiry.procedure,

@@ -18,6 +18,35 @@ pub(super) fn quantity(value: f64, unit: &str) -> String {
     if unit.is_empty() { number(value) } else { format!("{} {unit}", number(value)) }
 }
 
+/// The ends of an interval with no more digits than its width supports, rounded outward.
+pub(super) fn ends(low: f64, high: f64, unit: &str) -> String {
+    let width = high - low;
+    if !(width.is_finite() && width > 0.0) {
+        return format!("{} .. {}", quantity(low, unit), quantity(high, unit));
+    }
+    // Two digits of the width.
+    let mut scale = 1.0;
+    while width * scale < 10.0 && scale < 1e12 {
+        scale *= 10.0;
+    }
+    let (low, high) = ((low * scale).floor() / scale, (high * scale).ceil() / scale);
+    format!("{} .. {}", quantity(low, unit), quantity(high, unit))
+}
+
+/// A bound, rounded upward to three digits.
+pub(super) fn at_most(value: f64) -> f64 {
+    if !(value.is_finite() && value > 0.0) {
+        return value;
+    }
+    let mut scale = 1.0;
+    while value * scale < 100.0 && scale < 1e12 {
+        scale *= 10.0;
+    }
+    // A number that has so few digits already stays as it is.
+    let scaled = value * scale;
+    if (scaled - scaled.round()).abs() < 1e-9 { value } else { scaled.ceil() / scale }
+}
+
 /// A share as a percentage.
 pub(super) fn percent(share: f64) -> String {
     format!("{} %", number(100.0 * share))
@@ -48,6 +77,15 @@ pub(super) fn interval(coverage: Coverage, error: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn ends_are_rounded_outward() {
+        assert_eq!(ends(0.066_677, 0.105_317, ""), "0.066 .. 0.106");
+        assert_eq!(ends(-0.106_7, 0.216_35, "m"), "-0.11 m .. 0.22 m");
+        assert_eq!(ends(1.0, f64::INFINITY, "s"), "1 s .. ∞ s");
+        assert_eq!((at_most(0.019_923_3), at_most(0.02)), (0.02, 0.02));
+        assert_eq!(at_most(0.049_169_9), 0.0492);
+    }
 
     #[test]
     fn numbers_have_no_noise() {

@@ -4,11 +4,12 @@
 //! counts once, and an end repels along the line to that end. Inside a solid the normal points out.
 //! Given-Wilson et al. 2017, equations (5) and (6), with `d_ib` the distance from the centre of the body.
 
-use super::vector::{larger, smaller, splat};
+use super::vector::{Doubles, Part, Truths, larger, smaller};
 use crate::base::geometry::{Bounds, Segment, Shape, Vec2};
+use crate::base::lanes::Mask;
 use crate::model::{Barrier, Obstacle};
+use fearless_simd::Simd;
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f64x8, mask64x8};
 
 /// A straight piece of a surface.
 #[derive(Clone, Copy, Debug)]
@@ -56,10 +57,10 @@ pub(super) struct Surface {
 #[derive(Clone, Copy)]
 pub(super) struct Nearest<S: Simd> {
     /// Unit vector away from the surface; zero exactly on it.
-    pub(super) nx: f64x8<S>,
-    pub(super) ny: f64x8<S>,
+    pub(super) nx: Doubles<S>,
+    pub(super) ny: Doubles<S>,
     /// Distance, negative inside a solid, m.
-    pub(super) distance: f64x8<S>,
+    pub(super) distance: Doubles<S>,
 }
 
 impl Surface {
@@ -83,36 +84,48 @@ impl Surface {
 
     /// Squared distance from eight places to the rectangle around the surface.
     #[inline(always)]
-    pub(super) fn squared_distance_to_bounds<S: Simd>(&self, simd: S, x: f64x8<S>, y: f64x8<S>) -> f64x8<S> {
-        let c = |value: f64| splat(simd, value);
-        let beside = larger(larger(c(self.bounds.low.x) - x, x - c(self.bounds.high.x)), c(0.0));
-        let above = larger(larger(c(self.bounds.low.y) - y, y - c(self.bounds.high.y)), c(0.0));
+    pub(super) fn squared_distance_to_bounds<S: Simd>(
+        &self,
+        part: Part<S>,
+        x: Doubles<S>,
+        y: Doubles<S>,
+    ) -> Doubles<S> {
+        let beside = larger::<S>(
+            larger::<S>(part.c(self.bounds.low.x) - x, x - part.c(self.bounds.high.x)),
+            part.c(0.0),
+        );
+        let above = larger::<S>(
+            larger::<S>(part.c(self.bounds.low.y) - y, y - part.c(self.bounds.high.y)),
+            part.c(0.0),
+        );
         beside * beside + above * above
     }
 
     /// The nearest points to eight places.
     #[inline(always)]
-    pub(super) fn nearest<S: Simd>(&self, simd: S, x: f64x8<S>, y: f64x8<S>) -> Nearest<S> {
-        let c = |value: f64| splat(simd, value);
+    pub(super) fn nearest<S: Simd>(&self, part: Part<S>, x: Doubles<S>, y: Doubles<S>) -> Nearest<S> {
         // Far below any square of a distance that matters: keeps 1/0 out where the centre is on the line.
-        let tiny = c(1e-300);
+        let tiny = part.c(1e-300);
         match &self.form {
             Form::Disc { centre, radius } => {
-                let (dx, dy) = (x - c(centre.x), y - c(centre.y));
+                let (dx, dy) = (x - part.c(centre.x), y - part.c(centre.y));
                 let d = (dx * dx + dy * dy + tiny).sqrt();
-                Nearest { nx: dx / d, ny: dy / d, distance: d - c(*radius) }
+                let q = part.c(1.0) / d;
+                Nearest { nx: dx * q, ny: dy * q, distance: d - part.c(*radius) }
             }
             Form::Wall(edges) => {
-                let (dx, dy) = nearest_edge(simd, edges, x, y);
+                let (dx, dy) = nearest_edge(part, edges, x, y);
                 let d = (dx * dx + dy * dy + tiny).sqrt();
-                Nearest { nx: dx / d, ny: dy / d, distance: d }
+                let q = part.c(1.0) / d;
+                Nearest { nx: dx * q, ny: dy * q, distance: d }
             }
             Form::Polygon(edges) => {
-                let (dx, dy) = nearest_edge(simd, edges, x, y);
+                let (dx, dy) = nearest_edge(part, edges, x, y);
                 let d = (dx * dx + dy * dy + tiny).sqrt();
-                let inside = inside(simd, edges, x, y);
-                let sign = inside.select(c(-1.0), c(1.0));
-                Nearest { nx: sign * (dx / d), ny: sign * (dy / d), distance: sign * d }
+                let inside = inside(part, edges, x, y);
+                let sign = inside.select(part.c(-1.0), part.c(1.0));
+                let q = sign / d;
+                Nearest { nx: dx * q, ny: dy * q, distance: sign * d }
             }
         }
     }
@@ -121,7 +134,7 @@ impl Surface {
     pub(super) fn nearest_to(&self, p: Vec2) -> (Vec2, f64) {
         let normal = |d: Vec2| {
             let distance = (d.x * d.x + d.y * d.y + 1e-300).sqrt();
-            (d / distance, distance)
+            (d * (1.0 / distance), distance)
         };
         match &self.form {
             Form::Disc { centre, radius } => {
@@ -145,14 +158,18 @@ impl Surface {
 
 /// Vector from the nearest point of the edges.
 #[inline(always)]
-fn nearest_edge<S: Simd>(simd: S, edges: &[Edge], x: f64x8<S>, y: f64x8<S>) -> (f64x8<S>, f64x8<S>) {
-    let c = |value: f64| splat(simd, value);
-    let (mut best, mut bx, mut by) = (c(f64::INFINITY), c(0.0), c(0.0));
+fn nearest_edge<S: Simd>(
+    part: Part<S>,
+    edges: &[Edge],
+    x: Doubles<S>,
+    y: Doubles<S>,
+) -> (Doubles<S>, Doubles<S>) {
+    let (mut best, mut bx, mut by) = (part.c(f64::INFINITY), part.c(0.0), part.c(0.0));
     for e in edges {
-        let (px, py) = (x - c(e.a.x), y - c(e.a.y));
-        let share = (px * c(e.along.x) + py * c(e.along.y)) * c(e.inverse_square);
-        let share = smaller(larger(share, c(0.0)), c(1.0));
-        let (dx, dy) = (px - share * c(e.along.x), py - share * c(e.along.y));
+        let (px, py) = (x - part.c(e.a.x), y - part.c(e.a.y));
+        let share = (px * part.c(e.along.x) + py * part.c(e.along.y)) * part.c(e.inverse_square);
+        let share = smaller::<S>(larger::<S>(share, part.c(0.0)), part.c(1.0));
+        let (dx, dy) = (px - share * part.c(e.along.x), py - share * part.c(e.along.y));
         let square = dx * dx + dy * dy;
         let closer = square.simd_lt(best);
         best = closer.select(square, best);
@@ -164,13 +181,12 @@ fn nearest_edge<S: Simd>(simd: S, edges: &[Edge], x: f64x8<S>, y: f64x8<S>) -> (
 
 /// Even-odd rule over all edges, so that the holes of a polygon are outside.
 #[inline(always)]
-fn inside<S: Simd>(simd: S, edges: &[Edge], x: f64x8<S>, y: f64x8<S>) -> mask64x8<S> {
-    let c = |value: f64| splat(simd, value);
-    let mut inside = mask64x8::splat(simd, false);
+fn inside<S: Simd>(part: Part<S>, edges: &[Edge], x: Doubles<S>, y: Doubles<S>) -> Truths<S> {
+    let mut inside = part.mask(Mask::NONE);
     for e in edges {
-        let straddles = c(e.a.y).simd_gt(y) ^ c(e.end_y).simd_gt(y);
-        let left = x.simd_lt(c(e.a.x) + (y - c(e.a.y)) * c(e.slope));
-        inside ^= (straddles & left);
+        let straddles = part.c(e.a.y).simd_gt(y) ^ part.c(e.end_y).simd_gt(y);
+        let left = x.simd_lt(part.c(e.a.x) + (y - part.c(e.a.y)) * part.c(e.slope));
+        inside ^= straddles & left;
     }
     inside
 }
@@ -193,14 +209,22 @@ fn from_edges(edges: &[Edge], p: Vec2) -> Vec2 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::vector::parts;
     use super::*;
     use crate::base::geometry::Polygon;
+    use crate::base::lanes::Lanes;
     use fearless_simd::{Level, dispatch};
 
     #[inline(always)]
     fn eight<S: Simd>(simd: S, surface: &Surface, x: [f64; 8], y: [f64; 8]) -> [[f64; 8]; 3] {
-        let n = surface.nearest(simd, f64x8::load_array(simd, x), f64x8::load_array(simd, y));
-        [n.nx.to_array(), n.ny.to_array(), n.distance.to_array()]
+        let mut out = [Lanes::ZERO; 3];
+        for part in parts(simd) {
+            let n = surface.nearest(part, part.slice(&x), part.slice(&y));
+            part.store(n.nx, &mut out[0]);
+            part.store(n.ny, &mut out[1]);
+            part.store(n.distance, &mut out[2]);
+        }
+        out.map(|lanes| lanes.0)
     }
 
     #[test]

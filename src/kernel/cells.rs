@@ -7,16 +7,17 @@
 //! reach and add zero. Each pair is taken twice, once from either side, so all that is needed of the
 //! neighbours is place and radius. Sums run over eight logical lanes whatever the width of the machine.
 
+use super::barrier::Surface;
 use super::contact::Contacts;
 use super::forces::{Forces, REACH};
-use super::lanewise::{Sum, cohesion, decay};
+use super::lanewise::{Sum, Term, cohesion, decay};
 use super::program::Program;
 use super::state::State;
-use super::vector::{bits, larger, load, mask, smaller, splat};
+use super::vector::{Part, larger, parts, smaller};
 use crate::base::lanes::{LANES, Lanes, Mask};
+use crate::base::math::at_least;
+use fearless_simd::Simd;
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f64x8};
-use std::f64::consts::LOG2_E;
 
 /// Cells of a strip per reach.
 const CELLS_PER_REACH: f64 = 4.0;
@@ -54,6 +55,9 @@ struct Grid {
     x: f64,
     y: f64,
     reach: f64,
+    /// What rounding may take off a distance, amply, m.
+    slack: f64,
+    height: f64,
     per_width: f64,
     per_height: f64,
     columns: usize,
@@ -66,6 +70,16 @@ impl Grid {
     fn column(&self, x: f64) -> usize {
         // The cast saturates, and takes NaN to 0.
         (((x - self.x) * self.per_width) as usize).min(self.columns - 1)
+    }
+
+    /// How far to the side others in strip `other` can be in reach of someone at `y` in `strip`: less,
+    /// the farther the near edge of that strip.
+    #[inline(always)]
+    fn reach_into(&self, strip: usize, other: usize, y: f64) -> f64 {
+        let edge = self.y + strip.max(other) as f64 * self.height;
+        let beside = if other == strip { 0.0 } else { at_least((y - edge).abs() - self.slack, 0.0) };
+        let square = at_least(self.reach * self.reach - beside * beside, 0.0);
+        square.sqrt() + self.slack
     }
 
     #[inline(always)]
@@ -111,15 +125,35 @@ impl Cells {
             return;
         }
         let grid = survey(simd, forces, state);
-        self.sort(simd, &grid, forces, state);
-        match (forces.second, forces.ties.is_empty()) {
-            (false, true) => self.pairs::<S, false, false>(simd, &grid, forces, sums, contacts),
-            (true, true) => self.pairs::<S, true, false>(simd, &grid, forces, sums, contacts),
-            (false, false) => self.pairs::<S, false, true>(simd, &grid, forces, sums, contacts),
-            (true, false) => self.pairs::<S, true, true>(simd, &grid, forces, sums, contacts),
+        simd.vectorize(
+            #[inline(always)]
+            || self.sort(simd, &grid, forces, state),
+        );
+        // A function each, as in `lanewise`.
+        match (forces.second, !forces.ties.is_empty()) {
+            (false, false) => simd.vectorize(
+                #[inline(always)]
+                || self.pairs::<S, false, false>(simd, &grid, forces, sums, contacts),
+            ),
+            (true, false) => simd.vectorize(
+                #[inline(always)]
+                || self.pairs::<S, true, false>(simd, &grid, forces, sums, contacts),
+            ),
+            (false, true) => simd.vectorize(
+                #[inline(always)]
+                || self.pairs::<S, false, true>(simd, &grid, forces, sums, contacts),
+            ),
+            (true, true) => simd.vectorize(
+                #[inline(always)]
+                || self.pairs::<S, true, true>(simd, &grid, forces, sums, contacts),
+            ),
         }
-        self.walls(simd, &grid, forces, sums, contacts);
-        cohesion(simd, forces, state, sums);
+        simd.vectorize(
+            #[inline(always)]
+            || self.walls(simd, &grid, forces, sums, contacts),
+        );
+        contacts.arrange();
+        cohesion(forces, state, sums);
     }
 
     /// Sorts the agents who are present by strip and cell.
@@ -153,28 +187,26 @@ impl Cells {
         }
         let total = total as usize;
         self.next.clone_from(&self.start);
-        self.feelers.clear();
         self.feelers.resize(total, NOBODY);
-        self.agent.clear();
         self.agent.resize(total, u32::MAX);
         if forces.second {
-            self.seconds.clear();
             self.seconds.resize(total, Second::default());
         }
-        let half = splat(simd, 0.5);
-        let one = splat(simd, 1.0);
+        for strip in self.start.chunks_exact(row) {
+            let end = strip[grid.columns] as usize;
+            self.feelers[end..end + LANES].fill(NOBODY);
+            self.agent[end..end + LANES].fill(u32::MAX);
+        }
         for block in 0..state.x.len() {
-            let (ex, ey) = (load(simd, &state.ex[block]), load(simd, &state.ey[block]));
-            let term = |a: &Lanes, lambda: &Lanes, b: &Lanes| {
-                let (a, lambda) = (load(simd, a), load(simd, lambda));
-                let odd = a * (half * (one - lambda));
-                let even = a * (half * (one + lambda));
-                let rate = splat(simd, LOG2_E) / load(simd, b);
-                [even.to_array(), (odd * ex).to_array(), (odd * ey).to_array(), rate.to_array()]
-            };
-            let [even, tx, ty, rate] = term(&state.a[block], &state.lambda[block], &state.b[block]);
-            let second =
-                forces.second.then(|| term(&state.a2[block], &state.lambda2[block], &state.b2[block]));
+            let e = (&state.ex[block], &state.ey[block]);
+            let mut first = Term::default();
+            let mut second = Term::default();
+            for part in parts(simd) {
+                first.fill(part, (&state.a[block], &state.lambda[block]), Some(&state.b[block]), e);
+                if forces.second {
+                    second.fill(part, (&state.a2[block], &state.lambda2[block]), Some(&state.b2[block]), e);
+                }
+            }
             for lane in 0..LANES.min(state.agents - block * LANES) {
                 let agent = block * LANES + lane;
                 let cell = self.cell[agent];
@@ -189,14 +221,18 @@ impl Cells {
                     y: state.y[block].0[lane],
                     r: state.radius[block].0[lane],
                     a: state.a[block].0[lane],
-                    even: even[lane],
-                    ex: tx[lane],
-                    ey: ty[lane],
-                    rate: rate[lane],
+                    even: first.even.0[lane],
+                    ex: first.ex.0[lane],
+                    ey: first.ey.0[lane],
+                    rate: first.rate.0[lane],
                 };
-                if let Some([even, ex, ey, rate]) = &second {
-                    self.seconds[at] =
-                        Second { even: even[lane], ex: ex[lane], ey: ey[lane], rate: rate[lane] };
+                if forces.second {
+                    self.seconds[at] = Second {
+                        even: second.even.0[lane],
+                        ex: second.ex.0[lane],
+                        ey: second.ey.0[lane],
+                        rate: second.rate.0[lane],
+                    };
                 }
             }
         }
@@ -224,57 +260,75 @@ impl Cells {
         sums: &mut [Sum],
         contacts: &mut Contacts,
     ) {
-        let c = |value: f64| splat(simd, value);
         let row = grid.columns + 1;
-        let minus_margin = c(-forces.margin);
-        let tiny = c(1e-300);
-        let one = c(1.0);
+        let (xs, ys, rs) = (&self.x[..], &self.y[..], &self.r[..]);
+        let margin = -forces.margin;
         for strip in 0..grid.strips {
             let from = self.start[strip * row] as usize;
             let to = self.start[strip * row + grid.columns] as usize;
             for i in from..to {
-                let own = self.feelers[i];
-                let (x, y, r, rate) = (c(own.x), c(own.y), c(own.r), c(own.rate));
-                let (even, ex, ey) = (c(own.even), c(own.ex), c(own.ey));
-                let (left, right) = (grid.column(own.x - grid.reach), grid.column(own.x + grid.reach));
-                let (mut fx, mut fy) = (c(0.0), c(0.0));
-                for other in strip.saturating_sub(1)..(strip + 2).min(grid.strips) {
-                    let mut j = self.start[other * row + left] as usize;
-                    let end = self.start[other * row + right + 1] as usize;
-                    while j < end {
-                        let dx = x - f64x8::from_slice(simd, &self.x[j..j + LANES]);
-                        let dy = y - f64x8::from_slice(simd, &self.y[j..j + LANES]);
-                        let d = (dx * dx + dy * dy + tiny).sqrt();
-                        let q = one / d;
-                        let gap = r + f64x8::from_slice(simd, &self.r[j..j + LANES]) - d;
-                        // Each pair is a candidate once, and nobody with themselves.
-                        let later = if j > i { 0xff } else { 0xff << (i + 1 - j).min(LANES) };
-                        let touching = bits(gap.simd_gt(minus_margin)) & Mask((later & 0xff) as u8);
-                        for lane in touching.iter() {
-                            let pair = (self.agent[i], self.agent[j + lane]);
-                            contacts.push_pair(pair.0.min(pair.1), pair.0.max(pair.1), Mask::lane(0));
+                let own = &self.feelers[i];
+                let mut ranges = [(0, 0); 3];
+                let strips = strip.saturating_sub(1)..(strip + 2).min(grid.strips);
+                for (range, other) in ranges.iter_mut().zip(strips) {
+                    let reach = grid.reach_into(strip, other, own.y);
+                    let (left, right) = (grid.column(own.x - reach), grid.column(own.x + reach));
+                    let (start, end) = (other * row + left, other * row + right + 1);
+                    *range = (self.start[start] as usize, self.start[end] as usize);
+                }
+                let (mut sum_x, mut sum_y) = (Lanes::ZERO, Lanes::ZERO);
+                for part in parts(simd) {
+                    let (x, y, r, rate) = (part.c(own.x), part.c(own.y), part.c(own.r), part.c(own.rate));
+                    let (even, ex, ey) = (part.c(own.even), part.c(own.ex), part.c(own.ey));
+                    let (mut fx, mut fy) = (part.c(0.0), part.c(0.0));
+                    for (start, end) in ranges {
+                        let mut j = start;
+                        while j + part.at() < end {
+                            let dx = x - part.slice(&xs[j..j + LANES]);
+                            let dy = y - part.slice(&ys[j..j + LANES]);
+                            let d = (dx * dx + dy * dy + part.c(1e-300)).sqrt();
+                            let q = part.c(1.0) / d;
+                            let gap = r + part.slice(&rs[j..j + LANES]) - d;
+                            // Each pair is a candidate once, and nobody with themselves.
+                            let later = if j > i { 0xff } else { 0xff << (i + 1 - j).min(LANES) };
+                            let touching = part.bits(gap.simd_gt(part.c(margin)));
+                            let touching = touching & Mask((later & 0xff) as u8);
+                            if !touching.is_empty() {
+                                self.candidates(i, j, touching, contacts);
+                            }
+                            let mut f = decay(part, gap * rate) * q * (even - (dx * ex + dy * ey) * q);
+                            if SECOND {
+                                let own = &self.seconds[i];
+                                let weight =
+                                    part.c(own.even) - (dx * part.c(own.ex) + dy * part.c(own.ey)) * q;
+                                f += decay(part, gap * part.c(own.rate)) * q * weight;
+                            }
+                            if TIES {
+                                let both = part.c(self.tie[i]) + part.slice(&self.tie[j..j + LANES]);
+                                let mean = part.c(0.5) * both;
+                                f *= mean.simd_eq(mean).select(mean, part.c(1.0));
+                            }
+                            fx += f * dx;
+                            fy += f * dy;
+                            j += LANES;
                         }
-                        let mut f = decay(simd, gap * rate) * q * (even - (dx * ex + dy * ey) * q);
-                        if SECOND {
-                            let own = self.seconds[i];
-                            let weight = c(own.even) - (dx * c(own.ex) + dy * c(own.ey)) * q;
-                            f += decay(simd, gap * c(own.rate)) * q * weight;
-                        }
-                        if TIES {
-                            let mean =
-                                c(0.5) * (c(self.tie[i]) + f64x8::from_slice(simd, &self.tie[j..j + LANES]));
-                            f *= mean.simd_eq(mean).select(mean, one);
-                        }
-                        fx += f * dx;
-                        fy += f * dy;
-                        j += LANES;
                     }
+                    part.store(fx, &mut sum_x);
+                    part.store(fy, &mut sum_y);
                 }
                 let agent = self.agent[i] as usize;
                 let sum = &mut sums[agent / LANES];
-                sum.x.0[agent % LANES] = fx.reduce_sum();
-                sum.y.0[agent % LANES] = fy.reduce_sum();
+                sum.x.0[agent % LANES] = total(&sum_x);
+                sum.y.0[agent % LANES] = total(&sum_y);
             }
+        }
+    }
+
+    #[cold]
+    fn candidates(&self, i: usize, j: usize, touching: Mask, contacts: &mut Contacts) {
+        for lane in touching.iter() {
+            let (a, b) = (self.agent[i], self.agent[j + lane]);
+            contacts.push_pair(a.min(b), a.max(b), Mask::lane(0));
         }
     }
 
@@ -291,9 +345,7 @@ impl Cells {
             return;
         }
         let row = grid.columns + 1;
-        let minus_margin = splat(simd, -forces.margin);
-        let limit = splat(simd, grid.reach * grid.reach);
-        let height = 1.0 / grid.per_height;
+        let height = grid.height;
         let mut near = Vec::new();
         for strip in 0..grid.strips {
             // The last strip holds all that is above, the first all that is below.
@@ -307,67 +359,105 @@ impl Cells {
             let mut k = self.start[strip * row] as usize;
             let to = self.start[strip * row + grid.columns] as usize;
             while k < to {
-                let x = f64x8::from_slice(simd, &self.x[k..k + LANES]);
-                let y = f64x8::from_slice(simd, &self.y[k..k + LANES]);
-                let r = f64x8::from_slice(simd, &self.r[k..k + LANES]);
-                for &(index, surface) in &near {
-                    if !surface.squared_distance_to_bounds(simd, x, y).simd_le(limit).any_true() {
-                        continue;
-                    }
-                    let nearest = surface.nearest(simd, x, y);
-                    let gap = r - nearest.distance;
-                    for lane in bits(gap.simd_gt(minus_margin)).iter() {
-                        contacts.push_wall(self.agent[k + lane], index as u32, Mask::lane(0));
-                    }
-                    let own = &self.feelers[k..k + LANES];
-                    let a = f64x8::from_fn(simd, |lane| own[lane].a);
-                    let rate = f64x8::from_fn(simd, |lane| own[lane].rate);
-                    let f = a * decay(simd, gap * rate);
-                    let (fx, fy) = ((f * nearest.nx).to_array(), (f * nearest.ny).to_array());
-                    for lane in 0..LANES.min(to - k) {
-                        let agent = self.agent[k + lane] as usize;
-                        sums[agent / LANES].x.0[agent % LANES] += fx[lane];
-                        sums[agent / LANES].y.0[agent % LANES] += fy[lane];
+                for part in parts(simd) {
+                    for &(index, surface) in &near {
+                        self.wall(part, grid, forces, (index, surface), (k, to), sums, contacts);
                     }
                 }
                 k += LANES;
             }
         }
     }
+
+    /// Force of one surface on the sorted agents `k..k + 8`, of whom those from `to` on are padding.
+    #[inline(always)]
+    fn wall<S: Simd>(
+        &self,
+        part: Part<S>,
+        grid: &Grid,
+        forces: &Forces,
+        (index, surface): (usize, &Surface),
+        (k, to): (usize, usize),
+        sums: &mut [Sum],
+        contacts: &mut Contacts,
+    ) {
+        let (x, y) = (part.slice(&self.x[k..k + LANES]), part.slice(&self.y[k..k + LANES]));
+        let limit = part.c(grid.reach * grid.reach);
+        if !surface.squared_distance_to_bounds(part, x, y).simd_le(limit).any_true() {
+            return;
+        }
+        let nearest = surface.nearest(part, x, y);
+        let gap = part.slice(&self.r[k..k + LANES]) - nearest.distance;
+        for lane in part.bits(gap.simd_gt(part.c(-forces.margin))).iter() {
+            contacts.push_wall(self.agent[k + lane], index as u32, Mask::lane(0));
+        }
+        let own = &self.feelers[k..k + LANES];
+        let (mut a, mut rate, mut fx, mut fy) = (Lanes::ZERO, Lanes::ZERO, Lanes::ZERO, Lanes::ZERO);
+        for (lane, own) in own.iter().enumerate() {
+            a.0[lane] = own.a;
+            rate.0[lane] = own.rate;
+        }
+        let f = part.load(&a) * decay(part, gap * part.load(&rate));
+        part.store(f * nearest.nx, &mut fx);
+        part.store(f * nearest.ny, &mut fy);
+        for lane in part.at()..LANES.min(to - k).min(part.at() + part.len()) {
+            let agent = self.agent[k + lane] as usize;
+            sums[agent / LANES].x.0[agent % LANES] += fx.0[lane];
+            sums[agent / LANES].y.0[agent % LANES] += fy.0[lane];
+        }
+    }
+}
+
+/// Sum of eight lanes, always in the same order.
+#[inline(always)]
+fn total(lanes: &Lanes) -> f64 {
+    let l = &lanes.0;
+    ((l[0] + l[4]) + (l[2] + l[6])) + ((l[1] + l[5]) + (l[3] + l[7]))
 }
 
 /// Extent of the crowd and its farthest reach.
 #[inline(always)]
 fn survey<S: Simd>(simd: S, forces: &Forces, state: &State) -> Grid {
-    let c = |value: f64| splat(simd, value);
-    let (mut low_x, mut low_y) = (c(f64::INFINITY), c(f64::INFINITY));
-    let (mut high_x, mut high_y) = (c(f64::NEG_INFINITY), c(f64::NEG_INFINITY));
-    let (mut widest, mut farthest) = (c(0.0), c(forces.margin));
-    for block in 0..state.x.len() {
-        let here = mask(simd, state.present[block]);
-        let (x, y) = (load(simd, &state.x[block]), load(simd, &state.y[block]));
-        low_x = smaller(here.select(x, low_x), low_x);
-        high_x = larger(here.select(x, high_x), high_x);
-        low_y = smaller(here.select(y, low_y), low_y);
-        high_y = larger(here.select(y, high_y), high_y);
-        widest = larger(here.select(load(simd, &state.radius[block]), widest), widest);
-        let mut range = load(simd, &state.b[block]);
-        if forces.second {
-            range = larger(range, load(simd, &state.b2[block]));
+    let mut low = (Lanes::splat(f64::INFINITY), Lanes::splat(f64::INFINITY));
+    let mut high = (Lanes::splat(f64::NEG_INFINITY), Lanes::splat(f64::NEG_INFINITY));
+    let (mut widest, mut farthest) = (Lanes::ZERO, Lanes::splat(forces.margin));
+    for part in parts(simd) {
+        let (mut low_x, mut low_y) = (part.load(&low.0), part.load(&low.1));
+        let (mut high_x, mut high_y) = (part.load(&high.0), part.load(&high.1));
+        let (mut wide, mut far) = (part.load(&widest), part.load(&farthest));
+        for block in 0..state.x.len() {
+            let here = part.mask(state.present[block]);
+            let (x, y) = (part.load(&state.x[block]), part.load(&state.y[block]));
+            low_x = smaller::<S>(here.select(x, low_x), low_x);
+            low_y = smaller::<S>(here.select(y, low_y), low_y);
+            high_x = larger::<S>(here.select(x, high_x), high_x);
+            high_y = larger::<S>(here.select(y, high_y), high_y);
+            wide = larger::<S>(here.select(part.load(&state.radius[block]), wide), wide);
+            let mut range = part.load(&state.b[block]);
+            if forces.second {
+                range = larger::<S>(range, part.load(&state.b2[block]));
+            }
+            far = larger::<S>(here.select(part.c(REACH) * range, far), far);
         }
-        farthest = larger(here.select(c(REACH) * range, farthest), farthest);
+        part.store(low_x, &mut low.0);
+        part.store(low_y, &mut low.1);
+        part.store(high_x, &mut high.0);
+        part.store(high_y, &mut high.1);
+        part.store(wide, &mut widest);
+        part.store(far, &mut farthest);
     }
-    let least = |v: f64x8<S>| v.to_array().into_iter().fold(f64::INFINITY, |a, b| if b < a { b } else { a });
-    let most =
-        |v: f64x8<S>| v.to_array().into_iter().fold(f64::NEG_INFINITY, |a, b| if b > a { b } else { a });
+    let least = |lanes: Lanes| lanes.0.into_iter().fold(f64::INFINITY, |a, b| if b < a { b } else { a });
+    let most = |lanes: Lanes| lanes.0.into_iter().fold(f64::NEG_INFINITY, |a, b| if b > a { b } else { a });
     // A little more, for what rounding may take off a distance.
     let reach = (2.0 * most(widest) + most(farthest)) * (1.0 + 1e-9);
-    let (x, y) = (least(low_x), least(low_y));
-    let (wide, high) = (most(high_x) - x, most(high_y) - y);
-    let mut grid = Grid { x, y, reach, per_width: 0.0, per_height: 0.0, columns: 1, strips: 1 };
+    let (x, y) = (least(low.0), least(low.1));
+    let (wide, high) = (most(high.0) - x, most(high.1) - y);
+    let slack = 1e-9 * (reach + wide + high);
+    let mut grid =
+        Grid { x, y, reach, slack, height: 1.0, per_width: 0.0, per_height: 0.0, columns: 1, strips: 1 };
     if !(wide.is_finite() && high.is_finite() && reach.is_finite() && reach > 0.0) {
         // Nobody there, or somebody infinitely far away: one cell holds all.
-        return Grid { x: 0.0, y: 0.0, ..grid };
+        return Grid { x: 0.0, y: 0.0, slack: 0.0, ..grid };
     }
     let mut height = reach;
     let mut width = reach / CELLS_PER_REACH;
@@ -377,6 +467,7 @@ fn survey<S: Simd>(simd: S, forces: &Forces, state: &State) -> Grid {
         height *= 2.0;
         width *= 2.0;
     }
+    grid.height = height;
     grid.per_width = 1.0 / width;
     grid.per_height = 1.0 / height;
     grid.columns = (wide * grid.per_width) as usize + 1;

@@ -7,7 +7,7 @@
 //! contact alone (reversible multiple time steps, Tuckerman, Berne, Martyna 1992), taken in sub-steps of
 //! position Verlet: half a drift, friction, compression, friction, half a drift. Friction is solved
 //! exactly pair by pair: over a time t the relative tangential speed of a pair decays by
-//! exp(-k2 g (`1/m_i` + `1/m_j`) t), at a wall by exp(-k2 g t/m). It can therefore never reverse a slip, and
+//! `exp(-k2 g (1/m_i + 1/m_j) t)`, at a wall by exp(-k2 g t/m). It can therefore never reverse a slip, and
 //! never adds energy. Pairs are visited in order and then in reverse order, which keeps it symmetric.
 //!
 //! The constants of a pair are the means of the two bodies'. Two bodies of several persons do not
@@ -110,6 +110,13 @@ impl Contacts {
         for lane in lanes.iter() {
             self.walls[lane].push((i, surface));
         }
+    }
+
+    /// Puts the candidates of the only trial into ascending order: they were found in an order that
+    /// depends on the width of the machine's vectors.
+    pub(super) fn arrange(&mut self) {
+        self.pairs[0].sort_unstable();
+        self.walls[0].sort_unstable();
     }
 
     /// Moves, over `h` seconds, all bodies that touch something or may be touched by someone who does,

@@ -7,11 +7,11 @@
 //! 1. half a kick by the slow force `F(x_n)`, social forces and attraction, kept in `fx`, `fy`;
 //! 2. half a drift: free bodies go straight on, bodies in contact by the flow of `contact`;
 //! 3. driving and noise over the whole step, an Ornstein-Uhlenbeck process solved exactly:
-//!    v <- v0 e + (v - v0 e) c + s sqrt(1 - c^2) xi with c = exp(-dt/tau), s the stationary standard
+//!    `v <- v0 e + (v - v0 e) c + s sqrt(1 - c^2) xi` with c = exp(-dt/tau), s the stationary standard
 //!    deviation, xi two standard normal numbers: relaxation and variance are exact for every dt;
 //! 4. half a drift as in 2;
 //! 5. the driver looks at the new positions (`drive::steer`);
-//! 6. the slow force F(x_{n+1}), and half a kick by it.
+//! 6. the slow force `F(x_{n+1})`, and half a kick by it.
 //!
 //! One evaluation of the slow force and one draw of noise a step, second order in dt. Where a lane has no
 //! body near another, 1 to 4 run in one pass; where it has, in several with the same operations, so the
@@ -25,11 +25,11 @@ use super::noise::Draws;
 use super::process;
 use super::program::Program;
 use super::state::{Layout, State};
-use super::vector::{bits, load, mask, splat, store_in};
+use super::vector::{Doubles, Part, Words, parts};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::math;
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, Simd, dispatch, f64x8, u64x8};
+use fearless_simd::{Level, Simd, dispatch};
 
 /// No human reaches this speed: a trial that does has diverged, m/s.
 pub const TOP_SPEED: f64 = 15.0;
@@ -144,9 +144,11 @@ fn find_forces<S: Simd>(simd: S, program: &Program, state: &State, scratch: &mut
 #[inline(always)]
 fn keep_forces<S: Simd>(simd: S, state: &mut State, scratch: &Scratch, lanes: Mask) {
     for (block, sum) in scratch.sums.iter().enumerate() {
-        let here = mask(simd, state.present[block] & lanes);
-        store_in(simd, here, load(simd, &sum.x), &mut state.fx[block]);
-        store_in(simd, here, load(simd, &sum.y), &mut state.fy[block]);
+        for part in parts(simd) {
+            let here = part.mask(state.present[block] & lanes);
+            part.store_in(here, part.load(&sum.x), &mut state.fx[block]);
+            part.store_in(here, part.load(&sum.y), &mut state.fy[block]);
+        }
     }
 }
 
@@ -165,134 +167,185 @@ fn move_on<S: Simd>(simd: S, program: &Program, state: &mut State, scratch: &mut
     let occupied = slots(state.layout, state.occupied);
     scratch.moving.clear();
     scratch.moving.extend(state.present.iter().map(|&here| here & occupied));
-    let mover = Mover { simd, program, draws: Draws::at(state), half: splat(simd, 0.5 * program.dt) };
+    let mover = Mover { program, draws: Draws::at(state), half: 0.5 * program.dt };
     if scratch.contacts.is_empty() {
         for (block, &moving) in scratch.moving.iter().enumerate() {
             if !moving.is_empty() {
-                mover.whole(state, block, moving);
+                let words = mover.words(state, block);
+                for part in parts(simd) {
+                    mover.whole(part, state, block, moving, &words);
+                }
             }
         }
         return;
     }
     for (block, &moving) in scratch.moving.iter().enumerate() {
-        mover.kick(state, block, moving);
+        for part in parts(simd) {
+            Mover::kick(part, state, block, moving);
+        }
     }
     mover.contact(state, scratch);
     for (block, &moving) in scratch.moving.iter().enumerate() {
-        mover.drift_and_drive(state, block, moving, scratch.moved[block]);
+        let words = mover.words(state, block);
+        for part in parts(simd) {
+            mover.drift_and_drive(part, state, block, (moving, scratch.moved[block]), &words);
+        }
     }
     mover.contact(state, scratch);
     for (block, &moving) in scratch.moving.iter().enumerate() {
-        let start = (scratch.seen_x[block], scratch.seen_y[block]);
-        mover.drift_and_measure(state, block, moving, scratch.moved[block], start);
+        let start = (&scratch.seen_x[block], &scratch.seen_y[block]);
+        for part in parts(simd) {
+            mover.drift_and_measure(part, state, block, (moving, scratch.moved[block]), start);
+        }
     }
 }
 
-/// The parts of a step, for one block of slots each.
-struct Mover<'a, S: Simd> {
-    simd: S,
+/// The parts of a step, for one part of one block of slots each.
+struct Mover<'a> {
     program: &'a Program,
     draws: Draws,
-    half: f64x8<S>,
+    /// Half a step, s.
+    half: f64,
 }
 
-impl<S: Simd> Mover<'_, S> {
+impl Mover<'_> {
+    /// Counter words of the agents of a block.
     #[inline(always)]
-    fn kicked(&self, state: &State, block: usize) -> (f64x8<S>, f64x8<S>) {
-        let l = |lanes: &Lanes| load(self.simd, lanes);
-        let push = l(&state.push[block]);
-        (l(&state.vx[block]) + l(&state.fx[block]) * push, l(&state.vy[block]) + l(&state.fy[block]) * push)
+    fn words(&self, state: &State, block: usize) -> [u64; LANES] {
+        let words = &self.program.forces.noise_words;
+        match state.layout {
+            Layout::Trials => [u64::from(words[block]); LANES],
+            Layout::Agents => {
+                let own = &words[block * LANES..];
+                let mut out = [0; LANES];
+                for (out, &word) in out.iter_mut().zip(own) {
+                    *out = u64::from(word);
+                }
+                out
+            }
+        }
     }
 
     /// Driving and noise over the whole step.
     #[inline(always)]
-    fn driven(&self, state: &State, block: usize, (vx, vy): (f64x8<S>, f64x8<S>)) -> (f64x8<S>, f64x8<S>) {
-        let l = |lanes: &Lanes| load(self.simd, lanes);
-        let (decay, drive) = (l(&state.decay[block]), l(&state.drive[block]));
-        let (wish_x, wish_y) = (drive * l(&state.ex[block]), drive * l(&state.ey[block]));
+    fn driven<S: Simd>(
+        &self,
+        part: Part<S>,
+        state: &State,
+        block: usize,
+        words: Words<S>,
+        (vx, vy): (Doubles<S>, Doubles<S>),
+    ) -> (Doubles<S>, Doubles<S>) {
+        let (decay, drive) = (part.load(&state.decay[block]), part.load(&state.drive[block]));
+        let (wish_x, wish_y) = (drive * part.load(&state.ex[block]), drive * part.load(&state.ey[block]));
         let (vx, vy) = (wish_x + (vx - wish_x) * decay, wish_y + (vy - wish_y) * decay);
         if !self.program.forces.noisy {
             return (vx, vy);
         }
-        let word = |agent: usize| u64::from(self.program.forces.noise_words.get(agent).copied().unwrap_or(0));
-        let words = match state.layout {
-            Layout::Trials => u64x8::splat(self.simd, word(block)),
-            Layout::Agents => u64x8::from_fn(self.simd, |lane| word(block * LANES + lane)),
-        };
-        let (nx, ny) = self.draws.normals(self.simd, words);
-        let kick = l(&state.kick[block]);
+        let (nx, ny) = self.draws.normals(part, words);
+        let kick = part.load(&state.kick[block]);
         (vx + kick * nx, vy + kick * ny)
-    }
-
-    #[inline(always)]
-    fn travel(&self, state: &mut State, block: usize, moving: Mask, dx: f64x8<S>, dy: f64x8<S>) {
-        let way = load(self.simd, &state.travelled[block]) + (dx * dx + dy * dy).sqrt();
-        store_in(self.simd, mask(self.simd, moving), way, &mut state.travelled[block]);
     }
 
     /// All of it for a block without contact.
     #[inline(always)]
-    fn whole(&self, state: &mut State, block: usize, moving: Mask) {
-        let simd = self.simd;
-        let here = mask(simd, moving);
-        let (vx, vy) = self.kicked(state, block);
-        let (x0, y0) = (load(simd, &state.x[block]), load(simd, &state.y[block]));
-        let (x, y) = (x0 + vx * self.half, y0 + vy * self.half);
-        let (vx, vy) = self.driven(state, block, (vx, vy));
-        let (x, y) = (x + vx * self.half, y + vy * self.half);
-        self.travel(state, block, moving, x - x0, y - y0);
-        store_in(simd, here, x, &mut state.x[block]);
-        store_in(simd, here, y, &mut state.y[block]);
-        store_in(simd, here, vx, &mut state.vx[block]);
-        store_in(simd, here, vy, &mut state.vy[block]);
+    fn whole<S: Simd>(
+        &self,
+        part: Part<S>,
+        state: &mut State,
+        block: usize,
+        moving: Mask,
+        words: &[u64; LANES],
+    ) {
+        let here = part.mask(moving);
+        let half = part.c(self.half);
+        let (vx, vy) = kicked(part, state, block);
+        let (x0, y0) = (part.load(&state.x[block]), part.load(&state.y[block]));
+        let (x, y) = (x0 + vx * half, y0 + vy * half);
+        let (vx, vy) = self.driven(part, state, block, part.words(words), (vx, vy));
+        let (x, y) = (x + vx * half, y + vy * half);
+        travel(part, state, block, moving, (x - x0, y - y0));
+        part.store_in(here, x, &mut state.x[block]);
+        part.store_in(here, y, &mut state.y[block]);
+        part.store_in(here, vx, &mut state.vx[block]);
+        part.store_in(here, vy, &mut state.vy[block]);
     }
 
     #[inline(always)]
-    fn kick(&self, state: &mut State, block: usize, moving: Mask) {
-        let here = mask(self.simd, moving);
-        let (vx, vy) = self.kicked(state, block);
-        store_in(self.simd, here, vx, &mut state.vx[block]);
-        store_in(self.simd, here, vy, &mut state.vy[block]);
+    fn kick<S: Simd>(part: Part<S>, state: &mut State, block: usize, moving: Mask) {
+        let (vx, vy) = kicked(part, state, block);
+        part.store_in(part.mask(moving), vx, &mut state.vx[block]);
+        part.store_in(part.mask(moving), vy, &mut state.vy[block]);
     }
 
     fn contact(&self, state: &mut State, scratch: &mut Scratch) {
         scratch.moved.clear();
         scratch.moved.resize(state.x.len(), Mask::NONE);
-        scratch.contacts.advance(self.program, state, &mut scratch.moved, 0.5 * self.program.dt);
+        scratch.contacts.advance(self.program, state, &mut scratch.moved, self.half);
     }
 
     #[inline(always)]
-    fn drift_and_drive(&self, state: &mut State, block: usize, moving: Mask, moved: Mask) {
-        let simd = self.simd;
-        let free = mask(simd, moving & !moved);
-        let here = mask(simd, moving);
-        let (vx, vy) = (load(simd, &state.vx[block]), load(simd, &state.vy[block]));
-        let (x, y) = (load(simd, &state.x[block]), load(simd, &state.y[block]));
-        store_in(simd, free, x + vx * self.half, &mut state.x[block]);
-        store_in(simd, free, y + vy * self.half, &mut state.y[block]);
-        let (vx, vy) = self.driven(state, block, (vx, vy));
-        store_in(simd, here, vx, &mut state.vx[block]);
-        store_in(simd, here, vy, &mut state.vy[block]);
+    fn drift<S: Simd>(&self, part: Part<S>, state: &mut State, block: usize, free: Mask) {
+        let (free, half) = (part.mask(free), part.c(self.half));
+        let x = part.load(&state.x[block]) + part.load(&state.vx[block]) * half;
+        let y = part.load(&state.y[block]) + part.load(&state.vy[block]) * half;
+        part.store_in(free, x, &mut state.x[block]);
+        part.store_in(free, y, &mut state.y[block]);
     }
 
     #[inline(always)]
-    fn drift_and_measure(
+    fn drift_and_drive<S: Simd>(
         &self,
+        part: Part<S>,
         state: &mut State,
         block: usize,
-        moving: Mask,
-        moved: Mask,
-        (x0, y0): (Lanes, Lanes),
+        (moving, moved): (Mask, Mask),
+        words: &[u64; LANES],
     ) {
-        let simd = self.simd;
-        let free = mask(simd, moving & !moved);
-        let (vx, vy) = (load(simd, &state.vx[block]), load(simd, &state.vy[block]));
-        let (x, y) = (load(simd, &state.x[block]), load(simd, &state.y[block]));
-        store_in(simd, free, x + vx * self.half, &mut state.x[block]);
-        store_in(simd, free, y + vy * self.half, &mut state.y[block]);
-        let (x, y) = (load(simd, &state.x[block]), load(simd, &state.y[block]));
-        self.travel(state, block, moving, x - load(simd, &x0), y - load(simd, &y0));
+        self.drift(part, state, block, moving & !moved);
+        let v = (part.load(&state.vx[block]), part.load(&state.vy[block]));
+        let (vx, vy) = self.driven(part, state, block, part.words(words), v);
+        part.store_in(part.mask(moving), vx, &mut state.vx[block]);
+        part.store_in(part.mask(moving), vy, &mut state.vy[block]);
     }
+
+    #[inline(always)]
+    fn drift_and_measure<S: Simd>(
+        &self,
+        part: Part<S>,
+        state: &mut State,
+        block: usize,
+        (moving, moved): (Mask, Mask),
+        (x0, y0): (&Lanes, &Lanes),
+    ) {
+        self.drift(part, state, block, moving & !moved);
+        let dx = part.load(&state.x[block]) - part.load(x0);
+        let dy = part.load(&state.y[block]) - part.load(y0);
+        travel(part, state, block, moving, (dx, dy));
+    }
+}
+
+/// Velocities after half a kick.
+#[inline(always)]
+fn kicked<S: Simd>(part: Part<S>, state: &State, block: usize) -> (Doubles<S>, Doubles<S>) {
+    let push = part.load(&state.push[block]);
+    (
+        part.load(&state.vx[block]) + part.load(&state.fx[block]) * push,
+        part.load(&state.vy[block]) + part.load(&state.fy[block]) * push,
+    )
+}
+
+/// Adds to the ways gone.
+#[inline(always)]
+fn travel<S: Simd>(
+    part: Part<S>,
+    state: &mut State,
+    block: usize,
+    moving: Mask,
+    (dx, dy): (Doubles<S>, Doubles<S>),
+) {
+    let way = part.load(&state.travelled[block]) + (dx * dx + dy * dy).sqrt();
+    part.store_in(part.mask(moving), way, &mut state.travelled[block]);
 }
 
 /// The slow force at the new positions, half a kick by it, and a look at what came out.
@@ -301,21 +354,21 @@ fn finish<S: Simd>(simd: S, program: &Program, state: &mut State, scratch: &mut 
     find_forces(simd, program, state, scratch);
     let occupied = slots(state.layout, state.occupied);
     keep_forces(simd, state, scratch, occupied);
-    let top = splat(simd, TOP_SPEED * TOP_SPEED);
     let mut diverged = Mask::NONE;
     for block in 0..state.x.len() {
         // Someone who has just entered has not made this step.
         let moving = state.present[block] & scratch.moving[block];
-        let here = mask(simd, moving);
-        let push = load(simd, &state.push[block]);
-        let vx = load(simd, &state.vx[block]) + load(simd, &state.fx[block]) * push;
-        let vy = load(simd, &state.vy[block]) + load(simd, &state.fy[block]) * push;
-        store_in(simd, here, vx, &mut state.vx[block]);
-        store_in(simd, here, vy, &mut state.vy[block]);
-        // The difference of a position to itself is no number where the position is none.
-        let (x, y) = (load(simd, &state.x[block]), load(simd, &state.y[block]));
-        let sound = (vx * vx + vy * vy + ((x - x) + (y - y))).simd_le(top);
-        diverged |= !bits(sound) & moving;
+        for part in parts(simd) {
+            let here = part.mask(moving);
+            let (vx, vy) = kicked(part, state, block);
+            part.store_in(here, vx, &mut state.vx[block]);
+            part.store_in(here, vy, &mut state.vy[block]);
+            // Zero times a position is no number where the position is none or infinite.
+            let (x, y) = (part.load(&state.x[block]), part.load(&state.y[block]));
+            let square = vx * vx + vy * vy + (x + y) * part.c(0.0);
+            let sound = square.simd_le(part.c(TOP_SPEED * TOP_SPEED));
+            diverged |= part.bits(here & !sound);
+        }
     }
     state.diverged |= match state.layout {
         Layout::Trials => diverged,

@@ -1,8 +1,8 @@
 //! What the forces need to know of a scenario, the same in every trial.
 //!
 //! Social repulsion of a body i by a body j (Helbing, Farkas, Vicsek 2000; Given-Wilson et al. 2017,
-//! equation (3)): `A_i` `exp((r_i` + `r_j` - `d)/B_i`) Lambda n, with n from j to i and, after Helbing and
-//! Johansson, Lambda = lambda + (1 - lambda)(1 + cos phi)/2, cos phi = -n . `e_i`, `e_i` the *desired*
+//! equation (3)): `A_i exp((r_i + r_j - d)/B_i) Lambda n`, with n from j to i and, after Helbing and
+//! Johansson, Lambda = lambda + (1 - lambda)(1 + cos phi)/2, cos phi = -n . e, e the *desired*
 //! direction (so Lambda is defined in someone who stands). It is zero by definition beyond touching
 //! distance + `REACH` B, where e^-16 of the force at touch is left: so both layouts sum the same pairs.
 //! A second exponential term of the same form acts between bodies alone. Walls: equation (5) without its

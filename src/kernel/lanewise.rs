@@ -9,11 +9,12 @@ use super::contact::Contacts;
 use super::forces::{Forces, REACH};
 use super::program::Program;
 use super::state::State;
-use super::vector::{bits, exp2, larger, load, mask, smaller, splat, store};
+use super::vector::{Doubles, Part, exp2, larger, parts};
+use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::random::TrialKey;
+use fearless_simd::Simd;
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f64x8};
 use std::f64::consts::LOG2_E;
 
 /// Way that an agent may go before the list is made anew, m; twice that is added to the reach.
@@ -34,14 +35,36 @@ struct Walker {
 
 /// One exponential term: A Lambda = `even` - n . (`ex`, `ey`).
 #[derive(Clone, Copy, Debug, Default)]
-struct Term {
+pub(super) struct Term {
     /// A (1 + lambda)/2
-    even: Lanes,
+    pub(super) even: Lanes,
     /// A (1 - lambda)/2 times the desired direction
-    ex: Lanes,
-    ey: Lanes,
+    pub(super) ex: Lanes,
+    pub(super) ey: Lanes,
     /// log2(e)/B
-    rate: Lanes,
+    pub(super) rate: Lanes,
+}
+
+impl Term {
+    /// From A and lambda, B where it is needed, and the desired direction.
+    #[inline(always)]
+    pub(super) fn fill<S: Simd>(
+        &mut self,
+        part: Part<S>,
+        (a, lambda): (&Lanes, &Lanes),
+        b: Option<&Lanes>,
+        (ex, ey): (&Lanes, &Lanes),
+    ) {
+        let (a, lambda) = (part.load(a), part.load(lambda));
+        let (half, one) = (part.c(0.5), part.c(1.0));
+        let odd = a * (half * (one - lambda));
+        part.store(a * (half * (one + lambda)), &mut self.even);
+        part.store(odd * part.load(ex), &mut self.ex);
+        part.store(odd * part.load(ey), &mut self.ey);
+        if let Some(b) = b {
+            part.store(part.c(LOG2_E) / part.load(b), &mut self.rate);
+        }
+    }
 }
 
 /// A force, N.
@@ -71,6 +94,8 @@ pub(super) struct Lanewise {
     walkers: Vec<Walker>,
     seconds: Vec<Term>,
     neighbours: Neighbours,
+    /// How far beyond touching each body is felt or may be touched, with the skin, m.
+    reaches: Vec<Lanes>,
     stale: bool,
 }
 
@@ -93,51 +118,60 @@ impl Lanewise {
         let forces = &program.forces;
         self.prepare(simd, forces, state);
         if self.is_outdated(simd, state) {
-            self.find_neighbours(simd, forces, state);
+            simd.vectorize(
+                #[inline(always)]
+                || self.find_neighbours(simd, forces, state),
+            );
         }
         sums.clear();
         sums.resize(state.agents, Sum::default());
         contacts.clear(state.agents);
-        match (forces.shared, forces.second) {
-            (Some(shared), false) => {
-                self.pairs::<S, true, false>(simd, forces, shared, sums, contacts);
-            }
-            (Some(shared), true) => self.pairs::<S, true, true>(simd, forces, shared, sums, contacts),
-            (None, false) => self.pairs::<S, false, false>(simd, forces, (1.0, 1.0), sums, contacts),
-            (None, true) => self.pairs::<S, false, true>(simd, forces, (1.0, 1.0), sums, contacts),
+        let all = forces.shared.unwrap_or((1.0, 1.0));
+        // A function each: four loops in one would share its registers badly.
+        match (forces.shared.is_some(), forces.second) {
+            (true, false) => simd.vectorize(
+                #[inline(always)]
+                || self.pairs::<S, true, false>(simd, forces, all, sums, contacts),
+            ),
+            (true, true) => simd.vectorize(
+                #[inline(always)]
+                || self.pairs::<S, true, true>(simd, forces, all, sums, contacts),
+            ),
+            (false, false) => simd.vectorize(
+                #[inline(always)]
+                || self.pairs::<S, false, false>(simd, forces, all, sums, contacts),
+            ),
+            (false, true) => simd.vectorize(
+                #[inline(always)]
+                || self.pairs::<S, false, true>(simd, forces, all, sums, contacts),
+            ),
         }
-        self.walls(simd, forces, state, sums, contacts);
-        cohesion(simd, forces, state, sums);
+        simd.vectorize(
+            #[inline(always)]
+            || self.walls(simd, forces, state, sums, contacts),
+        );
+        cohesion(forces, state, sums);
     }
 
     #[inline(always)]
     fn prepare<S: Simd>(&mut self, simd: S, forces: &Forces, state: &State) {
-        let half = splat(simd, 0.5);
-        let one = splat(simd, 1.0);
-        let log2_e = splat(simd, LOG2_E);
         self.walkers.resize(state.agents, Walker::default());
         if forces.second {
             self.seconds.resize(state.agents, Term::default());
         }
-        let term = |a: &Lanes, lambda: &Lanes, b: &Lanes, ex: f64x8<S>, ey: f64x8<S>, out: &mut Term| {
-            let (a, lambda) = (load(simd, a), load(simd, lambda));
-            let odd = a * (half * (one - lambda));
-            store(a * (half * (one + lambda)), &mut out.even);
-            store(odd * ex, &mut out.ex);
-            store(odd * ey, &mut out.ey);
-            if forces.shared.is_none() {
-                store(log2_e / load(simd, b), &mut out.rate);
-            }
-        };
         for (i, walker) in self.walkers.iter_mut().enumerate() {
             walker.x = state.x[i];
             walker.y = state.y[i];
-            let here = mask(simd, state.present[i] & state.occupied);
-            store(here.select(load(simd, &state.radius[i]), splat(simd, f64::NEG_INFINITY)), &mut walker.r);
-            let (ex, ey) = (load(simd, &state.ex[i]), load(simd, &state.ey[i]));
-            term(&state.a[i], &state.lambda[i], &state.b[i], ex, ey, &mut walker.term);
-            if forces.second {
-                term(&state.a2[i], &state.lambda2[i], &state.b2[i], ex, ey, &mut self.seconds[i]);
+            for part in parts(simd) {
+                let here = part.mask(state.present[i] & state.occupied);
+                let radius = here.select(part.load(&state.radius[i]), part.c(f64::NEG_INFINITY));
+                part.store(radius, &mut walker.r);
+                let e = (&state.ex[i], &state.ey[i]);
+                let own = forces.shared.is_none();
+                walker.term.fill(part, (&state.a[i], &state.lambda[i]), own.then_some(&state.b[i]), e);
+                if let Some(second) = self.seconds.get_mut(i) {
+                    second.fill(part, (&state.a2[i], &state.lambda2[i]), own.then_some(&state.b2[i]), e);
+                }
             }
         }
     }
@@ -148,16 +182,25 @@ impl Lanewise {
         if self.stale || old.x.len() != state.agents || old.keys != state.keys {
             return true;
         }
-        let mut farthest = splat(simd, 0.0);
         let mut newcomers = Mask::NONE;
-        for i in 0..state.agents {
-            let here = state.present[i] & state.occupied;
-            newcomers |= here & !old.present[i];
-            let dx = load(simd, &state.x[i]) - load(simd, &old.x[i]);
-            let dy = load(simd, &state.y[i]) - load(simd, &old.y[i]);
-            farthest = larger(dx * dx + dy * dy, farthest);
+        for (&now, &then) in state.present.iter().zip(&old.present) {
+            newcomers |= now & state.occupied & !then;
         }
-        !newcomers.is_empty() || farthest.simd_gt(splat(simd, SLACK * SLACK)).any_true()
+        if !newcomers.is_empty() {
+            return true;
+        }
+        for part in parts(simd) {
+            let mut farthest = part.c(0.0);
+            for i in 0..state.agents {
+                let dx = part.load(&state.x[i]) - part.load(&old.x[i]);
+                let dy = part.load(&state.y[i]) - part.load(&old.y[i]);
+                farthest = larger::<S>(dx * dx + dy * dy, farthest);
+            }
+            if farthest.simd_gt(part.c(SLACK * SLACK)).any_true() {
+                return true;
+            }
+        }
+        false
     }
 
     #[inline(always)]
@@ -173,31 +216,44 @@ impl Lanewise {
         list.others.clear();
         list.first_surface.clear();
         list.surfaces.clear();
-        let reach = splat(simd, REACH);
-        let reach_of = |i: usize| {
-            let mut range = load(simd, &state.b[i]);
-            if forces.second {
-                range = larger(range, load(simd, &state.b2[i]));
+        let reaches = &mut self.reaches;
+        reaches.resize(state.agents, Lanes::ZERO);
+        for (i, reach) in reaches.iter_mut().enumerate() {
+            for part in parts(simd) {
+                let mut range = part.load(&state.b[i]);
+                if forces.second {
+                    range = larger::<S>(range, part.load(&state.b2[i]));
+                }
+                let far = larger::<S>(part.c(REACH) * range, part.c(forces.margin));
+                part.store(far + part.c(2.0 * SLACK), reach);
             }
-            larger(reach * range, splat(simd, forces.margin)) + splat(simd, 2.0 * SLACK)
-        };
-        for (i, walker) in self.walkers.iter().enumerate() {
-            let (x, y, r) = (load(simd, &walker.x), load(simd, &walker.y), load(simd, &walker.r));
-            let own = reach_of(i);
+        }
+        for (i, one) in self.walkers.iter().enumerate() {
             list.first.push(list.others.len() as u32);
             for (j, other) in self.walkers.iter().enumerate().skip(i + 1) {
-                let dx = x - load(simd, &other.x);
-                let dy = y - load(simd, &other.y);
-                let limit = r + load(simd, &other.r) + larger(own, reach_of(j));
-                let limit = larger(limit, splat(simd, 0.0));
-                if (dx * dx + dy * dy).simd_lt(limit * limit).any_true() {
+                let mut near = false;
+                for part in parts(simd) {
+                    let dx = part.load(&one.x) - part.load(&other.x);
+                    let dy = part.load(&one.y) - part.load(&other.y);
+                    let touch = part.load(&one.r) + part.load(&other.r);
+                    let reach = larger::<S>(part.load(&reaches[i]), part.load(&reaches[j]));
+                    let limit = larger::<S>(touch + reach, part.c(0.0));
+                    near |= (dx * dx + dy * dy).simd_lt(limit * limit).any_true();
+                }
+                if near {
                     list.others.push(j as u32);
                 }
             }
             list.first_surface.push(list.surfaces.len() as u32);
             for (k, surface) in forces.surfaces.iter().enumerate() {
-                let limit = larger(r + own, splat(simd, 0.0));
-                if surface.squared_distance_to_bounds(simd, x, y).simd_lt(limit * limit).any_true() {
+                let mut near = false;
+                for part in parts(simd) {
+                    let limit = larger::<S>(part.load(&one.r) + part.load(&reaches[i]), part.c(0.0));
+                    let square =
+                        surface.squared_distance_to_bounds(part, part.load(&one.x), part.load(&one.y));
+                    near |= square.simd_lt(limit * limit).any_true();
+                }
+                if near {
                     list.surfaces.push(k as u32);
                 }
             }
@@ -221,58 +277,58 @@ impl Lanewise {
         let seconds = if SECOND { &self.seconds[..n] } else { &[] };
         let sums = &mut sums[..n];
         let first = &self.neighbours.first[..=n];
-        let (rate, rate2) = (splat(simd, LOG2_E / shared.0), splat(simd, LOG2_E / shared.1));
-        let tiny = splat(simd, 1e-300);
-        let one = splat(simd, 1.0);
-        let minus_margin = splat(simd, -forces.margin);
-        for i in 0..n {
-            let w = &walkers[i];
-            let (x, y, r) = (load(simd, &w.x), load(simd, &w.y), load(simd, &w.r));
-            let own = Loaded::of(simd, &w.term);
-            let own2 = if SECOND { Loaded::of(simd, &seconds[i]) } else { own };
-            let (mut fx, mut fy) = (load(simd, &sums[i].x), load(simd, &sums[i].y));
-            for &j in &self.neighbours.others[first[i] as usize..first[i + 1] as usize] {
-                let o = &walkers[j as usize];
-                let dx = x - load(simd, &o.x);
-                let dy = y - load(simd, &o.y);
-                let d = (dx * dx + dy * dy + tiny).sqrt();
-                let q = one / d;
-                let gap = r + load(simd, &o.r) - d;
-                let touching = gap.simd_gt(minus_margin);
-                if touching.any_true() {
-                    contacts.push_pair(i as u32, j, bits(touching));
-                }
-                let theirs = Loaded::of(simd, &o.term);
-                let (mut on_i, mut on_j) = if SHARED {
-                    let e = decay(simd, gap * rate) * q;
-                    (e * own.towards(dx, dy, q), e * theirs.away(dx, dy, q))
-                } else {
-                    let factor = q * splat(simd, forces.factor(i, j as usize));
-                    (
-                        decay(simd, gap * own.rate) * factor * own.towards(dx, dy, q),
-                        decay(simd, gap * theirs.rate) * factor * theirs.away(dx, dy, q),
-                    )
-                };
-                if SECOND {
-                    let theirs2 = Loaded::of(simd, &seconds[j as usize]);
-                    if SHARED {
-                        let e = decay(simd, gap * rate2) * q;
-                        on_i += e * own2.towards(dx, dy, q);
-                        on_j += e * theirs2.away(dx, dy, q);
-                    } else {
-                        let factor = q * splat(simd, forces.factor(i, j as usize));
-                        on_i += decay(simd, gap * own2.rate) * factor * own2.towards(dx, dy, q);
-                        on_j += decay(simd, gap * theirs2.rate) * factor * theirs2.away(dx, dy, q);
+        for part in parts(simd) {
+            let (rate, rate2) = (part.c(LOG2_E / shared.0), part.c(LOG2_E / shared.1));
+            let minus_margin = part.c(-forces.margin);
+            for i in 0..n {
+                let w = &walkers[i];
+                let (x, y, r) = (part.load(&w.x), part.load(&w.y), part.load(&w.r));
+                let own = Loaded::of(part, &w.term);
+                let own2 = if SECOND { Loaded::of(part, &seconds[i]) } else { own };
+                let (mut fx, mut fy) = (part.load(&sums[i].x), part.load(&sums[i].y));
+                for &j in &self.neighbours.others[first[i] as usize..first[i + 1] as usize] {
+                    let o = &walkers[j as usize];
+                    let dx = x - part.load(&o.x);
+                    let dy = y - part.load(&o.y);
+                    let d = (dx * dx + dy * dy + part.c(1e-300)).sqrt();
+                    let q = part.c(1.0) / d;
+                    let gap = r + part.load(&o.r) - d;
+                    let touching = gap.simd_gt(minus_margin);
+                    if touching.any_true() {
+                        contacts.push_pair(i as u32, j, part.bits(touching));
                     }
+                    let theirs = Loaded::of(part, &o.term);
+                    let (mut on_i, mut on_j);
+                    if SHARED {
+                        let e = decay(part, gap * rate) * q;
+                        on_i = e * own.towards(dx, dy, q);
+                        on_j = e * theirs.away(dx, dy, q);
+                    } else {
+                        let factor = q * part.c(forces.factor(i, j as usize));
+                        on_i = decay(part, gap * own.rate) * factor * own.towards(dx, dy, q);
+                        on_j = decay(part, gap * theirs.rate) * factor * theirs.away(dx, dy, q);
+                    }
+                    if SECOND {
+                        let theirs2 = Loaded::of(part, &seconds[j as usize]);
+                        if SHARED {
+                            let e = decay(part, gap * rate2) * q;
+                            on_i += e * own2.towards(dx, dy, q);
+                            on_j += e * theirs2.away(dx, dy, q);
+                        } else {
+                            let factor = q * part.c(forces.factor(i, j as usize));
+                            on_i += decay(part, gap * own2.rate) * factor * own2.towards(dx, dy, q);
+                            on_j += decay(part, gap * theirs2.rate) * factor * theirs2.away(dx, dy, q);
+                        }
+                    }
+                    fx += on_i * dx;
+                    fy += on_i * dy;
+                    let sum = &mut sums[j as usize];
+                    part.store(part.load(&sum.x) - on_j * dx, &mut sum.x);
+                    part.store(part.load(&sum.y) - on_j * dy, &mut sum.y);
                 }
-                fx += on_i * dx;
-                fy += on_i * dy;
-                let sum = &mut sums[j as usize];
-                store(load(simd, &sum.x) - on_j * dx, &mut sum.x);
-                store(load(simd, &sum.y) - on_j * dy, &mut sum.y);
+                part.store(fx, &mut sums[i].x);
+                part.store(fy, &mut sums[i].y);
             }
-            store(fx, &mut sums[i].x);
-            store(fy, &mut sums[i].y);
         }
     }
 
@@ -286,29 +342,33 @@ impl Lanewise {
         contacts: &mut Contacts,
     ) {
         let list = &self.neighbours;
-        let minus_margin = splat(simd, -forces.margin);
         for (i, walker) in self.walkers.iter().enumerate() {
             let near = &list.surfaces[list.first_surface[i] as usize..list.first_surface[i + 1] as usize];
             if near.is_empty() {
                 continue;
             }
-            let (x, y, r) = (load(simd, &walker.x), load(simd, &walker.y), load(simd, &walker.r));
-            let a = load(simd, &state.a[i]);
-            let rate = splat(simd, LOG2_E) / load(simd, &state.b[i]);
-            let (mut fx, mut fy) = (load(simd, &sums[i].x), load(simd, &sums[i].y));
-            for &k in near {
-                let nearest = forces.surfaces[k as usize].nearest(simd, x, y);
-                let gap = r - nearest.distance;
-                let touching = gap.simd_gt(minus_margin);
-                if touching.any_true() {
-                    contacts.push_wall(i as u32, k, bits(touching));
+            for part in parts(simd) {
+                let (x, y, r) = (part.load(&walker.x), part.load(&walker.y), part.load(&walker.r));
+                let a = part.load(&state.a[i]);
+                let rate = match forces.shared {
+                    Some((b, _)) => part.c(LOG2_E / b),
+                    None => part.load(&walker.term.rate),
+                };
+                let (mut fx, mut fy) = (part.load(&sums[i].x), part.load(&sums[i].y));
+                for &k in near {
+                    let nearest = forces.surfaces[k as usize].nearest(part, x, y);
+                    let gap = r - nearest.distance;
+                    let touching = gap.simd_gt(part.c(-forces.margin));
+                    if touching.any_true() {
+                        contacts.push_wall(i as u32, k, part.bits(touching));
+                    }
+                    let f = a * decay(part, gap * rate);
+                    fx += f * nearest.nx;
+                    fy += f * nearest.ny;
                 }
-                let f = a * decay(simd, gap * rate);
-                fx += f * nearest.nx;
-                fy += f * nearest.ny;
+                part.store(fx, &mut sums[i].x);
+                part.store(fy, &mut sums[i].y);
             }
-            store(fx, &mut sums[i].x);
-            store(fy, &mut sums[i].y);
         }
     }
 }
@@ -316,80 +376,69 @@ impl Lanewise {
 /// A term in registers.
 #[derive(Clone, Copy)]
 struct Loaded<S: Simd> {
-    even: f64x8<S>,
-    ex: f64x8<S>,
-    ey: f64x8<S>,
-    rate: f64x8<S>,
+    even: Doubles<S>,
+    ex: Doubles<S>,
+    ey: Doubles<S>,
+    rate: Doubles<S>,
 }
 
 impl<S: Simd> Loaded<S> {
     #[inline(always)]
-    fn of(simd: S, term: &Term) -> Self {
+    fn of(part: Part<S>, term: &Term) -> Self {
         Self {
-            even: load(simd, &term.even),
-            ex: load(simd, &term.ex),
-            ey: load(simd, &term.ey),
-            rate: load(simd, &term.rate),
+            even: part.load(&term.even),
+            ex: part.load(&term.ex),
+            ey: part.load(&term.ey),
+            rate: part.load(&term.rate),
         }
     }
 
     /// A Lambda in a body that the vector (dx, dy) = n/q points to.
     #[inline(always)]
-    fn towards(&self, dx: f64x8<S>, dy: f64x8<S>, q: f64x8<S>) -> f64x8<S> {
+    fn towards(&self, dx: Doubles<S>, dy: Doubles<S>, q: Doubles<S>) -> Doubles<S> {
         self.even - (dx * self.ex + dy * self.ey) * q
     }
 
     /// A Lambda in a body that it points away from.
     #[inline(always)]
-    fn away(&self, dx: f64x8<S>, dy: f64x8<S>, q: f64x8<S>) -> f64x8<S> {
+    fn away(&self, dx: Doubles<S>, dy: Doubles<S>, q: Doubles<S>) -> Doubles<S> {
         self.even + (dx * self.ex + dy * self.ey) * q
     }
 }
 
 /// 2^power, zero beyond the reach (and where an agent is absent: there the gap is minus infinity).
 #[inline(always)]
-pub(super) fn decay<S: Simd>(simd: S, power: f64x8<S>) -> f64x8<S> {
-    let in_reach = power.simd_gt(splat(simd, -REACH * LOG2_E));
-    in_reach.select(exp2(simd, smaller(power, splat(simd, LARGEST_POWER))), splat(simd, 0.0))
+pub(super) fn decay<S: Simd>(part: Part<S>, power: Doubles<S>) -> Doubles<S> {
+    let in_reach = power.simd_gt(part.c(-REACH * LOG2_E));
+    // What `min` makes of NaN does not matter: it is not in reach.
+    in_reach.select(exp2(part, power.min(part.c(LARGEST_POWER))), part.c(0.0))
 }
 
 /// Attraction within groups (Moussaid, Perozo, Garnier, Helbing, Theraulaz 2010): a constant force towards
-/// the centroid of the n members present, on those farther than (n - 1)/2 m from it.
-#[inline(always)]
-pub(super) fn cohesion<S: Simd>(simd: S, forces: &Forces, state: &State, sums: &mut [Sum]) {
-    let c = |value: f64| splat(simd, value);
+/// the centroid of the n members present, on those farther than (n - 1)/2 m from it. Scalar: groups are
+/// few, and this is the same for both layouts.
+pub(super) fn cohesion(forces: &Forces, state: &State, sums: &mut [Sum]) {
     for group in &forces.groups {
-        let (mut n, mut cx, mut cy) = (c(0.0), c(0.0), c(0.0));
-        for &member in &group.members {
-            let i = member as usize;
-            let here = mask(simd, state.present_in(i) & state.occupied);
-            n += here.select(c(1.0), c(0.0));
-            cx += here.select(load(simd, &state.lanes_of(&state.x, i)), c(0.0));
-            cy += here.select(load(simd, &state.lanes_of(&state.y, i)), c(0.0));
-        }
-        let some = n.simd_gt(c(0.0)).select(n, c(1.0));
-        let (cx, cy) = (cx / some, cy / some);
-        let free = c(0.5) * (n - c(1.0));
-        for &member in &group.members {
-            let i = member as usize;
-            let here = mask(simd, state.present_in(i) & state.occupied);
-            let dx = cx - load(simd, &state.lanes_of(&state.x, i));
-            let dy = cy - load(simd, &state.lanes_of(&state.y, i));
-            let d = (dx * dx + dy * dy).sqrt();
-            let pulled = d.simd_gt(free) & d.simd_gt(c(0.0)) & here;
-            let pull = pulled.select(c(group.attraction) / pulled.select(d, c(1.0)), c(0.0));
-            let (px, py) = (pull * dx, pull * dy);
-            let slot = state.slot(i, 0);
-            match state.layout {
-                super::state::Layout::Trials => {
-                    let sum = &mut sums[slot.block];
-                    store(load(simd, &sum.x) + px, &mut sum.x);
-                    store(load(simd, &sum.y) + py, &mut sum.y);
-                }
-                super::state::Layout::Agents => {
-                    let sum = &mut sums[slot.block];
-                    sum.x.0[slot.lane] += px.to_array()[0];
-                    sum.y.0[slot.lane] += py.to_array()[0];
+        for lane in state.occupied.iter() {
+            let place = |member: u32| {
+                let slot = state.slot(member as usize, lane);
+                let here = state.present[slot.block].has(slot.lane);
+                here.then(|| {
+                    (slot, Vec2::new(state.x[slot.block].0[slot.lane], state.y[slot.block].0[slot.lane]))
+                })
+            };
+            let (mut n, mut sum) = (0.0, Vec2::zeros());
+            for (_, at) in group.members.iter().filter_map(|&member| place(member)) {
+                n += 1.0;
+                sum += at;
+            }
+            for (slot, at) in group.members.iter().filter_map(|&member| place(member)) {
+                let way = sum / n - at;
+                let distance = way.dot(&way).sqrt();
+                if distance > 0.0 && distance > 0.5 * (n - 1.0) {
+                    let pull = way * (group.attraction / distance);
+                    sums[slot.block].x.0[slot.lane] += pull.x;
+                    sums[slot.block].y.0[slot.lane] += pull.y;
                 }
             }
         }

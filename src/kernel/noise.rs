@@ -5,11 +5,11 @@
 //! One draw a step, whatever happens inside the step.
 
 use super::state::{Layout, State};
-use super::vector::{ln, sin_cos_turn, splat, words};
+use super::vector::{Doubles, Part, Words, ln, sin_cos_turn};
 use crate::base::lanes::LANES;
 use crate::base::random::{Purpose, Stream, TrialKey};
+use fearless_simd::Simd;
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f64x8, u64x8};
 
 const MULTIPLIER: [u64; 2] = [0xD251_1F53, 0xCD9E_8D57];
 const WEYL: [u32; 2] = [0x9E37_79B9, 0xBB67_AE85];
@@ -56,46 +56,57 @@ impl Draws {
 
     /// The two 64-bit words of the slots whose agents have the counter words `agents`.
     #[inline(always)]
-    fn words<S: Simd>(&self, simd: S, agents: u64x8<S>) -> (u64x8<S>, u64x8<S>) {
-        let load = |array: &[u64; LANES]| u64x8::load_array_ref(simd, array);
-        let low = words(simd, LOW);
-        let mut c = [load(&self.counter[0]), agents, load(&self.counter[1]), load(&self.counter[2])];
+    fn words<S: Simd>(&self, part: Part<S>, agents: Words<S>) -> (Words<S>, Words<S>) {
+        let low = part.word(LOW);
+        let mut c = [
+            part.words(&self.counter[0]),
+            agents,
+            part.words(&self.counter[1]),
+            part.words(&self.counter[2]),
+        ];
         // Above its low half a counter word may hold anything between rounds: the product takes the low
         // half only, and the end masks it off.
         for key in &self.keys {
-            let a = (c[0] & low) * words(simd, MULTIPLIER[0]);
-            let b = (c[2] & low) * words(simd, MULTIPLIER[1]);
-            c = [(b >> 32) ^ c[1] ^ load(&key[0]), b, (a >> 32) ^ c[3] ^ load(&key[1]), a];
+            let a = (c[0] & low) * part.word(MULTIPLIER[0]);
+            let b = (c[2] & low) * part.word(MULTIPLIER[1]);
+            c = [(b >> 32) ^ (c[1] ^ part.words(&key[0])), b, (a >> 32) ^ (c[3] ^ part.words(&key[1])), a];
         }
         ((c[0] & low) | (c[1] << 32), (c[2] & low) | (c[3] << 32))
     }
 
     /// Two standard normal numbers for each slot.
     #[inline(always)]
-    pub(super) fn normals<S: Simd>(&self, simd: S, agents: u64x8<S>) -> (f64x8<S>, f64x8<S>) {
-        let (first, second) = self.words(simd, agents);
-        let radius = (splat(simd, -2.0) * ln(simd, unit_open(simd, first))).sqrt();
-        let (sin, cos) = sin_cos_turn(simd, unit_open(simd, second));
+    pub(super) fn normals<S: Simd>(&self, part: Part<S>, agents: Words<S>) -> (Doubles<S>, Doubles<S>) {
+        let (first, second) = self.words(part, agents);
+        let radius = (part.c(-2.0) * ln(part, unit_open(part, first))).sqrt();
+        let (sin, cos) = sin_cos_turn(part, unit_open(part, second));
         (radius * cos, radius * sin)
     }
 }
 
 /// `base::random::unit_open`.
 #[inline(always)]
-pub(super) fn unit_open<S: Simd>(simd: S, word: u64x8<S>) -> f64x8<S> {
-    let one_to_two = f64x8::from_bits((word >> 12) | words(simd, 0x3ff0_0000_0000_0000));
-    (one_to_two - splat(simd, 1.0)) + splat(simd, f64::EPSILON * 0.5)
+pub(super) fn unit_open<S: Simd>(part: Part<S>, word: Words<S>) -> Doubles<S> {
+    let one_to_two = Doubles::<S>::from_bits((word >> 12) | part.word(0x3ff0_0000_0000_0000));
+    (one_to_two - part.c(1.0)) + part.c(f64::EPSILON * 0.5)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::vector::parts;
     use super::*;
+    use crate::base::lanes::Lanes;
     use fearless_simd::{Level, dispatch};
 
     #[inline(always)]
     fn pair<S: Simd>(simd: S, draws: &Draws, agents: [u64; LANES]) -> ([f64; LANES], [f64; LANES]) {
-        let (a, b) = draws.normals(simd, u64x8::load_array(simd, agents));
-        (a.to_array(), b.to_array())
+        let (mut out_a, mut out_b) = (Lanes::ZERO, Lanes::ZERO);
+        for part in parts(simd) {
+            let (a, b) = draws.normals(part, part.words(&agents));
+            part.store(a, &mut out_a);
+            part.store(b, &mut out_b);
+        }
+        (out_a.0, out_b.0)
     }
 
     #[test]

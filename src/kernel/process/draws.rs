@@ -3,11 +3,12 @@
 //! The counter of a lane is (tick, entity, `Purpose::Process`, trial, branch), its key the seed; so the
 //! numbers are those of `Stream::uniform_pair(tick)`, to the last bit (a test holds it).
 
-use crate::base::lanes::LANES;
-use crate::base::random::{Purpose, Stream, philox, unit_open};
+use crate::base::lanes::{LANES, Lanes};
+use crate::base::random::{self, Purpose, Stream, philox};
 use crate::kernel::state::State;
-use crate::kernel::vector::words;
-use fearless_simd::{Level, Simd, dispatch, prelude::*, u64x8};
+use crate::kernel::noise::unit_open;
+use crate::kernel::vector::parts;
+use fearless_simd::{Level, Simd, dispatch};
 
 const MULTIPLIER: [u64; 2] = [0xD251_1F53, 0xCD9E_8D57];
 const WEYL: [u32; 2] = [0x9E37_79B9, 0xBB67_AE85];
@@ -49,7 +50,7 @@ impl Draws<'_> {
         counter[1] = self.word;
         let block = philox(counter, stream.key());
         let word = |k: usize| u64::from(block[k]) | u64::from(block[k + 1]) << 32;
-        [unit_open(word(0)), unit_open(word(2))]
+        [random::unit_open(word(0)), random::unit_open(word(2))]
     }
 }
 
@@ -64,19 +65,26 @@ fn all<S: Simd>(simd: S, state: &State, word: u32) -> [[f64; LANES]; 2] {
         counter[2][lane] = (key.index >> 32 & 0xffff) | u64::from(key.branch) << 16;
     }
     let mut key = [state.keys[0].seed as u32, (state.keys[0].seed >> 32) as u32];
-    let load = |array: &[u64; LANES]| u64x8::load_array_ref(simd, array);
-    let low = words(simd, LOW);
-    let mut c = [load(&counter[0]), words(simd, u64::from(word)), load(&counter[1]), load(&counter[2])];
-    // Above its low half a counter word may hold anything between rounds.
-    for _ in 0..ROUNDS {
-        let a = (c[0] & low) * words(simd, MULTIPLIER[0]);
-        let b = (c[2] & low) * words(simd, MULTIPLIER[1]);
-        let keys = [words(simd, u64::from(key[0])), words(simd, u64::from(key[1]))];
-        c = [(b >> 32) ^ c[1] ^ keys[0], b, (a >> 32) ^ c[3] ^ keys[1], a];
+    let mut keys = [[0u64; 2]; ROUNDS];
+    for round in &mut keys {
+        *round = [u64::from(key[0]), u64::from(key[1])];
         key = [key[0].wrapping_add(WEYL[0]), key[1].wrapping_add(WEYL[1])];
     }
-    let open = |word: u64x8<S>| crate::kernel::noise::unit_open(simd, word).to_array();
-    [open((c[0] & low) | (c[1] << 32)), open((c[2] & low) | (c[3] << 32))]
+    let mut out = [Lanes::ZERO; 2];
+    for part in parts(simd) {
+        let low = part.word(LOW);
+        let mut c =
+            [part.words(&counter[0]), part.word(u64::from(word)), part.words(&counter[1]), part.words(&counter[2])];
+        // Above its low half a counter word may hold anything between rounds.
+        for round in &keys {
+            let a = (c[0] & low) * part.word(MULTIPLIER[0]);
+            let b = (c[2] & low) * part.word(MULTIPLIER[1]);
+            c = [(b >> 32) ^ (c[1] ^ part.word(round[0])), b, (a >> 32) ^ (c[3] ^ part.word(round[1])), a];
+        }
+        part.store(unit_open(part, (c[0] & low) | (c[1] << 32)), &mut out[0]);
+        part.store(unit_open(part, (c[2] & low) | (c[3] << 32)), &mut out[1]);
+    }
+    out.map(|lanes| lanes.0)
 }
 
 #[cfg(test)]

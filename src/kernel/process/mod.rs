@@ -42,7 +42,6 @@ enum Form {
 pub struct Processes {
     /// Values of the variables at the start.
     pub(super) initial: Vec<f64>,
-    domains: Vec<Domain>,
     machines: Vec<Machine>,
     /// Guards, probabilities and updates of those that are no tables.
     code: Option<Code>,
@@ -86,7 +85,6 @@ impl Processes {
         let coded = machines.iter().any(|machine| matches!(machine.form, Form::Code(_)));
         Self {
             initial: processes.variables.iter().map(|v| v.initial).collect(),
-            domains,
             machines,
             code: coded.then(|| Code::compile(scenario, &atoms, &signals)),
             level: Level::new(),

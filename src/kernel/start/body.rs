@@ -2,7 +2,8 @@
 
 use super::Fault;
 use crate::base::random::{Purpose, Stream, TrialKey, name_hash};
-use crate::model::{Agent, AgentId, Law};
+use crate::model::law::Ready;
+use crate::model::{Agent, AgentId, Body};
 
 /// Parameters of one agent of one trial, SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,10 +36,10 @@ struct Drawing {
 }
 
 impl Drawing {
-    fn value(&mut self, name: &'static str, draw: u32, law: &Law, low: f64) -> f64 {
-        let value = match law {
-            Law::Constant(value) => *value,
-            Law::Random { .. } => law.draw(self.stream.uniform(draw)),
+    fn value(&mut self, name: &'static str, draw: u32, law: &Ready, low: f64) -> f64 {
+        let value = match law.constant() {
+            Some(value) => value,
+            None => law.draw(self.stream.uniform(draw)),
         };
         if !(value >= low && value.is_finite()) && self.fault.is_none() {
             self.fault = Some(Fault::Parameter { agent: self.agent, name, value });
@@ -47,13 +48,51 @@ impl Drawing {
     }
 }
 
+/// The laws of a body, made ready to draw from in every trial.
+#[derive(Clone, Debug)]
+pub(super) struct Laws {
+    mass: Ready,
+    radius: Ready,
+    speed: Ready,
+    tau: Ready,
+    a: Ready,
+    b: Ready,
+    lambda: Ready,
+    a2: Ready,
+    b2: Ready,
+    lambda2: Ready,
+    k1: Ready,
+    k2: Ready,
+    noise: Ready,
+}
+
+impl Laws {
+    /// Makes the laws of a body ready.
+    pub(super) fn new(body: &Body) -> Self {
+        Self {
+            mass: body.mass.ready(),
+            radius: body.radius.ready(),
+            speed: body.speed.ready(),
+            tau: body.tau.ready(),
+            a: body.a.ready(),
+            b: body.b.ready(),
+            lambda: body.lambda.ready(),
+            a2: body.a2.ready(),
+            b2: body.b2.ready(),
+            lambda2: body.lambda2.ready(),
+            k1: body.k1.ready(),
+            k2: body.k2.ready(),
+            noise: body.noise.ready(),
+        }
+    }
+}
+
 impl Parameters {
     /// Draws them for one agent of one trial. A particle has the mass of its persons, their common force
     /// and the smaller noise of their mean.
-    pub(super) fn draw(id: AgentId, agent: &Agent, key: TrialKey) -> Result<Self, Fault> {
+    pub(super) fn draw(id: AgentId, agent: &Agent, body: &Laws, key: TrialKey) -> Result<Self, Fault> {
         let stream = Stream::of(key, agent.entity, Purpose::Parameter);
         let mut from = Drawing { stream, agent: id, fault: None };
-        let body = &*agent.body;
         let persons = agent.particle.map_or(1, |particle| particle.persons.max(1));
         let mut mass = 0.0;
         for person in 0..persons {

@@ -93,7 +93,7 @@ pub fn load(
     };
     let mut bodies = Vec::with_capacity(scenario.agents.len());
     for (k, agent) in scenario.agents.iter().enumerate() {
-        bodies.push(Parameters::draw(AgentId(k as u32), agent, key)?);
+        bodies.push(Parameters::draw(AgentId(k as u32), agent, program.starts.laws(k), key)?);
     }
     let radii: Vec<f64> = bodies.iter().map(|body| body.radius).collect();
     let placed = placement::place(scenario, &program.starts, key, radii)?;

@@ -1,12 +1,14 @@
 //! Where everyone starts: points first, then at random without overlaps.
 
+use super::body::Laws;
 use super::crowd::Crowd;
 use super::relaxation::{self, Room};
 use super::sampler::Sampler;
 use super::{Fault, Loaded};
 use crate::base::geometry::{Bounds, Shape, Vec2};
 use crate::base::random::{Purpose, Stream, TrialKey};
-use crate::model::{AgentId, Obstacle, Position, Scenario, Scene};
+use crate::model::{AgentId, Body, Obstacle, Position, Scenario, Scene};
+use std::sync::Arc;
 
 /// How often a free place is sought by chance.
 const ATTEMPTS: u32 = 96;
@@ -23,6 +25,10 @@ pub struct Starts {
     /// The order of placement.
     order: Vec<u32>,
     barriers: Vec<Option<Bounds>>,
+    /// Laws of the bodies, equal ones once.
+    laws: Vec<Laws>,
+    /// Whose laws are which.
+    laws_of: Vec<u32>,
 }
 
 impl Starts {
@@ -30,6 +36,17 @@ impl Starts {
     pub fn new(scenario: &Scenario) -> Self {
         let mut out = Self::default();
         let mut shapes: Vec<&Shape> = Vec::new();
+        let mut bodies: Vec<&Arc<Body>> = Vec::new();
+        for agent in &scenario.agents {
+            // Members of one declaration share their body.
+            let known = bodies.iter().rposition(|known| Arc::ptr_eq(known, &agent.body));
+            let index = known.unwrap_or_else(|| {
+                bodies.push(&agent.body);
+                out.laws.push(Laws::new(&agent.body));
+                bodies.len() - 1
+            });
+            out.laws_of.push(index as u32);
+        }
         for agent in &scenario.agents {
             out.sampler_of.push(match &agent.start.position {
                 Position::Within(shape) => {
@@ -50,6 +67,13 @@ impl Starts {
         out.order = all.clone().filter(fixed).chain(all.filter(|k| !fixed(k))).collect();
         out.barriers = scenario.scene.barriers.iter().map(|barrier| bounds(&barrier.obstacle)).collect();
         out
+    }
+}
+
+impl Starts {
+    /// The laws of an agent's body.
+    pub(super) fn laws(&self, agent: usize) -> &Laws {
+        &self.laws[self.laws_of[agent] as usize]
     }
 }
 

@@ -62,42 +62,102 @@ fn kept(family: &Family, low: f64, high: f64) -> Vec<(f64, f64)> {
     }
 }
 
-impl Law {
+/// A law made ready to draw from many times: what does not depend on the uniform number is computed once.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ready(Form);
+
+#[derive(Clone, Debug, PartialEq)]
+enum Form {
+    /// A constant.
+    Constant(f64),
+    /// A continuous law on its whole support.
+    Free(Shape),
+    /// A continuous law cut to an interval: the tail at its lower end, the mass inside, and whether the upper
+    /// tail is used.
+    Cut { shape: Shape, tail: f64, mass: f64, upper: bool, low: f64, high: f64 },
+    /// A discrete law.
+    Discrete { family: Family, low: f64, high: f64 },
+}
+
+impl Ready {
+    /// The constant, if it is one.
+    pub const fn constant(&self) -> Option<f64> {
+        match self.0 {
+            Form::Constant(value) => Some(value),
+            _ => None,
+        }
+    }
+
     /// The value that `uniform`, in (0, 1), is mapped to. NaN for parameters that `validate` refuses.
     pub fn draw(&self, uniform: f64) -> f64 {
-        let (family, low, high) = match self {
-            Self::Constant(value) => return *value,
-            Self::Random { family, low, high } => (family, *low, *high),
-        };
-        let free = low == f64::NEG_INFINITY && high == f64::INFINITY;
-        let value = match (Shape::of(family), family) {
-            (Some(shape), _) if free => shape.quantile(uniform),
-            (Some(shape), _) => {
-                let (mass, upper) = mass(shape, low, high, false);
-                if upper {
-                    shape.upper_quantile(shape.tails(low).upper() - uniform * mass)
-                } else {
-                    shape.quantile(shape.tails(low).lower() + uniform * mass)
-                }
+        let (value, low, high) = match &self.0 {
+            Form::Constant(value) => return *value,
+            Form::Free(shape) => return shape.quantile(uniform),
+            Form::Cut { shape, tail, mass, upper: true, low, high } => {
+                (shape.upper_quantile(tail - uniform * mass), *low, *high)
             }
-            (None, Family::UniformInt { low: first, high: last }) => {
-                let (first, last) = clip(*first, *last, low, high);
-                return discrete::whole_number(first, last, uniform);
+            Form::Cut { shape, tail, mass, upper: false, low, high } => {
+                (shape.quantile(tail + uniform * mass), *low, *high)
             }
-            (None, Family::Poisson { mean }) => {
-                let below = low.ceil() - 1.0;
-                let mass = interval_mass(family, low, high);
-                if below >= *mean {
-                    let q = discrete::poisson_upper(*mean, below) - uniform * mass;
-                    discrete::poisson_upper_quantile(*mean, q)
-                } else {
-                    family.quantile(discrete::poisson_cdf(*mean, below) + uniform * mass)
-                }
-            }
-            (None, _) => return discrete::pick(&kept(family, low, high), uniform),
+            Form::Discrete { family, low, high } => match discrete_draw(family, *low, *high, uniform) {
+                Discrete::Exact(value) => return value,
+                Discrete::Rounded(value) => (value, *low, *high),
+            },
         };
         // Rounding never leaves the interval.
         math::at_most(math::at_least(value, low), high)
+    }
+}
+
+/// A draw of a discrete law, and whether it can lie outside of the interval by rounding.
+enum Discrete {
+    Exact(f64),
+    Rounded(f64),
+}
+
+fn discrete_draw(family: &Family, low: f64, high: f64, uniform: f64) -> Discrete {
+    match family {
+        Family::UniformInt { low: first, high: last } => {
+            let (first, last) = clip(*first, *last, low, high);
+            Discrete::Exact(discrete::whole_number(first, last, uniform))
+        }
+        Family::Poisson { mean } => {
+            let below = low.ceil() - 1.0;
+            let mass = interval_mass(family, low, high);
+            Discrete::Rounded(if below >= *mean {
+                let q = discrete::poisson_upper(*mean, below) - uniform * mass;
+                discrete::poisson_upper_quantile(*mean, q)
+            } else {
+                family.quantile(discrete::poisson_cdf(*mean, below) + uniform * mass)
+            })
+        }
+        _ => Discrete::Exact(discrete::pick(&kept(family, low, high), uniform)),
+    }
+}
+
+impl Law {
+    /// The law made ready to draw from many times.
+    pub fn ready(&self) -> Ready {
+        let (family, low, high) = match self {
+            Self::Constant(value) => return Ready(Form::Constant(*value)),
+            Self::Random { family, low, high } => (family, *low, *high),
+        };
+        let free = low == f64::NEG_INFINITY && high == f64::INFINITY;
+        Ready(match Shape::of(family) {
+            Some(shape) if free => Form::Free(shape),
+            Some(shape) => {
+                let (mass, upper) = mass(shape, low, high, false);
+                let tails = shape.tails(low);
+                let tail = if upper { tails.upper() } else { tails.lower() };
+                Form::Cut { shape, tail, mass, upper, low, high }
+            }
+            None => Form::Discrete { family: family.clone(), low, high },
+        })
+    }
+
+    /// The value that `uniform`, in (0, 1), is mapped to. NaN for parameters that `validate` refuses.
+    pub fn draw(&self, uniform: f64) -> f64 {
+        self.ready().draw(uniform)
     }
 
     /// The mean of what is drawn.

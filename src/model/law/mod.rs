@@ -9,6 +9,8 @@ mod draw;
 mod family;
 mod validate;
 
+pub use draw::Ready;
+
 /// How a number of each agent and trial comes about.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Law {

@@ -1,0 +1,197 @@
+//! The forces of both layouts against a plain, slow sum written from the equations.
+#![allow(clippy::disallowed_methods, reason = "the platform's functions are the reference")]
+
+mod crowd;
+
+use crowd::{Crowd, Numbers, Person, crowd, p, person, wall};
+use smc::base::geometry::{Polygon, Segment, Shape, Vec2};
+use smc::base::lanes::Mask;
+use smc::kernel::{Layout, Scratch, State, refresh};
+use smc::model::{Obstacle, Particle};
+
+/// Given-Wilson et al. 2017, equations (3) and (5) without contact, and the attraction of groups.
+fn plain(scene: &Crowd, i: usize) -> Vec2 {
+    let one = &scene.people[i];
+    if !one.present {
+        return p(0.0, 0.0);
+    }
+    let mut force = p(0.0, 0.0);
+    for (j, other) in scene.people.iter().enumerate() {
+        if j == i || !other.present {
+            continue;
+        }
+        let d = one.at - other.at;
+        let (distance, n) = (d.norm(), d.normalize());
+        let gap = one.radius + other.radius - distance;
+        let cos_phi = -n.dot(&one.towards);
+        let term = |a: f64, b: f64, lambda: f64| {
+            let weight = lambda + (1.0 - lambda) * (1.0 + cos_phi) / 2.0;
+            if gap > -16.0 * b { a * (gap / b).exp() * weight } else { 0.0 }
+        };
+        let factor = match (one.particle, other.particle) {
+            (Some(a), Some(b)) if a.persons > 1 && b.persons > 1 => 0.5 * (a.repulsion + b.repulsion),
+            _ => 1.0,
+        };
+        force += n * (factor * (term(one.a, one.b, one.lambda) + term(one.a2, one.b2, one.lambda2)));
+    }
+    for obstacle in &scene.obstacles {
+        let distance = obstacle.distance(one.at);
+        // The normal is the gradient of the distance.
+        let (h, at) = (1e-6, one.at);
+        let slope = |step: Vec2| (obstacle.distance(at + step) - obstacle.distance(at - step)) / (2.0 * h);
+        let n = p(slope(p(h, 0.0)), slope(p(0.0, h)));
+        if one.radius - distance > -16.0 * one.b {
+            force += n * (one.a * ((one.radius - distance) / one.b).exp());
+        }
+    }
+    for (members, attraction) in &scene.groups {
+        if members.contains(&(i as u32)) {
+            let here: Vec<Vec2> = members
+                .iter()
+                .map(|&k| &scene.people[k as usize])
+                .filter(|m| m.present)
+                .map(|m| m.at)
+                .collect();
+            let way = here.iter().sum::<Vec2>() / here.len() as f64 - one.at;
+            if way.norm() > 0.5 * (here.len() as f64 - 1.0) {
+                force += way.normalize() * *attraction;
+            }
+        }
+    }
+    force
+}
+
+#[derive(Clone, Copy)]
+struct Kind {
+    own_b: bool,
+    second: bool,
+    ties: bool,
+}
+
+fn random(n: usize, side: f64, kind: Kind, rng: &mut Numbers) -> Crowd {
+    let people = (0..n).map(|k| {
+        let angle: f64 = rng.between(-3.2, 3.2);
+        Person {
+            towards: p(angle.cos(), angle.sin()),
+            radius: rng.between(0.2, 0.3),
+            a: rng.between(1500.0, 2500.0),
+            b: if kind.own_b { rng.between(0.05, 0.3) } else { 0.08 },
+            lambda: rng.between(0.0, 1.0),
+            a2: if kind.second { rng.between(10.0, 50.0) } else { 0.0 },
+            b2: if kind.own_b { rng.between(0.3, 1.0) } else { 0.6 },
+            lambda2: rng.between(0.0, 1.0),
+            present: k % 7 != 3,
+            particle: (kind.ties && k % 3 > 0).then(|| Particle {
+                persons: (k % 3) as u32,
+                repulsion: rng.between(0.1, 2.0),
+                friction: 1e4,
+            }),
+            ..person(p(rng.between(0.0, side), rng.between(0.0, side)))
+        }
+    });
+    let mut scene = crowd(people.collect(), "0.01");
+    let corner = vec![Segment::new(p(0.0, -1.0), p(-1.0, -1.0)), Segment::new(p(-1.0, -1.0), p(-1.0, side))];
+    let mut ring = Polygon::rectangle(p(0.3 * side, 0.3 * side), p(0.6 * side, 0.65 * side));
+    ring.holes.push(Polygon::rectangle(p(0.35 * side, 0.35 * side), p(0.55 * side, 0.6 * side)).outline);
+    scene.obstacles = vec![
+        Obstacle::Wall(corner),
+        wall(p(side + 0.2, 0.0), p(0.5 * side, side + 1.0)),
+        Obstacle::Solid(Shape::Polygon(ring)),
+        Obstacle::Solid(Shape::Circle { centre: p(0.8 * side, 0.2 * side), radius: 0.05 * side }),
+    ];
+    scene.groups = vec![(vec![0, 1, 2, 3], 120.0), (vec![5, 8], 80.0)];
+    scene
+}
+
+#[test]
+fn both_layouts_sum_the_plain_forces() {
+    let mut rng = Numbers(3);
+    for round in 0..24 {
+        let kind = Kind { own_b: round & 1 > 0, second: round & 2 > 0, ties: round & 4 > 0 };
+        let n = 9 + 4 * round;
+        let scene = random(n, (n as f64 * 2.0).sqrt(), kind, &mut rng);
+        for layout in [Layout::Trials, Layout::Agents] {
+            let run = scene.start(layout);
+            for i in 0..n {
+                let (found, wanted) = (run.force(i), plain(&scene, i));
+                let near = (found - wanted).norm() <= 1e-7 * wanted.norm() + 1e-9;
+                assert!(near, "round {round}, {layout:?}, agent {i}: {found} instead of {wanted}");
+            }
+        }
+    }
+}
+
+#[test]
+fn eight_different_trials_side_by_side_each_have_their_own_forces() {
+    let mut rng = Numbers(8);
+    let kind = Kind { own_b: true, second: true, ties: false };
+    let scenes: Vec<Crowd> = (0..8).map(|_| random(30, 7.0, kind, &mut rng)).collect();
+    let program = scenes[0].program();
+    let mut state = State::new(Layout::Trials, 30);
+    let mut scratch = Scratch::new();
+    for (lane, scene) in scenes.iter().enumerate() {
+        scene.load(&mut state, lane, lane as u64);
+        // One after the other: what was refreshed before must stay.
+        refresh(&program, &mut state, &mut scratch, Mask::lane(lane));
+    }
+    for (lane, scene) in scenes.iter().enumerate() {
+        for i in 0..30 {
+            let found = p(state.fx[i].0[lane], state.fy[i].0[lane]);
+            let wanted = plain(scene, i);
+            assert!((found - wanted).norm() <= 1e-7 * wanted.norm() + 1e-9, "lane {lane}, agent {i}");
+        }
+    }
+}
+
+#[test]
+fn lists_and_cells_stay_right_while_people_walk() {
+    // After many steps the kept list must still hold everyone in reach.
+    for layout in [Layout::Trials, Layout::Agents] {
+        let mut scene = crowd::streams(60, 12.0, 6.0, 0.3, "0.02");
+        let mut run = scene.start(layout);
+        for _ in 0..40 {
+            run.steps(7);
+            for (k, one) in scene.people.iter_mut().enumerate() {
+                one.at = run.at(k);
+            }
+            for i in 0..60 {
+                let (found, wanted) = (run.force(i), plain(&scene, i));
+                assert!((found - wanted).norm() <= 1e-7 * wanted.norm() + 1e-9, "{layout:?}, agent {i}");
+            }
+        }
+    }
+}
+
+#[test]
+fn both_layouts_walk_the_same_ways() {
+    let scene = crowd::streams(50, 12.0, 5.0, 0.3, "0.01");
+    let (mut lanes, mut cells) = (scene.start(Layout::Trials), scene.start(Layout::Agents));
+    lanes.steps(100);
+    cells.steps(100);
+    for k in 0..50 {
+        assert!((lanes.at(k) - cells.at(k)).norm() < 1e-9, "agent {k}");
+    }
+}
+
+#[test]
+fn someone_far_away_or_nobody_at_all_does_no_harm() {
+    let mut scene = crowd(vec![person(p(0.0, 0.0)), person(p(0.6, 0.0)), person(p(1e9, -1e9))], "0.01");
+    let near = scene.start(Layout::Agents);
+    assert!((near.force(0) - plain(&scene, 0)).norm() < 1e-9);
+    for one in &mut scene.people {
+        one.present = false;
+    }
+    let mut nobody = scene.start(Layout::Agents);
+    nobody.steps(3);
+    assert_eq!(nobody.at(1), p(0.6, 0.0));
+}
+
+#[test]
+fn two_at_the_same_place_get_a_finite_force() {
+    for layout in [Layout::Trials, Layout::Agents] {
+        let mut run = crowd(vec![person(p(1.0, 1.0)), person(p(1.0, 1.0))], "0.01").start(layout);
+        run.steps(5);
+        assert_eq!(run.at(0), p(1.0, 1.0));
+        assert!(run.state.diverged.is_empty());
+    }
+}
