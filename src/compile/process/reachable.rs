@@ -1,7 +1,7 @@
 //! Errors that some trial could run into, found before any does.
 //!
 //! Where processes depend on nothing but themselves and have few states, all states that a trial can reach
-//! are walked through, breadth first. Where there are too many, or agents come in, errors show while running.
+//! are walked through, breadth first, as far as the horizon. Where there are too many, or agents come in, errors show while running.
 
 use super::super::elaborator::Elaborator;
 use crate::model::process::are_weights;
@@ -41,31 +41,40 @@ impl Elaborator<'_> {
         let mut known = BTreeSet::from([initial.clone()]);
         let mut front = vec![initial];
         let mut made = 0;
-        while let Some(state) = front.pop() {
-            let successors = match successors(processes, spans, &state) {
-                Ok(successors) => successors,
-                Err(End::Unknown) => return,
-                Err(End::Wrong(wrong)) => {
-                    let shown = shown(&processes.variables, &state);
-                    let mut error =
-                        Diagnostic::error(wrong.code, wrong.span, wrong.what).label(format!("where {shown}"));
-                    if let Some(hint) = wrong.hint {
-                        error = error.hint(hint);
+        for _ in 0..self.horizon.0 {
+            let mut next_front = Vec::new();
+            for state in std::mem::take(&mut front) {
+                let successors = match successors(processes, spans, &state) {
+                    Ok(successors) => successors,
+                    Err(End::Unknown) => return,
+                    Err(End::Wrong(wrong)) => return self.note(wrong.diagnostic(&processes.variables, &state)),
+                };
+                made += successors.len();
+                for next in successors {
+                    if !known.contains(&next) {
+                        known.insert(next.clone());
+                        next_front.push(next);
                     }
-                    self.note(error);
+                }
+                if known.len() > MOST_STATES || made > MOST_SUCCESSORS {
                     return;
                 }
-            };
-            made += successors.len();
-            for next in successors {
-                if !known.contains(&next) {
-                    known.insert(next.clone());
-                    front.push(next);
-                }
             }
-            if known.len() > MOST_STATES || made > MOST_SUCCESSORS {
+            if next_front.is_empty() {
                 return;
             }
+            front = next_front;
+        }
+    }
+}
+
+impl Wrong {
+    fn diagnostic(self, variables: &[Variable], state: &[i64]) -> Diagnostic {
+        let error = Diagnostic::error(self.code, self.span, self.what)
+            .label(format!("where {}", shown(variables, state)));
+        match self.hint {
+            Some(hint) => error.hint(hint),
+            None => error,
         }
     }
 }
