@@ -162,6 +162,7 @@ fn scenario(scene: &Scene, own_b: bool) -> Scenario {
         agents: scene.walkers.iter().enumerate().map(agent).collect(),
         groups: Vec::new(),
         moves: Vec::new(),
+        processes: smc::model::Processes::default(),
     }
 }
 

@@ -79,6 +79,7 @@ fn scenario(agents: Vec<Agent>) -> Scenario {
         agents,
         groups: Vec::new(),
         moves: Vec::new(),
+        processes: smc::model::Processes::default(),
     }
 }
 

@@ -50,6 +50,7 @@ fn checks() -> Vec<QueryResult> {
                 passing: false,
                 trial: 17,
                 time: 3.42,
+                unit: "s",
                 what: "gap(oncoming[4]) > 0.1 m".into(),
                 command: "smc simulate corridor.scn --seed 7 --trial 17".into(),
             }],

@@ -2,6 +2,7 @@
 
 use super::dimension::{Dimension, describe};
 use super::number::Number;
+use super::process::Declared;
 use super::symbols::{Scope, ScopeId};
 use super::typed::Typed;
 use crate::base::geometry::{Shape, Vec2};
@@ -35,6 +36,8 @@ pub(super) struct Locals {
     pub(super) names: Vec<(String, Typed)>,
     /// Number of enclosing folds over agents.
     pub(super) running: u32,
+    /// The process, and which of its copies, whose names come next.
+    pub(super) process: Option<(u32, u32)>,
 }
 
 impl Locals {
@@ -62,6 +65,8 @@ pub(super) struct Elaborator<'a> {
     pub(super) shapes: Vec<Option<Lowered<Shape>>>,
     /// The scene.
     pub(super) scene: Scene,
+    /// Processes so far.
+    pub(super) processes: Vec<Declared<'a>>,
     /// Names of the agents so far.
     pub(super) agent_names: Vec<String>,
     /// The clock.
@@ -100,6 +105,7 @@ impl<'a> Elaborator<'a> {
             recordings: Vec::new(),
             shapes: Vec::new(),
             scene: Scene::default(),
+            processes: Vec::new(),
             agent_names: Vec::new(),
             clock: Clock::Steps,
             horizon: Tick(0),

@@ -16,6 +16,7 @@ pub mod nearest;
 mod number;
 mod people;
 pub mod presets;
+mod process;
 mod queries;
 mod reach;
 mod recordings;

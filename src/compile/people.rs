@@ -37,7 +37,7 @@ pub(super) struct People {
 
 impl People {
     /// A range of `size` stable numbers for a declaration; where hashes collide, the next free range.
-    fn entities(&mut self, path: &str, size: u32) -> u32 {
+    pub(super) fn entities(&mut self, path: &str, size: u32) -> u32 {
         const ALL: u64 = 1 << 24;
         let mut first = name_hash(path) % (ALL - u64::from(size).min(ALL - 1));
         while let Some((start, length)) = self.ranges.iter().find(|(start, length)| {

@@ -37,6 +37,8 @@ pub(super) enum Meaning<'a> {
     Kind(&'a KindDecl),
     /// A recording.
     Tracks(usize),
+    /// A process, or an array of them.
+    Process(u32),
     /// Agents that are declared but not elaborated yet.
     Declared,
     /// One agent.
@@ -64,6 +66,7 @@ impl Meaning<'_> {
             Self::Point(_) => "a point",
             Self::Kind(_) => "a kind",
             Self::Tracks(_) => "a recording",
+            Self::Process(_) => "a process",
             Self::Declared | Self::Agent(_) => "an agent",
             Self::Agents { .. } => "a set of agents",
         }

@@ -31,6 +31,15 @@ pub(super) enum Typed {
         /// Whether one body stands for all.
         particle: bool,
     },
+    /// One process.
+    Process {
+        /// Which declaration.
+        process: u32,
+        /// Which copy, from 0.
+        copy: u32,
+    },
+    /// All copies of a process.
+    Processes(u32),
     /// A region.
     Region(RegionId),
     /// A wall or obstacle.
@@ -54,6 +63,8 @@ impl Typed {
             Self::Truth(_) => "a condition".to_owned(),
             Self::Agent(_) => "an agent".to_owned(),
             Self::Agents { .. } => "a set of agents".to_owned(),
+            Self::Process { .. } => "a process".to_owned(),
+            Self::Processes(_) => "an array of processes".to_owned(),
             Self::Region(_) => "a region".to_owned(),
             Self::Barrier(_) => "a wall or obstacle".to_owned(),
             Self::Formula(_) => "a formula over time".to_owned(),

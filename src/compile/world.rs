@@ -5,10 +5,11 @@ use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::files::Files;
 use super::number::Number;
 use super::people::People;
+use super::process::Declared;
 use super::symbols::Meaning;
 use crate::base::tick::{Clock, Tick};
 use crate::model::{Moves, Scenario};
-use crate::syntax::ast::process::{BehaviourDecl, ProcessDecl, SourceDecl};
+use crate::syntax::ast::process::{BehaviourDecl, SourceDecl};
 use crate::syntax::ast::{Item, PropertyFile, PropertyItem, ScenarioFile};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
@@ -47,14 +48,13 @@ impl<'a> Elaborator<'a> {
                     continue;
                 }
                 Item::Title(_) | Item::Setting { .. } | Item::Tracks { .. } | Item::Moves(_) => continue,
-                Item::Process(ProcessDecl { span, .. })
-                | Item::Behaviour(BehaviourDecl { span, .. })
-                | Item::Source(SourceDecl { span, .. }) => {
-                    let error = Diagnostic::error(
-                        "E0213",
-                        *span,
-                        "this version simulates no processes, behaviours and sources",
-                    );
+                Item::Process(decl) => {
+                    self.processes.push(Declared::new(decl));
+                    (&decl.name, Meaning::Process(self.processes.len() as u32 - 1))
+                }
+                Item::Behaviour(BehaviourDecl { span, .. }) | Item::Source(SourceDecl { span, .. }) => {
+                    let error =
+                        Diagnostic::error("E0213", *span, "this version simulates no behaviours and sources");
                     self.note(error);
                     continue;
                 }
@@ -93,6 +93,7 @@ impl<'a> Elaborator<'a> {
 
     fn build(&mut self, file: &'a ScenarioFile, files: &Files) -> Lowered<Scenario> {
         let clock = self.settle_clock(file);
+        let variables = self.settle_variables();
         for item in &file.items {
             if let Item::Tracks { name, format, path } = item {
                 self.tracks(name, format, path, files);
@@ -112,6 +113,7 @@ impl<'a> Elaborator<'a> {
                 _ => {}
             }
         }
+        let processes = self.settle_commands(variables, &mut people);
         let mut moves: Vec<Moves> = Vec::new();
         for item in &file.items {
             if let Item::Moves(decl) = item
@@ -146,6 +148,7 @@ impl<'a> Elaborator<'a> {
             agents: people.agents,
             groups: people.groups,
             moves,
+            processes,
         })
     }
 
@@ -238,11 +241,24 @@ impl<'a> Elaborator<'a> {
             this.note(error);
             failed = true;
         };
-        if step.is_none() {
+        let bodies = file.items.iter().any(|item| {
+            matches!(
+                item,
+                Item::Agents(_) | Item::Group(_) | Item::Source(_) | Item::Moves(_) | Item::Scene(_)
+            )
+        });
+        // Processes alone need no step: they have their own, or rates.
+        let free = step.is_none() && !self.processes.is_empty() && !bodies;
+        if step.is_none() && !free {
             missing(self, "step", "0.02 s");
         }
         if horizon.is_none() {
             missing(self, "horizon", "30 s");
+        }
+        if free {
+            self.clock = if Self::has_timing(file) { Clock::Jumps } else { Clock::Steps };
+            let Some((horizon, _)) = horizon else { return Err(Reported) };
+            return self.settle_horizon(horizon, failed);
         }
         let (Some((horizon, _)), Some((step, _))) = (horizon, step) else { return Err(Reported) };
         let length = self.number_of(step, Dimension::TIME, &Locals::of(0))?;
@@ -254,6 +270,10 @@ impl<'a> Elaborator<'a> {
             ));
         };
         self.clock = Clock::Stepped(exact);
+        self.settle_horizon(horizon, failed)
+    }
+
+    fn settle_horizon(&mut self, horizon: &crate::syntax::ast::Expr, failed: bool) -> Lowered<()> {
         let end = self.time(horizon, &Locals::of(0))?;
         match end {
             Some(Tick(0)) => self.report(Diagnostic::error(

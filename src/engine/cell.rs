@@ -9,6 +9,8 @@ pub enum Reading {
     Value(f64),
     /// The trial diverged, or the column has no value in it.
     Unresolved,
+    /// A process did what the model forbids: the run ends here.
+    Faulty,
 }
 
 /// What one trial yields for one column.
@@ -22,6 +24,12 @@ pub struct Cell {
     pub triggered: u64,
     /// Whether radii were shrunk to part people who overlap at the start.
     pub shrunk: bool,
+}
+
+impl Cell {
+    /// What is known before the first state.
+    pub(super) const BLANK: Self =
+        Self { reading: Reading::Unresolved, steps: 0, triggered: 0, shrunk: false };
 }
 
 /// A trial of a table: which option of which moves is followed, and the index of the trial.

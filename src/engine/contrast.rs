@@ -1,7 +1,7 @@
 //! Comparisons: one measure in two worlds, over pairs of trials with the same random numbers.
 
 use super::budget::Budget;
-use super::cell::{Cell, Item};
+use super::cell::{Cell, Item, Reading};
 use super::executor::{Executor, Job};
 use super::fault::Fault;
 use super::outcome::Stop;
@@ -92,9 +92,14 @@ pub(super) fn run(
         let items: Vec<Item> = (next..next + size).map(|index| Item { advice: None, index }).collect();
         let first = executor.run(&jobs[0], &items, budget)?;
         let second = executor.run(&jobs[1], &items, budget)?;
-        for (item, pair) in items.iter().zip(first.iter().zip(&second)) {
+        for (item, pair) in items.iter().zip(first.rows().zip(second.rows())) {
             let (Some(a), Some(b)) = pair else { break 'sampling halt() };
             let (a, b): (&Cell, &Cell) = (&a[0], &b[0]);
+            for (subject, cell) in sides.subjects.into_iter().zip([a, b]) {
+                if cell.reading == Reading::Faulty {
+                    return Err(super::trial::fault(subject, *item, seed));
+                }
+            }
             for (side, cell) in [a, b].into_iter().enumerate() {
                 tallies[side].add(item.index, cell, range);
                 if let Some(value) = value(cell) {

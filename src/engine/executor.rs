@@ -11,8 +11,42 @@ use crate::logic::Invalid;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
-/// Cells of a round, by place of the item; `None` for trials that were not finished in time.
-pub type Cells = Vec<Option<Vec<Cell>>>;
+/// Cells of a round, by place of the item.
+#[derive(Clone, Debug, Default)]
+pub struct Cells {
+    /// Number of columns.
+    width: usize,
+    cells: Vec<Cell>,
+    /// Which trials were finished in time.
+    finished: Vec<bool>,
+}
+
+impl Cells {
+    /// Room for a round.
+    pub fn new(items: usize, width: usize) -> Self {
+        Self { width, cells: vec![Cell::BLANK; items * width], finished: vec![false; items] }
+    }
+
+    /// The trial at a place is finished. A place beyond the round, or a row of another width, is ignored.
+    pub fn put(&mut self, place: usize, row: &[Cell]) {
+        if let Some(finished) = self.finished.get_mut(place)
+            && row.len() == self.width
+        {
+            *finished = true;
+            self.cells[place * self.width..][..self.width].copy_from_slice(row);
+        }
+    }
+
+    /// The cells of a trial, one a column; `None` if it was not finished in time.
+    pub fn row(&self, place: usize) -> Option<&[Cell]> {
+        (*self.finished.get(place)?).then(|| &self.cells[place * self.width..][..self.width])
+    }
+
+    /// The rows in order.
+    pub fn rows(&self) -> impl Iterator<Item = Option<&[Cell]>> {
+        (0..self.finished.len()).map(|place| self.row(place))
+    }
+}
 
 /// Runs rounds of trials.
 pub trait Executor: Sync {
@@ -97,7 +131,7 @@ impl Executor for Threads {
         let lanes = (self.width(job) / threads).max(1);
         // No more workers than there is work for.
         let workers = threads.min(items.len().div_ceil(lanes)).max(1);
-        let work = || -> Result<Vec<Finished>, Invalid> {
+        let work = || -> Result<Finished, Invalid> {
             let mut worker = job.worker()?;
             let mut take = || {
                 let place = next.fetch_add(1, Ordering::Relaxed);
@@ -107,15 +141,18 @@ impl Executor for Threads {
             job.keep(worker);
             Ok(finished)
         };
-        let results: Vec<Result<Vec<Finished>, Invalid>> = if workers == 1 {
+        let results: Vec<Result<Finished, Invalid>> = if workers == 1 {
             vec![work()]
         } else {
-            self.pool.broadcast(|context| if context.index() < workers { work() } else { Ok(Vec::new()) })
+            self.pool
+                .broadcast(|context| if context.index() < workers { work() } else { Ok(Finished::default()) })
         };
-        let mut cells: Cells = vec![None; items.len()];
+        let width = job.columns.len();
+        let mut cells = Cells::new(items.len(), width);
         for result in results {
-            for (place, row) in result? {
-                cells[place] = Some(row);
+            let finished = result?;
+            for (k, place) in finished.places.iter().enumerate() {
+                cells.put(*place, &finished.cells[k * width..][..width]);
             }
         }
         Ok(cells)

@@ -17,6 +17,9 @@ pub enum Fault {
     /// People that cannot be placed.
     #[error("{0}")]
     Placement(String),
+    /// A trial in which the model is wrong.
+    #[error("{0}")]
+    Model(String),
     /// No threads can be started.
     #[error("no threads can be started: {0}")]
     Threads(String),

@@ -13,6 +13,7 @@ mod session;
 pub mod subject;
 mod survey;
 mod tally;
+mod trial;
 mod watch;
 mod witness;
 mod words;

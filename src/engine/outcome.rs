@@ -246,8 +246,10 @@ pub struct Witness {
     pub passing: bool,
     /// Index of the trial.
     pub trial: u64,
-    /// When the formula was decided, s (steps where steps have no length).
+    /// When the formula was decided.
     pub time: f64,
+    /// Unit of the time: `s`, or `steps` where steps have no length.
+    pub unit: &'static str,
     /// The atom that decided it, with its agents.
     pub what: String,
     /// Command that shows the trial.

@@ -49,7 +49,7 @@ pub(super) enum Procedure {
 pub(super) fn outcome(cell: &Cell) -> Outcome {
     match cell.reading {
         Reading::Truth(held) => Outcome::from(held),
-        Reading::Value(_) | Reading::Unresolved => Outcome::Unresolved,
+        Reading::Value(_) | Reading::Unresolved | Reading::Faulty => Outcome::Unresolved,
     }
 }
 
@@ -57,7 +57,7 @@ pub(super) fn outcome(cell: &Cell) -> Outcome {
 pub(super) fn value(cell: &Cell) -> Option<f64> {
     match cell.reading {
         Reading::Value(value) => Some(value),
-        Reading::Truth(_) | Reading::Unresolved => None,
+        Reading::Truth(_) | Reading::Unresolved | Reading::Faulty => None,
     }
 }
 

@@ -4,7 +4,7 @@
 //! address of a draw. Given-Wilson et al. 2017, Algorithm 1, is `by okamoto`.
 
 use super::budget::Budget;
-use super::cell::Item;
+use super::cell::{Item, Reading};
 use super::executor::{Executor, Job};
 use super::fault::Fault;
 use super::outcome::Stop;
@@ -182,14 +182,17 @@ pub(super) fn run(
                 }
             }
         }
-        let mut rows = executor.run(&job, &items, budget)?;
+        let rows = executor.run(&job, &items, budget)?;
         let mut complete = true;
         for (share, places) in shares.iter().zip(&places) {
             let mut cells = Vec::with_capacity(places.len());
             let mut broken = false;
             for &place in places {
-                match rows[place].take() {
+                match rows.row(place) {
                     Some(row) if !broken => {
+                        if row[0].reading == Reading::Faulty {
+                            return Err(super::trial::fault(field.subject, items[place], seed));
+                        }
                         tallies[share.arm].add(items[place].index, &row[0], range);
                         if let Some(mean) = means.get_mut(share.arm) {
                             mean.observe(value(&row[0]));

@@ -5,7 +5,8 @@ use super::contrast::{self, Contrast, Sides};
 use super::executor::Executor;
 use super::fault::Fault;
 use super::outcome::{
-    Comparison, Counts, Interval, Kind, QueryResult, RankedOption, Ranking, Run, Side, Status, Stop, Verdict,
+    Comparison, Counts, Failure, Interval, Kind, QueryResult, RankedOption, Ranking, Run, Side, Status, Stop,
+    Verdict,
 };
 use super::procedure::{self, Procedure};
 use super::race::{self, Field, Podium};
@@ -60,24 +61,24 @@ pub fn run(
     }
     let session = Session { call, executor, budget, watch, subjects: &subjects };
     let mut results: Vec<Option<QueryResult>> = asked.iter().map(|_| None).collect();
+    let mut failure = None;
     for at in 0..asked.len() {
         if results[at].is_some() {
             continue;
         }
-        match &asked[at].ask {
-            Ask::Check { measure, .. } | Ask::Estimate { measure, .. } => {
-                // All checks and estimates of a world read the same trials.
-                let world = measure.target.world;
-                let together: Vec<usize> = (at..asked.len())
-                    .filter(|&k| results[k].is_none() && surveyed(&asked[k].ask) == Some(world))
-                    .collect();
-                let queries: Vec<&Query> = together.iter().map(|&k| asked[k]).collect();
-                for (k, result) in together.into_iter().zip(session.survey(&queries, world)?) {
+        let answered = session.answer(&asked, at, &results);
+        match answered {
+            Ok(found) => {
+                for (k, result) in found {
                     results[k] = Some(result);
                 }
             }
-            Ask::Compare { .. } => results[at] = Some(session.compare(asked[at])?),
-            Ask::Rank { .. } => results[at] = Some(session.rank(asked[at])?),
+            // What was decided before stays decided.
+            Err(Fault::Model(reason)) => {
+                failure = Some(Failure::Input(reason));
+                break;
+            }
+            Err(fault) => return Err(fault),
         }
     }
     watch.finished();
@@ -88,7 +89,7 @@ pub fn run(
         results: results.into_iter().flatten().collect(),
         warnings: Vec::new(),
         interrupted: budget.is_interrupted(),
-        failure: None,
+        failure,
         replay: format!("{} --seed {}", call.command, call.seed),
         elapsed_s: budget.elapsed(),
     })
@@ -156,6 +157,28 @@ struct Session<'a> {
 impl Session<'_> {
     fn subject(&self, world: usize) -> Result<&Subject, Fault> {
         self.subjects.get(world).and_then(Option::as_ref).ok_or(Fault::Unsuitable)
+    }
+
+    /// The results of a query, and of those that are answered together with it.
+    fn answer(
+        &self,
+        asked: &[&Query],
+        at: usize,
+        results: &[Option<QueryResult>],
+    ) -> Result<Vec<(usize, QueryResult)>, Fault> {
+        match &asked[at].ask {
+            Ask::Check { measure, .. } | Ask::Estimate { measure, .. } => {
+                // All checks and estimates of a world read the same trials.
+                let world = measure.target.world;
+                let together: Vec<usize> = (at..asked.len())
+                    .filter(|&k| results[k].is_none() && surveyed(&asked[k].ask) == Some(world))
+                    .collect();
+                let queries: Vec<&Query> = together.iter().map(|&k| asked[k]).collect();
+                Ok(together.into_iter().zip(self.survey(&queries, world)?).collect())
+            }
+            Ask::Compare { .. } => Ok(vec![(at, self.compare(asked[at])?)]),
+            Ask::Rank { .. } => Ok(vec![(at, self.rank(asked[at])?)]),
+        }
     }
 
     /// What is known of a query before its first trial.

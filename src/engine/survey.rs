@@ -4,7 +4,7 @@
 //! each trial, so the size of rounds leaves no trace in a result.
 
 use super::budget::Budget;
-use super::cell::Item;
+use super::cell::{Item, Reading};
 use super::executor::{Executor, Job};
 use super::fault::Fault;
 use super::outcome::Stop;
@@ -58,7 +58,7 @@ pub(super) fn run(
         let items: Vec<Item> = (next..next + size).map(|index| Item { advice: None, index }).collect();
         let cells = executor.run(&job, &items, budget)?;
         let mut complete = true;
-        for (item, row) in items.iter().zip(&cells) {
+        for (item, row) in items.iter().zip(cells.rows()) {
             let Some(row) = row else {
                 // What follows an unfinished trial is not looked at: outcomes count in index order.
                 complete = false;
@@ -67,6 +67,9 @@ pub(super) fn run(
             for inquiry in inquiries.iter_mut().filter(|i| i.stop.is_none()) {
                 let Some(place) = job.columns.iter().position(|c| *c == inquiry.column) else { continue };
                 let cell = &row[place];
+                if cell.reading == Reading::Faulty {
+                    return Err(super::trial::fault(subject, *item, seed));
+                }
                 inquiry.tally.add(item.index, cell, inquiry.range);
                 if inquiry.procedure.observe(cell) {
                     let capped = matches!(&inquiry.procedure, Procedure::Mean { threshold: Some(_), .. })

@@ -40,7 +40,7 @@ impl Tally {
                 self.clipped += u64::from(range.is_some_and(|(low, high)| value < low || value > high));
                 return;
             }
-            Reading::Unresolved => {
+            Reading::Unresolved | Reading::Faulty => {
                 self.counts.unresolved += 1;
                 2
             }

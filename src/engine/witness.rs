@@ -6,7 +6,7 @@ use super::session::Call;
 use super::subject::Subject;
 use crate::base::lanes::Mask;
 use crate::base::random::TrialKey;
-use crate::base::tick::Tick;
+use crate::base::tick::{Clock, Tick};
 use crate::kernel::{Readings, Scratch, State, dynamics, start};
 
 /// The witnesses of a column: `first` holds the first failing and the first passing trial.
@@ -80,7 +80,8 @@ fn witness(
         let label = &program.scenario.moves.get(declaration)?.options.get(option)?.0;
         command.push_str(&format!(" --move '{label}'"));
     }
-    Some(Witness { passing, trial, time, what, command })
+    let unit = if program.scenario.clock == Clock::Steps { "steps" } else { "s" };
+    Some(Witness { passing, trial, time, unit, what, command })
 }
 
 /// States kept while a witness is run; those of large crowds are made again instead.

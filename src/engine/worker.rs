@@ -39,8 +39,21 @@ pub(super) struct Worker {
     pub(super) steps: u64,
 }
 
-/// The cells of one finished trial: place of the item, one cell a column.
-pub(super) type Finished = (usize, Vec<Cell>);
+/// Finished trials: the places of their items, and for each as many cells as there are columns.
+#[derive(Debug, Default)]
+pub(super) struct Finished {
+    /// Places of the items.
+    pub(super) places: Vec<usize>,
+    /// The cells, trial by trial.
+    pub(super) cells: Vec<Cell>,
+}
+
+impl Finished {
+    fn push(&mut self, place: usize, cells: &[Cell]) {
+        self.places.push(place);
+        self.cells.extend_from_slice(cells);
+    }
+}
 
 impl Worker {
     /// A worker for some columns of a subject.
@@ -71,11 +84,12 @@ impl Worker {
         seed: u64,
         next: &mut dyn FnMut() -> Option<(usize, Item)>,
         budget: &Budget,
-    ) -> Vec<Finished> {
+    ) -> Finished {
         let program = &subject.program;
-        let mut finished: Vec<Finished> = Vec::new();
-        let mut cells: [Vec<Cell>; LANES] = std::array::from_fn(|_| Vec::new());
-        let blank = Cell { reading: Reading::Unresolved, steps: 0, triggered: 0, shrunk: false };
+        let mut finished = Finished::default();
+        let width = self.columns.len();
+        // Lane by lane, one cell a column.
+        let mut cells = vec![Cell::BLANK; LANES * width];
         let mut exhausted = false;
         let mut rounds = 0u32;
         loop {
@@ -92,22 +106,23 @@ impl Worker {
                             Ok(start) => start.shrunk_pairs > 0,
                             Err(_) => {
                                 // A trial that cannot start is unresolved in every column.
-                                finished.push((place, vec![blank; self.columns.len()]));
+                                finished.places.push(place);
+                                finished.cells.resize(finished.cells.len() + width, Cell::BLANK);
                                 continue;
                             }
                         };
-                        cells[lane] = vec![Cell { shrunk, ..blank }; self.columns.len()];
-                        self.busy[lane] = Some(Busy { place, shrunk, open: self.columns.len() });
+                        cells[lane * width..][..width].fill(Cell { shrunk, ..Cell::BLANK });
+                        self.busy[lane] = Some(Busy { place, shrunk, open: width });
                         loaded |= Mask::lane(lane);
                         for sheet in &mut self.sheets {
                             for monitor in &mut sheet.monitors {
                                 monitor.start(lane);
                             }
                         }
-                        for settled in &mut self.settled {
-                            *settled &= !Mask::lane(lane);
-                        }
                     }
+                }
+                for settled in &mut self.settled {
+                    *settled &= !loaded;
                 }
                 if !loaded.is_empty() {
                     dynamics::refresh(program, &mut self.state, &mut self.scratch, loaded);
@@ -135,8 +150,11 @@ impl Worker {
     }
 
     /// Shows the present states to the monitors and ends trials that are decided.
-    fn observe(&mut self, subject: &Subject, cells: &mut [Vec<Cell>; LANES], finished: &mut Vec<Finished>) {
-        let diverged = self.state.diverged & self.state.occupied;
+    fn observe(&mut self, subject: &Subject, cells: &mut [Cell], finished: &mut Finished) {
+        let width = self.columns.len();
+        // Nothing more can be seen of a trial that diverged, or in which the model is wrong.
+        let faulty = self.state.faulty & self.state.occupied;
+        let diverged = (self.state.diverged & self.state.occupied) | faulty;
         let watched = self.state.occupied & !diverged;
         let mut touched = diverged;
         for (sheet, readings) in self.sheets.iter_mut().zip(&mut self.readings) {
@@ -162,7 +180,7 @@ impl Worker {
                     } else {
                         reading(monitor, subject.columns[self.columns[place]], lane)
                     };
-                    cells[lane][place] = Cell {
+                    cells[lane * width + place] = Cell {
                         reading,
                         steps: self.state.ticks[lane],
                         triggered: triggered(monitor, lane),
@@ -174,12 +192,16 @@ impl Worker {
         for lane in touched.iter() {
             let Some(busy) = self.busy[lane] else { continue };
             if busy.open == 0 || diverged.has(lane) {
-                for cell in &mut cells[lane] {
+                let row = &mut cells[lane * width..][..width];
+                for (cell, settled) in row.iter_mut().zip(&self.settled) {
                     if matches!(cell.reading, Reading::Unresolved) && cell.steps == 0 {
                         cell.steps = self.state.ticks[lane];
                     }
+                    if faulty.has(lane) && !settled.has(lane) {
+                        cell.reading = Reading::Faulty;
+                    }
                 }
-                finished.push((busy.place, std::mem::take(&mut cells[lane])));
+                finished.push(busy.place, row);
                 self.busy[lane] = None;
                 self.state.occupied &= !Mask::lane(lane);
             }

@@ -1,5 +1,7 @@
 //! One step of all trials of a batch.
 //!
+//! Processes come first: they read the state before the step, and so does whoever moves.
+//!
 //! The equation of motion (Given-Wilson et al. 2017, equation (1)) is split symmetrically (Strang 1968):
 //!
 //! 1. half a kick by the slow force `F(x_n)`, social forces and attraction, kept in `fx`, `fy`;
@@ -20,6 +22,7 @@ use super::contact::Contacts;
 use super::drive;
 use super::lanewise::{Lanewise, Sum};
 use super::noise::Draws;
+use super::process;
 use super::program::Program;
 use super::state::{Layout, State};
 use super::vector::{Doubles, Part, Words, parts};
@@ -47,6 +50,7 @@ pub struct Scratch {
     moving: Vec<Mask>,
     /// Slots that contact has moved already.
     moved: Vec<Mask>,
+    processes: process::Scratch,
 }
 
 impl Default for Scratch {
@@ -73,6 +77,7 @@ impl Scratch {
             seen_y: Vec::new(),
             moving: Vec::new(),
             moved: Vec::new(),
+            processes: process::Scratch::default(),
         }
     }
 }
@@ -80,6 +85,9 @@ impl Scratch {
 /// Makes freshly loaded lanes ready for their first step: what follows from their parameters, and the
 /// forces at their present positions. Other lanes keep their bytes.
 pub fn refresh(program: &Program, state: &mut State, scratch: &mut Scratch, lanes: Mask) {
+    if state.agents == 0 {
+        return;
+    }
     let dt = program.dt;
     for block in 0..state.x.len() {
         for lane in slots(state.layout, lanes).iter() {
@@ -98,6 +106,13 @@ pub fn refresh(program: &Program, state: &mut State, scratch: &mut Scratch, lane
 
 /// One step of all occupied lanes.
 pub fn step(program: &Program, state: &mut State, scratch: &mut Scratch) {
+    program.processes.step(program.layout, state, &mut scratch.processes);
+    if state.agents == 0 {
+        for (lane, tick) in state.ticks.iter_mut().enumerate() {
+            *tick += u64::from(state.occupied.has(lane));
+        }
+        return;
+    }
     dispatch!(scratch.level, simd => move_on(simd, program, state, scratch));
     for lane in state.occupied.iter() {
         state.ticks[lane] += 1;

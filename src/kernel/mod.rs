@@ -12,6 +12,7 @@ pub mod dynamics;
 pub mod forces;
 mod lanewise;
 mod noise;
+pub mod process;
 pub mod program;
 pub mod start;
 pub mod state;

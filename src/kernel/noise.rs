@@ -86,7 +86,7 @@ impl Draws {
 
 /// `base::random::unit_open`.
 #[inline(always)]
-fn unit_open<S: Simd>(part: Part<S>, word: Words<S>) -> Doubles<S> {
+pub(super) fn unit_open<S: Simd>(part: Part<S>, word: Words<S>) -> Doubles<S> {
     let one_to_two = Doubles::<S>::from_bits((word >> 12) | part.word(0x3ff0_0000_0000_0000));
     (one_to_two - part.c(1.0)) + part.c(f64::EPSILON * 0.5)
 }

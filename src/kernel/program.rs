@@ -2,6 +2,7 @@
 
 use super::drive::Drive;
 use super::forces::Forces;
+use super::process::Processes;
 use super::start::Starts;
 use super::state::Layout;
 use crate::model::Scenario;
@@ -27,6 +28,8 @@ pub struct Program {
     pub drive: Drive,
     /// The placements.
     pub starts: Starts,
+    /// The processes.
+    pub processes: Processes,
 }
 
 impl Program {
@@ -37,6 +40,7 @@ impl Program {
         let forces = Forces::new(&scenario, dt);
         let drive = Drive::new(&scenario);
         let starts = Starts::new(&scenario);
-        Self { scenario, layout, dt, forces, drive, starts }
+        let processes = Processes::new(&scenario);
+        Self { scenario, layout, dt, forces, drive, starts, processes }
     }
 }

@@ -104,6 +104,13 @@ pub struct State {
 
     /// Where everyone is on the way.
     pub route: Routes,
+
+    /// Values of the variables of processes, whose lanes are trials in both layouts.
+    pub variables: Vec<Lanes>,
+    /// Lanes whose trial a process has ended by an error of the model; the variables are those before it.
+    pub faulty: Mask,
+    /// What the error is.
+    pub faults: [Option<super::process::Fault>; LANES],
 }
 
 impl State {
@@ -150,6 +157,9 @@ impl State {
             fx: zero(),
             fy: zero(),
             route: Routes::new(blocks),
+            variables: Vec::new(),
+            faulty: Mask::NONE,
+            faults: [None; LANES],
         }
     }
 

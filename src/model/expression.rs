@@ -3,6 +3,7 @@
 //! The kernel turns them into linear code over lane vectors.
 
 use super::agent::AgentId;
+use super::process::VariableId;
 use super::scene::{BarrierId, RegionId};
 use std::sync::Arc;
 
@@ -155,6 +156,8 @@ pub enum Num {
     Constant(f64),
     /// Seconds since the start (steps where steps have no length).
     Time,
+    /// A variable of a process; truth values are 0 and 1.
+    Variable(VariableId),
     /// A number of an agent.
     Of(Field, Who),
     /// A coordinate of a place (no region or barrier), m.

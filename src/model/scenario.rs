@@ -2,6 +2,7 @@
 
 use super::agent::{Agent, Group};
 use super::moves::Moves;
+use super::process::Processes;
 use super::scene::Scene;
 use crate::base::tick::{Clock, Tick};
 
@@ -22,4 +23,6 @@ pub struct Scenario {
     pub groups: Vec<Group>,
     /// What may be suggested to whom.
     pub moves: Vec<Moves>,
+    /// What chance changes besides the agents.
+    pub processes: Processes,
 }

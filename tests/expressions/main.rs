@@ -81,6 +81,7 @@ fn scenario(agents: usize, scene: Scene) -> Arc<Scenario> {
         agents: (0..agents).map(agent).collect(),
         groups: Vec::new(),
         moves: Vec::new(),
+        processes: smc::model::Processes::default(),
     })
 }
 

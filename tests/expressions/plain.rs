@@ -150,6 +150,7 @@ impl Plain<'_> {
             Num::Time => {
                 Clock::Stepped(Decimal::parse("0.02").unwrap()).seconds(Tick(self.state.ticks[self.trial]))
             }
+            Num::Variable(id) => self.state.variables[id.0 as usize].0[self.trial],
             Num::Of(field, who) => self.field(*field, self.who(*who)),
             Num::Coordinate(axis, Place::Point(x, y)) => self.number(if *axis == Axis::X { x } else { y })?,
             Num::Coordinate(axis, place) => {

@@ -78,6 +78,9 @@ impl Elaborator<'_> {
         arguments: &[Expr],
         locals: &Locals,
     ) -> Lowered<Typed> {
+        if let Some(decl) = self.function_inside(&function.name, locals) {
+            return self.lower_let((0, decl), expr.span, arguments, locals);
+        }
         if let Some((scope, meaning)) = self.find(&function.name, locals.scope)
             && let Meaning::Let(decl) = meaning
             && !decl.arguments.is_empty()

@@ -51,12 +51,7 @@ impl Elaborator<'_> {
                 let (x, y, dimension) = self.as_vector(typed, base.span)?;
                 Ok(Typed::Num(if field.name == "x" { x } else { y }, dimension))
             }
-            ExprKind::Member(..) => {
-                let error =
-                    Diagnostic::error("E0201", expr.span, "there is no process to read a variable of")
-                        .hint("numbers of agents are functions: `speed(user)`");
-                self.report(error)
-            }
+            ExprKind::Member(base, member) => self.lower_member(base, member, locals),
             ExprKind::Index(base, index) => self.lower_index(base, index, locals),
             ExprKind::Call { function, arguments } => self.lower_call(expr, function, arguments, locals),
             ExprKind::Point { x, y, unit } => self.lower_point(x, y, unit.as_ref(), locals),

@@ -25,6 +25,11 @@ impl<'a> Elaborator<'a> {
         if let Some((_, typed)) = locals.names.iter().rev().find(|(bound, _)| bound == name) {
             return Ok(typed.clone());
         }
+        if let Some(process) = locals.process
+            && let Some(inside) = self.lower_inside(process, name, span)
+        {
+            return inside;
+        }
         let Some((scope, meaning)) = self.find(name, locals.scope) else {
             return match name {
                 "time" => Ok(Typed::Num(crate::model::Num::Time, self.time_dimension())),
@@ -61,16 +66,22 @@ impl<'a> Elaborator<'a> {
                     .hint(format!("call it: `{name}(…)`"));
                     return self.report(error);
                 }
-                let inner = Locals { scope, names: Vec::new(), running: locals.running };
+                let inner = Locals { running: locals.running, ..Locals::of(scope) };
                 self.expand(scope, name, span, |this| this.lower(&decl.body, &inner))
             }
             Meaning::Property(formula) => {
-                let inner = Locals { scope, names: Vec::new(), running: locals.running };
+                let inner = Locals { running: locals.running, ..Locals::of(scope) };
                 self.expand(scope, name, span, |this| this.lower(formula, &inner))
             }
             Meaning::Region(id, _) => Ok(Typed::Region(id)),
             Meaning::Barrier(id) => Ok(Typed::Barrier(id)),
             Meaning::Point(at) => self.constant(scope, name, span, |this| this.lower(at, &Locals::of(scope))),
+            Meaning::Process(process) => {
+                Ok(match self.processes.get(process as usize).and_then(|p| p.copies) {
+                    Some(_) => Typed::Processes(process),
+                    None => Typed::Process { process, copy: 0 },
+                })
+            }
             Meaning::Agent(id) => Ok(Typed::Agent(Who::Agent(id))),
             Meaning::Agents { members, particle } => {
                 Ok(Typed::Agents { set: Set { members, except: None }, particle })
@@ -93,6 +104,7 @@ impl<'a> Elaborator<'a> {
 
     fn unknown_name(&mut self, name: &str, span: Span, locals: &Locals) -> Lowered<Typed> {
         let mut known: Vec<String> = locals.names.iter().map(|(n, _)| n.clone()).collect();
+        known.extend(self.names_inside(locals));
         for scope in [locals.scope, 0] {
             known.extend(self.scopes.get(scope).into_iter().flat_map(|s| s.names().map(str::to_owned)));
         }
@@ -127,7 +139,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// Computes what a name stands for; an error where that needs the name itself.
-    pub(super) fn expand(
+    pub(in crate::compile) fn expand(
         &mut self,
         scope: ScopeId,
         name: &str,
@@ -171,7 +183,10 @@ impl<'a> Elaborator<'a> {
             };
             return self.arity(&decl.name, span, &wanted, arguments.len());
         }
-        let mut inner = Locals { scope, names: Vec::new(), running: locals.running };
+        let mut inner = Locals { running: locals.running, ..Locals::of(scope) };
+        if self.function_inside(&decl.name.name, locals).is_some() {
+            inner.process = locals.process;
+        }
         for (name, argument) in decl.arguments.iter().zip(arguments) {
             let value = self.lower(argument, locals)?;
             inner.names.push((name.name.clone(), value));
@@ -183,6 +198,7 @@ impl<'a> Elaborator<'a> {
     pub(super) fn lower_index(&mut self, base: &Expr, index: &Expr, locals: &Locals) -> Lowered<Typed> {
         let set = match self.lower(base, locals)? {
             Typed::Agents { set, particle: false } => set,
+            Typed::Processes(process) => return self.lower_copy(process, base, index, locals),
             Typed::Agents { particle: true, .. } => {
                 let error = Diagnostic::error(
                     "E0206",
@@ -194,20 +210,30 @@ impl<'a> Elaborator<'a> {
             }
             found => return self.mismatch(base.span, "a set of agents", &found),
         };
+        let place = self.member(base, index, set.members.len(), locals)?;
+        Ok(Typed::Agent(Who::Agent(set.members[place])))
+    }
+
+    /// One copy of an array of processes.
+    fn lower_copy(&mut self, process: u32, base: &Expr, index: &Expr, locals: &Locals) -> Lowered<Typed> {
+        let count = self.copies(process).count();
+        let copy = self.member(base, index, count, locals)? as u32;
+        Ok(Typed::Process { process, copy })
+    }
+
+    /// The place, from 0, of a member counted from 1.
+    fn member(&mut self, base: &Expr, index: &Expr, count: usize, locals: &Locals) -> Lowered<usize> {
         let number = self.number_of(index, Dimension::NONE, locals)?;
-        let member = number
-            .as_whole()
-            .and_then(|n| usize::try_from(n).ok())
-            .filter(|n| (1..=set.members.len()).contains(n));
+        let member = number.as_whole().and_then(|n| usize::try_from(n).ok());
         match member {
-            Some(n) => Ok(Typed::Agent(Who::Agent(set.members[n - 1]))),
-            None => {
+            Some(n) if (1..=count).contains(&n) => Ok(n - 1),
+            _ => {
                 let error = Diagnostic::error(
                     "E0212",
                     index.span,
                     format!("there is no member {} of `{}`", number.value, self.text(base.span)),
                 )
-                .hint(format!("it has {} members, counted from 1", set.members.len()));
+                .hint(format!("it has {count} members, counted from 1"));
                 self.report(error)
             }
         }

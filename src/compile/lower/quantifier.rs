@@ -7,7 +7,7 @@ use super::super::elaborator::{Elaborator, Locals, Lowered};
 use super::super::symbols::Meaning;
 use super::super::typed::Typed;
 use crate::logic::{Node, Operation, Term};
-use crate::model::{AgentId, Bool, Fold, Num, Set, Who};
+use crate::model::{AgentId, Arithmetic, Bool, Fold, Num, Set, Who};
 use crate::syntax::ast::{Aggregate, Expr, ExprKind, Ident, Quantifier};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -25,6 +25,9 @@ impl Elaborator<'_> {
         locals: &Locals,
     ) -> Lowered<Typed> {
         let members = self.lower(set, locals)?;
+        if let Typed::Processes(process) = members {
+            return self.lower_over_processes(quantifier, variable, process, body, locals);
+        }
         let set = self.as_set(members, set.span)?;
         if self.temporal && self.mentions_time(body, locals, 0) {
             return self.write_out(span, quantifier, variable, &set, body, locals);
@@ -47,6 +50,74 @@ impl Elaborator<'_> {
             Quantifier::Fold(aggregate) => {
                 let (num, dimension) = self.as_num(typed, body.span)?;
                 Ok(Typed::Num(Num::Fold(fold(aggregate), set, Box::new(num)), dimension))
+            }
+        }
+    }
+
+    /// Over copies of a process everything is written out.
+    fn lower_over_processes(
+        &mut self,
+        quantifier: Quantifier,
+        variable: &Ident,
+        process: u32,
+        body: &Expr,
+        locals: &Locals,
+    ) -> Lowered<Typed> {
+        let mut each = Vec::new();
+        for copy in self.copies(process) {
+            let mut inner = locals.clone();
+            inner.names.push((variable.name.clone(), copy));
+            each.push(self.lower(body, &inner)?);
+        }
+        let over_time = each.iter().any(|typed| matches!(typed, Typed::Formula(_) | Typed::Term(..)));
+        match quantifier {
+            Quantifier::Forall | Quantifier::Exists if over_time => {
+                let nodes: Lowered<Vec<_>> =
+                    each.into_iter().map(|typed| self.as_formula(typed, body.span)).collect();
+                let nodes = nodes?;
+                let all = quantifier == Quantifier::Forall;
+                Ok(Typed::Formula(self.node(if all { Node::And(nodes) } else { Node::Or(nodes) })))
+            }
+            Quantifier::Forall | Quantifier::Exists => {
+                let truths: Lowered<Vec<Bool>> =
+                    each.into_iter().map(|typed| self.as_truth(typed, body.span)).collect();
+                let truths = truths?;
+                let all = quantifier == Quantifier::Forall;
+                Ok(Typed::Truth(if all { Bool::And(truths) } else { Bool::Or(truths) }))
+            }
+            Quantifier::Count => {
+                let mut sum = Num::Constant(0.0);
+                for typed in each {
+                    let one = super::super::process::as_number(self.as_truth(typed, body.span)?);
+                    sum = Num::Combine(Arithmetic::Add, Box::new(sum), Box::new(one));
+                }
+                Ok(Typed::Num(sum, Dimension::NONE))
+            }
+            Quantifier::Fold(aggregate) if over_time => self.fold_terms(aggregate, each, body.span),
+            Quantifier::Fold(aggregate) => {
+                let count = each.len() as f64;
+                let mut joined: Option<(Num, Dimension)> = None;
+                for typed in each {
+                    let (num, dimension) = self.as_num(typed, body.span)?;
+                    let operator = match aggregate {
+                        Aggregate::Min => Arithmetic::Min,
+                        Aggregate::Max => Arithmetic::Max,
+                        Aggregate::Sum | Aggregate::Mean => Arithmetic::Add,
+                    };
+                    joined = Some(match joined {
+                        None => (num, dimension),
+                        Some((so_far, _)) => {
+                            (Num::Combine(operator, Box::new(so_far), Box::new(num)), dimension)
+                        }
+                    });
+                }
+                let (joined, dimension) = joined.unwrap_or((Num::Constant(0.0), Dimension::NONE));
+                let joined = if aggregate == Aggregate::Mean {
+                    Num::Combine(Arithmetic::Divide, Box::new(joined), Box::new(Num::Constant(count)))
+                } else {
+                    joined
+                };
+                Ok(Typed::Num(joined, dimension))
             }
         }
     }

@@ -112,6 +112,7 @@ impl<'a> Lowering<'a> {
         match number {
             Num::Constant(value) => resolved(self.graph.constant(*value)),
             Num::Time => resolved(self.graph.enter(Node::Time)),
+            Num::Variable(id) => resolved(self.graph.enter(Node::Variable(id.0))),
             Num::Of(field, who) => resolved(self.graph.enter(Node::Of(Reading::Field(*field), *who))),
             Num::Coordinate(axis, place) => {
                 let (x, y) = self.point(place);

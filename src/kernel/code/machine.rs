@@ -201,6 +201,11 @@ impl<S: Simd, const ONE: bool> Machine<'_, S, ONE> {
         let value = match *node {
             Node::Constant(_) | Node::Loop(..) => return,
             Node::Time => self.time(),
+            Node::Variable(id) => match state.variables.get(id as usize) {
+                Some(lanes) if ONE => view.splat(lanes.0[0]),
+                Some(lanes) => view.register(lanes),
+                None => view.splat(f64::NAN),
+            },
             Node::Of(reading, who) => crowd::reading(&view, reading, self.who(who)),
             Node::Distance(a, b) => {
                 let (a, b) = (self.who(a), self.who(b));

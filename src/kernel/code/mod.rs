@@ -101,6 +101,11 @@ impl Code {
     /// Reads all lanes of a state. Values of lanes without a trial mean nothing; in `Layout::Agents` every
     /// lane has the value of the only trial.
     pub fn run(&self, program: &Program, state: &State, readings: &mut Readings) {
+        self.read(program.layout, state, readings);
+    }
+
+    /// Reads all lanes of a state in this layout.
+    pub(super) fn read(&self, layout: Layout, state: &State, readings: &mut Readings) {
         let known = readings.loaded.as_ref().is_some_and(|loaded| Arc::ptr_eq(loaded, &self.registers));
         if !known {
             readings.numbers.clone_from(&self.registers);
@@ -108,7 +113,7 @@ impl Code {
             readings.frames = vec![Frame::default(); self.schedule.running as usize];
             readings.loaded = Some(Arc::clone(&self.registers));
         }
-        match program.layout {
+        match layout {
             Layout::Trials => {
                 dispatch!(self.level, simd => machine::execute::<_, false>(simd, self, state, readings));
             }

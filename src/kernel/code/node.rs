@@ -61,6 +61,8 @@ pub(super) enum Node {
     Constant(u64),
     /// Time since the start.
     Time,
+    /// A variable of a process.
+    Variable(u32),
     /// A number of an agent.
     Of(Reading, Who),
     /// Distance of two centres.
@@ -156,6 +158,7 @@ impl Node {
             Self::AllFar { bound, .. } => vec![bound],
             Self::Constant(_)
             | Self::Time
+            | Self::Variable(_)
             | Self::Of(..)
             | Self::Distance(..)
             | Self::TimeToCollision(..)

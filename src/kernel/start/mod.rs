@@ -78,6 +78,10 @@ pub fn load(
     advice: Option<(usize, usize)>,
 ) -> Result<Loaded, Fault> {
     let scenario = &program.scenario;
+    if scenario.agents.is_empty() && advice.is_none() {
+        begin(program, state, lane, key);
+        return Ok(Loaded::default());
+    }
     let advised = match advice {
         None => None,
         Some((declaration, option)) => {
@@ -95,10 +99,7 @@ pub fn load(
     let placed = placement::place(scenario, &program.starts, key, radii)?;
 
     let lane = if state.layout == Layout::Agents { 0 } else { lane };
-    state.keys[lane] = key;
-    state.ticks[lane] = 0;
-    state.occupied |= Mask::lane(lane);
-    state.diverged &= !Mask::lane(lane);
+    begin(program, state, lane, key);
     for (k, agent) in scenario.agents.iter().enumerate() {
         bodies[k].radius = placed.radii[k];
         write(state, k, lane, &bodies[k]);
@@ -116,6 +117,15 @@ pub fn load(
         drive::begin(program, state, k, lane, own);
     }
     Ok(placed.counts)
+}
+
+/// The trial itself and its processes.
+fn begin(program: &Program, state: &mut State, lane: usize, key: TrialKey) {
+    state.keys[lane] = key;
+    state.ticks[lane] = 0;
+    state.occupied |= Mask::lane(lane);
+    state.diverged &= !Mask::lane(lane);
+    program.processes.load(state, lane);
 }
 
 /// Writes the parameters of an agent.

@@ -137,10 +137,10 @@ fn facts(page: &mut String, result: &QueryResult, swept: bool) {
             "<p class=\"warning\">{head}people overlapped at the start and were made smaller in {trials}</p>"
         );
     }
-    for Witness { passing, trial, time, what, command } in &result.witnesses {
+    for Witness { passing, trial, time, unit, what, command } in &result.witnesses {
         let _ = writeln!(
             page,
-            "<p>{} in trial {}, decided at {} s: <code>{}</code></p>\n<pre>{}</pre>",
+            "<p>{} in trial {}, decided at {} {unit}: <code>{}</code></p>\n<pre>{}</pre>",
             if *passing { "Holds" } else { "Fails" },
             count(*trial),
             plain(*time),

@@ -156,11 +156,11 @@ pub(super) fn remarks(text: &mut String, result: &QueryResult, at: &str, palette
 /// A trial that shows why, and the command that shows the trial.
 pub(super) fn witness(text: &mut String, witness: &Witness, palette: Palette) {
     let (word, paint) = if witness.passing { ("holds", Paint::Good) } else { ("fails", Paint::Bad) };
-    let Witness { trial, time, what, command, .. } = witness;
+    let Witness { trial, time, unit, what, command, .. } = witness;
     line(
         text,
         &format!(
-            "{} in trial {}, decided at {} s: {what}",
+            "{} in trial {}, decided at {} {unit}: {what}",
             palette.paint(paint, word),
             count(*trial),
             plain(*time)

@@ -1,0 +1,532 @@
+//! Processes: variables, names and commands.
+//!
+//! Variables are settled first, so that everything can read them; commands last, because they read
+//! everything.
+
+mod reachable;
+
+use super::dimension::Dimension;
+use super::elaborator::{Elaborator, Locals, Lowered, Reported};
+use super::number::Number;
+use super::people::People;
+use super::symbols::unknown;
+use super::typed::Typed;
+use crate::base::tick::Clock;
+use crate::model::process::are_weights;
+use crate::model::{
+    Bool, Branch, Command, Comparison, Domain, Num, Process, Processes, Timing, Variable, VariableId,
+};
+use crate::syntax::ast::process::{self as ast, Domain as Written, ProcessDecl, ProcessItem};
+use crate::syntax::ast::{Expr, Ident, Item, LetDecl, ScenarioFile};
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+use std::collections::BTreeMap;
+
+/// Most copies of a process.
+const MOST_COPIES: i64 = 1000;
+
+/// A name inside a process.
+#[derive(Clone, Copy, Debug)]
+enum Inside<'a> {
+    /// Its n-th variable.
+    Variable(usize),
+    /// A named expression or function.
+    Let(&'a LetDecl),
+    /// A named condition.
+    Label(&'a Expr),
+}
+
+/// A process under elaboration.
+pub(super) struct Declared<'a> {
+    decl: &'a ProcessDecl,
+    /// Number of copies, of an array.
+    pub(super) copies: Option<u32>,
+    /// First variable of the first copy.
+    first: u32,
+    /// Dimension and domain of each variable of a copy.
+    variables: Vec<(Dimension, Domain)>,
+    names: BTreeMap<&'a str, Inside<'a>>,
+}
+
+impl<'a> Declared<'a> {
+    pub(super) fn new(decl: &'a ProcessDecl) -> Self {
+        Self { decl, copies: None, first: 0, variables: Vec::new(), names: BTreeMap::new() }
+    }
+
+    fn variable(&self, copy: u32, place: usize) -> VariableId {
+        VariableId(self.first + copy * self.variables.len() as u32 + place as u32)
+    }
+}
+
+/// 1/s
+const RATE: Dimension = Dimension([0, 0, -1, 0, 0]);
+
+impl<'a> Elaborator<'a> {
+    /// Whether some command of the file has a rate or a delay.
+    pub(super) fn has_timing(file: &ScenarioFile) -> bool {
+        file.items.iter().any(|item| match item {
+            Item::Process(decl) => decl
+                .items
+                .iter()
+                .any(|item| matches!(item, ProcessItem::Command(command) if command.timing.is_some())),
+            _ => false,
+        })
+    }
+
+    /// Settles the variables of all processes.
+    pub(super) fn settle_variables(&mut self) -> Vec<Variable> {
+        let mut variables = Vec::new();
+        for at in 0..self.processes.len() {
+            self.settle(at, &mut variables);
+        }
+        variables
+    }
+
+    fn settle(&mut self, at: usize, variables: &mut Vec<Variable>) {
+        let decl = self.processes[at].decl;
+        let locals = Locals::of(0);
+        if let Some(count) = &decl.count {
+            let number = self.number_of(count, Dimension::NONE, &locals);
+            let whole = number.map(Number::as_whole);
+            self.processes[at].copies = Some(match whole {
+                Ok(Some(n @ 1..=MOST_COPIES)) => n as u32,
+                Err(Reported) => 1,
+                Ok(_) => {
+                    self.note(Diagnostic::error(
+                        "E0402",
+                        count.span,
+                        format!("the number of copies must be whole, from 1 to {MOST_COPIES}"),
+                    ));
+                    1
+                }
+            });
+        }
+        let mut spans: BTreeMap<&str, Span> = BTreeMap::new();
+        let mut initials = Vec::new();
+        for item in &decl.items {
+            let (name, inside) = match item {
+                ProcessItem::Var(var) => (&var.name, Inside::Variable(initials.len())),
+                ProcessItem::Let(decl) => (&decl.name, Inside::Let(decl)),
+                ProcessItem::Label { name, value } => (name, Inside::Label(value)),
+                ProcessItem::Command(_) | ProcessItem::Choose(_) => continue,
+            };
+            if let Some(first) = spans.insert(&name.name, name.span) {
+                let error =
+                    Diagnostic::error("E0202", name.span, format!("`{}` is declared twice", name.name))
+                        .related(first, "first declared here")
+                        .hint("rename one of them");
+                self.note(error);
+                continue;
+            }
+            if let ProcessItem::Var(var) = item {
+                let (dimension, domain, initial) =
+                    self.variable(var, &locals).unwrap_or((Dimension::NONE, Domain::Real, 0.0));
+                self.processes[at].variables.push((dimension, domain));
+                initials.push((var.name.name.as_str(), domain, initial));
+            }
+            self.processes[at].names.insert(&name.name, inside);
+        }
+        self.processes[at].first = variables.len() as u32;
+        for copy in 0..self.processes[at].copies.unwrap_or(1) {
+            let owner = self.copy_name(at, copy);
+            for (name, domain, initial) in &initials {
+                variables.push(Variable {
+                    name: format!("{owner}.{name}"),
+                    domain: *domain,
+                    initial: *initial,
+                });
+            }
+        }
+    }
+
+    fn copy_name(&self, at: usize, copy: u32) -> String {
+        let process = &self.processes[at];
+        match process.copies {
+            Some(_) => format!("{}[{}]", process.decl.name.name, copy + 1),
+            None => process.decl.name.name.clone(),
+        }
+    }
+
+    /// Dimension, domain and initial value of a variable.
+    fn variable(&mut self, var: &ast::VarDecl, locals: &Locals) -> Lowered<(Dimension, Domain, f64)> {
+        let initial = self.lower(&var.initial, locals);
+        let span = var.initial.span;
+        let number = |this: &mut Self, typed: Typed| match typed {
+            Typed::Number(number) if number.value.is_finite() => Ok(number),
+            Typed::Num(..) => this.report(Diagnostic::error(
+                "E0304",
+                span,
+                "the value at the start must be known before a trial starts",
+            )),
+            found => this.mismatch(span, "a number", &found),
+        };
+        let truth = |this: &mut Self, typed: Typed| match typed {
+            Typed::Truth(Bool::Constant(value)) => Ok((Dimension::NONE, Domain::Truth, f64::from(value))),
+            Typed::Truth(_) => this.report(Diagnostic::error(
+                "E0304",
+                span,
+                "the value at the start must be known before a trial starts",
+            )),
+            found => this.mismatch(span, "`true` or `false`", &found),
+        };
+        match &var.domain {
+            Some(Written::Range(low, high)) => {
+                let low_end = self.whole(low, locals);
+                let high_end = self.whole(high, locals);
+                let (low_end, high_end) = (low_end?, high_end?);
+                if low_end > high_end {
+                    return self.report(Diagnostic::error(
+                        "E0405",
+                        low.span.to(high.span),
+                        "this range is empty",
+                    ));
+                }
+                let domain = Domain::Whole { low: low_end, high: high_end };
+                let initial = initial?;
+                let number = number(self, initial)?;
+                if !number.dimension.is_none() {
+                    return self.wrong_dimension(span, Dimension::NONE, number.dimension);
+                }
+                if !domain.contains(number.value) {
+                    return self.report(Diagnostic::error(
+                        "E0803",
+                        span,
+                        format!("`{}` holds whole numbers from {low_end} to {high_end}", var.name.name),
+                    ));
+                }
+                Ok((Dimension::NONE, domain, number.value))
+            }
+            Some(Written::Named(name)) => match name.name.as_str() {
+                "bool" => {
+                    let initial = initial?;
+                    truth(self, initial)
+                }
+                "real" => {
+                    let initial = initial?;
+                    let number = number(self, initial)?;
+                    Ok((number.dimension, Domain::Real, number.value))
+                }
+                "int" => {
+                    let error = Diagnostic::error("E0405", name.span, "a whole number needs its range")
+                        .hint(format!("write `var {}: 0 .. 10 = …`", var.name.name));
+                    self.report(error)
+                }
+                _ => {
+                    let known = ["bool", "real"].into_iter();
+                    let error = unknown("type of variable", &name.name, name.span, "E0207", known);
+                    self.report(error.hint("a variable is `lo .. hi`, `bool` or `real`"))
+                }
+            },
+            None => match initial? {
+                typed @ Typed::Truth(_) => truth(self, typed),
+                typed => {
+                    let number = number(self, typed)?;
+                    Ok((number.dimension, Domain::Real, number.value))
+                }
+            },
+        }
+    }
+
+    fn whole(&mut self, expr: &Expr, locals: &Locals) -> Lowered<i64> {
+        let number = self.number_of(expr, Dimension::NONE, locals)?;
+        match number.as_whole() {
+            Some(whole) if whole.abs() < 1 << 52 => Ok(whole),
+            _ => self.report(Diagnostic::error("E0405", expr.span, "the ends of a range must be whole")),
+        }
+    }
+
+    /// Lowers the commands of all processes.
+    pub(super) fn settle_commands(&mut self, variables: Vec<Variable>, people: &mut People) -> Processes {
+        let mut out = Processes { variables, list: Vec::new() };
+        let mut spans = Vec::new();
+        for at in 0..self.processes.len() {
+            let decl = self.processes[at].decl;
+            let copies = self.processes[at].copies.unwrap_or(1);
+            let first = people.entities(&decl.name.name, copies);
+            self.check_names(at);
+            let choose = decl.items.iter().any(|item| matches!(item, ProcessItem::Choose(_)));
+            for copy in 0..copies {
+                let locals = Locals { process: Some((at as u32, copy)), ..Locals::of(0) };
+                let mut commands = Vec::new();
+                let mut places = Vec::new();
+                for item in &decl.items {
+                    if let ProcessItem::Command(command) = item
+                        && let Ok(lowered) = self.command(at, copy, command, &locals)
+                    {
+                        commands.push(lowered);
+                        places.push(command.span);
+                    }
+                }
+                self.one_kind(decl, &commands);
+                let name = self.copy_name(at, copy);
+                out.list.push(Process { name, entity: first + copy, commands, choose });
+                spans.push(places);
+                if self.failed() {
+                    break;
+                }
+            }
+        }
+        if !self.failed() {
+            self.check_reachable(&out, &spans);
+        }
+        out
+    }
+
+    /// Names that nobody uses are checked too.
+    fn check_names(&mut self, at: usize) {
+        let locals = Locals { process: Some((at as u32, 0)), ..Locals::of(0) };
+        let names: Vec<Inside<'a>> = self.processes[at].names.values().copied().collect();
+        for inside in names {
+            match inside {
+                Inside::Let(decl) if decl.arguments.is_empty() => {
+                    let _ = self.lower(&decl.body, &locals);
+                }
+                Inside::Label(value) => {
+                    if let Ok(typed) = self.lower(value, &locals) {
+                        let _ = self.as_truth(typed, value.span);
+                    }
+                }
+                Inside::Let(_) | Inside::Variable(_) => {}
+            }
+        }
+    }
+
+    /// Commands of one process are all timed or all not.
+    fn one_kind(&mut self, decl: &ProcessDecl, commands: &[Command]) {
+        let timed = |command: &Command| command.timing != Timing::Step;
+        if commands.iter().any(timed) && !commands.iter().all(timed) {
+            let error = Diagnostic::error(
+                "E0805",
+                decl.name.span,
+                format!("some commands of `{}` have a rate or delay and some have none", decl.name.name),
+            )
+            .hint("make them two processes: one of steps, one of times; each can read the other");
+            self.note(error);
+        }
+    }
+
+    fn command(&mut self, at: usize, copy: u32, command: &ast::Command, locals: &Locals) -> Lowered<Command> {
+        let guard = self.lower(&command.guard, locals);
+        let guard = guard.and_then(|typed| self.as_truth(typed, command.guard.span));
+        let timing = self.timing(command);
+        let branches: Vec<Lowered<Branch>> =
+            command.branches.iter().map(|branch| self.branch(at, copy, branch, locals)).collect();
+        let branches = branches.into_iter().collect::<Lowered<Vec<_>>>();
+        let (guard, timing, branches) = (guard?, timing?, branches?);
+        let known: Option<Vec<f64>> = branches
+            .iter()
+            .map(|b| if let Num::Constant(weight) = b.weight { Some(weight) } else { None })
+            .collect();
+        if let Some(known) = known
+            && !are_weights(known.iter().copied())
+        {
+            let sum: f64 = known.iter().sum();
+            let error = Diagnostic::error(
+                "E0802",
+                command.span,
+                if known.iter().any(|w| *w < 0.0) {
+                    "a probability is negative".to_owned()
+                } else {
+                    format!("these probabilities sum to {sum}, not to 1")
+                },
+            );
+            return self.report(error);
+        }
+        Ok(Command { guard, timing, branches })
+    }
+
+    fn timing(&mut self, command: &ast::Command) -> Lowered<Timing> {
+        let place = match &command.timing {
+            None if self.clock == Clock::Jumps => {
+                let error = Diagnostic::error(
+                    "E0805",
+                    command.span,
+                    "this command has no rate, and other commands of this scenario have",
+                )
+                .hint("give it `at` a rate or `after` a distribution, or set a `step` for the scenario");
+                return self.report(error);
+            }
+            None => return Ok(Timing::Step),
+            Some(ast::Timing::Rate(rate)) => rate.span,
+            Some(ast::Timing::Delay(delay)) => super::laws::value_span(delay),
+        };
+        self.report(
+            Diagnostic::error("E0213", place, "this version simulates no commands with rates or delays")
+                .hint("a command without one fires at each step"),
+        )
+    }
+
+    fn branch(&mut self, at: usize, copy: u32, branch: &ast::Branch, locals: &Locals) -> Lowered<Branch> {
+        let weight = match &branch.weight {
+            None => Num::Constant(1.0),
+            Some(weight) => {
+                let typed = self.lower(weight, locals)?;
+                let (num, dimension) = self.as_num(typed, weight.span)?;
+                if !dimension.is_none() {
+                    return self.wrong_dimension(weight.span, Dimension::NONE, dimension);
+                }
+                num
+            }
+        };
+        let mut updates: Vec<(VariableId, Num)> = Vec::new();
+        for update in &branch.updates {
+            let (id, value) = self.update(at, copy, update, locals)?;
+            if updates.iter().any(|(other, _)| *other == id) {
+                return self.report(Diagnostic::error(
+                    "E0202",
+                    update.target.span,
+                    format!("`{}` is set twice in one branch", update.target.name),
+                ));
+            }
+            updates.push((id, value));
+        }
+        Ok(Branch { weight, updates })
+    }
+
+    fn update(
+        &mut self,
+        at: usize,
+        copy: u32,
+        update: &ast::Update,
+        locals: &Locals,
+    ) -> Lowered<(VariableId, Num)> {
+        let process = &self.processes[at];
+        let Some(Inside::Variable(place)) = process.names.get(update.target.name.as_str()).copied() else {
+            let known = process.names.iter().filter(|(_, i)| matches!(i, Inside::Variable(_)));
+            let known: Vec<&str> = known.map(|(n, _)| *n).collect();
+            let error =
+                unknown("variable", &update.target.name, update.target.span, "E0201", known.into_iter());
+            let error = match &error.hint {
+                Some(_) => error,
+                None => error.hint("a process sets its own variables only"),
+            };
+            return self.report(error);
+        };
+        let (dimension, domain) = process.variables[place];
+        let id = process.variable(copy, place);
+        let typed = self.lower(&update.value, locals)?;
+        let span = update.value.span;
+        if domain == Domain::Truth {
+            let truth = self.as_truth(typed, span)?;
+            return Ok((id, as_number(truth)));
+        }
+        let (num, found) = self.as_num(typed, span)?;
+        if found != dimension {
+            return self.wrong_dimension(span, dimension, found);
+        }
+        if let Num::Constant(value) = num
+            && !domain.contains(value)
+        {
+            return self.report(Diagnostic::error(
+                "E0803",
+                span,
+                format!("`{}` cannot become {value}", update.target.name),
+            ));
+        }
+        Ok((id, num))
+    }
+
+    /// A name inside a process, if it has it.
+    pub(super) fn lower_inside(
+        &mut self,
+        (at, copy): (u32, u32),
+        name: &str,
+        span: Span,
+    ) -> Option<Lowered<Typed>> {
+        let process = self.processes.get(at as usize)?;
+        let inside = *process.names.get(name)?;
+        let locals = Locals { process: Some((at, copy)), ..Locals::of(0) };
+        let path = format!("{}.{name}", process.decl.name.name);
+        Some(match inside {
+            Inside::Variable(place) => {
+                let (dimension, domain) = process.variables[place];
+                let value = Num::Variable(process.variable(copy, place));
+                Ok(match domain {
+                    Domain::Truth => Typed::Truth(Bool::Compare(
+                        Comparison::Equal,
+                        Box::new(value),
+                        Box::new(Num::Constant(1.0)),
+                    )),
+                    _ => Typed::Num(value, dimension),
+                })
+            }
+            Inside::Let(decl) if !decl.arguments.is_empty() => {
+                let error = Diagnostic::error(
+                    "E0204",
+                    span,
+                    format!("`{name}` is a function of {} arguments", decl.arguments.len()),
+                )
+                .hint(format!("call it inside the process: `{name}(…)`"));
+                self.report(error)
+            }
+            Inside::Let(LetDecl { body, .. }) | Inside::Label(body) => {
+                self.expand(0, &path, span, |this| this.lower(body, &locals))
+            }
+        })
+    }
+
+    /// The names of the process around the present place.
+    pub(super) fn names_inside(&self, locals: &Locals) -> Vec<String> {
+        let process = locals.process.and_then(|(at, _)| self.processes.get(at as usize));
+        process.into_iter().flat_map(|p| p.names.keys().map(|name| (*name).to_owned())).collect()
+    }
+
+    /// A function declared inside the process around the present place.
+    pub(super) fn function_inside(&self, name: &str, locals: &Locals) -> Option<&'a LetDecl> {
+        let (at, _) = locals.process?;
+        match self.processes.get(at as usize)?.names.get(name)? {
+            Inside::Let(decl) if !decl.arguments.is_empty() => Some(decl),
+            _ => None,
+        }
+    }
+
+    /// `queue.n`, `sensor[2].works`, and the components of a vector.
+    pub(super) fn lower_member(&mut self, base: &Expr, member: &Ident, locals: &Locals) -> Lowered<Typed> {
+        let (at, copy) = match self.lower(base, locals)? {
+            Typed::Process { process, copy } => (process, copy),
+            Typed::Processes(_) => {
+                let error = Diagnostic::error("E0305", base.span, "this is an array of processes")
+                    .hint(format!("choose one, as in `{}[1].{}`", self.text(base.span), member.name));
+                return self.report(error);
+            }
+            Typed::Vector(x, y, dimension) if matches!(member.name.as_str(), "x" | "y") => {
+                return Ok(Typed::Num(if member.name == "x" { x } else { y }, dimension));
+            }
+            Typed::Point(x, y) if matches!(member.name.as_str(), "x" | "y") => {
+                return Ok(Typed::Number(if member.name == "x" { x } else { y }));
+            }
+            found => {
+                let error = Diagnostic::error(
+                    "E0305",
+                    base.span,
+                    format!("expected a process before `.{}`, found {}", member.name, found.noun()),
+                )
+                .hint("numbers of agents are functions: `speed(user)`");
+                return self.report(error);
+            }
+        };
+        match self.lower_inside((at, copy), &member.name, member.span) {
+            Some(lowered) => lowered,
+            None => {
+                let known: Vec<&str> = self.processes[at as usize].names.keys().copied().collect();
+                let what = format!("name of `{}`", self.processes[at as usize].decl.name.name);
+                let error = unknown(&what, &member.name, member.span, "E0201", known.into_iter());
+                self.report(error)
+            }
+        }
+    }
+
+    /// All copies of an array of processes.
+    pub(super) fn copies(&self, process: u32) -> impl Iterator<Item = Typed> + use<> {
+        let count = self.processes.get(process as usize).and_then(|p| p.copies).unwrap_or(1);
+        (0..count).map(move |copy| Typed::Process { process, copy })
+    }
+}
+
+/// Truth values of variables are 0 and 1.
+pub(super) fn as_number(truth: Bool) -> Num {
+    match truth {
+        Bool::Constant(value) => Num::Constant(f64::from(value)),
+        truth => Num::If(Box::new(truth), Box::new(Num::Constant(1.0)), Box::new(Num::Constant(0.0))),
+    }
+}

@@ -1,0 +1,34 @@
+//! One trial on its own: the words for one in which the model is wrong.
+
+use super::cell::Item;
+use super::fault::Fault;
+use super::subject::Subject;
+use crate::base::lanes::Mask;
+use crate::base::random::TrialKey;
+use crate::base::tick::{Clock, Tick};
+use crate::kernel::{Scratch, State, dynamics, process, start};
+
+/// Runs a trial up to its error, and says what is wrong, when, and in which state.
+pub(super) fn fault(subject: &Subject, item: Item, seed: u64) -> Fault {
+    let program = &subject.program;
+    let scenario = &program.scenario;
+    let mut state = State::new(program.layout, scenario.agents.len());
+    let mut scratch = Scratch::new();
+    let key = TrialKey { seed, index: item.index, branch: 0 };
+    if start::load(program, &mut state, 0, key, item.advice).is_err() {
+        return Fault::Unsuitable;
+    }
+    dynamics::refresh(program, &mut state, &mut scratch, Mask::lane(0));
+    while state.faulty.is_empty() && state.ticks[0] < subject.horizon.0 {
+        dynamics::step(program, &mut state, &mut scratch);
+    }
+    let Some(fault) = state.faults[0] else { return Fault::Unsuitable };
+    let before = Tick(state.ticks[0].saturating_sub(1));
+    let time = match scenario.clock {
+        Clock::Steps => format!("step {}", before.0),
+        clock => format!("{} s", clock.seconds(before)),
+    };
+    let what = fault.describe(&scenario.processes);
+    let values = process::Fault::state(&scenario.processes, |k| state.variables[k].0[0]);
+    Fault::Model(format!("trial {} at {time}: {what}\n  the state is {values}", item.index))
+}

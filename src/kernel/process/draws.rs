@@ -1,0 +1,125 @@
+//! Uniform numbers of one process at the present ticks of all lanes: Philox4x32-10, vectorised.
+//!
+//! The counter of a lane is (tick, entity, `Purpose::Process`, trial, branch), its key the seed; so the
+//! numbers are those of `Stream::uniform_pair(tick)`, to the last bit (a test holds it).
+
+use crate::base::lanes::{LANES, Lanes};
+use crate::base::random::{self, Purpose, Stream, philox};
+use crate::kernel::noise::unit_open;
+use crate::kernel::state::State;
+use crate::kernel::vector::parts;
+use fearless_simd::{Level, Simd, dispatch};
+
+const MULTIPLIER: [u64; 2] = [0xD251_1F53, 0xCD9E_8D57];
+const WEYL: [u32; 2] = [0x9E37_79B9, 0xBB67_AE85];
+const ROUNDS: usize = 10;
+const LOW: u64 = 0xffff_ffff;
+
+/// The draws of one process at the present ticks.
+pub(super) struct Draws<'s> {
+    pub(super) level: Level,
+    pub(super) state: &'s State,
+    /// The part of the counter that names the process.
+    pub(super) word: u32,
+}
+
+impl Draws<'_> {
+    /// Two numbers in (0, 1) of each lane.
+    #[inline]
+    pub(super) fn pair(&self) -> [[f64; LANES]; 2] {
+        let state = self.state;
+        let seed = state.keys[0].seed;
+        let same = state.occupied.iter().all(|lane| state.keys[lane].seed == seed);
+        if same {
+            dispatch!(self.level, simd => all(simd, state, self.word))
+        } else {
+            let mut pair = [[0.5; LANES]; 2];
+            for lane in state.occupied.iter() {
+                let [first, second] = self.of_lane(lane);
+                pair[0][lane] = first;
+                pair[1][lane] = second;
+            }
+            pair
+        }
+    }
+
+    /// Those of one lane.
+    fn of_lane(&self, lane: usize) -> [f64; 2] {
+        let stream = Stream::of(self.state.keys[lane], 0, Purpose::Process);
+        let mut counter = stream.counter(self.state.ticks[lane] as u32);
+        counter[1] = self.word;
+        let block = philox(counter, stream.key());
+        let word = |k: usize| u64::from(block[k]) | u64::from(block[k + 1]) << 32;
+        [random::unit_open(word(0)), random::unit_open(word(2))]
+    }
+}
+
+/// The numbers of all lanes, whose seeds are those of the first.
+#[inline(always)]
+fn all<S: Simd>(simd: S, state: &State, word: u32) -> [[f64; LANES]; 2] {
+    let mut counter = [[0u64; LANES]; 3];
+    for lane in 0..LANES {
+        let key = &state.keys[lane];
+        counter[0][lane] = state.ticks[lane] & LOW;
+        counter[1][lane] = key.index & LOW;
+        counter[2][lane] = (key.index >> 32 & 0xffff) | u64::from(key.branch) << 16;
+    }
+    let mut key = [state.keys[0].seed as u32, (state.keys[0].seed >> 32) as u32];
+    let mut keys = [[0u64; 2]; ROUNDS];
+    for round in &mut keys {
+        *round = [u64::from(key[0]), u64::from(key[1])];
+        key = [key[0].wrapping_add(WEYL[0]), key[1].wrapping_add(WEYL[1])];
+    }
+    let mut out = [Lanes::ZERO; 2];
+    for part in parts(simd) {
+        let low = part.word(LOW);
+        let mut c = [
+            part.words(&counter[0]),
+            part.word(u64::from(word)),
+            part.words(&counter[1]),
+            part.words(&counter[2]),
+        ];
+        // Above its low half a counter word may hold anything between rounds.
+        for round in &keys {
+            let a = (c[0] & low) * part.word(MULTIPLIER[0]);
+            let b = (c[2] & low) * part.word(MULTIPLIER[1]);
+            c = [(b >> 32) ^ (c[1] ^ part.word(round[0])), b, (a >> 32) ^ (c[3] ^ part.word(round[1])), a];
+        }
+        part.store(unit_open(part, (c[0] & low) | (c[1] << 32)), &mut out[0]);
+        part.store(unit_open(part, (c[2] & low) | (c[3] << 32)), &mut out[1]);
+    }
+    out.map(|lanes| lanes.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::lanes::Mask;
+    use crate::base::random::TrialKey;
+    use crate::kernel::state::Layout;
+
+    #[test]
+    fn the_numbers_are_those_of_the_stream_to_the_last_bit() {
+        for spread in [0, 1] {
+            let mut state = State::new(Layout::Trials, 0);
+            state.occupied = Mask::ALL;
+            for lane in 0..LANES {
+                state.keys[lane] = TrialKey {
+                    seed: 0x1234_5678_9abc_def0 ^ (spread * lane as u64),
+                    index: 0xffff_ffff_0000 + 7 * lane as u64,
+                    branch: lane as u16,
+                };
+                state.ticks[lane] = 0xffff_fff0 + 5 * lane as u64;
+            }
+            for entity in [0, 5, 0x00ff_ffff] {
+                let word = Stream::of(TrialKey::default(), entity, Purpose::Process).counter(0)[1];
+                let pair = Draws { level: Level::new(), state: &state, word }.pair();
+                for lane in 0..LANES {
+                    let stream = Stream::of(state.keys[lane], entity, Purpose::Process);
+                    let expected = stream.uniform_pair(state.ticks[lane] as u32);
+                    assert_eq!([pair[0][lane], pair[1][lane]], expected);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! Errors of a model that show only while it runs.
+
+use crate::model::{Domain, Processes};
+
+/// What a process did that it must not do. The numbers are those of the process, command or variable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Fault {
+    /// Two commands are enabled and nothing says which one fires.
+    Ambiguous {
+        /// The process.
+        process: u32,
+        /// The first two.
+        commands: (u32, u32),
+    },
+    /// The probabilities of a command are negative or do not sum to 1.
+    Weights {
+        /// The process.
+        process: u32,
+        /// Its command.
+        command: u32,
+    },
+    /// A variable would leave its range.
+    Range {
+        /// The variable.
+        variable: u32,
+        /// The value that it cannot hold.
+        value: f64,
+    },
+    /// A rate is negative or no number.
+    Rate {
+        /// The process.
+        process: u32,
+        /// Its command.
+        command: u32,
+        /// The rate, 1/s.
+        value: f64,
+    },
+}
+
+impl Fault {
+    /// What is wrong, in words.
+    pub fn describe(&self, processes: &Processes) -> String {
+        let name = |process: u32| processes.list.get(process as usize).map_or("", |p| p.name.as_str());
+        match *self {
+            Self::Ambiguous { process, commands: (a, b) } => format!(
+                "commands {} and {} of `{}` are both enabled, and without `choose` nothing says which one fires",
+                a + 1,
+                b + 1,
+                name(process)
+            ),
+            Self::Weights { process, command } => format!(
+                "the probabilities of command {} of `{}` are negative or do not sum to 1",
+                command + 1,
+                name(process)
+            ),
+            Self::Range { variable, value } => {
+                let Some(variable) = processes.variables.get(variable as usize) else { return String::new() };
+                let range = match variable.domain {
+                    Domain::Whole { low, high } => format!("whole numbers from {low} to {high}"),
+                    Domain::Truth => "truth values".to_owned(),
+                    Domain::Real => "finite numbers".to_owned(),
+                };
+                format!("`{}` would become {value}, but it holds {range}", variable.name)
+            }
+            Self::Rate { process, command, value } => {
+                format!("the rate of command {} of `{}` is {value} /s", command + 1, name(process))
+            }
+        }
+    }
+
+    /// Values of variables, in words: `die.s = 1, die.d = 0`.
+    pub fn state(processes: &Processes, value: impl Fn(usize) -> f64) -> String {
+        /// As many as one can read.
+        const SHOWN: usize = 12;
+        let mut words: Vec<String> = processes
+            .variables
+            .iter()
+            .enumerate()
+            .take(SHOWN)
+            .map(|(k, variable)| match variable.domain {
+                Domain::Truth => format!("{} = {}", variable.name, value(k) != 0.0),
+                _ => format!("{} = {}", variable.name, value(k)),
+            })
+            .collect();
+        if processes.variables.len() > SHOWN {
+            words.push("…".to_owned());
+        }
+        words.join(", ")
+    }
+}

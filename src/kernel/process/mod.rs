@@ -1,0 +1,150 @@
+//! Processes: guarded commands of all trials of a batch at once.
+//!
+//! At a step each process looks at the old state, picks its enabled command and a branch of it by one
+//! uniform number (`Purpose::Process`, its entity, the tick), and all new values are written together.
+//! Guards, probabilities and updates are linear code over lanes; a process that depends on few values only
+//! is a table made by that same code.
+
+mod commands;
+mod draws;
+mod fault;
+mod table;
+
+pub use fault::Fault;
+
+use super::code::{Code, Readings};
+use super::state::{Layout, State};
+use crate::base::lanes::{LANES, Lanes, Mask};
+use crate::base::random::{Purpose, Stream, TrialKey};
+use crate::model::{Domain, Scenario};
+use commands::Commands;
+use draws::Draws;
+use fearless_simd::Level;
+use table::Table;
+
+/// One process.
+#[derive(Clone, Debug)]
+struct Machine {
+    /// The part of the counter that names it.
+    word: u32,
+    form: Form,
+}
+
+/// How a process is run.
+#[derive(Clone, Debug)]
+enum Form {
+    Table(Table),
+    Code(Commands),
+}
+
+/// The processes of a scenario, made ready to run.
+#[derive(Clone, Debug)]
+pub struct Processes {
+    /// Values of the variables at the start.
+    pub(super) initial: Vec<f64>,
+    machines: Vec<Machine>,
+    /// Guards, probabilities and updates of those that are no tables.
+    code: Option<Code>,
+    level: Level,
+}
+
+/// Room to work. It holds no part of the state.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Scratch {
+    readings: Readings,
+    next: Vec<Lanes>,
+}
+
+impl Processes {
+    /// Prepares the processes of a scenario.
+    pub fn new(scenario: &Scenario) -> Self {
+        Self::with_tables(scenario, table::MOST_ROWS)
+    }
+
+    /// Tables have at most so many rows; with 0 all processes are code. Results have the same bits.
+    pub fn with_tables(scenario: &Scenario, rows: u64) -> Self {
+        let processes = &scenario.processes;
+        let domains: Vec<Domain> = processes.variables.iter().map(|v| v.domain).collect();
+        let (mut atoms, mut signals) = (Vec::new(), Vec::new());
+        let machines: Vec<Machine> = processes
+            .list
+            .iter()
+            .enumerate()
+            .map(|(number, process)| {
+                let table = Table::of(scenario, number, &domains, rows);
+                let form = match table {
+                    Some(table) => Form::Table(table),
+                    None => Form::Code(Commands::of(number, process, &domains, &mut atoms, &mut signals)),
+                };
+                let stream = Stream::of(TrialKey::default(), process.entity, Purpose::Process);
+                Machine { word: stream.counter(0)[1], form }
+            })
+            .collect();
+        let coded = machines.iter().any(|machine| matches!(machine.form, Form::Code(_)));
+        Self {
+            initial: processes.variables.iter().map(|v| v.initial).collect(),
+            machines,
+            code: coded.then(|| Code::compile(scenario, &atoms, &signals)),
+            level: Level::new(),
+        }
+    }
+
+    /// Whether there is anything to do.
+    pub fn is_empty(&self) -> bool {
+        self.initial.is_empty() && self.machines.is_empty()
+    }
+
+    /// The same processes for the plainest vectors of the machine: the same bits, slower.
+    pub fn at_baseline(mut self) -> Self {
+        self.level = Level::baseline();
+        self.code = self.code.map(Code::at_baseline);
+        self
+    }
+
+    /// Begins a trial.
+    pub(super) fn load(&self, state: &mut State, lane: usize) {
+        state.variables.resize(self.initial.len(), Lanes::ZERO);
+        for (lanes, &value) in state.variables.iter_mut().zip(&self.initial) {
+            lanes.0[lane] = value;
+        }
+        state.faulty &= !Mask::lane(lane);
+        state.faults[lane] = None;
+    }
+
+    /// One step of all processes. Lanes that are not occupied, or faulty, keep their values.
+    pub(super) fn step(&self, layout: Layout, state: &mut State, scratch: &mut Scratch) {
+        let lanes = state.occupied & !state.faulty;
+        if self.machines.is_empty() || lanes.is_empty() {
+            return;
+        }
+        let Scratch { readings, next } = scratch;
+        if let Some(code) = &self.code {
+            code.read(layout, state, readings);
+        }
+        next.clone_from(&state.variables);
+        let mut faults = [None; LANES];
+        for machine in &self.machines {
+            let draws = Draws { level: self.level, state, word: machine.word };
+            match &machine.form {
+                Form::Table(table) => table.step(lanes, state, &draws, next, &mut faults),
+                Form::Code(commands) => commands.step(lanes, readings, &draws, next, &mut faults),
+            }
+        }
+        if faults.iter().all(Option::is_none) {
+            std::mem::swap(&mut state.variables, next);
+            return;
+        }
+        let wrong = lanes.iter().filter(|&lane| faults[lane].is_some());
+        let wrong = wrong.fold(Mask::NONE, |mask, lane| mask | Mask::lane(lane));
+        state.faulty |= wrong;
+        for lane in lanes.iter() {
+            if wrong.has(lane) {
+                state.faults[lane] = faults[lane];
+                continue;
+            }
+            for (old, new) in state.variables.iter_mut().zip(next.iter()) {
+                old.0[lane] = new.0[lane];
+            }
+        }
+    }
+}

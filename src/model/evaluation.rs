@@ -1,0 +1,185 @@
+//! What functions, operators and comparisons of expressions mean, and the value of an expression that
+//! depends on variables alone.
+//!
+//! The kernel runs expressions as code over lanes; here they are walked, for checks before a trial.
+
+use super::expression::{Arithmetic, Bool, Comparison, Function, Num};
+use super::process::VariableId;
+use crate::base::math;
+use std::collections::BTreeSet;
+
+impl Function {
+    /// The function of a number.
+    #[inline(always)]
+    pub fn of(self, x: f64) -> f64 {
+        match self {
+            Self::Negate => -x,
+            Self::Abs => x.abs(),
+            Self::Sqrt => x.sqrt(),
+            Self::Exp => math::exp(x),
+            Self::Ln => math::ln(x),
+            Self::Sin => math::sin_cos(x).0,
+            Self::Cos => math::sin_cos(x).1,
+            Self::Floor => x.floor(),
+            Self::Ceil => x.ceil(),
+            Self::Round => x.round(),
+        }
+    }
+}
+
+impl Arithmetic {
+    /// The result of two numbers.
+    #[inline(always)]
+    pub fn of(self, a: f64, b: f64) -> f64 {
+        match self {
+            Self::Add => a + b,
+            Self::Subtract => a - b,
+            Self::Multiply => a * b,
+            Self::Divide => a / b,
+            Self::Power => math::pow(a, b),
+            // NaN if one is, so that a diverged position never looks far away.
+            Self::Min => {
+                if b < a || b.is_nan() {
+                    b
+                } else {
+                    a
+                }
+            }
+            Self::Max => {
+                if b > a || b.is_nan() {
+                    b
+                } else {
+                    a
+                }
+            }
+            Self::Atan2 => math::atan2(a, b),
+            Self::Modulo => modulo(a, b),
+        }
+    }
+}
+
+/// The remainder with the sign of the divisor. The remainder of truncating division is exact.
+fn modulo(a: f64, b: f64) -> f64 {
+    let remainder = a % b;
+    if remainder != 0.0 && (remainder < 0.0) != (b < 0.0) { remainder + b } else { remainder }
+}
+
+impl Comparison {
+    /// Whether it holds; none holds of what is no number.
+    pub fn of(self, a: f64, b: f64) -> bool {
+        match self {
+            Self::Less => a < b,
+            Self::AtMost => a <= b,
+            Self::Greater => a > b,
+            Self::AtLeast => a >= b,
+            Self::Equal => a == b,
+            Self::Unequal => a < b || a > b,
+        }
+    }
+}
+
+impl Num {
+    /// Adds the variables that it reads; whether it depends on nothing else.
+    pub fn reads(&self, into: &mut BTreeSet<VariableId>) -> bool {
+        match self {
+            Self::Constant(_) => true,
+            Self::Variable(id) => {
+                into.insert(*id);
+                true
+            }
+            Self::Apply(_, a) => a.reads(into),
+            Self::Combine(_, a, b) => a.reads(into) & b.reads(into),
+            Self::If(condition, a, b) => condition.reads(into) & a.reads(into) & b.reads(into),
+            _ => false,
+        }
+    }
+
+    /// Its value where variables have these values; `None` where it depends on more than variables.
+    pub fn evaluate(&self, variables: &[f64]) -> Option<f64> {
+        match self {
+            Self::Constant(value) => Some(*value),
+            Self::Variable(id) => variables.get(id.0 as usize).copied(),
+            Self::Apply(function, a) => Some(function.of(a.evaluate(variables)?)),
+            Self::Combine(operator, a, b) => {
+                Some(operator.of(a.evaluate(variables)?, b.evaluate(variables)?))
+            }
+            Self::If(condition, a, b) => {
+                if condition.evaluate(variables)? {
+                    a.evaluate(variables)
+                } else {
+                    b.evaluate(variables)
+                }
+            }
+            _ => None,
+        }
+    }
+}
+
+impl Bool {
+    /// Adds the variables that it reads; whether it depends on nothing else.
+    pub fn reads(&self, into: &mut BTreeSet<VariableId>) -> bool {
+        match self {
+            Self::Constant(_) => true,
+            Self::Compare(_, a, b) => a.reads(into) & b.reads(into),
+            Self::Not(a) => a.reads(into),
+            Self::And(all) | Self::Or(all) => all.iter().fold(true, |so_far, one| so_far & one.reads(into)),
+            _ => false,
+        }
+    }
+
+    /// Its value where variables have these values; `None` where it depends on more than variables.
+    pub fn evaluate(&self, variables: &[f64]) -> Option<bool> {
+        match self {
+            Self::Constant(value) => Some(*value),
+            Self::Compare(comparison, a, b) => {
+                Some(comparison.of(a.evaluate(variables)?, b.evaluate(variables)?))
+            }
+            Self::Not(a) => a.evaluate(variables).map(|a| !a),
+            Self::And(all) => {
+                all.iter().try_fold(true, |so_far, one| Some(so_far & one.evaluate(variables)?))
+            }
+            Self::Or(all) => {
+                all.iter().try_fold(false, |so_far, one| Some(so_far | one.evaluate(variables)?))
+            }
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::VariableId;
+
+    #[test]
+    fn the_remainder_has_the_sign_of_the_divisor() {
+        assert_eq!(Arithmetic::Modulo.of(-1.0, 3.0), 2.0);
+        assert_eq!(Arithmetic::Modulo.of(1.0, -3.0), -2.0);
+        assert_eq!(Arithmetic::Modulo.of(6.0, 3.0), 0.0);
+        assert!(Arithmetic::Modulo.of(1.0, 0.0).is_nan());
+    }
+
+    #[test]
+    fn a_nan_survives_min_and_max() {
+        for (a, b) in [(f64::NAN, 1.0), (1.0, f64::NAN)] {
+            assert!(Arithmetic::Min.of(a, b).is_nan() && Arithmetic::Max.of(a, b).is_nan());
+        }
+        assert_eq!([Arithmetic::Min.of(1.0, 2.0), Arithmetic::Max.of(1.0, 2.0)], [1.0, 2.0]);
+    }
+
+    #[test]
+    fn halves_round_away_from_zero() {
+        assert_eq!([Function::Round.of(0.5), Function::Round.of(-0.5)], [1.0, -1.0]);
+    }
+
+    #[test]
+    fn expressions_of_variables_have_values_and_others_none() {
+        let v = |k| Box::new(Num::Variable(VariableId(k)));
+        let sum = Num::Combine(Arithmetic::Add, v(0), v(1));
+        assert_eq!(sum.evaluate(&[2.0, 3.0]), Some(5.0));
+        assert_eq!(Num::Combine(Arithmetic::Add, v(0), Box::new(Num::Time)).evaluate(&[2.0]), None);
+        let test = Bool::Compare(Comparison::Unequal, v(0), v(1));
+        assert_eq!(test.evaluate(&[f64::NAN, 1.0]), Some(false));
+        assert_eq!(Bool::Or(vec![test, Bool::Constant(true)]).evaluate(&[1.0, 1.0]), Some(true));
+    }
+}

@@ -1,0 +1,83 @@
+//! What is wrong with a process is said before a trial where it can be seen, else with trial, time and state.
+
+use crate::{answered, compiled};
+use smc::engine::outcome::Failure;
+
+fn refused(process: &str, code: &str) {
+    let found = compiled(&format!("horizon = 5 steps\n{process}"), "").unwrap_err();
+    assert!(found.contains(code), "{found}");
+}
+
+#[test]
+fn errors_that_can_be_seen_are_found_before_a_trial() {
+    for (process, code) in [
+        ("process p { var n: 0 .. 3 = 0\n when n == 0 -> n = 1\n when n < 2 -> n = 2 }", "E0801"),
+        ("process p { var n: 0 .. 3 = 0\n when n == 0 -> 1/2: n = 1 | 1/3: n = 2 }", "E0802"),
+        ("process p { var n: 0 .. 3 = 1\n when true -> n/3: n = 2 | n/3: n = 1 }", "E0802"),
+        ("process p { var n: 0 .. 3 = 0\n when true -> n = n + 1 }", "E0803"),
+        ("process p { var n: 0 .. 3 = 4 }", "E0803"),
+        ("process p { var n: 0 .. 3 = 0\n when true -> n = 1/2 }", "E0803"),
+        ("process p { var n: 0 .. 3 = 0\n when true -> m = 1 }", "E0201"),
+        ("process p { var n: 0 .. 3 = 0\n when n -> n = 1 }", "E0305"),
+        ("process p { var n: 3 .. 0 = 0 }", "E0405"),
+        ("process p { var n: 0 .. 3 = 0\n var n = true }", "E0202"),
+        ("process p { var n: 0 .. 3 = 0\n when true -> { n = 1; n = 2 } }", "E0202"),
+        ("process p { var n: 0 .. 3 = 0\n when true -> n = 1 m }", "E0303"),
+        (
+            "process p[2] { var n: 0 .. 3 = 0 }\nprocess q { var n: 0 .. 3 = 0\n when p[3].n == 1 -> n = 1 }",
+            "E0212",
+        ),
+        ("process p { let a = b\n let b = a\n var n: 0 .. a = 0 }", "E0205"),
+    ] {
+        refused(process, code);
+    }
+}
+
+#[test]
+fn what_no_trial_reaches_is_no_error() {
+    let late = "horizon = 3 steps\nprocess p { var n: 0 .. 3 = 0\n when true -> n = n + 1 }";
+    assert!(compiled(late, "").is_ok());
+    let scenario = "horizon = 5 steps\nprocess p { var n: 0 .. 3 = 0\n when n == 0 -> n = 1\n\
+                    when n == 3 -> n = 2\n when n >= 2 -> n = n + 1 }";
+    assert!(compiled(scenario, "").is_ok());
+}
+
+#[test]
+fn errors_that_show_while_running_name_trial_time_and_state() {
+    // A real variable: its values are not enumerated.
+    let scenario = "horizon = 50 steps\nprocess p { var x = 0\n var n: 0 .. 9 = 0\n\
+                    when true -> 3/4: x = x + 0.5 | 1/4: n = n + 1 }";
+    let study =
+        compiled(scenario, "estimate P(F<=#20 p.n > 0) within 0.01\nestimate P(F p.n > 20) within 0.01")
+            .unwrap();
+    let runs = [1, 2].map(|threads| answered(&study, 3, threads));
+    for run in &runs {
+        let Some(Failure::Input(reason)) = &run.failure else { panic!("{:?}", run.failure) };
+        assert!(reason.contains("`p.n` would become 10") && reason.contains("p.n = 9"), "{reason}");
+        assert!(reason.starts_with("trial ") && reason.contains(" at step "), "{reason}");
+        assert_eq!(smc::report::exit_code(run).code(), 2);
+    }
+    assert_eq!(runs[0].failure, runs[1].failure);
+}
+
+#[test]
+fn a_trial_that_is_decided_before_the_error_counts() {
+    let scenario =
+        "horizon = 50 steps\nprocess p { var x = 0\n var n: 0 .. 9 = 0\n when x >= 0 -> n = n + 1 }";
+    let study = compiled(scenario, "estimate P(F<=#5 p.n == 4) within 0.05").unwrap();
+    let run = answered(&study, 3, 1);
+    assert_eq!(run.failure, None);
+    assert_eq!(run.results[0].counts.failures, 0);
+}
+
+#[test]
+fn other_errors_of_clocks_and_timing() {
+    for (text, code) in [
+        ("horizon = 5 s\nprocess p { var n: 0 .. 3 = 0\n when n < 3 -> n = n + 1 }", "E0503"),
+        ("process p { var n: 0 .. 3 = 0 }", "E0505"),
+        ("horizon = 5 steps", "E0505"),
+    ] {
+        let found = compiled(text, "").unwrap_err();
+        assert!(found.contains(code), "{found}");
+    }
+}

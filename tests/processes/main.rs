@@ -1,0 +1,105 @@
+//! Processes against exact answers: chains are enumerated here, path by path or state by state, by code that
+//! shares nothing with the program.
+
+mod chains;
+mod errors;
+mod examples;
+mod rows;
+
+use smc::base::lanes::{LANES, Mask};
+use smc::base::random::TrialKey;
+use smc::compile::study::World;
+use smc::compile::{Files, Input, Study, compile};
+use smc::engine::outcome::Run;
+use smc::engine::{Budget, Call, Nobody, Subject, Threads};
+use smc::kernel::{Readings, Scratch, State, dynamics, start};
+use smc::syntax::parse::{parse_properties, parse_scenario};
+use smc::syntax::render::render;
+use smc::syntax::source::{Source, SourceId};
+
+/// Compiles two texts; the study, or the errors as rendered.
+pub(crate) fn compiled(scenario: &str, properties: &str) -> Result<Study, String> {
+    let sources =
+        [Source::new(SourceId(0), "model.scn", scenario), Source::new(SourceId(1), "prop.bltl", properties)];
+    let (scenario, mut diagnostics) = parse_scenario(&sources[0]);
+    let (properties, more) = parse_properties(&sources[1]);
+    diagnostics.extend(more);
+    let input = Input {
+        sources: &sources,
+        scenario: &scenario,
+        properties: &[properties],
+        files: &Files::default(),
+        settings: &[],
+    };
+    let (study, found) = compile(&input);
+    diagnostics.extend(found);
+    study
+        .filter(|_| diagnostics.iter().all(|d| d.severity != smc::syntax::diagnostic::Severity::Error))
+        .ok_or_else(|| render(&diagnostics, &sources, false))
+}
+
+/// Runs a study with a seed.
+pub(crate) fn answered(study: &Study, seed: u64, threads: usize) -> Run {
+    let call = Call {
+        seed,
+        command: String::new(),
+        simulate: String::new(),
+        only: Vec::new(),
+        place: &|_| (String::new(), 0),
+        file: String::new(),
+    };
+    let budget = Budget::new(1_000_000, None);
+    smc::engine::run(study, &call, &Threads::new(Some(threads)).unwrap(), &budget, &Nobody).unwrap()
+}
+
+/// What trials show: the values of all variables at each tick, and the verdict of each column.
+pub(crate) struct Shown {
+    pub(crate) traces: Vec<Vec<f64>>,
+    pub(crate) verdicts: Vec<bool>,
+}
+
+/// Runs trials to the horizon, with monitors of all columns.
+pub(crate) fn shown(world: &World, seed: u64, trials: u64) -> Vec<Shown> {
+    let subject = Subject::new(world);
+    let columns: Vec<usize> = (0..world.columns.len()).collect();
+    let code = subject.code(&columns);
+    let mut out = Vec::new();
+    let mut monitors: Vec<_> = columns.iter().map(|&c| subject.monitor(c).unwrap()).collect();
+    for first in (0..trials).step_by(LANES) {
+        let mut state = State::new(subject.program.layout, 0);
+        let (mut scratch, mut readings) = (Scratch::new(), Readings::default());
+        for lane in 0..LANES {
+            let key = TrialKey { seed, index: first + lane as u64, branch: 0 };
+            start::load(&subject.program, &mut state, lane, key, None).unwrap();
+            monitors.iter_mut().for_each(|monitor| monitor.start(lane));
+        }
+        let mut traces = vec![Vec::new(); LANES];
+        for tick in 0..=subject.horizon.0 {
+            if tick > 0 {
+                dynamics::step(&subject.program, &mut state, &mut scratch);
+            }
+            assert!(state.faulty.is_empty());
+            code.run(&subject.program, &state, &mut readings);
+            for monitor in &mut monitors {
+                monitor.observe(Mask::ALL, &readings.atoms, &readings.signals);
+            }
+            for (lane, trace) in traces.iter_mut().enumerate() {
+                trace.push(state.variables.iter().map(|lanes| lanes.0[lane]).collect());
+            }
+        }
+        for (lane, traces) in traces.into_iter().enumerate() {
+            let verdict = |monitor: &smc::logic::Monitor| {
+                assert!(monitor.decided().has(lane));
+                monitor.truth().has(lane)
+            };
+            out.push(Shown { traces, verdicts: monitors.iter().map(verdict).collect() });
+        }
+    }
+    out
+}
+
+/// Whether a share of trials fits a probability: five and a half standard deviations and a bit.
+pub(crate) fn fits(successes: usize, trials: usize, p: f64) -> bool {
+    let n = trials as f64;
+    (successes as f64 - n * p).abs() <= 5.5 * (n * p * (1.0 - p)).sqrt() + 1e-9 * n
+}
