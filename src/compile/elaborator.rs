@@ -252,7 +252,7 @@ impl<'a> Elaborator<'a> {
         }
         let at = self.atoms.iter().position(|a| *a == truth).unwrap_or_else(|| {
             self.atoms.push(truth);
-            let text = self.text(span);
+            let text = bare(&self.text(span)).to_owned();
             self.atom_texts.push(text);
             self.atoms.len() - 1
         });
@@ -274,5 +274,31 @@ impl<'a> Elaborator<'a> {
     /// All agents of the scenario.
     pub(super) fn everyone(&self) -> std::sync::Arc<[AgentId]> {
         (0..self.agent_names.len() as u32).map(AgentId).collect()
+    }
+}
+
+/// A text without parentheses around the whole of it.
+fn bare(text: &str) -> &str {
+    let Some(inner) = text.strip_prefix('(').and_then(|t| t.strip_suffix(')')) else { return text };
+    let mut depth = 0i32;
+    for c in inner.chars() {
+        depth += i32::from(c == '(') - i32::from(c == ')');
+        if depth < 0 {
+            // The first parenthesis closes before the end: `(a) & (b)`.
+            return text;
+        }
+    }
+    bare(inner.trim())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::bare;
+
+    #[test]
+    fn only_parentheses_around_the_whole_go() {
+        assert_eq!(bare("((a > 1 m))"), "a > 1 m");
+        assert_eq!(bare("(a) & (b)"), "(a) & (b)");
+        assert_eq!(bare("f(a)"), "f(a)");
     }
 }
