@@ -3,7 +3,11 @@
 //!
 //! `cargo bench --bench processes`
 
-#![allow(clippy::print_stdout, clippy::disallowed_methods, reason = "a measurement prints, and needs the clock")]
+#![allow(
+    clippy::print_stdout,
+    clippy::disallowed_methods,
+    reason = "a measurement prints, and needs the clock"
+)]
 
 use smc::compile::{Files, Input, Study, compile};
 use smc::engine::{Budget, Call, Nobody, Threads, run};

@@ -53,11 +53,8 @@ impl<'a> Elaborator<'a> {
                     (&decl.name, Meaning::Process(self.processes.len() as u32 - 1))
                 }
                 Item::Behaviour(BehaviourDecl { span, .. }) | Item::Source(SourceDecl { span, .. }) => {
-                    let error = Diagnostic::error(
-                        "E0213",
-                        *span,
-                        "this version simulates no behaviours and sources",
-                    );
+                    let error =
+                        Diagnostic::error("E0213", *span, "this version simulates no behaviours and sources");
                     self.note(error);
                     continue;
                 }
@@ -242,7 +239,10 @@ impl<'a> Elaborator<'a> {
             failed = true;
         };
         let bodies = file.items.iter().any(|item| {
-            matches!(item, Item::Agents(_) | Item::Group(_) | Item::Source(_) | Item::Moves(_) | Item::Scene(_))
+            matches!(
+                item,
+                Item::Agents(_) | Item::Group(_) | Item::Source(_) | Item::Moves(_) | Item::Scene(_)
+            )
         });
         // Processes alone need no step: they have their own, or rates.
         let free = step.is_none() && !self.processes.is_empty() && !bodies;

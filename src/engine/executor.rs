@@ -144,7 +144,8 @@ impl Executor for Threads {
         let results: Vec<Result<Finished, Invalid>> = if workers == 1 {
             vec![work()]
         } else {
-            self.pool.broadcast(|context| if context.index() < workers { work() } else { Ok(Finished::default()) })
+            self.pool
+                .broadcast(|context| if context.index() < workers { work() } else { Ok(Finished::default()) })
         };
         let width = job.columns.len();
         let mut cells = Cells::new(items.len(), width);

@@ -5,7 +5,8 @@ use super::contrast::{self, Contrast, Sides};
 use super::executor::Executor;
 use super::fault::Fault;
 use super::outcome::{
-    Comparison, Counts, Failure, Interval, Kind, QueryResult, RankedOption, Ranking, Run, Side, Status, Stop, Verdict,
+    Comparison, Counts, Failure, Interval, Kind, QueryResult, RankedOption, Ranking, Run, Side, Status, Stop,
+    Verdict,
 };
 use super::procedure::{self, Procedure};
 use super::race::{self, Field, Podium};

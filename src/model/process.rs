@@ -30,9 +30,7 @@ impl Domain {
     /// Whether it holds a value.
     pub fn contains(self, value: f64) -> bool {
         match self {
-            Self::Whole { low, high } => {
-                value >= low as f64 && value <= high as f64 && value.fract() == 0.0
-            }
+            Self::Whole { low, high } => value >= low as f64 && value <= high as f64 && value.fract() == 0.0,
             Self::Truth => value == 0.0 || value == 1.0,
             Self::Real => value.is_finite(),
         }

@@ -23,7 +23,10 @@ fn errors_that_can_be_seen_are_found_before_a_trial() {
         ("process p { var n: 0 .. 3 = 0\n var n = true }", "E0202"),
         ("process p { var n: 0 .. 3 = 0\n when true -> { n = 1; n = 2 } }", "E0202"),
         ("process p { var n: 0 .. 3 = 0\n when true -> n = 1 m }", "E0303"),
-        ("process p[2] { var n: 0 .. 3 = 0 }\nprocess q { var n: 0 .. 3 = 0\n when p[3].n == 1 -> n = 1 }", "E0212"),
+        (
+            "process p[2] { var n: 0 .. 3 = 0 }\nprocess q { var n: 0 .. 3 = 0\n when p[3].n == 1 -> n = 1 }",
+            "E0212",
+        ),
         ("process p { let a = b\n let b = a\n var n: 0 .. a = 0 }", "E0205"),
     ] {
         refused(process, code);
@@ -44,7 +47,9 @@ fn errors_that_show_while_running_name_trial_time_and_state() {
     // A real variable: its values are not enumerated.
     let scenario = "horizon = 50 steps\nprocess p { var x = 0\n var n: 0 .. 9 = 0\n\
                     when true -> 3/4: x = x + 0.5 | 1/4: n = n + 1 }";
-    let study = compiled(scenario, "estimate P(F<=#20 p.n > 0) within 0.01\nestimate P(F p.n > 20) within 0.01").unwrap();
+    let study =
+        compiled(scenario, "estimate P(F<=#20 p.n > 0) within 0.01\nestimate P(F p.n > 20) within 0.01")
+            .unwrap();
     let runs = [1, 2].map(|threads| answered(&study, 3, threads));
     for run in &runs {
         let Some(Failure::Input(reason)) = &run.failure else { panic!("{:?}", run.failure) };
@@ -57,7 +62,8 @@ fn errors_that_show_while_running_name_trial_time_and_state() {
 
 #[test]
 fn a_trial_that_is_decided_before_the_error_counts() {
-    let scenario = "horizon = 50 steps\nprocess p { var x = 0\n var n: 0 .. 9 = 0\n when x >= 0 -> n = n + 1 }";
+    let scenario =
+        "horizon = 50 steps\nprocess p { var x = 0\n var n: 0 .. 9 = 0\n when x >= 0 -> n = n + 1 }";
     let study = compiled(scenario, "estimate P(F<=#5 p.n == 4) within 0.05").unwrap();
     let run = answered(&study, 3, 1);
     assert_eq!(run.failure, None);

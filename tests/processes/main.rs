@@ -33,7 +33,8 @@ pub(crate) fn compiled(scenario: &str, properties: &str) -> Result<Study, String
     };
     let (study, found) = compile(&input);
     diagnostics.extend(found);
-    study.filter(|_| diagnostics.iter().all(|d| d.severity != smc::syntax::diagnostic::Severity::Error))
+    study
+        .filter(|_| diagnostics.iter().all(|d| d.severity != smc::syntax::diagnostic::Severity::Error))
         .ok_or_else(|| render(&diagnostics, &sources, false))
 }
 

@@ -112,11 +112,7 @@ fn choose_makes_enabled_commands_equally_likely() {
     let third = 1.0 / 3.0;
     exactly(
         scenario,
-        &[
-            ("X (c.x == 1)", third),
-            ("X (c.x == 2)", third / 4.0 + third),
-            ("X (c.x == 3)", third * 0.75),
-        ],
+        &[("X (c.x == 1)", third), ("X (c.x == 2)", third / 4.0 + third), ("X (c.x == 3)", third * 0.75)],
     );
 }
 

@@ -58,9 +58,6 @@ impl<'a> Declared<'a> {
     }
 }
 
-/// 1/s
-const RATE: Dimension = Dimension([0, 0, -1, 0, 0]);
-
 impl<'a> Elaborator<'a> {
     /// Whether some command of the file has a rate or a delay.
     pub(super) fn has_timing(file: &ScenarioFile) -> bool {
@@ -305,13 +302,7 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn command(
-        &mut self,
-        at: usize,
-        copy: u32,
-        command: &ast::Command,
-        locals: &Locals,
-    ) -> Lowered<Command> {
+    fn command(&mut self, at: usize, copy: u32, command: &ast::Command, locals: &Locals) -> Lowered<Command> {
         let guard = self.lower(&command.guard, locals);
         let guard = guard.and_then(|typed| self.as_truth(typed, command.guard.span));
         let timing = self.timing(command);
@@ -533,8 +524,6 @@ impl<'a> Elaborator<'a> {
 pub(super) fn as_number(truth: Bool) -> Num {
     match truth {
         Bool::Constant(value) => Num::Constant(f64::from(value)),
-        truth => {
-            Num::If(Box::new(truth), Box::new(Num::Constant(1.0)), Box::new(Num::Constant(0.0)))
-        }
+        truth => Num::If(Box::new(truth), Box::new(Num::Constant(1.0)), Box::new(Num::Constant(0.0))),
     }
 }

@@ -47,7 +47,9 @@ impl Elaborator<'_> {
                 let successors = match successors(processes, spans, &state) {
                     Ok(successors) => successors,
                     Err(End::Unknown) => return,
-                    Err(End::Wrong(wrong)) => return self.note(wrong.diagnostic(&processes.variables, &state)),
+                    Err(End::Wrong(wrong)) => {
+                        return self.note(wrong.diagnostic(&processes.variables, &state));
+                    }
                 };
                 made += successors.len();
                 for next in successors {

@@ -5,8 +5,8 @@
 
 use crate::base::lanes::{LANES, Lanes};
 use crate::base::random::{self, Purpose, Stream, philox};
-use crate::kernel::state::State;
 use crate::kernel::noise::unit_open;
+use crate::kernel::state::State;
 use crate::kernel::vector::parts;
 use fearless_simd::{Level, Simd, dispatch};
 
@@ -73,8 +73,12 @@ fn all<S: Simd>(simd: S, state: &State, word: u32) -> [[f64; LANES]; 2] {
     let mut out = [Lanes::ZERO; 2];
     for part in parts(simd) {
         let low = part.word(LOW);
-        let mut c =
-            [part.words(&counter[0]), part.word(u64::from(word)), part.words(&counter[1]), part.words(&counter[2])];
+        let mut c = [
+            part.words(&counter[0]),
+            part.word(u64::from(word)),
+            part.words(&counter[1]),
+            part.words(&counter[2]),
+        ];
         // Above its low half a counter word may hold anything between rounds.
         for round in &keys {
             let a = (c[0] & low) * part.word(MULTIPLIER[0]);
