@@ -179,8 +179,8 @@ impl Table {
             for k in 0..most - 1 {
                 for lane in 0..LANES {
                     let end = self.ends.get(first[lane] + k).copied().unwrap_or(1.0);
-                    let passed = (k + 1 < branches[lane]) & (numbers[lane] >= end);
-                    entries[lane] += usize::from(passed);
+                    let (more, passed) = (k + 1 < branches[lane], numbers[lane] >= end);
+                    entries[lane] += usize::from(more) & usize::from(passed);
                 }
             }
         }
