@@ -8,7 +8,7 @@ use crate::compile::Study;
 use crate::compile::nearest::nearest;
 use crate::engine::budget::DEFAULT_TRIALS;
 use crate::engine::outcome::{Failure, Run};
-use crate::engine::{Budget, Call, Threads, run as run_study};
+use crate::engine::{Budget, Call, Fault, Threads, run as run_study};
 use crate::report::{self, ExitCode as Exit, Format, Palette};
 use crate::syntax::source::{Source, Span};
 use std::sync::Arc;
@@ -53,6 +53,7 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     let progress = Progress::new(arguments.quiet);
     let run = match run_study(study, &call, &threads, &budget, &progress) {
         Ok(run) => run,
+        Err(Fault::Placement(reason)) => return super::crowded(reason, colors),
         Err(fault) => return refuse(&fault.to_string()),
     };
     finish(arguments, &run, colors)
@@ -134,6 +135,10 @@ fn command(verb: &str, arguments: &Check, properties: bool) -> String {
     for data in &arguments.model.data {
         words.push("--data".to_owned());
         words.push(quoted(&data.display().to_string()));
+    }
+    // With its budget a call stops where it stopped; a deadline is no property of the input.
+    if let (true, Some(most)) = (properties, arguments.max_trials) {
+        words.push(format!("--max-trials {most}"));
     }
     words.join(" ")
 }

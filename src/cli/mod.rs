@@ -13,6 +13,7 @@ mod terminal;
 
 use crate::model::Scenario;
 use crate::report::ExitCode as Exit;
+use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::render::render;
 use arguments::{Arguments, Command};
 use clap::Parser;
@@ -65,6 +66,14 @@ fn diagnose(inputs: &inputs::Inputs, colors: Colors) {
     if !inputs.diagnostics.is_empty() {
         say(&render(&inputs.diagnostics, &inputs.sources, colors.err));
     }
+}
+
+/// Refuses a scenario whose people cannot be placed.
+fn crowded(reason: String, colors: Colors) -> Exit {
+    let error = Diagnostic::placeless("E0801", reason)
+        .hint("fewer people, a larger shape to start from, or smaller radii");
+    say(&render(&[error], &[], colors.err));
+    Exit::Wrong
 }
 
 /// Whether everybody can be placed, as far as areas tell.

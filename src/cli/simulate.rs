@@ -169,8 +169,7 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
         None => None,
     };
     if let Err(reason) = super::placeable(&scenario) {
-        say(&format!("error: {reason}\n"));
-        return Exit::Wrong;
+        return super::crowded(reason, colors);
     }
     let mut last = scenario.horizon.0;
     if let Some(until) = arguments.until {

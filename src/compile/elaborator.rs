@@ -83,6 +83,8 @@ pub(super) struct Elaborator<'a> {
     pub(super) atom_texts: Vec<String>,
     /// Numbers observed.
     pub(super) signals: Vec<Num>,
+    /// Names in circles that were reported.
+    pub(super) circles: Vec<String>,
     /// What was found wrong.
     pub(super) diagnostics: Vec<Diagnostic>,
     /// Present depth of lowering.
@@ -112,6 +114,7 @@ impl<'a> Elaborator<'a> {
             atoms: Vec::new(),
             atom_texts: Vec::new(),
             signals: Vec::new(),
+            circles: Vec::new(),
             diagnostics: Vec::new(),
             depth: 0,
             nodes: 0,

@@ -59,6 +59,10 @@ impl Elaborator<'_> {
             return self.report(error);
         };
         if self.expanding.iter().any(|(_, n)| *n == name.name) {
+            if self.circles.contains(&name.name) {
+                return Err(Reported);
+            }
+            self.circles.extend(self.expanding.iter().map(|(_, n)| n.clone()));
             return self.report(Diagnostic::error(
                 "E0205",
                 name.span,

@@ -3,6 +3,7 @@
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered};
 use super::lower::DISTRIBUTIONS;
+use super::symbols::unknown;
 use crate::model::{Family, Law};
 use crate::syntax::ast::{Expr, ExprKind, Value};
 use crate::syntax::diagnostic::Diagnostic;
@@ -52,6 +53,16 @@ impl Elaborator<'_> {
             Value::Truncated { law, low, high } => {
                 let ends = (self.number_of(low, dimension, locals), self.number_of(high, dimension, locals));
                 let Some((name, arguments)) = distribution(law) else {
+                    if let ExprKind::Call { function, .. } = &law.kind {
+                        let error = unknown(
+                            "distribution",
+                            &function.name,
+                            function.span,
+                            "E0203",
+                            DISTRIBUTIONS.into_iter(),
+                        );
+                        return self.report(error);
+                    }
                     let error = Diagnostic::error("E0404", law.span, "only a distribution can be truncated")
                         .hint(format!(
                             "for example `normal(mean, sd) in lo .. hi`; known are {}",
@@ -60,8 +71,9 @@ impl Elaborator<'_> {
                     return self.report(error);
                 };
                 let family = self.family(name, law.span, arguments, dimension, locals)?;
+                self.validated(family.clone(), f64::NEG_INFINITY, f64::INFINITY, law.span)?;
                 let (low, high) = (ends.0?.value, ends.1?.value);
-                self.validated(family, low, high, law.span)
+                self.validated(family, low, high, value_span(value))
             }
             other => {
                 let error =

@@ -4,7 +4,7 @@ use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered};
 use super::reach::{Reach, Reaches};
 use super::study::{Column, MeasureKind, Root};
-use super::symbols::ScopeId;
+use super::symbols::{Meaning, ScopeId};
 use super::typed::Typed;
 use crate::base::tick::Clock;
 use crate::logic::{Node, Relation, Term, TermId};
@@ -30,9 +30,17 @@ impl Elaborator<'_> {
         self.temporal = false;
         let node = self.as_formula(typed?, body.span)?;
         let reach = Reaches::new(&self.tree, self.horizon).node(node);
-        self.within_horizon(reach, body.span)?;
+        // What is wrong with a whole property is said where it is declared, however often it is asked about.
+        let place = match &body.kind {
+            ExprKind::Name(name) => match self.find(name, scope) {
+                Some((_, Meaning::Property(formula))) => formula.span,
+                _ => body.span,
+            },
+            _ => body.span,
+        };
+        self.within_horizon(reach, place)?;
         if let Node::Constant(value) = self.tree.nodes[node.0 as usize] {
-            let warning = Diagnostic::warning("W0501", body.span, format!("this is always {value}"))
+            let warning = Diagnostic::warning("W0501", place, format!("this is always {value}"))
                 .hint("it does not depend on what happens in a trial");
             self.note(warning);
         }

@@ -123,7 +123,7 @@ impl Elaborator<'_> {
             return self.report(Diagnostic::error(
                 "E0604",
                 expr.span,
-                "`within` a whole probability says nothing",
+                "a probability lies between 0 and 1, so that `within` must be less than 1",
             ));
         }
         Ok(Some(number.value))
@@ -158,9 +158,10 @@ impl Elaborator<'_> {
         match name {
             "sprt" | "sprt2" | "plan" => {
                 let arguments = self.arguments(method, ["alpha", "beta", "indifference"], locals)?;
-                let alpha = self.error_of(arguments.values[0], error, "alpha")?;
-                let beta = self.error_of(arguments.values[1], error, "beta")?;
+                let alpha = self.error_of(arguments.values[0], error, "alpha");
+                let beta = self.error_of(arguments.values[1], error, "beta");
                 let (indifference, span) = self.required(&arguments, 2, "indifference")?;
+                let (alpha, beta) = (alpha?, beta?);
                 self.region(threshold, indifference, at, span)?;
                 Ok(match name {
                     "sprt" => Test::Sprt { alpha, beta, indifference },

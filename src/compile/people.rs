@@ -8,7 +8,7 @@ use super::symbols::{Meaning, unknown};
 use crate::base::geometry::Vec2;
 use crate::base::random::name_hash;
 use crate::model::{Agent, AgentId, Body, Group, Law, Particle, Position, Route, Start, Who};
-use crate::syntax::ast::{AgentsDecl, Expr, Field, GroupDecl, Ident, Value};
+use crate::syntax::ast::{AgentsDecl, Expr, ExprKind, Field, GroupDecl, Ident, Value};
 use crate::syntax::diagnostic::Diagnostic;
 use std::sync::Arc;
 
@@ -276,6 +276,21 @@ impl<'a> Elaborator<'a> {
             Value::UniformIn(shape) => self.shape(shape, &Locals::default()).map(Position::Within),
             Value::Near { agent, within } => {
                 let distance = self.number_of(within, Dimension::LENGTH, &Locals::default())?;
+                let later = |this: &mut Self| {
+                    this.report(
+                        Diagnostic::error("E0403", agent.span, "this agent is declared later")
+                            .hint("an agent near another one is declared after it"),
+                    )
+                };
+                let whose = match &agent.kind {
+                    ExprKind::Index(base, _) => &base.kind,
+                    kind => kind,
+                };
+                if let ExprKind::Name(name) = whose
+                    && matches!(self.find(name, 0), Some((_, Meaning::Declared)))
+                {
+                    return later(self);
+                }
                 let typed = self.lower(agent, &Locals::default())?;
                 let Who::Agent(id) = self.as_agent(typed, agent.span)? else { return Err(Reported) };
                 if distance.value <= 0.0 {
@@ -286,10 +301,7 @@ impl<'a> Elaborator<'a> {
                     ));
                 }
                 if id.0 as usize >= people.agents.len() {
-                    return self.report(
-                        Diagnostic::error("E0403", agent.span, "this agent is declared later")
-                            .hint("an agent near another one is declared after it"),
-                    );
+                    return later(self);
                 }
                 Ok(Position::Near { agent: id, within: distance.value })
             }

@@ -124,6 +124,11 @@ impl<'a> Compiler<'a> {
         for (number, file) in self.input.properties.iter().enumerate() {
             for item in &file.items {
                 match item {
+                    // A name that is taken stands for something else; that is said already.
+                    PropertyItem::Property { name, .. }
+                        if elaborator.scopes[number + 1]
+                            .get(&name.name)
+                            .is_none_or(|declared| declared.span != name.span) => {}
                     PropertyItem::Property { name, .. } => {
                         let body = Expr { kind: ast::ExprKind::Name(name.name.clone()), span: name.span };
                         let declared = self.input.properties[number].items.iter().find_map(|i| match i {
@@ -371,6 +376,23 @@ impl<'a> Compiler<'a> {
             Some(delta) if family_clauses(clauses) => delta / super::methods::DEFAULT_ALPHA,
             _ => 1.0,
         };
+        if matches!(measure.kind, ast::MeasureKind::Probability)
+            && let Ok(theta) = bound.as_ref().map(|b| b.value)
+            && (theta <= 0.0 || theta >= 1.0)
+        {
+            let hint = if theta > 1.0 && theta <= 100.0 {
+                format!("a share is written with its sign: `{theta} %`")
+            } else {
+                "that something is certain or impossible cannot be decided by sampling; ask for `>= 0.999`"
+                    .to_owned()
+            };
+            let error = Diagnostic::error(
+                "E0601",
+                threshold.span,
+                format!("a probability is compared with a number between 0 and 1, not with {theta}"),
+            );
+            return elaborator.report(error.hint(hint));
+        }
         let (Observed { column, kind, unbounded }, bound) = (observed?, bound?);
         let mut at_least = matches!(relation, BinaryOp::AtLeast | BinaryOp::Greater);
         let mut or_equal = matches!(relation, BinaryOp::AtLeast | BinaryOp::AtMost);
@@ -406,14 +428,7 @@ impl<'a> Compiler<'a> {
                     elaborator.delta(clauses, &locals)?.unwrap_or(super::methods::DEFAULT_ALPHA) * share;
                 super::study::Test::Interval { delta, trials: super::methods::DEFAULT_TRIALS }
             }
-            _ => {
-                if theta <= 0.0 || theta >= 1.0 {
-                    let error = Diagnostic::error("E0601", threshold.span, format!("a probability is compared with a number between 0 and 1, not with {theta}"))
-                        .hint("that something is certain or impossible cannot be decided by sampling; ask for `>= 0.999`");
-                    return elaborator.report(error);
-                }
-                elaborator.test(clauses, theta, threshold.span, share, &locals)?
-            }
+            _ => elaborator.test(clauses, theta, threshold.span, share, &locals)?,
         };
         let column = self.column(site, column);
         let measure = Measure { target: Target { world: site, column }, kind };

@@ -81,6 +81,11 @@ impl<'a> Elaborator<'a> {
             failed |= self.option(option, &mut options).is_err();
         }
         let typed = typed?;
+        if matches!(typed, Typed::Agents { .. }) {
+            let error = Diagnostic::error("E0406", decl.agent.span, "moves are those of one agent")
+                .hint("declare that one by itself, as in `agent user: …`");
+            return self.report(error);
+        }
         let Who::Agent(agent) = self.as_agent(typed, decl.agent.span)? else {
             return Err(super::elaborator::Reported);
         };

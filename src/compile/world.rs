@@ -213,9 +213,12 @@ impl<'a> Elaborator<'a> {
                         "E0207",
                         ["horizon", "step"].into_iter(),
                     );
-                    self.note(
-                        error.hint("a scenario sets `horizon` and `step`; constants start with `const`"),
-                    );
+                    let general = "a scenario sets `horizon` and `step`; constants start with `const`";
+                    let hint = match &error.hint {
+                        Some(near) => format!("{near} {general}"),
+                        None => general.to_owned(),
+                    };
+                    self.note(error.hint(hint));
                     failed = true;
                     continue;
                 }

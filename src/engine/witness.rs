@@ -52,11 +52,12 @@ fn witness(
     monitor.start(0);
     let mut record = blame::Record::default();
     let mut states: Vec<State> = Vec::new();
+    let kept = if program.scenario.agents.len() <= LARGEST_KEPT { KEPT } else { 0 };
     loop {
         code.run(program, &state, &mut readings);
         monitor.observe(lane, &readings.atoms, &readings.signals);
         record.push(&readings);
-        if states.len() < KEPT {
+        if states.len() < kept {
             states.push(state.clone());
         }
         if monitor.decided().has(0) || state.ticks[0] >= subject.horizon.0 || !state.diverged.is_empty() {
@@ -83,8 +84,10 @@ fn witness(
     Some(Witness { passing, trial, time, unit, what, command })
 }
 
-/// States kept while a witness is run; those of large crowds are large.
+/// States kept while a witness is run; those of large crowds are made again instead.
 const KEPT: usize = 64;
+/// Agents above which no states are kept.
+const LARGEST_KEPT: usize = 256;
 
 /// The state of a trial at a tick.
 fn replay(subject: &Subject, key: TrialKey, advice: Option<(usize, usize)>, tick: u64) -> Option<State> {

@@ -20,7 +20,7 @@ use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
 /// Cells of a strip per reach.
-const CELLS_PER_REACH: f64 = 4.0;
+const CELLS_PER_REACH: f64 = 8.0;
 
 /// What is needed of an agent as the one who feels the forces.
 #[derive(Clone, Copy, Debug)]
@@ -462,7 +462,7 @@ fn survey<S: Simd>(simd: S, forces: &Forces, state: &State) -> Grid {
     let mut height = reach;
     let mut width = reach / CELLS_PER_REACH;
     // Someone far away must not make millions of empty cells.
-    let most_cells = 8.0 * state.agents as f64 + 64.0;
+    let most_cells = 16.0 * state.agents as f64 + 64.0;
     while (wide / width + 1.0) * (high / height + 1.0) > most_cells {
         height *= 2.0;
         width *= 2.0;

@@ -181,7 +181,7 @@ fn move_on<S: Simd>(simd: S, program: &Program, state: &mut State, scratch: &mut
     }
     for (block, &moving) in scratch.moving.iter().enumerate() {
         for part in parts(simd) {
-            Mover::kick(part, state, block, moving);
+            kick(part, state, block, moving);
         }
     }
     mover.contact(state, scratch);
@@ -271,13 +271,6 @@ impl Mover<'_> {
         part.store_in(here, vy, &mut state.vy[block]);
     }
 
-    #[inline(always)]
-    fn kick<S: Simd>(part: Part<S>, state: &mut State, block: usize, moving: Mask) {
-        let (vx, vy) = kicked(part, state, block);
-        part.store_in(part.mask(moving), vx, &mut state.vx[block]);
-        part.store_in(part.mask(moving), vy, &mut state.vy[block]);
-    }
-
     fn contact(&self, state: &mut State, scratch: &mut Scratch) {
         scratch.moved.clear();
         scratch.moved.resize(state.x.len(), Mask::NONE);
@@ -333,6 +326,14 @@ fn kicked<S: Simd>(part: Part<S>, state: &State, block: usize) -> (Doubles<S>, D
         part.load(&state.vx[block]) + part.load(&state.fx[block]) * push,
         part.load(&state.vy[block]) + part.load(&state.fy[block]) * push,
     )
+}
+
+/// Half a kick.
+#[inline(always)]
+fn kick<S: Simd>(part: Part<S>, state: &mut State, block: usize, moving: Mask) {
+    let (vx, vy) = kicked(part, state, block);
+    part.store_in(part.mask(moving), vx, &mut state.vx[block]);
+    part.store_in(part.mask(moving), vy, &mut state.vy[block]);
 }
 
 /// Adds to the ways gone.

@@ -18,7 +18,7 @@ use fearless_simd::prelude::*;
 use std::f64::consts::LOG2_E;
 
 /// Way that an agent may go before the list is made anew, m; twice that is added to the reach.
-const SLACK: f64 = 0.2;
+const SLACK: f64 = 0.12;
 
 /// Largest exponent of two of a social force: what goes beyond has diverged anyway, and stays finite.
 pub(super) const LARGEST_POWER: f64 = 480.0;

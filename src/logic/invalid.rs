@@ -52,6 +52,12 @@ pub enum Invalid {
     /// of the extremes of windows and of times with a constant.
     #[error("a comparison of numbers of several states has no margin")]
     NoMargin,
+    /// A sum over continuous time.
+    #[error("in continuous time there are no states to add up: use the mean, which is the time average")]
+    SumOverTime,
+    /// A time or a time average, asked about at many moments, that is not compared with a constant.
+    #[error("a time or a time average inside another window can only be compared with a constant")]
+    MovingNumber,
     /// The clock has no steps.
     #[error("a clock without steps has no states to count")]
     NoSteps,

@@ -8,6 +8,7 @@ pub mod invalid;
 pub mod monitor;
 pub mod offline;
 mod reach;
+pub mod signal;
 
 pub use explain::{Explanation, Reason, explain};
 pub use formula::{
@@ -17,3 +18,4 @@ pub use invalid::Invalid;
 pub use monitor::robustness::Robustness;
 pub use monitor::{Antecedent, Monitor};
 pub use offline::Recording;
+pub use signal::{Reading, SignalMonitor};

@@ -99,10 +99,11 @@ pub enum AnyEstimator {
 
 impl AnyEstimator {
     /// The default for half-width `epsilon` and error `delta`: calibrated sequential Clopper-Pearson where
-    /// the level is in the proven table or can be proven in seconds (epsilon of 0.005 or more), else
-    /// whichever of alpha spending and Okamoto has the smaller largest number of trials.
+    /// the level, or that of a slightly smaller error, is in the proven table or can be proven in seconds
+    /// (epsilon of 0.005 or more), else whichever of alpha spending and Okamoto has the smaller largest number
+    /// of trials.
     pub fn within(epsilon: f64, delta: f64) -> Result<Self, Invalid> {
-        if let Some(row) = Table::row(epsilon, delta) {
+        if let Some(row) = Table::row(epsilon, delta).or_else(|| Table::row_below(epsilon, delta)) {
             return Ok(Self::Calibrated(Calibrated::at_level(epsilon, delta, row.gamma)?));
         }
         let (spending, okamoto) = (Spending::new(epsilon, delta)?, Okamoto::new(epsilon, delta)?);

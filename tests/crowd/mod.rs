@@ -124,6 +124,7 @@ impl Crowd {
             agents: self.people.iter().enumerate().map(agent).collect(),
             groups: self.groups.iter().map(group).collect(),
             moves: Vec::new(),
+            processes: smc::model::Processes::default(),
         }))
     }
 

@@ -7,7 +7,7 @@ use super::super::typed::Typed;
 use crate::base::math;
 use crate::logic::{Operation, Term};
 use crate::model::{Arithmetic, Function, Num};
-use crate::syntax::ast::{BinaryOp, Expr, ExprKind};
+use crate::syntax::ast::{BinaryOp, Expr};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
@@ -140,12 +140,6 @@ impl Elaborator<'_> {
     }
 
     fn lower_power(&mut self, span: Span, left: &Expr, right: &Expr, locals: &Locals) -> Lowered<Typed> {
-        if matches!(&left.kind, ExprKind::Quantity(q) if q.unit.is_some()) {
-            let warning =
-                Diagnostic::warning("W0301", left.span, "the power applies to the number and its unit")
-                    .hint("in `2 m ^ 2` the unit is squared too: 4 m^2; write `2 m^2` for two square metres");
-            self.note(warning);
-        }
         let exponent = self.number_of(right, Dimension::NONE, locals)?;
         let base = self.lower(left, locals)?;
         let whole = exponent.as_whole().and_then(|n| i32::try_from(n).ok()).filter(|n| n.abs() <= 64);

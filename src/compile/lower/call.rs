@@ -130,7 +130,7 @@ impl Elaborator<'_> {
                 self.of_one(function, argument, locals)
             }
             name => {
-                let mut known: Vec<&str> = FUNCTIONS.to_vec();
+                let mut known: Vec<&str> = FUNCTIONS.into_iter().chain(DISTRIBUTIONS).collect();
                 let declared: Vec<String> = [locals.scope, 0]
                     .iter()
                     .filter_map(|s| self.scopes.get(*s))

@@ -44,6 +44,13 @@ impl Elaborator<'_> {
             ExprKind::Bool(value) => Ok(Typed::Truth(Bool::Constant(*value))),
             ExprKind::Text(text) => Ok(Typed::Text(text.clone())),
             ExprKind::Name(name) => self.lower_name(name, expr.span, locals),
+            ExprKind::Member(base, field)
+                if matches!(field.name.as_str(), "x" | "y") && !matches!(base.kind, ExprKind::Name(_)) =>
+            {
+                let typed = self.lower(base, locals)?;
+                let (x, y, dimension) = self.as_vector(typed, base.span)?;
+                Ok(Typed::Num(if field.name == "x" { x } else { y }, dimension))
+            }
             ExprKind::Member(base, member) => self.lower_member(base, member, locals),
             ExprKind::Index(base, index) => self.lower_index(base, index, locals),
             ExprKind::Call { function, arguments } => self.lower_call(expr, function, arguments, locals),

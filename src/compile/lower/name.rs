@@ -1,6 +1,6 @@
 //! Names and members of sets.
 
-use super::super::elaborator::{Elaborator, Locals, Lowered};
+use super::super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::super::symbols::{Meaning, ScopeId, unknown};
 use super::super::typed::Typed;
 use crate::model::{Set, Who};
@@ -57,7 +57,11 @@ impl<'a> Elaborator<'a> {
                     let error = Diagnostic::error(
                         "E0204",
                         span,
-                        format!("`{name}` is a function of {} arguments", decl.arguments.len()),
+                        format!(
+                            "`{name}` is a function of {} argument{}",
+                            decl.arguments.len(),
+                            if decl.arguments.len() == 1 { "" } else { "s" }
+                        ),
                     )
                     .hint(format!("call it: `{name}(…)`"));
                     return self.report(error);
@@ -143,7 +147,17 @@ impl<'a> Elaborator<'a> {
         compute: impl FnOnce(&mut Self) -> Lowered<Typed>,
     ) -> Lowered<Typed> {
         if self.expanding.iter().any(|(s, n)| *s == scope && n == name) {
-            let way: Vec<&str> = self.expanding.iter().map(|(_, n)| n.as_str()).chain([name]).collect();
+            if self.circles.iter().any(|n| n == name) {
+                return Err(Reported);
+            }
+            let way: Vec<&str> = self
+                .expanding
+                .iter()
+                .map(|(_, n)| n.as_str())
+                .skip_while(|n| *n != name)
+                .chain([name])
+                .collect();
+            self.circles.extend(way.iter().map(|n| (*n).to_owned()));
             let error = Diagnostic::error("E0205", span, format!("`{name}` is defined by itself"))
                 .label(way.join(" → "));
             return self.report(error);

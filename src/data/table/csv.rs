@@ -14,7 +14,18 @@ pub fn write_csv<'a>(
     signals: &[&str],
     rows: impl IntoIterator<Item = Row<'a>>,
 ) -> io::Result<u64> {
-    let mut table = csv::Writer::from_writer(out);
+    write(csv::Writer::from_writer(out), signals, rows).map_err(|error| match error.into_kind() {
+        // A closed pipe is told from other failures by its kind.
+        csv::ErrorKind::Io(error) => error,
+        other => io::Error::other(format!("{other:?}")),
+    })
+}
+
+fn write<'a>(
+    mut table: csv::Writer<impl Write>,
+    signals: &[&str],
+    rows: impl IntoIterator<Item = Row<'a>>,
+) -> csv::Result<u64> {
     table.write_record(COLUMNS.iter().chain(signals))?;
     let mut count = 0;
     for row in rows {

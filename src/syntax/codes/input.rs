@@ -1,6 +1,58 @@
-//! Pages of E07xx: files and their contents.
+//! Pages of E07xx: files.
 
 use super::Page;
 
 /// The pages, by code.
-pub(super) const PAGES: &[Page] = &[];
+pub(super) const PAGES: &[Page] = &[
+    Page {
+        code: "E0701",
+        title: "a file cannot be read",
+        text: "\
+The file is not there, is a directory or may not be read. Files that a scenario names are looked for beside it, then\n\
+under each `--data` directory. Standard input can be read once.\n\
+\n\
+Wrong:\n\
+\x20   tracks hotel = eth_biwi \"obsmat.txt\"\n\
+Right:\n\
+\x20   tracks hotel = eth_biwi \"seq_hotel/obsmat.txt\"\n\
+\x20   smc check hotel.scn hotel.bltl --data ../shared/data/eth-biwi",
+    },
+    Page {
+        code: "E0702",
+        title: "a recording cannot be read",
+        text: "\
+The format is unknown, or lines of the file are not what the format asks for. The message gives the numbers of the\n\
+lines.\n\
+\n\
+Wrong:\n\
+\x20   tracks hotel = biwi \"seq_hotel/obsmat.txt\"\n\
+Right:\n\
+\x20   tracks hotel = eth_biwi \"seq_hotel/obsmat.txt\"",
+    },
+    Page {
+        code: "E0703",
+        title: "nobody of that kind in the recording",
+        text: "\
+At the given time the recording holds nobody, not the person asked for, or several where one is needed. The hint names\n\
+the nearest time with people, or those who are there.\n\
+\n\
+Wrong:\n\
+\x20   agent user: adult from hotel at 646.8 s\n\
+Right:\n\
+\x20   agent user: adult from hotel at 646.8 s id 367\n\
+\x20   agents others: adult from hotel at 646.8 s except 367",
+    },
+    Page {
+        code: "E0704",
+        title: "geometry cannot be read",
+        text: "\
+An imported file is GeoJSON or WKT, in text; rings are closed and do not cross themselves. The message says what is\n\
+wrong with the first features.\n\
+\n\
+Wrong:\n\
+\x20   import \"floor.dxf\"\n\
+Right:\n\
+\x20   import \"floor.geojson\"\n\
+\x20   import \"floor.wkt\"",
+    },
+];

@@ -3,4 +3,91 @@
 use super::Page;
 
 /// The pages, by code.
-pub(super) const PAGES: &[Page] = &[];
+pub(super) const PAGES: &[Page] = &[
+    Page {
+        code: "E0601",
+        title: "this threshold cannot be tested",
+        text: "\
+A probability is compared with a number strictly between 0 and 1: no number of trials proves that something is certain\n\
+or impossible. A level of a quantile lies there too, and a threshold of an expectation inside the range of its metric.\n\
+\n\
+Wrong:\n\
+\x20   check P(safe) >= 1\n\
+Right:\n\
+\x20   check P(safe) >= 0.999",
+    },
+    Page {
+        code: "E0602",
+        title: "the indifference region leaves (0, 1)",
+        text: "\
+A sequential ratio test tells the threshold plus the indifference from the threshold minus it; both must be\n\
+probabilities strictly between 0 and 1. The default test needs no such region.\n\
+\n\
+Wrong:\n\
+\x20   check P(safe) >= 0.99 by sprt(indifference = 0.02)\n\
+Right:\n\
+\x20   check P(safe) >= 0.99 by sprt(indifference = 0.005)\n\
+\x20   check P(safe) >= 0.99",
+    },
+    Page {
+        code: "E0603",
+        title: "no such procedure here",
+        text: "\
+Each kind of query has procedures of its own. For a check: sprt, sprt2, plan, eprocess, three_way. For an estimate of\n\
+a probability: okamoto, massart, spending, clopper_pearson, fixed, gbas. Without `by` the default is used.\n\
+\n\
+Wrong:\n\
+\x20   estimate P(safe) by sprt(indifference = 0.01)\n\
+Right:\n\
+\x20   estimate P(safe) by okamoto(epsilon = 0.01, delta = 0.05)",
+    },
+    Page {
+        code: "E0604",
+        title: "wrong arguments of a procedure",
+        text: "\
+An argument is unknown, missing, given twice or outside its range. Probabilities of error, widths and confidences lie\n\
+strictly between 0 and 1, numbers of trials are whole and positive.\n\
+\n\
+Wrong:\n\
+\x20   estimate P(safe) within 0.01 confidence 95\n\
+Right:\n\
+\x20   estimate P(safe) within 0.01 confidence 95 %",
+    },
+    Page {
+        code: "E0605",
+        title: "an expectation needs a range",
+        text: "\
+Without a range no finite number of trials guarantees anything about a mean. Values outside are clipped to the range,\n\
+and the report counts them. Only expectations have one.\n\
+\n\
+Wrong:\n\
+\x20   estimate E(min<=10 s (clearance(user)))\n\
+Right:\n\
+\x20   estimate E(min<=10 s (clearance(user))) in -0.5 m .. 20 m",
+    },
+    Page {
+        code: "E0606",
+        title: "there is nothing to rank",
+        text: "\
+`rank moves of` needs an agent for which the scenario declares moves.\n\
+\n\
+Wrong:\n\
+\x20   agent user: adult { at = (1, 2) }\n\
+\x20   rank moves of user by P(safe)\n\
+Right:\n\
+\x20   moves user for 2 s { heading from -60 deg to 60 deg by 15 deg  stop }\n\
+\x20   rank moves of user by P(safe)",
+    },
+    Page {
+        code: "E0607",
+        title: "this clause or measure does not belong here",
+        text: "\
+A check has no `within`; a quantile takes a number of trials, not a width; quantiles are neither compared nor ranked\n\
+by.\n\
+\n\
+Wrong:\n\
+\x20   check P(safe) >= 0.9 within 0.01\n\
+Right:\n\
+\x20   check P(safe) >= 0.9 by sprt(indifference = 0.01)",
+    },
+];

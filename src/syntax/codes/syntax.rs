@@ -198,8 +198,8 @@ Right:\n\
         code: UNIT,
         title: "unknown unit",
         text: "\
-A name right after a number is its unit. Known are m, cm, mm, km, s, ms, min, h, kg, g, N, kN, deg, rad, Hz, %, step and steps, with\n\
-powers (`m^2`), quotients (`m/s`, `1 /s`, `kg/(m s)`) and products (`N*m`).\n\
+A name right after a number is its unit. Known are m, cm, mm, km, s, ms, min, h, kg, g, N, kN, deg, rad, Hz, %, step\n\
+and steps, with powers (`m^2`), quotients (`m/s`, `1 /s`, `kg/(m s)`) and products (`N*m`).\n\
 \n\
 Wrong:\n\
 \x20   speed = 1.3 metres/s\n\

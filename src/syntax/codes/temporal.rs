@@ -1,6 +1,107 @@
-//! Pages of E05xx: time, bounds and horizons.
+//! Pages of E05xx and W05xx: time, bounds, horizon.
 
 use super::Page;
 
 /// The pages, by code.
-pub(super) const PAGES: &[Page] = &[];
+pub(super) const PAGES: &[Page] = &[
+    Page {
+        code: "E0501",
+        title: "this is no multiple of the step",
+        text: "\
+The model is seen at 0, step, 2 step and so on; a bound between two states would be rounded in silence, which changes\n\
+the question. The hint names the two nearest legal times.\n\
+\n\
+Wrong:\n\
+\x20   step = 0.02 s\n\
+\x20   property p = F<=0.05 s contact(user)\n\
+Right:\n\
+\x20   property p = F<=0.06 s contact(user)",
+    },
+    Page {
+        code: "E0502",
+        title: "the horizon is too short",
+        text: "\
+The formula looks further ahead than a trial lasts. Nested bounds add up: `F<=3 s G<=2 s p` needs 5 s. An operator\n\
+without a bound asks at every state up to the horizon, so that a bounded one inside it would look beyond.\n\
+\n\
+Wrong:\n\
+\x20   horizon = 4 s\n\
+\x20   property p = G (contact(user) => F<=1 s !contact(user))\n\
+Right:\n\
+\x20   property p = G<=3 s (contact(user) => F<=1 s !contact(user))",
+    },
+    Page {
+        code: "E0503",
+        title: "this is no time bound",
+        text: "\
+A bound is a time or a number of steps, not negative, and where it is needed finite; an interval ends after it starts.\n\
+A bare number is legal only where the model has steps without a length.\n\
+\n\
+Wrong:\n\
+\x20   property p = F<=5 contact(user)\n\
+Right:\n\
+\x20   property p = F<=5 s contact(user)\n\
+\x20   property p = F<=#5 contact(user)",
+    },
+    Page {
+        code: "E0504",
+        title: "a formula over time cannot stand here",
+        text: "\
+Conditions of agents, counts, folds over sets and the scenario itself look at one state. Operators over time stand in\n\
+properties and metrics, around such conditions.\n\
+\n\
+Wrong:\n\
+\x20   property p = count(a in crowd: F<=1 s contact(a)) > 2\n\
+Right:\n\
+\x20   property p = F<=1 s (count(a in crowd: contact(a)) > 2)",
+    },
+    Page {
+        code: "E0505",
+        title: "the scenario needs a clock",
+        text: "\
+A scenario sets a step and a horizon; both are positive and exact.\n\
+\n\
+Wrong:\n\
+\x20   scenario \"Hall\"\n\
+Right:\n\
+\x20   scenario \"Hall\"\n\
+\x20   horizon = 30 s\n\
+\x20   step = 0.02 s",
+    },
+    Page {
+        code: "E0507",
+        title: "there is no next state",
+        text: "\
+In a scenario in continuous time the state between two jumps lasts; there is no next one. Ask for an interval instead.\n\
+\n\
+Wrong:\n\
+\x20   property p = X (queue.n > 3)\n\
+Right:\n\
+\x20   property p = F[0 s, 1 s] (queue.n > 3)",
+    },
+    Page {
+        code: "W0501",
+        title: "this is always the same",
+        text: "\
+The formula is true, or false, whatever happens in a trial. That is often a slip: an unknown bound, a set without\n\
+members, a comparison with itself.\n\
+\n\
+Probably wrong:\n\
+\x20   property p = G<=2 s (1 m < 2 m)\n\
+Clear:\n\
+\x20   property p = G<=2 s (distance(user, friend) < 2 m)",
+    },
+    Page {
+        code: "W0502",
+        title: "this is read in the first state",
+        text: "\
+A number of one state has a value in every state; asked about a trace it is read in the first. Say which state is\n\
+meant, or join them.\n\
+\n\
+Probably wrong:\n\
+\x20   estimate E(speed(user)) in 0 m/s .. 3 m/s\n\
+Clear:\n\
+\x20   estimate E(speed(user) at end) in 0 m/s .. 3 m/s\n\
+\x20   estimate E(max<=10 s (speed(user))) in 0 m/s .. 3 m/s",
+    },
+];

@@ -1,0 +1,183 @@
+//! Monitors of trials in continuous time: the trace is a signal that is constant between jumps.
+//!
+//! Formulas, nested ones too, are evaluated exactly: a truth over time is a union of intervals with open or
+//! closed ends (Maler and Nickovic 2004, "Monitoring temporal properties of continuous signals"), built from
+//! the jumps as they come, and a verdict falls as soon as the values seen force it, as for states. Signals are
+//! continuous from the right: the state at an instant is the last one that began there.
+
+mod average;
+mod cells;
+mod direct;
+mod moment;
+mod number;
+mod plan;
+mod present;
+mod stream;
+mod track;
+mod truth;
+mod until;
+
+use super::formula::{NodeId, TermId, Tree};
+use super::invalid::Invalid;
+use super::reach::Part;
+use crate::base::decimal::Decimal;
+use crate::base::tick::Tick;
+use cells::Cells;
+use direct::Direct;
+use moment::{Moment, Scale};
+use plan::plan;
+use present::Present;
+
+/// What a monitor found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reading {
+    /// The formula's truth.
+    Truth(bool),
+    /// The metric; times are in seconds.
+    Value(f64),
+    /// The trial needs more stored pieces than are possible.
+    Unresolved,
+}
+
+/// How the question is answered.
+#[derive(Clone, Debug)]
+enum Way {
+    Direct(Direct),
+    Cells(Box<Cells>),
+}
+
+/// The monitor of one formula or metric, one trial at a time.
+///
+/// The bounds of the tree and the horizon are in ticks of `quantum` seconds each: any length of which all of them are
+/// whole multiples. Nothing is allocated per jump once a trial of the usual length has been seen.
+#[derive(Clone, Debug)]
+pub struct SignalMonitor {
+    present: Present,
+    way: Way,
+    scale: Scale,
+    begun: bool,
+    /// Since when the present state holds.
+    since: f64,
+    moment: Moment,
+    horizon: f64,
+    reading: Option<Reading>,
+    decided_at: f64,
+}
+
+impl SignalMonitor {
+    /// The monitor of the formula `root`, asked about at time 0 of trials that last up to `horizon`.
+    ///
+    /// # Errors
+    /// When a bound looks beyond the horizon, a window is empty, the tree is malformed, too deep or too large,
+    /// the quantum is not positive, or it has a sum over time, or a time or a time average that moves with a window and
+    /// is not compared with a constant.
+    pub fn formula(tree: &Tree, root: NodeId, horizon: Tick, quantum: Decimal) -> Result<Self, Invalid> {
+        Self::of(tree, Part::Node(root), horizon, quantum)
+    }
+
+    /// The monitor of the metric `root`, with the same conditions. Times are in seconds, `mean` is the time average.
+    ///
+    /// # Errors
+    /// As for a formula.
+    pub fn metric(tree: &Tree, root: TermId, horizon: Tick, quantum: Decimal) -> Result<Self, Invalid> {
+        Self::of(tree, Part::Term(root), horizon, quantum)
+    }
+
+    fn of(tree: &Tree, root: Part, horizon: Tick, quantum: Decimal) -> Result<Self, Invalid> {
+        let (present, way, scale) = plan(tree, root, horizon, quantum)?;
+        let horizon = scale.horizon();
+        let mut monitor = Self {
+            present,
+            way,
+            scale,
+            begun: false,
+            since: 0.0,
+            moment: 0,
+            horizon,
+            reading: None,
+            decided_at: 0.0,
+        };
+        monitor.start();
+        Ok(monitor)
+    }
+
+    /// A new trial begins; what was known of the last one is forgotten.
+    pub fn start(&mut self) {
+        (self.begun, self.since, self.moment) = (false, 0.0, 0);
+        (self.reading, self.decided_at) = (None, 0.0);
+        match &mut self.way {
+            Way::Direct(direct) => direct.clear(),
+            Way::Cells(cells) => cells.clear(),
+        }
+    }
+
+    /// From `time` (in seconds) on these values hold; before it the last ones did. The first call is about time 0.
+    /// A state that lasts no time is as if it had not been: of several calls for one time the last one
+    /// counts. So a state is judged when the next one comes, and what is returned may have been forced
+    /// earlier: see [`Self::decided_at`]. A time before the last one is taken as that one, atoms and
+    /// signals that are missing as false and as no number. Once there is a reading, the rest of the
+    /// trial is ignored.
+    #[inline]
+    pub fn jump(&mut self, time: f64, atoms: &[bool], signals: &[f64]) -> Option<Reading> {
+        if self.reading.is_some() {
+            return self.reading;
+        }
+        if self.begun {
+            if time > self.since {
+                let end = if time > self.horizon { f64::INFINITY } else { time };
+                self.close(end);
+                if self.reading.is_some() {
+                    return self.reading;
+                }
+                self.since = time;
+            }
+        } else {
+            self.begun = true;
+        }
+        self.present.read(atoms, signals);
+        None
+    }
+
+    /// The trial has reached its horizon, with the last values holding there.
+    pub fn finish(&mut self) -> Reading {
+        if !self.begun {
+            self.begun = true;
+            self.present.read(&[], &[]);
+        }
+        if self.reading.is_none() {
+            self.close(f64::INFINITY);
+        }
+        self.reading.unwrap_or(Reading::Unresolved)
+    }
+
+    /// The present state lasts to before `end`.
+    #[inline]
+    fn close(&mut self, end: f64) {
+        match &mut self.way {
+            Way::Direct(direct) => {
+                if let Some((reading, at)) = direct.step(self.since, end, &self.present) {
+                    (self.reading, self.decided_at) = (Some(reading), at);
+                }
+            }
+            Way::Cells(cells) => {
+                let to = if end == f64::INFINITY { self.scale.end() } else { self.scale.at(end) };
+                if to > self.moment {
+                    if let Some((reading, at)) = cells.step(self.moment, to, &self.present) {
+                        (self.reading, self.decided_at) = (Some(reading), self.scale.seconds(at));
+                    }
+                    self.moment = to;
+                }
+            }
+        }
+    }
+
+    /// The reading, if there is one.
+    pub fn reading(&self) -> Option<Reading> {
+        self.reading
+    }
+
+    /// The earliest time in seconds up to which (or right after which) the values forced the reading.
+    pub fn decided_at(&self) -> f64 {
+        self.decided_at
+    }
+}

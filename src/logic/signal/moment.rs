@@ -1,0 +1,100 @@
+//! Continuous time as whole numbers: every instant, and the open span right after it, has an index.
+//!
+//! A tick is divided into 2^k units, so many that the horizon is about 2^60 units; times of jumps are
+//! rounded down to units once, when they come in, and bounds are whole ticks. From there on everything is exact.
+//! Moment 2u is the instant u, moment 2u + 1 the open span between u and u + 1. Nothing changes inside
+//! such a span, so a function of time is a function of moments, and its ends are open or closed as the
+//! moments are odd or even. A shift in time by d units is a shift by 2d moments.
+
+use crate::base::decimal::Decimal;
+use crate::base::tick::Tick;
+
+/// An instant (even) or the open span right after it (odd).
+pub(super) type Moment = i64;
+
+/// A shift that leaves every horizon behind.
+pub(super) const FOREVER: Moment = 1 << 62;
+
+/// Longest horizon in ticks.
+pub(super) const LONGEST_HORIZON: u64 = 1 << 40;
+
+/// The instant in which, or right after which, a moment lies.
+pub(super) fn instant(moment: Moment) -> Moment {
+    moment & !1
+}
+
+/// How seconds and ticks become moments.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Scale {
+    bits: u32,
+    horizon: u64,
+    seconds_per_tick: (f64, f64),
+    units_per_second: f64,
+}
+
+impl Scale {
+    /// `quantum` is the length of a tick in seconds, `horizon` at most [`LONGEST_HORIZON`] ticks.
+    pub(super) fn new(horizon: Tick, quantum: Decimal) -> Self {
+        let bits = 59 - (64 - horizon.0.leading_zeros()).max(1);
+        let seconds_per_tick = (quantum.numerator() as f64, quantum.denominator() as f64);
+        let units_per_second = seconds_per_tick.1 / seconds_per_tick.0 * (1u64 << bits) as f64;
+        Self { bits, horizon: horizon.0, seconds_per_tick, units_per_second }
+    }
+
+    /// The moment right after the instant of the horizon.
+    pub(super) fn end(self) -> Moment {
+        self.shift(Tick(self.horizon)) + 1
+    }
+
+    /// Seconds of so many ticks.
+    pub(super) fn time(self, ticks: Tick) -> f64 {
+        ticks.0 as f64 * self.seconds_per_tick.0 / self.seconds_per_tick.1
+    }
+
+    /// Seconds up to the horizon.
+    pub(super) fn horizon(self) -> f64 {
+        self.time(Tick(self.horizon))
+    }
+
+    /// The number of moments in so many ticks; more than the horizon holds are one tick more than it.
+    pub(super) fn shift(self, ticks: Tick) -> Moment {
+        (ticks.0.min(self.horizon + 1) as i64) << (self.bits + 1)
+    }
+
+    /// The instant of a time in seconds, at most the end.
+    pub(super) fn at(self, seconds: f64) -> Moment {
+        let units = seconds * self.units_per_second;
+        if units <= (self.end() / 2) as f64 { 2 * (units as i64).max(0) } else { self.end() }
+    }
+
+    /// A finite number of seconds as a shift, to the nearest unit, kept within some horizons.
+    pub(super) fn span(self, seconds: f64) -> Moment {
+        let (units, most) = (seconds * self.units_per_second, self.end() as f64);
+        2 * ((units.max(-most).min(most) + 0.5).floor() as i64)
+    }
+
+    /// Seconds of a number of moments between instants.
+    pub(super) fn seconds(self, moments: Moment) -> f64 {
+        (moments / 2) as f64 / self.units_per_second
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_and_seconds_meet_and_come_back() {
+        for (quantum, horizon) in [("1", 10), ("0.1", 100), ("0.25", 1), ("60", 1 << 40), ("1", 0)] {
+            let scale = Scale::new(Tick(horizon), Decimal::parse(quantum).unwrap());
+            for ticks in [0, horizon / 3, horizon] {
+                let seconds = scale.time(Tick(ticks));
+                assert_eq!(scale.at(seconds), scale.shift(Tick(ticks)).min(scale.end()), "{quantum} {ticks}");
+                assert_eq!(scale.seconds(scale.shift(Tick(ticks))), seconds);
+                assert_eq!(scale.span(seconds), scale.shift(Tick(ticks)));
+            }
+            assert_eq!(scale.at(f64::INFINITY), scale.end());
+            assert!(scale.end() > 0 && scale.end() < FOREVER / 2);
+        }
+    }
+}

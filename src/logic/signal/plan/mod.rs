@@ -1,0 +1,169 @@
+//! From a tree to cells: which part is asked about at which moments, and how it is answered.
+
+mod formulas;
+mod now;
+mod numbers;
+
+use super::Way;
+use super::cells::{Cell, Cells, Root};
+use super::moment::{FOREVER, LONGEST_HORIZON, Moment, Scale};
+use super::number::{Number, Source};
+use super::present::Present;
+use super::truth::{Machine, Ref, Truth};
+use crate::base::decimal::Decimal;
+use crate::base::tick::Tick;
+use crate::logic::formula::{Tree, Window};
+use crate::logic::invalid::Invalid;
+use crate::logic::reach::{Ask, Part, below, children_first};
+use std::collections::BTreeMap;
+
+/// Most cells.
+const MOST_CELLS: usize = 1 << 18;
+
+/// The code of present states, the way to the answer, and the scale of time.
+pub(super) fn plan(
+    tree: &Tree,
+    root: Part,
+    horizon: Tick,
+    quantum: Decimal,
+) -> Result<(Present, Way, Scale), Invalid> {
+    let order = children_first(tree, root)?;
+    if horizon.0 > LONGEST_HORIZON {
+        return Err(Invalid::TooLong { horizon: horizon.0, limit: LONGEST_HORIZON });
+    }
+    if quantum.is_negative() || quantum.numerator() == 0 {
+        return Err(Invalid::NoSteps);
+    }
+    let needed = last_tick(tree, &order, horizon)?;
+    if needed > horizon.0 {
+        return Err(Invalid::BeyondHorizon { needed, horizon: horizon.0 });
+    }
+    let scale = Scale::new(horizon, quantum);
+    let mut builder = Builder {
+        tree,
+        scale,
+        present: Present::default(),
+        truths: Vec::new(),
+        numbers: Vec::new(),
+        order: Vec::new(),
+        node_slots: vec![None; tree.nodes.len()],
+        term_slots: vec![None; tree.terms.len()],
+        node_constants: vec![None; tree.nodes.len()],
+        term_constants: vec![None; tree.terms.len()],
+        known_truths: BTreeMap::new(),
+        known_numbers: BTreeMap::new(),
+        known_comparisons: BTreeMap::new(),
+    };
+    for part in order {
+        builder.note(part);
+    }
+    if let Some(direct) = builder.direct(root) {
+        return Ok((builder.present, Way::Direct(direct), scale));
+    }
+    let root = match root {
+        Part::Node(id) => Root::Truth(builder.truth(id, (0, 0))?),
+        Part::Term(id) => Root::Number(builder.number(id, (0, 0))?),
+    };
+    let cells = Cells::new(builder.truths, builder.numbers, builder.order, root);
+    Ok((builder.present, Way::Cells(Box::new(cells)), scale))
+}
+
+/// The last tick that is looked at, or reached from below by what is asked at every instant before it.
+fn last_tick(tree: &Tree, order: &[Part], horizon: Tick) -> Result<u64, Invalid> {
+    let mut asked: BTreeMap<(bool, u32), u64> = BTreeMap::new();
+    let key = |part: Part| match part {
+        Part::Node(id) => (false, id.0),
+        Part::Term(id) => (true, id.0),
+    };
+    if let Some(root) = order.last() {
+        asked.insert(key(*root), 0);
+    }
+    let mut last = 0;
+    for part in order.iter().rev() {
+        let Some(&at) = asked.get(&key(*part)) else { continue };
+        last = last.max(at);
+        for (child, ask) in below(tree, *part)? {
+            let latest = match ask {
+                Ask::Here => at,
+                Ask::Within(Window { from, to: Some(to) }) => {
+                    if to < from {
+                        return Err(Invalid::EmptyWindow { from: from.0, to: to.0 });
+                    }
+                    at.saturating_add(to.0)
+                }
+                Ask::Within(Window { from, to: None }) => {
+                    last = last.max(at.saturating_add(from.0));
+                    horizon.0.max(at)
+                }
+                Ask::Before(Some(Tick(0))) => continue,
+                Ask::Until(Some(to)) | Ask::Before(Some(to)) => at.saturating_add(to.0),
+                Ask::Until(None) | Ask::Before(None) | Ask::AtEnd => horizon.0.max(at),
+            };
+            let known = asked.entry(key(child)).or_insert(latest);
+            *known = latest.max(*known);
+        }
+    }
+    Ok(last)
+}
+
+/// The first and the last moment at which something is asked about.
+type Range = (Moment, Moment);
+
+struct Builder<'t> {
+    tree: &'t Tree,
+    scale: Scale,
+    present: Present,
+    truths: Vec<Truth>,
+    numbers: Vec<Number>,
+    order: Vec<Cell>,
+    /// Results of the present state alone.
+    node_slots: Vec<Option<usize>>,
+    term_slots: Vec<Option<usize>>,
+    /// What is the same everywhere.
+    node_constants: Vec<Option<bool>>,
+    term_constants: Vec<Option<f64>>,
+    known_truths: BTreeMap<(u32, Range), Ref>,
+    known_numbers: BTreeMap<(u32, Range), usize>,
+    known_comparisons: BTreeMap<(u8, u32, u64), usize>,
+}
+
+impl Builder<'_> {
+    /// The last moment of a trial.
+    fn last(&self) -> Moment {
+        self.scale.end() - 1
+    }
+
+    /// A window's ends as shifts.
+    fn shifts(&self, window: Window) -> (Moment, Moment) {
+        (self.scale.shift(window.from), window.to.map_or(FOREVER, |to| self.scale.shift(to)))
+    }
+
+    /// Where a part is asked about through a window.
+    fn through(&self, (from, to): (Moment, Moment), (lo, hi): Range) -> Range {
+        (lo + from, if to == FOREVER { self.last() } else { hi + to })
+    }
+
+    fn add_truth(&mut self, machine: Machine, (lo, hi): Range) -> Result<Ref, Invalid> {
+        self.check_size()?;
+        self.truths.push(Truth::new(machine, lo, hi + 1));
+        let cell = self.truths.len() - 1;
+        self.order.push(Cell::Truth(cell));
+        Ok(Ref { cell, negated: false })
+    }
+
+    fn add_number(&mut self, source: Source, (lo, hi): Range) -> Result<usize, Invalid> {
+        self.check_size()?;
+        self.numbers.push(Number::new(source, lo, hi + 1));
+        let cell = self.numbers.len() - 1;
+        self.order.push(Cell::Number(cell));
+        Ok(cell)
+    }
+
+    fn check_size(&self) -> Result<(), Invalid> {
+        if self.order.len() >= MOST_CELLS {
+            let needed = self.order.len() as u64 + 1;
+            return Err(Invalid::TooLarge { needed, limit: MOST_CELLS as u64 });
+        }
+        Ok(())
+    }
+}

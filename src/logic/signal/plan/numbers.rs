@@ -1,0 +1,72 @@
+//! Cells of numbers.
+
+use super::super::number::Source;
+use super::{Builder, Range};
+use crate::logic::formula::{Aggregation, Operation, Term, TermId};
+use crate::logic::invalid::Invalid;
+
+impl Builder<'_> {
+    /// A number that is the same everywhere.
+    pub(super) fn fixed(&mut self, value: f64, range: Range) -> Result<usize, Invalid> {
+        self.add_number(Source::Fixed(value), range)
+    }
+
+    /// A number at some moments.
+    pub(super) fn number(&mut self, id: TermId, range: Range) -> Result<usize, Invalid> {
+        if let Some(&known) = self.known_numbers.get(&(id.0, range)) {
+            return Ok(known);
+        }
+        let k = id.0 as usize;
+        let tree = self.tree;
+        let source = if let Some(value) = self.term_constants[k] {
+            Source::Fixed(value)
+        } else if let Some(slot) = self.term_slots[k] {
+            Source::Present(slot)
+        } else {
+            match &tree.terms[k] {
+                Term::Constant(value) => Source::Fixed(*value),
+                Term::Signal(_) => return Err(Invalid::Malformed),
+                Term::Combine(operation, x, y) => {
+                    Source::Combine(*operation, self.number(*x, range)?, self.number(*y, range)?)
+                }
+                Term::Abs(x) => Source::Abs(self.number(*x, range)?),
+                Term::Later(by, x) => {
+                    let by = self.scale.shift(*by);
+                    Source::Shift(by, self.number(*x, (range.0 + by, range.1 + by))?)
+                }
+                Term::AtEnd(x) => {
+                    let last = self.last();
+                    Source::Spread(self.number(*x, (last, last))?)
+                }
+                Term::Window(Aggregation::Sum, ..) => return Err(Invalid::SumOverTime),
+                Term::Window(aggregation, w, x) => {
+                    let (from, to) = self.shifts(*w);
+                    let asked = self.through((from, to), range);
+                    let single = range.0 == range.1;
+                    if *aggregation == Aggregation::Mean && !single && from != to {
+                        return Err(Invalid::MovingNumber);
+                    }
+                    let of = self.number(*x, asked)?;
+                    match aggregation {
+                        _ if from == to => Source::Shift(from, of),
+                        _ if single => {
+                            Source::Fold { aggregation: *aggregation, from: asked.0, to: asked.1, of }
+                        }
+                        Aggregation::Max => Source::Slide { operation: Operation::Max, from, to, of },
+                        _ => Source::Slide { operation: Operation::Min, from, to, of },
+                    }
+                }
+                Term::TimeUntil(goal) => {
+                    if range.0 < range.1 {
+                        return Err(Invalid::MovingNumber);
+                    }
+                    let goal = self.truth(*goal, (range.0, self.last()))?;
+                    Source::Time { goal, scale: self.scale }
+                }
+            }
+        };
+        let made = self.add_number(source, range)?;
+        self.known_numbers.insert((id.0, range), made);
+        Ok(made)
+    }
+}

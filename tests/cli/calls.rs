@@ -1,0 +1,150 @@
+//! Exit codes, budgets, settings, interruption, a closed pipe.
+
+use crate::program::{Place, SMALL, Said};
+use std::io::{BufRead as _, BufReader, Read as _};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+const PROPERTIES: &str = "\
+property near = F<=3 s (min(distance(user, a) for a in crowd) < 2 m)
+property far = G<=3 s (forall a in crowd: distance(user, a) > 50 m)
+check P(near) >= 0.2
+check P(far) >= 0.5
+estimate E(min<=2 s (speed(user))) in 0 m/s .. 3 m/s
+";
+
+fn small(properties: &str) -> Place {
+    Place::new(&[("a.scn", SMALL), ("a.bltl", properties)])
+}
+
+fn checked(properties: &str, words: &[&str]) -> Said {
+    small(properties).call(&[&["check", "a.scn", "a.bltl", "-q"], words].concat())
+}
+
+#[test]
+fn exit_codes_say_what_was_found() {
+    let near = "property near = F<=3 s (min(distance(user, a) for a in crowd) < 2 m)\n";
+    let code = |query: &str, words: &[&str]| checked(&format!("{near}{query}"), words).code;
+    assert_eq!(code("check P(near) >= 0.2", &[]), Some(0));
+    assert_eq!(code("check P(near) <= 0.2", &[]), Some(1));
+    assert_eq!(code("check P(naer) <= 0.2", &[]), Some(2));
+    assert_eq!(code("check P(near) >= 0.2", &["--max-trials", "2"]), Some(3));
+    assert_eq!(code("estimate P(near) within 0.1", &[]), Some(0), "nothing to decide");
+    assert_eq!(code("", &[]), Some(0));
+    // Violated comes before undecided.
+    let both = "check P(near) <= 0.2\ncheck P(near) >= 0.999";
+    assert_eq!(code(both, &["--max-trials", "60"]), Some(1));
+    for words in [&["--max-trials", "0"][..], &["--threads", "0"], &["--only", "nobody"], &["--timeout", "5"]]
+    {
+        assert_eq!(code("check P(near) >= 0.2", words), Some(2), "{words:?}");
+    }
+    assert_eq!(small("").call(&["chek"]).code, Some(2));
+    assert_eq!(small("").call(&["--help"]).code, Some(0));
+}
+
+#[test]
+fn only_chooses_queries_by_name_and_number() {
+    let said = checked(PROPERTIES, &["--format", "json", "--only", "far"]);
+    let json = said.json();
+    let results = json["results"].as_array().unwrap();
+    assert_eq!(results.len(), 1);
+    assert_eq!((&results[0]["index"], &results[0]["name"]), (&1.into(), &"far".into()));
+    let said = checked(PROPERTIES, &["--format", "json", "--only", "2", "--only", "0"]);
+    let indices: Vec<_> =
+        said.json()["results"].as_array().unwrap().iter().map(|r| r["index"].clone()).collect();
+    assert_eq!(indices, [0, 2]);
+    let said = checked(PROPERTIES, &["--only", "naer"]);
+    assert!(said.err.contains("did you mean `near`?"), "{}", said.err);
+}
+
+#[test]
+fn settings_and_sweeps() {
+    let query = "estimate E(count(a in crowd) at end) in 0 .. 100 by fixed(trials = 2)\n";
+    let number = |words: &[&str]| {
+        let json = checked(query, &[&["--format", "json"], words].concat()).json();
+        let results = json["results"].as_array().unwrap().clone();
+        results.iter().map(|r| (r["settings"].clone(), r["estimate"].as_f64().unwrap())).collect::<Vec<_>>()
+    };
+    assert_eq!(number(&[])[0].1, 3.0);
+    assert_eq!(number(&["--set", "density=0.4"])[0].1, 6.0, "a bare number takes the declared unit");
+    assert_eq!(number(&["--set", "density=0.4 /m^2"])[0].1, 6.0);
+    let swept = number(&["--set", "density=0.2..0.4 by 0.1"]);
+    assert_eq!(swept.iter().map(|r| r.1).collect::<Vec<_>>(), [3.0, 5.0, 6.0]);
+    assert_eq!(swept[1].0["density"], "0.3 /m^2");
+}
+
+#[test]
+fn a_deadline_is_kept_and_what_is_known_is_certified() {
+    let place = small("rank moves of user by P(F<=3 s contact(user)) within 0.001 confidence 95 %\n");
+    // The first call warms the caches of the machine.
+    place.call(&["check", "a.scn", "a.bltl", "-q", "--max-trials", "10"]);
+    let fastest = (0..3)
+        .map(|_| {
+            let started = Instant::now();
+            let said = place.call(&["check", "a.scn", "a.bltl", "--format", "json", "--timeout", "50ms"]);
+            let taken = started.elapsed();
+            let result = said.json()["results"][0].clone();
+            assert_eq!((said.code, &result["stopped_by"]), (Some(0), &"deadline".into()));
+            assert!(result["gap"].as_f64().unwrap() > 0.0);
+            assert!(result["choice"].is_string());
+            taken
+        })
+        .min();
+    assert!(fastest < Some(Duration::from_millis(150)), "{fastest:?}");
+}
+
+#[test]
+fn an_interruption_prints_what_is_known() {
+    let place = small("check P(F<=3 s contact(user)) >= 0.3 by sprt(indifference = 0.00001)\n");
+    let words = ["check", "a.scn", "a.bltl", "-q", "--format", "json", "--max-trials", "900000000"];
+    let child = place.command(&words).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    std::thread::sleep(Duration::from_millis(700));
+    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(sent.success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130));
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(json["interrupted"], true);
+    assert_eq!(json["results"][0]["stopped_by"], "interrupt");
+    assert_eq!(json["results"][0]["verdict"], "undecided");
+    assert!(json["results"][0]["trials"].as_u64().unwrap() > 0);
+}
+
+#[test]
+fn a_closed_pipe_is_no_error() {
+    let place = small(PROPERTIES);
+    for words in [
+        &["simulate", "a.scn", "--trials", "200"][..],
+        &["explain"],
+        &["check", "a.scn", "a.bltl", "-q", "--max-trials", "5"],
+    ] {
+        let mut child = place.command(words).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let mut first = String::new();
+        let mut out = BufReader::with_capacity(16, child.stdout.take().unwrap());
+        out.read_line(&mut first).unwrap();
+        drop(out);
+        let mut err = String::new();
+        child.stderr.take().unwrap().read_to_string(&mut err).unwrap();
+        let code = child.wait().unwrap().code();
+        assert_eq!(err, "", "{words:?}");
+        // What was found still counts for a check.
+        assert!(code == Some(0) || words[0] == "check" && code == Some(3), "{words:?} {code:?}");
+    }
+}
+
+#[test]
+fn help_for_shells_and_manuals() {
+    let place = small("check P(F<=3 s contact(user)) >= 0.5\n");
+    for shell in ["bash", "zsh", "fish"] {
+        let said = place.call(&["completions", shell]);
+        assert!(said.code == Some(0) && said.out.contains("simulate"), "{shell}");
+    }
+    let said = place.call(&["man", "pages"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    assert!(place.path("pages/smc.1").is_file() && place.path("pages/smc-check.1").is_file());
+    let said = place.call(&["show", "a.scn", "a.bltl", "--set", "density=0.4"]);
+    assert_eq!(said.code, Some(0));
+    for words in ["horizon 4 s", "200 steps", "region hall", "People: 7", "mass 80 kg"] {
+        assert!(said.out.contains(words), "{words}\n{}", said.out);
+    }
+}

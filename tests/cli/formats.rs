@@ -1,0 +1,83 @@
+//! JSON by its schema, `JUnit`, annotations of GitHub, the page of charts.
+
+use crate::program::{Place, SMALL, at_root, recordings};
+use std::path::Path;
+
+fn validated(json: &serde_json::Value) {
+    let schema = include_str!("../../docs/schema/verdict.schema.json");
+    let schema = serde_json::from_str(schema).unwrap();
+    let validator = jsonschema::validator_for(&schema).unwrap();
+    let errors: Vec<String> =
+        validator.iter_errors(json).map(|e| format!("{e} at {}", e.instance_path)).collect();
+    assert!(errors.is_empty(), "{}\n{json:#}", errors.join("\n"));
+}
+
+#[test]
+fn the_json_of_every_model_keeps_the_schema() {
+    let mut seen = 0;
+    for entry in std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("models")).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|e| e != "scn") {
+            continue;
+        }
+        let stem = path.file_stem().unwrap().to_str().unwrap();
+        let (model, properties) = (format!("models/{stem}.scn"), format!("properties/{stem}.bltl"));
+        let mut words = vec!["check", &model, &properties, "-q", "--format", "json", "--max-trials", "20"];
+        let data;
+        if std::fs::read_to_string(&path).unwrap().contains("tracks ") {
+            let Some(found) = recordings() else { continue };
+            data = found;
+            words.extend(["--data", data.to_str().unwrap()]);
+        }
+        let said = at_root(&words);
+        assert!(matches!(said.code, Some(0 | 1 | 3)), "{stem}\n{}", said.err);
+        let json = said.json();
+        assert!(!json["results"].as_array().unwrap().is_empty());
+        validated(&json);
+        seen += 1;
+    }
+    assert!(seen > 0);
+}
+
+#[test]
+fn a_sweep_and_unresolved_trials_keep_the_schema() {
+    let place = Place::new(&[
+        ("a.scn", SMALL),
+        (
+            "a.bltl",
+            "check P(F<=1 s (mean(speed(a) for a in crowd) > 0.1 m/s)) >= 0.5\nestimate Q(0.5, time_until(contact(user)))\n",
+        ),
+    ]);
+    let words = ["check", "a.scn", "a.bltl", "-q", "--format", "json", "--max-trials", "30"];
+    let json = place.call(&[&words[..], &["--set", "density=0..0.4 by 0.2"]].concat()).json();
+    assert_eq!(json["results"].as_array().unwrap().len(), 6);
+    validated(&json);
+}
+
+#[test]
+fn formats_for_machines_and_people() {
+    let place = Place::new(&[
+        ("a.scn", SMALL),
+        (
+            "a.bltl",
+            "property p = F<=1 s contact(user)\ncheck P(p) >= 0.9\nestimate P(p) by fixed(trials = 9)\n",
+        ),
+    ]);
+    let call = |format: &str| place.call(&["check", "a.scn", "a.bltl", "-q", "--format", format]);
+    let junit = call("junit");
+    assert_eq!(junit.code, Some(1));
+    assert!(junit.out.starts_with("<?xml") && junit.out.contains("<failure"), "{}", junit.out);
+    assert!(junit.out.contains("tests=\""));
+    let github = call("github");
+    assert!(github.out.contains("::error file=a.bltl,line=2"), "{}", github.out);
+    let said = place.call(&["check", "a.scn", "a.bltl", "-q", "--report", "r.html"]);
+    let page = std::fs::read_to_string(place.path("r.html")).unwrap();
+    assert!(page.starts_with("<!DOCTYPE html>") || page.starts_with("<!doctype html>"));
+    assert!(!page.contains("http://") && !page.contains("src=\"https"), "the page stands alone");
+    assert!(!said.out.contains('\u{1b}'), "no colours in a pipe");
+    let said = place.call(&["check", "a.scn", "a.bltl", "-q", "--color", "always"]);
+    assert!(said.out.contains('\u{1b}'));
+    let said = place.call(&["check", "a.scn", "a.bltl", "-q", "--report", "none/r.html"]);
+    assert_eq!(said.code, Some(2), "a report that cannot be written is an error");
+    assert!(said.out.contains("violated"), "the results are printed all the same");
+}

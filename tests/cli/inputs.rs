@@ -1,0 +1,101 @@
+//! Files of every kind: missing, empty, binary, deep, from standard input; formatting.
+
+use crate::program::{Place, SMALL};
+
+#[test]
+fn bad_files_are_refused_with_a_reason() {
+    let place =
+        Place::new(&[("a.scn", SMALL), ("empty.scn", ""), ("empty.bltl", "\n"), ("a.bltl", "let a = 1\n")]);
+    place.write("binary.scn", &(0..=255).collect::<Vec<u8>>());
+    let wide: Vec<u8> = SMALL.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    place.write("wide.scn", &[&[0xff, 0xfe][..], &wide].concat());
+    place.write(
+        "deep.bltl",
+        format!("property p = {}true{}\n", "(".repeat(100_000), ")".repeat(100_000)).as_bytes(),
+    );
+    place.write("deeper.bltl", format!("property p = {}true\n", "!".repeat(100_000)).as_bytes());
+    std::fs::create_dir(place.path("directory")).unwrap();
+    for (scenario, properties, code, reason) in [
+        ("none.scn", "a.bltl", "E0701", "there is no file `none.scn`"),
+        ("a.scn", "none.bltl", "E0701", "there is no file `none.bltl`"),
+        ("directory", "a.bltl", "E0701", "`directory` is a directory"),
+        ("empty.scn", "a.bltl", "E0108", "empty"),
+        ("a.scn", "empty.bltl", "E0108", "empty"),
+        ("binary.scn", "a.bltl", "E0107", "UTF-8"),
+        ("wide.scn", "a.bltl", "E0107", "UTF-16"),
+        ("a.scn", "deep.bltl", "E0106", "256"),
+        ("a.scn", "deeper.bltl", "E0106", "256"),
+        ("-", "-", "E0701", "once"),
+    ] {
+        let said = place.call(&["check", scenario, properties]);
+        assert_eq!(said.code, Some(2), "{scenario} {properties}\n{}", said.err);
+        assert!(
+            said.err.contains(code) && said.err.contains(reason),
+            "{scenario} {properties}\n{}",
+            said.err
+        );
+        assert!(said.err.matches("error[").count() == 1 && said.err.len() < 2000, "{}", said.err);
+        assert_eq!(said.out, "");
+    }
+}
+
+#[test]
+fn standard_input_is_a_file_too() {
+    let query = "estimate P(F<=1 s contact(user)) by fixed(trials = 10)\n";
+    let place = Place::new(&[("a.scn", SMALL), ("a.bltl", query)]);
+    let mut whole = place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "json"]).json();
+    for (words, input) in [(["-", "a.bltl"], SMALL), (["a.scn", "-"], query)] {
+        let said = place.fed(&[&["check"][..], &words, &["-q", "--format", "json"]].concat(), input);
+        assert_eq!(said.code, Some(0), "{}", said.err);
+        for field in ["estimate", "successes", "steps"] {
+            assert_eq!(said.json()["results"][0][field], whole["results"][0][field].take());
+            whole["results"][0][field] = said.json()["results"][0][field].clone();
+        }
+    }
+    let said = place.fed(&["check", "a.scn", "-"], "check P(usr) >= 0.5\n");
+    assert!(said.code == Some(2) && said.err.contains("<stdin>:1:9"), "{}", said.err);
+}
+
+#[test]
+fn formatting_keeps_comments_and_settles() {
+    let ragged = "scenario   \"R\" // why\nhorizon=4 s\nstep = 0.02 s\n/* wide */ kind adult:sfm preset helbing2000{noise=0.05 m/s}\n";
+    let place = Place::new(&[("r.scn", ragged), ("bad.bltl", "property = \n"), ("notes.txt", "x")]);
+    let said = place.call(&["fmt", "--check", "r.scn"]);
+    assert!(said.code == Some(1) && said.err.contains("r.scn is not formatted"), "{}", said.err);
+    assert_eq!(std::fs::read_to_string(place.path("r.scn")).unwrap(), ragged, "--check changes nothing");
+    assert_eq!(place.call(&["fmt", "r.scn"]).code, Some(0));
+    let once = std::fs::read_to_string(place.path("r.scn")).unwrap();
+    assert!(once != ragged && once.contains("// why") && once.contains("/* wide */"), "{once}");
+    assert_eq!(place.call(&["fmt", "--check", "r.scn"]).code, Some(0), "formatted text stays as it is");
+    assert_eq!(place.fed(&["fmt", "-"], ragged).out, once);
+    assert_eq!(place.call(&["fmt", "bad.bltl"]).code, Some(2));
+    assert_eq!(
+        std::fs::read_to_string(place.path("bad.bltl")).unwrap(),
+        "property = \n",
+        "errors change nothing"
+    );
+    assert_eq!(place.call(&["fmt", "notes.txt"]).code, Some(2));
+    assert_eq!(place.call(&["fmt", "none.scn"]).code, Some(2));
+}
+
+#[test]
+fn a_crowd_of_nobody_is_legal() {
+    let properties = "\
+property all = G<=1 s (forall a in crowd: contact(a))
+property some = F<=1 s (exists a in crowd: contact(a))
+property lonely = G<=1 s (min(distance(user, a) for a in crowd) > 1000 m)
+check P(all) >= 0.9
+check P(some) <= 0.1
+check P(lonely) >= 0.9
+estimate P(F<=1 s (mean(speed(a) for a in crowd) > 0 m/s)) by fixed(trials = 7)
+";
+    let place = Place::new(&[("a.scn", SMALL), ("a.bltl", properties)]);
+    let said = place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "json", "--set", "density=0"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let json = said.json();
+    for result in &json["results"].as_array().unwrap()[..3] {
+        assert_eq!(result["verdict"], "satisfied", "{result}");
+    }
+    // The mean of nobody has no value.
+    assert_eq!(json["results"][3]["unresolved"], 7);
+}

@@ -1,0 +1,9 @@
+//! The program from the outside: exit codes, formats, inputs of every kind, interruption, traces.
+
+#![allow(clippy::disallowed_methods, reason = "tests read and write files and call the program")]
+
+mod calls;
+mod formats;
+mod inputs;
+mod program;
+mod traces;

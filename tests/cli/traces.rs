@@ -1,0 +1,105 @@
+//! Traces: formats, replay of witnesses, common random numbers.
+
+use crate::program::{Place, SMALL};
+use serde_json::Value;
+
+/// Rows of `smc simulate --format jsonl`.
+fn rows(place: &Place, scenario: &str, words: &[&str]) -> Vec<Value> {
+    let said = place.call(&[&["simulate", scenario, "--format", "jsonl"], words].concat());
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    said.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+}
+
+#[test]
+fn formats_agree() {
+    let place = Place::new(&[("a.scn", SMALL)]);
+    let words = ["--trial", "3", "--trials", "2", "--until", "0.1", "--every", "5"];
+    let lines = rows(&place, "a.scn", &words);
+    assert_eq!(lines.len(), 2 * 2 * 4, "two trials, two states, four people");
+    let json = place.call(&[&["simulate", "a.scn", "--format", "json"], &words[..]].concat()).json();
+    let columns = json["columns"].as_array().unwrap();
+    for (row, line) in json["rows"].as_array().unwrap().iter().zip(&lines) {
+        for (k, column) in columns.iter().enumerate() {
+            assert_eq!(row[k], line[column.as_str().unwrap()]);
+        }
+    }
+    let csv = place.call(&[&["simulate", "a.scn", "--output", "t.csv"], &words[..]].concat());
+    assert_eq!((csv.code, csv.out.as_str()), (Some(0), ""));
+    let text = std::fs::read_to_string(place.path("t.csv")).unwrap();
+    assert_eq!(text.lines().count(), 1 + lines.len());
+    for (line, row) in text.lines().skip(1).zip(&lines) {
+        let cells: Vec<&str> = line.split(',').collect();
+        // serde_json reads numbers to within one unit in the last place.
+        let (cell, number) = (cells[3].parse::<f64>().unwrap(), row["x"].as_f64().unwrap());
+        assert!((cell - number).abs() <= f64::EPSILON * number.abs(), "{cell} {number}");
+    }
+    for words in [&["--until", "-1"][..], &["--move", "jump"], &["--set", "density=0..1 by 0.5"]] {
+        assert_eq!(place.call(&[&["simulate", "a.scn"], words].concat()).code, Some(2), "{words:?}");
+    }
+}
+
+#[test]
+fn the_replay_of_a_witness_shows_what_it_names() {
+    let place = Place::new(&[
+        ("a.scn", SMALL),
+        ("a.bltl", "estimate P(F<=3 s (user in hall & position(user).x > 4 m)) by fixed(trials = 40)\n"),
+    ]);
+    let json = place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "json", "--seed", "7"]).json();
+    let witnesses = json["results"][0]["witnesses"].as_array().unwrap().clone();
+    assert!(!witnesses.is_empty());
+    for witness in &witnesses {
+        let command = witness["command"].as_str().unwrap();
+        let words: Vec<&str> = command.strip_prefix("smc simulate a.scn ").unwrap().split(' ').collect();
+        let rows = rows(&place, "a.scn", &words);
+        let decided = witness["time"].as_f64().unwrap();
+        let inside = |row: &Value| {
+            let at = |name: &str| row[name].as_f64().unwrap();
+            (4.0..=9.0).contains(&at("x")) && (0.0..=3.0).contains(&at("y")) && at("x") > 4.0
+        };
+        let users: Vec<&Value> = rows.iter().filter(|r| r["agent"] == "user").collect();
+        let first = users.iter().find(|row| inside(row)).map(|row| row["time"].as_f64().unwrap());
+        if witness["passing"] == true {
+            assert_eq!(first, Some(decided), "{witness}");
+        } else {
+            assert!(first.is_none_or(|time| time > 3.0) && decided == 3.0, "{witness} {first:?}");
+        }
+    }
+}
+
+#[test]
+fn an_addition_changes_nobody_elses_draws() {
+    let added = format!("{SMALL}agent late: adult {{ at = (20, 20) }}\n");
+    let moved = SMALL.replace("stop }", "heading 90 deg  stop }");
+    let place = Place::new(&[("a.scn", SMALL), ("b.scn", &added), ("c.scn", &moved)]);
+    let words = ["--trials", "20", "--until", "0"];
+    let plain = rows(&place, "a.scn", &words);
+    let more: Vec<Value> =
+        rows(&place, "b.scn", &words).into_iter().filter(|row| row["agent"] != "late").collect();
+    assert_eq!(plain.len(), 20 * 4);
+    assert_eq!(plain, more, "one more agent");
+    assert_eq!(
+        rows(&place, "a.scn", &["--trials", "5"]),
+        rows(&place, "c.scn", &["--trials", "5"]),
+        "one more move"
+    );
+    assert_ne!(plain, rows(&place, "a.scn", &["--trials", "20", "--until", "0", "--seed", "1"]));
+}
+
+#[test]
+fn comparisons_use_common_random_numbers() {
+    let scenario = SMALL
+        .replace("param density", "param push = 2000 N\nparam density")
+        .replace("noise = 0.05 m/s", "noise = 0.05 m/s  A = push");
+    let query = "compare P(F<=3 s contact(user)) under push = 2000 N with push = 2300 N\n";
+    let place = Place::new(&[("a.scn", &scenario), ("a.bltl", query)]);
+    let words = ["check", "a.scn", "a.bltl", "-q", "--format", "json", "--max-trials", "400"];
+    let run = |seed: &str| place.call(&[&words[..], &["--seed", seed]].concat()).json()["results"][0].clone();
+    let result = run("0");
+    let count = |side: &str, field: &str| result[side][field].as_f64().unwrap();
+    let pairs = count("difference", "trials");
+    let discordant = count("difference", "successes") + count("difference", "failures");
+    let (p, q) = (count("first", "successes") / pairs, count("second", "successes") / pairs);
+    let independent = pairs * (p * (1.0 - q) + q * (1.0 - p));
+    assert!(pairs >= 100.0 && p > 0.02 && p < 0.98, "{result}");
+    assert!(discordant < 0.5 * independent, "{discordant} discordant pairs, {independent:.0} if independent");
+}

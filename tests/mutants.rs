@@ -1,0 +1,161 @@
+//! Mutated examples through the whole front end: tokens dropped, doubled, swapped, replaced. Nothing panics, and
+//! what is refused is refused with a place inside the text.
+
+#![allow(clippy::disallowed_methods, reason = "a test reads its own files")]
+
+use proptest::prelude::*;
+use smc::compile::{Files, Input, compile, requests};
+use smc::syntax::parse::{parse_properties, parse_scenario};
+use smc::syntax::render::render;
+use smc::syntax::source::{Source, SourceId};
+
+/// Pairs of scenario and properties; the recording of the hotel is not read, so that its names stay unknown.
+const PAIRS: [(&str, &str); 3] = [
+    (include_str!("../models/corridor.scn"), include_str!("../properties/corridor.bltl")),
+    (include_str!("../models/hotel.scn"), include_str!("../properties/hotel.bltl")),
+    (include_str!("refused/base.scn"), include_str!("../properties/corridor.bltl")),
+];
+
+/// Pieces of a text: words, numbers, single marks and what is between them.
+fn pieces(text: &str) -> Vec<&str> {
+    let kind = |c: char| if c.is_alphanumeric() || c == '_' || c == '.' { 0 } else { 1 + c as u32 };
+    let mut found = Vec::new();
+    let mut start = 0;
+    let mut last = None;
+    for (at, c) in text.char_indices() {
+        let now = kind(c);
+        if last.is_some_and(|l| l != now || now != 0) {
+            found.push(&text[start..at]);
+            start = at;
+        }
+        last = Some(now);
+    }
+    found.push(&text[start..]);
+    found
+}
+
+const SPARE: [&str; 24] = [
+    "0",
+    "-1",
+    "1e300",
+    "3 m",
+    "user",
+    "hall",
+    "crowd",
+    "adult",
+    "(",
+    ")",
+    "{",
+    "}",
+    "F<=2 s ",
+    "G ",
+    "X ",
+    "min",
+    "for a in",
+    "normal(1, 2)",
+    "steps",
+    "contact(user)",
+    "=",
+    "<=",
+    "..",
+    "at end",
+];
+
+#[derive(Clone, Debug)]
+enum Change {
+    Drop,
+    Double,
+    Swap(usize),
+    Replace(usize),
+}
+
+fn change() -> impl Strategy<Value = Change> {
+    prop_oneof![
+        Just(Change::Drop),
+        Just(Change::Double),
+        (1usize..40).prop_map(Change::Swap),
+        (0..SPARE.len()).prop_map(Change::Replace),
+    ]
+}
+
+fn mutated(text: &str, changes: &[(usize, Change)]) -> String {
+    let mut pieces = pieces(text);
+    for (at, change) in changes {
+        let solid: Vec<usize> = (0..pieces.len()).filter(|i| !pieces[*i].trim().is_empty()).collect();
+        if solid.is_empty() {
+            break;
+        }
+        let at = solid[at % solid.len()];
+        match change {
+            Change::Drop => {
+                pieces.remove(at);
+            }
+            Change::Double => pieces.insert(at, pieces[at]),
+            Change::Swap(by) => {
+                let other = (at + by) % pieces.len();
+                pieces.swap(at, other);
+            }
+            Change::Replace(with) => pieces[at] = SPARE[*with],
+        }
+    }
+    pieces.concat()
+}
+
+/// Everything from two texts to a study or to rendered errors.
+fn front_end(scenario: &str, properties: &str) -> Result<(), TestCaseError> {
+    let sources =
+        [Source::new(SourceId(0), "model.scn", scenario), Source::new(SourceId(1), "prop.bltl", properties)];
+    let (scenario, mut said) = parse_scenario(&sources[0]);
+    let (properties, more) = parse_properties(&sources[1]);
+    said.extend(more);
+    let mut files = Files::default();
+    for request in requests(&scenario) {
+        files.insert(request.path, Err("left out".to_owned()));
+    }
+    let input = Input {
+        sources: &sources,
+        scenario: &scenario,
+        properties: &[properties],
+        files: &files,
+        settings: &[],
+    };
+    let (study, found) = compile(&input);
+    let refused = found.iter().any(|d| d.severity == smc::syntax::diagnostic::Severity::Error);
+    prop_assert!(study.is_some() != refused, "a study, or a reason why not");
+    said.extend(found);
+    for label in said.iter().flat_map(|d| d.place.iter().chain(&d.related)) {
+        let text = &sources[label.span.source.0 as usize].text;
+        let (start, end) = (label.span.start as usize, label.span.end as usize);
+        prop_assert!(start <= end && end <= text.len());
+        prop_assert!(text.is_char_boundary(start) && text.is_char_boundary(end));
+    }
+    render(&said, &sources, false);
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn mutants_never_panic(
+        pair in 0..PAIRS.len(),
+        which in any::<bool>(),
+        changes in proptest::collection::vec((0usize..2000, change()), 1..4),
+    ) {
+        let (scenario, properties) = PAIRS[pair];
+        if which {
+            front_end(&mutated(scenario, &changes), properties)?;
+        } else {
+            front_end(scenario, &mutated(properties, &changes))?;
+        }
+    }
+}
+
+#[test]
+fn examples_survive_being_cut_to_pieces_and_joined() {
+    for (scenario, properties) in PAIRS {
+        assert_eq!(pieces(scenario).concat(), scenario);
+        assert_eq!(mutated(properties, &[]), properties);
+        assert!(front_end(scenario, properties).is_ok());
+    }
+}

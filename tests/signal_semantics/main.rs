@@ -1,0 +1,5 @@
+//! Monitors in continuous time against the definitions of `docs/semantics.md`.
+
+mod random;
+mod reference;
+mod rows;
