@@ -84,7 +84,12 @@ impl Mask {
 
     /// The lanes in the set, ascending.
     pub fn iter(self) -> impl Iterator<Item = usize> {
-        (0..LANES).filter(move |&k| self.has(k))
+        let mut left = self.0;
+        std::iter::from_fn(move || {
+            let lane = left.trailing_zeros() as usize;
+            left &= left.wrapping_sub(1);
+            (lane < LANES).then_some(lane)
+        })
     }
 }
 

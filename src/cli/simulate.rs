@@ -77,6 +77,13 @@ impl<'p> Walk<'p> {
                 }
             }
             let tick = self.state.ticks[0];
+            if let Some(fault) = self.state.faults[0].filter(|_| !self.state.faulty.is_empty()) {
+                let what = fault.describe(&self.program.scenario.processes);
+                self.notes.push(format!("trial {} ends in an error of the model: {what}", self.trial));
+                self.running = false;
+                self.trial += 1;
+                continue;
+            }
             if tick >= self.last || !self.state.diverged.is_empty() {
                 if !self.state.diverged.is_empty() {
                     let time = self.program.scenario.clock.seconds(crate::base::tick::Tick(tick));

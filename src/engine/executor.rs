@@ -16,7 +16,7 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 pub struct Cells {
     /// Number of columns.
     width: usize,
-    cells: Vec<Cell>,
+    list: Vec<Cell>,
     /// Which trials were finished in time.
     finished: Vec<bool>,
 }
@@ -24,7 +24,7 @@ pub struct Cells {
 impl Cells {
     /// Room for a round.
     pub fn new(items: usize, width: usize) -> Self {
-        Self { width, cells: vec![Cell::BLANK; items * width], finished: vec![false; items] }
+        Self { width, list: vec![Cell::BLANK; items * width], finished: vec![false; items] }
     }
 
     /// The trial at a place is finished. A place beyond the round, or a row of another width, is ignored.
@@ -33,13 +33,13 @@ impl Cells {
             && row.len() == self.width
         {
             *finished = true;
-            self.cells[place * self.width..][..self.width].copy_from_slice(row);
+            self.list[place * self.width..][..self.width].copy_from_slice(row);
         }
     }
 
     /// The cells of a trial, one a column; `None` if it was not finished in time.
     pub fn row(&self, place: usize) -> Option<&[Cell]> {
-        (*self.finished.get(place)?).then(|| &self.cells[place * self.width..][..self.width])
+        (*self.finished.get(place)?).then(|| &self.list[place * self.width..][..self.width])
     }
 
     /// The rows in order.

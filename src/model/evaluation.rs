@@ -73,7 +73,7 @@ impl Comparison {
             Self::Greater => a > b,
             Self::AtLeast => a >= b,
             Self::Equal => a == b,
-            Self::Unequal => a < b || a > b,
+            Self::Unequal => !(a.is_nan() || b.is_nan()) && a != b,
         }
     }
 }

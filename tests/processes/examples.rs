@@ -3,6 +3,25 @@
 use crate::{answered, compiled};
 
 #[test]
+fn the_leader_is_elected_as_often_as_it_must_be() {
+    let scenario = include_str!("../../models/leader.scn");
+    let study = compiled(scenario, include_str!("../../properties/leader.bltl")).unwrap();
+    let run = answered(&study, 0, 2);
+    for (result, exact) in run.results.iter().zip([42.0 / 64.0, 1.0 - (22.0f64 / 64.0).powi(4)]) {
+        assert!(result.low <= exact && exact <= result.high, "{}", result.query);
+    }
+    assert_eq!(run.results[2].verdict, Some(smc::engine::outcome::Verdict::Satisfied));
+}
+
+#[test]
+fn the_crowd_hands_messages_on() {
+    let scenario = include_str!("../../models/crowds.scn");
+    let study = compiled(scenario, include_str!("../../properties/crowds.bltl")).unwrap();
+    let run = answered(&study, 0, 2);
+    assert_eq!((run.failure, run.results.len()), (None, 3));
+}
+
+#[test]
 fn the_die_has_its_exact_values() {
     let study =
         compiled(include_str!("../../models/die.scn"), include_str!("../../properties/die.bltl")).unwrap();

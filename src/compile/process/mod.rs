@@ -58,9 +58,6 @@ impl<'a> Declared<'a> {
     }
 }
 
-/// 1/s
-const RATE: Dimension = Dimension([0, 0, -1, 0, 0]);
-
 impl<'a> Elaborator<'a> {
     /// Whether some command of the file has a rate or a delay.
     pub(super) fn has_timing(file: &ScenarioFile) -> bool {

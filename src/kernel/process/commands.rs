@@ -2,7 +2,7 @@
 
 use super::super::code::Readings;
 use super::draws::Draws;
-use super::fault::Fault;
+use super::fault::{Fault, Faults};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::model::{Bool, Domain, Num, Process, process::are_weights};
 
@@ -165,10 +165,10 @@ impl Commands {
         readings: &Readings,
         draws: &Draws<'_>,
         next: &mut [Lanes],
-        faults: &mut [Option<Fault>; LANES],
+        faults: &mut Faults,
     ) {
         let mut fault = |lane: usize, found: Fault| {
-            faults[lane].get_or_insert(found);
+            faults.add(lane, found);
         };
         let mut numbers = None;
         // Where one command is enabled, and where several are.

@@ -1,5 +1,6 @@
 //! Errors of a model that show only while it runs.
 
+use crate::base::lanes::{LANES, Mask};
 use crate::model::{Domain, Processes};
 
 /// What a process did that it must not do. The numbers are those of the process, command or variable.
@@ -26,15 +27,38 @@ pub enum Fault {
         /// The value that it cannot hold.
         value: f64,
     },
-    /// A rate is negative or no number.
-    Rate {
-        /// The process.
-        process: u32,
-        /// Its command.
-        command: u32,
-        /// The rate, 1/s.
-        value: f64,
-    },
+}
+
+/// The first error of each lane in one step.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Faults {
+    lanes: Mask,
+    first: [Option<Fault>; LANES],
+}
+
+impl Faults {
+    /// None so far.
+    pub(super) fn clear(&mut self) {
+        self.lanes = Mask::NONE;
+    }
+
+    /// Another error; only the first of a lane is kept.
+    pub(super) fn add(&mut self, lane: usize, fault: Fault) {
+        if !self.lanes.has(lane) {
+            self.lanes |= Mask::lane(lane);
+            self.first[lane] = Some(fault);
+        }
+    }
+
+    /// Lanes with an error.
+    pub(super) fn lanes(&self) -> Mask {
+        self.lanes
+    }
+
+    /// The error of a lane that has one.
+    pub(super) fn of(&self, lane: usize) -> Option<Fault> {
+        self.first[lane].filter(|_| self.lanes.has(lane))
+    }
 }
 
 impl Fault {
@@ -61,9 +85,6 @@ impl Fault {
                     Domain::Real => "finite numbers".to_owned(),
                 };
                 format!("`{}` would become {value}, but it holds {range}", variable.name)
-            }
-            Self::Rate { process, command, value } => {
-                format!("the rate of command {} of `{}` is {value} /s", command + 1, name(process))
             }
         }
     }

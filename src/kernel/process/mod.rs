@@ -11,10 +11,11 @@ mod fault;
 mod table;
 
 pub use fault::Fault;
+use fault::Faults;
 
 use super::code::{Code, Readings};
 use super::state::{Layout, State};
-use crate::base::lanes::{LANES, Lanes, Mask};
+use crate::base::lanes::{Lanes, Mask};
 use crate::base::random::{Purpose, Stream, TrialKey};
 use crate::model::{Domain, Scenario};
 use commands::Commands;
@@ -53,6 +54,7 @@ pub struct Processes {
 pub(super) struct Scratch {
     readings: Readings,
     next: Vec<Lanes>,
+    faults: Faults,
 }
 
 impl Processes {
@@ -111,35 +113,34 @@ impl Processes {
         state.faults[lane] = None;
     }
 
-    /// One step of all processes. Lanes that are not occupied, or faulty, keep their values.
+    /// One step of all processes. Lanes that are faulty keep their values.
     pub(super) fn step(&self, layout: Layout, state: &mut State, scratch: &mut Scratch) {
         let lanes = state.occupied & !state.faulty;
         if self.machines.is_empty() || lanes.is_empty() {
             return;
         }
-        let Scratch { readings, next } = scratch;
+        let Scratch { readings, next, faults } = scratch;
         if let Some(code) = &self.code {
             code.read(layout, state, readings);
         }
         next.clone_from(&state.variables);
-        let mut faults = [None; LANES];
+        faults.clear();
         for machine in &self.machines {
             let draws = Draws { level: self.level, state, word: machine.word };
             match &machine.form {
-                Form::Table(table) => table.step(lanes, state, &draws, next, &mut faults),
-                Form::Code(commands) => commands.step(lanes, readings, &draws, next, &mut faults),
+                Form::Table(table) => table.step(lanes, state, &draws, next, faults),
+                Form::Code(commands) => commands.step(lanes, readings, &draws, next, faults),
             }
         }
-        if faults.iter().all(Option::is_none) {
+        let wrong = faults.lanes() & lanes;
+        if wrong.is_empty() {
             std::mem::swap(&mut state.variables, next);
             return;
         }
-        let wrong = lanes.iter().filter(|&lane| faults[lane].is_some());
-        let wrong = wrong.fold(Mask::NONE, |mask, lane| mask | Mask::lane(lane));
         state.faulty |= wrong;
         for lane in lanes.iter() {
             if wrong.has(lane) {
-                state.faults[lane] = faults[lane];
+                state.faults[lane] = faults.of(lane);
                 continue;
             }
             for (old, new) in state.variables.iter_mut().zip(next.iter()) {

@@ -7,7 +7,7 @@ use super::super::code::{Code, Readings};
 use super::super::state::{Layout, State};
 use super::commands::{Choice, Commands};
 use super::draws::Draws;
-use super::fault::Fault;
+use super::fault::{Fault, Faults};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::model::{Domain, Scenario, Timing};
 use std::collections::BTreeSet;
@@ -155,40 +155,49 @@ impl Table {
         state: &State,
         draws: &Draws<'_>,
         next: &mut [Lanes],
-        faults: &mut [Option<Fault>; LANES],
+        faults: &mut Faults,
     ) {
         let mut place = Lanes::splat(self.origin);
         for &(variable, stride) in &self.keys {
             place = place.zip(state.variables[variable as usize], |sum, value| sum + value * stride);
         }
-        let fallback = Row { first: 0, count: 1, faulty: false };
-        let rows: [Row; LANES] =
-            std::array::from_fn(|lane| self.rows.get(place.0[lane] as usize).copied().unwrap_or(fallback));
-        let mut entries = rows.map(|row| row.first as usize);
-        if lanes.iter().any(|lane| rows[lane].count > 1) {
-            let [numbers, _] = draws.pair();
-            for lane in 0..LANES {
-                let last = (rows[lane].first + rows[lane].count - 1) as usize;
-                let mut entry = entries[lane];
-                while entry < last && numbers[lane] >= self.ends[entry] {
-                    entry += 1;
-                }
-                entries[lane] = entry;
+        let mut first = [0usize; LANES];
+        let mut branches = [1usize; LANES];
+        let mut faulty = false;
+        for lane in 0..LANES {
+            if let Some(row) = self.rows.get(place.0[lane] as usize) {
+                first[lane] = row.first as usize;
+                branches[lane] = row.count as usize;
+                faulty |= row.faulty;
             }
         }
-        for lane in lanes.iter().filter(|&lane| rows[lane].faulty) {
-            if let Some(fault) = self.faults[entries[lane]] {
-                faults[lane].get_or_insert(fault);
+        let mut entries = first;
+        let most = branches.iter().copied().fold(1, usize::max);
+        if most > 1 {
+            let [numbers, _] = draws.pair();
+            // Ends ascend, so the entry is the number of ends passed: no jump depends on chance.
+            for k in 0..most - 1 {
+                for lane in 0..LANES {
+                    let end = self.ends.get(first[lane] + k).copied().unwrap_or(1.0);
+                    let (more, passed) = (k + 1 < branches[lane], numbers[lane] >= end);
+                    entries[lane] += usize::from(more) & usize::from(passed);
+                }
+            }
+        }
+        if faulty {
+            for lane in lanes.iter() {
+                if let Some(fault) = self.faults[entries[lane]] {
+                    faults.add(lane, fault);
+                }
             }
         }
         let width = self.written.len();
         for (k, &variable) in self.written.iter().enumerate() {
-            let lanes_of = &mut next[variable as usize];
+            let values = &mut next[variable as usize].0;
             for lane in 0..LANES {
-                let value = self.values[entries[lane] * width + k];
-                if !value.is_nan() && lanes.has(lane) {
-                    lanes_of.0[lane] = value;
-                }
+                let (old, new) = (values[lane], self.values[entries[lane] * width + k]);
+                // Lanes without a trial may hold what they like.
+                values[lane] = if new.is_nan() { old } else { new };
             }
         }
     }
