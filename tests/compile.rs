@@ -1,5 +1,7 @@
 //! Scenarios and property files through the front end: what is understood, and what is refused.
 
+#![allow(clippy::disallowed_methods, reason = "a test opens the files that a scenario names")]
+
 use smc::compile::{Files, Input, Study, compile, requests};
 use smc::syntax::diagnostic::Diagnostic;
 use smc::syntax::parse::{parse_properties, parse_scenario};
@@ -34,7 +36,6 @@ fn compiled(scenario: &str, properties: &str) -> (Option<Study>, String) {
 fn the_corridor_is_understood() {
     let (study, found) =
         compiled(include_str!("../models/corridor.scn"), include_str!("../properties/corridor.bltl"));
-    println!("{found}");
     let study = study.expect("no error");
     assert_eq!(found, "");
     assert_eq!(study.title, "Corridor with an oncoming crowd");
