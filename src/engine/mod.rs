@@ -10,6 +10,7 @@ pub mod outcome;
 mod procedure;
 mod race;
 mod session;
+mod standing;
 pub mod subject;
 mod survey;
 mod tally;

@@ -1,15 +1,13 @@
 //! A whole call: worlds made ready, queries run, results put into words.
 
 use super::budget::Budget;
-use super::contrast::{self, Contrast, Sides};
+use super::contrast::{self, Sides};
 use super::executor::Executor;
 use super::fault::Fault;
-use super::outcome::{
-    Comparison, Counts, Failure, Interval, Kind, QueryResult, RankedOption, Ranking, Run, Side, Status, Stop,
-    Verdict,
-};
+use super::outcome::{Failure, Kind, QueryResult, Run, Stop, Verdict};
 use super::procedure::{self, Procedure};
-use super::race::{self, Field, Podium};
+use super::race::{self, Field};
+use super::standing;
 use super::subject::Subject;
 use super::survey::{self, Inquiry};
 use super::tally::Tally;
@@ -377,7 +375,7 @@ impl Session<'_> {
             words::number(*delta)
         );
         result.unit = unit;
-        result.compare = Some(sides_of(&contrast, &labels, *delta));
+        result.compare = Some(standing::sides(&contrast, &labels, *delta));
         result.elapsed_s = self.budget.elapsed() - started;
         Ok(result)
     }
@@ -408,7 +406,7 @@ impl Session<'_> {
         self.tell(&mut result, subject, &joined, measure.target.column);
         result.clipped = joined.clipped;
         let labels: Vec<&str> = declared.options.iter().map(|(label, _)| label.as_str()).collect();
-        let ranked = ranked(&podium, &labels);
+        let ranked = standing::ranked(&podium, &labels);
         let gap = ranked.gap;
         let score = measured_words(query, measure);
         result.certifies = if gap < podium.scale {
@@ -477,70 +475,4 @@ fn total(tallies: &[Tally]) -> Tally {
         sum.triggered |= tally.triggered;
     }
     sum
-}
-
-fn sides_of(contrast: &Contrast, labels: &[String; 2], delta: f64) -> Comparison {
-    let side = |at: usize| {
-        let counts = contrast.sides[at].counts;
-        let (sum, n) = contrast.sums[at];
-        let value = if n > 0 {
-            let mean = sum / n as f64;
-            Interval { estimate: mean, low: f64::NEG_INFINITY, high: f64::INFINITY }
-        } else {
-            let reading = |successes: u64| {
-                let read = crate::stats::Counts { successes, failures: counts.trials - successes };
-                crate::stats::sequence::interval(read, delta)
-            };
-            let hull = reading(counts.successes).hull(reading(counts.successes + counts.unresolved));
-            Interval { estimate: procedure::share(counts), low: hull.low, high: hull.high }
-        };
-        Side { label: labels[at].clone(), value, counts }
-    };
-    let difference = Side {
-        label: "first - second".to_owned(),
-        value: Interval {
-            estimate: contrast.estimate,
-            low: contrast.interval.low,
-            high: contrast.interval.high,
-        },
-        counts: Counts {
-            trials: contrast.pairs,
-            successes: contrast.alone.0,
-            failures: contrast.alone.1,
-            unresolved: contrast.unresolved,
-        },
-    };
-    Comparison { first: side(0), second: side(1), difference }
-}
-
-fn ranked(podium: &Podium, labels: &[&str]) -> Ranking {
-    let choice = &podium.choice;
-    let mut order: Vec<usize> = (0..labels.len()).collect();
-    let key = |arm: &usize| (*arm != choice.arm, -podium.values[*arm].0, *arm);
-    order.sort_by(|a, b| {
-        let ((fa, va, ia), (fb, vb, ib)) = (key(a), key(b));
-        fa.cmp(&fb).then(va.total_cmp(&vb)).then(ia.cmp(&ib))
-    });
-    let options = order
-        .iter()
-        .map(|&arm| {
-            let (estimate, interval) = podium.values[arm];
-            let status = if arm == choice.arm {
-                Status::Chosen
-            } else if podium.live.contains(&arm) {
-                if podium.finished && choice.tied.contains(&arm) { Status::Tied } else { Status::Open }
-            } else {
-                Status::Beaten
-            };
-            RankedOption {
-                label: labels[arm].to_owned(),
-                value: Interval { estimate, low: interval.low, high: interval.high },
-                counts: podium.tallies[arm].counts,
-                status,
-            }
-        })
-        .collect();
-    let gap = choice.gap * podium.scale;
-    let tied = podium.finished && !choice.tied.is_empty();
-    Ranking { choice: labels[choice.arm].to_owned(), gap, tied, options }
 }

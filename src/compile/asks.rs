@@ -1,0 +1,145 @@
+//! Checks and rankings: claims, thresholds, tests, options.
+
+use super::dimension::Dimension;
+use super::elaborator::{Locals, Lowered, Reported};
+use super::measures::Observed;
+use super::queries::{Compiler, family_clauses};
+use super::study::{Ask, Measure, MeasureKind, Target};
+use super::symbols::ScopeId;
+use crate::model::Who;
+use crate::syntax::ast::{self, BinaryOp, Clauses, Expr};
+use crate::syntax::diagnostic::Diagnostic;
+
+impl Compiler<'_> {
+    /// A check: its claim, threshold and test.
+    pub(super) fn check(
+        &mut self,
+        site: usize,
+        measure: &ast::Measure,
+        relation: BinaryOp,
+        threshold: &Expr,
+        clauses: &Clauses,
+        family: Option<f64>,
+        scope: ScopeId,
+    ) -> Lowered<(Ask, bool)> {
+        let locals = Locals::of(scope);
+        let observed = self.sites[site].elaborator.measure(measure, scope);
+        let dimension = match observed.as_ref().map(|o| &o.kind) {
+            Ok(MeasureKind::Expectation { dimension, .. } | MeasureKind::Quantile { dimension, .. }) => {
+                *dimension
+            }
+            _ => Dimension::NONE,
+        };
+        let elaborator = &mut self.sites[site].elaborator;
+        let bound = elaborator.number_of(threshold, dimension, &locals);
+        let share = match family {
+            Some(delta) if family_clauses(clauses) => delta / super::methods::DEFAULT_ALPHA,
+            _ => 1.0,
+        };
+        if matches!(measure.kind, ast::MeasureKind::Probability)
+            && let Ok(theta) = bound.as_ref().map(|b| b.value)
+            && (theta <= 0.0 || theta >= 1.0)
+        {
+            let hint = if theta > 1.0 && theta <= 100.0 {
+                format!("a share is written with its sign: `{theta} %`")
+            } else {
+                "that something is certain or impossible cannot be decided by sampling; ask for `>= 0.999`"
+                    .to_owned()
+            };
+            let error = Diagnostic::error(
+                "E0601",
+                threshold.span,
+                format!("a probability is compared with a number between 0 and 1, not with {theta}"),
+            );
+            return elaborator.report(error.hint(hint));
+        }
+        let (Observed { column, kind, unbounded }, bound) = (observed?, bound?);
+        let mut at_least = matches!(relation, BinaryOp::AtLeast | BinaryOp::Greater);
+        let mut or_equal = matches!(relation, BinaryOp::AtLeast | BinaryOp::AtMost);
+        let (column, kind, theta) = match kind {
+            // A quantile is at most x exactly if P(metric <= x) is at least its level.
+            MeasureKind::Quantile { level, .. } => {
+                let below = elaborator.below(&column, !at_least, bound.value);
+                at_least = !at_least;
+                or_equal = true;
+                (below, MeasureKind::Probability, level)
+            }
+            kind => (column, kind, bound.value),
+        };
+        let test = match &kind {
+            MeasureKind::Expectation { range, .. } => {
+                if let Some(method) = &clauses.by {
+                    let error = Diagnostic::error(
+                        "E0603",
+                        method.span,
+                        "a check of an expectation has one procedure only",
+                    );
+                    return elaborator.report(error);
+                }
+                if theta <= range.0 || theta >= range.1 {
+                    let error = Diagnostic::error(
+                        "E0601",
+                        threshold.span,
+                        "this threshold lies outside the range of the metric",
+                    );
+                    return elaborator.report(error);
+                }
+                let delta =
+                    elaborator.delta(clauses, &locals)?.unwrap_or(super::methods::DEFAULT_ALPHA) * share;
+                super::study::Test::Interval { delta, trials: super::methods::DEFAULT_TRIALS }
+            }
+            _ => elaborator.test(clauses, theta, threshold.span, share, &locals)?,
+        };
+        let column = self.column(site, column);
+        let measure = Measure { target: Target { world: site, column }, kind };
+        Ok((Ask::Check { measure, at_least, or_equal, threshold: theta, test }, unbounded))
+    }
+
+    /// A ranking: whose moves, by which score.
+    pub(super) fn rank(
+        &mut self,
+        site: usize,
+        what: &ast::Ident,
+        agent: &Expr,
+        measure: &ast::Measure,
+        clauses: &Clauses,
+        family: Option<f64>,
+        scope: ScopeId,
+    ) -> Lowered<(Ask, bool)> {
+        let locals = Locals::of(scope);
+        let (measured, unbounded) = self.measured(site, measure, scope)?;
+        let elaborator = &mut self.sites[site].elaborator;
+        if what.name != "moves" {
+            let error =
+                Diagnostic::error("E0606", what.span, format!("`{}` cannot be ranked here", what.name))
+                    .hint("write `rank moves of …`");
+            return elaborator.report(error);
+        }
+        let typed = elaborator.lower(agent, &locals)?;
+        let Who::Agent(id) = elaborator.as_agent(typed, agent.span)? else { return Err(Reported) };
+        let dimension = match &measured.kind {
+            MeasureKind::Probability => Dimension::NONE,
+            MeasureKind::Expectation { dimension, .. } => *dimension,
+            MeasureKind::Quantile { .. } => {
+                let error = Diagnostic::error("E0607", measure.span, "moves are ranked by `P(…)` or `E(…)`");
+                return elaborator.report(error);
+            }
+        };
+        let share = family.map_or(1.0, |delta| delta / super::methods::DEFAULT_DELTA);
+        let (epsilon, delta, ranking) = elaborator.ranking(clauses, dimension, share, &locals)?;
+        let Some(scenario) = &self.sites[site].scenario else { return Err(Reported) };
+        let Some(moves) = scenario.moves.iter().position(|m| m.agent == id) else {
+            let name = scenario.agents.get(id.0 as usize).map_or("", |a| a.name.as_str()).to_owned();
+            let error = Diagnostic::error(
+                "E0606",
+                agent.span,
+                format!("the scenario declares no moves of `{name}`"),
+            )
+            .hint(format!(
+                "for example `moves {name} for 2 s {{ heading from -60 deg to 60 deg by 15 deg  stop }}`"
+            ));
+            return self.sites[site].elaborator.report(error);
+        };
+        Ok((Ask::Rank { moves, measure: measured, epsilon, delta, ranking }, unbounded))
+    }
+}

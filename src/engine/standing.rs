@@ -1,0 +1,74 @@
+//! How options and sides stand: the tables of rankings and comparisons.
+
+use super::contrast::Contrast;
+use super::outcome::{Comparison, Counts, Interval, RankedOption, Ranking, Side, Status};
+use super::procedure;
+use super::race::Podium;
+
+/// Both sides of a comparison and their difference, with intervals.
+pub(super) fn sides(contrast: &Contrast, labels: &[String; 2], delta: f64) -> Comparison {
+    let side = |at: usize| {
+        let counts = contrast.sides[at].counts;
+        let (sum, n) = contrast.sums[at];
+        let value = if n > 0 {
+            let mean = sum / n as f64;
+            Interval { estimate: mean, low: f64::NEG_INFINITY, high: f64::INFINITY }
+        } else {
+            let reading = |successes: u64| {
+                let read = crate::stats::Counts { successes, failures: counts.trials - successes };
+                crate::stats::sequence::interval(read, delta)
+            };
+            let hull = reading(counts.successes).hull(reading(counts.successes + counts.unresolved));
+            Interval { estimate: procedure::share(counts), low: hull.low, high: hull.high }
+        };
+        Side { label: labels[at].clone(), value, counts }
+    };
+    let difference = Side {
+        label: "first - second".to_owned(),
+        value: Interval {
+            estimate: contrast.estimate,
+            low: contrast.interval.low,
+            high: contrast.interval.high,
+        },
+        counts: Counts {
+            trials: contrast.pairs,
+            successes: contrast.alone.0,
+            failures: contrast.alone.1,
+            unresolved: contrast.unresolved,
+        },
+    };
+    Comparison { first: side(0), second: side(1), difference }
+}
+
+/// The options of a ranking, the choice first, then by score.
+pub(super) fn ranked(podium: &Podium, labels: &[&str]) -> Ranking {
+    let choice = &podium.choice;
+    let mut order: Vec<usize> = (0..labels.len()).collect();
+    let key = |arm: &usize| (*arm != choice.arm, -podium.values[*arm].0, *arm);
+    order.sort_by(|a, b| {
+        let ((fa, va, ia), (fb, vb, ib)) = (key(a), key(b));
+        fa.cmp(&fb).then(va.total_cmp(&vb)).then(ia.cmp(&ib))
+    });
+    let options = order
+        .iter()
+        .map(|&arm| {
+            let (estimate, interval) = podium.values[arm];
+            let status = if arm == choice.arm {
+                Status::Chosen
+            } else if podium.live.contains(&arm) {
+                if podium.finished && choice.tied.contains(&arm) { Status::Tied } else { Status::Open }
+            } else {
+                Status::Beaten
+            };
+            RankedOption {
+                label: labels[arm].to_owned(),
+                value: Interval { estimate, low: interval.low, high: interval.high },
+                counts: podium.tallies[arm].counts,
+                status,
+            }
+        })
+        .collect();
+    let gap = choice.gap * podium.scale;
+    let tied = podium.finished && !choice.tied.is_empty();
+    Ranking { choice: labels[choice.arm].to_owned(), gap, tied, options }
+}
