@@ -186,7 +186,7 @@ impl<'a> Elaborator<'a> {
                 }
                 if !domain.contains(number.value) {
                     return self.report(Diagnostic::error(
-                        "E0803",
+                        "E0903",
                         span,
                         format!("`{}` holds whole numbers from {low_end} to {high_end}", var.name.name),
                     ));
@@ -293,7 +293,7 @@ impl<'a> Elaborator<'a> {
         let timed = |command: &Command| command.timing != Timing::Step;
         if commands.iter().any(timed) && !commands.iter().all(timed) {
             let error = Diagnostic::error(
-                "E0805",
+                "E0905",
                 decl.name.span,
                 format!("some commands of `{}` have a rate or delay and some have none", decl.name.name),
             )
@@ -319,7 +319,7 @@ impl<'a> Elaborator<'a> {
         {
             let sum: f64 = known.iter().sum();
             let error = Diagnostic::error(
-                "E0802",
+                "E0902",
                 command.span,
                 if known.iter().any(|w| *w < 0.0) {
                     "a probability is negative".to_owned()
@@ -336,7 +336,7 @@ impl<'a> Elaborator<'a> {
         let place = match &command.timing {
             None if self.clock == Clock::Jumps => {
                 let error = Diagnostic::error(
-                    "E0805",
+                    "E0905",
                     command.span,
                     "this command has no rate, and other commands of this scenario have",
                 )
@@ -415,7 +415,7 @@ impl<'a> Elaborator<'a> {
             && !domain.contains(value)
         {
             return self.report(Diagnostic::error(
-                "E0803",
+                "E0903",
                 span,
                 format!("`{}` cannot become {value}", update.target.name),
             ));
