@@ -1,10 +1,11 @@
 //! The registry of diagnostic codes: a page for each, for `smc explain`.
 //!
 //! `E01xx` syntax, `E02xx` names, `E03xx` units, `E04xx` scenes, `E05xx` time, `E06xx` queries, `E07xx` input,
-//! `E08xx` while running; `W01xx` lints of the surface. A code never changes its meaning.
+//! `E08xx` while running, `E09xx` processes; `W01xx` lints of the surface. A code never changes its meaning.
 
 mod input;
 mod names;
+mod process;
 mod query;
 mod running;
 mod scene;
@@ -23,7 +24,7 @@ pub struct Page {
     pub text: &'static str,
 }
 
-const ALL: [&[Page]; 8] = [
+const ALL: [&[Page]; 9] = [
     syntax::PAGES,
     names::PAGES,
     units::PAGES,
@@ -31,6 +32,7 @@ const ALL: [&[Page]; 8] = [
     temporal::PAGES,
     query::PAGES,
     input::PAGES,
+    process::PAGES,
     running::PAGES,
 ];
 

@@ -11,12 +11,12 @@ fn refused(process: &str, code: &str) {
 #[test]
 fn errors_that_can_be_seen_are_found_before_a_trial() {
     for (process, code) in [
-        ("process p { var n: 0 .. 3 = 0\n when n == 0 -> n = 1\n when n < 2 -> n = 2 }", "E0801"),
-        ("process p { var n: 0 .. 3 = 0\n when n == 0 -> 1/2: n = 1 | 1/3: n = 2 }", "E0802"),
-        ("process p { var n: 0 .. 3 = 1\n when true -> n/3: n = 2 | n/3: n = 1 }", "E0802"),
-        ("process p { var n: 0 .. 3 = 0\n when true -> n = n + 1 }", "E0803"),
-        ("process p { var n: 0 .. 3 = 4 }", "E0803"),
-        ("process p { var n: 0 .. 3 = 0\n when true -> n = 1/2 }", "E0803"),
+        ("process p { var n: 0 .. 3 = 0\n when n == 0 -> n = 1\n when n < 2 -> n = 2 }", "E0901"),
+        ("process p { var n: 0 .. 3 = 0\n when n == 0 -> 1/2: n = 1 | 1/3: n = 2 }", "E0902"),
+        ("process p { var n: 0 .. 3 = 1\n when true -> n/3: n = 2 | n/3: n = 1 }", "E0902"),
+        ("process p { var n: 0 .. 3 = 0\n when true -> n = n + 1 }", "E0903"),
+        ("process p { var n: 0 .. 3 = 4 }", "E0903"),
+        ("process p { var n: 0 .. 3 = 0\n when true -> n = 1/2 }", "E0903"),
         ("process p { var n: 0 .. 3 = 0\n when true -> m = 1 }", "E0201"),
         ("process p { var n: 0 .. 3 = 0\n when n -> n = 1 }", "E0305"),
         ("process p { var n: 3 .. 0 = 0 }", "E0405"),

@@ -3,6 +3,7 @@
 //! Variables are settled first, so that everything can read them; commands last, because they read
 //! everything.
 
+mod names;
 mod reachable;
 
 use super::dimension::Dimension;
@@ -13,11 +14,9 @@ use super::symbols::unknown;
 use super::typed::Typed;
 use crate::base::tick::Clock;
 use crate::model::process::are_weights;
-use crate::model::{
-    Bool, Branch, Command, Comparison, Domain, Num, Process, Processes, Timing, Variable, VariableId,
-};
+use crate::model::{Bool, Branch, Command, Domain, Num, Process, Processes, Timing, Variable, VariableId};
 use crate::syntax::ast::process::{self as ast, Domain as Written, ProcessDecl, ProcessItem};
-use crate::syntax::ast::{Expr, Ident, Item, LetDecl, ScenarioFile};
+use crate::syntax::ast::{Expr, Item, LetDecl, ScenarioFile};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::collections::BTreeMap;
@@ -186,7 +185,7 @@ impl<'a> Elaborator<'a> {
                 }
                 if !domain.contains(number.value) {
                     return self.report(Diagnostic::error(
-                        "E0803",
+                        "E0903",
                         span,
                         format!("`{}` holds whole numbers from {low_end} to {high_end}", var.name.name),
                     ));
@@ -293,7 +292,7 @@ impl<'a> Elaborator<'a> {
         let timed = |command: &Command| command.timing != Timing::Step;
         if commands.iter().any(timed) && !commands.iter().all(timed) {
             let error = Diagnostic::error(
-                "E0805",
+                "E0905",
                 decl.name.span,
                 format!("some commands of `{}` have a rate or delay and some have none", decl.name.name),
             )
@@ -319,7 +318,7 @@ impl<'a> Elaborator<'a> {
         {
             let sum: f64 = known.iter().sum();
             let error = Diagnostic::error(
-                "E0802",
+                "E0902",
                 command.span,
                 if known.iter().any(|w| *w < 0.0) {
                     "a probability is negative".to_owned()
@@ -336,7 +335,7 @@ impl<'a> Elaborator<'a> {
         let place = match &command.timing {
             None if self.clock == Clock::Jumps => {
                 let error = Diagnostic::error(
-                    "E0805",
+                    "E0905",
                     command.span,
                     "this command has no rate, and other commands of this scenario have",
                 )
@@ -415,108 +414,12 @@ impl<'a> Elaborator<'a> {
             && !domain.contains(value)
         {
             return self.report(Diagnostic::error(
-                "E0803",
+                "E0903",
                 span,
                 format!("`{}` cannot become {value}", update.target.name),
             ));
         }
         Ok((id, num))
-    }
-
-    /// A name inside a process, if it has it.
-    pub(super) fn lower_inside(
-        &mut self,
-        (at, copy): (u32, u32),
-        name: &str,
-        span: Span,
-    ) -> Option<Lowered<Typed>> {
-        let process = self.processes.get(at as usize)?;
-        let inside = *process.names.get(name)?;
-        let locals = Locals { process: Some((at, copy)), ..Locals::of(0) };
-        let path = format!("{}.{name}", process.decl.name.name);
-        Some(match inside {
-            Inside::Variable(place) => {
-                let (dimension, domain) = process.variables[place];
-                let value = Num::Variable(process.variable(copy, place));
-                Ok(match domain {
-                    Domain::Truth => Typed::Truth(Bool::Compare(
-                        Comparison::Equal,
-                        Box::new(value),
-                        Box::new(Num::Constant(1.0)),
-                    )),
-                    _ => Typed::Num(value, dimension),
-                })
-            }
-            Inside::Let(decl) if !decl.arguments.is_empty() => {
-                let error = Diagnostic::error(
-                    "E0204",
-                    span,
-                    format!("`{name}` is a function of {} arguments", decl.arguments.len()),
-                )
-                .hint(format!("call it inside the process: `{name}(…)`"));
-                self.report(error)
-            }
-            Inside::Let(LetDecl { body, .. }) | Inside::Label(body) => {
-                self.expand(0, &path, span, |this| this.lower(body, &locals))
-            }
-        })
-    }
-
-    /// The names of the process around the present place.
-    pub(super) fn names_inside(&self, locals: &Locals) -> Vec<String> {
-        let process = locals.process.and_then(|(at, _)| self.processes.get(at as usize));
-        process.into_iter().flat_map(|p| p.names.keys().map(|name| (*name).to_owned())).collect()
-    }
-
-    /// A function declared inside the process around the present place.
-    pub(super) fn function_inside(&self, name: &str, locals: &Locals) -> Option<&'a LetDecl> {
-        let (at, _) = locals.process?;
-        match self.processes.get(at as usize)?.names.get(name)? {
-            Inside::Let(decl) if !decl.arguments.is_empty() => Some(decl),
-            _ => None,
-        }
-    }
-
-    /// `queue.n`, `sensor[2].works`, and the components of a vector.
-    pub(super) fn lower_member(&mut self, base: &Expr, member: &Ident, locals: &Locals) -> Lowered<Typed> {
-        let (at, copy) = match self.lower(base, locals)? {
-            Typed::Process { process, copy } => (process, copy),
-            Typed::Processes(_) => {
-                let error = Diagnostic::error("E0305", base.span, "this is an array of processes")
-                    .hint(format!("choose one, as in `{}[1].{}`", self.text(base.span), member.name));
-                return self.report(error);
-            }
-            Typed::Vector(x, y, dimension) if matches!(member.name.as_str(), "x" | "y") => {
-                return Ok(Typed::Num(if member.name == "x" { x } else { y }, dimension));
-            }
-            Typed::Point(x, y) if matches!(member.name.as_str(), "x" | "y") => {
-                return Ok(Typed::Number(if member.name == "x" { x } else { y }));
-            }
-            found => {
-                let error = Diagnostic::error(
-                    "E0305",
-                    base.span,
-                    format!("expected a process before `.{}`, found {}", member.name, found.noun()),
-                )
-                .hint("numbers of agents are functions: `speed(user)`");
-                return self.report(error);
-            }
-        };
-        match self.lower_inside((at, copy), &member.name, member.span) {
-            Some(lowered) => lowered,
-            None => {
-                let known: Vec<&str> = self.processes[at as usize].names.keys().copied().collect();
-                let what = format!("name of `{}`", self.processes[at as usize].decl.name.name);
-                let error = unknown(&what, &member.name, member.span, "E0201", known.into_iter());
-                self.report(error)
-            }
-        }
-    }
-
-    /// All copies of an array of processes.
-    pub(super) fn copies(&self, process: u32) -> impl Iterator<Item = Typed> + use<> {
-        let count = self.processes.get(process as usize).and_then(|p| p.copies).unwrap_or(1);
-        (0..count).map(move |copy| Typed::Process { process, copy })
     }
 }
 

@@ -139,7 +139,7 @@ fn changes(
         && !process.choose
     {
         return Err(End::Wrong(Wrong {
-            code: "E0801",
+            code: "E0901",
             span: *second,
             what: format!("another command of `{}` is enabled together with this one", process.name),
             hint: Some("`choose` in the process makes each of them equally likely"),
@@ -167,7 +167,7 @@ fn branches(
     if !are_weights(weights.iter().copied()) {
         let sum: f64 = weights.iter().sum();
         return Err(End::Wrong(Wrong {
-            code: "E0802",
+            code: "E0902",
             span,
             what: if weights.iter().any(|w| *w < 0.0) {
                 "a probability is negative".to_owned()
@@ -187,7 +187,7 @@ fn branches(
             let variable = &variables[id.0 as usize];
             if !variable.domain.contains(value) {
                 return Err(End::Wrong(Wrong {
-                    code: "E0803",
+                    code: "E0903",
                     span,
                     what: format!("`{}` would become {value}, outside its range", variable.name),
                     hint: Some("a guard can keep it inside"),

@@ -1,0 +1,56 @@
+//! Pages of E09xx: processes.
+
+use super::Page;
+
+/// The pages.
+pub(super) const PAGES: &[Page] = &[
+    Page {
+        code: "E0901",
+        title: "two commands of a process are enabled at once",
+        text: "\
+In some state that a trial can reach two guards of one process hold, and nothing says which command fires. Make the\n\
+guards exclude each other, or write `choose`: then each enabled command is as likely as the others.\n\
+\n\
+Wrong:\n\
+\x20   process p { var n: 0 .. 3 = 0  when n == 0 -> n = 1  when n < 2 -> n = 2 }\n\
+Right:\n\
+\x20   process p { var n: 0 .. 3 = 0  when n == 0 -> n = 1  when n == 1 -> n = 2 }\n\
+\x20   process p { choose  var n: 0 .. 3 = 0  when n == 0 -> n = 1  when n < 2 -> n = 2 }",
+    },
+    Page {
+        code: "E0902",
+        title: "the probabilities of a command do not sum to 1",
+        text: "\
+The branches of a command are all that can happen when it fires: their probabilities are not negative and sum to 1,\n\
+in every state in which the command is enabled.\n\
+\n\
+Wrong:\n\
+\x20   when s == 0 -> 1/2: s = 1 | 1/3: s = 2\n\
+Right:\n\
+\x20   when s == 0 -> 1/2: s = 1 | 1/2: s = 2",
+    },
+    Page {
+        code: "E0903",
+        title: "a variable leaves its range",
+        text: "\
+A variable `lo .. hi` holds the whole numbers from lo to hi. An update would give it another value in some state that\n\
+a trial can reach, or it starts with one. A guard can keep it inside, or the range can be wider.\n\
+\n\
+Wrong:\n\
+\x20   process p { var n: 0 .. 5 = 0  when true -> n = n + 1 }\n\
+Right:\n\
+\x20   process p { var n: 0 .. 5 = 0  when n < 5 -> n = n + 1 }",
+    },
+    Page {
+        code: "E0905",
+        title: "commands with and without times are mixed",
+        text: "\
+A command without a rate fires at a step; one with `at` a rate or `after` a distribution fires at its own time. The\n\
+commands of one process are of one sort, and a scenario without a `step` has no steps to fire at.\n\
+\n\
+Wrong:\n\
+\x20   process p { var n: 0 .. 5 = 0  when n < 5 at 1 /s -> n = n + 1  when n == 5 -> n = 0 }\n\
+Right:\n\
+\x20   process p { var n: 0 .. 5 = 0  when n < 5 at 1 /s -> n = n + 1  when n == 5 at 2 /s -> n = 0 }",
+    },
+];
