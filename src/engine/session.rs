@@ -438,28 +438,14 @@ impl Session<'_> {
 
 /// The measure as one would say it: `P(safe)`.
 fn measured_words(query: &Query, measure: &Measure) -> String {
-    let text = query.text.as_str();
-    let letter = match measure.kind {
-        MeasureKind::Probability => "P(",
-        MeasureKind::Expectation { .. } => "E(",
-        MeasureKind::Quantile { .. } => "Q(",
-    };
-    let from = text.find(letter).or_else(|| text.find("Q("));
-    let Some(from) = from else { return "the measure".to_owned() };
-    let mut depth = 0usize;
-    for (at, c) in text[from..].char_indices() {
-        match c {
-            '(' => depth += 1,
-            ')' => {
-                depth -= 1;
-                if depth == 0 {
-                    return text[from..=from + at].to_owned();
-                }
-            }
-            _ => {}
-        }
-    }
-    text[from..].to_owned()
+    words::measured(
+        &query.text,
+        match measure.kind {
+            MeasureKind::Probability => 'P',
+            MeasureKind::Expectation { .. } => 'E',
+            MeasureKind::Quantile { .. } => 'Q',
+        },
+    )
 }
 
 fn total(tallies: &[Tally]) -> Tally {

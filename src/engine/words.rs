@@ -47,6 +47,41 @@ pub(super) fn at_most(value: f64) -> f64 {
     if (scaled - scaled.round()).abs() < 1e-9 { value } else { scaled.ceil() / scale }
 }
 
+/// The measure of a query as one would say it: `P(safe)`. The check of a quantile is decided as one of a
+/// probability, and is said as that: `check Q(0.9, m) <= 15 s` is about `P(m <= 15 s)`.
+pub(super) fn measured(query: &str, letter: char) -> String {
+    let at = |letter: char| query.find(&format!("{letter}("));
+    let Some(from) = at(letter).or_else(|| at('Q')) else { return "the measure".to_owned() };
+    let text = &query[from..];
+    let end = closing(text).unwrap_or(text.len());
+    let measure = &text[..end];
+    if letter != 'P' || !measure.starts_with("Q(") {
+        return measure.to_owned();
+    }
+    let metric =
+        measure.split_once(',').map_or(measure, |(_, rest)| rest.strip_suffix(')').unwrap_or(rest)).trim();
+    let rest = text[end..].trim_start();
+    let relation = if rest.starts_with('>') || rest.starts_with('≥') { "<" } else { "<=" };
+    let bound = rest.trim_start_matches(['<', '>', '=', '≤', '≥']).trim_start();
+    let stop =
+        [" by ", " under ", " confidence ", " within "].iter().filter_map(|word| bound.find(word)).min();
+    format!("P({metric} {relation} {})", bound[..stop.unwrap_or(bound.len())].trim())
+}
+
+/// One past the parenthesis that closes the first one.
+fn closing(text: &str) -> Option<usize> {
+    let mut depth = 0usize;
+    for (at, c) in text.char_indices() {
+        match c {
+            '(' => depth += 1,
+            ')' if depth == 1 => return Some(at + 1),
+            ')' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+    }
+    None
+}
+
 /// A share as a percentage.
 pub(super) fn percent(share: f64) -> String {
     format!("{} %", number(100.0 * share))
@@ -77,6 +112,14 @@ pub(super) fn interval(coverage: Coverage, error: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn measures_are_said_as_they_are_decided() {
+        assert_eq!(measured("check P(a & (b)) >= 0.5", 'P'), "P(a & (b))");
+        assert_eq!(measured("check Q(0.9, f(a)) <= 15 s confidence 95 %", 'P'), "P(f(a) <= 15 s)");
+        assert_eq!(measured("check Q(0.9, f(a)) >= 15 s", 'P'), "P(f(a) < 15 s)");
+        assert_eq!(measured("estimate Q(0.9, f(a))", 'Q'), "Q(0.9, f(a))");
+    }
 
     #[test]
     fn ends_are_rounded_outward() {
