@@ -263,3 +263,26 @@ fn an_empty_window_and_a_missing_part_are_errors() {
     let (tree, root) = formula(Node::Not(NodeId(77)));
     assert_eq!(Monitor::formula(&tree, root, Tick(9), Clock::Steps).err(), Some(Invalid::Malformed));
 }
+
+/// The time until what never holds is the same everywhere, and so is a comparison with it.
+#[test]
+fn a_time_that_never_comes_is_compared_at_once() {
+    use smc::base::lanes::{Lanes, Mask};
+    use smc::base::tick::{Clock, Tick};
+    use smc::logic::{Monitor, Node, Operation, Relation, Term, Tree, Window};
+    let mut tree = Tree::default();
+    let never = tree.node(Node::Constant(false));
+    let until = tree.term(Term::TimeUntil(never));
+    let zero = tree.term(Term::Constant(0.0));
+    let sum = tree.term(Term::Combine(Operation::Add, until, zero));
+    for (x, y) in [(until, zero), (zero, until), (sum, zero), (until, sum)] {
+        let equal = tree.node(Node::Compare(Relation::Equal, x, y));
+        let window = Window { from: Tick(0), to: Some(Tick(1)) };
+        let root = tree.node(Node::Finally(window, equal));
+        let mut monitor = Monitor::formula(&tree, root, Tick(3), Clock::Steps).unwrap();
+        monitor.start(0);
+        monitor.observe(Mask::lane(0), &[], &[] as &[Lanes]);
+        assert!(monitor.decided().has(0), "decided at the first state");
+        assert_eq!(monitor.truth().has(0), x == until && y == sum);
+    }
+}

@@ -38,6 +38,9 @@ impl Builder<'_> {
             (Some(x), None) => self.against(relation.flipped(), y, x, lo, hi),
             (None, None) => {
                 let (x, y) = (self.number(x, lo, hi)?, self.number(y, lo, hi)?);
+                if let (Made::Constant(x), Made::Constant(y)) = (&x, &y) {
+                    return Ok(Made::Constant(relation.holds(*x, *y)));
+                }
                 let (x, y) = (self.of(x), self.of(y));
                 Ok(Made::Of(self.compared(relation, x, y, lo, hi)))
             }
@@ -88,8 +91,12 @@ impl Builder<'_> {
         lo: u64,
         hi: u64,
     ) -> Result<Made<bool>, Invalid> {
-        let x = self.number(x, lo, hi)?;
-        let (x, c) = (self.of(x), self.fixed(c));
+        let x = match self.number(x, lo, hi)? {
+            // A number may turn out the same everywhere only here: the time until what never holds.
+            Made::Constant(x) => return Ok(Made::Constant(relation.holds(x, c))),
+            Made::Of(x) => x,
+        };
+        let c = self.fixed(c);
         Ok(Made::Of(self.compared(relation, x, c, lo, hi)))
     }
 
@@ -191,11 +198,11 @@ impl Builder<'_> {
             }
             Term::Combine(operation, x, y) => {
                 let (x, y) = (self.number(*x, lo, hi)?, self.number(*y, lo, hi)?);
-                Made::Of(self.combined(Arithmetic::Of(*operation), x, y, lo, hi))
+                self.joined(Arithmetic::Of(*operation), x, y, lo, hi)
             }
             Term::Abs(x) => {
                 let x = self.number(*x, lo, hi)?;
-                Made::Of(self.combined(Arithmetic::Abs, x, x, lo, hi))
+                self.joined(Arithmetic::Abs, x, x, lo, hi)
             }
             Term::Later(by, x) => self.number(*x, lo + by.0, hi + by.0)?.later(by.0),
             Term::Window(aggregation, w, x) => self.window(*aggregation, *w, *x, lo, hi)?,
@@ -218,6 +225,14 @@ impl Builder<'_> {
         };
         self.numbers.insert((id.0, lo, hi), made);
         Ok(made)
+    }
+
+    /// Arithmetic, worked out at once where both numbers are the same everywhere.
+    fn joined(&mut self, arithmetic: Arithmetic, x: Made<f64>, y: Made<f64>, lo: u64, hi: u64) -> Made<f64> {
+        if let (Made::Constant(x), Made::Constant(y)) = (&x, &y) {
+            return Made::Constant(combine(arithmetic, Lanes::splat(*x), Lanes::splat(*y)).0[0]);
+        }
+        Made::Of(self.combined(arithmetic, x, y, lo, hi))
     }
 
     fn combined(&mut self, arithmetic: Arithmetic, x: Made<f64>, y: Made<f64>, lo: u64, hi: u64) -> Ref {
