@@ -4,7 +4,7 @@ use super::dimension::Dimension;
 use super::elaborator::{Locals, Lowered, Reported};
 use super::measures::Observed;
 use super::queries::{Compiler, family_clauses};
-use super::study::{Ask, Measure, MeasureKind, Target};
+use super::study::{Ask, Measure, MeasureKind, Ranking, Target};
 use super::symbols::ScopeId;
 use crate::model::Who;
 use crate::syntax::ast::{self, BinaryOp, Clauses, Expr};
@@ -127,6 +127,13 @@ impl Compiler<'_> {
         };
         let share = family.map_or(1.0, |delta| delta / super::methods::DEFAULT_DELTA);
         let (epsilon, delta, ranking) = elaborator.ranking(clauses, dimension, share, &locals)?;
+        if let (Ranking::Okamoto, MeasureKind::Expectation { .. }, Some(method)) =
+            (ranking, &measured.kind, &clauses.by)
+        {
+            let error = Diagnostic::error("E0607", method.span, "`okamoto` ranks moves by `P(…)` only")
+                .hint("the default ranks by `E(…)` too, and needs fewer trials");
+            return elaborator.report(error);
+        }
         let Some(scenario) = &self.sites[site].scenario else { return Err(Reported) };
         let Some(moves) = scenario.moves.iter().position(|m| m.agent == id) else {
             let name = scenario.agents.get(id.0 as usize).map_or("", |a| a.name.as_str()).to_owned();
