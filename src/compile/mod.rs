@@ -13,6 +13,7 @@ mod laws;
 mod lower;
 mod measures;
 pub mod methods;
+mod moments;
 pub mod nearest;
 mod number;
 mod people;

@@ -2,6 +2,7 @@
 
 use super::blame;
 use super::outcome::Witness;
+use super::recall;
 use super::session::Call;
 use super::subject::Subject;
 use crate::base::lanes::Mask;
@@ -40,6 +41,20 @@ fn witness(
     settings: &[(String, String)],
 ) -> Option<Witness> {
     let program = &subject.program;
+    let unit = if program.scenario.clock == Clock::Steps { "steps" } else { "s" };
+    let mut command = call.simulate.clone();
+    for (name, value) in settings {
+        command.push_str(&format!(" --set '{name}={value}'"));
+    }
+    command.push_str(&format!(" --seed {} --trial {trial}", call.seed));
+    if let Some((declaration, option)) = advice {
+        let label = &program.scenario.moves.get(declaration)?.options.get(option)?.0;
+        command.push_str(&format!(" --move '{label}'"));
+    }
+    if program.scenario.clock.is_jumps() {
+        let (time, what) = recall::decision(subject, column, trial, call.seed)?;
+        return Some(Witness { passing, trial, time, unit, what, command });
+    }
     let code = subject.code(&[column]);
     let mut monitor = subject.monitor(column).ok()?;
     let mut state = State::new(program.layout, program.scenario.agents.len());
@@ -71,16 +86,6 @@ fn witness(
         // States beyond those kept are made again.
         states.get(tick as usize).cloned().or_else(|| replay(subject, key, advice, tick))
     });
-    let mut command = call.simulate.clone();
-    for (name, value) in settings {
-        command.push_str(&format!(" --set '{name}={value}'"));
-    }
-    command.push_str(&format!(" --seed {} --trial {trial}", call.seed));
-    if let Some((declaration, option)) = advice {
-        let label = &program.scenario.moves.get(declaration)?.options.get(option)?.0;
-        command.push_str(&format!(" --move '{label}'"));
-    }
-    let unit = if program.scenario.clock == Clock::Steps { "steps" } else { "s" };
     Some(Witness { passing, trial, time, unit, what, command })
 }
 

@@ -49,7 +49,7 @@ pub(super) struct Finished {
 }
 
 impl Finished {
-    fn push(&mut self, place: usize, cells: &[Cell]) {
+    pub(super) fn push(&mut self, place: usize, cells: &[Cell]) {
         self.places.push(place);
         self.cells.extend_from_slice(cells);
     }
