@@ -4,7 +4,7 @@ use crate::base::tick::{Clock, Tick};
 use crate::compile::study::{Root, World};
 use crate::kernel::process::View;
 use crate::kernel::{Code, Program};
-use crate::logic::{Invalid, Monitor, SignalMonitor, Node, NodeId, Term, TermId, Tree};
+use crate::logic::{Invalid, Monitor, Node, NodeId, SignalMonitor, Term, TermId, Tree};
 use crate::model::{Bool, Num};
 
 /// A world made ready to run.

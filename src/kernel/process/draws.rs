@@ -108,12 +108,8 @@ fn all<S: Simd, const WAIT: bool>(
     let mut out = [Lanes::ZERO; 2];
     for part in parts(simd) {
         let low = part.word(LOW);
-        let mut c = [
-            part.words(&counter[0]),
-            part.words(words),
-            part.words(&counter[1]),
-            part.words(&counter[2]),
-        ];
+        let mut c =
+            [part.words(&counter[0]), part.words(words), part.words(&counter[1]), part.words(&counter[2])];
         // Above its low half a counter word may hold anything between rounds.
         for round in &keys {
             let a = (c[0] & low) * part.word(MULTIPLIER[0]);

@@ -97,7 +97,10 @@ impl Fault {
                 name(process)
             ),
             Self::Stuck { process } => {
-                format!("time does not go on: more than 100000 jumps at one time, the last one of `{}`", name(process))
+                format!(
+                    "time does not go on: more than 100000 jumps at one time, the last one of `{}`",
+                    name(process)
+                )
             }
             Self::Range { variable, value } => {
                 let Some(variable) = processes.variables.get(variable as usize) else { return String::new() };

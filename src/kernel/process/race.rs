@@ -165,7 +165,13 @@ impl Race {
 
     /// The way that belongs to a number in (0, 1): of the race, or of a command with a delay. Rounding leaves
     /// no gap after the last one.
-    pub(super) fn way(&self, delayed: Option<usize>, readings: &Readings, lane: usize, u: f64) -> Option<Way> {
+    pub(super) fn way(
+        &self,
+        delayed: Option<usize>,
+        readings: &Readings,
+        lane: usize,
+        u: f64,
+    ) -> Option<Way> {
         let mut found = None;
         let each = |way: Way, end: f64| {
             found = Some(way);

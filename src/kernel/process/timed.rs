@@ -111,10 +111,7 @@ impl Timed {
         }
         for (k, racer) in racers.iter_mut().enumerate() {
             let follows = |j: usize| {
-                j == k
-                    || read[j]
-                        .as_ref()
-                        .is_none_or(|read| read.iter().any(|id| written[k].contains(&id.0)))
+                j == k || read[j].as_ref().is_none_or(|read| read.iter().any(|id| written[k].contains(&id.0)))
             };
             racer.followers = (0..timed.len()).filter(|&j| follows(j)).collect();
         }
