@@ -1,15 +1,24 @@
 //! What decided a trial in continuous time: it is run again, and the atoms that changed at the decision are named.
 
 use super::subject::Subject;
+use super::words;
 use crate::base::random::TrialKey;
 use crate::kernel::process::Sight;
 use crate::kernel::{Scratch, State, dynamics, start};
+use crate::logic::Reading;
 
 /// Most atoms that are named.
 const NAMED: usize = 3;
 
-/// When a trial was decided, s, and by what; in words, empty where it was time alone.
-pub(super) fn decision(subject: &Subject, column: usize, trial: u64, seed: u64) -> Option<(f64, String)> {
+/// When a trial was decided, s, the value of a metric, SI, and what decided it; in words, empty where it was time
+/// alone. `unit` is that of a metric.
+pub(super) fn decision(
+    subject: &Subject,
+    column: usize,
+    trial: u64,
+    seed: u64,
+    unit: &str,
+) -> Option<(f64, Option<f64>, String)> {
     let program = &subject.program;
     let view = subject.view(&[column]);
     let mut monitor = subject.signal_monitor(column).ok()?;
@@ -47,8 +56,19 @@ pub(super) fn decision(subject: &Subject, column: usize, trial: u64, seed: u64) 
         named = used;
     }
     let word = |k: &usize| {
-        let text = subject.atom_texts.get(*k).map_or("", String::as_str);
+        let text = subject.texts.atoms.get(*k).map_or("", String::as_str);
         format!("`{text}` {}", if now[*k] { "holds" } else { "fails" })
     };
-    Some((at, named.iter().take(NAMED).map(word).collect::<Vec<_>>().join(", ")))
+    let what = named.iter().take(NAMED).map(word).collect::<Vec<_>>().join(", ");
+    match monitor.reading() {
+        Some(Reading::Value(value)) if value == f64::INFINITY => {
+            Some((at, Some(value), "not within the horizon".to_owned()))
+        }
+        Some(Reading::Value(value)) => {
+            let value_text = words::brief(value, unit);
+            let text = if what.is_empty() { value_text } else { format!("{value_text}, when {what}") };
+            Some((at, Some(value), text))
+        }
+        _ => Some((at, None, what)),
+    }
 }

@@ -1,7 +1,7 @@
 //! A world made ready to run: a program of the kernel and what is observed in it.
 
 use crate::base::tick::{Clock, Tick};
-use crate::compile::study::{Root, World};
+use crate::compile::study::{Root, Texts, World};
 use crate::kernel::process::View;
 use crate::kernel::{Code, Program};
 use crate::logic::{Invalid, Monitor, Node, NodeId, SignalMonitor, Term, TermId, Tree};
@@ -17,8 +17,8 @@ pub struct Subject {
     pub columns: Vec<Root>,
     /// Last tick.
     pub horizon: Tick,
-    /// The source of each atom.
-    pub atom_texts: Vec<String>,
+    /// How atoms, signals and comparisons were written.
+    pub texts: Texts,
     atoms: Vec<Bool>,
     signals: Vec<Num>,
 }
@@ -43,15 +43,25 @@ impl Subject {
             program: Program::new(scenario),
             tree: world.tree.clone(),
             columns: world.columns.iter().map(|c| c.root).collect(),
-            atom_texts: world.atom_texts.clone(),
+            texts: world.texts.clone(),
             atoms: world.atoms.clone(),
             signals: world.signals.clone(),
         }
     }
 
+    /// Steps to the horizon; `None` in continuous time, where nobody knows how many jumps come.
+    pub(super) fn most_steps(&self) -> Option<u64> {
+        (!self.program.scenario.clock.is_jumps()).then_some(self.horizon.0)
+    }
+
     /// Truth values observed in each state.
     pub fn atoms(&self) -> &[Bool] {
         &self.atoms
+    }
+
+    /// Numbers observed in each state.
+    pub(super) fn signals(&self) -> &[Num] {
+        &self.signals
     }
 
     /// A monitor of a column.

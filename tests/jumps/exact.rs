@@ -223,10 +223,14 @@ fn delays_race_with_rates_and_begin_anew_where_a_command_is_disabled() {
     // Done at 2 s without an interruption; else at the earliest 2.5 s after the first interruption.
     let held = count(forgotten, "F<=2.4 s p.done", TRIALS);
     assert!(fits(held, TRIALS, (-2.0f64).exp()), "{held}");
-    // Interrupted once at u < 1.5 s and then never for 2 s: done at u + 2.5 s.
+    // Interrupted k times, with gaps that sum to at most 1.9 s - 0.5 s k (Erlang), and then never for 2 s.
+    let erlang = |k: i32, x: f64| {
+        let term = |j: i32| x.powi(j) / (1..=j).map(f64::from).product::<f64>();
+        1.0 - (-x).exp() * (0..k).map(term).sum::<f64>()
+    };
+    let exact = (-2.0f64).exp() * (1.0 + erlang(1, 1.4) + erlang(2, 0.9) + erlang(3, 0.4));
     let held = count(forgotten, "F<=3.9 s p.done", TRIALS);
-    let once = (1.0 - (-1.4f64).exp()) * (-2.0f64).exp();
-    assert!(fits(held, TRIALS, (-2.0f64).exp() + once), "{held}");
+    assert!(fits(held, TRIALS, exact), "{held}");
     // A uniform delay against a rate: P(U < E) with U in 1 s .. 3 s and E of rate 1/2.
     let race = "horizon = 10 s\nprocess p { var s: 0 .. 2 = 0\n when s == 0 after uniform(1 s, 3 s) -> s = 1\n\
         when s == 0 at 0.5 /s -> s = 2 }";

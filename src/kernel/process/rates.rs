@@ -24,8 +24,8 @@ struct Ways {
 #[derive(Clone, Debug)]
 pub(super) struct Rates {
     pub(super) keys: Keys,
-    /// Rate of the race in each row; NaN where one is wrong.
-    totals: Vec<f64>,
+    /// Rate of the race in each row, and 1 over it; NaN where one is wrong.
+    totals: Vec<(f64, f64)>,
     /// What is wrong there.
     wrong: Vec<(usize, Fault)>,
     /// Number of clocks: the race and each command with a delay.
@@ -95,10 +95,10 @@ impl Rates {
     /// Adds a row.
     fn enter(&mut self, race: &Race, delayed: &[usize], readings: &Readings, lane: usize) {
         match race.total(readings, lane) {
-            Ok(total) => self.totals.push(total),
+            Ok(total) => self.totals.push((total, 1.0 / total)),
             Err(fault) => {
                 self.wrong.push((self.totals.len(), fault));
-                self.totals.push(f64::NAN);
+                self.totals.push((f64::NAN, f64::NAN));
             }
         }
         let mut found: Vec<(Way, f64)> = Vec::new();
@@ -135,11 +135,11 @@ impl Rates {
         }
     }
 
-    /// The rate of the race in a row.
+    /// The rate of the race in a row, and 1 over it.
     #[inline(always)]
-    pub(super) fn total(&self, row: usize) -> Result<f64, Fault> {
+    pub(super) fn total(&self, row: usize) -> Result<(f64, f64), Fault> {
         let total = self.totals[row];
-        if total.is_nan() {
+        if total.0.is_nan() {
             return Err(self.wrong_rate(row));
         }
         Ok(total)

@@ -289,10 +289,10 @@ impl Timed {
                 state.clocks.rows[k][lane] = row as u32;
                 table.total(row)
             }
-            Form::Code(race) => race.total(readings, lane),
+            Form::Code(race) => race.total(readings, lane).map(|total| (total, 1.0 / total)),
         };
-        let total = match total {
-            Ok(total) => total,
+        let (total, mean) = match total {
+            Ok(found) => found,
             Err(fault) => {
                 stop(state, lane, fault);
                 return false;
@@ -310,7 +310,7 @@ impl Timed {
             }
             clocks.rate[race].0[lane] = total;
             let fuel = clocks.fuel[race].0[lane];
-            clocks.due[race].0[lane] = if total > 0.0 { now + fuel / total } else { f64::INFINITY };
+            clocks.due[race].0[lane] = if total > 0.0 { now + fuel * mean } else { f64::INFINITY };
         }
         for (j, (command, law)) in racer.delayed.iter().enumerate() {
             let enabled = match &racer.form {
