@@ -152,7 +152,7 @@ impl Jumper {
                 (_, true) => monitor.jump(now, atoms, signals).map_or(Reading::Faulty, reading_of),
                 (false, false) => reading_of(monitor.finish()),
             };
-            *cell = Cell { reading: found, steps: jumps, ..Cell::BLANK };
+            *cell = Cell { reading: found, steps: jumps, triggered: monitor.triggered(), shrunk: false };
             self.open[lane] -= 1;
         }
     }

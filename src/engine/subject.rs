@@ -76,6 +76,14 @@ impl Subject {
         }
     }
 
+    /// Number of the implications of a column that are watched.
+    pub(super) fn implications(&self, column: usize) -> Result<usize, Invalid> {
+        if self.program.scenario.clock.is_jumps() {
+            return Ok(self.signal_monitor(column)?.implications());
+        }
+        Ok(self.monitor(column)?.antecedents().count())
+    }
+
     /// A monitor of a column in continuous time.
     pub fn signal_monitor(&self, column: usize) -> Result<SignalMonitor, Invalid> {
         let Clock::Jumps(tick) = self.program.scenario.clock else { return Err(Invalid::NoSteps) };

@@ -10,7 +10,7 @@ fn errors_that_can_be_seen_are_found_before_a_trial() {
     for (process, code) in [
         ("process p { var n: 0 .. 3 = 0\n when n < 3 at -1 /s -> n = n + 1 }", "E0904"),
         ("process p { var n: 0 .. 3 = 0\n when n < 3 at (1 /s) / 0 -> n = n + 1 }", "E0405"),
-        ("process p { var n: 0 .. 3 = 0\n when n < 3 at 1 /s * (1 - n) -> n = n + 1 }", "E0904"),
+        ("process p { var n: 0 .. 3 = 0\n when n < 3 at 1 /s * (2 - 3 * n) -> n = n + 1 }", "E0904"),
         ("process p { var n: 0 .. 3 = 0\n when n < 3 at 1 /s / n -> n = n + 1 }", "E0904"),
         ("process p { var n: 0 .. 3 = 0\n when n < 3 at 1 s -> n = n + 1 }", "E0303"),
         ("process p { var n: 0 .. 3 = 0\n when true at 1 /s -> n = n + 1 }", "E0903"),

@@ -203,3 +203,23 @@ fn with_a_step_the_same_process_is_seen_at_the_steps() {
     exactly(brief, &[("F (p.s == 1)", false), ("X<=#2 (p.s == 2)", true), ("X (p.s == 0)", true)]);
     assert_eq!(value(brief, "time_until(p.s == 2)"), 2.0);
 }
+
+#[test]
+fn implications_that_never_had_a_case_are_told() {
+    let warned = |formula: &str| {
+        let study = compiled(STAIRS, &format!("estimate P({formula}) by fixed(trials = 5)")).unwrap();
+        let run = crate::answered(&study, 1, 1);
+        assert_eq!(run.results[0].counts.successes, 5, "{formula}");
+        run.results[0].warnings.iter().any(|warning| warning.contains("never triggered"))
+    };
+    // s is 1 from 2 s on, for a microsecond, and 3 from 5 s on.
+    for (formula, never) in [
+        ("G<=4 s (p.s == 3 => p.s == 0)", true),
+        ("G<=5 s (p.s == 3 => p.s == 3)", false),
+        ("G<=1 s (p.s == 1 => F<=1 s (p.s == 3))", true),
+        ("G<=2 s (p.s == 1 => F<=3 s (p.s == 3))", false),
+        ("F<=1 s (p.s == 0 => G<=1 s (p.s == 0))", false),
+    ] {
+        assert_eq!(warned(formula), never, "{formula}");
+    }
+}

@@ -49,9 +49,9 @@ A rate is a finite number of events per second, not negative, in every state in 
 of 0 disables the command, as a guard does.\n\
 \n\
 Wrong:\n\
-\x20   process p { var n: 0 .. 9 = 0  when true at (5 - n) * 1 /s -> n = n + 1 }\n\
+\x20   process p { var n: 0 .. 9 = 0  when n < 9 at (5 - 2 * n) * 1 /s -> n = n + 1 }\n\
 Right:\n\
-\x20   process p { var n: 0 .. 9 = 0  when n < 5 at (5 - n) * 1 /s -> n = n + 1 }",
+\x20   process p { var n: 0 .. 9 = 0  when n < 3 at (5 - 2 * n) * 1 /s -> n = n + 1 }",
     },
     Page {
         code: "E0905",
