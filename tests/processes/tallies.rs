@@ -5,6 +5,8 @@ use super::{compiled, fits, shown};
 const COINS: &str = "horizon = 6 steps\n\
     process coin[5] { var heads = false\n when true -> 1/3: heads = true | 2/3: heads = false }";
 
+type Comparison = fn(f64, f64) -> bool;
+
 fn verdicts(queries: &[String]) -> Vec<Vec<bool>> {
     let properties: String = queries.iter().map(|q| format!("check P({q}) >= 0.5\n")).collect();
     let study = compiled(COINS, &properties).unwrap();
@@ -26,7 +28,7 @@ fn a_count_over_time_is_that_of_its_formulas() {
     let one = |body: &str| (1..=5).map(|k| format!("G<=#1 F<=#2 (coin[{k}].{body})")).collect::<Vec<_>>();
     let mut queries = one("heads");
     let count = "count(c in coin: G<=#1 F<=#2 (c.heads))";
-    let relations: [(&str, fn(f64, f64) -> bool); 6] = [
+    let relations: [(&str, Comparison); 6] = [
         (">=", |n, x| n >= x),
         (">", |n, x| n > x),
         ("<=", |n, x| n <= x),
