@@ -85,6 +85,11 @@ impl Elaborator<'_> {
                 let all = quantifier == Quantifier::Forall;
                 Ok(Typed::Truth(if all { Bool::And(truths) } else { Bool::Or(truths) }))
             }
+            Quantifier::Count if over_time => {
+                let nodes: Lowered<Vec<_>> =
+                    each.into_iter().map(|typed| self.as_formula(typed, body.span)).collect();
+                Ok(Typed::Tally(nodes?))
+            }
             Quantifier::Count => {
                 let mut sum = Num::Constant(0.0);
                 for typed in each {
@@ -175,9 +180,9 @@ impl Elaborator<'_> {
                 })))
             }
             Quantifier::Count => {
-                let error = Diagnostic::error("E0504", span, "only conditions on one state can be counted")
-                    .hint("count states, as in `F<=10 s (count(a in crowd: a in exit) >= 3)`");
-                self.report(error)
+                let nodes: Lowered<Vec<_>> =
+                    each.into_iter().map(|typed| self.as_formula(typed, body.span)).collect();
+                Ok(Typed::Tally(nodes?))
             }
             Quantifier::Fold(aggregate) => self.fold_terms(aggregate, each, body.span),
         }
