@@ -142,7 +142,7 @@ fn of_several_jumps_at_one_time_the_last_counts_in_order_of_writing() {
 fn numbers_over_time() {
     let cases = [
         ("mean<=5 s (p.s)", (0.000_001 + 2.0 * 2.999_999) / 5.0),
-        ("mean[1 s, 3 s] (p.s)", (0.000_001 + 2.0 * 0.999_999) / 2.0),
+        ("mean[1 s, 3 s] (p.s)", 0.000_000_5 + 0.999_999),
         ("mean[3 s, 3 s] (p.s)", 2.0),
         ("min<=5 s (p.s)", 0.0),
         ("min[2 s, 3 s] (p.s)", 1.0),

@@ -27,6 +27,7 @@ const MOST_AT_ONCE: u32 = 100_000;
 
 /// How a process is run.
 #[derive(Clone, Debug)]
+#[allow(clippy::large_enum_variant, reason = "tables are read at every jump, and there are few forms")]
 enum Form {
     Table(Rates),
     Code(Race),
