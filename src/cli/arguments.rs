@@ -87,6 +87,9 @@ pub(super) struct Check {
     /// Most trials of one query.
     #[arg(long, value_name = "N")]
     pub(super) max_trials: Option<u64>,
+    /// Most trials of one ranking, over all its options.
+    #[arg(long, value_name = "N")]
+    pub(super) total_trials: Option<u64>,
     /// Time for the whole call, such as `50ms`, `2s`, `5min`.
     #[arg(long, value_parser = parse_duration)]
     pub(super) timeout: Option<std::time::Duration>,

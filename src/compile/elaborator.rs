@@ -1,6 +1,7 @@
 //! The state of compilation under one combination of parameter values.
 
 use super::dimension::{Dimension, describe};
+use super::margin::Margins;
 use super::number::Number;
 use super::process::Declared;
 use super::symbols::{Scope, ScopeId};
@@ -87,6 +88,8 @@ pub(super) struct Elaborator<'a> {
     pub(super) circles: Vec<String>,
     /// What was found wrong.
     pub(super) diagnostics: Vec<Diagnostic>,
+    /// What is known of margins, while the formula of a robustness is lowered.
+    pub(super) margins: Option<Margins>,
     /// Present depth of lowering.
     pub(super) depth: u32,
     /// Nodes lowered so far.
@@ -116,6 +119,7 @@ impl<'a> Elaborator<'a> {
             signals: Vec::new(),
             circles: Vec::new(),
             diagnostics: Vec::new(),
+            margins: None,
             depth: 0,
             nodes: 0,
         }

@@ -6,7 +6,7 @@ use super::files::Files;
 use super::measures::Observed;
 use super::number::Number;
 use super::settings::Setting;
-use super::study::{Ask, Column, Measure, MeasureKind, Query, Study, Target, World};
+use super::study::{Ask, Column, Estimator, Measure, MeasureKind, Query, Study, Target, World};
 use super::symbols::ScopeId;
 use crate::model::Scenario;
 use crate::syntax::ast::{self, Binding, Clauses, Expr, PropertyFile, PropertyItem, QueryKind, ScenarioFile};
@@ -298,10 +298,19 @@ impl<'a> Compiler<'a> {
                     } else {
                         share
                     };
-                    let Ok(estimator) = elaborator.estimator(clauses, &measured.kind, share, &locals) else {
+                    let Ok(mut estimator) = elaborator.estimator(clauses, &measured.kind, share, &locals)
+                    else {
                         failed = true;
                         continue;
                     };
+                    if let Estimator::Splitting(splitting) = &mut estimator {
+                        // How far a path has come is the robustness of its formula.
+                        let Ok(level) = elaborator.level(measure, scope) else {
+                            failed = true;
+                            continue;
+                        };
+                        splitting.level = self.column(site, level);
+                    }
                     let single = if measures.len() == 1 {
                         text.clone()
                     } else {

@@ -117,6 +117,7 @@ impl Procedure {
                     Estimator::Relative { epsilon, delta } => {
                         AnyEstimator::Gbas(Gbas::new(epsilon, delta, Some(DEFAULT_TRIALS), seed)?)
                     }
+                    Estimator::Splitting(_) => return Err(Fault::Unsuitable),
                 };
                 Ok(Self::Probability(Box::new(EstimatorReadings::new(estimator))))
             }
@@ -131,6 +132,7 @@ impl Procedure {
                     | Estimator::Massart { epsilon, delta }
                     | Estimator::Spending { epsilon, delta }
                     | Estimator::Relative { epsilon, delta } => Mean::within(*low, *high, epsilon, delta)?,
+                    Estimator::Splitting(_) => return Err(Fault::Unsuitable),
                 };
                 Ok(Self::Mean { mean: Box::new(mean), threshold: None, values: Vec::new() })
             }
@@ -183,6 +185,18 @@ impl Procedure {
             }
             Self::Mean { mean, threshold, .. } => threshold.is_none() && mean.is_fixed(),
             Self::Quantile { .. } => true,
+        }
+    }
+
+    /// Whether it is over without having come to what was asked: at its own largest number of trials.
+    pub(super) fn is_capped(&self) -> bool {
+        match self {
+            Self::Mean { threshold: Some(_), .. } => self.decision().is_none(),
+            Self::Probability(estimator) => match estimator.readings().0 {
+                AnyEstimator::Gbas(gbas) => gbas.counts().successes < gbas.needed(),
+                _ => false,
+            },
+            _ => false,
         }
     }
 
@@ -339,10 +353,19 @@ pub(super) fn method(ask: &Ask, procedure: Option<&Procedure>) -> Method {
                     named("sprt2", &[("alpha", alpha), ("beta", beta), theta, ("indifference", indifference)])
                 }
                 Test::Plan { alpha, beta, indifference } => {
-                    named("plan", &[("alpha", alpha), ("beta", beta), theta, ("indifference", indifference)])
+                    let mut numbers =
+                        vec![("alpha", alpha), ("beta", beta), theta, ("indifference", indifference)];
+                    if let Some(Procedure::Test(test)) = procedure
+                        && let AnyTest::Plan(plan) = test.readings().0
+                    {
+                        let (trials, accept) = plan.size();
+                        numbers.extend([("trials", trials as f64), ("accept", accept as f64)]);
+                    }
+                    named("plan", &numbers)
                 }
                 Test::EProcess { alpha, beta } => {
-                    named("eprocess", &[("alpha", alpha), ("beta", beta), theta])
+                    let weight = ("weight", stats::eprocess::weight(*threshold));
+                    named("eprocess", &[("alpha", alpha), ("beta", beta), theta, weight])
                 }
                 Test::ThreeWay { alpha, indifference } => {
                     named("three_way", &[("alpha", alpha), theta, ("indifference", indifference)])
@@ -371,16 +394,42 @@ pub(super) fn method(ask: &Ask, procedure: Option<&Procedure>) -> Method {
                 named("empirical_bernstein", &[("epsilon", epsilon), ("delta", delta)])
             }
             (Estimator::Okamoto { epsilon, delta }, _) => {
-                named("okamoto", &[("epsilon", epsilon), ("delta", delta)])
+                let trials = procedure.and_then(Procedure::limit).map(|n| ("trials", n as f64));
+                let numbers: Vec<_> =
+                    [("epsilon", epsilon), ("delta", delta)].into_iter().chain(trials).collect();
+                named("okamoto", &numbers)
             }
             (Estimator::Massart { epsilon, delta }, _) => {
-                named("massart", &[("epsilon", epsilon), ("delta", delta)])
+                let auxiliary = ("auxiliary", MASSART_SHARE * delta);
+                named("massart", &[("epsilon", epsilon), ("delta", delta), auxiliary])
             }
             (Estimator::Spending { epsilon, delta }, _) => {
-                named("spending", &[("epsilon", epsilon), ("delta", delta)])
+                let looks = match procedure {
+                    Some(Procedure::Probability(p)) => match p.readings().0 {
+                        AnyEstimator::Spending(spending) => Some(("looks", spending.looks().len() as f64)),
+                        _ => None,
+                    },
+                    _ => None,
+                };
+                let numbers: Vec<_> =
+                    [("epsilon", epsilon), ("delta", delta)].into_iter().chain(looks).collect();
+                named("spending", &numbers)
             }
             (Estimator::Relative { epsilon, delta }, _) => {
-                named("gbas", &[("epsilon", epsilon), ("delta", delta)])
+                let mut numbers = vec![("epsilon", epsilon), ("delta", delta)];
+                if let Some(Procedure::Probability(p)) = procedure
+                    && let AnyEstimator::Gbas(gbas) = p.readings().0
+                {
+                    numbers.extend([("successes", gbas.needed() as f64), ("cap", DEFAULT_TRIALS as f64)]);
+                }
+                named("gbas", &numbers)
+            }
+            (Estimator::Splitting(rule), _) => {
+                let name = if rule.adaptive { "splitting" } else { "fixed_effort" };
+                let mut numbers = vec![("replicas", rule.replicas as f64), ("runs", rule.runs as f64)];
+                numbers.extend(rule.adaptive.then_some(("kill", rule.kill as f64)));
+                numbers.extend([("plain", rule.plain as f64), ("delta", rule.delta)]);
+                named(name, &numbers)
             }
             (Estimator::Fixed { trials, delta }, kind) => {
                 let name = match kind {

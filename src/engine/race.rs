@@ -182,13 +182,22 @@ pub(super) fn run(
                 }
             }
         }
+        let consumed: u64 = tallies.iter().map(|t| t.counts.trials).sum();
+        let left = budget.max_total.map_or(u64::MAX, |total| total.saturating_sub(consumed));
+        if left == 0 {
+            break Stop::Cap;
+        }
+        let wanted = items.len();
+        items.truncate(left as usize);
         let rows = executor.run(&job, &items, budget)?;
+        // What follows an unfinished trial is not looked at, so that the number of trials says which they are.
+        let prefix = (0..items.len()).take_while(|place| rows.row(*place).is_some()).count();
         let mut complete = true;
         for (share, places) in shares.iter().zip(&places) {
             let mut cells = Vec::with_capacity(places.len());
             let mut broken = false;
             for &place in places {
-                match rows.row(place) {
+                match rows.row(place).filter(|_| place < prefix) {
                     Some(row) if !broken => {
                         if row[0].reading == Reading::Faulty {
                             return Err(super::trial::fault(field.subject, items[place], seed));
@@ -206,7 +215,8 @@ pub(super) fn run(
             procedure.feed(share.arm, &cells)?;
         }
         if !complete {
-            break 'sampling halt();
+            let capped = prefix == items.len() && items.len() < wanted;
+            break 'sampling if capped { Stop::Cap } else { halt() };
         }
         watch.consumed(text, tallies.iter().map(|t| t.counts.trials).sum(), None);
     };

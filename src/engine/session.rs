@@ -1,6 +1,6 @@
 //! A whole call: worlds made ready, queries run, results put into words.
 
-use super::budget::Budget;
+use super::budget::{Budget, DEFAULT_TRIALS};
 use super::contrast::{self, Sides};
 use super::executor::Executor;
 use super::fault::Fault;
@@ -14,7 +14,7 @@ use super::tally::Tally;
 use super::watch::Watch;
 use super::witness;
 use super::words;
-use crate::compile::study::{Ask, Measure, MeasureKind, Query, Study};
+use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Query, Root, Study};
 use crate::kernel::start;
 use crate::stats::{Coverage, Decision};
 
@@ -80,17 +80,37 @@ pub fn run(
         }
     }
     watch.finished();
+    let results: Vec<QueryResult> = results.into_iter().flatten().collect();
     Ok(Run {
         scenario: if study.title.is_empty() { call.file.clone() } else { study.title.clone() },
         seed: call.seed,
         version: env!("CARGO_PKG_VERSION").to_owned(),
-        results: results.into_iter().flatten().collect(),
         warnings: Vec::new(),
         interrupted: budget.is_interrupted(),
         failure,
-        replay: format!("{} --seed {}", call.command, call.seed),
+        replay: again(call, budget, &results),
+        results,
         elapsed_s: budget.elapsed(),
     })
+}
+
+/// The call that gives the same results again. Where the clock ended something, each query has its own.
+fn again(call: &Call<'_>, budget: &Budget, results: &[QueryResult]) -> String {
+    if results.iter().any(|r| matches!(r.stopped_by, Stop::Deadline | Stop::Interrupt)) {
+        let each: Vec<&str> = results.iter().map(|r| r.replay.as_str()).collect();
+        return each.join("\n");
+    }
+    let mut words = call.command.clone();
+    for index in &call.only {
+        words.push_str(&format!(" --only {index}"));
+    }
+    if budget.max_trials != DEFAULT_TRIALS {
+        words.push_str(&format!(" --max-trials {}", budget.max_trials));
+    }
+    if let Some(total) = budget.max_total {
+        words.push_str(&format!(" --total-trials {total}"));
+    }
+    format!("{words} --seed {}", call.seed)
 }
 
 /// More people than fit, in words.
@@ -123,6 +143,7 @@ fn worlds(ask: &Ask) -> Vec<usize> {
 
 fn surveyed(ask: &Ask) -> Option<usize> {
     match ask {
+        Ask::Estimate { estimator: Estimator::Splitting(_), .. } => None,
         Ask::Check { measure, .. } | Ask::Estimate { measure, .. } => Some(measure.target.world),
         Ask::Compare { .. } | Ask::Rank { .. } => None,
     }
@@ -144,16 +165,16 @@ fn unit(measure: &Measure) -> String {
     }
 }
 
-struct Session<'a> {
-    call: &'a Call<'a>,
-    executor: &'a dyn Executor,
-    budget: &'a Budget,
-    watch: &'a dyn Watch,
+pub(super) struct Session<'a> {
+    pub(super) call: &'a Call<'a>,
+    pub(super) executor: &'a dyn Executor,
+    pub(super) budget: &'a Budget,
+    pub(super) watch: &'a dyn Watch,
     subjects: &'a [Option<Subject>],
 }
 
 impl Session<'_> {
-    fn subject(&self, world: usize) -> Result<&Subject, Fault> {
+    pub(super) fn subject(&self, world: usize) -> Result<&Subject, Fault> {
         self.subjects.get(world).and_then(Option::as_ref).ok_or(Fault::Unsuitable)
     }
 
@@ -165,6 +186,9 @@ impl Session<'_> {
         results: &[Option<QueryResult>],
     ) -> Result<Vec<(usize, QueryResult)>, Fault> {
         match &asked[at].ask {
+            Ask::Estimate { estimator: Estimator::Splitting(_), .. } => {
+                Ok(vec![(at, self.split(asked[at])?)])
+            }
             Ask::Check { measure, .. } | Ask::Estimate { measure, .. } => {
                 // All checks and estimates of a world read the same trials.
                 let world = measure.target.world;
@@ -180,7 +204,7 @@ impl Session<'_> {
     }
 
     /// What is known of a query before its first trial.
-    fn blank(&self, query: &Query, kind: Kind) -> QueryResult {
+    pub(super) fn blank(&self, query: &Query, kind: Kind) -> QueryResult {
         let (file, line) = (self.call.place)(query.span);
         QueryResult {
             name: query.name.clone(),
@@ -192,11 +216,11 @@ impl Session<'_> {
         }
     }
 
-    fn replay(&self, query: &Query, trials: u64) -> String {
-        format!(
-            "{} --only {} --seed {} --max-trials {trials}",
-            self.call.command, query.index, self.call.seed
-        )
+    /// The call that stops at the same trial; `limit` is the option that counts them.
+    pub(super) fn replay(&self, query: &Query, limit: &str, trials: u64) -> String {
+        let call = format!("{} --only {} --seed {}", self.call.command, query.index, self.call.seed);
+        // Where there was no time for a trial there is nothing to be replayed.
+        if trials == 0 { call } else { format!("{call} {limit} {trials}") }
     }
 
     fn survey(&self, queries: &[&Query], world: usize) -> Result<Vec<QueryResult>, Fault> {
@@ -233,7 +257,7 @@ impl Session<'_> {
         result.method = procedure::method(&query.ask, Some(&inquiry.procedure));
         result.unit = unit(measure);
         result.stopped_by = stop;
-        result.replay = self.replay(query, counts.trials);
+        result.replay = self.replay(query, "--max-trials", counts.trials);
         result.elapsed_s = inquiry.seconds;
         let subject_words = measured_words(query, measure);
         if let Some((interval, coverage, error)) = inquiry.procedure.interval(counts) {
@@ -241,7 +265,9 @@ impl Session<'_> {
             result.low = interval.low;
             result.high = interval.high;
             result.interval = words::interval(coverage, error);
-            if matches!(measure.kind, MeasureKind::Quantile { .. }) && interval.high.is_infinite() {
+            let robust = matches!(subject.columns[measure.target.column], Root::Robustness(..));
+            if matches!(measure.kind, MeasureKind::Quantile { .. }) && interval.high.is_infinite() && !robust
+            {
                 result.censored = Some(subject.program.scenario.clock.seconds(subject.horizon));
             }
             if kind == Kind::Estimate {
@@ -296,7 +322,7 @@ impl Session<'_> {
     }
 
     /// Counts, and what they warn of.
-    fn tell(&self, result: &mut QueryResult, subject: &Subject, tally: &Tally, column: usize) {
+    pub(super) fn tell(&self, result: &mut QueryResult, subject: &Subject, tally: &Tally, column: usize) {
         result.counts = tally.counts;
         result.steps = tally.steps;
         result.clipped = tally.clipped;
@@ -359,7 +385,7 @@ impl Session<'_> {
         result.high = contrast.interval.high;
         result.interval = words::interval(contrast.interval.coverage, contrast.interval.error);
         result.stopped_by = contrast.stop;
-        result.replay = self.replay(query, contrast.pairs);
+        result.replay = self.replay(query, "--max-trials", contrast.pairs);
         let joined = total(&contrast.sides);
         self.tell(&mut result, sides.subjects[0], &joined, sides.columns[0]);
         let label = |settings: &[(String, String)]| {
@@ -400,9 +426,8 @@ impl Session<'_> {
         result.method = procedure::method(&query.ask, None);
         result.unit = unit(measure);
         result.stopped_by = podium.stop;
-        let most = podium.tallies.iter().map(|t| t.counts.trials).max().unwrap_or(0);
-        result.replay = self.replay(query, most);
         let joined = total(&podium.tallies);
+        result.replay = self.replay(query, "--total-trials", joined.counts.trials);
         self.tell(&mut result, subject, &joined, measure.target.column);
         result.clipped = joined.clipped;
         let labels: Vec<&str> = declared.options.iter().map(|(label, _)| label.as_str()).collect();

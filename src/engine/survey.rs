@@ -72,9 +72,7 @@ pub(super) fn run(
                 }
                 inquiry.tally.add(item.index, cell, inquiry.range);
                 if inquiry.procedure.observe(cell) {
-                    let capped = matches!(&inquiry.procedure, Procedure::Mean { threshold: Some(_), .. })
-                        && inquiry.procedure.decision().is_none();
-                    inquiry.stop = Some(if capped {
+                    inquiry.stop = Some(if inquiry.procedure.is_capped() {
                         Stop::Cap
                     } else if inquiry.procedure.is_planned() {
                         Stop::Plan

@@ -7,6 +7,7 @@ use super::subject::Subject;
 use crate::base::lanes::Mask;
 use crate::base::random::TrialKey;
 use crate::base::tick::{Clock, Tick};
+use crate::compile::study::Root;
 use crate::kernel::{Readings, Scratch, State, dynamics, start};
 
 /// The witnesses of a column: `first` holds the first failing and the first passing trial.
@@ -19,6 +20,10 @@ pub(super) fn find(
     settings: &[(String, String)],
 ) -> Vec<Witness> {
     let mut found = Vec::new();
+    if matches!(subject.columns[column], Root::Robustness(..)) {
+        // No atom decides how far a formula is from changing.
+        return found;
+    }
     for (passing, trial) in [(false, first[0]), (true, first[1])] {
         if let Some(trial) = trial
             && let Some(witness) = witness(subject, column, advice, trial, passing, call, settings)

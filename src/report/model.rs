@@ -284,6 +284,13 @@ fn procedure(ask: &Ask) -> String {
                 Estimator::Relative { epsilon, delta } => {
                     format!("relative error {}, error {delta}", number(*epsilon))
                 }
+                Estimator::Splitting(rule) => format!(
+                    "{}, {} runs of {} paths, after {} plain trials",
+                    if rule.adaptive { "adaptive splitting" } else { "splitting with fixed effort" },
+                    rule.runs,
+                    rule.replicas,
+                    rule.plain
+                ),
             };
             format!("{what}: {how}")
         }
