@@ -23,7 +23,7 @@ check P(near) >= 0.3 by sprt(indifference = 0.05)
 check P(near) >= 0.3 by sprt2(indifference = 0.05)
 check P(near) >= 0.3 by plan(indifference = 0.1)
 check P(near) >= 0.9
-check P(near) >= 0.9 by three_way(indifference = 0.1)
+check P(near) >= 0.9 by three_way(indifference = 0.05)
 check E(max<=1 s (speed(user))) in 0 m/s .. 3 m/s >= 1 m/s
 check Q(0.5, min<=1 s (clearance(user))) >= 0.2 m
 estimate P(near) within 0.05
@@ -36,6 +36,7 @@ estimate P(F<=1 s (clearance(user) < -0.1 m)) by splitting(replicas = 20, runs =
 estimate E(max<=1 s (speed(user))) in 0 m/s .. 3 m/s within 0.05 m/s
 estimate E(robustness(near)) in -4 m .. 3 m within 0.3 m
 estimate Q(0.5, time_until(clearance(user) < 1 m)), Q(0.9, travelled(user) at 1 s) by fixed(trials = 200)
+estimate Q(0.1, 0.5, 0.9, min<=1 s (clearance(user))) by dkw(trials = 200)
 compare P(near) under density = 0.1 /m^2 with density = 0.4 /m^2 within 0.1
 compare E(max<=1 s (speed(user))) in 0 m/s .. 3 m/s under density = 0.1 /m^2 with density = 0.4 /m^2
 rank moves of user by P(near) within 0.1

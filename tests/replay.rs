@@ -50,6 +50,13 @@ fn holds(words: &[&str]) {
     if lines.len() == 1 {
         let mut second = again(&place, lines[0]);
         timeless(&mut second);
+        for run in [&mut first, &mut second] {
+            for result in run["results"].as_array_mut().unwrap() {
+                // A deadline is replayed as a largest number of trials.
+                result["stopped_by"] = Value::Null;
+                result["replay"] = Value::Null;
+            }
+        }
         assert_eq!(second["results"], first["results"]);
     }
 }

@@ -237,7 +237,7 @@ impl Elaborator<'_> {
             });
         };
         let name = method.name.name.as_str();
-        if name == "fixed" || name == "clopper_pearson" {
+        if name == "fixed" || name == "clopper_pearson" || (quantile && name == "dkw") {
             let arguments = self.arguments(method, ["trials", "delta"], locals)?;
             let (trials, span) = self.required(&arguments, 0, "trials")?;
             let delta = self.error_of(arguments.values[1], delta, "delta")?;
@@ -248,7 +248,11 @@ impl Elaborator<'_> {
                     "`trials` must be a whole, positive number",
                 ));
             }
-            return Ok(Estimator::Fixed { trials: trials as u64, delta });
+            let trials = trials as u64;
+            return Ok(match name {
+                "dkw" => Estimator::Band { trials, delta },
+                _ => Estimator::Fixed { trials, delta },
+            });
         }
         if probability && (name == "splitting" || name == "fixed_effort") {
             return self.splitting(clauses, method, delta, locals);
@@ -265,7 +269,7 @@ impl Elaborator<'_> {
                 "fixed_effort",
             ]
         } else if quantile {
-            &["fixed"]
+            &["fixed", "dkw"]
         } else {
             &["okamoto", "fixed"]
         };

@@ -267,6 +267,13 @@ pub enum Estimator {
         /// Error probability.
         delta: f64,
     },
+    /// Fixed number of trials: the band around the whole distribution function.
+    Band {
+        /// Number of trials.
+        trials: u64,
+        /// Error probability.
+        delta: f64,
+    },
     /// Relative error (GBAS).
     Relative {
         /// Relative error.

@@ -351,6 +351,20 @@ pub struct Distribution {
     pub histogram: Option<Histogram>,
     /// Quantiles, by level ascending.
     pub quantiles: Vec<Quantile>,
+    /// The empirical distribution function, at a hundred shares at most.
+    pub empirical: Vec<Step>,
+    /// Where the number of trials was fixed beforehand: the true function is nowhere farther than this from
+    /// the empirical one, with the error of the result (Dvoretzky, Kiefer, Wolfowitz; Massart).
+    pub band: Option<f64>,
+}
+
+/// A step of the empirical distribution function.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// A value; infinite beyond the horizon.
+    pub value: f64,
+    /// Share of the resolved trials with at most this value.
+    pub share: f64,
 }
 
 /// Counts in bins of equal width.

@@ -178,5 +178,7 @@ fn distribution(found: &Distribution) -> Value {
             Value::Object(object)
         })
         .collect();
-    json!({ "histogram": histogram, "quantiles": quantiles })
+    let empirical: Vec<Value> =
+        found.empirical.iter().map(|step| json!({ "value": step.value, "share": step.share })).collect();
+    json!({ "histogram": histogram, "quantiles": quantiles, "empirical": empirical, "band": found.band })
 }

@@ -281,6 +281,9 @@ fn procedure(ask: &Ask) -> String {
                     format!("Clopper-Pearson with alpha spending for ± {}, error {delta}", number(*epsilon))
                 }
                 Estimator::Fixed { trials, delta } => format!("{trials} trials, error {delta}"),
+                Estimator::Band { trials, delta } => {
+                    format!("{trials} trials, band around the distribution function, error {delta}")
+                }
                 Estimator::Relative { epsilon, delta } => {
                     format!("relative error {}, error {delta}", number(*epsilon))
                 }
