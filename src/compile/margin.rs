@@ -70,7 +70,9 @@ impl Elaborator<'_> {
                 .hint("robustness measures how far comparisons with `<`, `<=`, `>`, `>=`, contacts and regions are from changing");
             return self.report(error);
         };
-        let node = Rewriting { elaborator: self, nodes: BTreeMap::new(), terms: BTreeMap::new() }.node(node);
+        let node =
+            Rewriting { elaborator: self, dimension, span, nodes: BTreeMap::new(), terms: BTreeMap::new() }
+                .node(node);
         match Robustness::new(&self.tree, node, self.horizon, self.clock) {
             Err(Invalid::NoMargin) => {
                 let error = Diagnostic::error("E0610", span, "a condition in this formula has no margin")
@@ -93,6 +95,8 @@ impl Elaborator<'_> {
 /// Rewrites a formula so that all its conditions are comparisons of numbers.
 struct Rewriting<'e, 'a> {
     elaborator: &'e mut Elaborator<'a>,
+    dimension: Dimension,
+    span: Span,
     nodes: BTreeMap<u32, NodeId>,
     terms: BTreeMap<u32, TermId>,
 }
@@ -184,6 +188,10 @@ impl Rewriting<'_, '_> {
         made
     }
 
+    fn number(&mut self, num: &Num) -> TermId {
+        self.elaborator.signal(num.clone(), self.dimension, self.span)
+    }
+
     /// A condition of one state as a formula of comparisons.
     fn condition(&mut self, truth: &Bool) -> NodeId {
         match truth {
@@ -204,11 +212,11 @@ impl Rewriting<'_, '_> {
                 if !matches!(comparison, Comparison::Equal | Comparison::Unequal)
                     && depth(truth).is_none() =>
             {
-                let (a, b) = (self.elaborator.signal((**a).clone()), self.elaborator.signal((**b).clone()));
+                let (a, b) = (self.number(a), self.number(b));
                 self.elaborator.node(Node::Compare(relation(*comparison), a, b))
             }
             _ => {
-                let margin = self.elaborator.signal(margin(truth));
+                let margin = self.number(&margin(truth));
                 let zero = self.elaborator.term(Term::Constant(0.0));
                 self.elaborator.node(Node::Compare(Relation::Greater, margin, zero))
             }

@@ -222,18 +222,26 @@ impl Elaborator<'_> {
     }
 
     /// `metric <= bound` or `metric < bound` as a formula, for checks of quantiles.
-    pub(super) fn below(&mut self, column: &Column, or_equal: bool, bound: f64) -> Column {
+    pub(super) fn below(
+        &mut self,
+        column: &Column,
+        or_equal: bool,
+        bound: f64,
+        dimension: Dimension,
+    ) -> Column {
         let relation = if or_equal { Relation::AtMost } else { Relation::Less };
+        let sign = if or_equal { "<=" } else { "<" };
+        let shown = if dimension.is_none() { bound.to_string() } else { format!("{bound} {dimension}") };
+        let text = format!("{} {sign} {shown}", column.text);
         let term = match column.root {
             Root::Metric(term) => term,
             Root::Robustness(node, _) => {
-                let root = Root::Robustness(node, Sought::Compared(relation, bound));
-                return Column { root, text: column.text.clone() };
+                return Column { root: Root::Robustness(node, Sought::Compared(relation, bound)), text };
             }
             Root::Formula(_) => return column.clone(),
         };
         let limit = self.term(Term::Constant(bound));
-        let node = self.node(Node::Compare(relation, term, limit));
+        let node = self.comparison((relation, term, limit), text, dimension);
         Column { root: Root::Formula(node), text: column.text.clone() }
     }
 

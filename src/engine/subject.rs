@@ -2,7 +2,7 @@
 
 use super::observer::Observer;
 use crate::base::tick::Tick;
-use crate::compile::study::{Root, World};
+use crate::compile::study::{Root, Texts, World};
 use crate::kernel::{Code, Program};
 use crate::logic::{Invalid, Monitor, Node, NodeId, Robustness, Term, TermId, Tree};
 use crate::model::{Bool, Num};
@@ -17,8 +17,8 @@ pub struct Subject {
     pub columns: Vec<Root>,
     /// Last tick.
     pub horizon: Tick,
-    /// The source of each atom.
-    pub atom_texts: Vec<String>,
+    /// How atoms, signals and comparisons were written.
+    pub texts: Texts,
     atoms: Vec<Bool>,
     signals: Vec<Num>,
 }
@@ -43,7 +43,7 @@ impl Subject {
             program: Program::new(scenario),
             tree: world.tree.clone(),
             columns: world.columns.iter().map(|c| c.root).collect(),
-            atom_texts: world.atom_texts.clone(),
+            texts: world.texts.clone(),
             atoms: world.atoms.clone(),
             signals: world.signals.clone(),
         }
@@ -52,6 +52,11 @@ impl Subject {
     /// Truth values observed in each state.
     pub fn atoms(&self) -> &[Bool] {
         &self.atoms
+    }
+
+    /// Numbers observed in each state.
+    pub(super) fn signals(&self) -> &[Num] {
+        &self.signals
     }
 
     /// What watches a column.

@@ -99,7 +99,8 @@ impl Elaborator<'_> {
             if margin && !time(a) && !time(b) {
                 self.note_margin(da, whole);
             }
-            return Ok(Typed::Formula(self.node(Node::Compare(relation(op), a, b))));
+            let text = self.text(Span { end: right.span.end, ..left.span });
+            return Ok(Typed::Formula(self.comparison((relation(op), a, b), text, da)));
         }
         let (a, da) = self.as_num(a, left.span)?;
         let (b, db) = self.as_num(b, right.span)?;

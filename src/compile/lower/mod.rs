@@ -157,7 +157,7 @@ impl Elaborator<'_> {
             Typed::Term(term, dimension) => Ok((term, dimension)),
             other => {
                 let (num, dimension) = self.as_num(other, span)?;
-                Ok((self.signal(num), dimension))
+                Ok((self.signal(num, dimension, span), dimension))
             }
         }
     }

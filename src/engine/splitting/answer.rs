@@ -2,28 +2,29 @@
 //! and where plain trials contradict it there is no estimate.
 
 use super::{Found, Question, run};
-use crate::compile::study::{Ask, Estimator, Query};
+use crate::engine::answer::Answers;
+use crate::engine::executor::Executor;
 use crate::engine::fault::Fault;
 use crate::engine::outcome::{Kind, QueryResult, Rare, Stop};
 use crate::engine::procedure;
-use crate::engine::session::Session;
+use crate::engine::watch::Watch;
 use crate::engine::witness;
 use crate::engine::words;
 
 /// Code of a disagreement, for `smc explain`.
 const DISAGREES: &str = "E0802";
 
-impl Session<'_> {
+impl Answers<'_> {
     /// Estimates a probability by splitting.
-    pub(in crate::engine) fn split(&self, query: &Query) -> Result<QueryResult, Fault> {
-        let Ask::Estimate { measure, estimator: Estimator::Splitting(rule) } = &query.ask else {
-            return Err(Fault::Unsuitable);
-        };
+    pub(in crate::engine) fn split(
+        &self,
+        question: &Question<'_>,
+        executor: &dyn Executor,
+        watch: &dyn Watch,
+    ) -> Result<QueryResult, Fault> {
         let started = self.budget.elapsed();
-        let subject = self.subject(measure.target.world)?;
-        let column = measure.target.column;
-        let question = Question { subject, column, rule: *rule, text: &query.text, seed: self.call.seed };
-        let found = run(&question, self.executor, self.budget, self.watch)?;
+        let Question { query, subject, column, rule, .. } = *question;
+        let found = run(question, executor, self.budget, watch)?;
         let mut result = self.blank(query, Kind::Estimate);
         result.method = procedure::method(&query.ask, None);
         result.stopped_by = found.stop;
@@ -41,8 +42,8 @@ impl Session<'_> {
             result.certifies = String::new();
         }
         state(&mut result, &found, rule.delta);
-        let first = [found.plain.first[1], found.plain.first[0]];
-        result.witnesses = witness::find(subject, column, None, first, self.call, &query.settings);
+        let picks = witness::sides(&found.plain);
+        result.witnesses = self.witnesses(&result, subject, column, None, &picks);
         result.elapsed_s = self.budget.elapsed() - started;
         Ok(result)
     }

@@ -10,11 +10,12 @@ use super::cell::{Item, Reading};
 use super::executor::{Executor, Job};
 use super::fault::Fault;
 use super::outcome::Stop;
+use super::rehearsal::Rehearsal;
 use super::subject::Subject;
 use super::tally::Tally;
-use super::watch::Watch;
+use super::watch::{Forecast, Watch};
 use crate::base::random::TrialKey;
-use crate::compile::study::Splitting as Rule;
+use crate::compile::study::{Query, Splitting as Rule};
 use crate::stats::splitting::{Adaptive, AnyScheme, Effort, Scheme, Spread, Start};
 use crate::stats::{self, Counts, clopper_pearson};
 use flock::Flock;
@@ -23,6 +24,8 @@ use path::Path;
 /// Error of the interval of plain trials that an estimate must lie in: small, for the comparison is made once
 /// in every call.
 const DISAGREEMENT: f64 = 0.01;
+/// Paths in units of those that start, for forecasts.
+const DECADES: u64 = 5;
 /// Plain trials of a round.
 const ROUND: u64 = 4096;
 
@@ -52,11 +55,42 @@ pub(super) struct Found {
 
 /// What is asked.
 pub(super) struct Question<'s> {
+    query: &'s Query,
     subject: &'s Subject,
     column: usize,
     rule: Rule,
-    text: &'s str,
     seed: u64,
+}
+
+impl<'s> Question<'s> {
+    /// About the probability of a column of a subject.
+    pub(super) const fn new(
+        query: &'s Query,
+        subject: &'s Subject,
+        column: usize,
+        rule: Rule,
+        seed: u64,
+    ) -> Self {
+        Self { query, subject, column, rule, seed }
+    }
+
+    /// Runs a few plain trials, and forecasts from them what all is likely to take.
+    pub(super) fn rehearse(&self, executor: &dyn Executor, budget: &Budget) -> Result<Forecast, Fault> {
+        let job = Job::new(self.subject, vec![self.column], self.seed);
+        let width = executor.width(&job) as u64;
+        let few = width.min(self.rule.plain).min(budget.max_trials);
+        let rehearsal = Rehearsal::run(&job, Item::run(0, few), executor, budget)?;
+        let seconds = rehearsal.seconds_per_trial(self.subject.horizon.0);
+        // How many levels there will be is not known: as many as two decades take.
+        let paths = self.rule.runs.saturating_mul(self.rule.replicas).saturating_mul(DECADES);
+        let trials = self.rule.plain.saturating_add(paths).min(budget.max_trials);
+        Ok(Forecast {
+            query: self.query.text.clone(),
+            settings: self.query.settings.clone(),
+            trials,
+            seconds: trials as f64 * seconds,
+        })
+    }
 }
 
 /// One run on its way.
@@ -169,8 +203,7 @@ fn plainly(
             return Ok((tally, Some(stop)));
         }
         let from = tally.counts.trials;
-        let items: Vec<Item> =
-            (from..most.min(from + ROUND)).map(|index| Item { advice: None, index }).collect();
+        let items = Item::run(from, ROUND.min(most - from));
         let cells = executor.run(&job, &items, budget)?;
         for (item, row) in items.iter().zip(cells.rows()) {
             let Some(row) = row else { return Ok((tally, halted(budget).or(Some(Stop::Deadline)))) };
@@ -179,7 +212,7 @@ fn plainly(
             }
             tally.add(item.index, &row[0], None);
         }
-        watch.consumed(question.text, tally.counts.trials, None);
+        watch.consumed(&question.query.text, tally.counts.trials, None);
     }
     Ok((tally, (most < planned).then_some(Stop::Cap)))
 }
@@ -226,6 +259,6 @@ fn fly(
                 run.scheme.feed(flown.by_ref().take(wanted.len()).map(|one| one.flight).collect());
             }
         }
-        watch.consumed(question.text, found.plain.counts.trials + found.paths, None);
+        watch.consumed(&question.query.text, found.plain.counts.trials + found.paths, None);
     }
 }
