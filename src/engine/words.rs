@@ -46,7 +46,7 @@ pub(super) fn ends(low: f64, high: f64, unit: &str) -> String {
 }
 
 /// A bound, rounded upward to three digits.
-pub(super) fn at_most(value: f64) -> f64 {
+pub fn at_most(value: f64) -> f64 {
     if !(value.is_finite() && value > 0.0) {
         return value;
     }

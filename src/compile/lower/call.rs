@@ -13,7 +13,7 @@ use crate::syntax::ast::{Expr, Ident};
 use crate::syntax::diagnostic::Diagnostic;
 
 /// Built-in functions by name, for hints.
-pub(in crate::compile) const FUNCTIONS: [&str; 39] = [
+pub(in crate::compile) const FUNCTIONS: [&str; 40] = [
     "abs",
     "area",
     "atan2",
@@ -40,6 +40,7 @@ pub(in crate::compile) const FUNCTIONS: [&str; 39] = [
     "others",
     "position",
     "radius",
+    "robustness",
     "round",
     "sin",
     "speed",
@@ -110,10 +111,24 @@ impl Elaborator<'_> {
                     .hint("it stands in metrics and comparisons of property files, outside of folds over agents at one state");
                     return self.report(error);
                 }
-                let typed = self.lower(formula, locals)?;
-                let node = self.as_formula(typed, formula.span)?;
+                // Its conditions are those of the formula around it, though it is a number.
+                let inside = self.margins.as_mut().map(|margins| std::mem::take(&mut margins.inside));
+                let typed = self.lower(formula, locals);
+                if let (Some(margins), Some(inside)) = (&mut self.margins, inside) {
+                    margins.inside = inside;
+                }
+                let node = self.as_formula(typed?, formula.span)?;
                 let dimension = self.time_dimension();
                 Ok(Typed::Term(self.term(Term::TimeUntil(node)), dimension))
+            }
+            "robustness" => {
+                let error = Diagnostic::error(
+                    "E0504",
+                    expr.span,
+                    "`robustness` looks at a whole trace and stands only directly inside `E(…)`, `Q(…)` and `P(…)`",
+                )
+                .hint("for example `E(robustness(safe)) in -1 m .. 1 m`, `P(robustness(safe) >= 0.2 m)`");
+                self.report(error)
             }
             name if DISTRIBUTIONS.contains(&name) => {
                 let error = Diagnostic::error(
@@ -444,6 +459,7 @@ impl Elaborator<'_> {
         arguments: &[Expr],
         locals: &Locals,
     ) -> Lowered<Typed> {
+        self.note_margin(Dimension::LENGTH, expr.span);
         let mut agents = Vec::new();
         for argument in arguments {
             let typed = self.lower(argument, locals)?;

@@ -1,7 +1,7 @@
 //! Boolean outcomes as bitsets by trial index; a pair is compared by counting bits.
 
 use super::Table;
-use super::bet::{BETS, Factors, log_mean, log_mean_near};
+use super::bet::{BETS, Factors, bets, log_mean_near};
 use crate::stats::Outcome;
 
 /// Outcomes of one arm.
@@ -29,6 +29,7 @@ struct Pair {
 pub struct Booleans {
     arms: Vec<Arm>,
     pairs: Vec<Pair>,
+    bets: [f64; BETS],
     /// Bets on a gap of 0 and of epsilon.
     factors: [Factors; 2],
 }
@@ -68,10 +69,12 @@ impl Table for Booleans {
     type Outcome = Outcome;
 
     fn new(arms: usize, epsilon: f64) -> Self {
+        let bets = bets();
         Self {
+            bets,
             arms: vec![Arm::default(); arms],
             pairs: vec![Pair::default(); arms * arms],
-            factors: [Factors::new(0.0), Factors::new(epsilon)],
+            factors: [Factors::new(&bets, 0.0), Factors::new(&bets, epsilon)],
         }
     }
 
@@ -105,11 +108,19 @@ impl Table for Booleans {
     fn evidence(&mut self, rival: usize, leader: usize, threshold: f64) -> (f64, f64) {
         let pair = self.pair(rival, leader);
         let [worse, close] = &self.factors;
-        (log_mean_near(&logs(pair, worse), threshold), log_mean_near(&logs(pair, close), threshold))
+        let close = log_mean_near(&logs(pair, close), threshold);
+        if close < threshold {
+            // The evidence against being better at all is smaller still.
+            return (close, close);
+        }
+        (log_mean_near(&logs(pair, worse), threshold), close)
     }
 
-    fn evidence_at(&mut self, rival: usize, leader: usize, gap: f64) -> f64 {
-        let pair = self.pair(rival, leader);
-        log_mean(&logs(pair, &Factors::new(gap)))
+    fn first_beyond(&mut self, rivals: &[usize], leader: usize, gap: f64, threshold: f64) -> Option<usize> {
+        let factors = Factors::new(&self.bets, gap);
+        rivals.iter().position(|rival| {
+            let pair = self.pair(*rival, leader);
+            log_mean_near(&logs(pair, &factors), threshold) < threshold
+        })
     }
 }
