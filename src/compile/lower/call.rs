@@ -5,71 +5,13 @@ use super::super::elaborator::{Elaborator, Locals, Lowered};
 use super::super::number::Number;
 use super::super::symbols::{Meaning, unknown};
 use super::super::typed::Typed;
+use super::builtin::{DISTRIBUTIONS, FUNCTIONS};
 use super::coordinates;
 use crate::base::math;
 use crate::logic::{Operation, Term};
 use crate::model::{Arithmetic, Axis, Bool, Field, Function, Num, Place, Set, Who};
 use crate::syntax::ast::{Expr, Ident};
 use crate::syntax::diagnostic::Diagnostic;
-
-/// Built-in functions by name, for hints.
-pub(in crate::compile) const FUNCTIONS: [&str; 40] = [
-    "abs",
-    "area",
-    "atan2",
-    "ceil",
-    "centroid",
-    "clearance",
-    "contact",
-    "cos",
-    "count",
-    "density",
-    "distance",
-    "driving_speed",
-    "exp",
-    "floor",
-    "heading",
-    "if",
-    "ln",
-    "mass",
-    "max",
-    "min",
-    "members",
-    "modulo",
-    "norm",
-    "others",
-    "position",
-    "radius",
-    "robustness",
-    "round",
-    "sin",
-    "speed",
-    "spread",
-    "sqrt",
-    "sum",
-    "mean",
-    "time_to_collision",
-    "time_until",
-    "travelled",
-    "velocity",
-    "x",
-    "y",
-];
-
-/// Distributions: they are values of fields, not of expressions.
-pub(in crate::compile) const DISTRIBUTIONS: [&str; 11] = [
-    "normal",
-    "lognormal",
-    "uniform",
-    "uniform_int",
-    "exponential",
-    "poisson",
-    "bernoulli",
-    "beta",
-    "gamma",
-    "weibull",
-    "choice",
-];
 
 impl Elaborator<'_> {
     pub(super) fn lower_call(

@@ -1,13 +1,14 @@
 //! Lowering of expressions: names, units and types are settled, sugar is gone.
 
 mod arithmetic;
+mod builtin;
 mod call;
 mod logic;
 mod name;
 mod quantifier;
 mod temporal;
 
-pub(super) use call::DISTRIBUTIONS;
+pub(super) use builtin::DISTRIBUTIONS;
 
 use super::dimension::{self, Dimension};
 use super::elaborator::{Elaborator, Locals, Lowered};
