@@ -56,7 +56,11 @@ pub(super) fn truth(
         let Ok(explanation) = explain(&subject.tree, root, recording) else { return String::new() };
         // The last reason in time is the one that closed the case.
         let last = explanation.reasons.iter().max_by_key(|reason| (reason.to, reason.from));
-        last.map_or(String::new(), |reason| closing(subject, reason, recording, &state_at))
+        match last {
+            Some(reason) => closing(subject, reason, recording, &state_at),
+            None if explanation.verdict.is_some() => "it does not depend on what happens".to_owned(),
+            None => String::new(),
+        }
     })
 }
 

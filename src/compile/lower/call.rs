@@ -48,16 +48,12 @@ impl Elaborator<'_> {
                     let error = Diagnostic::error(
                         "E0504",
                         expr.span,
-                        "`time_until` looks at a whole trace and stands only in metrics",
-                    );
+                        "`time_until` looks ahead over the trace, and here one state is read",
+                    )
+                    .hint("it stands in metrics and comparisons of property files, outside of folds over agents at one state");
                     return self.report(error);
                 }
-                // Its conditions are those of the formula around it, though it is a number.
-                let inside = self.margins.as_mut().map(|margins| std::mem::take(&mut margins.inside));
-                let typed = self.lower(formula, locals);
-                if let (Some(margins), Some(inside)) = (&mut self.margins, inside) {
-                    margins.inside = inside;
-                }
+                let typed = self.inside_a_formula(|this| this.lower(formula, locals));
                 let node = self.as_formula(typed?, formula.span)?;
                 let dimension = self.time_dimension();
                 Ok(Typed::Term(self.term(Term::TimeUntil(node)), dimension))
