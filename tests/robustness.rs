@@ -22,7 +22,7 @@ fn results(properties: &str, words: &[&str]) -> Vec<Value> {
 }
 
 /// Formulas of one unit, with nested windows, untils, regions, contacts, folds and times.
-const FORMULAS: [&str; 9] = [
+const FORMULAS: [&str; 10] = [
     "G<=3 s (forall a in crowd: distance(user, a) > 1.2 m)",
     "F<=3 s (min(distance(user, a) for a in crowd) < 1.0 m)",
     "G<=1 s F<=1 s (clearance(user) < 1.5 m | user in hall)",
@@ -31,6 +31,7 @@ const FORMULAS: [&str; 9] = [
     "G<=2 s (contact(user) => F<=1 s !contact(user))",
     "(clearance(user) > 0.5 m) R<=2 s (distance(user, crowd[2]) > 0.5 m)",
     "time_until(travelled(user) > 3 m) <= 2.5 s",
+    "count(a in crowd: F<=2 s (distance(user, a) < 1.5 m)) >= 2",
     "min<=3 s (clearance(user)) > 0.4 m & max<=2 s (travelled(user)) > 2 m",
 ];
 

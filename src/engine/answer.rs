@@ -78,7 +78,9 @@ impl Answers<'_> {
         result.replay = self.replay(query, "--max-trials", counts.trials);
         result.elapsed_s = inquiry.seconds;
         let subject_words = measured_words(query, measure);
+        let mut beside = procedure::BESIDE;
         if let Some((interval, coverage, error)) = inquiry.procedure.interval(counts) {
+            beside = error;
             result.estimate = Some(interval.estimate);
             result.low = interval.low;
             result.high = interval.high;
@@ -94,6 +96,12 @@ impl Answers<'_> {
                         format!("> {}", words::quantity(horizon, &result.unit))
                     }
                     (Some(_), false, true) => format!(">= {}", words::quantity(interval.low, &result.unit)),
+                    (None, true, false) => {
+                        format!("<= {}", words::rounded(interval.high, true, &result.unit))
+                    }
+                    (None, false, true) => {
+                        format!(">= {}", words::rounded(interval.low, false, &result.unit))
+                    }
                     _ => format!("in {}", words::ends(interval.low, interval.high, &result.unit)),
                 };
                 result.certifies = format!("{subject_words} {claim}, error at most {}", words::number(error));
@@ -119,7 +127,7 @@ impl Answers<'_> {
                 None => format!(
                     "{subject_words} in {}, error at most {}",
                     words::ends(result.low, result.high, &result.unit),
-                    words::number(procedure::BESIDE)
+                    words::number(beside)
                 ),
             };
             if inquiry.procedure.split() {

@@ -21,7 +21,7 @@ fn boundaries(evidence: f64) -> Vec<(i64, i64)> {
             while high <= n as i64 && ln_factor(n, high as u64) < evidence {
                 high += 1;
             }
-            while low + 1 <= n as i64 && ln_factor(n, (low + 1) as u64) <= -evidence {
+            while low < n as i64 && ln_factor(n, (low + 1) as u64) <= -evidence {
                 low += 1;
             }
             (low, high)

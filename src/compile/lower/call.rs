@@ -5,71 +5,13 @@ use super::super::elaborator::{Elaborator, Locals, Lowered};
 use super::super::number::Number;
 use super::super::symbols::{Meaning, unknown};
 use super::super::typed::Typed;
+use super::builtin::{DISTRIBUTIONS, FUNCTIONS};
 use super::coordinates;
 use crate::base::math;
 use crate::logic::{Operation, Term};
 use crate::model::{Arithmetic, Axis, Bool, Field, Function, Num, Place, Set, Who};
 use crate::syntax::ast::{Expr, Ident};
 use crate::syntax::diagnostic::Diagnostic;
-
-/// Built-in functions by name, for hints.
-pub(in crate::compile) const FUNCTIONS: [&str; 40] = [
-    "abs",
-    "area",
-    "atan2",
-    "ceil",
-    "centroid",
-    "clearance",
-    "contact",
-    "cos",
-    "count",
-    "density",
-    "distance",
-    "driving_speed",
-    "exp",
-    "floor",
-    "heading",
-    "if",
-    "ln",
-    "mass",
-    "max",
-    "min",
-    "members",
-    "modulo",
-    "norm",
-    "others",
-    "position",
-    "radius",
-    "robustness",
-    "round",
-    "sin",
-    "speed",
-    "spread",
-    "sqrt",
-    "sum",
-    "mean",
-    "time_to_collision",
-    "time_until",
-    "travelled",
-    "velocity",
-    "x",
-    "y",
-];
-
-/// Distributions: they are values of fields, not of expressions.
-pub(in crate::compile) const DISTRIBUTIONS: [&str; 11] = [
-    "normal",
-    "lognormal",
-    "uniform",
-    "uniform_int",
-    "exponential",
-    "poisson",
-    "bernoulli",
-    "beta",
-    "gamma",
-    "weibull",
-    "choice",
-];
 
 impl Elaborator<'_> {
     pub(super) fn lower_call(
@@ -111,12 +53,7 @@ impl Elaborator<'_> {
                     .hint("it stands in metrics and comparisons of property files, outside of folds over agents at one state");
                     return self.report(error);
                 }
-                // Its conditions are those of the formula around it, though it is a number.
-                let inside = self.margins.as_mut().map(|margins| std::mem::take(&mut margins.inside));
-                let typed = self.lower(formula, locals);
-                if let (Some(margins), Some(inside)) = (&mut self.margins, inside) {
-                    margins.inside = inside;
-                }
+                let typed = self.inside_a_formula(|this| this.lower(formula, locals));
                 let node = self.as_formula(typed?, formula.span)?;
                 let dimension = self.time_dimension();
                 Ok(Typed::Term(self.term(Term::TimeUntil(node)), dimension))

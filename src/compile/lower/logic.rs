@@ -88,19 +88,17 @@ impl Elaborator<'_> {
         let whole = left.span.to(right.span);
         let a = if matches!(a, Typed::Infinity) { infinite(&b) } else { a };
         let b = if matches!(b, Typed::Infinity) { infinite(&a) } else { b };
+        let span = Span { end: right.span.end, ..left.span };
         match (&a, &b) {
             (Typed::Tally(formulas), Typed::Number(bound)) if bound.dimension.is_none() => {
-                // Read again outside of a number: the margin of a count is one of the margins of its formulas.
-                self.lower(left, locals)?;
-                return Ok(Typed::Formula(self.tally(formulas, relation(op), bound.value, whole)?));
+                return Ok(Typed::Formula(self.tally(formulas, relation(op), bound.value, span)?));
             }
             (Typed::Number(bound), Typed::Tally(formulas)) if bound.dimension.is_none() => {
-                self.lower(right, locals)?;
                 return Ok(Typed::Formula(self.tally(
                     formulas,
                     relation(op).flipped(),
                     bound.value,
-                    whole,
+                    span,
                 )?));
             }
             _ => {}
@@ -116,7 +114,7 @@ impl Elaborator<'_> {
             if margin && !time(a) && !time(b) {
                 self.note_margin(da, whole);
             }
-            let text = self.text(whole);
+            let text = self.text(span);
             return Ok(Typed::Formula(self.comparison((relation(op), a, b), text, da)));
         }
         let (a, da) = self.as_num(a, left.span)?;
@@ -141,6 +139,16 @@ impl Elaborator<'_> {
         let lowered = lower(self);
         if let Some(margins) = &mut self.margins {
             margins.inside -= 1;
+        }
+        lowered
+    }
+
+    /// Lowers formulas that a number is made of: their conditions are those of the formula around it.
+    pub(super) fn inside_a_formula<T>(&mut self, lower: impl FnOnce(&mut Self) -> T) -> T {
+        let inside = self.margins.as_mut().map(|margins| std::mem::take(&mut margins.inside));
+        let lowered = lower(self);
+        if let (Some(margins), Some(inside)) = (&mut self.margins, inside) {
+            margins.inside = inside;
         }
         lowered
     }

@@ -92,7 +92,7 @@ fn state(result: &mut QueryResult, found: &Found, delta: f64) {
             result.estimate = (counts.trials > 0).then(|| procedure::share(counts));
             result.low = if sampled { plain.low } else { 0.0 };
             result.high = if sampled { plain.high } else { 1.0 };
-            result.interval = "fixed size, 99 %, of the plain trials".to_owned();
+            "fixed size, 99 %, of the plain trials".clone_into(&mut result.interval);
             let stopped = matches!(found.stop, Stop::Cap | Stop::Deadline | Stop::Interrupt);
             result.warnings.push(match found.spread {
                 Some(spread) if !agrees => format!(

@@ -27,6 +27,9 @@ pub(super) struct Flown {
     pub(super) lost: bool,
 }
 
+/// Paths that came to an end, by their places.
+type Landed = Vec<(usize, Flown)>;
+
 /// What a lane is busy with.
 struct Busy {
     place: usize,
@@ -83,7 +86,7 @@ impl<'s> Flock<'s> {
         budget: &Budget,
     ) -> Result<Option<Vec<Flown>>, Fault> {
         let next = AtomicUsize::new(0);
-        let done: Mutex<Vec<(usize, Flown)>> = Mutex::new(Vec::with_capacity(paths.len()));
+        let done: Mutex<Landed> = Mutex::new(Vec::with_capacity(paths.len()));
         let failed: Mutex<Option<(usize, Fault)>> = Mutex::new(None);
         let fail = |place: usize, fault: Fault| {
             if let Ok(mut first) = failed.lock()
@@ -132,7 +135,7 @@ impl Bird {
         paths: &[Path],
         take: &mut dyn FnMut() -> Option<(usize, &'p Path)>,
         budget: &Budget,
-    ) -> (Vec<(usize, Flown)>, Option<(usize, Fault)>) {
+    ) -> (Landed, Option<(usize, Fault)>) {
         let program = &subject.program;
         let mut done = Vec::new();
         let (mut exhausted, mut rounds) = (false, 0u32);
@@ -196,7 +199,7 @@ impl Bird {
     }
 
     /// Reads the present states; paths whose formula is decided end.
-    fn observe(&mut self, subject: &Subject, done: &mut Vec<(usize, Flown)>) {
+    fn observe(&mut self, subject: &Subject, done: &mut Landed) {
         let [of_formula, of_level] = &mut self.readings;
         self.formula.0.run(&subject.program, &self.state, of_formula);
         self.level.0.run(&subject.program, &self.state, of_level);

@@ -100,10 +100,14 @@ fn value(text: &mut String, result: &QueryResult, palette: Palette) {
     );
 }
 
-/// The procedure with all its numbers, where the query does not name it itself.
+/// The procedure with all its numbers, where the query does not name them itself.
 pub(super) fn method(text: &mut String, result: &QueryResult, palette: Palette) {
     let name = &result.method.name;
-    if name.is_empty() || one_line(&result.query).contains(&format!("by {name}(")) {
+    let query = one_line(&result.query);
+    // The threshold stands in every check.
+    let said = |number: &str| number == "theta" || query.contains(&format!("{number} ="));
+    let named = query.contains(&format!("by {name}("));
+    if name.is_empty() || named && result.method.numbers.iter().all(|(number, _)| said(number)) {
         return;
     }
     let numbers: Vec<String> =

@@ -80,19 +80,28 @@ impl Table for Booleans {
 
     fn push(&mut self, arm: usize, outcomes: &[Outcome]) {
         let arm = &mut self.arms[arm];
-        for outcome in outcomes {
-            let bit = arm.trials % 64;
+        let mut rest = outcomes;
+        while !rest.is_empty() {
+            let bit = (arm.trials % 64) as usize;
             if bit == 0 {
                 arm.sure.push(0);
                 arm.possible.push(0);
             }
+            // Up to the end of the word.
+            let room = 64 - bit;
+            let (now, later) = rest.split_at(if rest.len() < room { rest.len() } else { room });
+            let (mut sure, mut possible) = (0u64, 0u64);
+            for (k, outcome) in now.iter().enumerate() {
+                sure |= u64::from(*outcome == Outcome::True) << k;
+                possible |= u64::from(*outcome != Outcome::False) << k;
+            }
             let word = (arm.trials / 64) as usize;
-            let (sure, possible) = (*outcome == Outcome::True, *outcome != Outcome::False);
-            arm.sure[word] |= u64::from(sure) << bit;
-            arm.possible[word] |= u64::from(possible) << bit;
-            arm.count.0 += u64::from(sure);
-            arm.count.1 += u64::from(possible);
-            arm.trials += 1;
+            arm.sure[word] |= sure << bit;
+            arm.possible[word] |= possible << bit;
+            arm.count.0 += u64::from(sure.count_ones());
+            arm.count.1 += u64::from(possible.count_ones());
+            arm.trials += now.len() as u64;
+            rest = later;
         }
     }
 

@@ -21,7 +21,7 @@ impl Effort {
     pub fn new(count: usize, levels: Vec<f64>, seed: u64, run: u16) -> Result<Self, Invalid> {
         let replicas = replicas(count)?;
         if let Some(pair) =
-            levels.windows(2).find(|pair| pair[0].partial_cmp(&pair[1]).is_none_or(|o| o.is_ge()))
+            levels.windows(2).find(|pair| pair[0].partial_cmp(&pair[1]).is_none_or(std::cmp::Ordering::is_ge))
         {
             return Err(Invalid::Order {
                 low_name: "level",
