@@ -19,6 +19,6 @@ pub mod state;
 mod vector;
 
 pub use code::{Code, Readings};
-pub use dynamics::{Scratch, refresh, step};
+pub use dynamics::{Scratch, jump, refresh, step};
 pub use program::Program;
 pub use state::{Layout, Slot, State};

@@ -92,7 +92,7 @@ impl Code {
             schedule,
             step: match scenario.clock {
                 Clock::Stepped(step) => (step.numerator() as f64, step.denominator() as f64),
-                Clock::Steps | Clock::Jumps => (1.0, 1.0),
+                Clock::Steps | Clock::Jumps(_) => (1.0, 1.0),
             },
             level: Level::new(),
         }

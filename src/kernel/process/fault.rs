@@ -27,6 +27,20 @@ pub enum Fault {
         /// The value that it cannot hold.
         value: f64,
     },
+    /// A rate is negative or not finite.
+    Rate {
+        /// The process.
+        process: u32,
+        /// Its command.
+        command: u32,
+        /// The rate, 1/s.
+        value: f64,
+    },
+    /// Time does not go on: jump follows jump at one time.
+    Stuck {
+        /// The process that jumped last.
+        process: u32,
+    },
 }
 
 /// The first error of each lane in one step.
@@ -77,6 +91,17 @@ impl Fault {
                 command + 1,
                 name(process)
             ),
+            Self::Rate { process, command, value } => format!(
+                "the rate of command {} of `{}` is {value} /s: a rate is a finite number, not negative",
+                command + 1,
+                name(process)
+            ),
+            Self::Stuck { process } => {
+                format!(
+                    "time does not go on: more than 100000 jumps at one time, the last one of `{}`",
+                    name(process)
+                )
+            }
             Self::Range { variable, value } => {
                 let Some(variable) = processes.variables.get(variable as usize) else { return String::new() };
                 let range = match variable.domain {
