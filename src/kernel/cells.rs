@@ -2,10 +2,12 @@
 //!
 //! The plane is cut into strips as high as the reach of the farthest-reaching body, and each strip into
 //! narrow cells. Every step the agents are sorted by strip and cell (a counting sort, in a cell by index),
-//! so that the neighbours of an agent lie in three contiguous ranges, read eight at a time without gathers.
+//! so that the neighbours of an agent lie in contiguous ranges, read eight at a time without gathers. Newton's
+//! third law serves as in `lanewise`: each agent looks only at those behind it in the order, the rest of its
+//! strip and one range of the next, and one distance and (with shared B) one exponential do for both bodies.
 //! Each strip ends with absent bodies as padding; bodies that a vector catches beyond its range are out of
-//! reach and add zero. Each pair is taken twice, once from either side, so all that is needed of the
-//! neighbours is place and radius. Sums run over eight logical lanes whatever the width of the machine.
+//! reach and add zero. An agent's own vectors are summed over eight logical lanes whatever the width of the
+//! machine; what others add to it comes in their order.
 
 use super::barrier::Surface;
 use super::contact::Contacts;
@@ -13,40 +15,40 @@ use super::forces::{Forces, REACH};
 use super::lanewise::{Sum, Term, cohesion, decay};
 use super::program::Program;
 use super::state::State;
-use super::vector::{Part, larger, parts, smaller};
+use super::vector::{Doubles, Part, larger, parts, smaller};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::math::at_least;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
+use std::f64::consts::LOG2_E;
+use std::ops::Range;
 
 /// Cells of a strip per reach.
 const CELLS_PER_REACH: f64 = 8.0;
 
-/// What is needed of an agent as the one who feels the forces.
-#[derive(Clone, Copy, Debug)]
-struct Feeler {
-    x: f64,
-    y: f64,
-    r: f64,
-    a: f64,
-    /// A (1 + lambda)/2, and A (1 - lambda)/2 times the desired direction.
-    even: f64,
-    ex: f64,
-    ey: f64,
-    /// log2(e)/B
-    rate: f64,
+/// One exponential term of the sorted agents, as in `lanewise::Term`.
+#[derive(Clone, Debug, Default)]
+struct Terms {
+    even: Vec<f64>,
+    ex: Vec<f64>,
+    ey: Vec<f64>,
+    rate: Vec<f64>,
 }
 
-const NOBODY: Feeler =
-    Feeler { x: 0.0, y: 0.0, r: f64::NEG_INFINITY, a: 0.0, even: 0.0, ex: 0.0, ey: 0.0, rate: 1.0 };
+impl Terms {
+    fn resize(&mut self, total: usize) {
+        for field in [&mut self.even, &mut self.ex, &mut self.ey, &mut self.rate] {
+            field.resize(total, 0.0);
+        }
+    }
 
-/// The second term of an agent.
-#[derive(Clone, Copy, Debug, Default)]
-struct Second {
-    even: f64,
-    ex: f64,
-    ey: f64,
-    rate: f64,
+    #[inline(always)]
+    fn put(&mut self, at: usize, term: &Term, lane: usize) {
+        self.even[at] = term.even.0[lane];
+        self.ex[at] = term.ex.0[lane];
+        self.ey[at] = term.ey.0[lane];
+        self.rate[at] = term.rate.0[lane];
+    }
 }
 
 /// How the plane is cut.
@@ -96,14 +98,20 @@ pub(super) struct Cells {
     /// Where each cell starts among the sorted agents; each strip has one more for its end.
     start: Vec<u32>,
     next: Vec<u32>,
-    feelers: Vec<Feeler>,
-    seconds: Vec<Second>,
+    /// All that follows is in sorted order, with padding between the strips.
     agent: Vec<u32>,
     x: Vec<f64>,
     y: Vec<f64>,
+    /// Radius; minus infinity in padding, which is so beyond everybody's reach.
     r: Vec<f64>,
+    a: Vec<f64>,
+    term: Terms,
+    second: Terms,
     /// Factor of the social force towards bodies of several persons; NaN in a single person.
     tie: Vec<f64>,
+    /// The forces.
+    fx: Vec<f64>,
+    fy: Vec<f64>,
 }
 
 impl Cells {
@@ -130,28 +138,37 @@ impl Cells {
             || self.sort(simd, &grid, forces, state),
         );
         // A function each, as in `lanewise`.
-        match (forces.second, !forces.ties.is_empty()) {
-            (false, false) => simd.vectorize(
+        match (forces.shared.is_some(), forces.second, !forces.ties.is_empty()) {
+            (true, false, _) => simd.vectorize(
                 #[inline(always)]
-                || self.pairs::<S, false, false>(simd, &grid, forces, sums, contacts),
+                || self.pairs::<S, true, false, false>(simd, &grid, forces, contacts),
             ),
-            (true, false) => simd.vectorize(
+            (true, true, _) => simd.vectorize(
                 #[inline(always)]
-                || self.pairs::<S, true, false>(simd, &grid, forces, sums, contacts),
+                || self.pairs::<S, true, true, false>(simd, &grid, forces, contacts),
             ),
-            (false, true) => simd.vectorize(
+            (false, false, false) => simd.vectorize(
                 #[inline(always)]
-                || self.pairs::<S, false, true>(simd, &grid, forces, sums, contacts),
+                || self.pairs::<S, false, false, false>(simd, &grid, forces, contacts),
             ),
-            (true, true) => simd.vectorize(
+            (false, true, false) => simd.vectorize(
                 #[inline(always)]
-                || self.pairs::<S, true, true>(simd, &grid, forces, sums, contacts),
+                || self.pairs::<S, false, true, false>(simd, &grid, forces, contacts),
+            ),
+            (false, false, true) => simd.vectorize(
+                #[inline(always)]
+                || self.pairs::<S, false, false, true>(simd, &grid, forces, contacts),
+            ),
+            (false, true, true) => simd.vectorize(
+                #[inline(always)]
+                || self.pairs::<S, false, true, true>(simd, &grid, forces, contacts),
             ),
         }
         simd.vectorize(
             #[inline(always)]
-            || self.walls(simd, &grid, forces, sums, contacts),
+            || self.walls(simd, &grid, forces, contacts),
         );
+        self.scatter(sums);
         contacts.arrange();
         cohesion(forces, state, sums);
     }
@@ -187,14 +204,24 @@ impl Cells {
         }
         let total = total as usize;
         self.next.clone_from(&self.start);
-        self.feelers.resize(total, NOBODY);
         self.agent.resize(total, u32::MAX);
+        for field in [&mut self.x, &mut self.y, &mut self.r, &mut self.a] {
+            field.resize(total, 0.0);
+        }
+        self.term.resize(total);
         if forces.second {
-            self.seconds.resize(total, Second::default());
+            self.second.resize(total);
+        }
+        for field in [&mut self.fx, &mut self.fy] {
+            field.clear();
+            field.resize(total, 0.0);
         }
         for strip in self.start.chunks_exact(row) {
             let end = strip[grid.columns] as usize;
-            self.feelers[end..end + LANES].fill(NOBODY);
+            // What else padding holds does not matter, as long as it is finite.
+            self.r[end..end + LANES].fill(f64::NEG_INFINITY);
+            self.x[end..end + LANES].fill(grid.x);
+            self.y[end..end + LANES].fill(grid.y);
             self.agent[end..end + LANES].fill(u32::MAX);
         }
         for block in 0..state.x.len() {
@@ -216,32 +243,16 @@ impl Cells {
                 let at = self.next[cell as usize] as usize;
                 self.next[cell as usize] += 1;
                 self.agent[at] = agent as u32;
-                self.feelers[at] = Feeler {
-                    x: state.x[block].0[lane],
-                    y: state.y[block].0[lane],
-                    r: state.radius[block].0[lane],
-                    a: state.a[block].0[lane],
-                    even: first.even.0[lane],
-                    ex: first.ex.0[lane],
-                    ey: first.ey.0[lane],
-                    rate: first.rate.0[lane],
-                };
+                self.x[at] = state.x[block].0[lane];
+                self.y[at] = state.y[block].0[lane];
+                self.r[at] = state.radius[block].0[lane];
+                self.a[at] = state.a[block].0[lane];
+                self.term.put(at, &first, lane);
                 if forces.second {
-                    self.seconds[at] = Second {
-                        even: second.even.0[lane],
-                        ex: second.ex.0[lane],
-                        ey: second.ey.0[lane],
-                        rate: second.rate.0[lane],
-                    };
+                    self.second.put(at, &second, lane);
                 }
             }
         }
-        self.x.clear();
-        self.y.clear();
-        self.r.clear();
-        self.x.extend(self.feelers.iter().map(|feeler| feeler.x));
-        self.y.extend(self.feelers.iter().map(|feeler| feeler.y));
-        self.r.extend(self.feelers.iter().map(|feeler| feeler.r));
         if !forces.ties.is_empty() {
             self.tie.clear();
             self.tie.extend(self.agent.iter().map(|&agent| {
@@ -250,76 +261,91 @@ impl Cells {
         }
     }
 
-    /// Social forces between agents.
+    /// Social forces between agents. With `SHARED` one B for all; with `SECOND` the second term too; with
+    /// `TIES` a factor for pairs of bodies of several persons.
     #[inline(always)]
-    fn pairs<S: Simd, const SECOND: bool, const TIES: bool>(
-        &self,
+    fn pairs<S: Simd, const SHARED: bool, const SECOND: bool, const TIES: bool>(
+        &mut self,
         simd: S,
         grid: &Grid,
         forces: &Forces,
-        sums: &mut [Sum],
         contacts: &mut Contacts,
     ) {
         let row = grid.columns + 1;
-        let (xs, ys, rs) = (&self.x[..], &self.y[..], &self.r[..]);
         let margin = -forces.margin;
+        let shared = forces.shared.unwrap_or((1.0, 1.0));
+        let shared = (LOG2_E / shared.0, LOG2_E / shared.1);
         for strip in 0..grid.strips {
             let from = self.start[strip * row] as usize;
             let to = self.start[strip * row + grid.columns] as usize;
             for i in from..to {
-                let own = &self.feelers[i];
-                let mut ranges = [(0, 0); 3];
-                let strips = strip.saturating_sub(1)..(strip + 2).min(grid.strips);
-                for (range, other) in ranges.iter_mut().zip(strips) {
-                    let reach = grid.reach_into(strip, other, own.y);
-                    let (left, right) = (grid.column(own.x - reach), grid.column(own.x + reach));
+                // Those behind in the own strip, and those in reach in the next.
+                let mut ranges = [(i + 1, i + 1); 2];
+                for (range, other) in ranges.iter_mut().zip(strip..(strip + 2).min(grid.strips)) {
+                    let reach = grid.reach_into(strip, other, self.y[i]);
+                    let (left, right) = (grid.column(self.x[i] - reach), grid.column(self.x[i] + reach));
                     let (start, end) = (other * row + left, other * row + right + 1);
-                    *range = (self.start[start] as usize, self.start[end] as usize);
+                    let start = if other == strip { i + 1 } else { self.start[start] as usize };
+                    *range = (start, self.start[end] as usize);
                 }
                 let (mut sum_x, mut sum_y) = (Lanes::ZERO, Lanes::ZERO);
                 for part in parts(simd) {
-                    let (x, y, r, rate) = (part.c(own.x), part.c(own.y), part.c(own.r), part.c(own.rate));
-                    let (even, ex, ey) = (part.c(own.even), part.c(own.ex), part.c(own.ey));
+                    let (x, y, r) = (part.c(self.x[i]), part.c(self.y[i]), part.c(self.r[i]));
+                    let own = Loaded::splat(part, &self.term, i, SHARED.then_some(shared.0));
+                    let own2 =
+                        if SECOND { Loaded::splat(part, &self.second, i, SHARED.then_some(shared.1)) } else { own };
                     let (mut fx, mut fy) = (part.c(0.0), part.c(0.0));
                     for (start, end) in ranges {
                         let mut j = start;
                         while j + part.at() < end {
-                            let dx = x - part.slice(&xs[j..j + LANES]);
-                            let dy = y - part.slice(&ys[j..j + LANES]);
+                            let eight = j..j + LANES;
+                            let dx = x - part.slice(&self.x[eight.clone()]);
+                            let dy = y - part.slice(&self.y[eight.clone()]);
                             let d = (dx * dx + dy * dy + part.c(1e-300)).sqrt();
                             let q = part.c(1.0) / d;
-                            let gap = r + part.slice(&rs[j..j + LANES]) - d;
-                            // Each pair is a candidate once, and nobody with themselves.
-                            let later = if j > i { 0xff } else { 0xff << (i + 1 - j).min(LANES) };
-                            let touching = part.bits(gap.simd_gt(part.c(margin)));
-                            let touching = touching & Mask((later & 0xff) as u8);
-                            if !touching.is_empty() {
-                                self.candidates(i, j, touching, contacts);
+                            let gap = r + part.slice(&self.r[eight.clone()]) - d;
+                            let touching = gap.simd_gt(part.c(margin));
+                            if touching.any_true() {
+                                self.candidates(i, j, part.bits(touching), contacts);
                             }
-                            let mut f = decay(part, gap * rate) * q * (even - (dx * ex + dy * ey) * q);
+                            let theirs = Loaded::of(part, &self.term, eight.clone(), SHARED.then_some(shared.0));
+                            let (mut on_i, mut on_j) = repel::<S, SHARED>(part, gap, (dx, dy), q, &own, &theirs);
                             if SECOND {
-                                let own = &self.seconds[i];
-                                let weight =
-                                    part.c(own.even) - (dx * part.c(own.ex) + dy * part.c(own.ey)) * q;
-                                f += decay(part, gap * part.c(own.rate)) * q * weight;
+                                let theirs2 =
+                                    Loaded::of(part, &self.second, eight.clone(), SHARED.then_some(shared.1));
+                                let more = repel::<S, SHARED>(part, gap, (dx, dy), q, &own2, &theirs2);
+                                on_i += more.0;
+                                on_j += more.1;
                             }
                             if TIES {
-                                let both = part.c(self.tie[i]) + part.slice(&self.tie[j..j + LANES]);
+                                let both = part.c(self.tie[i]) + part.slice(&self.tie[eight.clone()]);
                                 let mean = part.c(0.5) * both;
-                                f *= mean.simd_eq(mean).select(mean, part.c(1.0));
+                                let factor = mean.simd_eq(mean).select(mean, part.c(1.0));
+                                on_i *= factor;
+                                on_j *= factor;
                             }
-                            fx += f * dx;
-                            fy += f * dy;
+                            fx += on_i * dx;
+                            fy += on_i * dy;
+                            part.take(on_j * dx, &mut self.fx[eight.clone()]);
+                            part.take(on_j * dy, &mut self.fy[eight]);
                             j += LANES;
                         }
                     }
                     part.store(fx, &mut sum_x);
                     part.store(fy, &mut sum_y);
                 }
-                let agent = self.agent[i] as usize;
-                let sum = &mut sums[agent / LANES];
-                sum.x.0[agent % LANES] = total(&sum_x);
-                sum.y.0[agent % LANES] = total(&sum_y);
+                self.fx[i] += total(&sum_x);
+                self.fy[i] += total(&sum_y);
+            }
+        }
+    }
+
+    /// Hands the forces to the agents.
+    fn scatter(&self, sums: &mut [Sum]) {
+        for ((&agent, &fx), &fy) in self.agent.iter().zip(&self.fx).zip(&self.fy) {
+            if let Some(sum) = sums.get_mut(agent as usize / LANES) {
+                sum.x.0[agent as usize % LANES] = fx;
+                sum.y.0[agent as usize % LANES] = fy;
             }
         }
     }
@@ -334,11 +360,10 @@ impl Cells {
 
     #[inline(always)]
     fn walls<S: Simd>(
-        &self,
+        &mut self,
         simd: S,
         grid: &Grid,
         forces: &Forces,
-        sums: &mut [Sum],
         contacts: &mut Contacts,
     ) {
         if forces.surfaces.is_empty() {
@@ -361,7 +386,7 @@ impl Cells {
             while k < to {
                 for part in parts(simd) {
                     for &(index, surface) in &near {
-                        self.wall(part, grid, forces, (index, surface), (k, to), sums, contacts);
+                        self.wall(part, grid, forces, (index, surface), k, contacts);
                     }
                 }
                 k += LANES;
@@ -369,43 +394,85 @@ impl Cells {
         }
     }
 
-    /// Force of one surface on the sorted agents `k..k + 8`, of whom those from `to` on are padding.
+    /// Force of one surface on the sorted agents `k..k + 8`, of whom some may be padding.
     #[inline(always)]
     fn wall<S: Simd>(
-        &self,
+        &mut self,
         part: Part<S>,
         grid: &Grid,
         forces: &Forces,
         (index, surface): (usize, &Surface),
-        (k, to): (usize, usize),
-        sums: &mut [Sum],
+        k: usize,
         contacts: &mut Contacts,
     ) {
-        let (x, y) = (part.slice(&self.x[k..k + LANES]), part.slice(&self.y[k..k + LANES]));
+        let eight = k..k + LANES;
+        let (x, y) = (part.slice(&self.x[eight.clone()]), part.slice(&self.y[eight.clone()]));
         let limit = part.c(grid.reach * grid.reach);
         if !surface.squared_distance_to_bounds(part, x, y).simd_le(limit).any_true() {
             return;
         }
         let nearest = surface.nearest(part, x, y);
-        let gap = part.slice(&self.r[k..k + LANES]) - nearest.distance;
+        let gap = part.slice(&self.r[eight.clone()]) - nearest.distance;
         for lane in part.bits(gap.simd_gt(part.c(-forces.margin))).iter() {
             contacts.push_wall(self.agent[k + lane], index as u32, Mask::lane(0));
         }
-        let own = &self.feelers[k..k + LANES];
-        let (mut a, mut rate, mut fx, mut fy) = (Lanes::ZERO, Lanes::ZERO, Lanes::ZERO, Lanes::ZERO);
-        for (lane, own) in own.iter().enumerate() {
-            a.0[lane] = own.a;
-            rate.0[lane] = own.rate;
-        }
-        let f = part.load(&a) * decay(part, gap * part.load(&rate));
-        part.store(f * nearest.nx, &mut fx);
-        part.store(f * nearest.ny, &mut fy);
-        for lane in part.at()..LANES.min(to - k).min(part.at() + part.len()) {
-            let agent = self.agent[k + lane] as usize;
-            sums[agent / LANES].x.0[agent % LANES] += fx.0[lane];
-            sums[agent / LANES].y.0[agent % LANES] += fy.0[lane];
+        let rate = part.slice(&self.term.rate[eight.clone()]);
+        let f = part.slice(&self.a[eight.clone()]) * decay(part, gap * rate);
+        part.take(f * -nearest.nx, &mut self.fx[eight.clone()]);
+        part.take(f * -nearest.ny, &mut self.fy[eight]);
+    }
+}
+
+/// A term in registers.
+#[derive(Clone, Copy)]
+struct Loaded<S: Simd> {
+    even: Doubles<S>,
+    ex: Doubles<S>,
+    ey: Doubles<S>,
+    rate: Doubles<S>,
+}
+
+impl<S: Simd> Loaded<S> {
+    /// Of one agent, in every lane.
+    #[inline(always)]
+    fn splat(part: Part<S>, terms: &Terms, i: usize, rate: Option<f64>) -> Self {
+        Self {
+            even: part.c(terms.even[i]),
+            ex: part.c(terms.ex[i]),
+            ey: part.c(terms.ey[i]),
+            rate: part.c(rate.unwrap_or(terms.rate[i])),
         }
     }
+
+    /// Of eight agents.
+    #[inline(always)]
+    fn of(part: Part<S>, terms: &Terms, eight: Range<usize>, rate: Option<f64>) -> Self {
+        Self {
+            even: part.slice(&terms.even[eight.clone()]),
+            ex: part.slice(&terms.ex[eight.clone()]),
+            ey: part.slice(&terms.ey[eight.clone()]),
+            rate: rate.map_or_else(|| part.slice(&terms.rate[eight]), |rate| part.c(rate)),
+        }
+    }
+}
+
+/// Force on the first and on the second of a pair over their distance; `gap` is their overlap, (dx, dy) = n/q
+/// points from the second to the first.
+#[inline(always)]
+fn repel<S: Simd, const SHARED: bool>(
+    part: Part<S>,
+    gap: Doubles<S>,
+    (dx, dy): (Doubles<S>, Doubles<S>),
+    q: Doubles<S>,
+    one: &Loaded<S>,
+    other: &Loaded<S>,
+) -> (Doubles<S>, Doubles<S>) {
+    let e = decay(part, gap * one.rate) * q;
+    let e2 = if SHARED { e } else { decay(part, gap * other.rate) * q };
+    (
+        e * (one.even - (dx * one.ex + dy * one.ey) * q),
+        e2 * (other.even + (dx * other.ex + dy * other.ey) * q),
+    )
 }
 
 /// Sum of eight lanes, always in the same order.

@@ -43,13 +43,6 @@ impl<S: Simd> Part<S> {
         self.at
     }
 
-    /// Number of its lanes.
-    #[inline(always)]
-    #[allow(clippy::unused_self, reason = "it names the machine")]
-    pub(super) fn len(self) -> usize {
-        Doubles::<S>::LEN
-    }
-
     /// The same number in every lane.
     #[inline(always)]
     pub(super) fn c(self, value: f64) -> Doubles<S> {
@@ -83,6 +76,13 @@ impl<S: Simd> Part<S> {
     #[inline(always)]
     pub(super) fn store(self, value: Doubles<S>, lanes: &mut Lanes) {
         value.store_slice(&mut lanes.0[self.at..self.at + Doubles::<S>::LEN]);
+    }
+
+    /// Takes a value off its lanes of eight consecutive numbers.
+    #[inline(always)]
+    pub(super) fn take(self, value: Doubles<S>, eight: &mut [f64]) {
+        let eight = &mut eight[self.at..self.at + Doubles::<S>::LEN];
+        (Doubles::<S>::from_slice(self.simd, eight) - value).store_slice(eight);
     }
 
     /// Stores the lanes of `mask`; the bytes of the others stay.
