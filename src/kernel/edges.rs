@@ -43,7 +43,7 @@ impl Edge {
 /// Edges in groups.
 #[derive(Clone, Debug)]
 pub(super) struct Edges {
-    edges: Vec<Edge>,
+    list: Vec<Edge>,
     /// The rectangles around the groups; none where there is one group only.
     groups: Vec<Bounds>,
     /// Square of far more than rounding can do to a distance, m^2.
@@ -75,7 +75,7 @@ impl Edges {
             Vec::new()
         };
         Self {
-            edges: segments.into_iter().map(Edge::new).collect(),
+            list: segments.into_iter().map(Edge::new).collect(),
             groups,
             slack: (1e-8 * extent) * (1e-8 * extent),
         }
@@ -83,7 +83,7 @@ impl Edges {
 
     /// The edges of each group, and its rectangle.
     fn groups(&self) -> impl Iterator<Item = (&[Edge], Option<&Bounds>)> {
-        self.edges.chunks(GROUP).enumerate().map(|(k, edges)| (edges, self.groups.get(k)))
+        self.list.chunks(GROUP).enumerate().map(|(k, edges)| (edges, self.groups.get(k)))
     }
 
     /// Vectors from the nearest point to each of eight places. The first of several that are equally near.
