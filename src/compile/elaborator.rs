@@ -1,6 +1,7 @@
 //! The state of compilation under one combination of parameter values.
 
 use super::dimension::{Dimension, describe};
+use super::margin::Margins;
 use super::number::Number;
 use super::process::Declared;
 use super::study::Texts;
@@ -88,6 +89,8 @@ pub(super) struct Elaborator<'a> {
     pub(super) circles: Vec<String>,
     /// What was found wrong.
     pub(super) diagnostics: Vec<Diagnostic>,
+    /// What is known of margins, while the formula of a robustness is lowered.
+    pub(super) margins: Option<Margins>,
     /// Present depth of lowering.
     pub(super) depth: u32,
     /// Nodes lowered so far.
@@ -117,6 +120,7 @@ impl<'a> Elaborator<'a> {
             texts: Texts::default(),
             circles: Vec::new(),
             diagnostics: Vec::new(),
+            margins: None,
             depth: 0,
             nodes: 0,
         }
