@@ -78,7 +78,7 @@ impl<'p> Walk<'p> {
             }
             let tick = self.state.ticks[0];
             if let Some(fault) = self.state.faults[0].filter(|_| !self.state.faulty.is_empty()) {
-                let what = fault.describe(&self.program.scenario.processes);
+                let what = fault.describe(&self.program.scenario);
                 self.notes.push(format!("trial {} ends in an error of the model: {what}", self.trial));
                 self.running = false;
                 self.trial += 1;

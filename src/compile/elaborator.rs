@@ -1,5 +1,6 @@
 //! The state of compilation under one combination of parameter values.
 
+use super::behaviour::With;
 use super::dimension::{Dimension, describe};
 use super::number::Number;
 use super::process::Declared;
@@ -10,7 +11,7 @@ use crate::base::tick::{Clock, Tick};
 use crate::data::tracks::Recording;
 use crate::logic::{Node, NodeId, SignalId, Term, TermId, Tree};
 use crate::model::{AgentId, Bool, Num, Scene};
-use crate::syntax::ast::Expr;
+use crate::syntax::ast::{BehaviourDecl, Expr};
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::source::{Source, Span};
 use std::collections::BTreeMap;
@@ -67,6 +68,10 @@ pub(super) struct Elaborator<'a> {
     pub(super) scene: Scene,
     /// Processes so far.
     pub(super) processes: Vec<Declared<'a>>,
+    /// Behaviours so far.
+    pub(super) behaviours: Vec<&'a BehaviourDecl>,
+    /// Who has which.
+    pub(super) withs: Vec<With<'a>>,
     /// Names of the agents so far.
     pub(super) agent_names: Vec<String>,
     /// The clock.
@@ -106,6 +111,8 @@ impl<'a> Elaborator<'a> {
             shapes: Vec::new(),
             scene: Scene::default(),
             processes: Vec::new(),
+            behaviours: Vec::new(),
+            withs: Vec::new(),
             agent_names: Vec::new(),
             clock: Clock::Steps,
             horizon: Tick(0),

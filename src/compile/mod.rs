@@ -4,6 +4,7 @@
 //! world with its own agents, and the formulas over them.
 
 mod asks;
+mod behaviour;
 pub mod dimension;
 mod elaborator;
 mod files;

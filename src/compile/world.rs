@@ -8,8 +8,8 @@ use super::people::People;
 use super::process::Declared;
 use super::symbols::Meaning;
 use crate::base::tick::{Clock, Tick};
-use crate::model::{Moves, Scenario};
-use crate::syntax::ast::process::{BehaviourDecl, SourceDecl};
+use crate::model::{BehaviourId, Moves, Scenario};
+use crate::syntax::ast::process::SourceDecl;
 use crate::syntax::ast::{Item, PropertyFile, PropertyItem, ScenarioFile};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
@@ -52,9 +52,13 @@ impl<'a> Elaborator<'a> {
                     self.processes.push(Declared::new(decl));
                     (&decl.name, Meaning::Process(self.processes.len() as u32 - 1))
                 }
-                Item::Behaviour(BehaviourDecl { span, .. }) | Item::Source(SourceDecl { span, .. }) => {
-                    let error =
-                        Diagnostic::error("E0213", *span, "this version simulates no behaviours and sources");
+                Item::Behaviour(decl) => {
+                    let id = BehaviourId(self.behaviours.len() as u32);
+                    self.declare_behaviour(decl);
+                    (&decl.name, Meaning::Behaviour(id))
+                }
+                Item::Source(SourceDecl { span, .. }) => {
+                    let error = Diagnostic::error("E0213", *span, "this version simulates no sources");
                     self.note(error);
                     continue;
                 }
@@ -113,7 +117,9 @@ impl<'a> Elaborator<'a> {
                 _ => {}
             }
         }
+        let count = variables.len();
         let processes = self.settle_commands(variables, &mut people);
+        let behaviours = self.settle_behaviours(&mut people, count);
         let mut moves: Vec<Moves> = Vec::new();
         for item in &file.items {
             if let Item::Moves(decl) = item
@@ -149,6 +155,8 @@ impl<'a> Elaborator<'a> {
             groups: people.groups,
             moves,
             processes,
+            behaviours,
+            sources: Vec::new(),
         })
     }
 

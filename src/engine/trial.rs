@@ -28,7 +28,7 @@ pub(super) fn fault(subject: &Subject, item: Item, seed: u64) -> Fault {
         Clock::Steps => format!("step {}", before.0),
         clock => format!("{} s", clock.seconds(before)),
     };
-    let what = fault.describe(&scenario.processes);
+    let what = fault.describe(scenario);
     let values = process::Fault::state(&scenario.processes, |k| state.variables[k].0[0]);
     Fault::Model(format!("trial {} at {time}: {what}\n  the state is {values}", item.index))
 }

@@ -1,5 +1,6 @@
 //! A scenario made ready to run: everything that is the same in every trial.
 
+use super::behaviour::Behaviours;
 use super::drive::Drive;
 use super::forces::Forces;
 use super::process::Processes;
@@ -30,6 +31,8 @@ pub struct Program {
     pub starts: Starts,
     /// The processes.
     pub processes: Processes,
+    /// The behaviours.
+    pub behaviours: Behaviours,
 }
 
 impl Program {
@@ -38,9 +41,10 @@ impl Program {
         let layout = if scenario.agents.len() <= LARGEST_IN_LANES { Layout::Trials } else { Layout::Agents };
         let dt = scenario.clock.step_seconds();
         let forces = Forces::new(&scenario, dt);
-        let drive = Drive::new(&scenario);
+        let mut drive = Drive::new(&scenario);
         let starts = Starts::new(&scenario);
         let processes = Processes::new(&scenario);
-        Self { scenario, layout, dt, forces, drive, starts, processes }
+        let behaviours = Behaviours::new(&scenario, &mut drive);
+        Self { scenario, layout, dt, forces, drive, starts, processes, behaviours }
     }
 }

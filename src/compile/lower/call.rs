@@ -13,7 +13,7 @@ use crate::syntax::ast::{Expr, Ident};
 use crate::syntax::diagnostic::Diagnostic;
 
 /// Built-in functions by name, for hints.
-pub(in crate::compile) const FUNCTIONS: [&str; 39] = [
+pub(in crate::compile) const FUNCTIONS: [&str; 40] = [
     "abs",
     "area",
     "atan2",
@@ -39,6 +39,7 @@ pub(in crate::compile) const FUNCTIONS: [&str; 39] = [
     "norm",
     "others",
     "position",
+    "present",
     "radius",
     "round",
     "sin",
@@ -170,6 +171,7 @@ impl Elaborator<'_> {
             "mass" => field(Field::Mass, Dimension::MASS),
             "driving_speed" => field(Field::DrivingSpeed, Dimension::SPEED),
             "travelled" => field(Field::Travelled, Dimension::LENGTH),
+            "present" => return Ok(Typed::Truth(Bool::Present(self.as_agent(typed, span)?))),
             "clearance" => {
                 return Ok(Typed::Num(Num::Clearance(self.as_agent(typed, span)?), Dimension::LENGTH));
             }

@@ -306,6 +306,7 @@ impl<'a> Lowering<'a> {
             }
             Bool::And(all) => self.junction(all, true),
             Bool::Or(all) => self.junction(all, false),
+            Bool::Present(who) => resolved(self.graph.enter(Node::Present(*who))),
             Bool::In(who, region) => resolved(self.graph.enter(Node::Inside(*who, region.0))),
             Bool::Contact(who) => resolved(self.contact(*who)),
             Bool::Touching(a, b) => {

@@ -19,7 +19,7 @@ use super::program::Program;
 use super::state::{Layout, State};
 use crate::base::lanes::Mask;
 use crate::base::random::TrialKey;
-use crate::model::AgentId;
+use crate::model::{AgentId, Parameter, Route};
 use body::Parameters;
 
 /// What loading a trial found worth counting.
@@ -88,7 +88,8 @@ pub fn load(
             let moves = scenario.moves.get(declaration);
             let chosen = moves.and_then(|moves| Some((moves, moves.options.get(option)?.1)));
             let (moves, chosen) = chosen.ok_or(Fault::Advice { declaration, option })?;
-            Some((moves.agent, (chosen, moves.duration.0)))
+            let heeded = program.behaviours.heeds(program, key, moves.agent.0 as usize);
+            heeded.then_some((moves.agent, (chosen, moves.duration.0)))
         }
     };
     let mut bodies = Vec::with_capacity(scenario.agents.len());
@@ -115,6 +116,7 @@ pub fn load(
         state.present[slot.block] |= Mask::lane(slot.lane);
         let own = advised.filter(|(whose, _)| whose.0 as usize == k).map(|(_, advice)| advice);
         drive::begin(program, state, k, lane, own);
+        program.behaviours.begin(program, state, k, lane);
     }
     Ok(placed.counts)
 }
@@ -128,6 +130,31 @@ fn begin(program: &Program, state: &mut State, lane: usize, key: TrialKey) {
     program.processes.load(state, lane);
 }
 
+/// The parameters of an agent as drawn, in the order of [`Parameter::ALL`]; none if nobody can move with them.
+pub(super) fn own_parameters(
+    program: &Program,
+    key: TrialKey,
+    id: AgentId,
+) -> Option<[f64; Parameter::ALL.len()]> {
+    let agent = program.scenario.agents.get(id.0 as usize)?;
+    let body = Parameters::draw(id, agent, program.starts.laws(id.0 as usize), key).ok()?;
+    // Who goes on as recorded has the recorded speed as driving speed.
+    let recorded = agent.start.velocity.norm();
+    let speed = if agent.route == Route::Onward && recorded > 0.0 { recorded } else { body.speed };
+    Some(Parameter::ALL.map(|parameter| match parameter {
+        Parameter::Speed => speed,
+        Parameter::Tau => body.tau,
+        Parameter::A => body.a,
+        Parameter::B => body.b,
+        Parameter::Lambda => body.lambda,
+        Parameter::A2 => body.a2,
+        Parameter::B2 => body.b2,
+        Parameter::Lambda2 => body.lambda2,
+        Parameter::Noise => body.noise,
+        Parameter::Attention => body.attention,
+    }))
+}
+
 /// Writes the parameters of an agent.
 fn write(state: &mut State, agent: usize, lane: usize, body: &Parameters) {
     let slot = state.slot(agent, lane);
@@ -136,10 +163,10 @@ fn write(state: &mut State, agent: usize, lane: usize, body: &Parameters) {
         (&mut state.radius, body.radius),
         (&mut state.speed, body.speed),
         (&mut state.tau, body.tau),
-        (&mut state.a, body.a),
+        (&mut state.a, body.a * body.attention),
         (&mut state.b, body.b),
         (&mut state.lambda, body.lambda),
-        (&mut state.a2, body.a2),
+        (&mut state.a2, body.a2 * body.attention),
         (&mut state.b2, body.b2),
         (&mut state.lambda2, body.lambda2),
         (&mut state.k1, body.k1),
