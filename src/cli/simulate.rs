@@ -84,6 +84,13 @@ impl<'p> Walk<'p> {
                 self.trial += 1;
                 continue;
             }
+            if let Some(reason) = self.state.queues.overrun(&self.program.scenario.sources, 0) {
+                let time = self.program.scenario.clock.seconds(crate::base::tick::Tick(tick));
+                self.notes.push(format!("trial {} is unresolved at {time} s: {reason}", self.trial));
+                self.running = false;
+                self.trial += 1;
+                continue;
+            }
             if tick >= self.last || !self.state.diverged.is_empty() {
                 if !self.state.diverged.is_empty() {
                     let time = self.program.scenario.clock.seconds(crate::base::tick::Tick(tick));

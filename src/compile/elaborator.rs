@@ -14,7 +14,7 @@ use crate::model::{AgentId, Bool, Num, Scene};
 use crate::syntax::ast::{BehaviourDecl, Expr};
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::source::{Source, Span};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// An error was reported; what depends on it is left out without another word.
 #[derive(Clone, Copy, Debug)]
@@ -74,6 +74,8 @@ pub(super) struct Elaborator<'a> {
     pub(super) withs: Vec<With<'a>>,
     /// Names of the agents so far.
     pub(super) agent_names: Vec<String>,
+    /// Agents who come or leave during a trial.
+    pub(super) passing: BTreeSet<AgentId>,
     /// The clock.
     pub(super) clock: Clock,
     /// Last tick.
@@ -114,6 +116,7 @@ impl<'a> Elaborator<'a> {
             behaviours: Vec::new(),
             withs: Vec::new(),
             agent_names: Vec::new(),
+            passing: BTreeSet::new(),
             clock: Clock::Steps,
             horizon: Tick(0),
             temporal: false,

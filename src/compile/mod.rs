@@ -24,6 +24,7 @@ mod reach;
 mod recordings;
 mod scenery;
 mod settings;
+mod sources;
 pub mod study;
 mod symbols;
 mod typed;

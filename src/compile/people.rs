@@ -178,7 +178,7 @@ impl<'a> Elaborator<'a> {
         self.scopes[0].define(&decl.name.name, Meaning::Agents { members: members.into(), particle: false });
     }
 
-    fn define_empty(&mut self, name: &Ident, plural: bool, with: With<'a>) {
+    pub(super) fn define_empty(&mut self, name: &Ident, plural: bool, with: With<'a>) {
         // What follows can then speak of the name without further errors.
         let id = AgentId(self.agent_names.len() as u32);
         self.agent_names.push(name.name.clone());
@@ -201,6 +201,19 @@ impl<'a> Elaborator<'a> {
         each: impl Fn(usize) -> (Arc<Body>, Start, Route),
     ) -> Vec<AgentId> {
         let first = people.entities(&name.name, count as u32);
+        self.members(name, count, plural, first, people, each)
+    }
+
+    /// Adds `count` people of one declaration, whose stable numbers begin with `first`.
+    pub(super) fn members(
+        &mut self,
+        name: &Ident,
+        count: usize,
+        plural: bool,
+        first: u32,
+        people: &mut People,
+        each: impl Fn(usize) -> (Arc<Body>, Start, Route),
+    ) -> Vec<AgentId> {
         let mut shared: Option<Arc<Body>> = None;
         (0..count)
             .map(|k| {
@@ -213,6 +226,9 @@ impl<'a> Elaborator<'a> {
                 };
                 shared = Some(body.clone());
                 self.agent_names.push(text.clone());
+                if matches!(route, Route::Legs { then_leave: true, .. }) {
+                    self.may_be_absent(AgentId(self.agent_names.len() as u32 - 1));
+                }
                 let entity = first + k as u32;
                 people.agents.push(Agent {
                     name: text,
@@ -228,7 +244,12 @@ impl<'a> Elaborator<'a> {
             .collect()
     }
 
-    fn count(&mut self, expr: &Expr) -> Lowered<usize> {
+    /// Remembers that an agent is not there all the time.
+    pub(super) fn may_be_absent(&mut self, agent: AgentId) {
+        self.passing.insert(agent);
+    }
+
+    pub(super) fn count(&mut self, expr: &Expr) -> Lowered<usize> {
         let number = self.number_of(expr, Dimension::NONE, &Locals::default())?;
         match number.as_whole() {
             Some(n) if n < 0 => {
@@ -252,7 +273,13 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn start(&mut self, name: &Ident, fields: &[&Field], people: &People, required: bool) -> Lowered<Start> {
+    pub(super) fn start(
+        &mut self,
+        name: &Ident,
+        fields: &[&Field],
+        people: &People,
+        required: bool,
+    ) -> Lowered<Start> {
         let position = match fields.iter().find(|f| f.name.name == "at") {
             Some(field) => self.position(&field.value, people),
             None if required => {

@@ -9,7 +9,6 @@ use super::process::Declared;
 use super::symbols::Meaning;
 use crate::base::tick::{Clock, Tick};
 use crate::model::{BehaviourId, Moves, Scenario};
-use crate::syntax::ast::process::SourceDecl;
 use crate::syntax::ast::{Item, PropertyFile, PropertyItem, ScenarioFile};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
@@ -57,11 +56,7 @@ impl<'a> Elaborator<'a> {
                     self.declare_behaviour(decl);
                     (&decl.name, Meaning::Behaviour(id))
                 }
-                Item::Source(SourceDecl { span, .. }) => {
-                    let error = Diagnostic::error("E0213", *span, "this version simulates no sources");
-                    self.note(error);
-                    continue;
-                }
+                Item::Source(decl) => (&decl.name, Meaning::Declared),
             };
             if let Err(error) = self.scopes[0].declare(&name.name, name.span, meaning) {
                 self.note(error);
@@ -117,6 +112,14 @@ impl<'a> Elaborator<'a> {
                 _ => {}
             }
         }
+        let mut sources = Vec::new();
+        for item in &file.items {
+            if let Item::Source(decl) = item
+                && clock.is_ok()
+            {
+                sources.extend(self.source(decl, &mut people));
+            }
+        }
         let count = variables.len();
         let processes = self.settle_commands(variables, &mut people);
         let behaviours = self.settle_behaviours(&mut people, count);
@@ -156,7 +159,7 @@ impl<'a> Elaborator<'a> {
             moves,
             processes,
             behaviours,
-            sources: Vec::new(),
+            sources,
         })
     }
 

@@ -131,6 +131,7 @@ pub fn step(program: &Program, state: &mut State, scratch: &mut Scratch) {
         scratch.lanewise.forget();
     }
     drive::steer(program, state);
+    program.arrivals.step(program, state);
     dispatch!(scratch.level, simd => finish(simd, program, state, scratch));
 }
 

@@ -4,7 +4,7 @@ use super::behaviour::Behaviours;
 use super::drive::Drive;
 use super::forces::Forces;
 use super::process::Processes;
-use super::start::Starts;
+use super::start::{Arrivals, Starts};
 use super::state::Layout;
 use crate::model::Scenario;
 use std::sync::Arc;
@@ -31,6 +31,8 @@ pub struct Program {
     pub starts: Starts,
     /// The processes.
     pub processes: Processes,
+    /// The sources.
+    pub arrivals: Arrivals,
     /// The behaviours.
     pub behaviours: Behaviours,
 }
@@ -44,7 +46,8 @@ impl Program {
         let mut drive = Drive::new(&scenario);
         let starts = Starts::new(&scenario);
         let processes = Processes::new(&scenario);
+        let arrivals = Arrivals::new(&scenario);
         let behaviours = Behaviours::new(&scenario, &mut drive);
-        Self { scenario, layout, dt, forces, drive, starts, processes, behaviours }
+        Self { scenario, layout, dt, forces, drive, starts, processes, arrivals, behaviours }
     }
 }

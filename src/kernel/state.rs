@@ -105,6 +105,8 @@ pub struct State {
     /// Where everyone is on the way.
     pub route: Routes,
 
+    /// How far the sources are.
+    pub queues: super::start::Queues,
     /// Where everyone's behaviours stand.
     pub behaviours: super::behaviour::Standing,
 
@@ -160,6 +162,7 @@ impl State {
             fx: zero(),
             fy: zero(),
             route: Routes::new(blocks),
+            queues: super::start::Queues::default(),
             behaviours: super::behaviour::Standing::default(),
             variables: Vec::new(),
             faulty: Mask::NONE,

@@ -10,7 +10,7 @@ use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::people::People;
 use super::symbols::{Meaning, unknown};
 use super::typed::Typed;
-use crate::model::{AgentId, Attached, Behaviour, BehaviourId, Behaviours, Parameter, Who};
+use crate::model::{AgentId, Attached, Behaviour, BehaviourId, Behaviours, Mode, Parameter, Route, Who};
 use crate::syntax::ast::process::{BehaviourDecl, BehaviourItem, StateDecl};
 use crate::syntax::ast::{Expr, ExprKind, Ident};
 use crate::syntax::diagnostic::Diagnostic;
@@ -192,6 +192,12 @@ impl<'a> Elaborator<'a> {
         }
         self.withs = withs;
         self.check_unused_behaviours(variables);
+        for one in &out.attached {
+            let leaves = |mode: &Mode| matches!(mode.route, Some(Route::Legs { then_leave: true, .. }));
+            if one.conduct.states.iter().any(leaves) {
+                self.may_be_absent(one.agent);
+            }
+        }
         // Of one agent they stay in order of `with`.
         out.attached.sort_by_key(|one| one.agent);
         out

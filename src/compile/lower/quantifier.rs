@@ -6,7 +6,7 @@
 use super::super::elaborator::{Elaborator, Locals, Lowered};
 use super::super::symbols::Meaning;
 use super::super::typed::Typed;
-use crate::logic::{Node, Operation, Term};
+use crate::logic::{Node, NodeId, Operation, Term};
 use crate::model::{AgentId, Arithmetic, Bool, Fold, Num, Set, Who};
 use crate::syntax::ast::{Aggregate, Expr, ExprKind, Ident, Quantifier};
 use crate::syntax::diagnostic::Diagnostic;
@@ -146,16 +146,22 @@ impl Elaborator<'_> {
         };
         let members: Vec<AgentId> = set.members.iter().copied().filter(|id| Some(*id) != left_out).collect();
         let mut each = Vec::with_capacity(members.len());
-        for id in members {
+        for &id in &members {
             let mut inner = locals.clone();
             inner.names.push((variable.name.clone(), Typed::Agent(Who::Agent(id))));
             each.push(self.lower(body, &inner)?);
         }
         match quantifier {
             Quantifier::Forall | Quantifier::Exists => {
-                let nodes: Lowered<Vec<_>> =
-                    each.into_iter().map(|typed| self.as_formula(typed, body.span)).collect();
-                let nodes = nodes?;
+                let mut nodes = Vec::with_capacity(members.len());
+                for (typed, id) in each.into_iter().zip(members) {
+                    let node = self.as_formula(typed, body.span)?;
+                    nodes.push(if self.passing.contains(&id) {
+                        self.if_present(id, node, quantifier, span)
+                    } else {
+                        node
+                    });
+                }
                 Ok(Typed::Formula(self.node(match quantifier {
                     Quantifier::Forall => Node::And(nodes),
                     _ => Node::Or(nodes),
@@ -166,8 +172,27 @@ impl Elaborator<'_> {
                     .hint("count states, as in `F<=10 s (count(a in crowd: a in exit) >= 3)`");
                 self.report(error)
             }
+            Quantifier::Fold(_) if members.iter().any(|id| self.passing.contains(id)) => {
+                let error = Diagnostic::error(
+                    "E0504",
+                    span,
+                    "numbers over time cannot be joined over people who come or leave",
+                )
+                .hint("join the numbers of each state: `min<=10 s (min(… for a in doors))`");
+                self.report(error)
+            }
             Quantifier::Fold(aggregate) => self.fold_terms(aggregate, each, body.span),
         }
+    }
+
+    /// Only who is present at the state at which it is asked counts.
+    fn if_present(&mut self, id: AgentId, node: NodeId, quantifier: Quantifier, span: Span) -> NodeId {
+        let present = self.atom(Bool::Present(Who::Agent(id)), span);
+        if quantifier == Quantifier::Exists {
+            return self.node(Node::And(vec![present, node]));
+        }
+        let absent = self.node(Node::Not(present));
+        self.node(Node::Or(vec![absent, node]))
     }
 
     fn fold_terms(&mut self, aggregate: Aggregate, each: Vec<Typed>, span: Span) -> Lowered<Typed> {

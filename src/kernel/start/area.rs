@@ -65,7 +65,9 @@ fn free_area(shape: &Shape, reach: f64, bounds: &Bounds, solids: &[&Obstacle]) -
 /// shape when its centre is, so what lies within a radius of the shape counts as room.
 pub fn check_area(scenario: &Scenario) -> Vec<Crowding> {
     let mut groups: Vec<(&Shape, Vec<AgentId>, f64, f64)> = Vec::new();
-    for (k, agent) in scenario.agents.iter().enumerate() {
+    // Who comes in later waits until there is room.
+    let comes = |k: u32| scenario.sources.iter().any(|source| source.members.contains(&AgentId(k)));
+    for (k, agent) in scenario.agents.iter().enumerate().filter(|(k, _)| !comes(*k as u32)) {
         let Position::Within(shape) = &agent.start.position else { continue };
         let wider = agent.particle.map_or(1.0, |particle| particle.radius_factor);
         let square = mean_square(&agent.body.radius) * wider * wider;

@@ -5,6 +5,7 @@
 //! attempts, then relaxation; what still overlaps, or was recorded so, shrinks to touch.
 
 mod area;
+mod arrival;
 mod body;
 mod crowd;
 mod placement;
@@ -12,14 +13,16 @@ mod relaxation;
 mod sampler;
 
 pub use area::{Crowding, check_area};
+pub use arrival::{Arrivals, Queues};
 pub use placement::Starts;
 
 use super::drive;
 use super::program::Program;
 use super::state::{Layout, State};
-use crate::base::lanes::Mask;
+use crate::base::geometry::Vec2;
+use crate::base::lanes::{Lanes, Mask};
 use crate::base::random::TrialKey;
-use crate::model::{AgentId, Parameter, Route};
+use crate::model::{AgentId, Move, Parameter, Route};
 use body::Parameters;
 
 /// What loading a trial found worth counting.
@@ -94,31 +97,48 @@ pub fn load(
     };
     let mut bodies = Vec::with_capacity(scenario.agents.len());
     for (k, agent) in scenario.agents.iter().enumerate() {
-        bodies.push(Parameters::draw(AgentId(k as u32), agent, program.starts.laws(k), key)?);
+        let here = !program.arrivals.comes(k);
+        let draw = || Parameters::draw(AgentId(k as u32), agent, program.starts.laws(k), key);
+        bodies.push(here.then(draw).transpose()?);
     }
-    let radii: Vec<f64> = bodies.iter().map(|body| body.radius).collect();
+    let radii = bodies.iter().map(|body| body.as_ref().map_or(0.0, |body| body.radius)).collect();
     let placed = placement::place(scenario, &program.starts, key, radii)?;
 
     let lane = if state.layout == Layout::Agents { 0 } else { lane };
     begin(program, state, lane, key);
-    for (k, agent) in scenario.agents.iter().enumerate() {
-        bodies[k].radius = placed.radii[k];
-        write(state, k, lane, &bodies[k]);
-        let slot = state.slot(k, lane);
-        let put = |field: &mut [crate::base::lanes::Lanes], value| field[slot.block].0[slot.lane] = value;
-        put(&mut state.x, placed.positions[k].x);
-        put(&mut state.y, placed.positions[k].y);
-        put(&mut state.vx, agent.start.velocity.x);
-        put(&mut state.vy, agent.start.velocity.y);
-        for field in [&mut state.travelled, &mut state.fx, &mut state.fy] {
-            put(field, 0.0);
-        }
-        state.present[slot.block] |= Mask::lane(slot.lane);
+    for (k, body) in bodies.into_iter().enumerate() {
+        let Some(body) = body else { continue };
+        let body = Parameters { radius: placed.radii[k], ..body };
         let own = advised.filter(|(whose, _)| whose.0 as usize == k).map(|(_, advice)| advice);
-        drive::begin(program, state, k, lane, own);
-        program.behaviours.begin(program, state, k, lane);
+        enter(program, state, k, lane, &body, placed.positions[k], own);
     }
     Ok(placed.counts)
+}
+
+/// Puts an agent into the scene, at the beginning of its way.
+fn enter(
+    program: &Program,
+    state: &mut State,
+    agent: usize,
+    lane: usize,
+    body: &Parameters,
+    at: Vec2,
+    advice: Option<(Move, u64)>,
+) {
+    write(state, agent, lane, body);
+    let slot = state.slot(agent, lane);
+    let velocity = program.scenario.agents[agent].start.velocity;
+    let put = |field: &mut [Lanes], value| field[slot.block].0[slot.lane] = value;
+    put(&mut state.x, at.x);
+    put(&mut state.y, at.y);
+    put(&mut state.vx, velocity.x);
+    put(&mut state.vy, velocity.y);
+    for field in [&mut state.travelled, &mut state.fx, &mut state.fy] {
+        put(field, 0.0);
+    }
+    state.present[slot.block] |= Mask::lane(slot.lane);
+    drive::begin(program, state, agent, lane, advice);
+    program.behaviours.begin(program, state, agent, lane);
 }
 
 /// The trial itself and its processes.
@@ -128,6 +148,7 @@ fn begin(program: &Program, state: &mut State, lane: usize, key: TrialKey) {
     state.occupied |= Mask::lane(lane);
     state.diverged &= !Mask::lane(lane);
     program.processes.load(state, lane);
+    program.arrivals.load(state, lane, key);
 }
 
 /// The parameters of an agent as drawn, in the order of [`Parameter::ALL`]; none if nobody can move with them.
