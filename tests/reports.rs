@@ -2,7 +2,7 @@
 
 use smc::engine::outcome::{
     Comparison, Counts, Distribution, Failure, Histogram, Interval, Kind, Method, Quantile, QueryResult,
-    RankedOption, Ranking, Run, Side, Status, Stop, Verdict, Witness,
+    RankedOption, Ranking, Run, Shows, Side, Status, Stop, Verdict, Witness,
 };
 use smc::report::{ExitCode, Format, Palette, exit_code, json, render};
 
@@ -47,7 +47,8 @@ fn checks() -> Vec<QueryResult> {
             counts: counts(62, 4, 0),
             stopped_by: Stop::Boundary,
             witnesses: vec![Witness {
-                passing: false,
+                shows: Shows::Fails,
+                value: None,
                 trial: 17,
                 time: 3.42,
                 unit: "s",

@@ -99,6 +99,9 @@ pub(super) struct Check {
     /// Ask only this query: the name of its property, or its number. May be given several times.
     #[arg(long, value_name = "NAME")]
     pub(super) only: Vec<String>,
+    /// Only forecast how many trials and how much time each query is likely to take; runs the first few trials.
+    #[arg(long, conflicts_with_all = ["timeout", "report"])]
+    pub(super) forecast: bool,
     /// No progress and no forecast on standard error.
     #[arg(short, long)]
     pub(super) quiet: bool,

@@ -8,7 +8,7 @@ use crate::compile::Study;
 use crate::compile::nearest::nearest;
 use crate::engine::budget::DEFAULT_TRIALS;
 use crate::engine::outcome::{Failure, Run};
-use crate::engine::{Budget, Call, Fault, Threads, run as run_study};
+use crate::engine::{Budget, Call, Fault, Outlook, Threads, forecast, run as run_study};
 use crate::report::{self, ExitCode as Exit, Format, Palette};
 use crate::syntax::source::{Source, Span};
 use std::sync::Arc;
@@ -50,6 +50,13 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
         place: &place,
         file: arguments.model.scenario.clone(),
     };
+    if arguments.forecast {
+        return match forecast(study, &call, &threads, &budget) {
+            Ok(outlook) => tell(&outlook, arguments.format),
+            Err(Fault::Placement(reason)) => super::crowded(reason, colors),
+            Err(fault) => refuse(&fault.to_string()),
+        };
+    }
     let progress = Progress::new(arguments.quiet);
     let run = match run_study(study, &call, &threads, &budget, &progress) {
         Ok(run) => run,
@@ -57,6 +64,18 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
         Err(fault) => return refuse(&fault.to_string()),
     };
     finish(arguments, &run, colors)
+}
+
+/// Prints a forecast.
+fn tell(outlook: &Outlook, format: OutputFormat) -> Exit {
+    let text = match format {
+        OutputFormat::Json => report::outlook::json(outlook),
+        _ => report::outlook::text(outlook),
+    };
+    match print(&text) {
+        Ok(()) => Exit::Success,
+        Err(reason) => refuse(&reason),
+    }
 }
 
 fn refuse(reason: &str) -> Exit {

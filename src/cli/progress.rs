@@ -1,8 +1,12 @@
 //! Progress on standard error, where that is a terminal.
 
-use crate::engine::{Forecast, Watch};
+use crate::engine::{Outlook, Watch};
+use crate::report::outlook;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
+
+/// Forecasts shorter than this are not told, s.
+const WORTH_TELLING: f64 = 2.0;
 
 /// Shows how far a query is.
 pub(super) struct Progress {
@@ -25,26 +29,21 @@ impl Progress {
 }
 
 impl Watch for Progress {
-    fn forecast(&self, forecast: &Forecast) {
+    fn forecast(&self, outlook: &Outlook) {
         // What is over in a moment needs no forecast.
-        if self.quiet || forecast.seconds < 2.0 {
+        if self.quiet || outlook.seconds < WORTH_TELLING {
             return;
         }
-        let line = format!(
-            "about {} trials, {}: {}",
-            round(forecast.trials),
-            duration(forecast.seconds),
-            forecast.query
-        );
+        let lines = outlook::text(outlook);
         match &self.bar {
-            Some(bar) => bar.println(line),
-            None => super::terminal::say(&format!("{line}\n")),
+            Some(bar) => lines.lines().for_each(|line| bar.println(line)),
+            None => super::terminal::say(&lines),
         }
     }
 
     fn consumed(&self, query: &str, trials: u64, of: Option<u64>) {
         let Some(bar) = &self.bar else { return };
-        let of = of.map_or(String::new(), |of| format!(" of about {}", round(of)));
+        let of = of.map_or(String::new(), |of| format!(" of about {of}"));
         bar.set_message(format!("{trials}{of} trials · {query}"));
         bar.tick();
     }
@@ -53,24 +52,5 @@ impl Watch for Progress {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
-    }
-}
-
-/// Two digits are enough for a forecast.
-fn round(n: u64) -> u64 {
-    let mut scale = 1;
-    while n / scale >= 100 {
-        scale *= 10;
-    }
-    n.div_ceil(scale) * scale
-}
-
-fn duration(seconds: f64) -> String {
-    if seconds < 90.0 {
-        format!("{seconds:.0} s")
-    } else if seconds < 5400.0 {
-        format!("{:.0} min", seconds / 60.0)
-    } else {
-        format!("{:.1} h", seconds / 3600.0)
     }
 }

@@ -24,22 +24,23 @@ impl Compiler<'_> {
     ) -> Lowered<(Ask, bool)> {
         let locals = Locals::of(scope);
         let observed = self.sites[site].elaborator.measure(measure, scope);
-        let dimension = match observed.as_ref().map(|o| &o.kind) {
-            Ok(MeasureKind::Expectation { dimension, .. } | MeasureKind::Quantile { dimension, .. }) => {
+        let dimension = match (observed.as_ref().map(|o| &o.kind), &measure.kind) {
+            (Ok(MeasureKind::Expectation { dimension, .. } | MeasureKind::Quantile { dimension, .. }), _) => {
                 *dimension
             }
-            _ => Dimension::NONE,
+            (_, ast::MeasureKind::Probability) => Dimension::NONE,
+            // Without a metric nobody knows the unit of the threshold.
+            _ => return Err(Reported),
         };
         let elaborator = &mut self.sites[site].elaborator;
-        let bound = elaborator.number_of(threshold, dimension, &locals);
+        let bound = elaborator.number_of(threshold, dimension, &locals)?;
         let share = match family {
             Some(delta) if family_clauses(clauses) => delta / super::methods::DEFAULT_ALPHA,
             _ => 1.0,
         };
-        if matches!(measure.kind, ast::MeasureKind::Probability)
-            && let Ok(theta) = bound.as_ref().map(|b| b.value)
-            && (theta <= 0.0 || theta >= 1.0)
+        if matches!(measure.kind, ast::MeasureKind::Probability) && (bound.value <= 0.0 || bound.value >= 1.0)
         {
+            let theta = bound.value;
             let hint = if theta > 1.0 && theta <= 100.0 {
                 format!("a share is written with its sign: `{theta} %`")
             } else {
@@ -53,13 +54,13 @@ impl Compiler<'_> {
             );
             return elaborator.report(error.hint(hint));
         }
-        let (Observed { column, kind, unbounded }, bound) = (observed?, bound?);
         let mut at_least = matches!(relation, BinaryOp::AtLeast | BinaryOp::Greater);
         let mut or_equal = matches!(relation, BinaryOp::AtLeast | BinaryOp::AtMost);
+        let Observed { column, kind, unbounded } = observed?;
         let (column, kind, theta) = match kind {
             // A quantile is at most x exactly if P(metric <= x) is at least its level.
             MeasureKind::Quantile { level, .. } => {
-                let below = elaborator.below(&column, !at_least, bound.value);
+                let below = elaborator.below(&column, !at_least, bound.value, bound.dimension);
                 at_least = !at_least;
                 or_equal = true;
                 (below, MeasureKind::Probability, level)

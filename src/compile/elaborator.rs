@@ -4,12 +4,13 @@ use super::behaviour::With;
 use super::dimension::{Dimension, describe};
 use super::number::Number;
 use super::process::Declared;
+use super::study::Texts;
 use super::symbols::{Scope, ScopeId};
 use super::typed::Typed;
 use crate::base::geometry::{Shape, Vec2};
 use crate::base::tick::{Clock, Tick};
 use crate::data::tracks::Recording;
-use crate::logic::{Node, NodeId, SignalId, Term, TermId, Tree};
+use crate::logic::{Node, NodeId, Relation, SignalId, Term, TermId, Tree};
 use crate::model::{AgentId, Bool, Num, Scene};
 use crate::syntax::ast::{BehaviourDecl, Expr};
 use crate::syntax::diagnostic::{Diagnostic, Severity};
@@ -86,10 +87,10 @@ pub(super) struct Elaborator<'a> {
     pub(super) tree: Tree,
     /// Truth values observed.
     pub(super) atoms: Vec<Bool>,
-    /// Their sources.
-    pub(super) atom_texts: Vec<String>,
     /// Numbers observed.
     pub(super) signals: Vec<Num>,
+    /// How atoms, signals and comparisons were written.
+    pub(super) texts: Texts,
     /// Names in circles that were reported.
     pub(super) circles: Vec<String>,
     /// What was found wrong.
@@ -122,8 +123,8 @@ impl<'a> Elaborator<'a> {
             temporal: false,
             tree: Tree::default(),
             atoms: Vec::new(),
-            atom_texts: Vec::new(),
             signals: Vec::new(),
+            texts: Texts::default(),
             circles: Vec::new(),
             diagnostics: Vec::new(),
             depth: 0,
@@ -263,19 +264,33 @@ impl<'a> Elaborator<'a> {
         let at = self.atoms.iter().position(|a| *a == truth).unwrap_or_else(|| {
             self.atoms.push(truth);
             let text = bare(&self.text(span)).to_owned();
-            self.atom_texts.push(text);
+            self.texts.atoms.push(text);
             self.atoms.len() - 1
         });
         self.node(Node::Atom(crate::logic::AtomId(at as u32)))
     }
 
+    /// A comparison of numbers over time.
+    pub(super) fn comparison(
+        &mut self,
+        (relation, a, b): (Relation, TermId, TermId),
+        text: String,
+        dimension: Dimension,
+    ) -> NodeId {
+        let node = self.node(Node::Compare(relation, a, b));
+        self.texts.comparisons.entry(node.0).or_insert((text, dimension));
+        node
+    }
+
     /// The term that reads a number of the present state.
-    pub(super) fn signal(&mut self, num: Num) -> TermId {
+    pub(super) fn signal(&mut self, num: Num, dimension: Dimension, span: Span) -> TermId {
         if let Num::Constant(value) = num {
             return self.term(Term::Constant(value));
         }
         let at = self.signals.iter().position(|s| *s == num).unwrap_or_else(|| {
             self.signals.push(num);
+            let text = bare(&self.text(span)).to_owned();
+            self.texts.signals.push((text, dimension));
             self.signals.len() - 1
         });
         self.term(Term::Signal(SignalId(at as u32)))

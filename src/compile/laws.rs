@@ -46,7 +46,7 @@ impl Elaborator<'_> {
             Value::Plain(expr) => match distribution(expr) {
                 Some((name, arguments)) => {
                     let family = self.family(name, expr.span, arguments, dimension, locals)?;
-                    self.validated(family, f64::NEG_INFINITY, f64::INFINITY, expr.span)
+                    self.validated(family, (f64::NEG_INFINITY, f64::INFINITY), dimension, expr.span)
                 }
                 None => self.number_of(expr, dimension, locals).map(|n| Law::Constant(n.value)),
             },
@@ -71,9 +71,9 @@ impl Elaborator<'_> {
                     return self.report(error);
                 };
                 let family = self.family(name, law.span, arguments, dimension, locals)?;
-                self.validated(family.clone(), f64::NEG_INFINITY, f64::INFINITY, law.span)?;
+                self.validated(family.clone(), (f64::NEG_INFINITY, f64::INFINITY), dimension, law.span)?;
                 let (low, high) = (ends.0?.value, ends.1?.value);
-                self.validated(family, low, high, value_span(value))
+                self.validated(family, (low, high), dimension, value_span(value))
             }
             other => {
                 let error =
@@ -83,11 +83,24 @@ impl Elaborator<'_> {
         }
     }
 
-    fn validated(&mut self, family: Family, low: f64, high: f64, span: Span) -> Lowered<Law> {
+    fn validated(
+        &mut self,
+        family: Family,
+        (low, high): (f64, f64),
+        dimension: Dimension,
+        span: Span,
+    ) -> Lowered<Law> {
         let law = Law::Random { family, low, high };
         match law.validate() {
             Ok(()) => Ok(law),
-            Err(reason) => self.report(Diagnostic::error("E0404", span, reason)),
+            Err(reason) => {
+                let error = Diagnostic::error("E0404", span, reason);
+                self.report(if dimension.is_none() {
+                    error
+                } else {
+                    error.hint(format!("numbers here are in {dimension}"))
+                })
+            }
         }
     }
 

@@ -147,11 +147,20 @@ impl Elaborator<'_> {
     }
 
     /// `metric <= bound` or `metric < bound` as a formula, for checks of quantiles.
-    pub(super) fn below(&mut self, column: &Column, or_equal: bool, bound: f64) -> Column {
+    pub(super) fn below(
+        &mut self,
+        column: &Column,
+        or_equal: bool,
+        bound: f64,
+        dimension: Dimension,
+    ) -> Column {
         let Root::Metric(term) = column.root else { return column.clone() };
         let limit = self.term(Term::Constant(bound));
         let relation = if or_equal { Relation::AtMost } else { Relation::Less };
-        let node = self.node(Node::Compare(relation, term, limit));
+        let sign = if or_equal { "<=" } else { "<" };
+        let bound = if dimension.is_none() { bound.to_string() } else { format!("{bound} {dimension}") };
+        let text = format!("{} {sign} {bound}", column.text);
+        let node = self.comparison((relation, term, limit), text, dimension);
         Column { root: Root::Formula(node), text: column.text.clone() }
     }
 

@@ -153,7 +153,7 @@ impl<'a> Compiler<'a> {
         // What was observed for checking only is not observed in trials.
         elaborator.tree = crate::logic::Tree::default();
         elaborator.atoms.clear();
-        elaborator.atom_texts.clear();
+        elaborator.texts = super::study::Texts::default();
         elaborator.signals.clear();
     }
 
@@ -405,7 +405,7 @@ impl<'a> Compiler<'a> {
                 settings,
                 scenario: Arc::new(scenario),
                 atoms: elaborator.atoms,
-                atom_texts: elaborator.atom_texts,
+                texts: elaborator.texts,
                 signals: elaborator.signals,
                 tree: elaborator.tree,
                 columns: site.columns,

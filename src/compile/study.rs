@@ -4,6 +4,7 @@ use super::dimension::Dimension;
 use crate::logic::{NodeId, TermId, Tree};
 use crate::model::{Bool, Num, Scenario};
 use crate::syntax::source::Span;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Everything a call asks.
@@ -26,14 +27,25 @@ pub struct World {
     pub scenario: Arc<Scenario>,
     /// Truth values observed in each state.
     pub atoms: Vec<Bool>,
-    /// The source of each atom, for witnesses.
-    pub atom_texts: Vec<String>,
+    /// How what is observed was written, for witnesses.
+    pub texts: Texts,
     /// Numbers observed in each state.
     pub signals: Vec<Num>,
     /// Formulas and metrics over them.
     pub tree: Tree,
     /// What is asked of each trace.
     pub columns: Vec<Column>,
+}
+
+/// How what is observed was written.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Texts {
+    /// Each atom.
+    pub atoms: Vec<String>,
+    /// Each signal, and its dimension.
+    pub signals: Vec<(String, Dimension)>,
+    /// Comparisons of numbers over time, by the index of their node, and the dimension of their sides.
+    pub comparisons: BTreeMap<u32, (String, Dimension)>,
 }
 
 /// One thing asked of each trace of a world.

@@ -55,6 +55,8 @@ pub(super) enum Typed {
     Formula(NodeId),
     /// A number of the states from the present one on.
     Term(TermId, Dimension),
+    /// How many of some formulas over states hold.
+    Tally(Vec<NodeId>),
 }
 
 impl Typed {
@@ -76,6 +78,7 @@ impl Typed {
             Self::Region(_) => "a region".to_owned(),
             Self::Barrier(_) => "a wall or obstacle".to_owned(),
             Self::Formula(_) => "a formula over time".to_owned(),
+            Self::Tally(_) => "a count of formulas over time".to_owned(),
         }
     }
 }

@@ -124,20 +124,24 @@ impl<'a> Elaborator<'a> {
         let processes = self.settle_commands(variables, &mut people);
         let behaviours = self.settle_behaviours(&mut people, count);
         let mut moves: Vec<Moves> = Vec::new();
+        let mut declared: Vec<Span> = Vec::new();
         for item in &file.items {
             if let Item::Moves(decl) = item
                 && clock.is_ok()
                 && let Ok(one) = self.moves(decl, &people)
             {
-                if moves.iter().any(|m| m.agent == one.agent) {
+                if let Some(first) = moves.iter().position(|m| m.agent == one.agent) {
                     let error = Diagnostic::error(
                         "E0406",
                         decl.agent.span,
                         format!("the moves of `{}` are declared twice", decl.agent.name),
-                    );
+                    )
+                    .related(declared[first], "first declared here")
+                    .hint("put all options into one list");
                     self.note(error);
                 }
                 moves.push(one);
+                declared.push(decl.agent.span);
             }
         }
         self.check_unused(file);

@@ -1,9 +1,12 @@
-//! What decided a trial: the atom, and the agents in it.
+//! What decided a trial: the atom, comparison or number, and the agents in it.
 
 use super::subject::Subject;
-use crate::compile::study::Root;
+use super::words;
+use crate::base::tick::{Clock, Tick};
 use crate::kernel::{Code, Readings, State};
-use crate::logic::{AtomId, Node, Reason, Recording, SignalId, explain};
+use crate::logic::{
+    AtomId, Node, NodeId, Reason, Recording, SignalId, Source, Term, TermId, explain, sides, sources,
+};
 use crate::model::{AgentId, Bool, Num, Place, Scenario, Set, Who};
 
 /// Truth values and numbers of the states of one trial.
@@ -24,53 +27,135 @@ impl Record {
 /// How many agents are named at most.
 const NAMED: usize = 3;
 
-/// What decided a trial at `decided`, in words; empty where nothing in particular did.
-pub(super) fn reasons(
-    subject: &Subject,
-    column: usize,
-    record: &Record,
-    state_at: impl Fn(u64) -> Option<State>,
-) -> String {
-    let Root::Formula(root) = subject.columns[column] else { return String::new() };
-    let atoms = |atom: AtomId, at: u64| record.atoms.get(at as usize).is_some_and(|row| row[atom.0 as usize]);
-    let signals = |signal: SignalId, at: u64| {
-        record.signals.get(at as usize).map_or(f64::NAN, |row| row[signal.0 as usize])
-    };
-    let recording = Recording {
-        atoms: &atoms,
-        signals: &signals,
-        seen: record.atoms.len() as u64,
-        horizon: subject.horizon,
-        clock: subject.program.scenario.clock,
-    };
-    let Ok(explanation) = explain(&subject.tree, root, &recording) else { return String::new() };
-    // The last reason in time is the one that closed the case.
-    let Some(reason) = explanation.reasons.iter().max_by_key(|reason| (reason.to, reason.from)) else {
-        return String::new();
-    };
-    describe(subject, reason, state_at)
+impl Record {
+    /// Calls `look` with the record in the form that `logic` reads.
+    fn read<T>(&self, subject: &Subject, look: impl FnOnce(&Recording<'_>) -> T) -> T {
+        let atoms =
+            |atom: AtomId, at: u64| self.atoms.get(at as usize).is_some_and(|row| row[atom.0 as usize]);
+        let signals = |signal: SignalId, at: u64| {
+            self.signals.get(at as usize).map_or(f64::NAN, |row| row[signal.0 as usize])
+        };
+        look(&Recording {
+            atoms: &atoms,
+            signals: &signals,
+            seen: self.atoms.len() as u64,
+            horizon: subject.horizon,
+            clock: subject.program.scenario.clock,
+        })
+    }
 }
 
-fn describe(subject: &Subject, reason: &Reason, state_at: impl Fn(u64) -> Option<State>) -> String {
-    match &subject.tree.nodes[reason.leaf.0 as usize] {
-        Node::Atom(atom) => {
-            let Some(text) = subject.atom_texts.get(atom.0 as usize) else { return String::new() };
-            let word = if reason.value { "holds" } else { "fails" };
-            let blamed = |state| blamed(subject, &subject.atoms()[atom.0 as usize], reason.value, &state);
-            let who = state_at(reason.to.0).map_or_else(Vec::new, blamed);
-            let names: Vec<&str> = who
-                .iter()
-                .filter_map(|id| subject.program.scenario.agents.get(id.0 as usize))
-                .map(|agent| agent.name.as_str())
-                .collect();
-            if names.is_empty() {
-                format!("`{text}` {word}")
-            } else {
-                format!("`{text}` {word}: {}", names.join(", "))
+/// What decided the truth of a formula in a trial, in words; empty where nothing in particular did.
+pub(super) fn truth(
+    subject: &Subject,
+    root: NodeId,
+    record: &Record,
+    state_at: impl Fn(Tick) -> Option<State>,
+) -> String {
+    record.read(subject, |recording| {
+        let Ok(explanation) = explain(&subject.tree, root, recording) else { return String::new() };
+        // The last reason in time is the one that closed the case.
+        let last = explanation.reasons.iter().max_by_key(|reason| (reason.to, reason.from));
+        match last {
+            Some(reason) => closing(subject, reason, recording, &state_at),
+            None if explanation.verdict.is_some() => "it does not depend on what happens".to_owned(),
+            None => String::new(),
+        }
+    })
+}
+
+/// Where the value of a metric in a trial comes from, in words, and since when it was so.
+pub(super) fn number(
+    subject: &Subject,
+    root: TermId,
+    (value, unit): (f64, &str),
+    record: &Record,
+    state_at: impl Fn(Tick) -> Option<State>,
+) -> (Option<Tick>, String) {
+    record.read(subject, |recording| {
+        let (_, found) = sources(&subject.tree, root, Tick(0), recording);
+        let never =
+            value == f64::INFINITY && matches!(subject.tree.terms[root.0 as usize], Term::TimeUntil(_));
+        let text = if never { "not within the horizon".to_owned() } else { words::brief(value, unit) };
+        match found.as_slice() {
+            [Source::Formula(reason)] => {
+                let closing = closing(subject, reason, recording, &state_at);
+                (Some(reason.to), format!("{text}, when {closing}"))
+            }
+            [Source::Signal { at, .. }] => {
+                let from = origin(subject, &found[0], false, &state_at);
+                (Some(*at), format!("{text}, {from}"))
+            }
+            [] => (None, text),
+            several => {
+                let list: Vec<String> =
+                    several.iter().take(NAMED).map(|s| origin(subject, s, true, &state_at)).collect();
+                (None, format!("{text}: {}", list.join(" and ")))
             }
         }
+    })
+}
+
+/// A state that gave a number its value; `full` says the value and the moment too.
+fn origin(
+    subject: &Subject,
+    source: &Source,
+    full: bool,
+    state_at: &impl Fn(Tick) -> Option<State>,
+) -> String {
+    let Source::Signal { signal, at, value } = source else { return String::new() };
+    let Some((text, dimension)) = subject.texts.signals.get(signal.0 as usize) else { return String::new() };
+    let mut said = if full {
+        format!("`{text}` is {} at {}", words::brief(*value, &dimension.to_string()), moment(subject, *at))
+    } else {
+        format!("`{text}`")
+    };
+    if let Some(state) = state_at(*at) {
+        let mut search = Search { subject, state: &state, found: Vec::new() };
+        search.extremum(&subject.signals()[signal.0 as usize]);
+        said.push_str(&names(subject, &search.found));
+    }
+    said
+}
+
+fn moment(subject: &Subject, at: Tick) -> String {
+    match subject.program.scenario.clock {
+        Clock::Steps => format!("step {}", at.0),
+        clock => format!("{} s", words::number(clock.seconds(at))),
+    }
+}
+
+/// `: crowd[3], user`, or nothing.
+fn names(subject: &Subject, who: &[AgentId]) -> String {
+    let agents = &subject.program.scenario.agents;
+    let names: Vec<&str> =
+        who.iter().filter_map(|id| agents.get(id.0 as usize)).map(|agent| agent.name.as_str()).collect();
+    if names.is_empty() { String::new() } else { format!(": {}", names.join(", ")) }
+}
+
+/// A reason in words.
+fn closing(
+    subject: &Subject,
+    reason: &Reason,
+    recording: &Recording<'_>,
+    state_at: &impl Fn(Tick) -> Option<State>,
+) -> String {
+    let word = if reason.value { "holds" } else { "fails" };
+    match &subject.tree.nodes[reason.leaf.0 as usize] {
+        Node::Atom(atom) => {
+            let Some(text) = subject.texts.atoms.get(atom.0 as usize) else { return String::new() };
+            let blamed = |state| blamed(subject, &subject.atoms()[atom.0 as usize], reason.value, &state);
+            let who = state_at(reason.to).map_or_else(Vec::new, blamed);
+            format!("`{text}` {word}{}", names(subject, &who))
+        }
         Node::Compare(..) => {
-            format!("a comparison of numbers over time {}", if reason.value { "holds" } else { "fails" })
+            let Some((text, _)) = subject.texts.comparisons.get(&reason.leaf.0) else { return String::new() };
+            let found = sides(&subject.tree, reason.leaf, reason.to, recording);
+            let signals = found.iter().filter(|source| matches!(source, Source::Signal { .. }));
+            let list: Vec<String> =
+                signals.take(NAMED).map(|source| origin(subject, source, true, state_at)).collect();
+            let because = if list.is_empty() { String::new() } else { format!(": {}", list.join(" and ")) };
+            format!("`{text}` {word}{because}")
         }
         _ => String::new(),
     }
@@ -169,6 +254,14 @@ impl Search<'_> {
 
     /// The member with the smallest or largest value of a fold names itself.
     fn extremum(&mut self, num: &Num) {
+        match num {
+            Num::Combine(_, a, b) => {
+                self.extremum(a);
+                self.extremum(b);
+            }
+            Num::Apply(_, a) => self.extremum(a),
+            _ => {}
+        }
         let Num::Fold(fold, set, body) = num else { return };
         let smallest = match fold {
             crate::model::Fold::Min => true,

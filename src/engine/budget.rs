@@ -32,6 +32,17 @@ impl Budget {
         }
     }
 
+    /// A budget that starts now and ends after so many seconds, for trials that are run ahead.
+    #[allow(clippy::disallowed_methods, reason = "the engine keeps deadlines; trials never see the clock")]
+    pub fn ahead(&self, seconds: f64) -> Self {
+        Self {
+            max_trials: self.max_trials,
+            deadline: Instant::now().checked_add(Duration::from_secs_f64(seconds)),
+            started: self.started,
+            interrupted: AtomicBool::new(self.is_interrupted()),
+        }
+    }
+
     /// Seconds since the call began.
     pub fn elapsed(&self) -> f64 {
         self.started.elapsed().as_secs_f64()

@@ -40,3 +40,10 @@ pub struct Item {
     /// Index of the trial.
     pub index: u64,
 }
+
+impl Item {
+    /// Trials in a row, nobody advised.
+    pub(super) fn run(from: u64, count: u64) -> Vec<Self> {
+        (from..from + count).map(|index| Self { advice: None, index }).collect()
+    }
+}

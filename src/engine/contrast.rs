@@ -4,13 +4,15 @@ use super::budget::Budget;
 use super::cell::{Cell, Item, Reading};
 use super::executor::{Executor, Job};
 use super::fault::Fault;
+use super::forecast::{self, Glimpse};
 use super::outcome::Stop;
 use super::procedure::{outcome, value};
+use super::rehearsal::Rehearsal;
 use super::subject::Subject;
 use super::tally::Tally;
-use super::watch::Watch;
+use super::watch::{Forecast, Watch};
 use crate::compile::methods;
-use crate::compile::study::MeasureKind;
+use crate::compile::study::{MeasureKind, Query};
 use crate::stats::{self, Difference, Mean};
 
 /// The procedure of a comparison.
@@ -21,8 +23,8 @@ enum Procedure {
     Expectation(Mean),
 }
 
-/// A comparison on its way.
-pub(super) struct Contrast {
+/// A comparison that has stopped.
+pub(super) struct Gap {
     /// What each side consumed.
     pub(super) sides: [Tally; 2],
     /// Sums of the values of each side, for expectations.
@@ -49,96 +51,177 @@ pub(super) struct Sides<'s> {
     pub(super) columns: [usize; 2],
 }
 
-/// Runs a comparison.
-pub(super) fn run(
-    sides: &Sides<'_>,
-    kind: &MeasureKind,
-    (within, delta): (Option<f64>, f64),
-    text: &str,
-    seed: u64,
-    executor: &dyn Executor,
-    budget: &Budget,
-    watch: &dyn Watch,
-) -> Result<Contrast, Fault> {
-    let range = match kind {
-        MeasureKind::Expectation { range, .. } => Some(*range),
-        _ => None,
-    };
-    let planned = if within.is_none() { methods::DEFAULT_TRIALS } else { budget.max_trials };
-    let most = planned.min(budget.max_trials);
-    let mut procedure = match range {
-        None => Procedure::Probability(Difference::new(delta, within)?),
-        Some((low, high)) => {
-            let width = high - low;
-            Procedure::Expectation(match within {
-                Some(within) => Mean::within(-width, width, within, delta)?,
-                None => Mean::fixed(-width, width, methods::DEFAULT_TRIALS, delta)?,
-            })
-        }
-    };
-    let jobs = [0, 1].map(|side| Job::new(sides.subjects[side], vec![sides.columns[side]], seed));
-    let mut tallies = [Tally::default(), Tally::default()];
-    let mut sums = [(0.0, 0u64); 2];
-    let mut next = 0u64;
-    let stop = 'sampling: loop {
-        if next >= most {
-            break if within.is_none() && most == planned { Stop::Plan } else { Stop::Cap };
-        }
-        let halt = || if budget.is_interrupted() { Stop::Interrupt } else { Stop::Deadline };
-        if budget.must_stop() {
-            break halt();
-        }
-        let size = (next / 8).max(2 * executor.width(&jobs[0]) as u64).min(most - next);
-        let items: Vec<Item> = (next..next + size).map(|index| Item { advice: None, index }).collect();
-        let first = executor.run(&jobs[0], &items, budget)?;
-        let second = executor.run(&jobs[1], &items, budget)?;
-        for (item, pair) in items.iter().zip(first.rows().zip(second.rows())) {
-            let (Some(a), Some(b)) = pair else { break 'sampling halt() };
-            let (a, b): (&Cell, &Cell) = (&a[0], &b[0]);
-            for (subject, cell) in sides.subjects.into_iter().zip([a, b]) {
-                if cell.reading == Reading::Faulty {
-                    return Err(super::trial::fault(subject, *item, seed));
-                }
+/// A comparison on its way.
+pub(super) struct Contrast<'s> {
+    query: &'s Query,
+    jobs: [Job<'s>; 2],
+    procedure: Procedure,
+    range: Option<(f64, f64)>,
+    within: Option<f64>,
+    delta: f64,
+    ahead: Option<[Rehearsal; 2]>,
+}
+
+impl<'s> Contrast<'s> {
+    /// A comparison of one kind of measure on two sides.
+    pub(super) fn new(
+        query: &'s Query,
+        sides: &Sides<'s>,
+        kind: &MeasureKind,
+        (within, delta): (Option<f64>, f64),
+        seed: u64,
+    ) -> Result<Self, Fault> {
+        let range = match kind {
+            MeasureKind::Expectation { range, .. } => Some(*range),
+            _ => None,
+        };
+        let procedure = match range {
+            None => Procedure::Probability(Difference::new(delta, within)?),
+            Some((low, high)) => {
+                let width = high - low;
+                Procedure::Expectation(match within {
+                    Some(within) => Mean::within(-width, width, within, delta)?,
+                    None => Mean::fixed(-width, width, methods::DEFAULT_TRIALS, delta)?,
+                })
             }
-            for (side, cell) in [a, b].into_iter().enumerate() {
-                tallies[side].add(item.index, cell, range);
-                if let Some(value) = value(cell) {
-                    let (low, high) = range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
-                    sums[side].0 += value.clamp(low, high);
-                    sums[side].1 += 1;
-                }
+        };
+        let jobs = [0, 1].map(|side| Job::new(sides.subjects[side], vec![sides.columns[side]], seed));
+        Ok(Self { query, jobs, procedure, range, within, delta, ahead: None })
+    }
+
+    /// The query.
+    pub(super) fn query(&self) -> &'s Query {
+        self.query
+    }
+
+    /// The subject of a side.
+    pub(super) fn subject(&self, side: usize) -> &'s Subject {
+        self.jobs[side].subject
+    }
+
+    fn planned(&self, budget: &Budget) -> u64 {
+        if self.within.is_none() { methods::DEFAULT_TRIALS } else { budget.max_trials }
+    }
+
+    /// Runs the first pairs, and forecasts from them what the comparison is likely to take.
+    pub(super) fn rehearse(&mut self, executor: &dyn Executor, budget: &Budget) -> Result<Forecast, Fault> {
+        let size = (executor.width(&self.jobs[0]) as u64).min(self.planned(budget)).min(budget.max_trials);
+        let one = |job: &Job<'_>| Rehearsal::run(job, Item::run(0, size), executor, budget);
+        let sides = [one(&self.jobs[0])?, one(&self.jobs[1])?];
+        let mut glimpse = Glimpse::default();
+        for (a, b) in sides[0].cells.rows().zip(sides[1].cells.rows()) {
+            let (Some(a), Some(b)) = (a, b) else { continue };
+            if let (Some(a), Some(b)) = (self.score(&a[0]), self.score(&b[0])) {
+                glimpse.add(a - b);
             }
-            let finished = match &mut procedure {
-                Procedure::Probability(difference) => difference.observe(outcome(a), outcome(b)),
-                Procedure::Expectation(mean) => {
-                    let (low, high) = range.unwrap_or((0.0, 1.0));
-                    let clipped = |cell: &Cell| value(cell).map(|v| v.clamp(low, high));
-                    mean.observe(clipped(a).zip(clipped(b)).map(|(a, b)| a - b))
+        }
+        let seconds: f64 =
+            (0..2).map(|side| sides[side].seconds_per_trial(self.jobs[side].subject.horizon.0)).sum();
+        let width = self.range.map_or(1.0, |(low, high)| high - low);
+        let pairs = match self.within {
+            Some(within) => forecast::contrast(&glimpse, width, within, self.delta),
+            None => methods::DEFAULT_TRIALS,
+        }
+        .min(budget.max_trials);
+        self.ahead = sides.iter().all(Rehearsal::is_complete).then_some(sides);
+        Ok(Forecast {
+            query: self.query.text.clone(),
+            settings: self.query.settings.clone(),
+            trials: 2 * pairs,
+            seconds: pairs as f64 * seconds,
+        })
+    }
+
+    /// What a cell counts for: 0 or 1, or the clipped value.
+    fn score(&self, cell: &Cell) -> Option<f64> {
+        match self.range {
+            Some((low, high)) => value(cell).map(|v| v.clamp(low, high)),
+            None => match outcome(cell) {
+                stats::Outcome::Unresolved => None,
+                held => Some(f64::from(u8::from(held == stats::Outcome::True))),
+            },
+        }
+    }
+
+    /// Runs until the interval is narrow enough, or the pairs are spent.
+    pub(super) fn run(
+        mut self,
+        executor: &dyn Executor,
+        budget: &Budget,
+        watch: &dyn Watch,
+    ) -> Result<Gap, Fault> {
+        let planned = self.planned(budget);
+        let most = planned.min(budget.max_trials);
+        let mut tallies = [Tally::default(), Tally::default()];
+        let mut sums = [(0.0, 0u64); 2];
+        let mut next = 0u64;
+        let stop = 'sampling: loop {
+            if next >= most {
+                break if self.within.is_none() && most == planned { Stop::Plan } else { Stop::Cap };
+            }
+            let halt = || if budget.is_interrupted() { Stop::Interrupt } else { Stop::Deadline };
+            if budget.must_stop() {
+                break halt();
+            }
+            let (items, first, second) = match self.ahead.take() {
+                Some([first, second]) => (first.items, first.cells, second.cells),
+                None => {
+                    let width = executor.width(&self.jobs[0]) as u64;
+                    let items = Item::run(next, (next / 8).max(2 * width).min(most - next));
+                    let first = executor.run(&self.jobs[0], &items, budget)?;
+                    let second = executor.run(&self.jobs[1], &items, budget)?;
+                    (items, first, second)
                 }
             };
-            if finished && within.is_some() {
-                break 'sampling Stop::Width;
+            for (item, pair) in items.iter().zip(first.rows().zip(second.rows())) {
+                let (Some(a), Some(b)) = pair else { break 'sampling halt() };
+                let (a, b): (&Cell, &Cell) = (&a[0], &b[0]);
+                for (job, cell) in self.jobs.iter().zip([a, b]) {
+                    if cell.reading == Reading::Faulty {
+                        return Err(super::trial::fault(job.subject, *item, job.seed));
+                    }
+                }
+                for (side, cell) in [a, b].into_iter().enumerate() {
+                    tallies[side].add(item.index, cell, self.range);
+                    if let Some(value) = value(cell) {
+                        let (low, high) = self.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+                        sums[side].0 += value.clamp(low, high);
+                        sums[side].1 += 1;
+                    }
+                }
+                let scores = self.score(a).zip(self.score(b));
+                let finished = match &mut self.procedure {
+                    Procedure::Probability(difference) => difference.observe(outcome(a), outcome(b)),
+                    Procedure::Expectation(mean) => mean.observe(scores.map(|(a, b)| a - b)),
+                };
+                if finished && self.within.is_some() {
+                    break 'sampling Stop::Width;
+                }
             }
-        }
-        next += size;
-        watch.consumed(text, next, Some(most));
-    };
-    let (interval, estimate, alone, unresolved) = match &procedure {
-        Procedure::Probability(difference) => {
-            let (low, high) = difference.pairs();
-            let estimate = 0.5 * (low.mean() + high.mean());
-            (
-                difference.interval(),
-                estimate,
-                (high.first.min(low.first), low.second.min(high.second)),
-                difference.unresolved(),
-            )
-        }
-        Procedure::Expectation(mean) => {
-            let (low, high) = mean.estimate();
-            (mean.interval(), 0.5 * (low + high), (0, 0), mean.read().1)
-        }
-    };
-    let pairs = tallies[0].counts.trials;
-    Ok(Contrast { sides: tallies, sums, stop, interval, estimate, alone, pairs, unresolved })
+            next += items.len() as u64;
+            watch.consumed(&self.query.text, next, Some(most));
+        };
+        Ok(self.finish(tallies, sums, stop))
+    }
+
+    fn finish(&self, tallies: [Tally; 2], sums: [(f64, u64); 2], stop: Stop) -> Gap {
+        let (interval, estimate, alone, unresolved) = match &self.procedure {
+            Procedure::Probability(difference) => {
+                let (low, high) = difference.pairs();
+                let estimate = 0.5 * (low.mean() + high.mean());
+                (
+                    difference.interval(),
+                    estimate,
+                    (high.first.min(low.first), low.second.min(high.second)),
+                    difference.unresolved(),
+                )
+            }
+            Procedure::Expectation(mean) => {
+                let (low, high) = mean.estimate();
+                (mean.interval(), 0.5 * (low + high), (0, 0), mean.read().1)
+            }
+        };
+        let pairs = tallies[0].counts.trials;
+        Gap { sides: tallies, sums, stop, interval, estimate, alone, pairs, unresolved }
+    }
 }

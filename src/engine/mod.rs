@@ -1,14 +1,17 @@
 //! Floor 5: trials, executors, and the outcomes of queries.
 
+mod answer;
 mod blame;
 pub mod budget;
 pub mod cell;
 mod contrast;
 pub mod executor;
 mod fault;
+mod forecast;
 pub mod outcome;
 mod procedure;
 mod race;
+mod rehearsal;
 mod session;
 mod standing;
 pub mod subject;
@@ -23,6 +26,6 @@ mod worker;
 pub use budget::Budget;
 pub use executor::{Executor, Threads};
 pub use fault::Fault;
-pub use session::{Call, crowded, run};
+pub use session::{Call, crowded, forecast, run};
 pub use subject::Subject;
-pub use watch::{Forecast, Nobody, Watch};
+pub use watch::{Forecast, Nobody, Outlook, Watch};

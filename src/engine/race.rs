@@ -5,14 +5,16 @@
 
 use super::budget::Budget;
 use super::cell::{Item, Reading};
-use super::executor::{Executor, Job};
+use super::executor::{Cells, Executor, Job};
 use super::fault::Fault;
+use super::forecast::{self, Glimpse};
 use super::outcome::Stop;
 use super::procedure::{outcome, value};
+use super::rehearsal::Rehearsal;
 use super::subject::Subject;
 use super::tally::Tally;
-use super::watch::Watch;
-use crate::compile::study::{MeasureKind, Ranking};
+use super::watch::{Forecast, Watch};
+use crate::compile::study::{MeasureKind, Query, Ranking};
 use crate::stats::ranking::{Allocation, Booleans, Choice, Each, Race, Scores, Share};
 use crate::stats::{self, Mean, Outcome};
 
@@ -133,44 +135,53 @@ impl Procedure {
     }
 }
 
-/// Runs a ranking.
-pub(super) fn run(
-    field: &Field<'_>,
-    text: &str,
-    seed: u64,
-    executor: &dyn Executor,
-    budget: &Budget,
-    watch: &dyn Watch,
-) -> Result<Podium, Fault> {
-    let arms = field.deviations.len();
-    let mut procedure = Procedure::new(field)?;
-    let range = match &field.kind {
-        MeasureKind::Expectation { range, .. } => Some(*range),
-        _ => None,
-    };
-    // Each option's interval is one of as many that hold jointly.
-    let delta = field.rule.1 / arms as f64;
-    let mut means: Vec<Mean> = match range {
-        Some((low, high)) => (0..arms)
-            .map(|_| Mean::fixed(low, high, super::budget::DEFAULT_TRIALS, delta))
-            .collect::<Result<_, _>>()?,
-        None => Vec::new(),
-    };
-    let job = Job::new(field.subject, vec![field.column], seed);
-    let mut tallies = vec![Tally::default(); arms];
-    let stop = 'sampling: loop {
-        let shares = procedure.next_round();
-        if shares.is_empty() || procedure.finished() {
-            break if matches!(procedure, Procedure::Each(_)) { Stop::Plan } else { Stop::Width };
-        }
-        let halt = || if budget.is_interrupted() { Stop::Interrupt } else { Stop::Deadline };
-        if budget.must_stop() {
-            break halt();
-        }
-        if shares.iter().any(|share| share.to > budget.max_trials) {
-            break Stop::Cap;
-        }
-        // All options advance side by side, so that a deadline finds every one of them as far as the others.
+/// A ranking on its way.
+pub(super) struct Contest<'s> {
+    query: &'s Query,
+    field: Field<'s>,
+    job: Job<'s>,
+    procedure: Procedure,
+    range: Option<(f64, f64)>,
+    ahead: Option<Rehearsal>,
+}
+
+/// What a round runs: the items, and for each share of it their places.
+struct Round {
+    shares: Vec<Share>,
+    items: Vec<Item>,
+    places: Vec<Vec<usize>>,
+}
+
+impl<'s> Contest<'s> {
+    /// A ranking of the options of a field.
+    pub(super) fn new(query: &'s Query, field: Field<'s>, seed: u64) -> Result<Self, Fault> {
+        let procedure = Procedure::new(&field)?;
+        let range = match &field.kind {
+            MeasureKind::Expectation { range, .. } => Some(*range),
+            _ => None,
+        };
+        let job = Job::new(field.subject, vec![field.column], seed);
+        Ok(Self { query, field, job, procedure, range, ahead: None })
+    }
+
+    /// The query.
+    pub(super) fn query(&self) -> &'s Query {
+        self.query
+    }
+
+    /// The field.
+    pub(super) fn field(&self) -> &Field<'s> {
+        &self.field
+    }
+
+    fn scale(&self) -> f64 {
+        self.range.map_or(1.0, |(low, high)| high - low)
+    }
+
+    /// The next round. All options advance side by side, so that a deadline finds every one of them as far as
+    /// the others.
+    fn round(&self) -> Round {
+        let shares = self.procedure.next_round();
         let most = shares.iter().map(|share| share.to - share.from).max().unwrap_or(0);
         let mut items: Vec<Item> = Vec::new();
         let mut places: Vec<Vec<usize>> = vec![Vec::new(); shares.len()];
@@ -178,22 +189,144 @@ pub(super) fn run(
             for (share, places) in shares.iter().zip(&mut places) {
                 if share.from + step < share.to {
                     places.push(items.len());
-                    items.push(Item { advice: Some((field.moves, share.arm)), index: share.from + step });
+                    items
+                        .push(Item { advice: Some((self.field.moves, share.arm)), index: share.from + step });
                 }
             }
         }
-        let rows = executor.run(&job, &items, budget)?;
+        Round { shares, items, places }
+    }
+
+    /// Runs the first round, and forecasts from it what the ranking is likely to take.
+    pub(super) fn rehearse(&mut self, executor: &dyn Executor, budget: &Budget) -> Result<Forecast, Fault> {
+        let round = self.round();
+        let affordable = round.shares.iter().all(|share| share.to <= budget.max_trials);
+        let items = if affordable { round.items } else { Vec::new() };
+        let rehearsal = Rehearsal::run(&self.job, items, executor, budget)?;
+        let arms = self.field.deviations.len();
+        let range = self.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+        let mut glimpses = vec![Glimpse::default(); arms];
+        let mut readings: Vec<Vec<Option<f64>>> = vec![Vec::new(); arms];
+        for (share, places) in round.shares.iter().zip(&round.places) {
+            for row in places.iter().map(|&place| rehearsal.cells.row(place)) {
+                let mut one = Glimpse::default();
+                if let Some([cell, ..]) = row {
+                    glimpses[share.arm].read(cell, range);
+                    one.read(cell, range);
+                }
+                readings[share.arm].push(one.only());
+            }
+        }
+        let leader =
+            (0..arms).max_by(|a, b| glimpses[*a].mean().total_cmp(&glimpses[*b].mean())).unwrap_or(0);
+        let differences: Vec<Glimpse> = (0..arms)
+            .map(|arm| {
+                let mut glimpse = Glimpse::default();
+                let pairs = readings[leader].iter().zip(&readings[arm]);
+                pairs.filter_map(|(a, b)| a.zip(*b)).for_each(|(a, b)| glimpse.add(a - b));
+                glimpse
+            })
+            .collect();
+        let most = (arms as u64).saturating_mul(budget.max_trials);
+        let trials = forecast::race(&glimpses, &differences, self.scale(), self.field.rule);
+        let trials = trials.max(rehearsal.items.len() as u64).min(most);
+        let seconds = rehearsal.seconds_per_trial(self.job.subject.horizon.0);
+        self.ahead = (affordable && rehearsal.is_complete()).then_some(rehearsal);
+        Ok(Forecast {
+            query: self.query.text.clone(),
+            settings: self.query.settings.clone(),
+            trials,
+            seconds: trials as f64 * seconds,
+        })
+    }
+
+    /// Runs until the ranking is certified, or the budget is spent.
+    pub(super) fn run(
+        &mut self,
+        executor: &dyn Executor,
+        budget: &Budget,
+        watch: &dyn Watch,
+    ) -> Result<Podium, Fault> {
+        let arms = self.field.deviations.len();
+        // Each option's interval is one of as many that hold jointly.
+        let delta = self.field.rule.1 / arms as f64;
+        let mut means: Vec<Mean> = match self.range {
+            Some((low, high)) => (0..arms)
+                .map(|_| Mean::fixed(low, high, super::budget::DEFAULT_TRIALS, delta))
+                .collect::<Result<_, _>>()?,
+            None => Vec::new(),
+        };
+        let mut tallies = vec![Tally::default(); arms];
+        let stop = loop {
+            let round = self.round();
+            if round.shares.is_empty() || self.procedure.finished() {
+                break if matches!(self.procedure, Procedure::Each(_)) { Stop::Plan } else { Stop::Width };
+            }
+            let halt = || if budget.is_interrupted() { Stop::Interrupt } else { Stop::Deadline };
+            if budget.must_stop() {
+                break halt();
+            }
+            if round.shares.iter().any(|share| share.to > budget.max_trials) {
+                break Stop::Cap;
+            }
+            let rows = match self.ahead.take() {
+                Some(ahead) => ahead.cells,
+                None => executor.run(&self.job, &round.items, budget)?,
+            };
+            if !self.read(&round, &rows, &mut tallies, &mut means)? {
+                break halt();
+            }
+            watch.consumed(&self.query.text, tallies.iter().map(|t| t.counts.trials).sum(), None);
+        };
+        let choice = self.procedure.choice(&self.field.deviations);
+        let values = (0..arms)
+            .map(|arm| match means.get(arm) {
+                Some(mean) => {
+                    let (low, high) = mean.estimate();
+                    (0.5 * (low + high), mean.interval())
+                }
+                None => {
+                    let counts = tallies[arm].counts;
+                    let reading = |successes: u64| {
+                        let read = stats::Counts { successes, failures: counts.trials - successes };
+                        stats::sequence::interval(read, delta)
+                    };
+                    let hull = reading(counts.successes).hull(reading(counts.successes + counts.unresolved));
+                    (super::procedure::share(counts), hull)
+                }
+            })
+            .collect();
+        Ok(Podium {
+            tallies,
+            values,
+            live: self.procedure.live(arms),
+            finished: self.procedure.finished(),
+            choice,
+            stop,
+            scale: self.scale(),
+        })
+    }
+
+    /// Shows a round to the procedure, option by option; false where time ended it.
+    fn read(
+        &mut self,
+        round: &Round,
+        rows: &Cells,
+        tallies: &mut [Tally],
+        means: &mut [Mean],
+    ) -> Result<bool, Fault> {
         let mut complete = true;
-        for (share, places) in shares.iter().zip(&places) {
+        for (share, places) in round.shares.iter().zip(&round.places) {
             let mut cells = Vec::with_capacity(places.len());
             let mut broken = false;
             for &place in places {
                 match rows.row(place) {
                     Some(row) if !broken => {
+                        let item = round.items[place];
                         if row[0].reading == Reading::Faulty {
-                            return Err(super::trial::fault(field.subject, items[place], seed));
+                            return Err(super::trial::fault(self.field.subject, item, self.job.seed));
                         }
-                        tallies[share.arm].add(items[place].index, &row[0], range);
+                        tallies[share.arm].add(item.index, &row[0], self.range);
                         if let Some(mean) = means.get_mut(share.arm) {
                             mean.observe(value(&row[0]));
                         }
@@ -203,38 +336,8 @@ pub(super) fn run(
                 }
             }
             complete &= !broken;
-            procedure.feed(share.arm, &cells)?;
+            self.procedure.feed(share.arm, &cells)?;
         }
-        if !complete {
-            break 'sampling halt();
-        }
-        watch.consumed(text, tallies.iter().map(|t| t.counts.trials).sum(), None);
-    };
-    let choice = procedure.choice(&field.deviations);
-    let values = (0..arms)
-        .map(|arm| match means.get(arm) {
-            Some(mean) => {
-                let (low, high) = mean.estimate();
-                (0.5 * (low + high), mean.interval())
-            }
-            None => {
-                let counts = tallies[arm].counts;
-                let reading = |successes: u64| {
-                    let read = stats::Counts { successes, failures: counts.trials - successes };
-                    stats::sequence::interval(read, delta)
-                };
-                let hull = reading(counts.successes).hull(reading(counts.successes + counts.unresolved));
-                (super::procedure::share(counts), hull)
-            }
-        })
-        .collect();
-    Ok(Podium {
-        tallies,
-        values,
-        live: procedure.live(arms),
-        finished: procedure.finished(),
-        choice,
-        stop,
-        scale: range.map_or(1.0, |(low, high)| high - low),
-    })
+        Ok(complete)
+    }
 }

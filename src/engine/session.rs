@@ -1,23 +1,20 @@
-//! A whole call: worlds made ready, queries run, results put into words.
+//! A whole call: worlds made ready, queries put into groups that share trials, forecast, and run.
 
+use super::answer::Answers;
 use super::budget::Budget;
-use super::contrast::{self, Sides};
+use super::contrast::{Contrast, Sides};
 use super::executor::Executor;
 use super::fault::Fault;
-use super::outcome::{Failure, Kind, QueryResult, Run, Stop, Verdict};
-use super::procedure::{self, Procedure};
-use super::race::{self, Field};
-use super::standing;
+use super::forecast::Glimpse;
+use super::outcome::{Failure, QueryResult, Run};
+use super::procedure::Procedure;
+use super::race::{Contest, Field};
 use super::subject::Subject;
-use super::survey::{self, Inquiry};
+use super::survey::{Inquiry, Survey};
 use super::tally::Tally;
-use super::trial;
-use super::watch::Watch;
-use super::witness;
-use super::words;
+use super::watch::{Outlook, Watch};
 use crate::compile::study::{Ask, Measure, MeasureKind, Query, Study};
 use crate::kernel::start;
-use crate::stats::{Coverage, Decision};
 
 /// What the command line adds to a study.
 pub struct Call<'c> {
@@ -43,30 +40,17 @@ pub fn run(
     budget: &Budget,
     watch: &dyn Watch,
 ) -> Result<Run, Fault> {
-    let asked: Vec<&Query> =
-        study.queries.iter().filter(|q| call.only.is_empty() || call.only.contains(&q.index)).collect();
-    let mut subjects: Vec<Option<Subject>> = study.worlds.iter().map(|_| None).collect();
-    for query in &asked {
-        for world in worlds(&query.ask) {
-            if subjects[world].is_none() {
-                let subject = Subject::new(&study.worlds[world]);
-                let crowding = start::check_area(&subject.program.scenario);
-                if let Some(first) = crowding.first() {
-                    return Err(Fault::Placement(crowded(&subject.program.scenario, first)));
-                }
-                subjects[world] = Some(subject);
-            }
-        }
+    let asked = asked(study, call);
+    let subjects = subjects(study, &asked)?;
+    let session = Session { call, budget, subjects: &subjects };
+    let mut groups = session.groups(&asked)?;
+    if let Some(outlook) = outlook(&mut groups, executor, budget)? {
+        watch.forecast(&outlook);
     }
-    let session = Session { call, executor, budget, watch, subjects: &subjects };
     let mut results: Vec<Option<QueryResult>> = asked.iter().map(|_| None).collect();
     let mut failure = None;
-    for at in 0..asked.len() {
-        if results[at].is_some() {
-            continue;
-        }
-        let answered = session.answer(&asked, at, &results);
-        match answered {
+    for group in groups {
+        match session.answer(group, executor, watch) {
             Ok(found) => {
                 for (k, result) in found {
                     results[k] = Some(result);
@@ -92,6 +76,82 @@ pub fn run(
         replay: format!("{} --seed {}", call.command, call.seed),
         elapsed_s: budget.elapsed(),
     })
+}
+
+/// What a study is likely to take, from the first trials of each of its queries.
+pub fn forecast(
+    study: &Study,
+    call: &Call<'_>,
+    executor: &dyn Executor,
+    budget: &Budget,
+) -> Result<Outlook, Fault> {
+    let asked = asked(study, call);
+    let subjects = subjects(study, &asked)?;
+    let session = Session { call, budget, subjects: &subjects };
+    let mut groups = session.groups(&asked)?;
+    Ok(outlook(&mut groups, executor, budget)?.unwrap_or_default())
+}
+
+fn asked<'s>(study: &'s Study, call: &Call<'_>) -> Vec<&'s Query> {
+    study.queries.iter().filter(|q| call.only.is_empty() || call.only.contains(&q.index)).collect()
+}
+
+/// The worlds that are asked about, made ready.
+fn subjects(study: &Study, asked: &[&Query]) -> Result<Vec<Option<Subject>>, Fault> {
+    let mut subjects: Vec<Option<Subject>> = study.worlds.iter().map(|_| None).collect();
+    for query in asked {
+        for world in worlds(&query.ask) {
+            if subjects[world].is_none() {
+                let subject = Subject::new(&study.worlds[world]);
+                let crowding = start::check_area(&subject.program.scenario);
+                if let Some(first) = crowding.first() {
+                    return Err(Fault::Placement(crowded(&subject.program.scenario, first)));
+                }
+                subjects[world] = Some(subject);
+            }
+        }
+    }
+    Ok(subjects)
+}
+
+/// Rehearses each group. With a deadline there is nothing to forecast, and no time to spend on it.
+fn outlook(
+    groups: &mut [Group<'_>],
+    executor: &dyn Executor,
+    budget: &Budget,
+) -> Result<Option<Outlook>, Fault> {
+    if budget.has_deadline() {
+        return Ok(None);
+    }
+    let mut outlook = Outlook::default();
+    for group in groups {
+        if budget.is_interrupted() {
+            return Ok(None);
+        }
+        let forecasts = match &mut group.sampling {
+            Sampling::Survey(survey) => survey.rehearse(executor, budget)?,
+            Sampling::Contrast(contrast) => vec![contrast.rehearse(executor, budget)?],
+            Sampling::Race(contest) => vec![contest.rehearse(executor, budget)?],
+        };
+        // Checks and estimates of one scenario share their trials.
+        outlook.seconds += forecasts.iter().map(|f| f.seconds).fold(0.0, f64::max);
+        outlook.queries.extend(forecasts);
+    }
+    Ok(Some(outlook))
+}
+
+/// Queries that are answered together, by their places among those asked.
+struct Group<'q> {
+    places: Vec<usize>,
+    sampling: Sampling<'q>,
+}
+
+/// How they are answered.
+#[allow(clippy::large_enum_variant, reason = "there are as many as queries")]
+enum Sampling<'q> {
+    Survey(Survey<'q>),
+    Contrast(Contrast<'q>),
+    Race(Contest<'q>),
 }
 
 /// More people than fit, in words.
@@ -129,6 +189,7 @@ fn surveyed(ask: &Ask) -> Option<usize> {
     }
 }
 
+/// The range of an expectation.
 fn range(measure: &Measure) -> Option<(f64, f64)> {
     match measure.kind {
         MeasureKind::Expectation { range, .. } => Some(range),
@@ -136,258 +197,86 @@ fn range(measure: &Measure) -> Option<(f64, f64)> {
     }
 }
 
-fn unit(measure: &Measure) -> String {
-    match measure.kind {
-        MeasureKind::Probability => String::new(),
-        MeasureKind::Expectation { dimension, .. } | MeasureKind::Quantile { dimension, .. } => {
-            dimension.to_string()
-        }
-    }
-}
-
 struct Session<'a> {
     call: &'a Call<'a>,
-    executor: &'a dyn Executor,
     budget: &'a Budget,
-    watch: &'a dyn Watch,
     subjects: &'a [Option<Subject>],
 }
 
-impl Session<'_> {
-    fn subject(&self, world: usize) -> Result<&Subject, Fault> {
+impl<'a> Session<'a> {
+    fn subject(&self, world: usize) -> Result<&'a Subject, Fault> {
         self.subjects.get(world).and_then(Option::as_ref).ok_or(Fault::Unsuitable)
     }
 
-    /// The results of a query, and of those that are answered together with it.
-    fn answer(
-        &self,
-        asked: &[&Query],
-        at: usize,
-        results: &[Option<QueryResult>],
-    ) -> Result<Vec<(usize, QueryResult)>, Fault> {
-        match &asked[at].ask {
-            Ask::Check { measure, .. } | Ask::Estimate { measure, .. } => {
-                // All checks and estimates of a world read the same trials.
-                let world = measure.target.world;
-                let together: Vec<usize> = (at..asked.len())
-                    .filter(|&k| results[k].is_none() && surveyed(&asked[k].ask) == Some(world))
-                    .collect();
-                let queries: Vec<&Query> = together.iter().map(|&k| asked[k]).collect();
-                Ok(together.into_iter().zip(self.survey(&queries, world)?).collect())
+    /// The queries in groups, in the order in which the first of each was written.
+    fn groups<'q>(&self, asked: &[&'q Query]) -> Result<Vec<Group<'q>>, Fault>
+    where
+        'a: 'q,
+    {
+        let mut groups = Vec::new();
+        let mut taken = vec![false; asked.len()];
+        for (at, &query) in asked.iter().enumerate() {
+            if taken[at] {
+                continue;
             }
-            Ask::Compare { .. } => Ok(vec![(at, self.compare(asked[at])?)]),
-            Ask::Rank { .. } => Ok(vec![(at, self.rank(asked[at])?)]),
-        }
-    }
-
-    /// What is known of a query before its first trial.
-    fn blank(&self, query: &Query, kind: Kind) -> QueryResult {
-        let (file, line) = (self.call.place)(query.span);
-        QueryResult {
-            name: query.name.clone(),
-            file,
-            line,
-            settings: query.settings.clone(),
-            within: query.within.clone(),
-            ..QueryResult::new(query.index, kind, query.text.clone())
-        }
-    }
-
-    fn replay(&self, query: &Query, trials: u64) -> String {
-        format!(
-            "{} --only {} --seed {} --max-trials {trials}",
-            self.call.command, query.index, self.call.seed
-        )
-    }
-
-    fn survey(&self, queries: &[&Query], world: usize) -> Result<Vec<QueryResult>, Fault> {
-        let subject = self.subject(world)?;
-        let mut inquiries = Vec::with_capacity(queries.len());
-        for query in queries {
-            let (Ask::Check { measure, .. } | Ask::Estimate { measure, .. }) = &query.ask else {
-                return Err(Fault::Unsuitable);
-            };
-            inquiries.push(Inquiry {
-                query,
-                column: measure.target.column,
-                range: range(measure),
-                procedure: Procedure::new(&query.ask, self.call.seed)?,
-                tally: Tally::default(),
-                stop: None,
-                seconds: 0.0,
-            });
-        }
-        survey::run(subject, &mut inquiries, self.call.seed, self.executor, self.budget, self.watch)?;
-        inquiries.into_iter().map(|inquiry| self.result(subject, inquiry)).collect()
-    }
-
-    fn result(&self, subject: &Subject, mut inquiry: Inquiry<'_>) -> Result<QueryResult, Fault> {
-        let query = inquiry.query;
-        let counts = inquiry.tally.counts;
-        let (measure, kind) = match &query.ask {
-            Ask::Check { measure, .. } => (measure, Kind::Check),
-            Ask::Estimate { measure, .. } => (measure, Kind::Estimate),
-            Ask::Compare { .. } | Ask::Rank { .. } => return Err(Fault::Unsuitable),
-        };
-        let mut result = self.blank(query, kind);
-        let stop = inquiry.stop.unwrap_or(Stop::Cap);
-        result.method = procedure::method(&query.ask, Some(&inquiry.procedure));
-        result.unit = unit(measure);
-        result.stopped_by = stop;
-        result.replay = self.replay(query, counts.trials);
-        result.elapsed_s = inquiry.seconds;
-        let subject_words = measured_words(query, measure);
-        if let Some((interval, coverage, error)) = inquiry.procedure.interval(counts) {
-            result.estimate = Some(interval.estimate);
-            result.low = interval.low;
-            result.high = interval.high;
-            result.interval = words::interval(coverage, error);
-            if matches!(measure.kind, MeasureKind::Quantile { .. }) && interval.high.is_infinite() {
-                result.censored = Some(subject.program.scenario.clock.seconds(subject.horizon));
-            }
-            if kind == Kind::Estimate {
-                let claim = match (result.censored, interval.low.is_infinite(), interval.high.is_infinite()) {
-                    (Some(horizon), true, true) if interval.low > 0.0 => {
-                        format!("> {}", words::quantity(horizon, &result.unit))
+            let (places, sampling) = match &query.ask {
+                Ask::Check { measure, .. } | Ask::Estimate { measure, .. } => {
+                    // All checks and estimates of a world read the same trials.
+                    let world = measure.target.world;
+                    let together: Vec<usize> =
+                        (at..asked.len()).filter(|&k| surveyed(&asked[k].ask) == Some(world)).collect();
+                    for &k in &together {
+                        taken[k] = true;
                     }
-                    (Some(_), false, true) => format!(">= {}", words::quantity(interval.low, &result.unit)),
-                    _ => format!("in {}", words::ends(interval.low, interval.high, &result.unit)),
-                };
-                result.certifies = format!("{subject_words} {claim}, error at most {}", words::number(error));
-                let fixed = coverage == Coverage::FixedSize;
-                if fixed && matches!(stop, Stop::Deadline | Stop::Interrupt) {
-                    result.warnings.push(
-                        "the interval is for a number of trials fixed in advance, but sampling was cut short"
-                            .to_owned(),
-                    );
+                    let inquiries =
+                        together.iter().map(|&k| self.inquiry(asked[k])).collect::<Result<_, _>>()?;
+                    (together, Sampling::Survey(Survey::new(self.subject(world)?, inquiries, self.call.seed)))
                 }
-            }
-        }
-        if let Ask::Check { at_least, .. } = &query.ask {
-            let decision = inquiry.procedure.decision();
-            result.verdict = Some(match decision {
-                Some(Decision::Above) if *at_least => Verdict::Satisfied,
-                Some(Decision::Below) if !*at_least => Verdict::Satisfied,
-                Some(Decision::Above | Decision::Below) => Verdict::Violated,
-                Some(Decision::Within) | None => Verdict::Undecided,
-            });
-            result.certifies = match inquiry.procedure.statement() {
-                Some(statement) => words::statement(&subject_words, &statement, &result.unit),
-                None => format!(
-                    "{subject_words} in {}, error at most {}",
-                    words::ends(result.low, result.high, &result.unit),
-                    words::number(procedure::BESIDE)
-                ),
+                Ask::Compare { .. } => (vec![at], Sampling::Contrast(self.contrast(query)?)),
+                Ask::Rank { .. } => (vec![at], Sampling::Race(self.contest(query)?)),
             };
-            if inquiry.procedure.split() {
-                result.warnings.push(
-                    "unresolved trials decide: read as failures and as successes they give opposite verdicts"
-                        .to_owned(),
-                );
-            }
+            groups.push(Group { places, sampling });
         }
-        result.distribution = inquiry.procedure.distribution();
-        self.tell(&mut result, subject, &inquiry.tally, measure.target.column);
-        if matches!(measure.kind, MeasureKind::Probability) {
-            let first = [inquiry.tally.first[1], inquiry.tally.first[0]];
-            result.witnesses =
-                witness::find(subject, measure.target.column, None, first, self.call, &query.settings);
-        }
-        Ok(result)
+        Ok(groups)
     }
 
-    /// Counts, and what they warn of.
-    fn tell(&self, result: &mut QueryResult, subject: &Subject, tally: &Tally, column: usize) {
-        result.counts = tally.counts;
-        result.steps = tally.steps;
-        result.clipped = tally.clipped;
-        result.shrunk = tally.shrunk;
-        if tally.counts.trials > 0
-            && let Ok(monitor) = subject.monitor(column)
-        {
-            let implications = monitor.antecedents().count();
-            let idle = (0..implications.min(64)).filter(|k| tally.triggered >> k & 1 == 0).count();
-            if idle > 0 {
-                let which = if implications == 1 {
-                    "the implication in it was".to_owned()
-                } else {
-                    format!("{idle} of its {implications} implications were")
-                };
-                result.warnings.push(format!(
-                    "{which} never triggered: the left side was true in none of {} trials",
-                    tally.counts.trials
-                ));
-            }
-        }
-        if tally.counts.unresolved > 0 {
-            let first = tally.first[2].map_or(String::new(), |index| {
-                format!(
-                    "; see trial {index}: {} --trial {index} --seed {}",
-                    self.call.simulate, self.call.seed
-                )
-            });
-            let full = tally.first[2].and_then(|index| trial::overrun(subject, index, self.call.seed));
-            let why = full.unwrap_or_else(|| {
-                "somebody left every human speed, or a mean was over nobody; a smaller step may help"
-                    .to_owned()
-            });
-            result.warnings.push(format!("{} trials are unresolved: {why}{first}", tally.counts.unresolved));
-        }
-    }
-
-    fn compare(&self, query: &Query) -> Result<QueryResult, Fault> {
-        let Ask::Compare { first, second, settings, within, delta } = &query.ask else {
+    fn inquiry<'q>(&self, query: &'q Query) -> Result<Inquiry<'q>, Fault> {
+        let (Ask::Check { measure, .. } | Ask::Estimate { measure, .. }) = &query.ask else {
             return Err(Fault::Unsuitable);
         };
-        let started = self.budget.elapsed();
+        Ok(Inquiry {
+            query,
+            column: measure.target.column,
+            range: range(measure),
+            procedure: Procedure::new(&query.ask, self.call.seed)?,
+            tally: Tally::default(),
+            glimpse: Glimpse::default(),
+            stop: None,
+            seconds: 0.0,
+        })
+    }
+
+    fn contrast<'q>(&self, query: &'q Query) -> Result<Contrast<'q>, Fault>
+    where
+        'a: 'q,
+    {
+        let Ask::Compare { first, second, within, delta, .. } = &query.ask else {
+            return Err(Fault::Unsuitable);
+        };
         let sides = Sides {
             subjects: [self.subject(first.target.world)?, self.subject(second.target.world)?],
             columns: [first.target.column, second.target.column],
         };
-        let contrast = contrast::run(
-            &sides,
-            &first.kind,
-            (*within, *delta),
-            &query.text,
-            self.call.seed,
-            self.executor,
-            self.budget,
-            self.watch,
-        )?;
-        let mut result = self.blank(query, Kind::Compare);
-        let unit = unit(first);
-        result.method = procedure::method(&query.ask, None);
-        result.estimate = (contrast.pairs > 0).then_some(contrast.estimate);
-        result.low = contrast.interval.low;
-        result.high = contrast.interval.high;
-        result.interval = words::interval(contrast.interval.coverage, contrast.interval.error);
-        result.stopped_by = contrast.stop;
-        result.replay = self.replay(query, contrast.pairs);
-        let joined = total(&contrast.sides);
-        self.tell(&mut result, sides.subjects[0], &joined, sides.columns[0]);
-        let label = |settings: &[(String, String)]| {
-            settings.iter().map(|(name, value)| format!("{name} = {value}")).collect::<Vec<_>>().join(", ")
-        };
-        let labels = [label(&settings[0]), label(&settings[1])];
-        let name = measured_words(query, first);
-        result.certifies = format!(
-            "{name} under {} less that under {} in {}, error at most {}",
-            labels[0],
-            labels[1],
-            words::ends(result.low, result.high, &unit),
-            words::number(*delta)
-        );
-        result.unit = unit;
-        result.compare = Some(standing::sides(&contrast, &labels, *delta));
-        result.elapsed_s = self.budget.elapsed() - started;
-        Ok(result)
+        Contrast::new(query, &sides, &first.kind, (*within, *delta), self.call.seed)
     }
 
-    fn rank(&self, query: &Query) -> Result<QueryResult, Fault> {
+    fn contest<'q>(&self, query: &'q Query) -> Result<Contest<'q>, Fault>
+    where
+        'a: 'q,
+    {
         let Ask::Rank { moves, measure, epsilon, delta, ranking } = &query.ask else {
             return Err(Fault::Unsuitable);
         };
-        let started = self.budget.elapsed();
         let subject = self.subject(measure.target.world)?;
         let declared = &subject.program.scenario.moves[*moves];
         let field = Field {
@@ -398,70 +287,26 @@ impl Session<'_> {
             kind: measure.kind.clone(),
             rule: (*epsilon, *delta, *ranking),
         };
-        let podium = race::run(&field, &query.text, self.call.seed, self.executor, self.budget, self.watch)?;
-        let mut result = self.blank(query, Kind::Rank);
-        result.method = procedure::method(&query.ask, None);
-        result.unit = unit(measure);
-        result.stopped_by = podium.stop;
-        let most = podium.tallies.iter().map(|t| t.counts.trials).max().unwrap_or(0);
-        result.replay = self.replay(query, most);
-        let joined = total(&podium.tallies);
-        self.tell(&mut result, subject, &joined, measure.target.column);
-        result.clipped = joined.clipped;
-        let labels: Vec<&str> = declared.options.iter().map(|(label, _)| label.as_str()).collect();
-        let ranked = standing::ranked(&podium, &labels);
-        let gap = ranked.gap;
-        let score = measured_words(query, measure);
-        result.certifies = if gap < podium.scale {
-            format!(
-                "{score} of `{}` is within {} of the best, error at most {}",
-                ranked.choice,
-                words::quantity(words::at_most(gap), &result.unit),
-                words::number(*delta)
-            )
-        } else {
-            format!("nothing: `{}` has the best score so far", ranked.choice)
+        Contest::new(query, field, self.call.seed)
+    }
+
+    /// The results of a group, by the places of its queries.
+    fn answer(
+        &self,
+        group: Group<'_>,
+        executor: &dyn Executor,
+        watch: &dyn Watch,
+    ) -> Result<Vec<(usize, QueryResult)>, Fault> {
+        let Group { places, sampling } = group;
+        let answers = Answers { call: self.call, budget: self.budget };
+        let results = match sampling {
+            Sampling::Survey(mut survey) => {
+                survey.run(executor, self.budget, watch)?;
+                answers.survey(survey)?
+            }
+            Sampling::Contrast(contrast) => vec![answers.contrast(contrast, executor, watch)?],
+            Sampling::Race(contest) => vec![answers.race(contest, executor, watch)?],
         };
-        let chosen = &ranked.options[0].value;
-        result.estimate = Some(chosen.estimate);
-        result.low = chosen.low;
-        result.high = chosen.high;
-        result.interval = format!("{}, all options jointly", words::interval(Coverage::TimeUniform, *delta));
-        if matches!(measure.kind, MeasureKind::Probability) {
-            let arm = podium.choice.arm;
-            let first = [podium.tallies[arm].first[1], podium.tallies[arm].first[0]];
-            result.witnesses =
-                witness::find(subject, field.column, Some((*moves, arm)), first, self.call, &query.settings);
-        }
-        result.rank = Some(ranked);
-        result.elapsed_s = self.budget.elapsed() - started;
-        Ok(result)
+        Ok(places.into_iter().zip(results).collect())
     }
-}
-
-/// The measure as one would say it: `P(safe)`.
-fn measured_words(query: &Query, measure: &Measure) -> String {
-    words::measured(
-        &query.text,
-        match measure.kind {
-            MeasureKind::Probability => 'P',
-            MeasureKind::Expectation { .. } => 'E',
-            MeasureKind::Quantile { .. } => 'Q',
-        },
-    )
-}
-
-fn total(tallies: &[Tally]) -> Tally {
-    let mut sum = Tally::default();
-    for tally in tallies {
-        sum.counts.trials += tally.counts.trials;
-        sum.counts.successes += tally.counts.successes;
-        sum.counts.failures += tally.counts.failures;
-        sum.counts.unresolved += tally.counts.unresolved;
-        sum.steps += tally.steps;
-        sum.clipped += tally.clipped;
-        sum.shrunk += tally.shrunk;
-        sum.triggered |= tally.triggered;
-    }
-    sum
 }

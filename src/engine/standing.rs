@@ -1,12 +1,12 @@
 //! How options and sides stand: the tables of rankings and comparisons.
 
-use super::contrast::Contrast;
+use super::contrast::Gap;
 use super::outcome::{Comparison, Counts, Interval, RankedOption, Ranking, Side, Status};
 use super::procedure;
 use super::race::Podium;
 
 /// Both sides of a comparison and their difference, with intervals.
-pub(super) fn sides(contrast: &Contrast, labels: &[String; 2], delta: f64) -> Comparison {
+pub(super) fn sides(contrast: &Gap, labels: &[String; 2], delta: f64) -> Comparison {
     let side = |at: usize| {
         let counts = contrast.sides[at].counts;
         let (sum, n) = contrast.sums[at];

@@ -1,7 +1,7 @@
 //! A world made ready to run: a program of the kernel and what is observed in it.
 
 use crate::base::tick::Tick;
-use crate::compile::study::{Root, World};
+use crate::compile::study::{Root, Texts, World};
 use crate::kernel::{Code, Program};
 use crate::logic::{Invalid, Monitor, Node, NodeId, Term, TermId, Tree};
 use crate::model::{Bool, Num};
@@ -16,8 +16,8 @@ pub struct Subject {
     pub columns: Vec<Root>,
     /// Last tick.
     pub horizon: Tick,
-    /// The source of each atom.
-    pub atom_texts: Vec<String>,
+    /// How atoms, signals and comparisons were written.
+    pub texts: Texts,
     atoms: Vec<Bool>,
     signals: Vec<Num>,
 }
@@ -42,7 +42,7 @@ impl Subject {
             program: Program::new(scenario),
             tree: world.tree.clone(),
             columns: world.columns.iter().map(|c| c.root).collect(),
-            atom_texts: world.atom_texts.clone(),
+            texts: world.texts.clone(),
             atoms: world.atoms.clone(),
             signals: world.signals.clone(),
         }
@@ -51,6 +51,11 @@ impl Subject {
     /// Truth values observed in each state.
     pub fn atoms(&self) -> &[Bool] {
         &self.atoms
+    }
+
+    /// Numbers observed in each state.
+    pub(super) fn signals(&self) -> &[Num] {
+        &self.signals
     }
 
     /// A monitor of a column.

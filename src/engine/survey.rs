@@ -4,15 +4,17 @@
 //! each trial, so the size of rounds leaves no trace in a result.
 
 use super::budget::Budget;
-use super::cell::{Item, Reading};
-use super::executor::{Executor, Job};
+use super::cell::{Cell, Item, Reading};
+use super::executor::{Cells, Executor, Job};
 use super::fault::Fault;
+use super::forecast::{self, Glimpse};
 use super::outcome::Stop;
 use super::procedure::Procedure;
+use super::rehearsal::Rehearsal;
 use super::subject::Subject;
 use super::tally::Tally;
 use super::watch::{Forecast, Watch};
-use crate::compile::study::Query;
+use crate::compile::study::{Ask, Query};
 
 /// Largest round.
 const LARGEST_ROUND: u64 = 16_384;
@@ -29,95 +31,150 @@ pub(super) struct Inquiry<'q> {
     pub(super) procedure: Procedure,
     /// What it has consumed.
     pub(super) tally: Tally,
+    /// What it has read so far, for forecasts.
+    pub(super) glimpse: Glimpse,
     /// Why it stopped.
     pub(super) stop: Option<Stop>,
     /// Seconds from the start of the survey to its stop.
     pub(super) seconds: f64,
 }
 
-/// Runs the inquiries of one subject until each has stopped.
-pub(super) fn run(
-    subject: &Subject,
-    inquiries: &mut [Inquiry<'_>],
-    seed: u64,
-    executor: &dyn Executor,
-    budget: &Budget,
-    watch: &dyn Watch,
-) -> Result<(), Fault> {
-    let started = budget.elapsed();
-    let mut job = Job::new(subject, columns(inquiries), seed);
-    let mut next = 0u64;
-    let mut forecast_due = true;
-    while inquiries.iter().any(|i| i.stop.is_none()) {
-        if budget.must_stop() {
-            close(inquiries, budget);
-            break;
-        }
-        job.narrow(columns(inquiries));
-        let size = round(inquiries, next, executor.width(&job) as u64, budget);
-        let items: Vec<Item> = (next..next + size).map(|index| Item { advice: None, index }).collect();
-        let cells = executor.run(&job, &items, budget)?;
-        let mut complete = true;
-        for (item, row) in items.iter().zip(cells.rows()) {
-            let Some(row) = row else {
-                // What follows an unfinished trial is not looked at: outcomes count in index order.
-                complete = false;
+/// Checks and estimates of one subject on their way.
+pub(super) struct Survey<'q> {
+    job: Job<'q>,
+    /// The queries.
+    pub(super) inquiries: Vec<Inquiry<'q>>,
+    ahead: Option<Rehearsal>,
+}
+
+impl<'q> Survey<'q> {
+    /// A survey of some inquiries about one subject.
+    pub(super) fn new(subject: &'q Subject, inquiries: Vec<Inquiry<'q>>, seed: u64) -> Self {
+        Self { job: Job::new(subject, columns(&inquiries), seed), inquiries, ahead: None }
+    }
+
+    /// The subject.
+    pub(super) fn subject(&self) -> &'q Subject {
+        self.job.subject
+    }
+
+    /// Runs the first trials, and forecasts from them what each inquiry is likely to take.
+    pub(super) fn rehearse(
+        &mut self,
+        executor: &dyn Executor,
+        budget: &Budget,
+    ) -> Result<Vec<Forecast>, Fault> {
+        let width = executor.width(&self.job) as u64;
+        let size = width.min(round(&self.inquiries, 0, width, budget));
+        let rehearsal = Rehearsal::run(&self.job, Item::run(0, size), executor, budget)?;
+        let seconds = rehearsal.seconds_per_trial(self.job.subject.horizon.0);
+        let forecast = |inquiry: &Inquiry<'_>| {
+            let mut glimpse = Glimpse::default();
+            let range = inquiry.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+            if let Some(place) = self.job.columns.iter().position(|c| *c == inquiry.column) {
+                rehearsal.rows().for_each(|row| glimpse.read(&row[place], range));
+            }
+            let expected = forecast::inquiry(&inquiry.query.ask, &inquiry.procedure, &glimpse);
+            let trials = expected.unwrap_or(u64::MAX).min(budget.max_trials);
+            Forecast {
+                query: inquiry.query.text.clone(),
+                settings: inquiry.query.settings.clone(),
+                trials,
+                seconds: trials as f64 * seconds,
+            }
+        };
+        let forecasts = self.inquiries.iter().map(forecast).collect();
+        self.ahead = rehearsal.is_complete().then_some(rehearsal);
+        Ok(forecasts)
+    }
+
+    /// Runs until each inquiry has stopped.
+    pub(super) fn run(
+        &mut self,
+        executor: &dyn Executor,
+        budget: &Budget,
+        watch: &dyn Watch,
+    ) -> Result<(), Fault> {
+        let started = budget.elapsed();
+        let mut next = 0u64;
+        while self.inquiries.iter().any(|i| i.stop.is_none()) {
+            if budget.must_stop() {
+                close(&mut self.inquiries, budget);
                 break;
+            }
+            let (items, cells) = match self.ahead.take() {
+                Some(ahead) => (ahead.items, ahead.cells),
+                None => {
+                    self.job.narrow(columns(&self.inquiries));
+                    let width = executor.width(&self.job) as u64;
+                    let items = Item::run(next, round(&self.inquiries, next, width, budget));
+                    let cells = executor.run(&self.job, &items, budget)?;
+                    (items, cells)
+                }
             };
-            for inquiry in inquiries.iter_mut().filter(|i| i.stop.is_none()) {
-                let Some(place) = job.columns.iter().position(|c| *c == inquiry.column) else { continue };
+            next += items.len() as u64;
+            if !self.read(&items, &cells, started, budget)? {
+                close(&mut self.inquiries, budget);
+                break;
+            }
+            if let Some(inquiry) = self.inquiries.iter().find(|i| i.stop.is_none()) {
+                let expected = forecast::inquiry(&inquiry.query.ask, &inquiry.procedure, &inquiry.glimpse);
+                watch.consumed(&inquiry.query.text, next, expected.map(|n| n.max(next)));
+            }
+        }
+        let seconds = budget.elapsed() - started;
+        for inquiry in self.inquiries.iter_mut().filter(|i| i.seconds == 0.0) {
+            inquiry.seconds = seconds;
+        }
+        Ok(())
+    }
+
+    /// Shows a round to the inquiries, trial by trial; false where time ended it.
+    fn read(&mut self, items: &[Item], cells: &Cells, started: f64, budget: &Budget) -> Result<bool, Fault> {
+        for (item, row) in items.iter().zip(cells.rows()) {
+            // What follows an unfinished trial is not looked at: outcomes count in index order.
+            let Some(row) = row else { return Ok(false) };
+            for inquiry in self.inquiries.iter_mut().filter(|i| i.stop.is_none()) {
+                let Some(place) = self.job.columns.iter().position(|c| *c == inquiry.column) else {
+                    continue;
+                };
                 let cell = &row[place];
                 if cell.reading == Reading::Faulty {
-                    return Err(super::trial::fault(subject, *item, seed));
+                    return Err(super::trial::fault(self.job.subject, *item, self.job.seed));
                 }
-                inquiry.tally.add(item.index, cell, inquiry.range);
-                if inquiry.procedure.observe(cell) {
-                    let capped = matches!(&inquiry.procedure, Procedure::Mean { threshold: Some(_), .. })
-                        && inquiry.procedure.decision().is_none();
-                    inquiry.stop = Some(if capped {
-                        Stop::Cap
-                    } else if inquiry.procedure.is_planned() {
-                        Stop::Plan
-                    } else if matches!(
-                        inquiry.procedure,
-                        Procedure::Test(_) | Procedure::Mean { threshold: Some(_), .. }
-                    ) {
-                        Stop::Boundary
-                    } else {
-                        Stop::Width
-                    });
-                    inquiry.seconds = budget.elapsed() - started;
-                } else if inquiry.tally.counts.trials >= budget.max_trials {
-                    inquiry.stop = Some(Stop::Cap);
+                inquiry.read(item.index, cell);
+                let finished = inquiry.procedure.observe(cell);
+                if finished || inquiry.tally.counts.trials >= budget.max_trials {
+                    inquiry.stop = Some(if finished { inquiry.reason() } else { Stop::Cap });
                     inquiry.seconds = budget.elapsed() - started;
                 }
             }
         }
-        next += size;
-        if !complete {
-            close(inquiries, budget);
-            break;
+        Ok(true)
+    }
+}
+
+impl Inquiry<'_> {
+    fn read(&mut self, index: u64, cell: &Cell) {
+        self.tally.add(index, cell, self.range);
+        if let (Ask::Check { threshold, at_least, or_equal, .. }, Reading::Value(value)) =
+            (&self.query.ask, cell.reading)
+        {
+            let beyond = if *at_least { value > *threshold } else { value < *threshold };
+            self.tally.side(index, beyond || (*or_equal && value == *threshold));
         }
-        if forecast_due {
-            forecast_due = false;
-            let rate = next as f64 / (budget.elapsed() - started).max(1e-9);
-            for inquiry in inquiries.iter().filter(|i| i.stop.is_none()) {
-                if let Some(trials) = expected(inquiry) {
-                    let trials = trials.min(budget.max_trials);
-                    let seconds = trials as f64 / rate;
-                    watch.forecast(&Forecast { query: inquiry.query.text.clone(), trials, seconds });
-                }
-            }
-        }
-        if let Some(inquiry) = inquiries.iter().find(|i| i.stop.is_none()) {
-            watch.consumed(&inquiry.query.text, next, expected(inquiry));
+        self.glimpse.read(cell, self.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY)));
+    }
+
+    /// Why a finished procedure stopped.
+    fn reason(&self) -> Stop {
+        match &self.procedure {
+            Procedure::Mean { threshold: Some(_), .. } if self.procedure.decision().is_none() => Stop::Cap,
+            procedure if procedure.is_planned() => Stop::Plan,
+            Procedure::Test(_) | Procedure::Mean { threshold: Some(_), .. } => Stop::Boundary,
+            _ => Stop::Width,
         }
     }
-    let seconds = budget.elapsed() - started;
-    for inquiry in inquiries.iter_mut().filter(|i| i.seconds == 0.0) {
-        inquiry.seconds = seconds;
-    }
-    Ok(())
 }
 
 /// Columns that somebody still reads.
@@ -150,47 +207,4 @@ fn round(inquiries: &[Inquiry<'_>], consumed: u64, width: u64, budget: &Budget) 
     // With a deadline rounds stay short, so that little is thrown away at its end.
     let size = if budget.has_deadline() { size.min(consumed.max(2 * width)) } else { size };
     size.min(most).clamp(1, LARGEST_ROUND)
-}
-
-/// A rough forecast of the trials of an inquiry from its first ones: nothing that a result depends on.
-fn expected(inquiry: &Inquiry<'_>) -> Option<u64> {
-    use crate::compile::study::{Ask, Estimator, MeasureKind, Test};
-    let counts = inquiry.tally.counts;
-    if inquiry.procedure.is_planned() {
-        return inquiry.procedure.limit();
-    }
-    // Laplace's rule keeps the share away from 0 and 1.
-    let p = (counts.successes as f64 + 1.0) / (counts.trials as f64 + 2.0);
-    let variance = p * (1.0 - p);
-    let trials = match &inquiry.query.ask {
-        Ask::Check {
-            threshold,
-            test: Test::Sprt { alpha, beta, indifference } | Test::Sprt2 { alpha, beta, indifference },
-            ..
-        } => {
-            let (p0, p1) = (threshold + indifference, threshold - indifference);
-            let ln = crate::base::math::ln;
-            let drift = p * ln(p1 / p0) + (1.0 - p) * ln((1.0 - p1) / (1.0 - p0));
-            let goal = if drift > 0.0 { -ln(*alpha) } else { -ln(*beta) };
-            goal / drift.abs().max(1e-9)
-        }
-        Ask::Check {
-            threshold, test: Test::EProcess { alpha, .. } | Test::ThreeWay { alpha, .. }, ..
-        } => {
-            let ln = crate::base::math::ln;
-            let kl = p * ln(p / threshold) + (1.0 - p) * ln((1.0 - p) / (1.0 - threshold));
-            (5.0 - ln(*alpha)) / kl.max(1e-9)
-        }
-        Ask::Estimate {
-            measure,
-            estimator:
-                Estimator::Default { epsilon, .. }
-                | Estimator::Massart { epsilon, .. }
-                | Estimator::Spending { epsilon, .. },
-        } if measure.kind == MeasureKind::Probability => 4.4 * variance / (epsilon * epsilon) + 2.0 / epsilon,
-        Ask::Estimate { estimator: Estimator::Relative { epsilon, .. }, .. } => 4.0 / (epsilon * epsilon * p),
-        _ => return inquiry.procedure.limit(),
-    };
-    let limit = inquiry.procedure.limit().unwrap_or(u64::MAX);
-    Some((trials.min(1e18) as u64).clamp(counts.trials, limit.max(counts.trials)))
 }

@@ -1,43 +1,53 @@
-//! Witnesses: the first trial that fails and the first that passes, when that was decided, and by what.
+//! Witnesses: the first trial that fails and the first that passes, or those with the smallest and the largest
+//! value of a metric; when that was decided, and by what.
 
 use super::blame;
-use super::outcome::Witness;
+use super::outcome::{Shows, Witness};
 use super::session::Call;
 use super::subject::Subject;
+use super::tally::Tally;
 use crate::base::lanes::Mask;
 use crate::base::random::TrialKey;
 use crate::base::tick::{Clock, Tick};
+use crate::compile::study::Root;
 use crate::kernel::{Readings, Scratch, State, dynamics, start};
 
-/// The witnesses of a column: `first` holds the first failing and the first passing trial.
+/// The trials that show why a measure of truth values came out as it did.
+pub(super) fn sides(tally: &Tally) -> Vec<(Shows, u64)> {
+    let pick = |shows, index: Option<u64>| index.map(|index| (shows, index));
+    [pick(Shows::Fails, tally.first[1]), pick(Shows::Holds, tally.first[0])].into_iter().flatten().collect()
+}
+
+/// The trials that show how far a metric ranges.
+pub(super) fn extremes(tally: &Tally) -> Vec<(Shows, u64)> {
+    let pick = |shows, extreme: Option<(u64, f64)>| extreme.map(|(index, _)| (shows, index));
+    let found = [pick(Shows::Lowest, tally.extremes[0]), pick(Shows::Highest, tally.extremes[1])];
+    found.into_iter().flatten().collect()
+}
+
+/// The witnesses of a column: `picks` names the trials, and what they are witnesses of.
 pub(super) fn find(
     subject: &Subject,
     column: usize,
     advice: Option<(usize, usize)>,
-    first: [Option<u64>; 2],
+    picks: &[(Shows, u64)],
     call: &Call<'_>,
     settings: &[(String, String)],
+    unit: &str,
 ) -> Vec<Witness> {
-    let mut found = Vec::new();
-    for (passing, trial) in [(false, first[0]), (true, first[1])] {
-        if let Some(trial) = trial
-            && let Some(witness) = witness(subject, column, advice, trial, passing, call, settings)
-        {
-            found.push(witness);
-        }
-    }
-    found
+    let one = |pick: &(Shows, u64)| witness(subject, column, advice, *pick, call, settings, unit);
+    picks.iter().filter_map(one).collect()
 }
 
-/// Runs one trial again and says what decided it.
+/// Runs one trial again and says what decided it; `dimension` is the unit of a metric.
 fn witness(
     subject: &Subject,
     column: usize,
     advice: Option<(usize, usize)>,
-    trial: u64,
-    passing: bool,
+    (shows, trial): (Shows, u64),
     call: &Call<'_>,
     settings: &[(String, String)],
+    dimension: &str,
 ) -> Option<Witness> {
     let program = &subject.program;
     let code = subject.code(&[column]);
@@ -65,12 +75,22 @@ fn witness(
         }
         dynamics::step(program, &mut state, &mut scratch);
     }
-    let decided = monitor.decided_at()[0];
-    let time = program.scenario.clock.seconds(Tick(decided));
-    let what = blame::reasons(subject, column, &record, |tick| {
+    let state_at = |tick: Tick| {
         // States beyond those kept are made again.
-        states.get(tick as usize).cloned().or_else(|| replay(subject, key, advice, tick))
-    });
+        states.get(tick.0 as usize).cloned().or_else(|| replay(subject, key, advice, tick.0))
+    };
+    let (value, at, what) = match subject.columns[column] {
+        Root::Formula(root) => {
+            (None, Tick(monitor.decided_at()[0]), blame::truth(subject, root, &record, state_at))
+        }
+        Root::Metric(root) => {
+            // The monitor may know the value before the last state of a window.
+            let value = monitor.value().0[0];
+            let (at, what) = blame::number(subject, root, (value, dimension), &record, state_at);
+            (Some(value), at.unwrap_or(Tick(monitor.decided_at()[0])), what)
+        }
+    };
+    let time = program.scenario.clock.seconds(at);
     let mut command = call.simulate.clone();
     for (name, value) in settings {
         command.push_str(&format!(" --set '{name}={value}'"));
@@ -81,7 +101,7 @@ fn witness(
         command.push_str(&format!(" --move '{label}'"));
     }
     let unit = if program.scenario.clock == Clock::Steps { "steps" } else { "s" };
-    Some(Witness { passing, trial, time, unit, what, command })
+    Some(Witness { shows, trial, value, time, unit, what, command })
 }
 
 /// States kept while a witness is run; those of large crowds are made again instead.

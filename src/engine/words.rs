@@ -18,6 +18,18 @@ pub(super) fn quantity(value: f64, unit: &str) -> String {
     if unit.is_empty() { number(value) } else { format!("{} {unit}", number(value)) }
 }
 
+/// A number with four digits, and its unit.
+pub(super) fn brief(value: f64, unit: &str) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return quantity(value, unit);
+    }
+    let mut scale = 1.0;
+    while value.abs() * scale < 1_000.0 && scale < 1e9 {
+        scale *= 10.0;
+    }
+    quantity((value * scale).round() / scale, unit)
+}
+
 /// The ends of an interval with no more digits than its width supports, rounded outward.
 pub(super) fn ends(low: f64, high: f64, unit: &str) -> String {
     let width = high - low;

@@ -43,10 +43,14 @@ pub fn explain(tree: &Tree, root: NodeId, recording: &Recording) -> Result<Expla
     }
     let offline = Offline::new(tree, recording);
     let verdict = offline.truth(root, 0);
-    let mut witness = Witness { offline: &offline, seen: BTreeSet::new(), leaves: BTreeMap::new() };
-    if verdict.is_some() {
-        witness.formula(root, 0);
-    }
+    let reasons = if verdict.is_some() { explain_at(&offline, root, 0) } else { Vec::new() };
+    Ok(Explanation { verdict, reasons })
+}
+
+/// What forces the truth of a formula, which is known, at a state.
+pub(super) fn explain_at(offline: &Offline<'_>, root: NodeId, at: u64) -> Vec<Reason> {
+    let mut witness = Witness { offline, seen: BTreeSet::new(), leaves: BTreeMap::new() };
+    witness.formula(root, at);
     let mut reasons: Vec<Reason> = Vec::new();
     for ((leaf, at), value) in witness.leaves {
         match reasons.last_mut() {
@@ -56,7 +60,7 @@ pub fn explain(tree: &Tree, root: NodeId, recording: &Recording) -> Result<Expla
             _ => reasons.push(Reason { leaf: NodeId(leaf), value, from: Tick(at), to: Tick(at) }),
         }
     }
-    Ok(Explanation { verdict, reasons })
+    reasons
 }
 
 struct Witness<'a> {

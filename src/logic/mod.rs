@@ -9,6 +9,7 @@ pub mod monitor;
 pub mod offline;
 mod reach;
 pub mod signal;
+mod source;
 
 pub use explain::{Explanation, Reason, explain};
 pub use formula::{
@@ -19,3 +20,4 @@ pub use monitor::robustness::Robustness;
 pub use monitor::{Antecedent, Monitor};
 pub use offline::Recording;
 pub use signal::{Reading, SignalMonitor};
+pub use source::{Source, sides, sources};

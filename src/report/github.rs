@@ -72,7 +72,7 @@ fn finding(result: &QueryResult) -> String {
         result.counts.trials, result.counts.successes, result.counts.failures, result.counts.unresolved
     );
     for witness in &result.witnesses {
-        let word = if witness.passing { "holds" } else { "fails" };
+        let word = witness.shows.name();
         let _ = write!(text, "\n{word} in trial {}: {}\n  {}", witness.trial, witness.what, witness.command);
     }
     text

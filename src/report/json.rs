@@ -5,7 +5,8 @@
 //! but `elapsed_s` is a function of input, seed and version.
 
 use crate::engine::outcome::{
-    Comparison, Counts, Distribution, Failure, Interval, Method, QueryResult, Ranking, Run, Side, Witness,
+    Comparison, Counts, Distribution, Failure, Interval, Method, QueryResult, Ranking, Run, Shows, Side,
+    Witness,
 };
 use serde_json::{Map, Value, json};
 
@@ -129,8 +130,14 @@ fn side(side: &Side) -> Value {
 
 fn witness(witness: &Witness) -> Value {
     json!({
-        "passing": witness.passing,
+        "shows": witness.shows.name(),
+        "passing": match witness.shows {
+            Shows::Fails => Some(false),
+            Shows::Holds => Some(true),
+            Shows::Lowest | Shows::Highest => None,
+        },
         "trial": witness.trial,
+        "value": witness.value,
         "time": witness.time,
         "what": witness.what,
         "command": witness.command,

@@ -12,6 +12,7 @@ pub mod json;
 pub mod junit;
 pub mod model;
 pub mod number;
+pub mod outlook;
 pub mod palette;
 pub mod text;
 

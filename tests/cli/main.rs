@@ -3,6 +3,7 @@
 #![allow(clippy::disallowed_methods, reason = "tests read and write files and call the program")]
 
 mod calls;
+mod forecasts;
 mod formats;
 mod inputs;
 mod program;

@@ -7,6 +7,7 @@ mod chains;
 mod errors;
 mod examples;
 mod rows;
+mod tallies;
 
 use smc::base::lanes::{LANES, Mask};
 use smc::base::random::TrialKey;

@@ -106,8 +106,9 @@ impl Elaborator<'_> {
                     let error = Diagnostic::error(
                         "E0504",
                         expr.span,
-                        "`time_until` looks at a whole trace and stands only in metrics",
-                    );
+                        "`time_until` looks ahead over the trace, and here one state is read",
+                    )
+                    .hint("it stands in metrics and comparisons of property files, outside of folds over agents at one state");
                     return self.report(error);
                 }
                 let typed = self.lower(formula, locals)?;

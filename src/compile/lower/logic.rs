@@ -94,13 +94,29 @@ impl Elaborator<'_> {
         let (a, b) = (sides.0?, sides.1?);
         let a = if matches!(a, Typed::Infinity) { infinite(&b) } else { a };
         let b = if matches!(b, Typed::Infinity) { infinite(&a) } else { b };
+        let span = Span { end: right.span.end, ..left.span };
+        match (&a, &b) {
+            (Typed::Tally(formulas), Typed::Number(bound)) if bound.dimension.is_none() => {
+                return Ok(Typed::Formula(self.tally(formulas, relation(op), bound.value, span)?));
+            }
+            (Typed::Number(bound), Typed::Tally(formulas)) if bound.dimension.is_none() => {
+                return Ok(Typed::Formula(self.tally(
+                    formulas,
+                    relation(op).flipped(),
+                    bound.value,
+                    span,
+                )?));
+            }
+            _ => {}
+        }
         if matches!(a, Typed::Term(..)) || matches!(b, Typed::Term(..)) {
             let (a, da) = self.as_term(a, left.span)?;
             let (b, db) = self.as_term(b, right.span)?;
             if da != db {
                 return self.wrong_dimension(right.span, da, db);
             }
-            return Ok(Typed::Formula(self.node(Node::Compare(relation(op), a, b))));
+            let text = self.text(span);
+            return Ok(Typed::Formula(self.comparison((relation(op), a, b), text, da)));
         }
         let (a, da) = self.as_num(a, left.span)?;
         let (b, db) = self.as_num(b, right.span)?;

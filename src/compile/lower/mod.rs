@@ -5,6 +5,7 @@ mod call;
 mod logic;
 mod name;
 mod quantifier;
+mod tally;
 mod temporal;
 
 pub(super) use call::DISTRIBUTIONS;
@@ -139,6 +140,15 @@ impl Elaborator<'_> {
         match typed {
             Typed::Number(number) => Ok((Num::Constant(number.value), number.dimension)),
             Typed::Num(num, dimension) => Ok((num, dimension)),
+            Typed::Tally(_) => {
+                let error = Diagnostic::error(
+                    "E0504",
+                    span,
+                    "a count of formulas over time is only compared with a number",
+                )
+                .hint("as in `count(a in crowd: F<=5 s (a in exit)) >= 3`");
+                self.report(error)
+            }
             Typed::Term(..) => {
                 let error = Diagnostic::error(
                     "E0504",
@@ -157,7 +167,7 @@ impl Elaborator<'_> {
             Typed::Term(term, dimension) => Ok((term, dimension)),
             other => {
                 let (num, dimension) = self.as_num(other, span)?;
-                Ok((self.signal(num), dimension))
+                Ok((self.signal(num, dimension, span), dimension))
             }
         }
     }

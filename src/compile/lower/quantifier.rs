@@ -6,7 +6,7 @@
 use super::super::elaborator::{Elaborator, Locals, Lowered};
 use super::super::symbols::Meaning;
 use super::super::typed::Typed;
-use crate::logic::{Node, NodeId, Operation, Term};
+use crate::logic::{Node, NodeId, Operation, Term, TermId};
 use crate::model::{AgentId, Arithmetic, Bool, Fold, Num, Set, Who};
 use crate::syntax::ast::{Aggregate, Expr, ExprKind, Ident, Quantifier};
 use crate::syntax::diagnostic::Diagnostic;
@@ -85,6 +85,11 @@ impl Elaborator<'_> {
                 let all = quantifier == Quantifier::Forall;
                 Ok(Typed::Truth(if all { Bool::And(truths) } else { Bool::Or(truths) }))
             }
+            Quantifier::Count if over_time => {
+                let nodes: Lowered<Vec<_>> =
+                    each.into_iter().map(|typed| self.as_formula(typed, body.span)).collect();
+                Ok(Typed::Tally(nodes?))
+            }
             Quantifier::Count => {
                 let mut sum = Num::Constant(0.0);
                 for typed in each {
@@ -151,26 +156,29 @@ impl Elaborator<'_> {
             inner.names.push((variable.name.clone(), Typed::Agent(Who::Agent(id))));
             each.push(self.lower(body, &inner)?);
         }
+        if each.is_empty() && !self.agent_names.is_empty() {
+            // Over nobody the body is read for anybody: what is wrong in it is reported, and a fold needs its unit.
+            let mut inner = locals.clone();
+            inner.names.push((variable.name.clone(), Typed::Agent(Who::Agent(AgentId(0)))));
+            let typed = self.lower(body, &inner)?;
+            if let Quantifier::Fold(aggregate) = quantifier {
+                let (_, dimension) = self.as_term(typed, body.span)?;
+                return Ok(Typed::Term(self.fold_of_nobody(aggregate), dimension));
+            }
+        }
         match quantifier {
             Quantifier::Forall | Quantifier::Exists => {
-                let mut nodes = Vec::with_capacity(members.len());
-                for (typed, id) in each.into_iter().zip(members) {
-                    let node = self.as_formula(typed, body.span)?;
-                    nodes.push(if self.passing.contains(&id) {
-                        self.if_present(id, node, quantifier, span)
-                    } else {
-                        node
-                    });
-                }
-                Ok(Typed::Formula(self.node(match quantifier {
-                    Quantifier::Forall => Node::And(nodes),
-                    _ => Node::Or(nodes),
+                let nodes = self.of_those_present(quantifier, each, &members, body.span)?;
+                let all = quantifier == Quantifier::Forall;
+                // All of nobody is true, any of nobody false.
+                Ok(Typed::Formula(self.node(match nodes.is_empty() {
+                    true => Node::Constant(all),
+                    false if all => Node::And(nodes),
+                    false => Node::Or(nodes),
                 })))
             }
             Quantifier::Count => {
-                let error = Diagnostic::error("E0504", span, "only conditions on one state can be counted")
-                    .hint("count states, as in `F<=10 s (count(a in crowd: a in exit) >= 3)`");
-                self.report(error)
+                Ok(Typed::Tally(self.of_those_present(quantifier, each, &members, body.span)?))
             }
             Quantifier::Fold(_) if members.iter().any(|id| self.passing.contains(id)) => {
                 let error = Diagnostic::error(
@@ -185,22 +193,48 @@ impl Elaborator<'_> {
         }
     }
 
-    /// Only who is present at the state at which it is asked counts.
-    fn if_present(&mut self, id: AgentId, node: NodeId, quantifier: Quantifier, span: Span) -> NodeId {
-        let present = self.atom(Bool::Present(Who::Agent(id)), span);
-        if quantifier == Quantifier::Exists {
-            return self.node(Node::And(vec![present, node]));
+    /// The smallest number of nobody is infinite, the largest minus infinite, the sum 0, and the mean none.
+    fn fold_of_nobody(&mut self, aggregate: Aggregate) -> TermId {
+        self.term(Term::Constant(match aggregate {
+            Aggregate::Min => f64::INFINITY,
+            Aggregate::Max => f64::NEG_INFINITY,
+            Aggregate::Sum => 0.0,
+            Aggregate::Mean => f64::NAN,
+        }))
+    }
+
+    /// A formula of each member, where only who is present at the state at which it is asked counts.
+    fn of_those_present(
+        &mut self,
+        quantifier: Quantifier,
+        each: Vec<Typed>,
+        members: &[AgentId],
+        span: Span,
+    ) -> Lowered<Vec<NodeId>> {
+        let mut nodes = Vec::with_capacity(members.len());
+        for (typed, &id) in each.into_iter().zip(members) {
+            let node = self.as_formula(typed, span)?;
+            if !self.passing.contains(&id) {
+                nodes.push(node);
+                continue;
+            }
+            let present = self.atom(Bool::Present(Who::Agent(id)), span);
+            nodes.push(if quantifier == Quantifier::Forall {
+                let absent = self.node(Node::Not(present));
+                self.node(Node::Or(vec![absent, node]))
+            } else {
+                self.node(Node::And(vec![present, node]))
+            });
         }
-        let absent = self.node(Node::Not(present));
-        self.node(Node::Or(vec![absent, node]))
+        Ok(nodes)
     }
 
     fn fold_terms(&mut self, aggregate: Aggregate, each: Vec<Typed>, span: Span) -> Lowered<Typed> {
         let count = each.len();
-        let (operation, empty) = match aggregate {
-            Aggregate::Min => (Operation::Min, f64::INFINITY),
-            Aggregate::Max => (Operation::Max, f64::NEG_INFINITY),
-            Aggregate::Sum | Aggregate::Mean => (Operation::Add, 0.0),
+        let operation = match aggregate {
+            Aggregate::Min => Operation::Min,
+            Aggregate::Max => Operation::Max,
+            Aggregate::Sum | Aggregate::Mean => Operation::Add,
         };
         let mut dimension = Dimension::NONE;
         let mut joined = None;
@@ -212,7 +246,9 @@ impl Elaborator<'_> {
                 Some(so_far) => self.term(Term::Combine(operation, so_far, term)),
             });
         }
-        let joined = joined.unwrap_or_else(|| self.term(Term::Constant(empty)));
+        let Some(joined) = joined else {
+            return Ok(Typed::Term(self.fold_of_nobody(aggregate), dimension));
+        };
         if aggregate == Aggregate::Mean {
             let count = self.term(Term::Constant(count as f64));
             return Ok(Typed::Term(self.term(Term::Combine(Operation::Divide, joined, count)), dimension));

@@ -137,12 +137,13 @@ fn facts(page: &mut String, result: &QueryResult, swept: bool) {
             "<p class=\"warning\">{head}people overlapped at the start and were made smaller in {trials}</p>"
         );
     }
-    for Witness { passing, trial, time, unit, what, command } in &result.witnesses {
+    for Witness { shows, value, trial, time, unit, what, command } in &result.witnesses {
         let _ = writeln!(
             page,
-            "<p>{} in trial {}, decided at {} {unit}: <code>{}</code></p>\n<pre>{}</pre>",
-            if *passing { "Holds" } else { "Fails" },
+            "<p>{} in trial {}, {} {} {unit}: <code>{}</code></p>\n<pre>{}</pre>",
+            shows.name(),
             count(*trial),
+            if value.is_some() { "at" } else { "decided at" },
             plain(*time),
             escape(what),
             escape(command)

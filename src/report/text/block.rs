@@ -2,7 +2,7 @@
 
 use super::columns::{Cell, lines};
 use super::{compare, distribution, rank};
-use crate::engine::outcome::{Interval, QueryResult, Stop, Verdict, Witness};
+use crate::engine::outcome::{Interval, QueryResult, Shows, Stop, Verdict, Witness};
 use crate::report::number::{count, counted, duration, interval, plain};
 use crate::report::palette::{Paint, Palette};
 use crate::report::{certified, one_line, settings};
@@ -155,13 +155,18 @@ pub(super) fn remarks(text: &mut String, result: &QueryResult, at: &str, palette
 
 /// A trial that shows why, and the command that shows the trial.
 pub(super) fn witness(text: &mut String, witness: &Witness, palette: Palette) {
-    let (word, paint) = if witness.passing { ("holds", Paint::Good) } else { ("fails", Paint::Bad) };
-    let Witness { trial, time, unit, what, command, .. } = witness;
+    let Witness { shows, trial, time, unit, what, command, .. } = witness;
+    let paint = match shows {
+        Shows::Fails => Paint::Bad,
+        Shows::Holds => Paint::Good,
+        Shows::Lowest | Shows::Highest => Paint::Neutral,
+    };
+    let decided = if witness.value.is_some() { "at" } else { "decided at" };
     line(
         text,
         &format!(
-            "{} in trial {}, decided at {} {unit}: {what}",
-            palette.paint(paint, word),
+            "{} in trial {}, {decided} {} {unit}: {what}",
+            palette.paint(paint, shows.name()),
             count(*trial),
             plain(*time)
         ),

@@ -47,13 +47,14 @@ Right:\n\
         code: "E0504",
         title: "a formula over time cannot stand here",
         text: "\
-Conditions of agents, counts, folds over sets and the scenario itself look at one state. Operators over time stand in\n\
-properties and metrics, around such conditions.\n\
+Conditions of agents, folds over sets at one state and the scenario itself look at one state. Operators over time\n\
+stand in properties and metrics, around such conditions. A count of formulas over time is compared with a number.\n\
 \n\
 Wrong:\n\
-\x20   property p = count(a in crowd: F<=1 s contact(a)) > 2\n\
+\x20   property p = F<=2 s (count(a in crowd: G<=1 s contact(a)) > count(a in crowd: contact(a)))\n\
 Right:\n\
-\x20   property p = F<=1 s (count(a in crowd: contact(a)) > 2)",
+\x20   property p = F<=2 s (count(a in crowd: contact(a)) > 2)\n\
+\x20   property q = count(a in crowd: G<=1 s contact(a)) > 2",
     },
     Page {
         code: "E0505",

@@ -17,6 +17,8 @@ pub(super) struct Builder<'s> {
     pub(super) source: &'s Source,
     /// The part of the text that was parsed: all of it, or what stands before a comment that never ends.
     pub(super) text: &'s str,
+    /// The kind of file.
+    pub(super) root: Rule,
     pub(super) diagnostics: Vec<Diagnostic>,
 }
 

@@ -17,6 +17,33 @@ impl Builder<'_> {
             .or_else(|| self.slip_of_operator(fault))
             .or_else(|| self.slip_of_unit(fault))
             .or_else(|| self.slip_of_process(fault))
+            .or_else(|| self.slip_of_time(fault))
+    }
+
+    /// `let late = F<=2 s (…)` in a scenario, where `F` is a name like any other.
+    fn slip_of_time(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
+        let line_start = self.text[..fault.at].rfind('\n').map_or(0, |at| at + 1);
+        let line = &self.text[line_start..fault.at];
+        let operator = ["<=", "≤", "["].iter().filter_map(|mark| {
+            let at = line.rfind(mark)?;
+            let before = line[..at].trim_end();
+            let letter = before.chars().next_back().filter(|c| "FGXUWR".contains(*c))?;
+            let start = before.len() - letter.len_utf8();
+            let alone = !before[..start].ends_with(|c: char| c.is_alphanumeric() || c == '_');
+            alone.then_some((line_start + start, letter))
+        });
+        let (at, letter) = operator.max()?;
+        if !fault.after_value() || self.root != Rule::scenario_file {
+            return None;
+        }
+        Some(
+            Diagnostic::error(
+                code::UNEXPECTED,
+                Span::new(self.source.id, at, at + letter.len_utf8()),
+                format!("`{letter}` looks ahead in time, which a scenario cannot"),
+            )
+            .hint("move this formula to a property file (`.bltl`)"),
+        )
     }
 
     fn slip_in_text(&self, fault: &Fault<'_>) -> Option<Diagnostic> {

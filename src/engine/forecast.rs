@@ -1,0 +1,190 @@
+//! Forecasts: how many trials a query is likely to take, from its first ones. Nothing that a result depends on.
+//!
+//! Planned procedures know their number. Of the others: Wald's approximation of the expected number for
+//! sequential tests, the normal approximation with a factor for looking after each trial for intervals.
+
+use super::cell::{Cell, Reading};
+use super::procedure::Procedure;
+use crate::base::math::ln;
+use crate::base::special::normal_quantile;
+use crate::compile::study::{Ask, Estimator, MeasureKind, Ranking, Test};
+use crate::stats;
+
+/// First readings of a column.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Glimpse {
+    /// Trials.
+    trials: f64,
+    /// Sum of the readings; a truth value reads as 0 or 1.
+    sum: f64,
+    /// Sum of their squares.
+    squares: f64,
+}
+
+impl Glimpse {
+    /// Adds a number.
+    pub(super) fn add(&mut self, x: f64) {
+        if x.is_finite() {
+            self.trials += 1.0;
+            self.sum += x;
+            self.squares += x * x;
+        }
+    }
+
+    /// Adds what a cell reads, clipped to a range.
+    pub(super) fn read(&mut self, cell: &Cell, (low, high): (f64, f64)) {
+        match cell.reading {
+            Reading::Truth(held) => self.add(f64::from(u8::from(held))),
+            Reading::Value(value) => self.add(value.clamp(low, high)),
+            Reading::Unresolved | Reading::Faulty => {}
+        }
+    }
+
+    /// Share of successes by Laplace's rule, which keeps away from 0 and 1.
+    fn share(&self) -> f64 {
+        (self.sum + 1.0) / (self.trials + 2.0)
+    }
+
+    /// The only number, if there is one.
+    pub(super) fn only(&self) -> Option<f64> {
+        (self.trials > 0.0).then(|| self.mean())
+    }
+
+    /// The mean, 0 of no numbers.
+    pub(super) fn mean(&self) -> f64 {
+        if self.trials > 0.0 { self.sum / self.trials } else { 0.0 }
+    }
+
+    /// Variance; with few trials never far below that of one more reading at distance `least`.
+    fn variance(&self, least: f64) -> f64 {
+        let n = self.trials.max(1.0);
+        let mean = self.mean();
+        let spread = (self.squares / n - mean * mean).max(0.0);
+        spread + least * least / (n + 1.0)
+    }
+}
+
+/// Trials until an interval of half width `epsilon` and error `delta` of a mean in a range of length `range`,
+/// looked at after every trial.
+fn until_narrow(variance: f64, range: f64, epsilon: f64, delta: f64) -> f64 {
+    let level = ln(2.0 / delta);
+    2.6 * variance * level / (epsilon * epsilon) + 3.0 * range * level / epsilon
+}
+
+/// Trials that a check or estimate is likely to take.
+pub(super) fn inquiry(ask: &Ask, procedure: &Procedure, glimpse: &Glimpse) -> Option<u64> {
+    let limit = procedure.limit();
+    if procedure.is_planned() {
+        return limit;
+    }
+    let p = glimpse.share();
+    let trials = match ask {
+        Ask::Check {
+            threshold,
+            test: Test::Sprt { alpha, beta, indifference } | Test::Sprt2 { alpha, beta, indifference },
+            ..
+        } => wald(p, *threshold, *indifference, *alpha, *beta),
+        Ask::Check { threshold, test: Test::EProcess { alpha, .. }, .. } => {
+            let kl = p * ln(p / threshold) + (1.0 - p) * ln((1.0 - p) / (1.0 - threshold));
+            (5.0 - ln(*alpha)) / kl.max(1e-9)
+        }
+        Ask::Check { threshold, test: Test::ThreeWay { alpha, indifference }, .. } => {
+            // Each of the two tests at the ends of the region has to decide.
+            let one = |theta: f64| wald(p, theta, 0.5 * indifference, *alpha, *alpha);
+            one(threshold - 0.5 * indifference).max(one(threshold + 0.5 * indifference))
+        }
+        Ask::Check { threshold, test: Test::Interval { delta, .. }, measure, .. } => {
+            let MeasureKind::Expectation { range: (low, high), .. } = measure.kind else { return limit };
+            let range = high - low;
+            let gap = (glimpse.mean() - threshold).abs().max(1e-6 * range);
+            until_narrow(glimpse.variance(0.1 * range), range, gap, *delta)
+        }
+        Ask::Estimate { measure, estimator } => match (*estimator, &measure.kind) {
+            (
+                Estimator::Default { epsilon, delta }
+                | Estimator::Massart { epsilon, delta }
+                | Estimator::Spending { epsilon, delta },
+                MeasureKind::Probability,
+            ) => {
+                let z = normal_quantile(1.0 - 0.5 * delta);
+                1.15 * z * z * p * (1.0 - p) / (epsilon * epsilon) + 2.0 / epsilon
+            }
+            (Estimator::Relative { epsilon, delta }, MeasureKind::Probability) => {
+                let z = normal_quantile(1.0 - 0.5 * delta);
+                z * z / (epsilon * epsilon * p)
+            }
+            (Estimator::Default { epsilon, delta }, MeasureKind::Expectation { range: (low, high), .. }) => {
+                let range = high - low;
+                until_narrow(glimpse.variance(0.1 * range), range, epsilon, delta)
+            }
+            _ => return limit,
+        },
+        Ask::Check { test: Test::Plan { .. }, .. } | Ask::Compare { .. } | Ask::Rank { .. } => return limit,
+    };
+    Some((trials.min(1e18) as u64).clamp(1, limit.unwrap_or(u64::MAX).max(1)))
+}
+
+/// Wald's expected number of trials of a sequential probability ratio test where the share is `p`: the mean
+/// of the exit divided by the drift, or where there is hardly any drift, by the variance of a step.
+fn wald(p: f64, theta: f64, indifference: f64, alpha: f64, beta: f64) -> f64 {
+    let (high, low) = ((theta + indifference).min(1.0 - 1e-9), (theta - indifference).max(1e-9));
+    let (success, failure) = (ln(low / high), ln((1.0 - low) / (1.0 - high)));
+    let drift = p * success + (1.0 - p) * failure;
+    let exit = if drift > 0.0 { -ln(alpha) } else { -ln(beta) };
+    let between = ln(alpha) * ln(beta) / (p * success * success + (1.0 - p) * failure * failure);
+    (exit / drift.abs().max(1e-9)).min(between)
+}
+
+/// Pairs that a comparison is likely to take; `glimpse` is that of the differences.
+pub(super) fn contrast(glimpse: &Glimpse, range: f64, epsilon: f64, delta: f64) -> u64 {
+    (until_narrow(glimpse.variance(0.1 * range), 2.0 * range, epsilon, delta)).min(1e18) as u64
+}
+
+/// Trials that a ranking is likely to take, of all options together; `glimpses` are those of the options,
+/// `differences` those of each option to the one that leads, `scale` the range of the score.
+pub(super) fn race(
+    glimpses: &[Glimpse],
+    differences: &[Glimpse],
+    scale: f64,
+    (epsilon, delta, ranking): (f64, f64, Ranking),
+) -> u64 {
+    let arms = glimpses.len().max(2) as f64;
+    if ranking == Ranking::Okamoto {
+        return (arms as u64).saturating_mul(stats::okamoto::size(epsilon / scale, delta / arms));
+    }
+    let level = ln(arms / delta);
+    let best = glimpses.iter().map(Glimpse::mean).fold(f64::NEG_INFINITY, f64::max);
+    let of = |(one, difference): (&Glimpse, &Glimpse)| {
+        let gap = (best - one.mean()).max(epsilon);
+        2.0 * difference.variance(0.1 * scale) * level / (gap * gap) + scale * level / gap
+    };
+    glimpses.iter().zip(differences).map(of).sum::<f64>().min(1e18) as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_sequential_test_takes_what_wald_says() {
+        // Theta 0.8 with a region of 0.02 and errors 0.01, the truth 0.9: a few hundred trials.
+        let trials = wald(0.9, 0.8, 0.02, 0.01, 0.01);
+        assert!((150.0..260.0).contains(&trials), "{trials}");
+        // On the threshold itself: the product of the boundaries over the variance of a step.
+        let trials = wald(0.8, 0.8, 0.02, 0.01, 0.01);
+        assert!((1_000.0..2_500.0).contains(&trials), "{trials}");
+    }
+
+    #[test]
+    fn a_ranking_of_equals_costs_the_most() {
+        let with = |share: f64| {
+            let mut glimpse = Glimpse::default();
+            (0..32).for_each(|k| glimpse.add(f64::from(u8::from(f64::from(k) < 32.0 * share))));
+            glimpse
+        };
+        let rule = (0.02, 0.05, Ranking::Betting);
+        let level = race(&[with(0.5), with(0.5)], &[with(0.0), with(0.5)], 1.0, rule);
+        let apart = race(&[with(0.9), with(0.1)], &[with(0.0), with(0.8)], 1.0, rule);
+        assert!(level > 5 * apart, "{level} {apart}");
+    }
+}
