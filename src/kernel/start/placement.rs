@@ -1,5 +1,6 @@
 //! Where everyone starts: points first, then at random without overlaps.
 
+use super::arrival::Arrivals;
 use super::body::Laws;
 use super::crowd::Crowd;
 use super::relaxation::{self, Room};
@@ -62,15 +63,10 @@ impl Starts {
                 Position::Point(_) | Position::Near { .. } => None,
             });
         }
-        let mut comes = vec![false; scenario.agents.len()];
-        for member in scenario.sources.iter().flat_map(|source| &source.members) {
-            if let Some(comes) = comes.get_mut(member.0 as usize) {
-                *comes = true;
-            }
-        }
+        let arrivals = Arrivals::new(scenario);
         let fixed = |k: &u32| matches!(scenario.agents[*k as usize].start.position, Position::Point(_));
         // Who comes in later is placed then.
-        let all = (0..scenario.agents.len() as u32).filter(|&k| !comes[k as usize]);
+        let all = (0..scenario.agents.len() as u32).filter(|&k| !arrivals.comes(k as usize));
         out.order = all.clone().filter(fixed).chain(all.filter(|k| !fixed(k))).collect();
         out.barriers = scenario.scene.barriers.iter().map(|barrier| bounds(&barrier.obstacle)).collect();
         out
