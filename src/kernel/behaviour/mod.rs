@@ -342,15 +342,15 @@ impl Behaviours {
         let ranges = write(state, slot, &values);
         dynamics::prepare(state, program.dt, slot);
         let (present, home) = state.behaviours.detours[slot.block][slot.lane];
-        if route != present {
-            let stage = drive::stage(state, slot);
-            let home = if present == OWN_ROUTE { stage } else { home };
-            state.behaviours.detours[slot.block][slot.lane] = (route, home);
-            let (stage, round) = if route == OWN_ROUTE { (home, 0) } else { (route, round) };
-            drive::divert(program, state, slot, stage, round);
-        } else {
+        if route == present {
             drive::renew(program, state, slot);
+            return ranges;
         }
+        let stage = drive::stage(state, slot);
+        let home = if present == OWN_ROUTE { stage } else { home };
+        state.behaviours.detours[slot.block][slot.lane] = (route, home);
+        let (stage, round) = if route == OWN_ROUTE { (home, 0) } else { (route, round) };
+        drive::divert(program, state, slot, stage, round);
         ranges
     }
 }
