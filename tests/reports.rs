@@ -2,7 +2,7 @@
 
 use smc::engine::outcome::{
     Comparison, Counts, Distribution, Failure, Histogram, Interval, Kind, Method, Quantile, QueryResult,
-    RankedOption, Ranking, Run, Shows, Side, Status, Stop, Verdict, Witness,
+    RankedOption, Ranking, Run, Shows, Side, Status, Step, Stop, Verdict, Witness,
 };
 use smc::report::{ExitCode, Format, Palette, exit_code, json, render};
 
@@ -124,6 +124,8 @@ fn estimates() -> Vec<QueryResult> {
                     beyond: 0,
                 }),
                 quantiles: vec![],
+                empirical: vec![Step { value: -0.2, share: 0.5 }, Step { value: 1.4, share: 1.0 }],
+                band: Some(0.042_95),
             }),
             ..result(4, Kind::Estimate, "estimate E(min<=10 s (gap(a))) in -0.5 m .. 20 m")
         },
@@ -144,6 +146,7 @@ fn estimates() -> Vec<QueryResult> {
                     Quantile { level: 0.5, value: value(21.42, 21.11, 21.73) },
                     Quantile { level: 0.95, value: value(f64::INFINITY, 28.31, f64::INFINITY) },
                 ],
+                ..Distribution::default()
             }),
             ..result(5, Kind::Estimate, "estimate Q(0.95, time_until(user in exit))")
         },

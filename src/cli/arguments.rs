@@ -37,6 +37,8 @@ pub(super) enum Command {
     Check(Box<Check>),
     /// Run trials of a scenario and write their traces.
     Simulate(Box<Simulate>),
+    /// Watch recorded or streamed outcomes for a change of their probability.
+    Drift(Drift),
     /// Show how a scenario, and property files, were understood.
     Show(Show),
     /// Format scenarios and property files; comments are kept.
@@ -87,6 +89,9 @@ pub(super) struct Check {
     /// Most trials of one query.
     #[arg(long, value_name = "N")]
     pub(super) max_trials: Option<u64>,
+    /// Most trials of one ranking, over all its options.
+    #[arg(long, value_name = "N")]
+    pub(super) total_trials: Option<u64>,
     /// Time for the whole call, such as `50ms`, `2s`, `5min`.
     #[arg(long, value_parser = parse_duration)]
     pub(super) timeout: Option<std::time::Duration>,
@@ -163,6 +168,43 @@ pub(super) enum TableFormat {
     Jsonl,
 }
 
+/// `smc drift`
+#[derive(Args, Debug)]
+pub(super) struct Drift {
+    /// Outcomes, one a line (`0`, `1`, `false`, `true`), or a table of comma-separated values; `-` for standard input.
+    pub(super) file: String,
+    /// Probability of success as it was: `0.95` or `95%`.
+    #[arg(long, value_parser = parse_share, value_name = "P")]
+    pub(super) before: f64,
+    /// Probability of success after the change that matters.
+    #[arg(long, value_parser = parse_share, value_name = "P")]
+    pub(super) after: f64,
+    /// Outcomes that pass on average before a false alarm, at least; 1000 by default.
+    #[arg(long, value_name = "N", conflicts_with = "threshold", value_parser = parse_quiet)]
+    pub(super) false_alarm: Option<f64>,
+    /// Threshold of the sum: the logarithm of the number of outcomes to a false alarm.
+    #[arg(long, value_name = "H")]
+    pub(super) threshold: Option<f64>,
+    /// Column of a table: its head, or its number from 1.
+    #[arg(long, value_name = "COLUMN")]
+    pub(super) column: Option<String>,
+    /// Stop at the first alarm.
+    #[arg(long)]
+    pub(super) first: bool,
+    /// Format on standard output; `json` is one object a line, the last one the summary.
+    #[arg(long, value_enum, default_value_t = DriftFormat::Text)]
+    pub(super) format: DriftFormat,
+}
+
+/// Formats of `smc drift`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum DriftFormat {
+    /// For people.
+    Text,
+    /// For programs.
+    Json,
+}
+
 /// `smc show`
 #[derive(Args, Debug)]
 pub(super) struct Show {
@@ -201,6 +243,20 @@ pub(super) enum Language {
 pub(super) struct Explain {
     /// The code, such as `E0303`; all codes without it.
     pub(super) code: Option<String>,
+}
+
+/// A probability, perhaps as a percentage.
+fn parse_share(text: &str) -> Result<f64, String> {
+    let (digits, scale) = text.strip_suffix('%').map_or((text, 1.0), |digits| (digits, 100.0));
+    let value: f64 = digits.trim().parse().map_err(|_| format!("`{text}` is not a number"))?;
+    let share = value / scale;
+    if share > 0.0 && share < 1.0 { Ok(share) } else { Err("a probability lies between 0 and 1".to_owned()) }
+}
+
+/// A number of outcomes.
+fn parse_quiet(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
+    if value > 1.0 && value < 1e300 { Ok(value) } else { Err("a number above 1".to_owned()) }
 }
 
 /// A duration with its unit: `50ms`, `2s`, `1.5min`, `1h`.

@@ -25,14 +25,16 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     if arguments.threads == Some(0) {
         return refuse("`--threads 0` runs nothing");
     }
-    if arguments.max_trials == Some(0) {
-        return refuse("`--max-trials 0` runs nothing");
+    if arguments.max_trials == Some(0) || arguments.total_trials == Some(0) {
+        return refuse("no trials at all: that runs nothing");
     }
     let threads = match Threads::new(arguments.threads) {
         Ok(threads) => threads,
         Err(error) => return refuse(&format!("no threads can be started: {error}")),
     };
-    let budget = Arc::new(Budget::new(arguments.max_trials.unwrap_or(DEFAULT_TRIALS), arguments.timeout));
+    let mut budget = Budget::new(arguments.max_trials.unwrap_or(DEFAULT_TRIALS), arguments.timeout);
+    budget.max_total = arguments.total_trials;
+    let budget = Arc::new(budget);
     let interrupted = Arc::clone(&budget);
     // Only the first interruption is gentle.
     let _ = ctrlc::set_handler(move || {
@@ -154,10 +156,6 @@ fn command(verb: &str, arguments: &Check, properties: bool) -> String {
     for data in &arguments.model.data {
         words.push("--data".to_owned());
         words.push(quoted(&data.display().to_string()));
-    }
-    // With its budget a call stops where it stopped; a deadline is no property of the input.
-    if let (true, Some(most)) = (properties, arguments.max_trials) {
-        words.push(format!("--max-trials {most}"));
     }
     words.join(" ")
 }

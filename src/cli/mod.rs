@@ -2,6 +2,7 @@
 
 mod arguments;
 mod check;
+mod drift;
 mod explain;
 mod format;
 mod inputs;
@@ -53,6 +54,7 @@ fn dispatch(arguments: &Arguments) -> Exit {
     match &arguments.command {
         Command::Check(command) => check::run(command, colors),
         Command::Simulate(command) => simulate::run(command, colors),
+        Command::Drift(command) => drift::run(command),
         Command::Show(command) => show::run(command, colors),
         Command::Fmt(command) => format::run(command, colors),
         Command::Explain(command) => explain::run(command),

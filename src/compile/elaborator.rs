@@ -2,6 +2,7 @@
 
 use super::behaviour::With;
 use super::dimension::{Dimension, describe};
+use super::margin::Margins;
 use super::number::Number;
 use super::process::Declared;
 use super::study::Texts;
@@ -75,6 +76,8 @@ pub(super) struct Elaborator<'a> {
     pub(super) withs: Vec<With<'a>>,
     /// Names of the agents so far.
     pub(super) agent_names: Vec<String>,
+    /// Whether somebody may come in during a trial.
+    pub(super) coming: bool,
     /// Agents who come or leave during a trial.
     pub(super) passing: BTreeSet<AgentId>,
     /// The clock.
@@ -95,6 +98,8 @@ pub(super) struct Elaborator<'a> {
     pub(super) circles: Vec<String>,
     /// What was found wrong.
     pub(super) diagnostics: Vec<Diagnostic>,
+    /// What is known of margins, while the formula of a robustness is lowered.
+    pub(super) margins: Option<Margins>,
     /// Present depth of lowering.
     pub(super) depth: u32,
     /// Nodes lowered so far.
@@ -117,6 +122,7 @@ impl<'a> Elaborator<'a> {
             behaviours: Vec::new(),
             withs: Vec::new(),
             agent_names: Vec::new(),
+            coming: false,
             passing: BTreeSet::new(),
             clock: Clock::Steps,
             horizon: Tick(0),
@@ -127,6 +133,7 @@ impl<'a> Elaborator<'a> {
             texts: Texts::default(),
             circles: Vec::new(),
             diagnostics: Vec::new(),
+            margins: None,
             depth: 0,
             nodes: 0,
         }

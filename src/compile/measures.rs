@@ -3,12 +3,12 @@
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered};
 use super::reach::{Reach, Reaches};
-use super::study::{Column, MeasureKind, Root};
+use super::study::{Column, MeasureKind, Root, Sought};
 use super::symbols::{Meaning, ScopeId};
 use super::typed::Typed;
 use crate::base::tick::Clock;
-use crate::logic::{Node, Relation, Term, TermId};
-use crate::syntax::ast::{self, Expr, ExprKind, Moment};
+use crate::logic::{Node, NodeId, Relation, Term, TermId};
+use crate::syntax::ast::{self, BinaryOp, Expr, ExprKind, Moment};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
@@ -80,6 +80,74 @@ impl Elaborator<'_> {
         Ok((term, dimension, reach.unbounded))
     }
 
+    /// The formula inside `robustness(…)`, if that is what an expression is.
+    fn inside_robustness<'e>(&self, body: &'e Expr, scope: ScopeId) -> Option<&'e Expr> {
+        match &body.kind {
+            ExprKind::Call { function, arguments }
+                if function.name == "robustness" && self.find("robustness", scope).is_none() =>
+            {
+                match arguments.as_slice() {
+                    [formula] => Some(formula),
+                    _ => None,
+                }
+            }
+            _ => None,
+        }
+    }
+
+    /// What a metric is read from, before it is known what is wanted of it.
+    fn metric_root(&mut self, body: &Expr, scope: ScopeId) -> Lowered<(Root, Dimension, bool)> {
+        let Some(formula) = self.inside_robustness(body, scope) else {
+            let (term, dimension, unbounded) = self.metric(body, scope)?;
+            return Ok((Root::Metric(term), dimension, unbounded));
+        };
+        let (node, dimension, unbounded) = self.robustness_of(formula, scope)?;
+        Ok((Root::Robustness(node, Sought::Value), dimension, unbounded))
+    }
+
+    /// A formula with its margins.
+    fn robustness_of(&mut self, formula: &Expr, scope: ScopeId) -> Lowered<(NodeId, Dimension, bool)> {
+        let (node, dimension) = self.robustness(formula.span, |this| {
+            this.temporal = true;
+            let typed = this.lower(formula, &Locals::of(scope));
+            this.temporal = false;
+            this.as_formula(typed?, formula.span)
+        })?;
+        let reach = Reaches::new(&self.tree, self.horizon).node(node);
+        self.within_horizon(reach, formula.span)?;
+        Ok((node, dimension, reach.unbounded))
+    }
+
+    /// The robustness of the formula of a probability, as a level for splitting.
+    pub(super) fn level(&mut self, measure: &ast::Measure, scope: ScopeId) -> Lowered<Column> {
+        let (node, ..) = self.robustness_of(&measure.body, scope)?;
+        let text = self.text(measure.body.span);
+        Ok(Column { root: Root::Robustness(node, Sought::Value), text })
+    }
+
+    /// `robustness(…) >= 0.2 m` as what is asked of a trace, if a condition is one.
+    fn robust_enough(&mut self, body: &Expr, scope: ScopeId) -> Option<Lowered<(Column, bool)>> {
+        let ExprKind::Binary(op, left, right) = &body.kind else { return None };
+        let relation = match op {
+            BinaryOp::Less => Relation::Less,
+            BinaryOp::AtMost => Relation::AtMost,
+            BinaryOp::Greater => Relation::Greater,
+            BinaryOp::AtLeast => Relation::AtLeast,
+            _ => return None,
+        };
+        let (formula, bound, relation) =
+            match (self.inside_robustness(left, scope), self.inside_robustness(right, scope)) {
+                (Some(formula), None) => (formula, right, relation),
+                (None, Some(formula)) => (formula, left, relation.flipped()),
+                _ => return None,
+            };
+        Some(self.robustness_of(formula, scope).and_then(|(node, dimension, unbounded)| {
+            let bound = self.number_of(bound, dimension, &Locals::of(scope))?.value;
+            let text = self.text(body.span);
+            Ok((Column { root: Root::Robustness(node, Sought::Compared(relation, bound)), text }, unbounded))
+        }))
+    }
+
     /// A measure; a quantile or expectation has the dimension of its metric.
     pub(super) fn measure(&mut self, measure: &ast::Measure, scope: ScopeId) -> Lowered<Observed> {
         if let (Some((low, _)), ast::MeasureKind::Probability | ast::MeasureKind::Quantile(_)) =
@@ -90,11 +158,14 @@ impl Elaborator<'_> {
         }
         match &measure.kind {
             ast::MeasureKind::Probability => {
-                let (column, unbounded) = self.formula_column(&measure.body, scope)?;
+                let (column, unbounded) = match self.robust_enough(&measure.body, scope) {
+                    Some(robust) => robust?,
+                    None => self.formula_column(&measure.body, scope)?,
+                };
                 Ok(Observed { column, kind: MeasureKind::Probability, unbounded })
             }
             ast::MeasureKind::Expectation => {
-                let (term, dimension, unbounded) = self.metric(&measure.body, scope)?;
+                let (root, dimension, unbounded) = self.metric_root(&measure.body, scope)?;
                 let Some((low, high)) = &measure.range else {
                     let error = Diagnostic::error(
                         "E0605",
@@ -118,16 +189,20 @@ impl Elaborator<'_> {
                         "this range is empty",
                     ));
                 }
+                let root = match root {
+                    Root::Robustness(node, _) => Root::Robustness(node, Sought::Clipped(range.0, range.1)),
+                    root => root,
+                };
                 let text = self.text(measure.body.span);
                 Ok(Observed {
-                    column: Column { root: Root::Metric(term), text },
+                    column: Column { root, text },
                     kind: MeasureKind::Expectation { range, dimension },
                     unbounded,
                 })
             }
             ast::MeasureKind::Quantile(level) => {
                 let number = self.number_of(level, Dimension::NONE, &Locals::of(scope));
-                let (term, dimension, unbounded) = self.metric(&measure.body, scope)?;
+                let (root, dimension, unbounded) = self.metric_root(&measure.body, scope)?;
                 let number = number?;
                 if number.value <= 0.0 || number.value >= 1.0 {
                     return self.report(Diagnostic::error(
@@ -138,7 +213,7 @@ impl Elaborator<'_> {
                 }
                 let text = self.text(measure.body.span);
                 Ok(Observed {
-                    column: Column { root: Root::Metric(term), text },
+                    column: Column { root, text },
                     kind: MeasureKind::Quantile { level: number.value, dimension },
                     unbounded,
                 })
@@ -154,12 +229,18 @@ impl Elaborator<'_> {
         bound: f64,
         dimension: Dimension,
     ) -> Column {
-        let Root::Metric(term) = column.root else { return column.clone() };
-        let limit = self.term(Term::Constant(bound));
         let relation = if or_equal { Relation::AtMost } else { Relation::Less };
         let sign = if or_equal { "<=" } else { "<" };
-        let bound = if dimension.is_none() { bound.to_string() } else { format!("{bound} {dimension}") };
-        let text = format!("{} {sign} {bound}", column.text);
+        let shown = if dimension.is_none() { bound.to_string() } else { format!("{bound} {dimension}") };
+        let text = format!("{} {sign} {shown}", column.text);
+        let term = match column.root {
+            Root::Metric(term) => term,
+            Root::Robustness(node, _) => {
+                return Column { root: Root::Robustness(node, Sought::Compared(relation, bound)), text };
+            }
+            Root::Formula(_) => return column.clone(),
+        };
+        let limit = self.term(Term::Constant(bound));
         let node = self.comparison((relation, term, limit), text, dimension);
         Column { root: Root::Formula(node), text: column.text.clone() }
     }

@@ -3,7 +3,7 @@
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered};
 use super::nearest::nearest;
-use super::study::{Estimator, MeasureKind, Ranking, Test};
+use super::study::{Estimator, MeasureKind, Ranking, Splitting, Test};
 use crate::syntax::ast::{Clauses, Expr, Method};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -237,7 +237,7 @@ impl Elaborator<'_> {
             });
         };
         let name = method.name.name.as_str();
-        if name == "fixed" || name == "clopper_pearson" {
+        if name == "fixed" || name == "clopper_pearson" || (quantile && name == "dkw") {
             let arguments = self.arguments(method, ["trials", "delta"], locals)?;
             let (trials, span) = self.required(&arguments, 0, "trials")?;
             let delta = self.error_of(arguments.values[1], delta, "delta")?;
@@ -248,12 +248,28 @@ impl Elaborator<'_> {
                     "`trials` must be a whole, positive number",
                 ));
             }
-            return Ok(Estimator::Fixed { trials: trials as u64, delta });
+            let trials = trials as u64;
+            return Ok(match name {
+                "dkw" => Estimator::Band { trials, delta },
+                _ => Estimator::Fixed { trials, delta },
+            });
+        }
+        if probability && (name == "splitting" || name == "fixed_effort") {
+            return self.splitting(clauses, method, delta, locals);
         }
         let known: &[&str] = if probability {
-            &["okamoto", "massart", "spending", "clopper_pearson", "fixed", "gbas"]
+            &[
+                "okamoto",
+                "massart",
+                "spending",
+                "clopper_pearson",
+                "fixed",
+                "gbas",
+                "splitting",
+                "fixed_effort",
+            ]
         } else if quantile {
-            &["fixed"]
+            &["fixed", "dkw"]
         } else {
             &["okamoto", "fixed"]
         };
@@ -292,6 +308,51 @@ impl Elaborator<'_> {
             "spending" => Estimator::Spending { epsilon, delta },
             _ => Estimator::Relative { epsilon, delta },
         })
+    }
+
+    /// Importance splitting; the column of its level is not known yet.
+    fn splitting(
+        &mut self,
+        clauses: &Clauses,
+        method: &Method,
+        delta: f64,
+        locals: &Locals,
+    ) -> Lowered<Estimator> {
+        if let Some(within) = &clauses.within {
+            let error = Diagnostic::error("E0607", within.span, "splitting promises no width").hint(
+                "choose the number of `replicas` and of `runs`; the interval follows from how they scatter",
+            );
+            return self.report(error);
+        }
+        let adaptive = method.name.name == "splitting";
+        let arguments = self.arguments(method, ["replicas", "runs", "plain", "delta", "kill"], locals)?;
+        let replicas = self.whole_in(arguments.values[0], "replicas", (10, 1_000_000), 1000)?;
+        let runs = self.whole_in(arguments.values[1], "runs", (2, 1000), 20)?;
+        let plain = self.whole_in(arguments.values[2], "plain", (100, 1_000_000_000), replicas * runs / 2)?;
+        let delta = self.error_of(arguments.values[3], delta, "delta")?;
+        let kill = self.whole_in(arguments.values[4], "kill", (1, replicas - 1), (replicas / 10).max(1))?;
+        Ok(Estimator::Splitting(Splitting { adaptive, replicas, runs, kill, plain, delta, level: 0 }))
+    }
+
+    /// A whole number in a range.
+    fn whole_in(
+        &mut self,
+        value: Option<(f64, Span)>,
+        name: &str,
+        (low, high): (u64, u64),
+        default: u64,
+    ) -> Lowered<u64> {
+        match value {
+            None => Ok(default),
+            Some((value, _)) if value.fract() == 0.0 && value >= low as f64 && value <= high as f64 => {
+                Ok(value as u64)
+            }
+            Some((value, span)) => self.report(Diagnostic::error(
+                "E0604",
+                span,
+                format!("`{name}` is {value}, but is a whole number from {low} to {high}"),
+            )),
+        }
     }
 
     /// Half width, if any, and error of a comparison.

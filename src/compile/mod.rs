@@ -12,6 +12,7 @@ mod filter;
 mod kinds;
 mod laws;
 mod lower;
+pub mod margin;
 mod measures;
 pub mod methods;
 pub mod nearest;

@@ -6,7 +6,7 @@ use super::files::Files;
 use super::measures::Observed;
 use super::number::Number;
 use super::settings::Setting;
-use super::study::{Ask, Column, Measure, MeasureKind, Query, Study, Target, World};
+use super::study::{Ask, Column, Estimator, Measure, MeasureKind, Query, Study, Target, World};
 use super::symbols::ScopeId;
 use crate::model::Scenario;
 use crate::syntax::ast::{self, Binding, Clauses, Expr, PropertyFile, PropertyItem, QueryKind, ScenarioFile};
@@ -284,7 +284,10 @@ impl<'a> Compiler<'a> {
                 self.push(query.span, text, settings, property_name(measure), ask, unbounded, site);
             }
             QueryKind::Estimate(measures) => {
-                let share = 1.0 / measures.len().max(1) as f64;
+                // A band holds all quantiles of a metric at once.
+                let band = clauses.by.as_ref().is_some_and(|method| method.name.name == "dkw");
+                let claims = if band { metrics(measures) } else { measures.len() };
+                let share = 1.0 / claims.max(1) as f64;
                 let mut failed = false;
                 for measure in measures {
                     let Ok((measured, unbounded)) = self.measured(site, measure, scope) else {
@@ -298,14 +301,28 @@ impl<'a> Compiler<'a> {
                     } else {
                         share
                     };
-                    let Ok(estimator) = elaborator.estimator(clauses, &measured.kind, share, &locals) else {
+                    let Ok(mut estimator) = elaborator.estimator(clauses, &measured.kind, share, &locals)
+                    else {
                         failed = true;
                         continue;
                     };
-                    let single = if measures.len() == 1 {
-                        text.clone()
-                    } else {
-                        format!("estimate {}", self.sites[site].elaborator.text(measure.span))
+                    if let Estimator::Splitting(splitting) = &mut estimator {
+                        // How far a path has come is the robustness of its formula.
+                        let Ok(level) = elaborator.level(measure, scope) else {
+                            failed = true;
+                            continue;
+                        };
+                        splitting.level = self.column(site, level);
+                    }
+                    let elaborator = &self.sites[site].elaborator;
+                    let single = match &measure.kind {
+                        _ if measures.len() == 1 => text.clone(),
+                        ast::MeasureKind::Quantile(level) => format!(
+                            "estimate Q({}, {})",
+                            elaborator.text(level.span),
+                            elaborator.text(measure.body.span)
+                        ),
+                        _ => format!("estimate {}", elaborator.text(measure.span)),
                     };
                     let ask = Ask::Estimate { measure: measured, estimator };
                     self.push(
@@ -413,6 +430,14 @@ impl<'a> Compiler<'a> {
         }
         (Some(Study { title, worlds, queries: self.queries }), diagnostics)
     }
+}
+
+/// How many different metrics are asked about.
+fn metrics(measures: &[ast::Measure]) -> usize {
+    let mut spans: Vec<Span> = measures.iter().map(|measure| measure.body.span).collect();
+    spans.sort_unstable();
+    spans.dedup();
+    spans.len()
 }
 
 /// Whether the error of a query comes from its family rather than from its own clause.

@@ -46,6 +46,7 @@ impl<'a> Elaborator<'a> {
         // The range of numbers does not depend on how many places are kept: another horizon, the same people.
         let range = places.next_power_of_two().max(1024) as u32;
         let first = people.entities(&decl.name.name, range);
+        self.coming = true;
         let members = self.members(&decl.name, places, true, first, people, |_| {
             (body.clone(), start.clone(), route.clone())
         });

@@ -1,7 +1,7 @@
 //! What compilation yields: worlds to run and questions to answer about them.
 
 use super::dimension::Dimension;
-use crate::logic::{NodeId, TermId, Tree};
+use crate::logic::{NodeId, Relation, TermId, Tree};
 use crate::model::{Bool, Num, Scenario};
 use crate::syntax::source::Span;
 use std::collections::BTreeMap;
@@ -58,12 +58,25 @@ pub struct Column {
 }
 
 /// A formula or a metric.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Root {
     /// A formula.
     Formula(NodeId),
     /// A metric.
     Metric(TermId),
+    /// How far a formula is from changing its truth. All its conditions are comparisons of numbers.
+    Robustness(NodeId, Sought),
+}
+
+/// What is wanted of a robustness: once its bounds force that, a trial can end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sought {
+    /// Its value.
+    Value,
+    /// Its value where that lies in a range, else the side on which it lies outside.
+    Clipped(f64, f64),
+    /// Whether it is related so to a number.
+    Compared(Relation, f64),
 }
 
 /// A column of a world.
@@ -266,6 +279,13 @@ pub enum Estimator {
         /// Error probability.
         delta: f64,
     },
+    /// Fixed number of trials: the band around the whole distribution function.
+    Band {
+        /// Number of trials.
+        trials: u64,
+        /// Error probability.
+        delta: f64,
+    },
     /// Relative error (GBAS).
     Relative {
         /// Relative error.
@@ -273,6 +293,27 @@ pub enum Estimator {
         /// Error probability.
         delta: f64,
     },
+    /// Importance splitting.
+    Splitting(Splitting),
+}
+
+/// How a rare event is split into less rare ones.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Splitting {
+    /// Whether levels are found on the way (else by a pilot run, with as many paths at each).
+    pub adaptive: bool,
+    /// Paths of a run.
+    pub replicas: u64,
+    /// Independent runs.
+    pub runs: u64,
+    /// Paths given up at each level, at least.
+    pub kill: u64,
+    /// Plain trials that are made first.
+    pub plain: u64,
+    /// Error of the interval and of the bound.
+    pub delta: f64,
+    /// Column of the level.
+    pub level: usize,
 }
 
 /// Procedures of a ranking.

@@ -4,5 +4,6 @@
 //! created. A bad input gives every fault in it at once, each with its place.
 
 pub mod geometry;
+pub mod outcomes;
 pub mod table;
 pub mod tracks;

@@ -16,7 +16,7 @@ use super::trial;
 use super::watch::Watch;
 use super::witness;
 use super::words;
-use crate::compile::study::{Ask, Measure, MeasureKind, Query};
+use crate::compile::study::{Ask, Measure, MeasureKind, Query, Root};
 use crate::stats::{Coverage, Decision};
 
 fn unit(measure: &Measure) -> String {
@@ -38,7 +38,7 @@ pub(super) struct Answers<'a> {
 
 impl Answers<'_> {
     /// What is known of a query before its first trial.
-    fn blank(&self, query: &Query, kind: Kind) -> QueryResult {
+    pub(super) fn blank(&self, query: &Query, kind: Kind) -> QueryResult {
         let (file, line) = (self.call.place)(query.span);
         QueryResult {
             name: query.name.clone(),
@@ -50,11 +50,11 @@ impl Answers<'_> {
         }
     }
 
-    fn replay(&self, query: &Query, trials: u64) -> String {
-        format!(
-            "{} --only {} --seed {} --max-trials {trials}",
-            self.call.command, query.index, self.call.seed
-        )
+    /// The call that stops at the same trial; `limit` is the option that counts them.
+    pub(super) fn replay(&self, query: &Query, limit: &str, trials: u64) -> String {
+        let call = format!("{} --only {} --seed {}", self.call.command, query.index, self.call.seed);
+        // Where there was no time for a trial there is nothing to be replayed.
+        if trials == 0 { call } else { format!("{call} {limit} {trials}") }
     }
 
     /// The results of a survey that has stopped.
@@ -76,15 +76,19 @@ impl Answers<'_> {
         result.method = procedure::method(&query.ask, Some(&inquiry.procedure));
         result.unit = unit(measure);
         result.stopped_by = stop;
-        result.replay = self.replay(query, counts.trials);
+        result.replay = self.replay(query, "--max-trials", counts.trials);
         result.elapsed_s = inquiry.seconds;
         let subject_words = measured_words(query, measure);
+        let mut beside = procedure::BESIDE;
         if let Some((interval, coverage, error)) = inquiry.procedure.interval(counts) {
+            beside = error;
             result.estimate = Some(interval.estimate);
             result.low = interval.low;
             result.high = interval.high;
             result.interval = words::interval(coverage, error);
-            if matches!(measure.kind, MeasureKind::Quantile { .. }) && interval.high.is_infinite() {
+            let robust = matches!(subject.columns[measure.target.column], Root::Robustness(..));
+            if matches!(measure.kind, MeasureKind::Quantile { .. }) && interval.high.is_infinite() && !robust
+            {
                 result.censored = Some(subject.program.scenario.clock.seconds(subject.horizon));
             }
             if kind == Kind::Estimate {
@@ -93,6 +97,12 @@ impl Answers<'_> {
                         format!("> {}", words::quantity(horizon, &result.unit))
                     }
                     (Some(_), false, true) => format!(">= {}", words::quantity(interval.low, &result.unit)),
+                    (None, true, false) => {
+                        format!("<= {}", words::rounded(interval.high, true, &result.unit))
+                    }
+                    (None, false, true) => {
+                        format!(">= {}", words::rounded(interval.low, false, &result.unit))
+                    }
                     _ => format!("in {}", words::ends(interval.low, interval.high, &result.unit)),
                 };
                 result.certifies = format!("{subject_words} {claim}, error at most {}", words::number(error));
@@ -118,7 +128,7 @@ impl Answers<'_> {
                 None => format!(
                     "{subject_words} in {}, error at most {}",
                     words::ends(result.low, result.high, &result.unit),
-                    words::number(procedure::BESIDE)
+                    words::number(beside)
                 ),
             };
             if inquiry.procedure.split() {
@@ -139,7 +149,7 @@ impl Answers<'_> {
     }
 
     /// The witnesses of a result.
-    fn witnesses(
+    pub(super) fn witnesses(
         &self,
         result: &QueryResult,
         subject: &Subject,
@@ -151,7 +161,7 @@ impl Answers<'_> {
     }
 
     /// Counts, and what they warn of.
-    fn tell(&self, result: &mut QueryResult, subject: &Subject, tally: &Tally, column: usize) {
+    pub(super) fn tell(&self, result: &mut QueryResult, subject: &Subject, tally: &Tally, column: usize) {
         result.counts = tally.counts;
         result.steps = tally.steps;
         result.clipped = tally.clipped;
@@ -211,7 +221,7 @@ impl Answers<'_> {
         result.high = gap.interval.high;
         result.interval = words::interval(gap.interval.coverage, gap.interval.error);
         result.stopped_by = gap.stop;
-        result.replay = self.replay(query, gap.pairs);
+        result.replay = self.replay(query, "--max-trials", gap.pairs);
         let joined = total(&gap.sides);
         self.tell(&mut result, subject, &joined, first.target.column);
         let label = |settings: &[(String, String)]| {
@@ -252,9 +262,8 @@ impl Answers<'_> {
         result.method = procedure::method(&query.ask, None);
         result.unit = unit(measure);
         result.stopped_by = podium.stop;
-        let most = podium.tallies.iter().map(|t| t.counts.trials).max().unwrap_or(0);
-        result.replay = self.replay(query, most);
         let joined = total(&podium.tallies);
+        result.replay = self.replay(query, "--total-trials", joined.counts.trials);
         self.tell(&mut result, subject, &joined, measure.target.column);
         result.clipped = joined.clipped;
         let labels: Vec<&str> = declared.options.iter().map(|(label, _)| label.as_str()).collect();

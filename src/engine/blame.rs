@@ -317,6 +317,7 @@ fn instantiate_num(num: &Num, depth: u32, id: AgentId) -> Num {
         Num::Coordinate(axis, p) => Num::Coordinate(*axis, place(p, depth, id)),
         Num::MeanVelocity(axis, s) => Num::MeanVelocity(*axis, set(s, depth, id)),
         Num::Distance(p, q) => Num::Distance(place(p, depth, id), place(q, depth, id)),
+        Num::Depth(p, region) => Num::Depth(place(p, depth, id), *region),
         Num::Clearance(w) => Num::Clearance(who(*w, depth, id)),
         Num::TimeToCollision(v, w) => Num::TimeToCollision(who(*v, depth, id), who(*w, depth, id)),
         Num::Spread(s) => Num::Spread(set(s, depth, id)),

@@ -14,6 +14,8 @@ pub const DEFAULT_TRIALS: u64 = 1_000_000;
 pub struct Budget {
     /// Most trials of one query (of a ranking or comparison: of one option or side).
     pub max_trials: u64,
+    /// Most trials of a ranking, over all options: where a deadline found it, a replay finds it again.
+    pub max_total: Option<u64>,
     deadline: Option<Instant>,
     started: Instant,
     interrupted: AtomicBool,
@@ -26,6 +28,7 @@ impl Budget {
         let started = Instant::now();
         Self {
             max_trials,
+            max_total: None,
             deadline: timeout.and_then(|t| started.checked_add(t)),
             started,
             interrupted: AtomicBool::new(false),
@@ -37,6 +40,7 @@ impl Budget {
     pub fn ahead(&self, seconds: f64) -> Self {
         Self {
             max_trials: self.max_trials,
+            max_total: self.max_total,
             deadline: Instant::now().checked_add(Duration::from_secs_f64(seconds)),
             started: self.started,
             interrupted: AtomicBool::new(self.is_interrupted()),

@@ -12,7 +12,7 @@ use super::subject::Subject;
 use super::tally::Tally;
 use super::watch::{Forecast, Watch};
 use crate::compile::methods;
-use crate::compile::study::{MeasureKind, Query};
+use crate::compile::study::{Ask, MeasureKind, Query};
 use crate::stats::{self, Difference, Mean};
 
 /// The procedure of a comparison.
@@ -27,8 +27,8 @@ enum Procedure {
 pub(super) struct Gap {
     /// What each side consumed.
     pub(super) sides: [Tally; 2],
-    /// Sums of the values of each side, for expectations.
-    pub(super) sums: [(f64, u64); 2],
+    /// The mean of each side, for expectations.
+    pub(super) means: Vec<Mean>,
     /// Why it stopped.
     pub(super) stop: Stop,
     /// Interval of first less second.
@@ -153,7 +153,12 @@ impl<'s> Contrast<'s> {
         let planned = self.planned(budget);
         let most = planned.min(budget.max_trials);
         let mut tallies = [Tally::default(), Tally::default()];
-        let mut sums = [(0.0, 0u64); 2];
+        let mut means: Vec<Mean> = match (self.range, &self.query.ask) {
+            (Some((low, high)), Ask::Compare { delta, .. }) => (0..2)
+                .map(|_| Mean::fixed(low, high, super::budget::DEFAULT_TRIALS, *delta))
+                .collect::<Result<_, _>>()?,
+            _ => Vec::new(),
+        };
         let mut next = 0u64;
         let stop = 'sampling: loop {
             if next >= most {
@@ -183,10 +188,8 @@ impl<'s> Contrast<'s> {
                 }
                 for (side, cell) in [a, b].into_iter().enumerate() {
                     tallies[side].add(item.index, cell, self.range);
-                    if let Some(value) = value(cell) {
-                        let (low, high) = self.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
-                        sums[side].0 += value.clamp(low, high);
-                        sums[side].1 += 1;
+                    if let Some(mean) = means.get_mut(side) {
+                        mean.observe(value(cell));
                     }
                 }
                 let scores = self.score(a).zip(self.score(b));
@@ -201,10 +204,10 @@ impl<'s> Contrast<'s> {
             next += items.len() as u64;
             watch.consumed(&self.query.text, next, Some(most));
         };
-        Ok(self.finish(tallies, sums, stop))
+        Ok(self.finish(tallies, means, stop))
     }
 
-    fn finish(&self, tallies: [Tally; 2], sums: [(f64, u64); 2], stop: Stop) -> Gap {
+    fn finish(&self, tallies: [Tally; 2], means: Vec<Mean>, stop: Stop) -> Gap {
         let (interval, estimate, alone, unresolved) = match &self.procedure {
             Procedure::Probability(difference) => {
                 let (low, high) = difference.pairs();
@@ -222,6 +225,6 @@ impl<'s> Contrast<'s> {
             }
         };
         let pairs = tallies[0].counts.trials;
-        Gap { sides: tallies, sums, stop, interval, estimate, alone, pairs, unresolved }
+        Gap { sides: tallies, means, stop, interval, estimate, alone, pairs, unresolved }
     }
 }

@@ -55,6 +55,9 @@ pub trait Executor: Sync {
 
     /// How many trials run side by side.
     fn width(&self, job: &Job<'_>) -> usize;
+
+    /// Calls `work` once on each thread, and returns when all have returned.
+    fn everywhere(&self, work: &(dyn Fn() + Sync));
 }
 
 /// A subject, the columns that are observed, and the workers that are warm.
@@ -117,6 +120,14 @@ impl Threads {
 }
 
 impl Executor for Threads {
+    fn everywhere(&self, work: &(dyn Fn() + Sync)) {
+        if self.pool.current_num_threads() == 1 {
+            work();
+        } else {
+            self.pool.broadcast(|_| work());
+        }
+    }
+
     fn width(&self, job: &Job<'_>) -> usize {
         let lanes = match job.subject.program.layout {
             crate::kernel::Layout::Trials => crate::base::lanes::LANES,

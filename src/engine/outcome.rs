@@ -96,6 +96,8 @@ pub struct QueryResult {
     pub distribution: Option<Distribution>,
     /// Trials in which radii were shrunk to part people who overlap at the start.
     pub shrunk: u64,
+    /// Details of an estimate by splitting.
+    pub rare: Option<Rare>,
 }
 
 impl QueryResult {
@@ -131,6 +133,7 @@ impl QueryResult {
             rank: None,
             distribution: None,
             shrunk: 0,
+            rare: None,
         }
     }
 }
@@ -375,6 +378,20 @@ pub struct Distribution {
     pub histogram: Option<Histogram>,
     /// Quantiles, by level ascending.
     pub quantiles: Vec<Quantile>,
+    /// The empirical distribution function, at a hundred shares at most.
+    pub empirical: Vec<Step>,
+    /// Where the number of trials was fixed beforehand: the true function is nowhere farther than this from
+    /// the empirical one, with the error of the result (Dvoretzky, Kiefer, Wolfowitz; Massart).
+    pub band: Option<f64>,
+}
+
+/// A step of the empirical distribution function.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// A value; infinite beyond the horizon.
+    pub value: f64,
+    /// Share of the resolved trials with at most this value.
+    pub share: f64,
 }
 
 /// Counts in bins of equal width.
@@ -397,4 +414,35 @@ pub struct Quantile {
     pub level: f64,
     /// Its value; infinite beyond the horizon.
     pub value: Interval,
+}
+
+/// An estimate by splitting, with the plain trials beside it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rare {
+    /// Independent runs.
+    pub runs: u64,
+    /// Runs in which no path reached the event.
+    pub extinct: u64,
+    /// Standard deviation of the estimate of one run.
+    pub deviation: f64,
+    /// Levels of a run, on average.
+    pub levels: f64,
+    /// Paths of all runs.
+    pub paths: u64,
+    /// Steps of the model in all paths.
+    pub steps: u64,
+    /// Mean of the runs; `None` if they did not come to an end.
+    pub estimate: Option<f64>,
+    /// Lower end of the asymptotic interval.
+    pub low: f64,
+    /// Upper end of it.
+    pub high: f64,
+    /// Lower end of the 99 % interval of the plain trials.
+    pub plain_low: f64,
+    /// Upper end of it.
+    pub plain_high: f64,
+    /// Upper bound of the probability, certified by the plain trials alone.
+    pub plain_bound: f64,
+    /// Whether the mean of the runs lies in the interval of the plain trials; if not, it is refused.
+    pub agrees: bool,
 }

@@ -3,7 +3,7 @@
 use super::budget::DEFAULT_TRIALS;
 use super::cell::{Cell, Reading};
 use super::fault::Fault;
-use super::outcome::{Distribution, Histogram, Interval, Method, Quantile};
+use super::outcome::{Distribution, Histogram, Interval, Method, Quantile, Step};
 use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Test};
 use crate::stats::quantile::Sample;
 use crate::stats::test::Verdict as TestVerdict;
@@ -16,6 +16,8 @@ use stats::Test as _;
 
 /// Bins of the histogram of a metric.
 const BINS: usize = 40;
+/// Most steps of an empirical distribution function.
+const STEPS: usize = 100;
 /// Error of the interval beside the verdict of a test.
 pub(super) const BESIDE: f64 = 0.05;
 
@@ -42,6 +44,8 @@ pub(super) enum Procedure {
         level: f64,
         /// Error probability.
         delta: f64,
+        /// Whether the interval is that of the band around the whole distribution function.
+        band: bool,
     },
 }
 
@@ -117,6 +121,7 @@ impl Procedure {
                     Estimator::Relative { epsilon, delta } => {
                         AnyEstimator::Gbas(Gbas::new(epsilon, delta, Some(DEFAULT_TRIALS), seed)?)
                     }
+                    Estimator::Splitting(_) | Estimator::Band { .. } => return Err(Fault::Unsuitable),
                 };
                 Ok(Self::Probability(Box::new(EstimatorReadings::new(estimator))))
             }
@@ -131,12 +136,19 @@ impl Procedure {
                     | Estimator::Massart { epsilon, delta }
                     | Estimator::Spending { epsilon, delta }
                     | Estimator::Relative { epsilon, delta } => Mean::within(*low, *high, epsilon, delta)?,
+                    Estimator::Splitting(_) | Estimator::Band { .. } => return Err(Fault::Unsuitable),
                 };
                 Ok(Self::Mean { mean: Box::new(mean), threshold: None, values: Vec::new() })
             }
-            (MeasureKind::Quantile { level, .. }, Estimator::Fixed { trials, delta }) => {
-                Ok(Self::Quantile { sample: Box::new(Sample::new(trials)?), level: *level, delta })
-            }
+            (
+                MeasureKind::Quantile { level, .. },
+                Estimator::Fixed { trials, delta } | Estimator::Band { trials, delta },
+            ) => Ok(Self::Quantile {
+                sample: Box::new(Sample::new(trials)?),
+                level: *level,
+                delta,
+                band: matches!(estimator, Estimator::Band { .. }),
+            }),
             (MeasureKind::Quantile { .. }, _) => Err(Fault::Unsuitable),
         }
     }
@@ -183,6 +195,18 @@ impl Procedure {
             }
             Self::Mean { mean, threshold, .. } => threshold.is_none() && mean.is_fixed(),
             Self::Quantile { .. } => true,
+        }
+    }
+
+    /// Whether it is over without having come to what was asked: at its own largest number of trials.
+    pub(super) fn is_capped(&self) -> bool {
+        match self {
+            Self::Mean { threshold: Some(_), .. } => self.decision().is_none(),
+            Self::Probability(estimator) => match estimator.readings().0 {
+                AnyEstimator::Gbas(gbas) => gbas.counts().successes < gbas.needed(),
+                _ => false,
+            },
+            _ => false,
         }
     }
 
@@ -259,35 +283,26 @@ impl Procedure {
                 };
                 Some((around(0.5 * (low + high), interval), coverage, interval.error))
             }
-            Self::Quantile { sample, level, delta } => {
-                let quantile = sample.quantiles(&[*level], *delta).ok()?.into_iter().next()?;
-                let estimate = if quantile.low_estimate.is_finite() {
-                    quantile.low_estimate
-                } else {
-                    quantile.high_estimate
-                };
-                let interval =
-                    Interval { estimate, low: quantile.interval.low, high: quantile.interval.high };
-                Some((interval, Coverage::FixedSize, *delta))
+            Self::Quantile { sample, level, delta, band } => {
+                Some((quantile(sample, *level, *delta, *band)?, Coverage::FixedSize, *delta))
             }
         }
     }
 
-    /// Histogram and quantiles of a metric.
+    /// Histogram, quantiles and empirical distribution of a metric.
     pub(super) fn distribution(&mut self) -> Option<Distribution> {
-        let (mut values, quantile) = match self {
-            Self::Mean { values, .. } => (values.clone(), None),
-            Self::Quantile { sample, level, delta } => {
-                let found = sample.quantiles(&[*level], *delta).ok()?.into_iter().next();
-                let quantile = found.map(|q| Quantile {
-                    level: q.q,
-                    value: Interval {
-                        estimate: if q.low_estimate.is_finite() { q.low_estimate } else { q.high_estimate },
-                        low: q.interval.low,
-                        high: q.interval.high,
-                    },
-                });
-                (sample.sorted().to_vec(), quantile)
+        let (mut values, quantiles, band) = match self {
+            Self::Mean { mean, values, threshold } => {
+                // Only a number of trials that was fixed beforehand has a band.
+                let fixed = threshold.is_none() && mean.is_fixed() && mean.finished();
+                let band = fixed.then(|| stats::quantile::band(mean.read().0, mean.interval().error));
+                (values.clone(), Vec::new(), band)
+            }
+            Self::Quantile { sample, level, delta, band } => {
+                let found = quantile(sample, *level, *delta, *band);
+                let quantiles = found.map(|value| Quantile { level: *level, value });
+                let reach = sample.finished().then(|| stats::quantile::band(sample.trials(), *delta));
+                (sample.sorted().to_vec(), quantiles.into_iter().collect(), reach)
             }
             _ => return None,
         };
@@ -303,8 +318,35 @@ impl Procedure {
             }
             _ => None,
         };
-        Some(Distribution { histogram, quantiles: quantile.into_iter().collect() })
+        Some(Distribution { histogram, quantiles, empirical: empirical(&values), band })
     }
+}
+
+/// A quantile with its interval.
+fn quantile(sample: &mut Sample, level: f64, delta: f64, band: bool) -> Option<Interval> {
+    let found = if band {
+        sample.banded(level, delta).ok()??
+    } else {
+        sample.quantiles(&[level], delta).ok()?.into_iter().next()?
+    };
+    let estimate = if found.low_estimate.is_finite() { found.low_estimate } else { found.high_estimate };
+    Some(Interval { estimate, low: found.interval.low, high: found.interval.high })
+}
+
+/// The empirical distribution function of sorted values, at a hundred shares at most.
+fn empirical(values: &[f64]) -> Vec<Step> {
+    let n = values.len();
+    let mut steps: Vec<Step> = Vec::new();
+    for k in 1..=n.min(STEPS) {
+        let rank = (k * n).div_ceil(n.min(STEPS));
+        let value = values[rank - 1];
+        // All that are equal count.
+        let share = values.partition_point(|x| *x <= value) as f64 / n as f64;
+        if steps.last().is_none_or(|last| last.value < value) {
+            steps.push(Step { value, share });
+        }
+    }
+    steps
 }
 
 /// Share of the error that the sequential Massart bound spends on its auxiliary interval.
@@ -339,10 +381,19 @@ pub(super) fn method(ask: &Ask, procedure: Option<&Procedure>) -> Method {
                     named("sprt2", &[("alpha", alpha), ("beta", beta), theta, ("indifference", indifference)])
                 }
                 Test::Plan { alpha, beta, indifference } => {
-                    named("plan", &[("alpha", alpha), ("beta", beta), theta, ("indifference", indifference)])
+                    let mut numbers =
+                        vec![("alpha", alpha), ("beta", beta), theta, ("indifference", indifference)];
+                    if let Some(Procedure::Test(test)) = procedure
+                        && let AnyTest::Plan(plan) = test.readings().0
+                    {
+                        let (trials, accept) = plan.size();
+                        numbers.extend([("trials", trials as f64), ("accept", accept as f64)]);
+                    }
+                    named("plan", &numbers)
                 }
                 Test::EProcess { alpha, beta } => {
-                    named("eprocess", &[("alpha", alpha), ("beta", beta), theta])
+                    let weight = ("weight", stats::eprocess::weight(*threshold));
+                    named("eprocess", &[("alpha", alpha), ("beta", beta), theta, weight])
                 }
                 Test::ThreeWay { alpha, indifference } => {
                     named("three_way", &[("alpha", alpha), theta, ("indifference", indifference)])
@@ -371,16 +422,45 @@ pub(super) fn method(ask: &Ask, procedure: Option<&Procedure>) -> Method {
                 named("empirical_bernstein", &[("epsilon", epsilon), ("delta", delta)])
             }
             (Estimator::Okamoto { epsilon, delta }, _) => {
-                named("okamoto", &[("epsilon", epsilon), ("delta", delta)])
+                let trials = procedure.and_then(Procedure::limit).map(|n| ("trials", n as f64));
+                let numbers: Vec<_> =
+                    [("epsilon", epsilon), ("delta", delta)].into_iter().chain(trials).collect();
+                named("okamoto", &numbers)
             }
             (Estimator::Massart { epsilon, delta }, _) => {
-                named("massart", &[("epsilon", epsilon), ("delta", delta)])
+                let auxiliary = ("auxiliary", MASSART_SHARE * delta);
+                named("massart", &[("epsilon", epsilon), ("delta", delta), auxiliary])
             }
             (Estimator::Spending { epsilon, delta }, _) => {
-                named("spending", &[("epsilon", epsilon), ("delta", delta)])
+                let looks = match procedure {
+                    Some(Procedure::Probability(p)) => match p.readings().0 {
+                        AnyEstimator::Spending(spending) => Some(("looks", spending.looks().len() as f64)),
+                        _ => None,
+                    },
+                    _ => None,
+                };
+                let numbers: Vec<_> =
+                    [("epsilon", epsilon), ("delta", delta)].into_iter().chain(looks).collect();
+                named("spending", &numbers)
             }
             (Estimator::Relative { epsilon, delta }, _) => {
-                named("gbas", &[("epsilon", epsilon), ("delta", delta)])
+                let mut numbers = vec![("epsilon", epsilon), ("delta", delta)];
+                if let Some(Procedure::Probability(p)) = procedure
+                    && let AnyEstimator::Gbas(gbas) = p.readings().0
+                {
+                    numbers.extend([("successes", gbas.needed() as f64), ("cap", DEFAULT_TRIALS as f64)]);
+                }
+                named("gbas", &numbers)
+            }
+            (Estimator::Band { trials, delta }, _) => {
+                named("dkw", &[("trials", trials as f64), ("delta", delta)])
+            }
+            (Estimator::Splitting(rule), _) => {
+                let name = if rule.adaptive { "splitting" } else { "fixed_effort" };
+                let mut numbers = vec![("replicas", rule.replicas as f64), ("runs", rule.runs as f64)];
+                numbers.extend(rule.adaptive.then_some(("kill", rule.kill as f64)));
+                numbers.extend([("plain", rule.plain as f64), ("delta", rule.delta)]);
+                named(name, &numbers)
             }
             (Estimator::Fixed { trials, delta }, kind) => {
                 let name = match kind {

@@ -269,12 +269,20 @@ impl<'s> Contest<'s> {
             if round.shares.iter().any(|share| share.to > budget.max_trials) {
                 break Stop::Cap;
             }
+            let consumed: u64 = tallies.iter().map(|t| t.counts.trials).sum();
+            let left = budget.max_total.map_or(u64::MAX, |total| total.saturating_sub(consumed));
+            if left == 0 {
+                break Stop::Cap;
+            }
+            let wanted = round.items.len().min(usize::try_from(left).unwrap_or(usize::MAX));
             let rows = match self.ahead.take() {
                 Some(ahead) => ahead.cells,
-                None => executor.run(&self.job, &round.items, budget)?,
+                None => executor.run(&self.job, &round.items[..wanted], budget)?,
             };
-            if !self.read(&round, &rows, &mut tallies, &mut means)? {
-                break halt();
+            // What follows an unfinished trial is not looked at, so that their number says which they are.
+            let prefix = (0..wanted).take_while(|place| rows.row(*place).is_some()).count();
+            if !self.read(&round, &rows, prefix, &mut tallies, &mut means)? {
+                break if prefix == wanted { Stop::Cap } else { halt() };
             }
             watch.consumed(&self.query.text, tallies.iter().map(|t| t.counts.trials).sum(), None);
         };
@@ -307,11 +315,12 @@ impl<'s> Contest<'s> {
         })
     }
 
-    /// Shows a round to the procedure, option by option; false where time ended it.
+    /// Shows the first trials of a round to the procedure, option by option; false where these are not all.
     fn read(
         &mut self,
         round: &Round,
         rows: &Cells,
+        prefix: usize,
         tallies: &mut [Tally],
         means: &mut [Mean],
     ) -> Result<bool, Fault> {
@@ -320,7 +329,7 @@ impl<'s> Contest<'s> {
             let mut cells = Vec::with_capacity(places.len());
             let mut broken = false;
             for &place in places {
-                match rows.row(place) {
+                match rows.row(place).filter(|_| place < prefix) {
                     Some(row) if !broken => {
                         let item = round.items[place];
                         if row[0].reading == Reading::Faulty {

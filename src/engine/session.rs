@@ -1,19 +1,20 @@
 //! A whole call: worlds made ready, queries put into groups that share trials, forecast, and run.
 
 use super::answer::Answers;
-use super::budget::Budget;
+use super::budget::{Budget, DEFAULT_TRIALS};
 use super::contrast::{Contrast, Sides};
 use super::executor::Executor;
 use super::fault::Fault;
 use super::forecast::Glimpse;
-use super::outcome::{Failure, QueryResult, Run};
+use super::outcome::{Failure, QueryResult, Run, Stop};
 use super::procedure::Procedure;
 use super::race::{Contest, Field};
+use super::splitting::Question;
 use super::subject::Subject;
 use super::survey::{Inquiry, Survey};
 use super::tally::Tally;
 use super::watch::{Outlook, Watch};
-use crate::compile::study::{Ask, Measure, MeasureKind, Query, Study};
+use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Query, Study};
 use crate::kernel::start;
 
 /// What the command line adds to a study.
@@ -65,17 +66,37 @@ pub fn run(
         }
     }
     watch.finished();
+    let results: Vec<QueryResult> = results.into_iter().flatten().collect();
     Ok(Run {
         scenario: if study.title.is_empty() { call.file.clone() } else { study.title.clone() },
         seed: call.seed,
         version: env!("CARGO_PKG_VERSION").to_owned(),
-        results: results.into_iter().flatten().collect(),
         warnings: Vec::new(),
         interrupted: budget.is_interrupted(),
         failure,
-        replay: format!("{} --seed {}", call.command, call.seed),
+        replay: again(call, budget, &results),
+        results,
         elapsed_s: budget.elapsed(),
     })
+}
+
+/// The call that gives the same results again. Where the clock ended something, each query has its own.
+fn again(call: &Call<'_>, budget: &Budget, results: &[QueryResult]) -> String {
+    if results.iter().any(|r| matches!(r.stopped_by, Stop::Deadline | Stop::Interrupt)) {
+        let each: Vec<&str> = results.iter().map(|r| r.replay.as_str()).collect();
+        return each.join("\n");
+    }
+    let mut words = call.command.clone();
+    for index in &call.only {
+        words.push_str(&format!(" --only {index}"));
+    }
+    if budget.max_trials != DEFAULT_TRIALS {
+        words.push_str(&format!(" --max-trials {}", budget.max_trials));
+    }
+    if let Some(total) = budget.max_total {
+        words.push_str(&format!(" --total-trials {total}"));
+    }
+    format!("{words} --seed {}", call.seed)
 }
 
 /// What a study is likely to take, from the first trials of each of its queries.
@@ -132,6 +153,7 @@ fn outlook(
             Sampling::Survey(survey) => survey.rehearse(executor, budget)?,
             Sampling::Contrast(contrast) => vec![contrast.rehearse(executor, budget)?],
             Sampling::Race(contest) => vec![contest.rehearse(executor, budget)?],
+            Sampling::Split(question) => vec![question.rehearse(executor, budget)?],
         };
         // Checks and estimates of one scenario share their trials.
         outlook.seconds += forecasts.iter().map(|f| f.seconds).fold(0.0, f64::max);
@@ -152,6 +174,7 @@ enum Sampling<'q> {
     Survey(Survey<'q>),
     Contrast(Contrast<'q>),
     Race(Contest<'q>),
+    Split(Question<'q>),
 }
 
 /// More people than fit, in words.
@@ -184,6 +207,7 @@ fn worlds(ask: &Ask) -> Vec<usize> {
 
 fn surveyed(ask: &Ask) -> Option<usize> {
     match ask {
+        Ask::Estimate { estimator: Estimator::Splitting(_), .. } => None,
         Ask::Check { measure, .. } | Ask::Estimate { measure, .. } => Some(measure.target.world),
         Ask::Compare { .. } | Ask::Rank { .. } => None,
     }
@@ -220,6 +244,12 @@ impl<'a> Session<'a> {
                 continue;
             }
             let (places, sampling) = match &query.ask {
+                Ask::Estimate { measure, estimator: Estimator::Splitting(rule) } => {
+                    let subject = self.subject(measure.target.world)?;
+                    let question =
+                        Question::new(query, subject, measure.target.column, *rule, self.call.seed);
+                    (vec![at], Sampling::Split(question))
+                }
                 Ask::Check { measure, .. } | Ask::Estimate { measure, .. } => {
                     // All checks and estimates of a world read the same trials.
                     let world = measure.target.world;
@@ -306,6 +336,7 @@ impl<'a> Session<'a> {
             }
             Sampling::Contrast(contrast) => vec![answers.contrast(contrast, executor, watch)?],
             Sampling::Race(contest) => vec![answers.race(contest, executor, watch)?],
+            Sampling::Split(question) => vec![answers.split(&question, executor, watch)?],
         };
         Ok(places.into_iter().zip(results).collect())
     }

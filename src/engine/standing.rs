@@ -9,10 +9,9 @@ use super::race::Podium;
 pub(super) fn sides(contrast: &Gap, labels: &[String; 2], delta: f64) -> Comparison {
     let side = |at: usize| {
         let counts = contrast.sides[at].counts;
-        let (sum, n) = contrast.sums[at];
-        let value = if n > 0 {
-            let mean = sum / n as f64;
-            Interval { estimate: mean, low: f64::NEG_INFINITY, high: f64::INFINITY }
+        let value = if let Some(mean) = contrast.means.get(at) {
+            let ((low, high), interval) = (mean.estimate(), mean.interval());
+            Interval { estimate: 0.5 * (low + high), low: interval.low, high: interval.high }
         } else {
             let reading = |successes: u64| {
                 let read = crate::stats::Counts { successes, failures: counts.trials - successes };

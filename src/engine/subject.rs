@@ -1,9 +1,10 @@
 //! A world made ready to run: a program of the kernel and what is observed in it.
 
+use super::observer::Observer;
 use crate::base::tick::Tick;
 use crate::compile::study::{Root, Texts, World};
 use crate::kernel::{Code, Program};
-use crate::logic::{Invalid, Monitor, Node, NodeId, Term, TermId, Tree};
+use crate::logic::{Invalid, Monitor, Node, NodeId, Robustness, Term, TermId, Tree};
 use crate::model::{Bool, Num};
 
 /// A world made ready to run.
@@ -29,8 +30,8 @@ pub(super) struct Sheet {
     pub(super) code: Code,
     /// Places of the columns in the request.
     pub(super) places: Vec<usize>,
-    /// One monitor a column.
-    pub(super) monitors: Vec<Monitor>,
+    /// One a column.
+    pub(super) observers: Vec<Observer>,
 }
 
 impl Subject {
@@ -58,10 +59,29 @@ impl Subject {
         &self.signals
     }
 
-    /// A monitor of a column.
+    /// What watches a column.
+    pub(super) fn observer(&self, column: usize) -> Result<Observer, Invalid> {
+        match self.columns[column] {
+            Root::Robustness(_, sought) => Ok(Observer::Robustness(self.robustness(column)?, sought)),
+            Root::Formula(_) => Ok(Observer::Formula(self.monitor(column)?)),
+            Root::Metric(_) => Ok(Observer::Metric(self.monitor(column)?)),
+        }
+    }
+
+    /// The robustness of a column that is one.
+    pub(super) fn robustness(&self, column: usize) -> Result<Robustness, Invalid> {
+        match self.columns[column] {
+            Root::Robustness(node, _) => {
+                Robustness::new(&self.tree, node, self.horizon, self.program.scenario.clock)
+            }
+            Root::Formula(_) | Root::Metric(_) => Err(Invalid::NoMargin),
+        }
+    }
+
+    /// A monitor of a column: of the formula itself, where its robustness is asked for.
     pub fn monitor(&self, column: usize) -> Result<Monitor, Invalid> {
         match self.columns[column] {
-            Root::Formula(node) => {
+            Root::Formula(node) | Root::Robustness(node, _) => {
                 Monitor::formula(&self.tree, node, self.horizon, self.program.scenario.clock)
             }
             Root::Metric(term) => {
@@ -79,7 +99,7 @@ impl Subject {
         };
         for &column in columns {
             match self.columns[column] {
-                Root::Formula(node) => used.node(node),
+                Root::Formula(node) | Root::Robustness(node, _) => used.node(node),
                 Root::Metric(term) => used.term(term),
             }
         }
@@ -110,8 +130,8 @@ impl Subject {
             .into_iter()
             .map(|places| {
                 let chosen: Vec<usize> = places.iter().map(|&p| columns[p]).collect();
-                let monitors = chosen.iter().map(|&c| self.monitor(c)).collect::<Result<Vec<_>, _>>()?;
-                Ok(Sheet { code: self.code(&chosen), places, monitors })
+                let observers = chosen.iter().map(|&c| self.observer(c)).collect::<Result<Vec<_>, _>>()?;
+                Ok(Sheet { code: self.code(&chosen), places, observers })
             })
             .collect()
     }

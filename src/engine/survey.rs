@@ -169,7 +169,7 @@ impl Inquiry<'_> {
     /// Why a finished procedure stopped.
     fn reason(&self) -> Stop {
         match &self.procedure {
-            Procedure::Mean { threshold: Some(_), .. } if self.procedure.decision().is_none() => Stop::Cap,
+            procedure if procedure.is_capped() => Stop::Cap,
             procedure if procedure.is_planned() => Stop::Plan,
             Procedure::Test(_) | Procedure::Mean { threshold: Some(_), .. } => Stop::Boundary,
             _ => Stop::Width,

@@ -49,6 +49,10 @@ fn witness(
     settings: &[(String, String)],
     dimension: &str,
 ) -> Option<Witness> {
+    if matches!(subject.columns[column], Root::Robustness(..)) {
+        // Nothing that decides it can be named yet.
+        return None;
+    }
     let program = &subject.program;
     let code = subject.code(&[column]);
     let mut monitor = subject.monitor(column).ok()?;
@@ -83,6 +87,8 @@ fn witness(
         Root::Formula(root) => {
             (None, Tick(monitor.decided_at()[0]), blame::truth(subject, root, &record, state_at))
         }
+        // No atom decides how far a formula is from changing.
+        Root::Robustness(..) => return None,
         Root::Metric(root) => {
             // The monitor may know the value before the last state of a window.
             let value = monitor.value().0[0];

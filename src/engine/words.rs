@@ -45,8 +45,18 @@ pub(super) fn ends(low: f64, high: f64, unit: &str) -> String {
     format!("{} .. {}", quantity(low, unit), quantity(high, unit))
 }
 
+/// A bound with four digits, rounded upward or downward.
+pub(super) fn rounded(value: f64, upward: bool, unit: &str) -> String {
+    let mut scale = 1.0;
+    while value != 0.0 && value.abs() * scale < 1000.0 && scale < 1e15 {
+        scale *= 10.0;
+    }
+    let scaled = value * scale;
+    quantity(if upward { scaled.ceil() } else { scaled.floor() } / scale, unit)
+}
+
 /// A bound, rounded upward to three digits.
-pub(super) fn at_most(value: f64) -> f64 {
+pub fn at_most(value: f64) -> f64 {
     if !(value.is_finite() && value > 0.0) {
         return value;
     }
@@ -115,7 +125,7 @@ pub(super) fn statement(subject: &str, statement: &Statement, unit: &str) -> Str
 pub(super) fn interval(coverage: Coverage, error: f64) -> String {
     let kind = match coverage {
         Coverage::FixedSize => "fixed size",
-        Coverage::Sequential => "sequential, calibrated",
+        Coverage::Sequential => "sequential",
         Coverage::TimeUniform => "time-uniform",
     };
     format!("{kind}, {}", percent(1.0 - error))
@@ -138,6 +148,10 @@ mod tests {
         assert_eq!(ends(0.066_677, 0.105_317, ""), "0.066 .. 0.106");
         assert_eq!(ends(-0.106_7, 0.216_35, "m"), "-0.11 m .. 0.22 m");
         assert_eq!(ends(1.0, f64::INFINITY, "s"), "1 s .. ∞ s");
+        assert_eq!(
+            (rounded(1.310_386, true, "m"), rounded(-0.031_04, false, "")),
+            ("1.311 m".into(), "-0.03104".into())
+        );
         assert_eq!((at_most(0.019_923_3), at_most(0.02)), (0.02, 0.02));
         assert_eq!(at_most(0.049_169_9), 0.0492);
     }

@@ -7,9 +7,8 @@ use super::cell::{Cell, Item, Reading};
 use super::subject::{Sheet, Subject};
 use crate::base::lanes::{LANES, Mask};
 use crate::base::random::TrialKey;
-use crate::compile::study::Root;
 use crate::kernel::{Readings, Scratch, State, dynamics, start};
-use crate::logic::{Invalid, Monitor};
+use crate::logic::Invalid;
 
 /// Steps between two looks at the clock.
 const CLOCK_EVERY: u32 = 32;
@@ -115,8 +114,8 @@ impl Worker {
                         self.busy[lane] = Some(Busy { place, shrunk, open: width });
                         loaded |= Mask::lane(lane);
                         for sheet in &mut self.sheets {
-                            for monitor in &mut sheet.monitors {
-                                monitor.start(lane);
+                            for observer in &mut sheet.observers {
+                                observer.start(lane);
                             }
                         }
                     }
@@ -161,12 +160,12 @@ impl Worker {
             sheet.code.run(&subject.program, &self.state, readings);
             let lost = readings.unresolved & watched;
             let lanes = watched & !lost;
-            for (monitor, &place) in sheet.monitors.iter_mut().zip(&sheet.places) {
+            for (observer, &place) in sheet.observers.iter_mut().zip(&sheet.places) {
                 let open = lanes & !self.settled[place];
                 if !open.is_empty() {
-                    monitor.observe(open, &readings.atoms, &readings.signals);
+                    observer.observe(open, readings);
                 }
-                let decided = (monitor.decided() & open) | (lost & !self.settled[place]);
+                let decided = (observer.decided() & open) | (lost & !self.settled[place]);
                 if decided.is_empty() {
                     continue;
                 }
@@ -175,15 +174,11 @@ impl Worker {
                 for lane in decided.iter() {
                     let Some(busy) = &mut self.busy[lane] else { continue };
                     busy.open -= 1;
-                    let reading = if lost.has(lane) {
-                        Reading::Unresolved
-                    } else {
-                        reading(monitor, subject.columns[self.columns[place]], lane)
-                    };
+                    let reading = if lost.has(lane) { Reading::Unresolved } else { observer.reading(lane) };
                     cells[lane * width + place] = Cell {
                         reading,
                         steps: self.state.ticks[lane],
-                        triggered: triggered(monitor, lane),
+                        triggered: observer.triggered(lane),
                         shrunk: busy.shrunk,
                     };
                 }
@@ -207,18 +202,4 @@ impl Worker {
             }
         }
     }
-}
-
-/// The implications that the trial of a lane triggered, as bits.
-fn triggered(monitor: &Monitor, lane: usize) -> u64 {
-    let bits = monitor.antecedents().enumerate().filter(|(_, a)| a.triggered.has(lane));
-    bits.fold(0, |all, (k, _)| all | 1 << k.min(63))
-}
-
-fn reading(monitor: &Monitor, root: Root, lane: usize) -> Reading {
-    if matches!(root, Root::Formula(_)) {
-        return Reading::Truth(monitor.truth().has(lane));
-    }
-    let value = monitor.value().0[lane];
-    if value.is_nan() { Reading::Unresolved } else { Reading::Value(value) }
 }

@@ -169,6 +169,9 @@ pub enum Num {
     MeanVelocity(Axis, Set),
     /// Distance of two places, m. Of two agents: of their centres.
     Distance(Place, Place),
+    /// How deep a place (no region or barrier) lies in a region, m: its distance from the rim, negative
+    /// outside.
+    Depth(Place, RegionId),
     /// Smallest gap between an agent's body and any other body, wall or obstacle, m; negative in overlap.
     Clearance(Who),
     /// Seconds until two bodies touch if both keep their velocity: 0 in contact, infinite if never.

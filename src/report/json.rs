@@ -5,8 +5,8 @@
 //! but `elapsed_s` is a function of input, seed and version.
 
 use crate::engine::outcome::{
-    Comparison, Counts, Distribution, Failure, Interval, Method, QueryResult, Ranking, Run, Shows, Side,
-    Witness,
+    Comparison, Counts, Distribution, Failure, Interval, Method, QueryResult, Ranking, Rare, Run, Shows,
+    Side, Witness,
 };
 use serde_json::{Map, Value, json};
 
@@ -87,6 +87,9 @@ fn result(result: &QueryResult) -> Value {
     if let Some(found) = &result.distribution {
         put("distribution", distribution(found));
     }
+    if let Some(found) = &result.rare {
+        put("splitting", rare(found));
+    }
     put("warnings", json!(result.warnings));
     put("witnesses", result.witnesses.iter().map(witness).collect());
     put("replay", json!(result.replay));
@@ -144,6 +147,24 @@ fn witness(witness: &Witness) -> Value {
     })
 }
 
+fn rare(found: &Rare) -> Value {
+    json!({
+        "runs": found.runs,
+        "extinct": found.extinct,
+        "deviation": found.deviation,
+        "levels": found.levels,
+        "paths": found.paths,
+        "steps": found.steps,
+        "estimate": found.estimate,
+        "low": found.low,
+        "high": found.high,
+        "plain_low": found.plain_low,
+        "plain_high": found.plain_high,
+        "plain_bound": found.plain_bound,
+        "agrees": found.agrees,
+    })
+}
+
 fn distribution(found: &Distribution) -> Value {
     let histogram = found.histogram.as_ref().map(|histogram| {
         json!({
@@ -163,5 +184,7 @@ fn distribution(found: &Distribution) -> Value {
             Value::Object(object)
         })
         .collect();
-    json!({ "histogram": histogram, "quantiles": quantiles })
+    let empirical: Vec<Value> =
+        found.empirical.iter().map(|step| json!({ "value": step.value, "share": step.share })).collect();
+    json!({ "histogram": histogram, "quantiles": quantiles, "empirical": empirical, "band": found.band })
 }

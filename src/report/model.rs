@@ -298,9 +298,19 @@ fn procedure(ask: &Ask) -> String {
                     format!("Clopper-Pearson with alpha spending for ± {}, error {delta}", number(*epsilon))
                 }
                 Estimator::Fixed { trials, delta } => format!("{trials} trials, error {delta}"),
+                Estimator::Band { trials, delta } => {
+                    format!("{trials} trials, band around the distribution function, error {delta}")
+                }
                 Estimator::Relative { epsilon, delta } => {
                     format!("relative error {}, error {delta}", number(*epsilon))
                 }
+                Estimator::Splitting(rule) => format!(
+                    "{}, {} runs of {} paths, after {} plain trials",
+                    if rule.adaptive { "adaptive splitting" } else { "splitting with fixed effort" },
+                    rule.runs,
+                    rule.replicas,
+                    rule.plain
+                ),
             };
             format!("{what}: {how}")
         }

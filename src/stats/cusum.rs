@@ -12,6 +12,7 @@ pub struct Cusum {
     per_success: f64,
     per_failure: f64,
     threshold: f64,
+    after: f64,
     sum: f64,
     read: u64,
 }
@@ -29,6 +30,7 @@ impl Cusum {
             per_success: math::ln(after / before),
             per_failure: math::ln((1.0 - after) / (1.0 - before)),
             threshold,
+            after,
             sum: 0.0,
             read: 0,
         })
@@ -55,6 +57,17 @@ impl Cusum {
     /// Outcomes read.
     pub const fn read(&self) -> u64 {
         self.read
+    }
+
+    /// The threshold of the alarm.
+    pub const fn threshold(&self) -> f64 {
+        self.threshold
+    }
+
+    /// About how many outcomes an alarm takes after the change: the threshold over the divergence of `after`
+    /// from `before`.
+    pub fn delay(&self) -> f64 {
+        self.threshold / (self.after * self.per_success + (1.0 - self.after) * self.per_failure)
     }
 
     /// The proven lower bound e^h on the mean number of outcomes to a false alarm.

@@ -13,6 +13,11 @@ use crate::base::special::{beta_tails, ln_beta};
 /// Beyond this no count is exact as a double; thresholds closer to 0 or 1 than that never decide.
 const MOST_TRIALS: u64 = 1 << 53;
 
+/// Weight of the prior around the threshold, in trials: 100, and 10 at the very ends.
+pub fn weight(theta: f64) -> f64 {
+    if (0.01..=0.99).contains(&theta) { 100.0 } else { 10.0 }
+}
+
 /// The evidence against P <= theta, and the number of successes at which it can first reach a threshold.
 #[derive(Clone, Debug, PartialEq)]
 struct OneSided {
@@ -32,7 +37,7 @@ impl OneSided {
     /// Against P <= theta, with a prior of weight 100 around theta (10 at the very ends), each parameter
     /// at least 1/2.
     fn new(theta: f64, error: f64) -> Self {
-        let weight = if (0.01..=0.99).contains(&theta) { 100.0 } else { 10.0 };
+        let weight = weight(theta);
         let a = math::at_least(weight * theta, 0.5);
         let b = math::at_least(weight * (1.0 - theta), 0.5);
         let mut process = Self {

@@ -15,6 +15,7 @@
 //! | quantiles, distribution | [`quantile`], [`Histogram`] |
 //! | difference of two probabilities | [`Difference`] |
 //! | which of k moves | [`ranking`] |
+//! | P far below one in a million | [`splitting`] |
 //! | has P drifted | [`Cusum`] |
 
 pub mod calibrated;
@@ -36,6 +37,7 @@ pub mod quantile;
 pub mod ranking;
 pub mod sequence;
 pub mod spending;
+pub mod splitting;
 pub mod sprt;
 pub mod test;
 pub mod two_sprt;

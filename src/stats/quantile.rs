@@ -121,6 +121,27 @@ impl Sample {
         self.values.get((rank - below - 1) as usize).copied().unwrap_or(f64::INFINITY)
     }
 
+    /// The quantile `q` by the band around the distribution function: with error at most `delta`, all quantiles
+    /// lie in such intervals at once. Meant for the finished sample. `None` without trials.
+    pub fn banded(&mut self, q: f64, delta: f64) -> Result<Option<Quantile>, Invalid> {
+        probability("delta", delta)?;
+        let alone = self.quantiles(&[q], delta)?;
+        let (n, reach) = (self.trials(), band(self.trials(), delta));
+        // Outward by a part of a rank, so that rounding never narrows.
+        let lower = ((q - reach) * n as f64).floor();
+        let upper = ((q + reach) * n as f64).ceil();
+        let lower = (lower >= 1.0).then_some(lower as u64);
+        let upper = (upper <= n as f64).then_some(upper as u64);
+        Ok(alone.into_iter().next().map(|quantile| Quantile {
+            interval: Interval {
+                low: self.at(lower, self.unresolved, f64::NEG_INFINITY),
+                high: self.at(upper, 0, f64::INFINITY),
+                ..quantile.interval
+            },
+            ..quantile
+        }))
+    }
+
     /// The quantiles with error at most `delta` for all of them together (Bonferroni). Meant for the
     /// finished sample: the number of trials must not depend on their values. Empty without trials.
     pub fn quantiles(&mut self, qs: &[f64], delta: f64) -> Result<Vec<Quantile>, Invalid> {
@@ -183,6 +204,19 @@ mod tests {
         // With both sides at 0.025: n >= ln(0.025) / ln(0.99) = 367.04.
         assert_eq!(ranks(367, 0.99, 0.05).1, None);
         assert_eq!(ranks(368, 0.99, 0.05).1, Some(368));
+    }
+
+    /// T22: the band of the reference at the 0.95-quantile of 1000 values has the ranks 907 and 993.
+    #[test]
+    fn the_band_of_the_reference() {
+        let mut sample = Sample::new(1000).unwrap();
+        (1..=1000).for_each(|k| {
+            sample.observe(Some(f64::from(k)));
+        });
+        let interval = sample.banded(0.95, 0.05).unwrap().unwrap().interval;
+        assert_eq!((interval.low, interval.high), (907.0, 993.0));
+        let extreme = sample.banded(0.99, 0.05).unwrap().unwrap().interval;
+        assert_eq!((extreme.low, extreme.high), (947.0, f64::INFINITY));
     }
 
     #[test]

@@ -66,6 +66,24 @@ fn one_person_before_and_after_the_time_in_the_scene() {
 }
 
 #[test]
+fn the_robustness_has_the_sign_of_the_truth_before_somebody_comes() {
+    for (formula, positive) in [
+        ("G<=4 s (distance(user, doors[1]) < 100 m)", false),
+        ("F<=6 s (distance(user, doors[1]) < 100 m)", true),
+        ("G<=4 s !(doors[1] in near)", true),
+        ("F[9.5 s, 9.5 s] (doors[1] in near & distance(user, doors[1]) > 1 m)", true),
+        ("G<=20 s (forall a in doors: distance(user, a) > 5 m)", true),
+    ] {
+        let ask = format!("estimate E(robustness({formula})) in -100 m .. 100 m by fixed(trials = 16)");
+        let run = answered(&compiled(&doors(), &ask), 1, 1, 1_000);
+        let estimate = run.results[0].estimate.unwrap();
+        assert_eq!(run.results[0].counts.unresolved, 0, "{formula}");
+        assert!(if positive { estimate > 0.0 } else { estimate < 0.0 }, "{formula}: {estimate}");
+        assert_eq!(share(&doors(), formula), f64::from(positive), "{formula}");
+    }
+}
+
+#[test]
 fn formulas_over_time_ask_who_is_there_when_they_are_asked() {
     let text = doors();
     for (formula, expected) in [

@@ -116,6 +116,7 @@ pub(crate) fn number(depth: u32, size: u32) -> BoxedStrategy<Num> {
         }),
         2 => (place(depth, smaller), place(depth, smaller)).prop_map(|(a, b)| Num::Distance(a, b)),
         1 => (0..3u32, place(depth, smaller)).prop_map(|(r, a)| Num::Distance(a, Place::Region(RegionId(r)))),
+        1 => (0..3u32, place(depth, smaller)).prop_map(|(r, a)| Num::Depth(a, RegionId(r))),
         1 => (0..4u32, place(depth, smaller)).prop_map(|(b, a)| Num::Distance(Place::Barrier(BarrierId(b)), a)),
         2 => (functions, number(depth, smaller)).prop_map(|(f, a)| Num::Apply(f, Box::new(a))),
         2 => (operators, number(depth, smaller), number(depth, smaller))

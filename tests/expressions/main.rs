@@ -1,6 +1,7 @@
 //! Compiled expressions against a plain evaluator that walks the tree, lane by lane: the same bits.
 
 mod cases;
+mod margins;
 mod plain;
 
 use cases::{Hidden, measure, number, state, truth};

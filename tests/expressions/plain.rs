@@ -2,7 +2,7 @@
 
 use crate::{AGENTS, p};
 use smc::base::decimal::Decimal;
-use smc::base::geometry::Vec2;
+use smc::base::geometry::{Shape, Vec2};
 use smc::base::lanes::Lanes;
 use smc::base::math;
 use smc::base::tick::{Clock, Tick};
@@ -178,6 +178,19 @@ impl Plain<'_> {
                     (d.x * d.x + d.y * d.y).sqrt()
                 }
             },
+            Num::Depth(place, region) => {
+                let at = self.point(place)?;
+                let (inside, distance) = self.region(*region, at);
+                match &self.scene.regions[region.0 as usize].shape {
+                    _ if !inside => -distance,
+                    Shape::Circle { centre, radius } => radius - (at - centre).norm(),
+                    Shape::Polygon(_) if region.0 == 0 => {
+                        let across = least(at.x - 1.0, 4.0 - at.x);
+                        least(across, least(at.y - 0.5, 3.0 - at.y))
+                    }
+                    Shape::Polygon(polygon) => (at - polygon.nearest_on_outline(at)).norm(),
+                }
+            }
             Num::Clearance(who) => self.clearance(self.who(*who)),
             Num::TimeToCollision(a, b) => self.collision(self.who(*a), self.who(*b)),
             Num::Spread(set) => {

@@ -1,5 +1,5 @@
 //! T18 and the estimation part of T19: trials that take time, consumed by index and, as a negative control,
-//! as they come.
+//! as they come; with simulated workers, and with threads and the clock.
 
 use super::tally::{Tally, uniform};
 use smc::stats::{Counts, Decision, Sprt, Test, sequence};
@@ -107,6 +107,46 @@ fn deadline(runs: u32) {
     tally.guarantees(0.05);
 }
 
+/// Eight threads and a deadline by the clock: a failure takes longer than a success.
+fn deadline_of_threads(runs: u32) {
+    use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+    use std::time::{Duration, Instant};
+    let tally = Tally::over(runs, |k| {
+        let (next, late) = (AtomicU64::new(0), AtomicBool::new(false));
+        let begin = Instant::now();
+        let mut done: Vec<u64> = std::thread::scope(|scope| {
+            let work = || {
+                let mut done = Vec::new();
+                while !late.load(Ordering::Relaxed) {
+                    let index = next.fetch_add(1, Ordering::Relaxed);
+                    let time = if uniform(53, k, 0, index) < 0.9 { 20 } else { 400 };
+                    let end = Instant::now() + Duration::from_micros(time);
+                    while Instant::now() < end {
+                        std::thread::yield_now();
+                    }
+                    if begin.elapsed() > Duration::from_millis(3) {
+                        late.store(true, Ordering::Relaxed);
+                        break;
+                    }
+                    done.push(index);
+                }
+                done
+            };
+            let threads: Vec<_> = (0..8).map(|_| scope.spawn(work)).collect();
+            threads.into_iter().flat_map(|thread| thread.join().unwrap()).collect()
+        });
+        done.sort_unstable();
+        let mut counts = Counts::default();
+        for (place, index) in done.iter().enumerate().take_while(|(place, index)| *place as u64 == **index) {
+            let _ = place;
+            counts.add(uniform(53, k, 0, *index) < 0.9);
+        }
+        (!sequence::interval(counts, 0.05).holds(0.9), counts.trials() as f64)
+    });
+    tally.guarantees(0.05);
+    assert!(tally.mean() > 5.0, "{tally:?}");
+}
+
 #[test]
 fn t18_by_index_there_is_no_bias_and_as_they_come_there_is() {
     in_order(200);
@@ -116,6 +156,7 @@ fn t18_by_index_there_is_no_bias_and_as_they_come_there_is() {
 #[test]
 fn t19_deadline() {
     deadline(500);
+    deadline_of_threads(150);
 }
 
 #[test]
@@ -124,4 +165,5 @@ fn full_arrival() {
     in_order(4_000);
     first_come(1_000);
     deadline(4_000);
+    deadline_of_threads(2_000);
 }

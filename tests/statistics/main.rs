@@ -1,4 +1,4 @@
-//! Calibration of the statistical procedures against exact targets: the tests T1 to T25 of the reference
+//! Calibration of the statistical procedures against exact targets: the tests T1 to T26 of the reference
 //! measurements, with the negative controls that must fail.
 //!
 //! Each check takes its number of replications. A part with few of them runs always; the full numbers are
@@ -7,9 +7,11 @@
 #![allow(clippy::disallowed_methods, reason = "the platform's functions serve as the reference")]
 
 mod arrival;
+mod bayes;
 mod drift;
 mod estimators;
 mod metrics;
 mod ranking;
+mod splitting;
 mod tally;
 mod tests_of_p;

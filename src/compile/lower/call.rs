@@ -5,71 +5,13 @@ use super::super::elaborator::{Elaborator, Locals, Lowered};
 use super::super::number::Number;
 use super::super::symbols::{Meaning, unknown};
 use super::super::typed::Typed;
+use super::builtin::{DISTRIBUTIONS, FUNCTIONS};
 use super::coordinates;
 use crate::base::math;
 use crate::logic::{Operation, Term};
 use crate::model::{Arithmetic, Axis, Bool, Field, Function, Num, Place, Set, Who};
 use crate::syntax::ast::{Expr, Ident};
 use crate::syntax::diagnostic::Diagnostic;
-
-/// Built-in functions by name, for hints.
-pub(in crate::compile) const FUNCTIONS: [&str; 40] = [
-    "abs",
-    "area",
-    "atan2",
-    "ceil",
-    "centroid",
-    "clearance",
-    "contact",
-    "cos",
-    "count",
-    "density",
-    "distance",
-    "driving_speed",
-    "exp",
-    "floor",
-    "heading",
-    "if",
-    "ln",
-    "mass",
-    "max",
-    "min",
-    "members",
-    "modulo",
-    "norm",
-    "others",
-    "position",
-    "present",
-    "radius",
-    "round",
-    "sin",
-    "speed",
-    "spread",
-    "sqrt",
-    "sum",
-    "mean",
-    "time_to_collision",
-    "time_until",
-    "travelled",
-    "velocity",
-    "x",
-    "y",
-];
-
-/// Distributions: they are values of fields, not of expressions.
-pub(in crate::compile) const DISTRIBUTIONS: [&str; 11] = [
-    "normal",
-    "lognormal",
-    "uniform",
-    "uniform_int",
-    "exponential",
-    "poisson",
-    "bernoulli",
-    "beta",
-    "gamma",
-    "weibull",
-    "choice",
-];
 
 impl Elaborator<'_> {
     pub(super) fn lower_call(
@@ -111,10 +53,19 @@ impl Elaborator<'_> {
                     .hint("it stands in metrics and comparisons of property files, outside of folds over agents at one state");
                     return self.report(error);
                 }
-                let typed = self.lower(formula, locals)?;
-                let node = self.as_formula(typed, formula.span)?;
+                let typed = self.inside_a_formula(|this| this.lower(formula, locals));
+                let node = self.as_formula(typed?, formula.span)?;
                 let dimension = self.time_dimension();
                 Ok(Typed::Term(self.term(Term::TimeUntil(node)), dimension))
+            }
+            "robustness" => {
+                let error = Diagnostic::error(
+                    "E0504",
+                    expr.span,
+                    "`robustness` looks at a whole trace and stands only directly inside `E(…)`, `Q(…)` and `P(…)`",
+                )
+                .hint("for example `E(robustness(safe)) in -1 m .. 1 m`, `P(robustness(safe) >= 0.2 m)`");
+                self.report(error)
             }
             name if DISTRIBUTIONS.contains(&name) => {
                 let error = Diagnostic::error(
@@ -446,6 +397,7 @@ impl Elaborator<'_> {
         arguments: &[Expr],
         locals: &Locals,
     ) -> Lowered<Typed> {
+        self.note_margin(Dimension::LENGTH, expr.span);
         let mut agents = Vec::new();
         for argument in arguments {
             let typed = self.lower(argument, locals)?;

@@ -3,7 +3,7 @@
 use super::super::dimension::Dimension;
 use super::super::elaborator::{Elaborator, Locals, Lowered};
 use super::super::typed::Typed;
-use crate::logic::{Node, Relation};
+use crate::logic::{Node, Relation, Term, TermId};
 use crate::model::{Bool, Comparison, Num, Place};
 use crate::syntax::ast::{BinaryOp, Expr};
 use crate::syntax::source::Span;
@@ -90,8 +90,10 @@ impl Elaborator<'_> {
         {
             return compared;
         }
-        let sides = (self.lower(left, locals), self.lower(right, locals));
+        let sides = self.inside_a_number(|this| (this.lower(left, locals), this.lower(right, locals)));
         let (a, b) = (sides.0?, sides.1?);
+        let margin = !matches!(op, BinaryOp::Equal | BinaryOp::Unequal);
+        let whole = left.span.to(right.span);
         let a = if matches!(a, Typed::Infinity) { infinite(&b) } else { a };
         let b = if matches!(b, Typed::Infinity) { infinite(&a) } else { b };
         let span = Span { end: right.span.end, ..left.span };
@@ -115,6 +117,11 @@ impl Elaborator<'_> {
             if da != db {
                 return self.wrong_dimension(right.span, da, db);
             }
+            // The margin of a time until something is that of the something.
+            let time = |term: TermId| matches!(self.tree.terms[term.0 as usize], Term::TimeUntil(_));
+            if margin && !time(a) && !time(b) {
+                self.note_margin(da, whole);
+            }
             let text = self.text(span);
             return Ok(Typed::Formula(self.comparison((relation(op), a, b), text, da)));
         }
@@ -126,10 +133,36 @@ impl Elaborator<'_> {
         if let (Num::Constant(a), Num::Constant(b)) = (&a, &b) {
             return Ok(Typed::Truth(Bool::Constant(holds(op, *a, *b))));
         }
+        if margin {
+            self.note_margin(da, whole);
+        }
         Ok(Typed::Truth(Bool::Compare(comparison(op), Box::new(a), Box::new(b))))
     }
 
+    /// Lowers numbers: conditions inside them (of a count, of an `if`) are no conditions of the formula.
+    fn inside_a_number<T>(&mut self, lower: impl FnOnce(&mut Self) -> T) -> T {
+        if let Some(margins) = &mut self.margins {
+            margins.inside += 1;
+        }
+        let lowered = lower(self);
+        if let Some(margins) = &mut self.margins {
+            margins.inside -= 1;
+        }
+        lowered
+    }
+
+    /// Lowers formulas that a number is made of: their conditions are those of the formula around it.
+    pub(super) fn inside_a_formula<T>(&mut self, lower: impl FnOnce(&mut Self) -> T) -> T {
+        let inside = self.margins.as_mut().map(|margins| std::mem::take(&mut margins.inside));
+        let lowered = lower(self);
+        if let (Some(margins), Some(inside)) = (&mut self.margins, inside) {
+            margins.inside = inside;
+        }
+        lowered
+    }
+
     fn lower_in(&mut self, left: &Expr, right: &Expr, locals: &Locals) -> Lowered<Typed> {
+        self.note_margin(Dimension::LENGTH, left.span.to(right.span));
         let sides = (self.lower(left, locals), self.lower(right, locals));
         let (who, region) = (sides.0?, sides.1?);
         let Typed::Region(region) = region else { return self.mismatch(right.span, "a region", &region) };

@@ -1,6 +1,7 @@
 //! Lowering of expressions: names, units and types are settled, sugar is gone.
 
 mod arithmetic;
+mod builtin;
 mod call;
 mod logic;
 mod name;
@@ -8,7 +9,7 @@ mod quantifier;
 mod tally;
 mod temporal;
 
-pub(super) use call::DISTRIBUTIONS;
+pub(super) use builtin::DISTRIBUTIONS;
 
 use super::dimension::{self, Dimension};
 use super::elaborator::{Elaborator, Locals, Lowered};

@@ -63,11 +63,17 @@ impl Elaborator<'_> {
         body: &Expr,
         locals: &Locals,
     ) -> Lowered<Typed> {
+        let formulas =
+            quantifier == Quantifier::Count && self.temporal && self.mentions_time(body, locals, 0);
         let mut each = Vec::new();
         for copy in self.copies(process) {
             let mut inner = locals.clone();
             inner.names.push((variable.name.clone(), copy));
-            each.push(self.lower(body, &inner)?);
+            each.push(if formulas {
+                self.inside_a_formula(|this| this.lower(body, &inner))?
+            } else {
+                self.lower(body, &inner)?
+            });
         }
         let over_time = each.iter().any(|typed| matches!(typed, Typed::Formula(_) | Typed::Term(..)));
         match quantifier {
@@ -154,7 +160,11 @@ impl Elaborator<'_> {
         for &id in &members {
             let mut inner = locals.clone();
             inner.names.push((variable.name.clone(), Typed::Agent(Who::Agent(id))));
-            each.push(self.lower(body, &inner)?);
+            each.push(if quantifier == Quantifier::Count {
+                self.inside_a_formula(|this| this.lower(body, &inner))?
+            } else {
+                self.lower(body, &inner)?
+            });
         }
         if each.is_empty() && !self.agent_names.is_empty() {
             // Over nobody the body is read for anybody: what is wrong in it is reported, and a fold needs its unit.

@@ -57,6 +57,10 @@ pub struct Standing {
     exit: Vec<Vec<[u32; LANES]>>,
     /// How many states have been entered.
     entered: Vec<Vec<[u32; LANES]>>,
+    /// Under which key each state was entered: what it set belongs to that key.
+    keys: Vec<Vec<[TrialKey; LANES]>>,
+    /// Under which key the parameters of an agent were drawn, by block.
+    own_keys: Vec<[TrialKey; LANES]>,
     /// First stage of a route that a state demands, and the stage of the own route to return to.
     detours: Vec<[(u32, u32); LANES]>,
 }
@@ -153,11 +157,14 @@ impl Behaviours {
                 due: vec![vec![Lanes::splat(f64::INFINITY); blocks]; self.declared],
                 exit: vec![vec![[0; LANES]; blocks]; self.declared],
                 entered: vec![vec![[0; LANES]; blocks]; self.declared],
+                keys: vec![vec![[TrialKey::default(); LANES]; blocks]; self.declared],
+                own_keys: vec![[TrialKey::default(); LANES]; blocks],
                 detours: vec![[(OWN_ROUTE, 0); LANES]; blocks],
             };
         }
         let slot = state.slot(agent, lane);
         state.behaviours.detours[slot.block][slot.lane] = (OWN_ROUTE, 0);
+        state.behaviours.own_keys[slot.block][slot.lane] = state.keys[trial_of(state.layout, slot.lane)];
         for at in self.machines_of(agent) {
             let machine = &self.machines[at];
             state.behaviours.entered[machine.behaviour as usize][slot.block][slot.lane] = 0;
@@ -292,6 +299,7 @@ impl Behaviours {
         let first = entered.wrapping_mul(conduct.delays);
         *entered = entered.wrapping_add(1);
         standing.modes[behaviour][block].0[lane] = f64::from(mode);
+        standing.keys[behaviour][block][lane] = state.keys[trial];
         let (mut due, mut chosen) = (f64::INFINITY, 0);
         for (number, exit) in conduct.modes[mode as usize].exits.iter().enumerate() {
             if let Trigger::After { law, number: draw } = &exit.trigger {
@@ -309,7 +317,8 @@ impl Behaviours {
     /// Gives an agent the parameters and the route that its behaviours want now. Whether a range changed.
     fn apply(&self, program: &Program, state: &mut State, agent: usize, trial: usize) -> bool {
         let slot = state.slot(agent, trial);
-        let key = state.keys[trial];
+        // Replicas of a trial go on under other keys: what was drawn stays.
+        let key = state.behaviours.own_keys[slot.block][slot.lane];
         let Some(own) = start::own_parameters(program, key, AgentId(agent as u32)) else { return false };
         let mut values = own;
         let mut known: Vec<f64> = state.variables.iter().map(|lanes| lanes.0[trial]).collect();
@@ -325,6 +334,7 @@ impl Behaviours {
                 let value = match amount {
                     Amount::Computed(num) => num.evaluate(&known).unwrap_or(f64::NAN),
                     Amount::Drawn(law) => {
+                        let key = state.behaviours.keys[machine.behaviour as usize][slot.block][slot.lane];
                         let draw = (name_hash(parameter.name()) as u32).wrapping_add(entered);
                         law.draw(Stream::of(key, machine.entity, Purpose::Parameter).uniform(draw))
                     }

@@ -179,7 +179,7 @@ impl Ground {
         self.contains(x, y).select(Vector::splat(x.simd, 0.0), outside)
     }
 
-    /// Distance from the barrier's surface: negative inside a solid.
+    /// Distance from the surface of a barrier or the rim of a region: negative inside.
     #[inline(always)]
     pub(super) fn signed_distance<S: Simd>(&self, x: Vector<S>, y: Vector<S>) -> Vector<S> {
         match &self.form {
@@ -192,8 +192,12 @@ impl Ground {
                 self.contains(x, y).select(-distance, distance)
             }
             Form::Wall(edges) => nearest_squared(edges, x, y).sqrt(),
-            // A barrier is never built as a rectangle.
-            Form::Rectangle(bounds) => box_squared(bounds, x, y).sqrt(),
+            Form::Rectangle(bounds) => {
+                let across = lesser(x - bounds.low.x, -x + bounds.high.x);
+                let depth = lesser(across, lesser(y - bounds.low.y, -y + bounds.high.y));
+                let inside = depth.simd_ge(Vector::splat(x.simd, 0.0));
+                inside.select(-depth, box_squared(bounds, x, y).sqrt())
+            }
         }
     }
 

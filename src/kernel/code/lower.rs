@@ -159,6 +159,11 @@ impl<'a> Lowering<'a> {
                 self.mean(Reading::Field(field), set)
             }
             Num::Distance(a, b) => self.between(a, b),
+            Num::Depth(place, region) => {
+                let (x, y) = self.point(place);
+                let id = self.graph.enter(Node::Depth(x.id, y.id, region.0));
+                Value { id, open: self.either([x.open, y.open]) }
+            }
             Num::Clearance(who) => resolved(self.clearance(*who)),
             Num::TimeToCollision(a, b) => resolved(self.graph.enter(Node::TimeToCollision(*a, *b))),
             Num::Spread(set) => {

@@ -219,6 +219,9 @@ impl<S: Simd, const ONE: bool> Machine<'_, S, ONE> {
             Node::ToRegion(x, y, region) => {
                 self.code.regions[region as usize].distance(self.number(x), self.number(y))
             }
+            Node::Depth(x, y, region) => {
+                -self.code.regions[region as usize].signed_distance(self.number(x), self.number(y))
+            }
             Node::ToBarrier(x, y, barrier) => {
                 self.code.barriers[barrier as usize].signed_distance(self.number(x), self.number(y))
             }

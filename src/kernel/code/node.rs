@@ -71,6 +71,8 @@ pub(super) enum Node {
     Between([Id; 4]),
     /// Distance of a point from a region.
     ToRegion(Id, Id, u32),
+    /// Depth of a point in a region.
+    Depth(Id, Id, u32),
     /// Distance of a point from a barrier.
     ToBarrier(Id, Id, u32),
     /// Distance of a point from the nearest barrier.
@@ -151,6 +153,7 @@ impl Node {
         match self {
             Self::Between(four) => four.iter_mut().collect(),
             Self::ToRegion(x, y, _)
+            | Self::Depth(x, y, _)
             | Self::ToBarrier(x, y, _)
             | Self::ToScene(x, y)
             | Self::Spread(_, x, y) => vec![x, y],

@@ -60,11 +60,13 @@ impl Bounds {
 
 /// The margin of `x r y`: how far the sides may move before the comparison changes.
 fn margin(relation: Relation, x: Lanes, y: Lanes) -> Lanes {
+    // Two equal infinities are no distance apart.
+    let less = |x: f64, y: f64| if x == y { 0.0 } else { x - y };
     match relation {
-        Relation::Less | Relation::AtMost => y.zip(x, |y, x| y - x),
-        Relation::Greater | Relation::AtLeast => x.zip(y, |x, y| x - y),
-        Relation::Equal => x.zip(y, |x, y| -(x - y).abs()),
-        Relation::Unequal => x.zip(y, |x, y| (x - y).abs()),
+        Relation::Less | Relation::AtMost => y.zip(x, less),
+        Relation::Greater | Relation::AtLeast => x.zip(y, less),
+        Relation::Equal => x.zip(y, |x, y| -less(x, y).abs()),
+        Relation::Unequal => x.zip(y, |x, y| less(x, y).abs()),
     }
 }
 

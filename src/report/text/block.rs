@@ -2,7 +2,7 @@
 
 use super::columns::{Cell, lines};
 use super::{compare, distribution, rank};
-use crate::engine::outcome::{Interval, QueryResult, Shows, Stop, Verdict, Witness};
+use crate::engine::outcome::{Interval, QueryResult, Rare, Shows, Stop, Verdict, Witness};
 use crate::report::number::{count, counted, duration, interval, plain};
 use crate::report::palette::{Paint, Palette};
 use crate::report::{certified, one_line, settings};
@@ -30,6 +30,9 @@ pub(super) fn write(text: &mut String, result: &QueryResult, palette: Palette) {
         line(text, &format!("certified: {statement}"));
     }
     line(text, &trials(result));
+    if let Some(rare) = &result.rare {
+        self::rare(text, rare);
+    }
     method(text, result, palette);
     if let Some(found) = &result.distribution {
         distribution::write(text, result, found, palette);
@@ -97,15 +100,40 @@ fn value(text: &mut String, result: &QueryResult, palette: Palette) {
     );
 }
 
-/// The procedure with all its numbers, where the query does not name it itself.
+/// The procedure with all its numbers, where the query does not name them itself.
 pub(super) fn method(text: &mut String, result: &QueryResult, palette: Palette) {
     let name = &result.method.name;
-    if name.is_empty() || one_line(&result.query).contains(&format!("by {name}(")) {
+    let query = one_line(&result.query);
+    // The threshold stands in every check.
+    let said = |number: &str| number == "theta" || query.contains(&format!("{number} ="));
+    let named = query.contains(&format!("by {name}("));
+    if name.is_empty() || named && result.method.numbers.iter().all(|(number, _)| said(number)) {
         return;
     }
     let numbers: Vec<String> =
         result.method.numbers.iter().map(|(name, value)| format!("{name} = {}", plain(*value))).collect();
     line(text, &palette.paint(Paint::Faint, &format!("method: {name}({})", numbers.join(", "))));
+}
+
+/// What the plain trials say by themselves, and what the runs of splitting took.
+fn rare(text: &mut String, rare: &Rare) {
+    let Rare { plain_low, plain_high, .. } = *rare;
+    let plain_middle =
+        Interval { estimate: 0.5 * (plain_low + plain_high), low: plain_low, high: plain_high };
+    let range = interval(&plain_middle, None).interval;
+    line(text, &format!("plain trials alone: {range}, 99 %"));
+    if rare.runs > 0 {
+        let levels = plain((10.0 * rare.levels).round() / 10.0);
+        line(
+            text,
+            &format!(
+                "splitting: {}, {levels} levels each, {}, {}",
+                counted(rare.runs, "run"),
+                counted(rare.paths, "path"),
+                counted(rare.steps, "step")
+            ),
+        );
+    }
 }
 
 /// The counts and why sampling stopped.

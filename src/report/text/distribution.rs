@@ -30,6 +30,9 @@ pub(super) fn write(text: &mut String, result: &QueryResult, found: &Distributio
         if histogram.beyond > 0 {
             said = format!("{said}, {} beyond the horizon", count(histogram.beyond));
         }
+        if let Some(band) = found.band {
+            said = format!("{said}, distribution function to ± {}", plain((band * 1000.0).ceil() / 1000.0));
+        }
         block::line(text, &said);
     }
 }

@@ -44,7 +44,10 @@ pub fn render(run: &Run, palette: Palette) -> String {
         None => {}
     }
     let _ = writeln!(text, "{}", summary(run, palette));
-    let _ = writeln!(text, "{} {}", palette.paint(Paint::Faint, "replay:"), run.replay);
+    for (at, line) in run.replay.lines().enumerate() {
+        let head = if at == 0 { "replay:" } else { "       " };
+        let _ = writeln!(text, "{} {line}", palette.paint(Paint::Faint, head));
+    }
     text
 }
 

@@ -2,6 +2,7 @@
 
 use super::block;
 use super::columns::Cell;
+use crate::engine::at_most;
 use crate::engine::outcome::{QueryResult, Ranking, Status};
 use crate::report::number::{counted, plain};
 use crate::report::palette::{Paint, Palette};
@@ -11,7 +12,7 @@ pub(super) fn write(text: &mut String, result: &QueryResult, ranking: &Ranking, 
     let choice = palette.paint(Paint::Good, &ranking.choice);
     let unit = if result.unit.is_empty() { String::new() } else { format!(" {}", result.unit) };
     let mut said = if ranking.gap.is_finite() {
-        format!("choose {choice}: at most {}{unit} worse than the best", upwards(ranking.gap))
+        format!("choose {choice}: at most {}{unit} worse than the best", plain(at_most(ranking.gap)))
     } else {
         format!("{choice} leads, but nothing is certified yet")
     };
@@ -47,29 +48,5 @@ pub(super) fn write(text: &mut String, result: &QueryResult, ranking: &Ranking, 
     block::table(text, &rows, palette);
     if !result.interval.is_empty() {
         block::line(text, &palette.paint(Paint::Faint, &format!("intervals: {}", result.interval)));
-    }
-}
-
-/// A bound with two significant digits, rounded up.
-fn upwards(gap: f64) -> String {
-    let text = format!("{gap:.1e}");
-    let Ok(value) = text.parse::<f64>() else { return text };
-    if value >= gap {
-        return plain(value);
-    }
-    let exponent = text.split_once('e').and_then(|(_, e)| e.parse::<i32>().ok()).unwrap_or(0);
-    plain(value + format!("1e{}", exponent - 1).parse::<f64>().unwrap_or(0.0))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::upwards;
-
-    #[test]
-    fn a_certified_gap_is_rounded_up() {
-        assert_eq!(upwards(0.0), "0");
-        assert_eq!(upwards(0.02), "0.02");
-        assert_eq!(upwards(0.017_23), "0.018");
-        assert_eq!(upwards(0.099_9), "0.1");
     }
 }

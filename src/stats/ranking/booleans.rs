@@ -1,7 +1,7 @@
 //! Boolean outcomes as bitsets by trial index; a pair is compared by counting bits.
 
 use super::Table;
-use super::bet::{BETS, Factors, log_mean, log_mean_near};
+use super::bet::{BETS, Factors, bets, log_mean_near};
 use crate::stats::Outcome;
 
 /// Outcomes of one arm.
@@ -29,6 +29,7 @@ struct Pair {
 pub struct Booleans {
     arms: Vec<Arm>,
     pairs: Vec<Pair>,
+    bets: [f64; BETS],
     /// Bets on a gap of 0 and of epsilon.
     factors: [Factors; 2],
 }
@@ -68,28 +69,39 @@ impl Table for Booleans {
     type Outcome = Outcome;
 
     fn new(arms: usize, epsilon: f64) -> Self {
+        let bets = bets();
         Self {
+            bets,
             arms: vec![Arm::default(); arms],
             pairs: vec![Pair::default(); arms * arms],
-            factors: [Factors::new(0.0), Factors::new(epsilon)],
+            factors: [Factors::new(&bets, 0.0), Factors::new(&bets, epsilon)],
         }
     }
 
     fn push(&mut self, arm: usize, outcomes: &[Outcome]) {
         let arm = &mut self.arms[arm];
-        for outcome in outcomes {
-            let bit = arm.trials % 64;
+        let mut rest = outcomes;
+        while !rest.is_empty() {
+            let bit = (arm.trials % 64) as usize;
             if bit == 0 {
                 arm.sure.push(0);
                 arm.possible.push(0);
             }
+            // Up to the end of the word.
+            let room = 64 - bit;
+            let (now, later) = rest.split_at(if rest.len() < room { rest.len() } else { room });
+            let (mut sure, mut possible) = (0u64, 0u64);
+            for (k, outcome) in now.iter().enumerate() {
+                sure |= u64::from(*outcome == Outcome::True) << k;
+                possible |= u64::from(*outcome != Outcome::False) << k;
+            }
             let word = (arm.trials / 64) as usize;
-            let (sure, possible) = (*outcome == Outcome::True, *outcome != Outcome::False);
-            arm.sure[word] |= u64::from(sure) << bit;
-            arm.possible[word] |= u64::from(possible) << bit;
-            arm.count.0 += u64::from(sure);
-            arm.count.1 += u64::from(possible);
-            arm.trials += 1;
+            arm.sure[word] |= sure << bit;
+            arm.possible[word] |= possible << bit;
+            arm.count.0 += u64::from(sure.count_ones());
+            arm.count.1 += u64::from(possible.count_ones());
+            arm.trials += now.len() as u64;
+            rest = later;
         }
     }
 
@@ -105,11 +117,19 @@ impl Table for Booleans {
     fn evidence(&mut self, rival: usize, leader: usize, threshold: f64) -> (f64, f64) {
         let pair = self.pair(rival, leader);
         let [worse, close] = &self.factors;
-        (log_mean_near(&logs(pair, worse), threshold), log_mean_near(&logs(pair, close), threshold))
+        let close = log_mean_near(&logs(pair, close), threshold);
+        if close < threshold {
+            // The evidence against being better at all is smaller still.
+            return (close, close);
+        }
+        (log_mean_near(&logs(pair, worse), threshold), close)
     }
 
-    fn evidence_at(&mut self, rival: usize, leader: usize, gap: f64) -> f64 {
-        let pair = self.pair(rival, leader);
-        log_mean(&logs(pair, &Factors::new(gap)))
+    fn first_beyond(&mut self, rivals: &[usize], leader: usize, gap: f64, threshold: f64) -> Option<usize> {
+        let factors = Factors::new(&self.bets, gap);
+        rivals.iter().position(|rival| {
+            let pair = self.pair(*rival, leader);
+            log_mean_near(&logs(pair, &factors), threshold) < threshold
+        })
     }
 }

@@ -61,6 +61,7 @@ pub trait Table {
     /// better. Exact values are needed only near `threshold`: they may be any number on the same side.
     fn evidence(&mut self, rival: usize, leader: usize, threshold: f64) -> (f64, f64);
 
-    /// The logarithm of the evidence that `rival` is less than `gap` better than `leader`.
-    fn evidence_at(&mut self, rival: usize, leader: usize, gap: f64) -> f64;
+    /// The place of the first of the rivals for which the evidence that it is less than `gap` better than
+    /// `leader` falls short of the threshold.
+    fn first_beyond(&mut self, rivals: &[usize], leader: usize, gap: f64, threshold: f64) -> Option<usize>;
 }

@@ -21,6 +21,9 @@ pub enum Allocation {
     OneChallenger,
 }
 
+/// Steps of the bisection of a gap.
+const STEPS: u32 = 20;
+
 /// A race between arms over a table of outcomes.
 #[derive(Clone, Debug)]
 pub struct Race<T> {
@@ -174,27 +177,37 @@ impl<T: Table> Race<T> {
         self.leader
     }
 
-    /// The smallest gap, to 30 steps of bisection, such that `arm` is within it of the best but for
+    /// The smallest gap, to a millionth of the largest, such that `arm` is within it of the best but for
     /// probability delta: at any time and for a live arm. 1 if nothing is certified.
     pub fn gap(&mut self, arm: usize) -> f64 {
-        let rivals: Vec<usize> = self.live.iter().copied().filter(|rival| *rival != arm).collect();
-        let mut gap = 0.0;
-        for rival in rivals {
-            if self.table.evidence_at(rival, arm, gap) >= self.threshold {
-                continue;
+        self.gap_below(arm, 1.0)
+    }
+
+    /// The smallest gap, at most `high`, which is taken for granted.
+    fn gap_below(&mut self, arm: usize, mut high: f64) -> f64 {
+        let mut rivals: Vec<usize> = self.live.iter().copied().filter(|rival| *rival != arm).collect();
+        let (table, threshold) = (&mut self.table, self.threshold);
+        let mut falls_short = |gap: f64| {
+            let short = table.first_beyond(&rivals, arm, gap, threshold);
+            // Who falls short once is likely to do so again.
+            if let Some(place) = short {
+                rivals.swap(0, place);
             }
-            let (mut low, mut high) = (gap, 1.0);
-            for _ in 0..30 {
-                let middle = 0.5 * (low + high);
-                if self.table.evidence_at(rival, arm, middle) >= self.threshold {
-                    high = middle;
-                } else {
-                    low = middle;
-                }
-            }
-            gap = high;
+            short.is_some()
+        };
+        if !falls_short(0.0) {
+            return 0.0;
         }
-        gap
+        let mut low = 0.0;
+        for _ in 0..STEPS {
+            let middle = 0.5 * (low + high);
+            if falls_short(middle) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        high
     }
 
     /// The choice now, at the end or at a deadline. With `deviations` (one number per arm), the least of
@@ -221,9 +234,9 @@ impl<T: Table> Race<T> {
                 }
             }
         }
-        let gap = self.gap(arm);
         // The certificate is at least what the stopping rule has checked.
-        let gap = if certified.contains(&arm) { math::at_most(gap, self.epsilon) } else { gap };
+        let most = if certified.contains(&arm) { math::at_most(self.epsilon, 1.0) } else { 1.0 };
+        let gap = self.gap_below(arm, most);
         let tied = live.into_iter().filter(|other| *other != arm).collect();
         Choice { arm, gap, tied, certified }
     }

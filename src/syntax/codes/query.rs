@@ -90,4 +90,29 @@ Wrong:\n\
 Right:\n\
 \x20   check P(safe) >= 0.9 by sprt(indifference = 0.01)",
     },
+    Page {
+        code: "E0610",
+        title: "this has no robustness",
+        text: "\
+Robustness is how far comparisons are from changing. `<`, `<=`, `>`, `>=`, contacts and regions have a margin; `==`,\n\
+`!=` and truth values of processes say only yes or no, and sums and means over time are not compared state by state.\n\
+A formula needs steps, and something with a margin in it.\n\
+\n\
+Wrong:\n\
+\x20   estimate E(robustness(F<=9 steps (die.s == 7))) in -1 .. 1\n\
+Right:\n\
+\x20   estimate E(robustness(F<=9 steps (die.s >= 7))) in -7 .. 1",
+    },
+    Page {
+        code: "E0611",
+        title: "this mixes units in a robustness",
+        text: "\
+The robustness of `a & b` is the smaller of two margins, so that all margins need one unit. Divide by what matters of\n\
+each, and they become pure numbers.\n\
+\n\
+Wrong:\n\
+\x20   E(robustness(G<=5 s (speed(user) < 2 m/s & clearance(user) > 0.5 m))) in -1 m .. 1 m\n\
+Right:\n\
+\x20   E(robustness(G<=5 s (speed(user) / 1 m/s < 2 & clearance(user) / 0.5 m > 1))) in -1 .. 1",
+    },
 ];

@@ -3,10 +3,11 @@
 use super::Page;
 
 /// The pages, by code.
-pub(super) const PAGES: &[Page] = &[Page {
-    code: "E0801",
-    title: "people cannot be placed",
-    text: "\
+pub(super) const PAGES: &[Page] = &[
+    Page {
+        code: "E0801",
+        title: "people cannot be placed",
+        text: "\
 People who start in the same shape need more room than its free area gives; obstacles count, and bodies that are thrown and\n\
 then pushed apart jam at about 84 % of an area. This is said before the first trial.\n\
 \n\
@@ -15,4 +16,19 @@ Wrong:\n\
 \x20   agents crowd[400]: adult { at = uniform in hall }\n\
 Right:\n\
 \x20   agents crowd[40]: adult { at = uniform in hall }",
-}];
+    },
+    Page {
+        code: "E0802",
+        title: "splitting is refused",
+        text: "\
+The estimate of splitting contradicts the plain trials beside it, or the robustness never rose before the event came.\n\
+Splitting sees only the ways to the event on which the robustness rises by and by; what comes out of the blue (a fault, a\n\
+jump, an arrival) it misses, and its interval with it. The report holds what the plain trials say.\n\
+\n\
+Wrong:\n\
+\x20   estimate P(G<=60 s (clearance(user) > 0 m)) by splitting()\n\
+Right:\n\
+\x20   estimate P(F<=60 s (clearance(user) <= 0 m)) by splitting()\n\
+\x20   estimate P(F<=60 s (clearance(user) <= 0 m & !sensor.failed)) by splitting()",
+    },
+];

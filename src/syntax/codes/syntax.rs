@@ -46,6 +46,8 @@ pub(in crate::syntax) const TOO_LONG: &str = "E0120";
 pub(in crate::syntax) const CHARACTER: &str = "E0121";
 /// This function does not fold over a set.
 pub(in crate::syntax) const NO_FOLD: &str = "E0122";
+/// Several levels of a quantile where one fits.
+pub(in crate::syntax) const SEVERAL_LEVELS: &str = "E0124";
 /// A temporal operator binds tighter than `=>`.
 pub(in crate::syntax) const OPEN_IMPLICATION: &str = "W0101";
 /// A power of a whole quantity.
@@ -308,6 +310,18 @@ Wrong:\n\
 \x20   let n = product(speed(a) for a in crowd)\n\
 Right:\n\
 \x20   let n = sum(speed(a) for a in crowd)",
+    },
+    Page {
+        code: SEVERAL_LEVELS,
+        title: "only one level fits here",
+        text: "\
+Several quantiles of a metric are estimated at once, jointly; a check, a comparison or a ranking is about one.\n\
+\n\
+Wrong:\n\
+\x20   check Q(0.5, 0.9, time_until(user in exit)) <= 20 s\n\
+Right:\n\
+\x20   check Q(0.9, time_until(user in exit)) <= 20 s\n\
+\x20   estimate Q(0.5, 0.9, time_until(user in exit))",
     },
     Page {
         code: OPEN_IMPLICATION,

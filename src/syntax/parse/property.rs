@@ -53,7 +53,7 @@ impl Builder<'_> {
             Rule::estimate => {
                 let mut measures = Vec::new();
                 while let Some(measure) = parts.part(Rule::measure) {
-                    measures.push(self.measure(measure)?);
+                    measures.extend(self.measures(measure)?);
                 }
                 QueryKind::Estimate(measures)
             }
@@ -72,17 +72,39 @@ impl Builder<'_> {
         Some(Query { kind, clauses, span })
     }
 
+    /// The only measure of a query that takes one.
     fn measure(&mut self, pair: Pair<'_>) -> Option<Measure> {
+        let mut measures = self.measures(pair)?;
+        if let Some(second) = measures.get(1)
+            && let MeasureKind::Quantile(level) = &second.kind
+        {
+            self.say(
+                Diagnostic::error(code::SEVERAL_LEVELS, level.span, "only one level fits here")
+                    .hint("several quantiles at once are estimated: `estimate Q(0.5, 0.9, …)`"),
+            );
+            return None;
+        }
+        measures.pop()
+    }
+
+    /// A measure; several levels of a quantile are as many measures.
+    fn measures(&mut self, pair: Pair<'_>) -> Option<Vec<Measure>> {
         let span = self.span(&pair);
         let pair = pair.into_inner().next()?;
         let rule = pair.as_rule();
         // `P`, `E` and `Q` are marks of a kind, but stand first.
         let mut parts = Parts::of(pair);
         parts.next()?;
-        let kind = match rule {
-            Rule::probability => MeasureKind::Probability,
-            Rule::expectation => MeasureKind::Expectation,
-            _ => MeasureKind::Quantile(self.expr(parts.part(Rule::arith)?)?),
+        let kinds = match rule {
+            Rule::probability => vec![MeasureKind::Probability],
+            Rule::expectation => vec![MeasureKind::Expectation],
+            _ => {
+                let mut levels = Vec::new();
+                while let Some(level) = parts.part(Rule::arith) {
+                    levels.push(MeasureKind::Quantile(self.expr(level)?));
+                }
+                levels
+            }
         };
         let mut body = self.expr(parts.part(Rule::expr)?)?;
         if let Some(moment) = parts.part(Rule::moment) {
@@ -101,7 +123,8 @@ impl Builder<'_> {
             }
             None => None,
         };
-        Some(Measure { kind, body, range, span })
+        let each = kinds.into_iter();
+        Some(each.map(|kind| Measure { kind, body: body.clone(), range: range.clone(), span }).collect())
     }
 
     fn bindings(&mut self, pair: Pair<'_>) -> Option<Vec<Binding>> {

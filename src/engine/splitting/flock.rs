@@ -1,0 +1,238 @@
+//! Paths in lanes: each with the monitor of its formula and the robustness that is its level.
+
+use super::path::Path;
+use crate::base::lanes::{LANES, Mask};
+use crate::engine::budget::Budget;
+use crate::engine::executor::Executor;
+use crate::engine::fault::Fault;
+use crate::engine::observer::Observer;
+use crate::engine::subject::Subject;
+use crate::kernel::{Code, Readings, Scratch, State, dynamics, start};
+use crate::logic::Robustness;
+use crate::stats::splitting::Flight;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Steps between two looks at the clock.
+const CLOCK_EVERY: u32 = 32;
+
+/// What a path came to.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Flown {
+    /// Its levels.
+    pub(super) flight: Flight,
+    /// Steps of the model, those up to where it branched off included.
+    pub(super) steps: u64,
+    /// Whether it diverged, or its formula had no truth.
+    pub(super) lost: bool,
+}
+
+/// Paths that came to an end, by their places.
+type Landed = Vec<(usize, Flown)>;
+
+/// What a lane is busy with.
+struct Busy {
+    place: usize,
+    /// Changes of the key that are done.
+    changed: usize,
+    flown: Flown,
+}
+
+/// A batch of lanes.
+struct Bird {
+    state: State,
+    scratch: Scratch,
+    formula: (Code, Observer),
+    level: (Code, Robustness),
+    readings: [Readings; 2],
+    busy: [Option<Busy>; LANES],
+}
+
+/// Batches that are warm, for one formula of a subject.
+pub(super) struct Flock<'s> {
+    subject: &'s Subject,
+    /// Column of the formula, and of the robustness that is its level.
+    columns: [usize; 2],
+    birds: Mutex<Vec<Bird>>,
+}
+
+impl<'s> Flock<'s> {
+    pub(super) const fn new(subject: &'s Subject, columns: [usize; 2]) -> Self {
+        Self { subject, columns, birds: Mutex::new(Vec::new()) }
+    }
+
+    fn bird(&self) -> Result<Bird, Fault> {
+        if let Some(warm) = self.birds.lock().ok().and_then(|mut list| list.pop()) {
+            return Ok(warm);
+        }
+        let (subject, [formula, level]) = (self.subject, self.columns);
+        let program = &subject.program;
+        Ok(Bird {
+            state: State::new(program.layout, program.scenario.agents.len()),
+            scratch: Scratch::new(),
+            formula: (subject.code(&[formula]), subject.observer(formula)?),
+            level: (subject.code(&[level]), subject.robustness(level)?),
+            readings: [Readings::default(), Readings::default()],
+            busy: [const { None }; LANES],
+        })
+    }
+
+    /// Runs all paths; `None` where somebody or the clock said stop first. Which thread and which lane runs a path leaves
+    /// no trace.
+    pub(super) fn fly(
+        &self,
+        paths: &[Path],
+        executor: &dyn Executor,
+        budget: &Budget,
+    ) -> Result<Option<Vec<Flown>>, Fault> {
+        let next = AtomicUsize::new(0);
+        let done: Mutex<Landed> = Mutex::new(Vec::with_capacity(paths.len()));
+        let failed: Mutex<Option<(usize, Fault)>> = Mutex::new(None);
+        let fail = |place: usize, fault: Fault| {
+            if let Ok(mut first) = failed.lock()
+                && first.as_ref().is_none_or(|(at, _)| place < *at)
+            {
+                *first = Some((place, fault));
+            }
+        };
+        executor.everywhere(&|| {
+            let mut take = || {
+                let place = next.fetch_add(1, Ordering::Relaxed);
+                paths.get(place).map(|path| (place, path))
+            };
+            match self.bird() {
+                Ok(mut bird) => {
+                    let (flown, fault) = bird.run(self.subject, paths, &mut take, budget);
+                    if let Ok(mut list) = done.lock() {
+                        list.extend(flown);
+                    }
+                    if let Some((place, fault)) = fault {
+                        fail(place, fault);
+                    }
+                    if let Ok(mut list) = self.birds.lock() {
+                        list.push(bird);
+                    }
+                }
+                Err(fault) => fail(0, fault),
+            }
+        });
+        if let Ok(Some((_, fault))) = failed.into_inner() {
+            return Err(fault);
+        }
+        let mut list = done.into_inner().unwrap_or_default();
+        if list.len() < paths.len() {
+            return Ok(None);
+        }
+        list.sort_unstable_by_key(|(place, _)| *place);
+        Ok(Some(list.into_iter().map(|(_, flown)| flown).collect()))
+    }
+}
+
+impl Bird {
+    fn run<'p>(
+        &mut self,
+        subject: &Subject,
+        paths: &[Path],
+        take: &mut dyn FnMut() -> Option<(usize, &'p Path)>,
+        budget: &Budget,
+    ) -> (Landed, Option<(usize, Fault)>) {
+        let program = &subject.program;
+        let mut done = Vec::new();
+        let (mut exhausted, mut rounds) = (false, 0u32);
+        loop {
+            let mut loaded = Mask::NONE;
+            for lane in 0..self.state.width() {
+                while self.busy[lane].is_none() && !exhausted {
+                    let Some((place, path)) = take() else {
+                        exhausted = true;
+                        break;
+                    };
+                    if start::load(program, &mut self.state, lane, path.first, None).is_err() {
+                        done.push((place, Flown { lost: true, ..Flown::default() }));
+                        continue;
+                    }
+                    self.busy[lane] = Some(Busy { place, changed: 0, flown: Flown::default() });
+                    loaded |= Mask::lane(lane);
+                    self.formula.1.start(lane);
+                    self.level.1.start(lane);
+                }
+            }
+            if !loaded.is_empty() {
+                dynamics::refresh(program, &mut self.state, &mut self.scratch, loaded);
+            }
+            if self.state.occupied.is_empty() {
+                return (done, None);
+            }
+            if let Some(lane) = (self.state.faulty & self.state.occupied).iter().next() {
+                let place = self.busy[lane].as_ref().map_or(0, |busy| busy.place);
+                let what =
+                    self.state.faults[lane].map_or_else(String::new, |f| f.describe(&program.scenario));
+                self.rest();
+                return (done, Some((place, Fault::Model(format!("in a path of splitting: {what}")))));
+            }
+            self.observe(subject, &mut done);
+            rounds += 1;
+            if budget.is_interrupted() || (rounds.is_multiple_of(CLOCK_EVERY) && budget.is_over()) {
+                self.rest();
+                return (done, None);
+            }
+            for lane in self.state.occupied.iter() {
+                let Some(busy) = &mut self.busy[lane] else { continue };
+                let changes = &paths[busy.place].changes;
+                while let Some((_, key)) =
+                    changes.get(busy.changed).filter(|(from, _)| *from <= self.state.ticks[lane])
+                {
+                    self.state.keys[lane] = *key;
+                    busy.changed += 1;
+                }
+            }
+            if !self.state.occupied.is_empty() {
+                dynamics::step(program, &mut self.state, &mut self.scratch);
+            }
+        }
+    }
+
+    /// What is under way is dropped.
+    fn rest(&mut self) {
+        self.busy = [const { None }; LANES];
+        self.state.occupied = Mask::NONE;
+    }
+
+    /// Reads the present states; paths whose formula is decided end.
+    fn observe(&mut self, subject: &Subject, done: &mut Landed) {
+        let [of_formula, of_level] = &mut self.readings;
+        self.formula.0.run(&subject.program, &self.state, of_formula);
+        self.level.0.run(&subject.program, &self.state, of_level);
+        let occupied = self.state.occupied;
+        // A level without a value is none yet; a formula without one is lost.
+        let ended = self.state.diverged | self.state.queues.full;
+        let lost = (ended | of_formula.unresolved | of_level.unresolved) & occupied;
+        let watched = occupied & !lost;
+        self.formula.1.observe(watched, of_formula);
+        self.level.1.observe(watched, &[], &of_level.signals);
+        let decided = self.formula.1.decided() & watched;
+        let levels = self.level.1.lower();
+        for lane in occupied.iter() {
+            let Some(busy) = &mut self.busy[lane] else { continue };
+            let time = self.state.ticks[lane];
+            if lost.has(lane) {
+                busy.flown.lost = true;
+            } else {
+                let level = levels.0[lane];
+                // Only the verdict is the event itself.
+                busy.flown.flight.rise(time, if level < f64::MAX { level } else { f64::MAX });
+                if !decided.has(lane) {
+                    continue;
+                }
+                if matches!(self.formula.1.reading(lane), crate::engine::cell::Reading::Truth(true)) {
+                    busy.flown.flight.rise(time, f64::INFINITY);
+                }
+            }
+            busy.flown.steps = time;
+            if let Some(busy) = self.busy[lane].take() {
+                done.push((busy.place, busy.flown));
+            }
+            self.state.occupied &= !Mask::lane(lane);
+        }
+    }
+}

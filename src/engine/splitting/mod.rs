@@ -1,0 +1,264 @@
+//! Rare events: plain trials first, then independent runs of splitting with robustness as the level, and
+//! whether the two agree.
+
+mod answer;
+mod flock;
+mod path;
+
+use super::budget::Budget;
+use super::cell::{Item, Reading};
+use super::executor::{Executor, Job};
+use super::fault::Fault;
+use super::outcome::Stop;
+use super::rehearsal::Rehearsal;
+use super::subject::Subject;
+use super::tally::Tally;
+use super::watch::{Forecast, Watch};
+use crate::base::random::TrialKey;
+use crate::compile::study::{Query, Splitting as Rule};
+use crate::stats::splitting::{Adaptive, AnyScheme, Effort, Scheme, Spread, Start};
+use crate::stats::{self, Counts, clopper_pearson};
+use flock::Flock;
+use path::Path;
+
+/// Error of the interval of plain trials that an estimate must lie in: small, for the comparison is made once
+/// in every call.
+const DISAGREEMENT: f64 = 0.01;
+/// Paths in units of those that start, for forecasts.
+const DECADES: u64 = 5;
+/// Plain trials of a round.
+const ROUND: u64 = 4096;
+
+/// What was found.
+pub(super) struct Found {
+    /// The plain trials.
+    plain: Tally,
+    /// Upper bound of the probability from them, one-sided.
+    bound: f64,
+    /// Two-sided interval of them, wide enough for the comparison.
+    interval: stats::Interval,
+    /// The runs, if all are finished.
+    spread: Option<Spread>,
+    /// Levels of the runs, on average.
+    levels: f64,
+    /// Paths of all runs.
+    paths: u64,
+    /// Steps of all paths.
+    steps: u64,
+    /// Paths that diverged.
+    lost: u64,
+    /// Whether any level below the event was ever found.
+    blind: bool,
+    /// Why it stopped.
+    stop: Stop,
+}
+
+/// What is asked.
+pub(super) struct Question<'s> {
+    query: &'s Query,
+    subject: &'s Subject,
+    column: usize,
+    rule: Rule,
+    seed: u64,
+}
+
+impl<'s> Question<'s> {
+    /// About the probability of a column of a subject.
+    pub(super) const fn new(
+        query: &'s Query,
+        subject: &'s Subject,
+        column: usize,
+        rule: Rule,
+        seed: u64,
+    ) -> Self {
+        Self { query, subject, column, rule, seed }
+    }
+
+    /// Runs a few plain trials, and forecasts from them what all is likely to take.
+    pub(super) fn rehearse(&self, executor: &dyn Executor, budget: &Budget) -> Result<Forecast, Fault> {
+        let job = Job::new(self.subject, vec![self.column], self.seed);
+        let width = executor.width(&job) as u64;
+        let few = width.min(self.rule.plain).min(budget.max_trials);
+        let rehearsal = Rehearsal::run(&job, Item::run(0, few), executor, budget)?;
+        let seconds = rehearsal.seconds_per_trial(self.subject.horizon.0);
+        // How many levels there will be is not known: as many as two decades take.
+        let paths = self.rule.runs.saturating_mul(self.rule.replicas).saturating_mul(DECADES);
+        let trials = self.rule.plain.saturating_add(paths).min(budget.max_trials);
+        Ok(Forecast {
+            query: self.query.text.clone(),
+            settings: self.query.settings.clone(),
+            trials,
+            seconds: trials as f64 * seconds,
+        })
+    }
+}
+
+/// One run on its way.
+struct Running {
+    scheme: AnyScheme,
+    branch: u16,
+    paths: Vec<Path>,
+}
+
+impl Running {
+    fn new(scheme: AnyScheme, branch: u16) -> Self {
+        Self { scheme, branch, paths: Vec::new() }
+    }
+
+    /// The paths that it wants.
+    fn wanted(&mut self, seed: u64) -> Vec<Path> {
+        let mut wanted = Vec::with_capacity(self.scheme.wanted().len());
+        for start in self.scheme.wanted() {
+            let key = TrialKey { seed, index: (self.paths.len() + wanted.len()) as u64, branch: self.branch };
+            wanted.push(match *start {
+                Start::Anew => Path::anew(key),
+                Start::From { path, time } => self.paths[path].branch(time, key),
+            });
+        }
+        self.paths.extend_from_slice(&wanted);
+        wanted
+    }
+}
+
+/// Answers a question.
+fn run(
+    question: &Question<'_>,
+    executor: &dyn Executor,
+    budget: &Budget,
+    watch: &dyn Watch,
+) -> Result<Found, Fault> {
+    let rule = question.rule;
+    let (plain, stop) = plainly(question, executor, budget, watch)?;
+    // Unresolved trials count as the event where that is the worse reading.
+    let counts = plain.counts;
+    let read = |successes| Counts { successes, failures: counts.trials - successes };
+    let (least, most) = (read(counts.successes), read(counts.successes + counts.unresolved));
+    let interval =
+        clopper_pearson::interval(least, DISAGREEMENT).hull(clopper_pearson::interval(most, DISAGREEMENT));
+    let bound = clopper_pearson::upper(most, rule.delta);
+    let mut found = Found {
+        plain,
+        bound,
+        interval,
+        spread: None,
+        levels: 0.0,
+        paths: 0,
+        steps: 0,
+        lost: 0,
+        blind: true,
+        stop: stop.unwrap_or(Stop::Plan),
+    };
+    if stop.is_some() {
+        return Ok(found);
+    }
+    let flock = Flock::new(question.subject, [question.column, rule.level]);
+    let fly = |runs: &mut [Running], found: &mut Found| -> Result<bool, Fault> {
+        fly(&flock, runs, question, found, executor, budget, watch)
+    };
+    let (replicas, seed) = (rule.replicas as usize, question.seed);
+    let mut levels = Vec::new();
+    if !rule.adaptive {
+        // A pilot run finds the levels; its own estimate is not used.
+        let branch = 1 + rule.runs as u16;
+        let pilot = Adaptive::new(replicas, (3 * replicas / 4).max(1), seed, branch)?;
+        let mut runs = [Running::new(AnyScheme::Adaptive(pilot), branch)];
+        if !fly(&mut runs, &mut found)? {
+            return Ok(found);
+        }
+        levels.extend(runs[0].scheme.levels().iter().copied().filter(|level| level.is_finite()));
+    }
+    let mut runs = Vec::with_capacity(rule.runs as usize);
+    for run in 0..rule.runs as u16 {
+        let branch = 1 + run;
+        let scheme = if rule.adaptive {
+            AnyScheme::Adaptive(Adaptive::new(replicas, rule.kill as usize, seed, branch)?)
+        } else {
+            AnyScheme::Effort(Effort::new(replicas, levels.clone(), seed, branch)?)
+        };
+        runs.push(Running::new(scheme, branch));
+    }
+    if fly(&mut runs, &mut found)? {
+        let estimates: Vec<f64> = runs.iter().map(|run| run.scheme.estimate()).collect();
+        found.spread = Some(Spread::of(&estimates, rule.delta)?);
+        let sum: usize = runs.iter().map(|run| run.scheme.levels().len()).sum();
+        found.levels = sum as f64 / runs.len() as f64;
+        found.blind = runs.iter().all(|run| run.scheme.levels().iter().all(|level| !level.is_finite()));
+    }
+    Ok(found)
+}
+
+/// The plain trials; why they ended early, if they did.
+fn plainly(
+    question: &Question<'_>,
+    executor: &dyn Executor,
+    budget: &Budget,
+    watch: &dyn Watch,
+) -> Result<(Tally, Option<Stop>), Fault> {
+    let job = Job::new(question.subject, vec![question.column], question.seed);
+    let mut tally = Tally::default();
+    let planned = question.rule.plain;
+    let most = planned.min(budget.max_trials);
+    while tally.counts.trials < most {
+        if let Some(stop) = halted(budget) {
+            return Ok((tally, Some(stop)));
+        }
+        let from = tally.counts.trials;
+        let items = Item::run(from, ROUND.min(most - from));
+        let cells = executor.run(&job, &items, budget)?;
+        for (item, row) in items.iter().zip(cells.rows()) {
+            let Some(row) = row else { return Ok((tally, halted(budget).or(Some(Stop::Deadline)))) };
+            if row[0].reading == Reading::Faulty {
+                return Err(super::trial::fault(question.subject, *item, question.seed));
+            }
+            tally.add(item.index, &row[0], None);
+        }
+        watch.consumed(&question.query.text, tally.counts.trials, None);
+    }
+    Ok((tally, (most < planned).then_some(Stop::Cap)))
+}
+
+fn halted(budget: &Budget) -> Option<Stop> {
+    if budget.is_interrupted() { Some(Stop::Interrupt) } else { budget.is_over().then_some(Stop::Deadline) }
+}
+
+/// Runs go on side by side until all are finished; false if they are not.
+fn fly(
+    flock: &Flock<'_>,
+    runs: &mut [Running],
+    question: &Question<'_>,
+    found: &mut Found,
+    executor: &dyn Executor,
+    budget: &Budget,
+    watch: &dyn Watch,
+) -> Result<bool, Fault> {
+    loop {
+        let paths: Vec<Vec<Path>> = runs.iter_mut().map(|run| run.wanted(question.seed)).collect();
+        let together: Vec<Path> = paths.iter().flatten().cloned().collect();
+        if together.is_empty() {
+            return Ok(true);
+        }
+        if let Some(stop) = halted(budget) {
+            found.stop = stop;
+            return Ok(false);
+        }
+        let consumed = found.plain.counts.trials + found.paths;
+        if consumed + together.len() as u64 > budget.max_trials {
+            found.stop = Stop::Cap;
+            return Ok(false);
+        }
+        let Some(flown) = flock.fly(&together, executor, budget)? else {
+            found.stop = halted(budget).unwrap_or(Stop::Deadline);
+            return Ok(false);
+        };
+        found.paths += flown.len() as u64;
+        found.steps += flown.iter().map(|one| one.steps).sum::<u64>();
+        found.lost += flown.iter().filter(|one| one.lost).count() as u64;
+        let mut flown = flown.into_iter();
+        for (run, wanted) in runs.iter_mut().zip(&paths) {
+            if !wanted.is_empty() {
+                run.scheme.feed(flown.by_ref().take(wanted.len()).map(|one| one.flight).collect());
+            }
+        }
+        watch.consumed(&question.query.text, found.plain.counts.trials + found.paths, None);
+    }
+}

@@ -1,0 +1,166 @@
+//! T16: every procedure comes to the same verdict, counts and numbers whatever the threads, the width of rounds, the
+//! order in which trials end, and trials that are run a second time.
+
+#![allow(clippy::disallowed_methods, reason = "a test sleeps and reads the clock")]
+
+use smc::compile::{Files, Input, Study, compile};
+use smc::engine::cell::Item;
+use smc::engine::executor::{Cells, Job};
+use smc::engine::outcome::QueryResult;
+use smc::engine::{Budget, Call, Executor, Nobody, Threads, run};
+use smc::logic::Invalid;
+use smc::syntax::parse::{parse_properties, parse_scenario};
+use smc::syntax::source::{Source, SourceId};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
+
+const SMALL: &str = include_str!("cli/small.scn");
+
+/// Every procedure there is.
+const QUERIES: &str = "\
+property near = F<=1 s (min(distance(user, a) for a in crowd) < 3 m)
+check P(near) >= 0.3 by sprt(indifference = 0.05)
+check P(near) >= 0.3 by sprt2(indifference = 0.05)
+check P(near) >= 0.3 by plan(indifference = 0.1)
+check P(near) >= 0.9
+check P(near) >= 0.9 by three_way(indifference = 0.05)
+check E(max<=1 s (speed(user))) in 0 m/s .. 3 m/s >= 1 m/s
+check Q(0.5, min<=1 s (clearance(user))) >= 0.2 m
+estimate P(near) within 0.05
+estimate P(near) by okamoto(epsilon = 0.1, delta = 0.1)
+estimate P(near) by massart(epsilon = 0.06, delta = 0.1)
+estimate P(near) by spending(epsilon = 0.06, delta = 0.1)
+estimate P(near) by gbas(epsilon = 0.3, delta = 0.1)
+estimate P(near) by clopper_pearson(trials = 300)
+estimate P(F<=1 s (clearance(user) < -0.1 m)) by splitting(replicas = 20, runs = 2, plain = 100)
+estimate E(max<=1 s (speed(user))) in 0 m/s .. 3 m/s within 0.05 m/s
+estimate E(robustness(near)) in -4 m .. 3 m within 0.3 m
+estimate Q(0.5, time_until(clearance(user) < 1 m)), Q(0.9, travelled(user) at 1 s) by fixed(trials = 200)
+estimate Q(0.1, 0.5, 0.9, min<=1 s (clearance(user))) by dkw(trials = 200)
+compare P(near) under density = 0.1 /m^2 with density = 0.4 /m^2 within 0.1
+compare E(max<=1 s (speed(user))) in 0 m/s .. 3 m/s under density = 0.1 /m^2 with density = 0.4 /m^2
+rank moves of user by P(near) within 0.1
+rank moves of user by P(near) within 0.1 by one_challenger()
+rank moves of user by P(near) by okamoto(epsilon = 0.3, delta = 0.2)
+rank moves of user by E(min<=1 s (clearance(user))) in -1 m .. 6 m within 0.3 m
+";
+
+fn study() -> (Study, Vec<Source>) {
+    let sources = vec![Source::new(SourceId(0), "a.scn", SMALL), Source::new(SourceId(1), "a.bltl", QUERIES)];
+    let (scenario, _) = parse_scenario(&sources[0]);
+    let (properties, _) = parse_properties(&sources[1]);
+    let files = Files::default();
+    let input = Input {
+        sources: &sources,
+        scenario: &scenario,
+        properties: &[properties],
+        files: &files,
+        settings: &[],
+    };
+    let (study, found) = compile(&input);
+    (study.unwrap_or_else(|| panic!("{found:?}")), sources)
+}
+
+/// Hands a round out in pieces of random size and order, sleeps between them, and runs some of them twice.
+struct Restless {
+    threads: Threads,
+    width: usize,
+    state: AtomicU64,
+}
+
+impl Restless {
+    fn below(&self, bound: u64) -> u64 {
+        let old = self.state.fetch_add(0x9e37_79b9_7f4a_7c15, Ordering::Relaxed);
+        let mixed = (old ^ (old >> 31)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        (mixed ^ (mixed >> 29)) % bound
+    }
+}
+
+impl Executor for Restless {
+    fn run(&self, job: &Job<'_>, items: &[Item], budget: &Budget) -> Result<Cells, Invalid> {
+        let mut pieces = Vec::new();
+        let mut from = 0;
+        while from < items.len() {
+            let to = items.len().min(from + 1 + self.below(60) as usize);
+            pieces.push((from, to));
+            if self.below(5) == 0 {
+                // As after a worker that died: leased once more.
+                pieces.push((from, to));
+            }
+            from = to;
+        }
+        for k in (1..pieces.len()).rev() {
+            pieces.swap(k, self.below(k as u64 + 1) as usize);
+        }
+        let mut cells = Cells::new(items.len(), job.columns.len());
+        for (from, to) in pieces {
+            std::thread::sleep(Duration::from_micros(self.below(200)));
+            let part = self.threads.run(job, &items[from..to], budget)?;
+            for (k, row) in part.rows().enumerate() {
+                if let Some(row) = row {
+                    cells.put(from + k, row);
+                }
+            }
+        }
+        Ok(cells)
+    }
+
+    fn width(&self, _: &Job<'_>) -> usize {
+        self.width
+    }
+
+    fn everywhere(&self, work: &(dyn Fn() + Sync)) {
+        self.threads.everywhere(&|| {
+            std::thread::sleep(Duration::from_micros(self.below(200)));
+            work();
+        });
+    }
+}
+
+fn results(study: &Study, executor: &dyn Executor) -> Vec<QueryResult> {
+    let call = Call {
+        seed: 11,
+        command: "smc check a.scn a.bltl".to_owned(),
+        simulate: "smc simulate a.scn".to_owned(),
+        only: Vec::new(),
+        place: &|_| (String::new(), 0),
+        file: String::new(),
+    };
+    let run = run(study, &call, executor, &Budget::new(2_000, None), &Nobody).unwrap();
+    let mut results = run.results;
+    for result in &mut results {
+        result.elapsed_s = 0.0;
+    }
+    results
+}
+
+#[test]
+fn t16_neither_threads_nor_rounds_nor_sleep_leave_a_trace() {
+    let (study, _sources) = study();
+    let plain = results(&study, &Threads::new(Some(1)).unwrap());
+    assert_eq!(plain.len(), study.queries.len());
+    for (threads, width, state) in [(1, 1, 1), (2, 1000, 2), (3, 7, 3), (8, 64, 4)] {
+        let restless =
+            Restless { threads: Threads::new(Some(threads)).unwrap(), width, state: AtomicU64::new(state) };
+        for (found, plain) in results(&study, &restless).iter().zip(&plain) {
+            assert_eq!(found, plain, "{threads} threads, rounds of {width}: {}", plain.query);
+        }
+    }
+}
+
+#[test]
+fn every_result_says_what_it_certifies_and_how_to_get_it_again() {
+    let (study, _sources) = study();
+    for result in results(&study, &Threads::new(Some(2)).unwrap()) {
+        let query = &result.query;
+        assert!(result.certifies.contains("error at most"), "{query}: {}", result.certifies);
+        assert!(!result.interval.is_empty() && !result.method.name.is_empty(), "{query}");
+        assert!(result.counts.trials > 0 && result.estimate.is_some(), "{query}");
+        let trials = result.replay.rsplit(' ').next().unwrap().parse::<u64>().unwrap();
+        let paths = result.rare.map_or(0, |rare| rare.paths);
+        // A comparison counts the trials of both sides, its budget pairs.
+        let sides = if result.compare.is_some() { 2 } else { 1 };
+        assert_eq!(sides * trials, result.counts.trials + paths, "{query}: {}", result.replay);
+        assert!(result.low <= result.estimate.unwrap() && result.estimate.unwrap() <= result.high, "{query}");
+    }
+}

@@ -1,0 +1,102 @@
+//! Robustness in property files: its sign is the verdict, trial by trial; it stops as soon as its bounds force
+//! what is asked; it is estimated, checked, compared and ranked as any metric.
+
+#![allow(clippy::disallowed_methods, reason = "a test reads its own files")]
+#![allow(dead_code, reason = "the program is called from other tests too")]
+
+#[path = "cli/program.rs"]
+mod program;
+
+use program::{Place, SMALL, timeless};
+use serde_json::Value;
+
+fn results(properties: &str, words: &[&str]) -> Vec<Value> {
+    let place = Place::new(&[("a.scn", SMALL), ("a.bltl", properties)]);
+    let mut call = vec!["check", "a.scn", "a.bltl", "-q", "--format", "json"];
+    call.extend(words);
+    let said = place.call(&call);
+    assert!(matches!(said.code, Some(0 | 1 | 3)), "{}", said.err);
+    let mut json = said.json();
+    timeless(&mut json);
+    json["results"].as_array().unwrap().clone()
+}
+
+/// Formulas of one unit, with nested windows, untils, regions, contacts, folds and times.
+const FORMULAS: [&str; 10] = [
+    "G<=3 s (forall a in crowd: distance(user, a) > 1.2 m)",
+    "F<=3 s (min(distance(user, a) for a in crowd) < 1.0 m)",
+    "G<=1 s F<=1 s (clearance(user) < 1.5 m | user in hall)",
+    "(distance(user, crowd[1]) > 2 m) U<=3 s (user in hall)",
+    "!(exists a in crowd: a in exit) W<=2 s (travelled(user) >= 2 m)",
+    "G<=2 s (contact(user) => F<=1 s !contact(user))",
+    "(clearance(user) > 0.5 m) R<=2 s (distance(user, crowd[2]) > 0.5 m)",
+    "time_until(travelled(user) > 3 m) <= 2.5 s",
+    "count(a in crowd: F<=2 s (distance(user, a) < 1.5 m)) >= 2",
+    "min<=3 s (clearance(user)) > 0.4 m & max<=2 s (travelled(user)) > 2 m",
+];
+
+#[test]
+fn the_sign_is_the_verdict() {
+    for formula in FORMULAS {
+        let properties = format!(
+            "property p = {formula}\n\
+             estimate P(p), P(robustness(p) > 0 m), P(robustness(p) >= 0 m), P(0 m > robustness(p)) by fixed(trials = 96)\n"
+        );
+        let found = results(&properties, &[]);
+        let passed: Vec<u64> = found.iter().map(|r| r["successes"].as_u64().unwrap()).collect();
+        // No margin is exactly zero here.
+        assert_eq!((passed[1], passed[2], passed[3]), (passed[0], passed[0], 96 - passed[0]), "{formula}");
+        // The sign is known exactly when the verdict falls.
+        assert_eq!(found[1]["steps"], found[0]["steps"], "{formula}");
+    }
+}
+
+#[test]
+fn trials_end_once_the_bounds_force_the_answer() {
+    let properties = "\
+property safe = G<=3 s (forall a in crowd: distance(user, a) > 1.2 m)
+estimate E(robustness(safe)) in -1 m .. 5 m by fixed(trials = 96)
+estimate E(robustness(safe)) in 0.5 m .. 5 m by fixed(trials = 96)
+estimate Q(0.25, robustness(safe)) by fixed(trials = 96)
+estimate P(safe) by fixed(trials = 96)
+check Q(0.25, robustness(safe)) >= -5 m
+check E(robustness(safe)) in -1 m .. 5 m >= -0.9 m
+";
+    let found = results(properties, &[]);
+    let number = |at: usize, field: &str| found[at][field].as_f64().unwrap();
+    assert!(number(1, "steps") < number(0, "steps"), "below the range is soon known");
+    assert_eq!(number(0, "steps"), number(2, "steps"), "the range of the first holds all values");
+    assert_eq!(number(0, "clipped"), 0.0);
+    // Every trial that falls below 0.5 m is clipped there.
+    assert!(number(1, "clipped") > 0.0 && number(1, "estimate") > number(0, "estimate"));
+    let above = number(3, "successes") / 96.0;
+    assert_eq!(number(2, "estimate") < 0.0, above < 0.75, "the quantile is negative if a quarter fails");
+    assert_eq!((&found[4]["verdict"], &found[5]["verdict"]), (&"satisfied".into(), &"satisfied".into()));
+    assert_eq!((&found[0]["unit"], &found[2]["unit"]), (&"m".into(), &"m".into()));
+}
+
+#[test]
+fn moves_are_ranked_by_it_and_worlds_compared() {
+    let properties = "\
+property safe = G<=3 s (forall a in crowd: distance(user, a) > 1.2 m)
+rank moves of user by E(robustness(safe)) in -1.2 m .. 5 m within 0.3 m
+compare E(robustness(safe)) in -1.2 m .. 5 m under density = 0.1 /m^2 with density = 0.9 /m^2
+";
+    let found = results(properties, &["--max-trials", "600"]);
+    assert_eq!(found[0]["options"].as_array().unwrap().len(), 4, "{}", found[0]);
+    assert!(found[0]["certifies"].as_str().unwrap().contains("E(robustness(safe))"));
+    assert!(found[1]["estimate"].as_f64().unwrap() > 0.0, "fewer people, more room: {}", found[1]);
+    let threads = results(properties, &["--max-trials", "600", "-j", "1"]);
+    assert_eq!(threads[0].to_string(), found[0].to_string());
+}
+
+#[test]
+fn pure_numbers_join_what_has_different_units() {
+    let properties = "\
+property calm = G<=2 s (speed(user) / 1 m/s < 2.5 & clearance(user) / 1 m > -1)
+estimate E(robustness(calm)) in -1 .. 3
+";
+    let found = results(properties, &[]);
+    assert_eq!(found[0]["unit"], "");
+    assert!(found[0]["estimate"].as_f64().unwrap() > 0.0);
+}
