@@ -150,6 +150,7 @@ fn scenario(scene: &Scene, own_b: bool) -> Scenario {
         k1: constant(1.2e5),
         k2: constant(2.4e5),
         noise: constant(0.08),
+        attention: constant(1.0),
     });
     let agent = |(k, walker): (usize, &Walker)| Agent {
         name: format!("walker[{}]", k + 1),
@@ -176,6 +177,8 @@ fn scenario(scene: &Scene, own_b: bool) -> Scenario {
         groups: Vec::new(),
         moves: Vec::new(),
         processes: smc::model::Processes::default(),
+        behaviours: smc::model::Behaviours::default(),
+        sources: Vec::new(),
     }
 }
 

@@ -4,6 +4,7 @@
 //! lane does never moves a byte of another.
 
 mod barrier;
+pub mod behaviour;
 mod cells;
 pub mod code;
 mod contact;

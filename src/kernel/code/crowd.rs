@@ -226,6 +226,10 @@ pub(super) fn reading<S: Simd, const ONE: bool>(
         Reading::Field(Field::Mass) => view.load(&state.mass, agent),
         Reading::Field(Field::DrivingSpeed) => view.load(&state.speed, agent),
         Reading::Field(Field::Travelled) => view.load(&state.travelled, agent),
+        Reading::Field(Field::Mode(behaviour)) => match state.behaviours.modes.get(behaviour.0 as usize) {
+            Some(modes) => view.load(modes, agent),
+            None => view.splat(-1.0),
+        },
     }
 }
 

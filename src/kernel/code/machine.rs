@@ -268,6 +268,14 @@ impl<S: Simd, const ONE: bool> Machine<'_, S, ONE> {
                 narrow(self.code.regions[region as usize].contains(x, y))
             }
             Node::Present(who) => view.present(self.who(who)),
+            Node::Entered(source, number) => {
+                let entered = view.state.queues.has_entered(source as usize, number);
+                match ONE {
+                    true if entered.has(0) => Mask::ALL,
+                    true => Mask::NONE,
+                    false => entered,
+                }
+            }
             Node::Somebody(crowd) => crowd::somebody(&view, self.members(crowd)),
             Node::AllFar { who, crowd, measure, test, wanted, bound, nearest } => {
                 if let Some(nearest) = nearest.map(|id| self.number(id))

@@ -107,6 +107,8 @@ pub(super) enum Node {
     Inside(Who, u32),
     /// Whether an agent is in the scene.
     Present(Who),
+    /// Whether this member, from 0, of a source has come in.
+    Entered(u32, u32),
     /// Whether some member is in the scene.
     Somebody(Crowd),
     /// Whether for all members the comparison of the measure with a bound that is the same for all has
@@ -141,6 +143,7 @@ impl Node {
             | Self::Or(_)
             | Self::Inside(..)
             | Self::Present(_)
+            | Self::Entered(..)
             | Self::Somebody(_)
             | Self::AllFar { .. } => true,
             _ => false,
@@ -172,6 +175,7 @@ impl Node {
             | Self::Truth(_)
             | Self::Inside(..)
             | Self::Present(_)
+            | Self::Entered(..)
             | Self::Somebody(_) => Vec::new(),
         }
     }
