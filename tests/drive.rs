@@ -37,6 +37,7 @@ fn agent(at: Vec2, velocity: Vec2, route: Route) -> Agent {
         k1: c(1.2e5),
         k2: c(2.4e5),
         noise: c(0.0),
+        attention: c(1.0),
     };
     Agent {
         name: "walker".into(),
@@ -80,6 +81,8 @@ fn scenario(agents: Vec<Agent>) -> Scenario {
         groups: Vec::new(),
         moves: Vec::new(),
         processes: smc::model::Processes::default(),
+        behaviours: smc::model::Behaviours::default(),
+        sources: Vec::new(),
     }
 }
 

@@ -37,6 +37,7 @@ fn body() -> Body {
         k1: c(1.2e5),
         k2: c(2.4e5),
         noise: c(0.08),
+        attention: c(1.0),
     }
 }
 
@@ -75,6 +76,8 @@ fn scenario(agents: Vec<Agent>) -> Scenario {
         groups: Vec::new(),
         moves: Vec::new(),
         processes: smc::model::Processes::default(),
+        behaviours: smc::model::Behaviours::default(),
+        sources: Vec::new(),
     }
 }
 

@@ -11,20 +11,21 @@ use crate::data::table::{
     Held, Row, StateRow, write_csv, write_json, write_json_lines, write_states_csv, write_states_json,
     write_states_json_lines,
 };
-use crate::kernel::{Program, Scratch, State, dynamics, start};
+use crate::kernel::{Program, Scratch, Slot, State, dynamics, start};
 use crate::model::{Domain, Scenario};
 use crate::report::ExitCode as Exit;
 use std::io::{BufWriter, Write};
 use std::sync::Arc;
 
 /// One agent in one state.
-struct Record {
+struct Record<'s> {
     time: f64,
     trial: u64,
     agent: usize,
     position: Vec2,
     velocity: Vec2,
-    present: bool,
+    /// States of behaviours, in the order of their declaration; empty in who has none.
+    modes: Vec<&'s str>,
 }
 
 /// Runs trials one after the other and yields their states.
@@ -101,8 +102,15 @@ impl<'p> Walk<'p> {
                 continue;
             }
             if let Some(fault) = self.state.faults[0].filter(|_| !self.state.faulty.is_empty()) {
-                let what = fault.describe(&self.program.scenario.processes);
+                let what = fault.describe(&self.program.scenario);
                 self.notes.push(format!("trial {} ends in an error of the model: {what}", self.trial));
+                self.running = false;
+                self.trial += 1;
+                continue;
+            }
+            if let Some(reason) = self.state.queues.overrun(&self.program.scenario.sources, 0) {
+                let time = self.program.scenario.clock.seconds(crate::base::tick::Tick(tick));
+                self.notes.push(format!("trial {} is unresolved at {time} s: {reason}", self.trial));
                 self.running = false;
                 self.trial += 1;
                 continue;
@@ -147,15 +155,22 @@ impl Walk<'_> {
     }
 }
 
-impl Iterator for Walk<'_> {
-    type Item = Record;
+impl<'p> Iterator for Walk<'p> {
+    type Item = Record<'p>;
 
-    fn next(&mut self) -> Option<Record> {
-        if self.agent == 0 && !self.advance() {
-            return None;
-        }
+    fn next(&mut self) -> Option<Record<'p>> {
         let agents = self.program.scenario.agents.len();
-        let slot = self.state.slot(self.agent, 0);
+        // Only who is in the scene has a row.
+        let slot = loop {
+            if self.agent == 0 && !self.advance() || agents == 0 {
+                return None;
+            }
+            let slot = self.state.slot(self.agent, 0);
+            if self.state.present[slot.block].has(slot.lane) {
+                break slot;
+            }
+            self.agent = (self.agent + 1) % agents;
+        };
         let at = |field: &[crate::base::lanes::Lanes]| field[slot.block].0[slot.lane];
         let record = Record {
             time: self.time(),
@@ -163,11 +178,28 @@ impl Iterator for Walk<'_> {
             agent: self.agent,
             position: Vec2::new(at(&self.state.x), at(&self.state.y)),
             velocity: Vec2::new(at(&self.state.vx), at(&self.state.vy)),
-            present: self.state.present[slot.block].has(slot.lane),
+            modes: modes(self.program, &self.state, slot),
         };
         self.agent = (self.agent + 1) % agents;
         Some(record)
     }
+}
+
+/// The names of the states of all behaviours in a slot.
+fn modes<'p>(program: &'p Program, state: &State, slot: Slot) -> Vec<&'p str> {
+    let declared = &program.scenario.behaviours.declared;
+    let modes = &state.behaviours.modes;
+    declared
+        .iter()
+        .enumerate()
+        .filter(|(_, behaviour)| !behaviour.states.is_empty())
+        .map(|(k, behaviour)| {
+            let mode = modes.get(k).map_or(-1.0, |modes| modes[slot.block].0[slot.lane]);
+            // Nobody is in a state with a negative number.
+            let name = if mode < 0.0 { None } else { behaviour.states.get(mode as usize) };
+            name.map_or("", String::as_str)
+        })
+        .collect()
 }
 
 /// The option of a name.
@@ -269,12 +301,15 @@ fn write(
         agent: &scenario.agents[record.agent].name,
         position: record.position,
         velocity: record.velocity,
-        present: record.present,
+        present: true,
         signals: &[],
+        words: record.modes,
     });
+    let declared = scenario.behaviours.declared.iter().filter(|behaviour| !behaviour.states.is_empty());
+    let names: Vec<&str> = declared.map(|behaviour| behaviour.name.as_str()).collect();
     match format {
-        TableFormat::Csv => write_csv(out, &[], rows),
-        TableFormat::Json => write_json(out, &[], rows),
-        TableFormat::Jsonl => write_json_lines(out, &[], rows),
+        TableFormat::Csv => write_csv(out, &names, rows),
+        TableFormat::Json => write_json(out, &names, rows),
+        TableFormat::Jsonl => write_json_lines(out, &names, rows),
     }
 }

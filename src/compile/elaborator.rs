@@ -1,5 +1,6 @@
 //! The state of compilation under one combination of parameter values.
 
+use super::behaviour::With;
 use super::dimension::{Dimension, describe};
 use super::margin::Margins;
 use super::number::Number;
@@ -13,10 +14,10 @@ use crate::base::tick::{Clock, Tick};
 use crate::data::tracks::Recording;
 use crate::logic::{Node, NodeId, Relation, SignalId, Term, TermId, Tree};
 use crate::model::{AgentId, Bool, Num, Scene};
-use crate::syntax::ast::Expr;
+use crate::syntax::ast::{BehaviourDecl, Expr};
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::source::{Source, Span};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// An error was reported; what depends on it is left out without another word.
 #[derive(Clone, Copy, Debug)]
@@ -70,8 +71,16 @@ pub(super) struct Elaborator<'a> {
     pub(super) scene: Scene,
     /// Processes so far.
     pub(super) processes: Vec<Declared<'a>>,
+    /// Behaviours so far.
+    pub(super) behaviours: Vec<&'a BehaviourDecl>,
+    /// Who has which.
+    pub(super) withs: Vec<With<'a>>,
     /// Names of the agents so far.
     pub(super) agent_names: Vec<String>,
+    /// Whether somebody may come in during a trial.
+    pub(super) coming: bool,
+    /// Agents who come or leave during a trial.
+    pub(super) passing: BTreeSet<AgentId>,
     /// The clock.
     pub(super) clock: Clock,
     /// Last tick.
@@ -115,7 +124,11 @@ impl<'a> Elaborator<'a> {
             shapes: Vec::new(),
             scene: Scene::default(),
             processes: Vec::new(),
+            behaviours: Vec::new(),
+            withs: Vec::new(),
             agent_names: Vec::new(),
+            coming: false,
+            passing: BTreeSet::new(),
             clock: Clock::Steps,
             horizon: Tick(0),
             measured: Vec::new(),

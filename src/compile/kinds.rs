@@ -172,6 +172,7 @@ impl Elaborator<'_> {
                 k1: law("k1")?,
                 k2: law("k2")?,
                 noise: law("noise")?,
+                attention: law("attention")?,
             })
         };
         all().ok_or(Reported)
@@ -179,10 +180,10 @@ impl Elaborator<'_> {
 }
 
 /// Why a law cannot be that of a parameter: the support must be physically possible.
-fn out_of_range(name: &str, law: &Law) -> Option<String> {
+pub(super) fn out_of_range(name: &str, law: &Law) -> Option<String> {
     let (low, high) = law.bounds();
     let positive = matches!(name, "mass" | "radius" | "tau" | "B" | "B2");
-    let share = matches!(name, "lambda" | "lambda2");
+    let share = matches!(name, "lambda" | "lambda2" | "attention");
     let constant = law.constant().is_some();
     let truncate = if constant { "" } else { "; truncate the distribution: `… in lo .. hi`" };
     if positive && (low < 0.0 || (constant && low == 0.0)) {

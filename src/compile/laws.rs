@@ -168,7 +168,7 @@ impl Elaborator<'_> {
 }
 
 /// The name and arguments of a distribution.
-fn distribution(expr: &Expr) -> Option<(&str, &[Expr])> {
+pub(super) fn distribution(expr: &Expr) -> Option<(&str, &[Expr])> {
     match &expr.kind {
         ExprKind::Call { function, arguments } if DISTRIBUTIONS.contains(&function.name.as_str()) => {
             Some((&function.name, arguments))

@@ -208,6 +208,15 @@ impl Rewriting<'_, '_> {
                 let list = list.iter().map(|one| self.condition(one)).collect();
                 self.elaborator.node(Node::Or(list))
             }
+            // Who has not come in yet has no numbers: then the truth decides.
+            _ if self.elaborator.coming => {
+                let margin = margin(truth);
+                let same = (Box::new(margin.clone()), Box::new(margin.clone()));
+                let is_number = Bool::Compare(Comparison::Equal, same.0, same.1);
+                let margin = Num::If(Box::new(is_number), Box::new(margin), Box::new(infinite(truth)));
+                let (margin, zero) = (self.number(&margin), self.elaborator.term(Term::Constant(0.0)));
+                self.elaborator.node(Node::Compare(Relation::Greater, margin, zero))
+            }
             Bool::Compare(comparison, a, b)
                 if !matches!(comparison, Comparison::Equal | Comparison::Unequal)
                     && depth(truth).is_none() =>
@@ -266,6 +275,7 @@ pub fn margin(truth: &Bool) -> Num {
             Comparison::Less | Comparison::AtMost => difference(truth, b, a),
             Comparison::Greater | Comparison::AtLeast => difference(truth, a, b),
         },
+        Bool::Present(_) => infinite(truth),
         Bool::In(who, region) => Num::Depth(Place::Agent(*who), *region),
         Bool::Contact(who) => negated(Num::Clearance(*who)),
         Bool::Touching(a, b) => negated(gap(*a, *b)),

@@ -4,6 +4,7 @@
 //! world with its own agents, and the formulas over them.
 
 mod asks;
+mod behaviour;
 pub mod dimension;
 mod elaborator;
 mod files;
@@ -25,6 +26,7 @@ mod reach;
 mod recordings;
 mod scenery;
 mod settings;
+mod sources;
 pub mod study;
 mod symbols;
 mod typed;

@@ -1,5 +1,6 @@
 //! Agents and groups: declared one by one, in numbers, or from a recording.
 
+use super::behaviour::With;
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::kinds::Kind;
@@ -75,11 +76,9 @@ impl<'a> Elaborator<'a> {
             }
             _ => Ok(1),
         };
-        if let Some(with) = decl.with.first() {
-            self.note(Diagnostic::error("E0201", with.span, "there is no behaviour of this name"));
-        }
+        let with = self.with(&decl.name, &decl.with);
         if let Some(recorded) = &decl.recorded {
-            self.recorded(decl, recorded, kind, people);
+            self.recorded(decl, recorded, kind, with, people);
             return;
         }
         let mut kind = kind;
@@ -89,12 +88,13 @@ impl<'a> Elaborator<'a> {
         self.only(&rest, &["at", "velocity", "route"]);
         let body = kind.and_then(|kind| self.body(&kind, &decl.kind));
         let (Ok(count), Ok(body), Ok(start), Ok(route)) = (count, body, start, route) else {
-            self.define_empty(&decl.name, decl.plural);
+            self.define_empty(&decl.name, decl.plural, with);
             return;
         };
         let members = self.people(&decl.name, count, decl.plural, people, |_| {
             (Arc::new(body.clone()), start.clone(), route.clone())
         });
+        self.attach(with, &members);
         let meaning = match members.as_slice() {
             [one] if !decl.plural => Meaning::Agent(*one),
             _ => Meaning::Agents { members: members.into(), particle: false },
@@ -105,6 +105,7 @@ impl<'a> Elaborator<'a> {
     /// `group friends[2]: companion as particle { … }`
     pub(super) fn group(&mut self, decl: &'a GroupDecl, people: &mut People) {
         let count = self.count(&decl.count);
+        let with = self.with(&decl.name, &decl.with);
         let mut kind = self.kind(&decl.kind);
         let rest = self.parameters(&decl.body, kind.as_mut().ok(), &Locals::default());
         let start = self.start(&decl.name, &rest, people, true);
@@ -139,7 +140,7 @@ impl<'a> Elaborator<'a> {
         let given = |name: &str| decl.body.iter().any(|f| f.name.name == name);
         let body = kind.and_then(|kind| self.body(&kind, &decl.kind));
         let (Ok(count), Ok(body), Ok(start), Ok(route)) = (count, body, start, route) else {
-            self.define_empty(&decl.name, true);
+            self.define_empty(&decl.name, true, with);
             return;
         };
         let (Ok(attraction), Ok(repulsion), Ok(friction)) = (attraction, repulsion, friction) else { return };
@@ -160,6 +161,7 @@ impl<'a> Elaborator<'a> {
                 (Arc::new(body.clone()), start.clone(), route.clone())
             });
             people.agents[members[0].0 as usize].particle = Some(particle);
+            self.attach(with, &members);
             self.scopes[0]
                 .define(&decl.name.name, Meaning::Agents { members: members.into(), particle: true });
             return;
@@ -167,6 +169,7 @@ impl<'a> Elaborator<'a> {
         let members = self.people(&decl.name, count, true, people, |_| {
             (Arc::new(body.clone()), start.clone(), route.clone())
         });
+        self.attach(with, &members);
         let index = people.groups.len() as u32;
         for member in &members {
             people.agents[member.0 as usize].group = Some(index);
@@ -175,10 +178,11 @@ impl<'a> Elaborator<'a> {
         self.scopes[0].define(&decl.name.name, Meaning::Agents { members: members.into(), particle: false });
     }
 
-    fn define_empty(&mut self, name: &Ident, plural: bool) {
+    pub(super) fn define_empty(&mut self, name: &Ident, plural: bool, with: With<'a>) {
         // What follows can then speak of the name without further errors.
         let id = AgentId(self.agent_names.len() as u32);
         self.agent_names.push(name.name.clone());
+        self.attach(with, &[id]);
         let meaning = if plural {
             Meaning::Agents { members: [id].into(), particle: false }
         } else {
@@ -197,6 +201,19 @@ impl<'a> Elaborator<'a> {
         each: impl Fn(usize) -> (Arc<Body>, Start, Route),
     ) -> Vec<AgentId> {
         let first = people.entities(&name.name, count as u32);
+        self.members(name, count, plural, first, people, each)
+    }
+
+    /// Adds `count` people of one declaration, whose stable numbers begin with `first`.
+    pub(super) fn members(
+        &mut self,
+        name: &Ident,
+        count: usize,
+        plural: bool,
+        first: u32,
+        people: &mut People,
+        each: impl Fn(usize) -> (Arc<Body>, Start, Route),
+    ) -> Vec<AgentId> {
         let mut shared: Option<Arc<Body>> = None;
         (0..count)
             .map(|k| {
@@ -209,6 +226,9 @@ impl<'a> Elaborator<'a> {
                 };
                 shared = Some(body.clone());
                 self.agent_names.push(text.clone());
+                if matches!(route, Route::Legs { then_leave: true, .. }) {
+                    self.may_be_absent(AgentId(self.agent_names.len() as u32 - 1));
+                }
                 let entity = first + k as u32;
                 people.agents.push(Agent {
                     name: text,
@@ -224,7 +244,12 @@ impl<'a> Elaborator<'a> {
             .collect()
     }
 
-    fn count(&mut self, expr: &Expr) -> Lowered<usize> {
+    /// Remembers that an agent is not there all the time.
+    pub(super) fn may_be_absent(&mut self, agent: AgentId) {
+        self.passing.insert(agent);
+    }
+
+    pub(super) fn count(&mut self, expr: &Expr) -> Lowered<usize> {
         let number = self.number_of(expr, Dimension::NONE, &Locals::default())?;
         match number.as_whole() {
             Some(n) if n < 0 => {
@@ -248,7 +273,13 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn start(&mut self, name: &Ident, fields: &[&Field], people: &People, required: bool) -> Lowered<Start> {
+    pub(super) fn start(
+        &mut self,
+        name: &Ident,
+        fields: &[&Field],
+        people: &People,
+        required: bool,
+    ) -> Lowered<Start> {
         let position = match fields.iter().find(|f| f.name.name == "at") {
             Some(field) => self.position(&field.value, people),
             None if required => {
@@ -322,7 +353,7 @@ impl<'a> Elaborator<'a> {
 
     fn route_of(&mut self, fields: &[&Field]) -> Lowered<Route> {
         match fields.iter().find(|f| f.name.name == "route") {
-            Some(field) => self.route(&field.value),
+            Some(field) => self.route(&field.value, &Locals::default()),
             None => Ok(Route::Legs { legs: Vec::new(), then_leave: false }),
         }
     }
@@ -344,6 +375,7 @@ impl<'a> Elaborator<'a> {
         decl: &'a AgentsDecl,
         recorded: &'a crate::syntax::ast::Recorded,
         kind: Lowered<Kind>,
+        with: With<'a>,
         people: &mut People,
     ) {
         let found = self.observations(recorded, decl.plural);
@@ -354,7 +386,7 @@ impl<'a> Elaborator<'a> {
         self.only(&rest, &["route"]);
         let base = kind.and_then(|kind| self.body(&kind, &decl.kind));
         let (Ok(found), Ok(base), Ok(route)) = (found, base, route) else {
-            self.define_empty(&decl.name, decl.plural);
+            self.define_empty(&decl.name, decl.plural, with);
             return;
         };
         let own_speed = decl.body.iter().any(|f| f.name.name == "speed");
@@ -367,6 +399,7 @@ impl<'a> Elaborator<'a> {
             }
             (Arc::new(body), Start { position: Position::Point(found[k].position), velocity }, route.clone())
         });
+        self.attach(with, &members);
         let meaning = match members.as_slice() {
             [one] if !decl.plural => Meaning::Agent(*one),
             _ => Meaning::Agents { members: members.into(), particle: false },

@@ -5,7 +5,7 @@ use crate::model::{Family, Law};
 
 /// Names of the parameters of a social force body, their dimensions, and their value if none is given.
 /// `None`: must be given.
-pub const PARAMETERS: [(&str, Dimension, Option<f64>); 13] = [
+pub const PARAMETERS: [(&str, Dimension, Option<f64>); 14] = [
     ("mass", Dimension::MASS, None),
     ("radius", Dimension::LENGTH, None),
     ("speed", Dimension::SPEED, None),
@@ -19,6 +19,7 @@ pub const PARAMETERS: [(&str, Dimension, Option<f64>); 13] = [
     ("k1", Dimension::STIFFNESS, None),
     ("k2", Dimension::FRICTION, None),
     ("noise", Dimension::SPEED, Some(0.0)),
+    ("attention", Dimension::NONE, Some(1.0)),
 ];
 
 /// A named parameter set.

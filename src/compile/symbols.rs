@@ -1,7 +1,7 @@
 //! Names and what they stand for. Order of declaration does not matter; each name has one meaning.
 
 use super::nearest::nearest;
-use crate::model::{AgentId, BarrierId, RegionId};
+use crate::model::{AgentId, BarrierId, BehaviourId, RegionId};
 use crate::syntax::ast::{Expr, KindDecl, LetDecl, ShapeExpr};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -39,6 +39,8 @@ pub(super) enum Meaning<'a> {
     Tracks(usize),
     /// A process, or an array of them.
     Process(u32),
+    /// A behaviour.
+    Behaviour(BehaviourId),
     /// Agents that are declared but not elaborated yet.
     Declared,
     /// One agent.
@@ -67,6 +69,7 @@ impl Meaning<'_> {
             Self::Kind(_) => "a kind",
             Self::Tracks(_) => "a recording",
             Self::Process(_) => "a process",
+            Self::Behaviour(_) => "a behaviour",
             Self::Declared | Self::Agent(_) => "an agent",
             Self::Agents { .. } => "a set of agents",
         }

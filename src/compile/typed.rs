@@ -3,7 +3,7 @@
 use super::dimension::{Dimension, describe};
 use super::number::Number;
 use crate::logic::{NodeId, TermId};
-use crate::model::{BarrierId, Bool, Num, RegionId, Set, Who};
+use crate::model::{BarrierId, BehaviourId, Bool, Num, RegionId, Set, Who};
 
 /// What an expression turned out to be.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,6 +40,13 @@ pub(super) enum Typed {
     },
     /// All copies of a process.
     Processes(u32),
+    /// The state of a behaviour of an agent, to be compared.
+    Mode {
+        /// Which behaviour.
+        behaviour: BehaviourId,
+        /// Whose.
+        who: Who,
+    },
     /// A region.
     Region(RegionId),
     /// A wall or obstacle.
@@ -67,6 +74,7 @@ impl Typed {
             Self::Agents { .. } => "a set of agents".to_owned(),
             Self::Process { .. } => "a process".to_owned(),
             Self::Processes(_) => "an array of processes".to_owned(),
+            Self::Mode { .. } => "a behaviour, whose state is compared: `user.phone == looking`".to_owned(),
             Self::Region(_) => "a region".to_owned(),
             Self::Barrier(_) => "a wall or obstacle".to_owned(),
             Self::Formula(_) => "a formula over time".to_owned(),

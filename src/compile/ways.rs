@@ -15,19 +15,19 @@ const MOST_OPTIONS: usize = 1000;
 
 impl<'a> Elaborator<'a> {
     /// A route as written.
-    pub(super) fn route(&mut self, value: &Value) -> Lowered<Route> {
+    pub(super) fn route(&mut self, value: &Value, locals: &Locals) -> Lowered<Route> {
         match value {
             Value::Plain(expr) => {
-                let goal = self.goal(expr)?;
+                let goal = self.goal(expr, locals)?;
                 Ok(Route::Legs { legs: vec![Leg::To(goal)], then_leave: false })
             }
             Value::Route(route) => {
                 let mut legs = Vec::with_capacity(route.legs.len());
                 for leg in &route.legs {
                     legs.push(match leg {
-                        ast::Leg::Goal(expr) => self.goal(expr).map(Leg::To),
+                        ast::Leg::Goal(expr) => self.goal(expr, locals).map(Leg::To),
                         ast::Leg::Wait(value) => {
-                            let law = self.law(value, Dimension::TIME, &Locals::default());
+                            let law = self.law(value, Dimension::TIME, locals);
                             match law {
                                 Ok(law) if law.bounds().0 < 0.0 => {
                                     let error = Diagnostic::error(
@@ -59,8 +59,8 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn goal(&mut self, expr: &Expr) -> Lowered<Goal> {
-        match self.lower(expr, &Locals::default())? {
+    fn goal(&mut self, expr: &Expr, locals: &Locals) -> Lowered<Goal> {
+        match self.lower(expr, locals)? {
             Typed::Region(id) => Ok(Goal::Region(id)),
             Typed::Point(x, y) if x.dimension == Dimension::LENGTH => {
                 Ok(Goal::Point(Vec2::new(x.value, y.value)))

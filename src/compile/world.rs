@@ -10,8 +10,7 @@ use super::process::Declared;
 use super::symbols::Meaning;
 use crate::base::decimal::Decimal;
 use crate::base::tick::{Clock, Tick};
-use crate::model::{Moves, Scenario};
-use crate::syntax::ast::process::{BehaviourDecl, SourceDecl};
+use crate::model::{BehaviourId, Moves, Scenario};
 use crate::syntax::ast::{Item, PropertyFile, PropertyItem, ScenarioFile};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
@@ -56,12 +55,12 @@ impl<'a> Elaborator<'a> {
                     self.processes.push(Declared::new(decl));
                     (&decl.name, Meaning::Process(self.processes.len() as u32 - 1))
                 }
-                Item::Behaviour(BehaviourDecl { span, .. }) | Item::Source(SourceDecl { span, .. }) => {
-                    let error =
-                        Diagnostic::error("E0213", *span, "this version simulates no behaviours and sources");
-                    self.note(error);
-                    continue;
+                Item::Behaviour(decl) => {
+                    let id = BehaviourId(self.behaviours.len() as u32);
+                    self.declare_behaviour(decl);
+                    (&decl.name, Meaning::Behaviour(id))
                 }
+                Item::Source(decl) => (&decl.name, Meaning::Declared),
             };
             if let Err(error) = self.scopes[0].declare(&name.name, name.span, meaning) {
                 self.note(error);
@@ -117,7 +116,17 @@ impl<'a> Elaborator<'a> {
                 _ => {}
             }
         }
+        let mut sources = Vec::new();
+        for item in &file.items {
+            if let Item::Source(decl) = item
+                && clock.is_ok()
+            {
+                sources.extend(self.source(decl, &mut people));
+            }
+        }
+        let count = variables.len();
         let processes = self.settle_commands(variables, &mut people);
+        let behaviours = self.settle_behaviours(&mut people, count);
         let mut moves: Vec<Moves> = Vec::new();
         let mut declared: Vec<Span> = Vec::new();
         for item in &file.items {
@@ -157,6 +166,8 @@ impl<'a> Elaborator<'a> {
             groups: people.groups,
             moves,
             processes,
+            behaviours,
+            sources,
         })
     }
 

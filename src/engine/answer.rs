@@ -12,6 +12,7 @@ use super::standing;
 use super::subject::Subject;
 use super::survey::{Inquiry, Survey};
 use super::tally::Tally;
+use super::trial;
 use super::watch::Watch;
 use super::witness;
 use super::words;
@@ -188,10 +189,12 @@ impl Answers<'_> {
                     self.call.simulate, self.call.seed
                 )
             });
-            result.warnings.push(format!(
-                "{} trials are unresolved: somebody left every human speed, or a mean was over nobody; a smaller step may help{first}",
-                tally.counts.unresolved
-            ));
+            let full = tally.first[2].and_then(|index| trial::overrun(subject, index, self.call.seed));
+            let why = full.unwrap_or_else(|| {
+                "somebody left every human speed, or a mean was over nobody; a smaller step may help"
+                    .to_owned()
+            });
+            result.warnings.push(format!("{} trials are unresolved: {why}{first}", tally.counts.unresolved));
         }
     }
 

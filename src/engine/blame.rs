@@ -232,7 +232,7 @@ impl Search<'_> {
                 self.extremum(a);
                 self.extremum(b);
             }
-            Bool::In(Who::Agent(id), _) => self.name(*id),
+            Bool::In(Who::Agent(id), _) | Bool::Present(Who::Agent(id)) => self.name(*id),
             Bool::Contact(Who::Agent(id)) => {
                 let id = *id;
                 self.name(id);
@@ -248,7 +248,7 @@ impl Search<'_> {
                 self.name(*a);
                 self.name(*b);
             }
-            Bool::In(..) | Bool::Contact(_) | Bool::Touching(..) => {}
+            Bool::In(..) | Bool::Present(_) | Bool::Contact(_) | Bool::Touching(..) => {}
         }
     }
 
@@ -339,6 +339,7 @@ fn instantiate_bool(truth: &Bool, depth: u32, id: AgentId) -> Bool {
         Bool::And(list) => Bool::And(list.iter().map(b).collect()),
         Bool::Or(list) => Bool::Or(list.iter().map(b).collect()),
         Bool::In(w, region) => Bool::In(who(*w, depth, id), *region),
+        Bool::Present(w) => Bool::Present(who(*w, depth, id)),
         Bool::Contact(w) => Bool::Contact(who(*w, depth, id)),
         Bool::Touching(v, w) => Bool::Touching(who(*v, depth, id), who(*w, depth, id)),
         Bool::Forall(s, body) => Bool::Forall(set(s, depth, id), Box::new(b(body))),

@@ -153,7 +153,7 @@ impl Worker {
         let width = self.columns.len();
         // Nothing more can be seen of a trial that diverged, or in which the model is wrong.
         let faulty = self.state.faulty & self.state.occupied;
-        let diverged = (self.state.diverged & self.state.occupied) | faulty;
+        let diverged = ((self.state.diverged | self.state.queues.full) & self.state.occupied) | faulty;
         let watched = self.state.occupied & !diverged;
         let mut touched = diverged;
         for (sheet, readings) in self.sheets.iter_mut().zip(&mut self.readings) {

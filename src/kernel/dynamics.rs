@@ -1,6 +1,7 @@
 //! One step of all trials of a batch.
 //!
-//! Processes come first: they read the state before the step, and so does whoever moves.
+//! Processes and behaviours come first: they read the state before the step, and so does whoever moves. What a
+//! behaviour changes holds from the state after the step on.
 //!
 //! The equation of motion (Given-Wilson et al. 2017, equation (1)) is split symmetrically (Strang 1968):
 //!
@@ -17,6 +18,7 @@
 //! body near another, 1 to 4 run in one pass; where it has, in several with the same operations, so the
 //! path taken changes no bit. Slots that are absent or in a lane without a trial keep their bytes.
 
+use super::behaviour;
 use super::cells::Cells;
 use super::contact::Contacts;
 use super::drive;
@@ -24,7 +26,7 @@ use super::lanewise::{Lanewise, Sum};
 use super::noise::Draws;
 use super::process;
 use super::program::Program;
-use super::state::{Layout, State};
+use super::state::{Layout, Slot, State};
 use super::vector::{Doubles, Part, Words, parts};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::math;
@@ -51,6 +53,7 @@ pub struct Scratch {
     /// Slots that contact has moved already.
     moved: Vec<Mask>,
     processes: process::Scratch,
+    behaviours: behaviour::Scratch,
 }
 
 impl Default for Scratch {
@@ -78,6 +81,7 @@ impl Scratch {
             moving: Vec::new(),
             moved: Vec::new(),
             processes: process::Scratch::default(),
+            behaviours: behaviour::Scratch::default(),
         }
     }
 }
@@ -91,10 +95,7 @@ pub fn refresh(program: &Program, state: &mut State, scratch: &mut Scratch, lane
     let dt = program.dt;
     for block in 0..state.x.len() {
         for lane in slots(state.layout, lanes).iter() {
-            let decay = math::exp(-dt / state.tau[block].0[lane]);
-            state.decay[block].0[lane] = decay;
-            state.kick[block].0[lane] = state.noise[block].0[lane] * (1.0 - decay * decay).sqrt();
-            state.push[block].0[lane] = 0.5 * dt / state.mass[block].0[lane];
+            prepare(state, dt, Slot { block, lane });
         }
     }
     scratch.lanewise.forget();
@@ -104,8 +105,17 @@ pub fn refresh(program: &Program, state: &mut State, scratch: &mut Scratch, lane
     });
 }
 
+/// Works out what follows from the parameters of a slot.
+pub(super) fn prepare(state: &mut State, dt: f64, Slot { block, lane }: Slot) {
+    let decay = math::exp(-dt / state.tau[block].0[lane]);
+    state.decay[block].0[lane] = decay;
+    state.kick[block].0[lane] = state.noise[block].0[lane] * (1.0 - decay * decay).sqrt();
+    state.push[block].0[lane] = 0.5 * dt / state.mass[block].0[lane];
+}
+
 /// One step of all occupied lanes.
 pub fn step(program: &Program, state: &mut State, scratch: &mut Scratch) {
+    program.behaviours.watch(program.layout, state, &mut scratch.behaviours);
     program.processes.step(program.layout, state, &mut scratch.processes);
     if state.agents == 0 {
         for (lane, tick) in state.ticks.iter_mut().enumerate() {
@@ -117,7 +127,11 @@ pub fn step(program: &Program, state: &mut State, scratch: &mut Scratch) {
     for lane in state.occupied.iter() {
         state.ticks[lane] += 1;
     }
+    if program.behaviours.turn(program, state, &scratch.behaviours) {
+        scratch.lanewise.forget();
+    }
     drive::steer(program, state);
+    program.arrivals.step(program, state);
     dispatch!(scratch.level, simd => finish(simd, program, state, scratch));
 }
 

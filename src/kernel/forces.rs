@@ -9,8 +9,9 @@
 //! compression, which is contact (and counted once).
 
 use super::barrier::Surface;
+use super::nearby::Nearby;
 use super::noise;
-use crate::model::{Body, Law, Scenario};
+use crate::model::{Body, Law, Parameter, Scenario};
 
 /// Range of the social force beyond touching distance, in units of B.
 pub const REACH: f64 = 16.0;
@@ -40,6 +41,8 @@ pub(super) struct Cohesion {
 pub struct Forces {
     /// Walls and obstacles.
     pub(super) surfaces: Vec<Surface>,
+    /// Which of them may be near.
+    pub(super) nearby: Nearby,
     /// Groups with an attraction.
     pub(super) groups: Vec<Cohesion>,
     /// Per agent: set in a body of several persons. Empty if there are not two of them.
@@ -67,7 +70,12 @@ impl Forces {
     pub fn new(scenario: &Scenario, dt: f64) -> Self {
         let is_zero = |law: &Law| law.constant() == Some(0.0);
         let agents = &scenario.agents;
-        let second = agents.iter().any(|agent| !is_zero(&agent.body.a2));
+        // What behaviours change may differ from agent to agent.
+        let changed = |parameter: Parameter| {
+            let modes = scenario.behaviours.attached.iter().flat_map(|one| &one.conduct.states);
+            modes.flat_map(|mode| &mode.changes).any(|(changed, _)| *changed == parameter)
+        };
+        let second = changed(Parameter::A2) || agents.iter().any(|agent| !is_zero(&agent.body.a2));
         let ties: Vec<_> = agents
             .iter()
             .map(|agent| {
@@ -76,11 +84,14 @@ impl Forces {
             })
             .collect();
         let ties = if ties.iter().flatten().count() < 2 { Vec::new() } else { ties };
-        let first_range = shared_constant(scenario, |body| &body.b);
+        let same = !changed(Parameter::B) && !changed(Parameter::B2);
+        let first_range = shared_constant(scenario, |body| &body.b).filter(|_| same);
         let second_range = if second { shared_constant(scenario, |body| &body.b2) } else { Some(1.0) };
         let shared = first_range.zip(second_range).filter(|_| ties.is_empty());
+        let surfaces: Vec<Surface> = scenario.scene.barriers.iter().filter_map(Surface::new).collect();
         Self {
-            surfaces: scenario.scene.barriers.iter().filter_map(Surface::new).collect(),
+            nearby: Nearby::new(&surfaces.iter().map(|surface| surface.bounds).collect::<Vec<_>>()),
+            surfaces,
             groups: scenario
                 .groups
                 .iter()
@@ -93,7 +104,7 @@ impl Forces {
             ties,
             shared,
             second,
-            noisy: agents.iter().any(|agent| !is_zero(&agent.body.noise)),
+            noisy: changed(Parameter::Noise) || agents.iter().any(|agent| !is_zero(&agent.body.noise)),
             noise_words: agents.iter().map(|agent| noise::word_of(agent.entity)).collect(),
             margin: APPROACH * dt,
         }

@@ -4,13 +4,16 @@
 //! lane does never moves a byte of another.
 
 mod barrier;
+pub mod behaviour;
 mod cells;
 pub mod code;
 mod contact;
 pub mod drive;
 pub mod dynamics;
+mod edges;
 pub mod forces;
 mod lanewise;
+mod nearby;
 mod noise;
 pub mod process;
 pub mod program;

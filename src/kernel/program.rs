@@ -1,9 +1,10 @@
 //! A scenario made ready to run: everything that is the same in every trial.
 
+use super::behaviour::Behaviours;
 use super::drive::Drive;
 use super::forces::Forces;
 use super::process::Processes;
-use super::start::Starts;
+use super::start::{Arrivals, Starts};
 use super::state::Layout;
 use crate::model::Scenario;
 use std::sync::Arc;
@@ -30,6 +31,10 @@ pub struct Program {
     pub starts: Starts,
     /// The processes.
     pub processes: Processes,
+    /// The sources.
+    pub arrivals: Arrivals,
+    /// The behaviours.
+    pub behaviours: Behaviours,
 }
 
 impl Program {
@@ -38,9 +43,11 @@ impl Program {
         let layout = if scenario.agents.len() <= LARGEST_IN_LANES { Layout::Trials } else { Layout::Agents };
         let dt = scenario.clock.step_seconds();
         let forces = Forces::new(&scenario, dt);
-        let drive = Drive::new(&scenario);
+        let mut drive = Drive::new(&scenario);
         let starts = Starts::new(&scenario);
         let processes = Processes::new(&scenario);
-        Self { scenario, layout, dt, forces, drive, starts, processes }
+        let arrivals = Arrivals::new(&scenario);
+        let behaviours = Behaviours::new(&scenario, &mut drive);
+        Self { scenario, layout, dt, forces, drive, starts, processes, arrivals, behaviours }
     }
 }

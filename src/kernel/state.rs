@@ -62,7 +62,7 @@ pub struct State {
     /// Slots whose agent is in the scene.
     pub present: Vec<Mask>,
 
-    /// Driving speed as drawn, m/s.
+    /// Driving speed, as drawn or as a behaviour has changed it, m/s.
     pub speed: Vec<Lanes>,
     /// Mass, kg (of a particle: the sum).
     pub mass: Vec<Lanes>,
@@ -70,7 +70,7 @@ pub struct State {
     pub radius: Vec<Lanes>,
     /// Relaxation time, s.
     pub tau: Vec<Lanes>,
-    /// Social force at touch, N (of a particle: times its persons).
+    /// Social force at touch that is felt, N: times the attention (of a particle also times its persons).
     pub a: Vec<Lanes>,
     /// Range of the social force, m.
     pub b: Vec<Lanes>,
@@ -104,6 +104,11 @@ pub struct State {
 
     /// Where everyone is on the way.
     pub route: Routes,
+
+    /// How far the sources are.
+    pub queues: super::start::Queues,
+    /// Where everyone's behaviours stand.
+    pub behaviours: super::behaviour::Standing,
 
     /// Values of the variables of processes, whose lanes are trials in both layouts.
     pub variables: Vec<Lanes>,
@@ -159,6 +164,8 @@ impl State {
             fx: zero(),
             fy: zero(),
             route: Routes::new(blocks),
+            queues: super::start::Queues::default(),
+            behaviours: super::behaviour::Standing::default(),
             variables: Vec::new(),
             clocks: super::process::Clocks::default(),
             faulty: Mask::NONE,

@@ -57,6 +57,8 @@ pub struct Body {
     pub k2: Law,
     /// Stationary standard deviation of each velocity component, m/s.
     pub noise: Law,
+    /// Share of the social force that is felt, 0 to 1.
+    pub attention: Law,
 }
 
 /// A body that stands for a group (Given-Wilson et al. 2017, section 4.2).

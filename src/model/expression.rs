@@ -3,6 +3,7 @@
 //! The kernel turns them into linear code over lane vectors.
 
 use super::agent::AgentId;
+use super::behaviour::BehaviourId;
 use super::process::VariableId;
 use super::scene::{BarrierId, RegionId};
 use std::sync::Arc;
@@ -41,10 +42,12 @@ pub enum Field {
     Radius,
     /// Mass, kg.
     Mass,
-    /// Driving speed as drawn, m/s.
+    /// Driving speed, as drawn or as a behaviour has changed it, m/s.
     DrivingSpeed,
     /// Length of the way gone since the start, m.
     Travelled,
+    /// Number of the state of a behaviour, from 0; -1 in someone who has no such behaviour.
+    Mode(BehaviourId),
 }
 
 /// Axis of the plane.
@@ -200,6 +203,8 @@ pub enum Bool {
     And(Vec<Bool>),
     /// Any of them.
     Or(Vec<Bool>),
+    /// Whether an agent is in the scene.
+    Present(Who),
     /// Whether the centre of an agent's body is in a region.
     In(Who, RegionId),
     /// Whether an agent's body touches any other body, wall or obstacle.

@@ -1,6 +1,7 @@
 //! Floor 1: what a scenario is once the language is gone. SI units, doubles, indices; no names to resolve.
 
 pub mod agent;
+pub mod behaviour;
 pub mod evaluation;
 pub mod expression;
 pub mod law;
@@ -8,11 +9,16 @@ pub mod moves;
 pub mod process;
 pub mod scenario;
 pub mod scene;
+pub mod source;
 
 pub use agent::{Agent, AgentId, Body, Goal, Group, Leg, Particle, Position, Route, Start};
+pub use behaviour::{
+    Amount, Attached, Behaviour, BehaviourId, Behaviours, Conduct, Mode, Parameter, Transition, Trigger,
+};
 pub use expression::{Arithmetic, Axis, Bool, Comparison, Field, Fold, Function, Num, Place, Set, Who};
 pub use law::{Family, Law};
 pub use moves::{Move, Moves};
 pub use process::{Branch, Command, Domain, Process, Processes, Timing, Variable, VariableId};
 pub use scenario::Scenario;
 pub use scene::{Barrier, BarrierId, Obstacle, Region, RegionId, Scene};
+pub use source::Source;

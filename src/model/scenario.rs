@@ -1,9 +1,11 @@
 //! A whole scenario.
 
 use super::agent::{Agent, Group};
+use super::behaviour::Behaviours;
 use super::moves::Moves;
 use super::process::Processes;
 use super::scene::Scene;
+use super::source::Source;
 use crate::base::tick::{Clock, Tick};
 
 /// Everything the kernel needs to know to run a trial.
@@ -25,4 +27,8 @@ pub struct Scenario {
     pub moves: Vec<Moves>,
     /// What chance changes besides the agents.
     pub processes: Processes,
+    /// Automata of agents.
+    pub behaviours: Behaviours,
+    /// Where people come in; their members are agents of the list above who are absent at first.
+    pub sources: Vec<Source>,
 }

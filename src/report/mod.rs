@@ -4,7 +4,8 @@
 //! `docs/language.md`: the certified statement, the estimate with its interval and the kind of that
 //! interval, all counts, why sampling stopped, and the command that gives the result again.
 
-pub mod exit;
+pub mod behaviours;
+mod exit;
 pub mod github;
 pub mod html;
 pub mod json;

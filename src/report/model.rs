@@ -1,9 +1,10 @@
 //! How a scenario and its questions were understood, in units, for `smc show`.
 
+use super::behaviours;
 use crate::base::geometry::{Shape, Vec2};
 use crate::base::tick::Clock;
 use crate::compile::study::{Ask, Estimator, MeasureKind, Ranking, Study, Test, World};
-use crate::model::{Agent, Family, Goal, Law, Leg, Obstacle, Position, Route, Scenario};
+use crate::model::{Agent, AgentId, Family, Goal, Law, Leg, Obstacle, Position, Route, Scenario};
 use std::fmt::Write;
 
 /// Everything that was understood.
@@ -71,7 +72,8 @@ fn scene(out: &mut String, scenario: &Scenario) {
 }
 
 fn people(out: &mut String, scenario: &Scenario) {
-    let _ = writeln!(out, "\nPeople: {}", scenario.agents.len());
+    let coming: usize = scenario.sources.iter().map(|source| source.members.len()).sum();
+    let _ = writeln!(out, "\nPeople: {}", scenario.agents.len() - coming);
     let mut rest = scenario.agents.as_slice();
     while let Some(first) = rest.first() {
         // Members of one declaration that differ in nothing but their number are told once.
@@ -88,8 +90,17 @@ fn people(out: &mut String, scenario: &Scenario) {
         } else {
             first.name.clone()
         };
-        let _ = writeln!(out, "  {name}");
+        match scenario.sources.iter().find(|source| source.name == stem) {
+            Some(source) => {
+                let (count, every) = (source.members.len(), law(&source.every, "s"));
+                let _ = writeln!(out, "  source {stem}: one every {every}, at most {count}");
+            }
+            None => {
+                let _ = writeln!(out, "  {name}");
+            }
+        }
         agent(out, scenario, first);
+        behaviours::describe(out, scenario, AgentId((scenario.agents.len() - rest.len()) as u32));
         rest = &rest[count..];
     }
     for group in &scenario.groups {
@@ -129,11 +140,13 @@ fn agent(out: &mut String, scenario: &Scenario, agent: &Agent) {
         ("k1", &b.k1, "kg/s^2"),
         ("k2", &b.k2, "kg/(m s)"),
         ("noise", &b.noise, "m/s"),
+        ("attention", &b.attention, ""),
     ];
     let second = b.a2 != Law::Constant(0.0);
     let shown: Vec<String> = parameters
         .iter()
         .filter(|(name, ..)| second || !name.ends_with('2') || *name == "k2")
+        .filter(|(name, value, _)| *name != "attention" || **value != Law::Constant(1.0))
         .map(|(name, value, unit)| format!("{name} {}", law(value, unit)))
         .collect();
     for line in shown.chunks(4) {
@@ -158,7 +171,12 @@ fn agent(out: &mut String, scenario: &Scenario, agent: &Agent) {
         }
     };
     let _ = writeln!(out, "      starts {place} at {} m/s", point(agent.start.velocity));
-    let way = match &agent.route {
+    let _ = writeln!(out, "      {}", way(scenario, &agent.route));
+}
+
+/// A route in words.
+pub(super) fn way(scenario: &Scenario, route: &Route) -> String {
+    match route {
         Route::Onward => "goes on as it starts".to_owned(),
         Route::Legs { legs, .. } if legs.is_empty() => "stands".to_owned(),
         Route::Legs { legs, then_leave } => {
@@ -172,12 +190,11 @@ fn agent(out: &mut String, scenario: &Scenario, agent: &Agent) {
                 .collect();
             format!("goes {}{}", legs.join(" -> "), if *then_leave { ", then leaves" } else { "" })
         }
-    };
-    let _ = writeln!(out, "      {way}");
+    }
 }
 
 /// A number without noise of rounding.
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     let rounded = (value * 1e6).round() / 1e6;
     format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
 }

@@ -155,3 +155,35 @@ fn without_people_every_step_and_every_jump_is_a_row() {
         }
     }
 }
+
+#[test]
+fn people_who_come_in_have_rows_while_they_are_there_and_states_have_columns() {
+    let place = Place::new(&[("a.scn", include_str!("../../models/distracted.scn"))]);
+    let rows = rows(&place, "a.scn", &["--until", "12", "--every", "10"]);
+    let of = |agent: &str| -> Vec<&Value> { rows.iter().filter(|row| row["agent"] == agent).collect() };
+    assert_eq!(of("user").len(), 61);
+    assert!(of("user").iter().all(|row| row["phone"] == Value::Null && row["x"].is_number()));
+    let crowd: Vec<&str> = of("crowd[3]").iter().map(|row| row["phone"].as_str().unwrap()).collect();
+    assert_eq!((crowd.len(), crowd[0]), (61, "attentive"));
+    assert!(crowd.iter().all(|state| ["attentive", "looking"].contains(state)));
+    let first = of("doors[1]");
+    assert!((1..61).contains(&first.len()) && of("doors[30]").is_empty());
+    assert!(first[0]["time"].as_f64().unwrap() > 0.0 && first.iter().all(|row| row["present"] == true));
+    assert!(rows.iter().all(|row| row.get("heedful").is_none()), "a behaviour without states has no column");
+}
+
+#[test]
+fn show_tells_of_behaviours_and_sources() {
+    let place = Place::new(&[("a.scn", include_str!("../../models/distracted.scn"))]);
+    let said = place.call(&["show", "a.scn"]);
+    for line in [
+        "People: 13",
+        "        on advice: 0.8: follow | 0.2: ignore",
+        "        attentive: after exponential(8 s) -> looking",
+        "        looking: speed = 0.5 * speed; attention = 0.3; after uniform(2 s, 5 s) -> attentive",
+        "  source doors: one every exponential(4 s), at most ",
+        "      goes west, then leaves",
+    ] {
+        assert!(said.out.contains(line), "{line}\n{}", said.out);
+    }
+}

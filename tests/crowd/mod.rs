@@ -103,6 +103,7 @@ impl Crowd {
                     k1: law(person.k1),
                     k2: law(person.k2),
                     noise: law(person.noise),
+                    attention: law(1.0),
                 }),
                 start: Start { position: Position::Point(person.at), velocity: person.velocity },
                 route: Route::Onward,
@@ -125,6 +126,8 @@ impl Crowd {
             groups: self.groups.iter().map(group).collect(),
             moves: Vec::new(),
             processes: smc::model::Processes::default(),
+            behaviours: smc::model::Behaviours::default(),
+            sources: Vec::new(),
         }))
     }
 

@@ -64,6 +64,7 @@ fn scenario(agents: usize, scene: Scene) -> Arc<Scenario> {
         k1: law(),
         k2: law(),
         noise: law(),
+        attention: Law::Constant(1.0),
     });
     let agent = |k: usize| Agent {
         name: format!("a{k}"),
@@ -83,6 +84,8 @@ fn scenario(agents: usize, scene: Scene) -> Arc<Scenario> {
         groups: Vec::new(),
         moves: Vec::new(),
         processes: smc::model::Processes::default(),
+        behaviours: smc::model::Behaviours::default(),
+        sources: Vec::new(),
     })
 }
 

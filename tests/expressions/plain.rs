@@ -65,6 +65,7 @@ impl Plain<'_> {
             Field::Mass => self.of(&s.mass, agent),
             Field::DrivingSpeed => self.of(&s.speed, agent),
             Field::Travelled => self.of(&s.travelled, agent),
+            Field::Mode(_) => -1.0,
         }
     }
 
@@ -331,6 +332,7 @@ impl Plain<'_> {
                 return Self::join(all.iter().map(|a| self.truth(a)).collect::<Vec<_>>(), false);
             }
             Bool::Or(all) => return Self::join(all.iter().map(|a| self.truth(a)).collect::<Vec<_>>(), true),
+            Bool::Present(who) => self.here(self.who(*who)),
             Bool::In(who, region) => self.region(*region, self.at(self.who(*who))).0,
             Bool::Contact(who) => {
                 let who = self.who(*who);

@@ -123,6 +123,7 @@ impl Elaborator<'_> {
             "mass" => field(Field::Mass, Dimension::MASS),
             "driving_speed" => field(Field::DrivingSpeed, Dimension::SPEED),
             "travelled" => field(Field::Travelled, Dimension::LENGTH),
+            "present" => return Ok(Typed::Truth(Bool::Present(self.as_agent(typed, span)?))),
             "clearance" => {
                 return Ok(Typed::Num(Num::Clearance(self.as_agent(typed, span)?), Dimension::LENGTH));
             }

@@ -82,6 +82,14 @@ impl Elaborator<'_> {
         right: &Expr,
         locals: &Locals,
     ) -> Lowered<Typed> {
+        if let Some(equal) = match op {
+            BinaryOp::Equal => Some(Comparison::Equal),
+            BinaryOp::Unequal => Some(Comparison::Unequal),
+            _ => None,
+        } && let Some(compared) = self.lower_mode_comparison(equal, left, right, locals)
+        {
+            return compared;
+        }
         let sides = self.inside_a_number(|this| (this.lower(left, locals), this.lower(right, locals)));
         let (a, b) = (sides.0?, sides.1?);
         let margin = !matches!(op, BinaryOp::Equal | BinaryOp::Unequal);

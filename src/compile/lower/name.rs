@@ -97,7 +97,7 @@ impl<'a> Elaborator<'a> {
                     .hint("numbers of agents and parameters cannot depend on agents");
                 self.report(error)
             }
-            Meaning::Kind(_) | Meaning::Tracks(_) => {
+            Meaning::Kind(_) | Meaning::Tracks(_) | Meaning::Behaviour(_) => {
                 let error = Diagnostic::error(
                     "E0206",
                     span,

@@ -6,7 +6,7 @@
 use super::super::elaborator::{Elaborator, Locals, Lowered};
 use super::super::symbols::Meaning;
 use super::super::typed::Typed;
-use crate::logic::{Node, Operation, Term, TermId};
+use crate::logic::{Node, NodeId, Operation, Term, TermId};
 use crate::model::{AgentId, Arithmetic, Bool, Fold, Num, Set, Who};
 use crate::syntax::ast::{Aggregate, Expr, ExprKind, Ident, Quantifier};
 use crate::syntax::diagnostic::Diagnostic;
@@ -157,7 +157,7 @@ impl Elaborator<'_> {
         };
         let members: Vec<AgentId> = set.members.iter().copied().filter(|id| Some(*id) != left_out).collect();
         let mut each = Vec::with_capacity(members.len());
-        for id in members {
+        for &id in &members {
             let mut inner = locals.clone();
             inner.names.push((variable.name.clone(), Typed::Agent(Who::Agent(id))));
             each.push(if quantifier == Quantifier::Count {
@@ -178,9 +178,7 @@ impl Elaborator<'_> {
         }
         match quantifier {
             Quantifier::Forall | Quantifier::Exists => {
-                let nodes: Lowered<Vec<_>> =
-                    each.into_iter().map(|typed| self.as_formula(typed, body.span)).collect();
-                let nodes = nodes?;
+                let nodes = self.of_those_present(quantifier, each, &members, body.span)?;
                 let all = quantifier == Quantifier::Forall;
                 // All of nobody is true, any of nobody false.
                 Ok(Typed::Formula(self.node(match nodes.is_empty() {
@@ -190,9 +188,16 @@ impl Elaborator<'_> {
                 })))
             }
             Quantifier::Count => {
-                let nodes: Lowered<Vec<_>> =
-                    each.into_iter().map(|typed| self.as_formula(typed, body.span)).collect();
-                Ok(Typed::Tally(nodes?))
+                Ok(Typed::Tally(self.of_those_present(quantifier, each, &members, body.span)?))
+            }
+            Quantifier::Fold(_) if members.iter().any(|id| self.passing.contains(id)) => {
+                let error = Diagnostic::error(
+                    "E0504",
+                    span,
+                    "numbers over time cannot be joined over people who come or leave",
+                )
+                .hint("join the numbers of each state: `min<=10 s (min(… for a in doors))`");
+                self.report(error)
             }
             Quantifier::Fold(aggregate) => self.fold_terms(aggregate, each, body.span),
         }
@@ -206,6 +211,32 @@ impl Elaborator<'_> {
             Aggregate::Sum => 0.0,
             Aggregate::Mean => f64::NAN,
         }))
+    }
+
+    /// A formula of each member, where only who is present at the state at which it is asked counts.
+    fn of_those_present(
+        &mut self,
+        quantifier: Quantifier,
+        each: Vec<Typed>,
+        members: &[AgentId],
+        span: Span,
+    ) -> Lowered<Vec<NodeId>> {
+        let mut nodes = Vec::with_capacity(members.len());
+        for (typed, &id) in each.into_iter().zip(members) {
+            let node = self.as_formula(typed, span)?;
+            if !self.passing.contains(&id) {
+                nodes.push(node);
+                continue;
+            }
+            let present = self.atom(Bool::Present(Who::Agent(id)), span);
+            nodes.push(if quantifier == Quantifier::Forall {
+                let absent = self.node(Node::Not(present));
+                self.node(Node::Or(vec![absent, node]))
+            } else {
+                self.node(Node::And(vec![present, node]))
+            });
+        }
+        Ok(nodes)
     }
 
     fn fold_terms(&mut self, aggregate: Aggregate, each: Vec<Typed>, span: Span) -> Lowered<Typed> {

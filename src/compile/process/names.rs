@@ -73,6 +73,7 @@ impl<'a> Elaborator<'a> {
     ) -> Lowered<Typed> {
         let (at, copy) = match self.lower(base, locals)? {
             Typed::Process { process, copy } => (process, copy),
+            Typed::Agent(who) => return self.lower_mode(who, base.span, member),
             Typed::Processes(_) => {
                 let error = Diagnostic::error("E0305", base.span, "this is an array of processes")
                     .hint(format!("choose one, as in `{}[1].{}`", self.text(base.span), member.name));

@@ -40,6 +40,9 @@ fn write<'a>(
         for &value in row.signals {
             table.write_field(cell(Some(value)))?;
         }
+        for word in &row.words {
+            table.write_field(word)?;
+        }
         table.write_record(None::<&[u8]>)?;
         count += 1;
     }

@@ -59,6 +59,9 @@ fn cells(row: &Row<'_>) -> io::Result<Vec<String>> {
     cells.extend(row.motion().map(number));
     cells.push(row.present.to_string());
     cells.extend(row.signals.iter().map(|&value| number(Some(value))));
+    for word in &row.words {
+        cells.push(if word.is_empty() { "null".into() } else { serde_json::to_string(word)? });
+    }
     Ok(cells)
 }
 
@@ -91,6 +94,16 @@ mod tests {
         );
         assert_eq!(lines[1]["x"], Value::Null);
         assert_eq!(lines[1]["agent"], "a, \"b\"");
+    }
+
+    #[test]
+    fn words_come_after_signals() {
+        let mut row = samples::rows()[0].clone();
+        row.words = vec!["looking", ""];
+        let mut out = Vec::new();
+        write_json_lines(&mut out, &["gap", "phone", "pace"], [row]).unwrap();
+        let line: Value = serde_json::from_slice(&out).unwrap();
+        assert_eq!((&line["phone"], &line["pace"]), (&json!("looking"), &Value::Null));
     }
 
     #[test]

@@ -7,7 +7,7 @@ use std::io;
 pub const COLUMNS: [&str; 9] = ["time", "trial", "agent", "x", "y", "vx", "vy", "speed", "present"];
 
 /// One agent in one state of one trial.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Row<'a> {
     /// Seconds since the start (steps where steps have no length).
     pub time: f64,
@@ -23,6 +23,8 @@ pub struct Row<'a> {
     pub present: bool,
     /// One value per signal, in the order of their names.
     pub signals: &'a [f64],
+    /// One word per column of words, after the signals; empty where there is none.
+    pub words: Vec<&'a str>,
 }
 
 impl Row<'_> {
@@ -34,11 +36,11 @@ impl Row<'_> {
 
     /// Refuses a row whose signals do not fit their names.
     pub(super) fn checked(&self, names: &[&str]) -> io::Result<()> {
-        if self.signals.len() == names.len() {
+        let found = self.signals.len() + self.words.len();
+        if found == names.len() {
             return Ok(());
         }
-        let message =
-            format!("a row has {} signals where there are {} names", self.signals.len(), names.len());
+        let message = format!("a row has {found} signals where there are {} names", names.len());
         Err(io::Error::new(io::ErrorKind::InvalidInput, message))
     }
 }
@@ -58,6 +60,7 @@ pub(super) mod samples {
                 velocity: Vec2::new(0.3, 0.4),
                 present: true,
                 signals: &[f64::INFINITY],
+                words: Vec::new(),
             },
             Row {
                 time: 0.04,
@@ -67,6 +70,7 @@ pub(super) mod samples {
                 velocity: Vec2::zeros(),
                 present: false,
                 signals: &[f64::NAN],
+                words: Vec::new(),
             },
         ]
     }

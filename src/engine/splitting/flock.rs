@@ -165,8 +165,8 @@ impl Bird {
             }
             if let Some(lane) = (self.state.faulty & self.state.occupied).iter().next() {
                 let place = self.busy[lane].as_ref().map_or(0, |busy| busy.place);
-                let what = self.state.faults[lane]
-                    .map_or_else(String::new, |f| f.describe(&program.scenario.processes));
+                let what =
+                    self.state.faults[lane].map_or_else(String::new, |f| f.describe(&program.scenario));
                 self.rest();
                 return (done, Some((place, Fault::Model(format!("in a path of splitting: {what}")))));
             }
@@ -205,7 +205,8 @@ impl Bird {
         self.level.0.run(&subject.program, &self.state, of_level);
         let occupied = self.state.occupied;
         // A level without a value is none yet; a formula without one is lost.
-        let lost = (self.state.diverged | of_formula.unresolved | of_level.unresolved) & occupied;
+        let ended = self.state.diverged | self.state.queues.full;
+        let lost = (ended | of_formula.unresolved | of_level.unresolved) & occupied;
         let watched = occupied & !lost;
         self.formula.1.observe(watched, of_formula);
         self.level.1.observe(watched, &[], &of_level.signals);

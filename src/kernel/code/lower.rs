@@ -36,6 +36,16 @@ impl<'a> Lowering<'a> {
         Self { scenario, graph: Graph::default(), lists: Vec::new(), depth: 0 }
     }
 
+    /// A second lowering of the same expressions, which knows from the start what was found in the first: so
+    /// that a comparison over a crowd can use the smallest measure that comes after it.
+    pub(super) fn again(first: Self) -> Self {
+        let mut second = Self { lists: first.lists, ..Self::new(first.scenario) };
+        for node in first.graph.nodes.into_iter().filter(|node| matches!(node, Node::Nearest(..))) {
+            second.graph.enter(node);
+        }
+        second
+    }
+
     fn list(&mut self, members: Vec<u32>) -> u32 {
         let known = self.lists.iter().position(|list| *list == members);
         known.unwrap_or_else(|| {
@@ -80,14 +90,44 @@ impl<'a> Lowering<'a> {
         self.graph.enter(Node::Not(a))
     }
 
+    /// Whether an agent of a source has come in; none for others.
+    fn entered(&mut self, who: Who) -> Option<Id> {
+        let Who::Agent(id) = who else { return None };
+        let (source, number) = self.arrival(id)?;
+        Some(self.graph.enter(Node::Entered(source, number)))
+    }
+
+    /// The source that an agent comes from, and its number among the arrivals.
+    fn arrival(&self, id: AgentId) -> Option<(u32, u32)> {
+        self.scenario.sources.iter().enumerate().find_map(|(source, door)| {
+            let number = door.members.binary_search(&id).ok()?;
+            Some((source as u32, number as u32))
+        })
+    }
+
+    /// A number of an agent, which is none before the agent has come in.
+    fn if_entered(&mut self, who: Who, value: Id) -> Id {
+        let Some(entered) = self.entered(who) else { return value };
+        let nothing = self.graph.constant(f64::NAN);
+        self.graph.enter(Node::Select(entered, value, nothing))
+    }
+
+    /// A number kept for an agent.
+    fn of(&mut self, reading: Reading, who: Who) -> Id {
+        let value = self.graph.enter(Node::Of(reading, who));
+        self.if_entered(who, value)
+    }
+
     fn distance(&mut self, a: Who, b: Who) -> Id {
         // The distance is the same bits both ways: let both ways be one node.
         let swapped = matches!((a, b), (Who::Agent(p), Who::Agent(q)) if p > q);
-        self.graph.enter(if swapped { Node::Distance(b, a) } else { Node::Distance(a, b) })
+        let distance = self.graph.enter(if swapped { Node::Distance(b, a) } else { Node::Distance(a, b) });
+        let distance = self.if_entered(a, distance);
+        self.if_entered(b, distance)
     }
 
     fn radius(&mut self, who: Who) -> Id {
-        self.graph.enter(Node::Of(Reading::Field(Field::Radius), who))
+        self.of(Reading::Field(Field::Radius), who)
     }
 
     fn gap(&mut self, a: Who, b: Who) -> Id {
@@ -101,8 +141,8 @@ impl<'a> Lowering<'a> {
         if self.scenario.scene.barriers.is_empty() {
             return None;
         }
-        let x = self.graph.enter(Node::Of(Reading::X, who));
-        let y = self.graph.enter(Node::Of(Reading::Y, who));
+        let x = self.of(Reading::X, who);
+        let y = self.of(Reading::Y, who);
         let (distance, radius) = (self.graph.enter(Node::ToScene(x, y)), self.radius(who));
         Some(self.graph.enter(Node::Combine(Arithmetic::Subtract, distance, radius)))
     }
@@ -113,7 +153,7 @@ impl<'a> Lowering<'a> {
             Num::Constant(value) => resolved(self.graph.constant(*value)),
             Num::Time => resolved(self.graph.enter(Node::Time)),
             Num::Variable(id) => resolved(self.graph.enter(Node::Variable(id.0))),
-            Num::Of(field, who) => resolved(self.graph.enter(Node::Of(Reading::Field(*field), *who))),
+            Num::Of(field, who) => resolved(self.of(Reading::Field(*field), *who)),
             Num::Coordinate(axis, place) => {
                 let (x, y) = self.point(place);
                 match axis {
@@ -228,6 +268,10 @@ impl<'a> Lowering<'a> {
             (false, true) => Some(a),
             _ => None,
         };
+        // Who may not have come yet has no distance to anybody: that takes the longer way.
+        let other = |a: Who, b: Who| {
+            other(a, b).filter(|who| !matches!(who, Who::Agent(id) if self.arrival(*id).is_some()))
+        };
         match body {
             Num::Distance(Place::Agent(a), Place::Agent(b)) => Some((other(*a, *b)?, Measure::Centres)),
             Num::Combine(Arithmetic::Subtract, left, second) => {
@@ -249,10 +293,7 @@ impl<'a> Lowering<'a> {
     /// The coordinates of a place that is a point; NaN for a region or barrier.
     fn point(&mut self, place: &Place) -> (Value, Value) {
         match place {
-            Place::Agent(who) => (
-                resolved(self.graph.enter(Node::Of(Reading::X, *who))),
-                resolved(self.graph.enter(Node::Of(Reading::Y, *who))),
-            ),
+            Place::Agent(who) => (resolved(self.of(Reading::X, *who)), resolved(self.of(Reading::Y, *who))),
             Place::Point(x, y) => (self.number(x), self.number(y)),
             Place::Centroid(set) => (self.mean(Reading::X, set), self.mean(Reading::Y, set)),
             Place::Region(_) | Place::Barrier(_) => {
@@ -311,7 +352,14 @@ impl<'a> Lowering<'a> {
             }
             Bool::And(all) => self.junction(all, true),
             Bool::Or(all) => self.junction(all, false),
-            Bool::In(who, region) => resolved(self.graph.enter(Node::Inside(*who, region.0))),
+            Bool::Present(who) => resolved(self.graph.enter(Node::Present(*who))),
+            Bool::In(who, region) => {
+                let inside = self.graph.enter(Node::Inside(*who, region.0));
+                match self.entered(*who) {
+                    Some(entered) => resolved(self.both(entered, inside)),
+                    None => resolved(inside),
+                }
+            }
             Bool::Contact(who) => resolved(self.contact(*who)),
             Bool::Touching(a, b) => {
                 let (gap, zero) = (self.gap(*a, *b), self.graph.constant(0.0));
@@ -395,9 +443,23 @@ impl<'a> Lowering<'a> {
         if bound.open.is_some() || self.graph.depends_on(bound.id, var) {
             return None;
         }
-        let far = Node::AllFar { who, crowd, measure, test, wanted: all, bound: bound.id };
-        let far = self.graph.enter(far);
+        let far = self.far(who, crowd, measure, (test, all), bound.id);
         Some(if all { far } else { self.not(far) })
+    }
+
+    fn far(
+        &mut self,
+        who: Who,
+        crowd: Crowd,
+        measure: Measure,
+        (test, wanted): (Comparison, bool),
+        bound: Id,
+    ) -> Id {
+        // Over nobody the nearest is infinitely far away, and farther than a finite bound.
+        let finite = matches!(self.graph.nodes[bound as usize],
+            Node::Constant(bits) if f64::from_bits(bits).is_finite());
+        let nearest = self.graph.find(&Node::Nearest(who, crowd, measure)).filter(|_| finite);
+        self.graph.enter(Node::AllFar { who, crowd, measure, test, wanted, bound, nearest })
     }
 
     fn comparison(&mut self, comparison: Comparison, a: &Num, b: &Num) -> Value {
@@ -417,14 +479,7 @@ impl<'a> Lowering<'a> {
 
     fn contact(&mut self, who: Who) -> Id {
         let (crowd, zero) = (self.others(who), self.graph.constant(0.0));
-        let free = self.graph.enter(Node::AllFar {
-            who,
-            crowd,
-            measure: Measure::GapFixedFirst,
-            test: Comparison::AtMost,
-            wanted: false,
-            bound: zero,
-        });
+        let free = self.far(who, crowd, Measure::GapFixedFirst, (Comparison::AtMost, false), zero);
         let mut touch = self.not(free);
         if let Some(walls) = self.gap_to_scene(who) {
             let at_wall = self.graph.enter(Node::Compare(Comparison::AtMost, walls, zero));

@@ -107,6 +107,8 @@ pub(super) enum Node {
     Inside(Who, u32),
     /// Whether an agent is in the scene.
     Present(Who),
+    /// Whether this member, from 0, of a source has come in.
+    Entered(u32, u32),
     /// Whether some member is in the scene.
     Somebody(Crowd),
     /// Whether for all members the comparison of the measure with a bound that is the same for all has
@@ -124,6 +126,8 @@ pub(super) enum Node {
         wanted: bool,
         /// The bound.
         bound: Id,
+        /// The smallest measure over the same crowd, where something else needs it anyway.
+        nearest: Option<Id>,
     },
 }
 
@@ -139,6 +143,7 @@ impl Node {
             | Self::Or(_)
             | Self::Inside(..)
             | Self::Present(_)
+            | Self::Entered(..)
             | Self::Somebody(_)
             | Self::AllFar { .. } => true,
             _ => false,
@@ -158,7 +163,7 @@ impl Node {
             Self::Combine(_, a, b) | Self::Compare(_, a, b) => vec![a, b],
             Self::Select(c, a, b) => vec![c, a, b],
             Self::And(all) | Self::Or(all) => all.iter_mut().collect(),
-            Self::AllFar { bound, .. } => vec![bound],
+            Self::AllFar { bound, nearest, .. } => std::iter::once(bound).chain(nearest).collect(),
             Self::Constant(_)
             | Self::Time
             | Self::Variable(_)
@@ -170,6 +175,7 @@ impl Node {
             | Self::Truth(_)
             | Self::Inside(..)
             | Self::Present(_)
+            | Self::Entered(..)
             | Self::Somebody(_) => Vec::new(),
         }
     }
@@ -229,6 +235,11 @@ impl Graph {
         self.nodes.push(node);
         self.free.push(free);
         id
+    }
+
+    /// The node with this value, if it was entered.
+    pub(super) fn find(&self, node: &Node) -> Option<Id> {
+        self.known.get(node).copied()
     }
 
     /// A number.

@@ -15,7 +15,7 @@ pub use route::{Routes, Way};
 pub use stage::Drive;
 
 use super::program::Program;
-use super::state::{Layout, State};
+use super::state::{Layout, Slot, State};
 use crate::base::lanes::Mask;
 use crate::model::Move;
 use fearless_simd::{Level, Simd, dispatch};
@@ -28,6 +28,21 @@ pub fn begin(program: &Program, state: &mut State, agent: usize, lane: usize, ad
     let slot = state.slot(agent, lane);
     let start = &program.scenario.agents[agent].start;
     Person::new(program, state, slot.block, slot.lane).begin(start, advice);
+}
+
+/// The stage of its route that a slot is on.
+pub(super) fn stage(state: &State, slot: Slot) -> u32 {
+    state.route.way(slot.block, slot.lane).stage
+}
+
+/// Sends someone along the route that begins with a stage, the `round`-th time.
+pub(super) fn divert(program: &Program, state: &mut State, slot: Slot, stage: u32, round: u32) {
+    Person::new(program, state, slot.block, slot.lane).divert(stage, round);
+}
+
+/// Someone's driving speed has changed.
+pub(super) fn renew(program: &Program, state: &mut State, slot: Slot) {
+    Person::new(program, state, slot.block, slot.lane).renew();
 }
 
 /// Updates driving direction, driving speed and presence of all agents in all occupied lanes. To be called

@@ -18,6 +18,9 @@ pub(super) const PASSING: f64 = 2.0;
 /// Squared length below which a vector has no direction.
 pub(super) const NO_LENGTH: f64 = 1e-24;
 
+/// What one round of a detour adds to the number of a draw.
+const ROUND: u32 = 0x9E37_79B9;
+
 /// The unit vector along `v`, if it has a direction.
 pub(super) fn unit(v: Vec2) -> Option<Vec2> {
     let square = v.x * v.x + v.y * v.y;
@@ -152,7 +155,8 @@ impl<'a> Person<'a> {
         let stage = &self.program.drive.stages[stage as usize];
         if let Target::Pause(law) = &stage.target {
             let entity = self.program.scenario.agents[self.agent].entity;
-            let uniform = Stream::of(self.key(), entity, Purpose::Pause).uniform(stage.leg);
+            let stream = Stream::of(self.key(), entity, Purpose::Pause);
+            let uniform = stream.uniform(stage.leg.wrapping_add(self.way.round.wrapping_mul(ROUND)));
             // A negative time or NaN is no pause; one that never ends is cut at the end of all ticks.
             let ticks = (law.draw(uniform) / self.program.dt).ceil() as u64;
             self.way.until = self.tick().saturating_add(ticks);
@@ -181,7 +185,8 @@ impl<'a> Person<'a> {
     fn head(&mut self) {
         let stage = &self.program.drive.stages[self.way.stage as usize];
         if matches!(stage.target, Target::Onward) {
-            let (direction, speed) = self.way.onward;
+            let (direction, moves) = self.way.onward;
+            let speed = if moves { self.speed() } else { 0.0 };
             self.drive(Some(direction), speed);
             return;
         }
@@ -202,8 +207,9 @@ impl<'a> Person<'a> {
             self.way.advised_until = 0;
         }
         if self.way.advised_until > 0 {
-            let (direction, speed) = self.way.advice;
-            self.drive(unit(direction), speed);
+            let direction = unit(self.way.advice);
+            let speed = if direction.is_some() { self.speed() } else { 0.0 };
+            self.drive(direction, speed);
         } else {
             self.head();
         }
@@ -229,7 +235,7 @@ impl<'a> Person<'a> {
             self.state.speed[self.block].0[self.lane] = speed;
         }
         let direction = towards.or(moving).unwrap_or_else(|| Vec2::new(1.0, 0.0));
-        self.way.onward = (direction, if moving.is_some() { speed } else { 0.0 });
+        self.way.onward = (direction, moving.is_some());
         self.drive(Some(direction), 0.0);
         // Who starts at a goal goes on to the next; nobody leaves before the first step.
         self.proceed();
@@ -239,11 +245,24 @@ impl<'a> Person<'a> {
             self.head();
             let ahead = self.direction();
             self.way.advice = match advice {
-                Move::Heading(angle) => (rotated(ahead, angle), self.speed()),
-                Move::Stop => (Vec2::zeros(), 0.0),
+                Move::Heading(angle) => rotated(ahead, angle),
+                Move::Stop => Vec2::zeros(),
             };
             self.way.advised_until = self.tick().saturating_add(ticks);
         }
+        self.follow();
+        self.keep();
+    }
+
+    /// Goes on along the route that begins with a stage.
+    pub(super) fn divert(mut self, stage: u32, round: u32) {
+        self.way.round = round;
+        self.enter(stage);
+        self.step();
+    }
+
+    /// Takes over a speed that has changed.
+    pub(super) fn renew(mut self) {
         self.follow();
         self.keep();
     }

@@ -14,18 +14,28 @@ pub struct Way {
     pub(super) until: u64,
     /// Tick at which advice ends; 0 without any.
     pub(super) advised_until: u64,
-    /// Driving direction and speed under advice.
-    pub(super) advice: (Vec2, f64),
+    /// Driving direction under advice; zero for a stop.
+    pub(super) advice: Vec2,
     /// Where the present leg began, m.
     pub(super) origin: Vec2,
-    /// Direction and speed of someone without a goal.
-    pub(super) onward: (Vec2, f64),
+    /// Direction of someone without a goal, and whether they move.
+    pub(super) onward: (Vec2, bool),
+    /// Which time a detour is taken; 0 on the own route. Addresses its pauses.
+    pub(super) round: u32,
 }
 
 impl Default for Way {
     fn default() -> Self {
-        let nothing = (Vec2::zeros(), 0.0);
-        Self { stage: 0, until: 0, advised_until: 0, advice: nothing, origin: Vec2::zeros(), onward: nothing }
+        let zero = Vec2::zeros();
+        Self {
+            stage: 0,
+            until: 0,
+            advised_until: 0,
+            advice: zero,
+            origin: zero,
+            onward: (zero, false),
+            round: 0,
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::base::geometry::{Bounds, Shape, Vec2};
 use crate::kernel::code::ground::{Ground, upright};
-use crate::model::{Agent, Goal, Law, Leg, Route, Scenario};
+use crate::model::{Goal, Law, Leg, Route, Scenario};
 
 /// Where a stage leads.
 #[derive(Clone, Debug)]
@@ -63,8 +63,9 @@ fn target(scenario: &Scenario, leg: &Leg) -> Target {
     }
 }
 
-fn stages(scenario: &Scenario, agent: &Agent) -> Vec<Stage> {
-    let (legs, leaves) = match &agent.route {
+/// The stages of a route; its legs count from `from`.
+fn stages(scenario: &Scenario, route: &Route, from: u32) -> Vec<Stage> {
+    let (legs, leaves) = match route {
         Route::Onward => {
             return vec![Stage { target: Target::Onward, leg: 0, last: true, leaves: false }];
         }
@@ -78,7 +79,12 @@ fn stages(scenario: &Scenario, agent: &Agent) -> Vec<Stage> {
         .enumerate()
         .map(|(k, leg)| {
             let last = k + 1 == used.len();
-            Stage { target: target(scenario, leg), leg: k as u32, last, leaves: last && leaves }
+            Stage {
+                target: target(scenario, leg),
+                leg: from.wrapping_add(k as u32),
+                last,
+                leaves: last && leaves,
+            }
         })
         .collect();
     if stages.is_empty() {
@@ -98,11 +104,18 @@ impl Drive {
                 out.first[before]
             } else {
                 let first = out.stages.len() as u32;
-                out.stages.extend(stages(scenario, agent));
+                out.stages.extend(stages(scenario, &agent.route, 0));
                 first
             };
             out.first.push(first);
         }
         out
+    }
+
+    /// Adds a route that a state of a behaviour demands; its first stage. Its legs have numbers of their own.
+    pub(in crate::kernel) fn detour(&mut self, scenario: &Scenario, route: &Route) -> u32 {
+        let first = self.stages.len() as u32;
+        self.stages.extend(stages(scenario, route, (first + 1) << 16));
+        first
     }
 }

@@ -1,7 +1,7 @@
 //! Errors of a model that show only while it runs.
 
 use crate::base::lanes::{LANES, Mask};
-use crate::model::{Domain, Processes};
+use crate::model::{Domain, Parameter, Processes, Scenario};
 
 /// What a process did that it must not do. The numbers are those of the process, command or variable.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +41,20 @@ pub enum Fault {
         /// The process that jumped last.
         process: u32,
     },
+    /// The probabilities of a transition of a behaviour are negative or do not sum to 1.
+    Branches {
+        /// Which of the behaviours that agents have.
+        attached: u32,
+    },
+    /// A state of a behaviour gives its agent a parameter with which nobody can move.
+    Change {
+        /// Which of the behaviours that agents have.
+        attached: u32,
+        /// Which parameter.
+        parameter: Parameter,
+        /// Its value, SI units.
+        value: f64,
+    },
 }
 
 /// The first error of each lane in one step.
@@ -77,7 +91,15 @@ impl Faults {
 
 impl Fault {
     /// What is wrong, in words.
-    pub fn describe(&self, processes: &Processes) -> String {
+    pub fn describe(&self, scenario: &Scenario) -> String {
+        let processes = &scenario.processes;
+        let whose = |attached: u32| {
+            let Some(one) = scenario.behaviours.attached.get(attached as usize) else { return String::new() };
+            let agent = scenario.agents.get(one.agent.0 as usize).map_or("", |agent| agent.name.as_str());
+            let name =
+                scenario.behaviours.declared.get(one.behaviour.0 as usize).map_or("", |b| b.name.as_str());
+            format!("`{name}` of {agent}")
+        };
         let name = |process: u32| processes.list.get(process as usize).map_or("", |p| p.name.as_str());
         match *self {
             Self::Ambiguous { process, commands: (a, b) } => format!(
@@ -100,6 +122,19 @@ impl Fault {
                 format!(
                     "time does not go on: more than 100000 jumps at one time, the last one of `{}`",
                     name(process)
+                )
+            }
+            Self::Branches { attached } => {
+                format!(
+                    "the probabilities of a transition of {} are negative or do not sum to 1",
+                    whose(attached)
+                )
+            }
+            Self::Change { attached, parameter, value } => {
+                format!(
+                    "{} would set `{}` to {value}, with which nobody can move",
+                    whose(attached),
+                    parameter.name()
                 )
             }
             Self::Range { variable, value } => {

@@ -1,5 +1,6 @@
 //! Placements that no trial can make: more bodies than fit into a shape.
 
+use super::arrival::Arrivals;
 use crate::base::geometry::{Bounds, Shape, Vec2};
 use crate::model::{AgentId, Law, Obstacle, Position, Scenario};
 use std::f64::consts::PI;
@@ -65,7 +66,9 @@ fn free_area(shape: &Shape, reach: f64, bounds: &Bounds, solids: &[&Obstacle]) -
 /// shape when its centre is, so what lies within a radius of the shape counts as room.
 pub fn check_area(scenario: &Scenario) -> Vec<Crowding> {
     let mut groups: Vec<(&Shape, Vec<AgentId>, f64, f64)> = Vec::new();
-    for (k, agent) in scenario.agents.iter().enumerate() {
+    // Who comes in later waits until there is room.
+    let arrivals = Arrivals::new(scenario);
+    for (k, agent) in scenario.agents.iter().enumerate().filter(|(k, _)| !arrivals.comes(*k)) {
         let Position::Within(shape) = &agent.start.position else { continue };
         let wider = agent.particle.map_or(1.0, |particle| particle.radius_factor);
         let square = mean_square(&agent.body.radius) * wider * wider;

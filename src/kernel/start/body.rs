@@ -21,6 +21,7 @@ pub(super) struct Parameters {
     pub(super) k1: f64,
     pub(super) k2: f64,
     pub(super) noise: f64,
+    pub(super) attention: f64,
 }
 
 /// The draw that belongs to a parameter's name.
@@ -64,6 +65,7 @@ pub(super) struct Laws {
     k1: Ready,
     k2: Ready,
     noise: Ready,
+    attention: Ready,
 }
 
 impl Laws {
@@ -83,6 +85,7 @@ impl Laws {
             k1: body.k1.ready(),
             k2: body.k2.ready(),
             noise: body.noise.ready(),
+            attention: body.attention.ready(),
         }
     }
 }
@@ -121,6 +124,7 @@ impl Parameters {
             k1: draw!("k1", &body.k1, any),
             k2: draw!("k2", &body.k2, any),
             noise: draw!("noise", &body.noise, 0.0) / many.sqrt(),
+            attention: draw!("attention", &body.attention, 0.0),
         };
         from.fault.map_or(Ok(out), Err)
     }

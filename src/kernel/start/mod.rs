@@ -5,6 +5,7 @@
 //! attempts, then relaxation; what still overlaps, or was recorded so, shrinks to touch.
 
 mod area;
+mod arrival;
 mod body;
 mod crowd;
 mod placement;
@@ -12,14 +13,16 @@ mod relaxation;
 mod sampler;
 
 pub use area::{Crowding, check_area};
+pub use arrival::{Arrivals, Queues};
 pub use placement::Starts;
 
 use super::drive;
 use super::program::Program;
 use super::state::{Layout, State};
-use crate::base::lanes::Mask;
+use crate::base::geometry::Vec2;
+use crate::base::lanes::{Lanes, Mask};
 use crate::base::random::TrialKey;
-use crate::model::AgentId;
+use crate::model::{AgentId, Move, Parameter, Route};
 use body::Parameters;
 
 /// What loading a trial found worth counting.
@@ -88,35 +91,54 @@ pub fn load(
             let moves = scenario.moves.get(declaration);
             let chosen = moves.and_then(|moves| Some((moves, moves.options.get(option)?.1)));
             let (moves, chosen) = chosen.ok_or(Fault::Advice { declaration, option })?;
-            Some((moves.agent, (chosen, moves.duration.0)))
+            let heeded = program.behaviours.heeds(program, key, moves.agent.0 as usize);
+            heeded.then_some((moves.agent, (chosen, moves.duration.0)))
         }
     };
     let mut bodies = Vec::with_capacity(scenario.agents.len());
     for (k, agent) in scenario.agents.iter().enumerate() {
-        bodies.push(Parameters::draw(AgentId(k as u32), agent, program.starts.laws(k), key)?);
+        let here = !program.arrivals.comes(k);
+        let draw = || Parameters::draw(AgentId(k as u32), agent, program.starts.laws(k), key);
+        bodies.push(here.then(draw).transpose()?);
     }
-    let radii: Vec<f64> = bodies.iter().map(|body| body.radius).collect();
+    let radii = bodies.iter().map(|body| body.as_ref().map_or(0.0, |body| body.radius)).collect();
     let placed = placement::place(scenario, &program.starts, key, radii)?;
 
     let lane = if state.layout == Layout::Agents { 0 } else { lane };
     begin(program, state, lane, key);
-    for (k, agent) in scenario.agents.iter().enumerate() {
-        bodies[k].radius = placed.radii[k];
-        write(state, k, lane, &bodies[k]);
-        let slot = state.slot(k, lane);
-        let put = |field: &mut [crate::base::lanes::Lanes], value| field[slot.block].0[slot.lane] = value;
-        put(&mut state.x, placed.positions[k].x);
-        put(&mut state.y, placed.positions[k].y);
-        put(&mut state.vx, agent.start.velocity.x);
-        put(&mut state.vy, agent.start.velocity.y);
-        for field in [&mut state.travelled, &mut state.fx, &mut state.fy] {
-            put(field, 0.0);
-        }
-        state.present[slot.block] |= Mask::lane(slot.lane);
+    for (k, body) in bodies.into_iter().enumerate() {
+        let Some(body) = body else { continue };
+        let body = Parameters { radius: placed.radii[k], ..body };
         let own = advised.filter(|(whose, _)| whose.0 as usize == k).map(|(_, advice)| advice);
-        drive::begin(program, state, k, lane, own);
+        enter(program, state, k, lane, &body, placed.positions[k], own);
     }
     Ok(placed.counts)
+}
+
+/// Puts an agent into the scene, at the beginning of its way.
+fn enter(
+    program: &Program,
+    state: &mut State,
+    agent: usize,
+    lane: usize,
+    body: &Parameters,
+    at: Vec2,
+    advice: Option<(Move, u64)>,
+) {
+    write(state, agent, lane, body);
+    let slot = state.slot(agent, lane);
+    let velocity = program.scenario.agents[agent].start.velocity;
+    let put = |field: &mut [Lanes], value| field[slot.block].0[slot.lane] = value;
+    put(&mut state.x, at.x);
+    put(&mut state.y, at.y);
+    put(&mut state.vx, velocity.x);
+    put(&mut state.vy, velocity.y);
+    for field in [&mut state.travelled, &mut state.fx, &mut state.fy] {
+        put(field, 0.0);
+    }
+    state.present[slot.block] |= Mask::lane(slot.lane);
+    drive::begin(program, state, agent, lane, advice);
+    program.behaviours.begin(program, state, agent, lane);
 }
 
 /// The trial itself and its processes.
@@ -126,6 +148,32 @@ fn begin(program: &Program, state: &mut State, lane: usize, key: TrialKey) {
     state.occupied |= Mask::lane(lane);
     state.diverged &= !Mask::lane(lane);
     program.processes.load(state, lane);
+    program.arrivals.load(state, lane, key);
+}
+
+/// The parameters of an agent as drawn, in the order of [`Parameter::ALL`]; none if nobody can move with them.
+pub(super) fn own_parameters(
+    program: &Program,
+    key: TrialKey,
+    id: AgentId,
+) -> Option<[f64; Parameter::ALL.len()]> {
+    let agent = program.scenario.agents.get(id.0 as usize)?;
+    let body = Parameters::draw(id, agent, program.starts.laws(id.0 as usize), key).ok()?;
+    // Who goes on as recorded has the recorded speed as driving speed.
+    let recorded = agent.start.velocity.norm();
+    let speed = if agent.route == Route::Onward && recorded > 0.0 { recorded } else { body.speed };
+    Some(Parameter::ALL.map(|parameter| match parameter {
+        Parameter::Speed => speed,
+        Parameter::Tau => body.tau,
+        Parameter::A => body.a,
+        Parameter::B => body.b,
+        Parameter::Lambda => body.lambda,
+        Parameter::A2 => body.a2,
+        Parameter::B2 => body.b2,
+        Parameter::Lambda2 => body.lambda2,
+        Parameter::Noise => body.noise,
+        Parameter::Attention => body.attention,
+    }))
 }
 
 /// Writes the parameters of an agent.
@@ -136,10 +184,10 @@ fn write(state: &mut State, agent: usize, lane: usize, body: &Parameters) {
         (&mut state.radius, body.radius),
         (&mut state.speed, body.speed),
         (&mut state.tau, body.tau),
-        (&mut state.a, body.a),
+        (&mut state.a, body.a * body.attention),
         (&mut state.b, body.b),
         (&mut state.lambda, body.lambda),
-        (&mut state.a2, body.a2),
+        (&mut state.a2, body.a2 * body.attention),
         (&mut state.b2, body.b2),
         (&mut state.lambda2, body.lambda2),
         (&mut state.k1, body.k1),

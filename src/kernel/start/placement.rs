@@ -1,5 +1,6 @@
 //! Where everyone starts: points first, then at random without overlaps.
 
+use super::arrival::Arrivals;
 use super::body::Laws;
 use super::crowd::Crowd;
 use super::relaxation::{self, Room};
@@ -11,7 +12,7 @@ use crate::model::{AgentId, Body, Obstacle, Position, Scenario, Scene};
 use std::sync::Arc;
 
 /// How often a free place is sought by chance.
-const ATTEMPTS: u32 = 96;
+pub(super) const ATTEMPTS: u32 = 96;
 
 /// A radius shrunk to touch is this much smaller, so that rounding leaves no overlap.
 const TOUCH: f64 = 1.0 - 8.0 * f64::EPSILON;
@@ -62,8 +63,10 @@ impl Starts {
                 Position::Point(_) | Position::Near { .. } => None,
             });
         }
+        let arrivals = Arrivals::new(scenario);
         let fixed = |k: &u32| matches!(scenario.agents[*k as usize].start.position, Position::Point(_));
-        let all = 0..scenario.agents.len() as u32;
+        // Who comes in later is placed then.
+        let all = (0..scenario.agents.len() as u32).filter(|&k| !arrivals.comes(k as usize));
         out.order = all.clone().filter(fixed).chain(all.filter(|k| !fixed(k))).collect();
         out.barriers = scenario.scene.barriers.iter().map(|barrier| bounds(&barrier.obstacle)).collect();
         out
@@ -71,6 +74,12 @@ impl Starts {
 }
 
 impl Starts {
+    /// The sampler of the shape in which an agent starts.
+    pub(super) fn sampler(&self, agent: usize) -> Option<&Sampler> {
+        let index = self.sampler_of.get(agent).copied().flatten()?;
+        self.samplers.get(index as usize)
+    }
+
     /// The laws of an agent's body.
     pub(super) fn laws(&self, agent: usize) -> &Laws {
         &self.laws[self.laws_of[agent] as usize]
@@ -92,6 +101,11 @@ pub(super) struct Ground<'a> {
 }
 
 impl<'a> Ground<'a> {
+    /// The barriers of a scene.
+    pub(super) fn of(scene: &'a Scene, starts: &'a Starts) -> Self {
+        Self { scene, bounds: &starts.barriers }
+    }
+
     /// The barriers whose bounds are within `reach` of a point.
     pub(super) fn near(self, p: Vec2, reach: f64) -> impl Iterator<Item = &'a Obstacle> {
         let close = move |b: &Bounds| {
@@ -122,7 +136,7 @@ pub(super) fn place(
     key: TrialKey,
     radii: Vec<f64>,
 ) -> Result<Placed, Fault> {
-    let ground = Ground { scene: &scenario.scene, bounds: &starts.barriers };
+    let ground = Ground::of(&scenario.scene, starts);
     let mut crowd = Crowd::new(radii);
     let mut rooms = vec![Room::Fixed; scenario.agents.len()];
     let mut counts = Loaded::default();
@@ -143,7 +157,7 @@ pub(super) fn place(
             }
             Position::Within(shape) => {
                 rooms[k] = Room::Within(shape);
-                starts.sampler_of[k].and_then(|index| starts.samplers.get(index as usize))
+                starts.sampler(k)
             }
             Position::Near { agent: anchor, within } => {
                 let anchor = anchor.0 as usize;
@@ -177,14 +191,14 @@ pub(super) fn place(
     if counts.pushed > 0 {
         relaxation::relax(&mut crowd, &rooms, ground);
     }
-    shrink(&mut crowd, ground, &mut counts);
+    shrink(&mut crowd, ground, &done, &mut counts);
     Ok(Placed { positions: crowd.positions, radii: crowd.radii, counts })
 }
 
 /// Shrinks the radii of bodies that overlap a neighbour or a barrier until they touch.
-fn shrink(crowd: &mut Crowd, ground: Ground<'_>, counts: &mut Loaded) {
+fn shrink(crowd: &mut Crowd, ground: Ground<'_>, placed: &[bool], counts: &mut Loaded) {
     let mut near: Vec<u32> = Vec::new();
-    for body in 0..crowd.positions.len() {
+    for body in (0..crowd.positions.len()).filter(|&body| placed[body]) {
         let p = crowd.positions[body];
         near.clear();
         crowd.around(body, p, |other| near.push(other as u32));

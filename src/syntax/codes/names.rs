@@ -156,12 +156,12 @@ Right:\n\
         code: "E0213",
         title: "not simulated in this version",
         text: "\
-The language has processes, behaviours and sources, and this version reads and formats them, but it does not simulate\n\
+The language has commands with rates and delays, and this version reads and formats them, but it does not simulate\n\
 them.\n\
 \n\
 Wrong:\n\
-\x20   process die { var s: 0 .. 7 = 0 … }\n\
+\x20   when n < 5 at 2 /s -> n = n + 1\n\
 Right:\n\
-\x20   a scenario of agents, groups, regions and moves",
+\x20   when n < 5 -> 1/10: n = n + 1 | 9/10: { }",
     },
 ];

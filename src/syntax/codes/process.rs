@@ -78,4 +78,42 @@ Right:\n\
 \x20   when up after normal(5 s, 2 s) in 0 s .. 20 s -> up = false\n\
 \x20   when up after gamma(5 s, 2 s) -> up = false",
     },
+    Page {
+        code: "E0911",
+        title: "a state changes what belongs to the body",
+        text: "\
+A state of a behaviour changes how an agent walks while it lasts: speed, tau, A, B, lambda, A2, B2, lambda2, noise,\n\
+attention and route. Mass, radius and the constants of contact belong to the body.\n\
+\n\
+Wrong:\n\
+\x20   behaviour hurry { state running { mass = 60 kg  speed = 2 m/s } }\n\
+Right:\n\
+\x20   behaviour hurry { state running { speed = 2 m/s } }",
+    },
+    Page {
+        code: "E0912",
+        title: "a behaviour is attached twice",
+        text: "\
+An agent has a behaviour at most once, with one set of arguments.\n\
+\n\
+Wrong:\n\
+\x20   agent user: adult with heedful(0.8), heedful(0.5) { … }\n\
+Right:\n\
+\x20   agent user: adult with heedful(0.8), phone { … }",
+    },
+    Page {
+        code: "E0913",
+        title: "more people would come than there is room for",
+        text: "\
+A place is kept for everyone who may come by a source up to the horizon, and a trial in which more come is unresolved.\n\
+`limit` says for how many; it is not less than the number that is expected, the horizon over the mean time between\n\
+arrivals. Without `limit` so many places are kept that they suffice in all but one of a thousand million trials, up to\n\
+20,000.\n\
+\n\
+Wrong:\n\
+\x20   horizon = 60 s\n\
+\x20   source doors: adult { at = (0, 2)  every = exponential(2 s)  route = exit  limit = 10 }\n\
+Right:\n\
+\x20   source doors: adult { at = (0, 2)  every = exponential(2 s)  route = exit  limit = 80 }",
+    },
 ];

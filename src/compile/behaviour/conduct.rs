@@ -1,0 +1,217 @@
+//! States of behaviours: what they change, and how they end.
+
+use super::states;
+use crate::compile::dimension::Dimension;
+use crate::compile::elaborator::{Elaborator, Locals, Lowered};
+use crate::compile::kinds;
+use crate::compile::laws::{distribution, value_span};
+use crate::compile::presets::PARAMETERS;
+use crate::compile::typed::Typed;
+use crate::model::process::are_weights;
+use crate::model::{Amount, Bool, Conduct, Law, Mode, Num, Parameter, Transition, Trigger, VariableId};
+use crate::syntax::ast::process::{BehaviourDecl, BehaviourItem, Choice, StateDecl};
+use crate::syntax::ast::{Field, Value};
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+use std::collections::BTreeSet;
+
+impl<'a> Elaborator<'a> {
+    /// What a behaviour does.
+    pub(super) fn conduct(
+        &mut self,
+        decl: &'a BehaviourDecl,
+        locals: &Locals,
+        variables: usize,
+    ) -> Lowered<Conduct> {
+        let locals = self.with_lets(decl, locals)?;
+        let mut out = Conduct::default();
+        let mut guards = 0;
+        let mut failed = None;
+        for state in states(decl) {
+            match self.mode(decl, state, &locals, variables, &mut guards) {
+                Ok(mode) => out.states.push(mode),
+                Err(reported) => failed = Some(reported),
+            }
+        }
+        for item in &decl.items {
+            if let BehaviourItem::On(on) = item {
+                let choices = self.choices(&on.choices, on.span, &locals, |name| name == "follow")?;
+                out.advice = choices;
+            }
+        }
+        failed.map_or(Ok(out), Err)
+    }
+
+    /// The conditions of all transitions, in order of writing.
+    pub(super) fn conditions(&mut self, decl: &'a BehaviourDecl, locals: &Locals) -> Lowered<Vec<Bool>> {
+        let written: Vec<_> =
+            states(decl).flat_map(|state| &state.transitions).filter_map(|t| t.guard.as_ref()).collect();
+        if written.is_empty() {
+            return Ok(Vec::new());
+        }
+        let locals = self.with_lets(decl, locals)?;
+        written
+            .into_iter()
+            .map(|guard| {
+                let typed = self.lower(guard, &locals)?;
+                self.as_truth(typed, guard.span)
+            })
+            .collect()
+    }
+
+    /// Adds the names that the behaviour declares; each sees those before it.
+    fn with_lets(&mut self, decl: &'a BehaviourDecl, locals: &Locals) -> Lowered<Locals> {
+        let mut locals = locals.clone();
+        for item in &decl.items {
+            if let BehaviourItem::Let(decl) = item {
+                let value = self.lower(&decl.body, &locals)?;
+                locals.names.push((decl.name.name.clone(), value));
+            }
+        }
+        Ok(locals)
+    }
+
+    fn mode(
+        &mut self,
+        decl: &'a BehaviourDecl,
+        state: &'a StateDecl,
+        locals: &Locals,
+        variables: usize,
+        guards: &mut u32,
+    ) -> Lowered<Mode> {
+        let mut mode = Mode::default();
+        let mut failed = None;
+        for field in &state.fields {
+            let lowered = match Parameter::of(&field.name.name) {
+                None => self.route(&field.value, locals).map(|route| mode.route = Some(route)),
+                Some(parameter) => self
+                    .amount(parameter, field, locals, variables)
+                    .map(|amount| mode.changes.push((parameter, amount))),
+            };
+            failed = lowered.err().or(failed);
+        }
+        let names: Vec<&str> = states(decl).map(|state| state.name.name.as_str()).collect();
+        for transition in &state.transitions {
+            let trigger = match &transition.after {
+                Some(after) => self.delay(after, locals).map(Trigger::After),
+                None => {
+                    *guards += 1;
+                    Ok(Trigger::When(*guards - 1))
+                }
+            };
+            let number = |name: &str| names.iter().position(|known| *known == name).unwrap_or(0) as u32;
+            let targets = self.choices(&transition.targets, transition.span, locals, number);
+            match (trigger, targets) {
+                (Ok(trigger), Ok(targets)) => mode.transitions.push(Transition { trigger, targets }),
+                (Err(reported), _) | (_, Err(reported)) => failed = Some(reported),
+            }
+        }
+        failed.map_or(Ok(mode), Err)
+    }
+
+    /// The value of a parameter while a state lasts.
+    fn amount(
+        &mut self,
+        parameter: Parameter,
+        field: &'a Field,
+        locals: &Locals,
+        variables: usize,
+    ) -> Lowered<Amount> {
+        let name = parameter.name();
+        let dimension = dimension_of(parameter);
+        let span = value_span(&field.value);
+        let expr = match &field.value {
+            Value::Plain(expr) if distribution(expr).is_none() => expr,
+            other => {
+                let law = self.law(other, dimension, locals)?;
+                return match kinds::out_of_range(name, &law) {
+                    Some(reason) => self.report(Diagnostic::error("E0405", span, reason)),
+                    None => Ok(Amount::Drawn(law)),
+                };
+            }
+        };
+        // Arguments and names of the behaviour hide the agent's own parameters.
+        let own = Parameter::ALL.into_iter().enumerate().map(|(k, own)| {
+            let value = Num::Variable(VariableId((variables + k) as u32));
+            (own.name().to_owned(), Typed::Num(value, dimension_of(own)))
+        });
+        let names = own.chain(locals.names.iter().cloned()).collect();
+        let typed = self.lower(expr, &Locals { names, ..locals.clone() })?;
+        let (value, found) = self.as_num(typed, span)?;
+        if found != dimension {
+            return self.wrong_dimension(span, dimension, found);
+        }
+        match value {
+            Num::Constant(value) if !parameter.allows(value) => self.report(Diagnostic::error(
+                "E0405",
+                span,
+                kinds::out_of_range(name, &Law::Constant(value))
+                    .unwrap_or_else(|| format!("`{name}` cannot be {value}")),
+            )),
+            value if value.reads(&mut BTreeSet::new()) => Ok(Amount::Computed(value)),
+            _ => {
+                let error = Diagnostic::error(
+                    "E0304",
+                    span,
+                    "what a state sets cannot depend on where people are",
+                )
+                .hint("it is computed on entering, from constants, the agent's own parameters and processes");
+                self.report(error)
+            }
+        }
+    }
+
+    /// Weighted choices; the weights depend on nothing but processes.
+    fn choices<T>(
+        &mut self,
+        choices: &'a [Choice],
+        span: Span,
+        locals: &Locals,
+        what: impl Fn(&str) -> T,
+    ) -> Lowered<Vec<(Num, T)>> {
+        let mut out = Vec::with_capacity(choices.len());
+        for choice in choices {
+            let weight = match &choice.weight {
+                None => Num::Constant(1.0),
+                Some(weight) => {
+                    let typed = self.lower(weight, locals)?;
+                    let (num, dimension) = self.as_num(typed, weight.span)?;
+                    if !dimension.is_none() {
+                        return self.wrong_dimension(weight.span, Dimension::NONE, dimension);
+                    }
+                    if !num.reads(&mut BTreeSet::new()) {
+                        let error = Diagnostic::error(
+                            "E0304",
+                            weight.span,
+                            "these probabilities cannot depend on where people are",
+                        )
+                        .hint("use `when` conditions, or several states");
+                        return self.report(error);
+                    }
+                    num
+                }
+            };
+            out.push((weight, what(&choice.target.name)));
+        }
+        let known: Option<Vec<f64>> =
+            out.iter().map(|(w, _)| if let Num::Constant(w) = w { Some(*w) } else { None }).collect();
+        if let Some(known) = known
+            && !are_weights(known.iter().copied())
+        {
+            let sum: f64 = known.iter().sum();
+            let text = if known.iter().any(|w| *w < 0.0) {
+                "a probability is negative".to_owned()
+            } else {
+                format!("these probabilities sum to {sum}, not to 1")
+            };
+            return self.report(Diagnostic::error("E0902", span, text));
+        }
+        Ok(out)
+    }
+}
+
+/// The dimension of a parameter.
+fn dimension_of(parameter: Parameter) -> Dimension {
+    let known = PARAMETERS.iter().find(|(name, ..)| *name == parameter.name());
+    known.map_or(Dimension::NONE, |(_, dimension, _)| *dimension)
+}

@@ -1,0 +1,262 @@
+//! Behaviours: who has which, and what they are when names, units and arguments are settled.
+//!
+//! `with phone, heedful(0.8)` fills in the arguments. What a state changes and how it ends is lowered once for a
+//! declaration; conditions are lowered for each member, because they speak of `self`.
+
+mod conduct;
+mod names;
+
+use super::elaborator::{Elaborator, Locals, Lowered, Reported};
+use super::people::People;
+use super::symbols::{Meaning, unknown};
+use super::typed::Typed;
+use crate::model::{AgentId, Attached, Behaviour, BehaviourId, Behaviours, Mode, Parameter, Route, Who};
+use crate::syntax::ast::process::{BehaviourDecl, BehaviourItem, StateDecl};
+use crate::syntax::ast::{Expr, ExprKind, Ident};
+use crate::syntax::diagnostic::Diagnostic;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// What happens to agents from outside.
+const EVENTS: [&str; 1] = ["advice"];
+/// What can be done about advice.
+const OUTCOMES: [&str; 2] = ["follow", "ignore"];
+
+/// `with` of one declaration, and those who have it.
+pub(super) struct With<'a> {
+    /// Behaviours, in order of writing, with their arguments.
+    behaviours: Vec<(BehaviourId, &'a [Expr], &'a Expr)>,
+    /// Name of the declaration.
+    name: String,
+    members: Vec<AgentId>,
+}
+
+fn states(decl: &BehaviourDecl) -> impl Iterator<Item = &StateDecl> {
+    decl.items
+        .iter()
+        .filter_map(|item| if let BehaviourItem::State(state) = item { Some(state) } else { None })
+}
+
+impl<'a> Elaborator<'a> {
+    /// Declares a behaviour and checks what needs no arguments: names of states, fields and events.
+    pub(super) fn declare_behaviour(&mut self, decl: &'a BehaviourDecl) {
+        self.behaviours.push(decl);
+        let mut seen: BTreeMap<&str, &Ident> = BTreeMap::new();
+        let names: Vec<&str> = states(decl).map(|state| state.name.name.as_str()).collect();
+        for item in &decl.items {
+            let name = match item {
+                BehaviourItem::State(state) => {
+                    self.check_state(state, &names);
+                    &state.name
+                }
+                BehaviourItem::Let(decl) => {
+                    if let Some(argument) = decl.arguments.first() {
+                        let error = Diagnostic::error("E0305", argument.span, "a name here has no arguments")
+                            .hint("declare the function outside of the behaviour");
+                        self.note(error);
+                    }
+                    &decl.name
+                }
+                BehaviourItem::On(on) => {
+                    if !EVENTS.contains(&on.event.name.as_str()) {
+                        let known = EVENTS.into_iter();
+                        let error = unknown("event", &on.event.name, on.event.span, "E0201", known)
+                            .hint("the only event is `advice`: a move is suggested to the agent");
+                        self.note(error);
+                    }
+                    self.check_targets(on.choices.iter().map(|choice| &choice.target), &OUTCOMES, "reaction");
+                    &on.event
+                }
+            };
+            if let Some(first) = seen.insert(&name.name, name) {
+                let error =
+                    Diagnostic::error("E0202", name.span, format!("`{}` is declared twice", name.name))
+                        .related(first.span, "first declared here");
+                self.note(error);
+            }
+        }
+    }
+
+    fn check_state(&mut self, state: &'a StateDecl, names: &[&str]) {
+        for (at, field) in state.fields.iter().enumerate() {
+            let name = field.name.name.as_str();
+            if let Some(first) = state.fields[..at].iter().find(|first| first.name.name == name) {
+                let error = Diagnostic::error("E0202", field.name.span, format!("`{name}` is set twice"))
+                    .related(first.name.span, "first set here");
+                self.note(error);
+            } else if super::kinds::parameter(name).is_some() && Parameter::of(name).is_none() {
+                let error = Diagnostic::error(
+                    "E0911",
+                    field.name.span,
+                    format!("`{name}` belongs to the body and is the same in all states"),
+                )
+                .hint(format!("a state can change {} and route", all_parameters().join(", ")));
+                self.note(error);
+            } else if name != "route" && Parameter::of(name).is_none() {
+                let known = all_parameters().into_iter().chain(["route"]);
+                let error = unknown("parameter", name, field.name.span, "E0207", known);
+                self.note(error);
+            }
+        }
+        for transition in &state.transitions {
+            self.check_targets(transition.targets.iter().map(|choice| &choice.target), names, "state");
+        }
+    }
+
+    fn check_targets(&mut self, targets: impl Iterator<Item = &'a Ident>, known: &[&str], what: &str) {
+        for target in targets {
+            if !known.contains(&target.name.as_str()) {
+                let error = unknown(what, &target.name, target.span, "E0201", known.iter().copied());
+                let error = match &error.hint {
+                    Some(_) => error,
+                    None => error.hint(format!("known are {}", known.join(", "))),
+                };
+                self.note(error);
+            }
+        }
+    }
+
+    /// The behaviours that a declaration names after `with`. Errors are noted.
+    pub(super) fn with(&mut self, name: &Ident, with: &'a [Expr]) -> With<'a> {
+        let mut behaviours: Vec<(BehaviourId, &'a [Expr], &'a Expr)> = Vec::new();
+        for expr in with {
+            let (called, arguments): (&str, &'a [Expr]) = match &expr.kind {
+                ExprKind::Name(called) => (called, &[]),
+                ExprKind::Call { function, arguments } => (&function.name, arguments),
+                _ => {
+                    let error = Diagnostic::error("E0305", expr.span, "expected a behaviour")
+                        .hint("for example `with phone, heedful(0.8)`");
+                    self.note(error);
+                    continue;
+                }
+            };
+            let id = match self.find(called, 0) {
+                Some((_, Meaning::Behaviour(id))) => id,
+                Some((_, other)) => {
+                    let text = format!("expected a behaviour, `{called}` is {}", other.noun());
+                    self.note(Diagnostic::error("E0206", expr.span, text));
+                    continue;
+                }
+                None => {
+                    let known: Vec<&str> =
+                        self.behaviours.iter().map(|decl| decl.name.name.as_str()).collect();
+                    let error = unknown("behaviour", called, expr.span, "E0201", known.into_iter());
+                    self.note(error);
+                    continue;
+                }
+            };
+            if let Some((.., first)) = behaviours.iter().find(|(known, ..)| *known == id) {
+                let error = Diagnostic::error(
+                    "E0912",
+                    expr.span,
+                    format!("`{}` has the behaviour `{called}` already", name.name),
+                )
+                .related(first.span, "first here");
+                self.note(error);
+                continue;
+            }
+            behaviours.push((id, arguments, expr));
+        }
+        With { behaviours, name: name.name.clone(), members: Vec::new() }
+    }
+
+    /// Gives behaviours to the members of a declaration.
+    pub(super) fn attach(&mut self, mut with: With<'a>, members: &[AgentId]) {
+        with.members = members.to_vec();
+        self.withs.push(with);
+    }
+
+    /// Whether an agent has a behaviour.
+    fn has_behaviour(&self, agent: AgentId, behaviour: BehaviourId) -> bool {
+        self.withs.iter().any(|with| {
+            with.members.contains(&agent) && with.behaviours.iter().any(|(id, ..)| *id == behaviour)
+        })
+    }
+
+    /// Lowers the behaviours of all agents.
+    pub(super) fn settle_behaviours(&mut self, people: &mut People, variables: usize) -> Behaviours {
+        let mut out = Behaviours::default();
+        for decl in &self.behaviours {
+            let states = states(decl).map(|state| state.name.name.clone()).collect();
+            out.declared.push(Behaviour { name: decl.name.name.clone(), states });
+        }
+        if self.failed() {
+            return out;
+        }
+        let withs = std::mem::take(&mut self.withs);
+        for with in &withs {
+            for &(id, arguments, written) in &with.behaviours {
+                let attached = self.settle_one(with, id, (arguments, written), people, variables);
+                out.attached.extend(attached.unwrap_or_default());
+            }
+        }
+        self.withs = withs;
+        self.check_unused_behaviours(variables);
+        for one in &out.attached {
+            let leaves = |mode: &Mode| matches!(mode.route, Some(Route::Legs { then_leave: true, .. }));
+            if one.conduct.states.iter().any(leaves) {
+                self.may_be_absent(one.agent);
+            }
+        }
+        // Of one agent they stay in order of `with`.
+        out.attached.sort_by_key(|one| one.agent);
+        out
+    }
+
+    fn settle_one(
+        &mut self,
+        with: &With<'a>,
+        id: BehaviourId,
+        (arguments, written): (&'a [Expr], &'a Expr),
+        people: &mut People,
+        variables: usize,
+    ) -> Lowered<Vec<Attached>> {
+        let decl = self.behaviours[id.0 as usize];
+        if arguments.len() != decl.arguments.len() {
+            let wanted = match decl.arguments.len() {
+                1 => "1 argument".to_owned(),
+                n => format!("{n} arguments"),
+            };
+            return self.arity(&decl.name, written.span, &wanted, arguments.len());
+        }
+        let mut locals = Locals::of(0);
+        for (name, argument) in decl.arguments.iter().zip(arguments) {
+            let value = self.lower(argument, &Locals::of(0))?;
+            locals.names.push((name.name.clone(), value));
+        }
+        let first = with.members.first().copied().unwrap_or(AgentId(0));
+        let conduct = Arc::new(self.conduct(decl, &of(&locals, first), variables)?);
+        let entity = people.entities(&format!("{}.{}", with.name, decl.name.name), with.members.len() as u32);
+        let mut out = Vec::with_capacity(with.members.len());
+        for (k, &agent) in with.members.iter().enumerate() {
+            let guards = self.conditions(decl, &of(&locals, agent))?;
+            let entity = entity + k as u32;
+            out.push(Attached { agent, behaviour: id, entity, conduct: conduct.clone(), guards });
+        }
+        Ok(out)
+    }
+
+    /// Behaviours that nobody has are checked too, if they need no arguments.
+    fn check_unused_behaviours(&mut self, variables: usize) {
+        for (k, decl) in self.behaviours.clone().into_iter().enumerate() {
+            let id = BehaviourId(k as u32);
+            let used = self.withs.iter().any(|with| with.behaviours.iter().any(|(known, ..)| *known == id));
+            if !used && decl.arguments.is_empty() && !self.agent_names.is_empty() {
+                let locals = of(&Locals::of(0), AgentId(0));
+                let _: Result<_, Reported> = self.conduct(decl, &locals, variables);
+                let _: Result<_, Reported> = self.conditions(decl, &locals);
+            }
+        }
+    }
+}
+
+/// Names as one agent sees them.
+fn of(locals: &Locals, agent: AgentId) -> Locals {
+    let mut own = locals.clone();
+    own.names.insert(0, ("self".to_owned(), Typed::Agent(Who::Agent(agent))));
+    own
+}
+
+fn all_parameters() -> Vec<&'static str> {
+    Parameter::ALL.map(Parameter::name).to_vec()
+}

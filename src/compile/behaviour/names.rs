@@ -1,0 +1,72 @@
+//! States of behaviours in expressions: `user.phone == looking`.
+
+use super::states;
+use crate::compile::elaborator::{Elaborator, Locals, Lowered};
+use crate::compile::symbols::unknown;
+use crate::compile::typed::Typed;
+use crate::model::{BehaviourId, Bool, Comparison, Field, Num, Who};
+use crate::syntax::ast::{Expr, ExprKind, Ident};
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+
+impl Elaborator<'_> {
+    /// `user.phone`: to be compared with a state.
+    pub(in crate::compile) fn lower_mode(&mut self, who: Who, base: Span, member: &Ident) -> Lowered<Typed> {
+        let Some(at) = self.behaviours.iter().position(|decl| decl.name.name == member.name) else {
+            let known: Vec<&str> = self.behaviours.iter().map(|decl| decl.name.name.as_str()).collect();
+            let error = unknown("behaviour", &member.name, member.span, "E0201", known.into_iter());
+            let error = match &error.hint {
+                Some(_) => error,
+                None => error.hint("numbers of agents are functions: `speed(user)`"),
+            };
+            return self.report(error);
+        };
+        let behaviour = BehaviourId(at as u32);
+        if let Who::Agent(agent) = who
+            && !self.has_behaviour(agent, behaviour)
+        {
+            let text = format!("`{}` has no behaviour `{}`", self.text(base), member.name);
+            let error = Diagnostic::error("E0201", member.span, text)
+                .hint(format!("give it one: `agent … : … with {}`", member.name));
+            return self.report(error);
+        }
+        Ok(Typed::Mode { behaviour, who })
+    }
+
+    /// `user.phone == looking`, `!=`; `None` where the left side is no behaviour.
+    pub(in crate::compile) fn lower_mode_comparison(
+        &mut self,
+        comparison: Comparison,
+        left: &Expr,
+        right: &Expr,
+        locals: &Locals,
+    ) -> Option<Lowered<Typed>> {
+        let ExprKind::Member(_, member) = &left.kind else { return None };
+        let decl = self.behaviours.iter().find(|decl| decl.name.name == member.name).copied()?;
+        let (behaviour, who) = match self.lower(left, locals) {
+            Ok(Typed::Mode { behaviour, who }) => (behaviour, who),
+            Ok(_) => return None,
+            Err(reported) => return Some(Err(reported)),
+        };
+        let names: Vec<&str> = states(decl).map(|state| state.name.name.as_str()).collect();
+        let ExprKind::Name(wanted) = &right.kind else {
+            let error = Diagnostic::error("E0305", right.span, "expected the name of a state").hint(format!(
+                "the states of `{}` are {}",
+                member.name,
+                names.join(", ")
+            ));
+            return Some(self.report(error));
+        };
+        let Some(at) = names.iter().position(|name| name == wanted) else {
+            let what = format!("state of `{}`", member.name);
+            let error = unknown(&what, wanted, right.span, "E0201", names.iter().copied());
+            let error = match &error.hint {
+                Some(_) => error,
+                None => error.hint(format!("its states are {}", names.join(", "))),
+            };
+            return Some(self.report(error));
+        };
+        let number = Box::new(Num::Of(Field::Mode(behaviour), who));
+        Some(Ok(Typed::Truth(Bool::Compare(comparison, number, Box::new(Num::Constant(at as f64))))))
+    }
+}

@@ -1,0 +1,390 @@
+//! Behaviours: automata of agents, of all trials of a batch.
+//!
+//! At a step each behaviour looks at the state before it (`watch`), as processes do. What it decided holds from the
+//! state after the step on (`turn`): the parameters of the agent are computed anew from its own values, which are
+//! drawn again from their addresses, so that nothing is kept and nothing compounds. Times are drawn on entering a
+//! state, the n-th of them from draw n of the behaviour's own stream; branches from the draw of the tick. Attention
+//! multiplies A and A2 of the agent who feels the force.
+
+mod conduct;
+
+use super::code::{Code, Readings};
+use super::drive;
+use super::dynamics;
+use super::process::Fault;
+use super::program::Program;
+use super::start;
+use super::state::{Layout, Slot, State};
+use crate::base::lanes::{LANES, Lanes, Mask};
+use crate::base::random::{Purpose, Stream, TrialKey, name_hash};
+use crate::model::{AgentId, Parameter, Scenario};
+use conduct::{Amount, Conduct, Trigger, pick};
+
+/// No detour.
+const OWN_ROUTE: u32 = u32::MAX;
+
+/// One behaviour of one agent.
+#[derive(Clone, Debug)]
+struct Machine {
+    agent: u32,
+    behaviour: u32,
+    entity: u32,
+    conduct: u32,
+    /// The atom of its first condition, and how many it has.
+    guards: (u32, u32),
+}
+
+/// The behaviours of a scenario, made ready to run.
+#[derive(Clone, Debug, Default)]
+pub struct Behaviours {
+    declared: usize,
+    machines: Vec<Machine>,
+    /// First machine of each agent; one more at the end.
+    first: Vec<u32>,
+    conducts: Vec<Conduct>,
+    /// The conditions.
+    code: Option<Code>,
+}
+
+/// Where the behaviours of a batch stand, by declared behaviour and block.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Standing {
+    /// Number of the present state; -1 in someone who has no such behaviour.
+    pub modes: Vec<Vec<Lanes>>,
+    /// Tick at which the present state ends by itself; infinite if it does not.
+    due: Vec<Vec<Lanes>>,
+    /// The transition that is taken then.
+    exit: Vec<Vec<[u32; LANES]>>,
+    /// How many states have been entered.
+    entered: Vec<Vec<[u32; LANES]>>,
+    /// Under which key each state was entered: what it set belongs to that key.
+    keys: Vec<Vec<[TrialKey; LANES]>>,
+    /// Under which key the parameters of an agent were drawn, by block.
+    own_keys: Vec<[TrialKey; LANES]>,
+    /// First stage of a route that a state demands, and the stage of the own route to return to.
+    detours: Vec<[(u32, u32); LANES]>,
+}
+
+/// A state that is entered with the present step.
+#[derive(Clone, Copy, Debug)]
+struct Turn {
+    machine: u32,
+    lane: usize,
+    mode: u32,
+}
+
+/// Room to work. It holds no part of the state.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Scratch {
+    readings: Readings,
+    turns: Vec<Turn>,
+}
+
+/// The lane of keys and ticks of a slot.
+fn trial_of(layout: Layout, lane: usize) -> usize {
+    match layout {
+        Layout::Trials => lane,
+        Layout::Agents => 0,
+    }
+}
+
+impl Behaviours {
+    /// Prepares the behaviours of a scenario; the routes of their states are added to those of `drive`.
+    pub fn new(scenario: &Scenario, drive: &mut drive::Drive) -> Self {
+        let all = &scenario.behaviours;
+        if all.attached.is_empty() {
+            return Self::default();
+        }
+        let mut known: Vec<&std::sync::Arc<crate::model::Conduct>> = Vec::new();
+        let mut out = Self { declared: all.declared.len(), ..Self::default() };
+        let mut atoms = Vec::new();
+        for one in &all.attached {
+            let at = known.iter().rposition(|conduct| std::sync::Arc::ptr_eq(conduct, &one.conduct));
+            let conduct = at.unwrap_or_else(|| {
+                known.push(&one.conduct);
+                out.conducts.push(Conduct::new(scenario, &one.conduct, drive));
+                known.len() - 1
+            });
+            out.machines.push(Machine {
+                agent: one.agent.0,
+                behaviour: one.behaviour.0,
+                entity: one.entity,
+                conduct: conduct as u32,
+                guards: (atoms.len() as u32, one.guards.len() as u32),
+            });
+            atoms.extend(one.guards.iter().cloned());
+        }
+        for agent in 0..=scenario.agents.len() as u32 {
+            out.first.push(out.machines.partition_point(|machine| machine.agent < agent) as u32);
+        }
+        out.code = (!atoms.is_empty()).then(|| Code::compile(scenario, &atoms, &[]));
+        out
+    }
+
+    /// Whether nobody has any.
+    pub fn is_empty(&self) -> bool {
+        self.machines.is_empty()
+    }
+
+    fn machines_of(&self, agent: usize) -> std::ops::Range<usize> {
+        match (self.first.get(agent), self.first.get(agent + 1)) {
+            (Some(&from), Some(&to)) => from as usize..to as usize,
+            _ => 0..0,
+        }
+    }
+
+    /// Whether an agent follows a move that is suggested at the start of a trial: if all of its behaviours do.
+    pub(super) fn heeds(&self, program: &Program, key: TrialKey, agent: usize) -> bool {
+        self.machines_of(agent).all(|at| {
+            let machine = &self.machines[at];
+            let advice = &self.conducts[machine.conduct as usize].advice;
+            let uniform = || Stream::of(key, machine.entity, Purpose::Decision).uniform(0);
+            // Weights that are none are refused when they are compiled.
+            advice.is_empty() || pick(advice, &program.processes.initial, uniform).unwrap_or(true)
+        })
+    }
+
+    /// Puts an agent who has just been placed into the first states of its behaviours.
+    pub(super) fn begin(&self, program: &Program, state: &mut State, agent: usize, lane: usize) {
+        if self.is_empty() {
+            return;
+        }
+        let blocks = state.x.len();
+        let standing = &mut state.behaviours;
+        if standing.modes.len() != self.declared || standing.detours.len() != blocks {
+            *standing = Standing {
+                modes: vec![vec![Lanes::splat(-1.0); blocks]; self.declared],
+                due: vec![vec![Lanes::splat(f64::INFINITY); blocks]; self.declared],
+                exit: vec![vec![[0; LANES]; blocks]; self.declared],
+                entered: vec![vec![[0; LANES]; blocks]; self.declared],
+                keys: vec![vec![[TrialKey::default(); LANES]; blocks]; self.declared],
+                own_keys: vec![[TrialKey::default(); LANES]; blocks],
+                detours: vec![[(OWN_ROUTE, 0); LANES]; blocks],
+            };
+        }
+        let slot = state.slot(agent, lane);
+        state.behaviours.detours[slot.block][slot.lane] = (OWN_ROUTE, 0);
+        state.behaviours.own_keys[slot.block][slot.lane] = state.keys[trial_of(state.layout, slot.lane)];
+        for at in self.machines_of(agent) {
+            let machine = &self.machines[at];
+            state.behaviours.entered[machine.behaviour as usize][slot.block][slot.lane] = 0;
+            if !self.conducts[machine.conduct as usize].modes.is_empty() {
+                self.enter(program, state, at, slot, 0);
+            }
+        }
+        let changed = self.machines_of(agent).any(|at| {
+            let conduct = &self.conducts[self.machines[at].conduct as usize];
+            conduct.modes.first().is_some_and(conduct::Mode::changes_something)
+        });
+        if changed {
+            self.apply(program, state, agent, lane);
+        }
+    }
+
+    /// Looks at the state before a step and notes which states end with it.
+    pub(super) fn watch(&self, layout: Layout, state: &mut State, scratch: &mut Scratch) {
+        scratch.turns.clear();
+        if self.is_empty() || state.occupied.is_empty() {
+            return;
+        }
+        if let Some(code) = &self.code {
+            code.read(layout, state, &mut scratch.readings);
+            for at in 0..self.machines.len() {
+                self.watch_conditions(at, state, scratch);
+            }
+        }
+        let mut now = Lanes::ZERO;
+        for lane in 0..LANES {
+            now.0[lane] = state.ticks[trial_of(layout, lane)] as f64 + 1.0;
+        }
+        let occupied = match layout {
+            Layout::Trials => state.occupied & !state.faulty,
+            Layout::Agents if state.occupied.has(0) && state.faulty.is_empty() => Mask::ALL,
+            Layout::Agents => Mask::NONE,
+        };
+        for behaviour in 0..state.behaviours.due.len() {
+            for block in 0..state.x.len() {
+                let ripe = state.behaviours.due[behaviour][block].compare(now, |due, now| due <= now);
+                for lane in (ripe & occupied & state.present[block]).iter() {
+                    let agent = match layout {
+                        Layout::Trials => block,
+                        Layout::Agents => block * LANES + lane,
+                    };
+                    let mut own = self.machines_of(agent);
+                    let Some(at) = own.find(|&at| self.machines[at].behaviour as usize == behaviour) else {
+                        continue;
+                    };
+                    // A condition that held before the time had come goes first.
+                    if !scratch.turns.iter().any(|turn| turn.machine as usize == at && turn.lane == lane) {
+                        let exit = state.behaviours.exit[behaviour][block][lane];
+                        self.decide(at, state, lane, exit, scratch);
+                    }
+                }
+            }
+        }
+    }
+
+    fn watch_conditions(&self, at: usize, state: &mut State, scratch: &mut Scratch) {
+        let machine = &self.machines[at];
+        let (first, count) = (machine.guards.0 as usize, machine.guards.1 as usize);
+        if scratch.readings.atoms[first..first + count].iter().all(|atom| atom.is_empty()) {
+            return;
+        }
+        for trial in (state.occupied & !state.faulty).iter() {
+            let slot = state.slot(machine.agent as usize, trial);
+            if !state.present[slot.block].has(slot.lane) {
+                continue;
+            }
+            let mode = state.behaviours.modes[machine.behaviour as usize][slot.block].0[slot.lane];
+            let Some(mode) = self.conducts[machine.conduct as usize].modes.get(mode as usize) else {
+                continue;
+            };
+            let holds = |trigger: &Trigger| match trigger {
+                Trigger::When(guard) => scratch.readings.atoms[first + *guard as usize].has(trial),
+                Trigger::After { .. } => false,
+            };
+            if let Some(exit) = mode.exits.iter().position(|exit| holds(&exit.trigger)) {
+                self.decide(at, state, slot.lane, exit as u32, scratch);
+            }
+        }
+    }
+
+    /// Draws the state that follows by a transition.
+    fn decide(&self, at: usize, state: &mut State, lane: usize, exit: u32, scratch: &mut Scratch) {
+        let machine = &self.machines[at];
+        let trial = trial_of(state.layout, lane);
+        let slot = state.slot(machine.agent as usize, trial);
+        let mode = state.behaviours.modes[machine.behaviour as usize][slot.block].0[slot.lane] as usize;
+        let exits = self.conducts[machine.conduct as usize].modes.get(mode).map(|mode| &mode.exits);
+        let Some(exit) = exits.and_then(|exits| exits.get(exit as usize)) else { return };
+        let variables: Vec<f64> = state.variables.iter().map(|lanes| lanes.0[trial]).collect();
+        let stream = Stream::of(state.keys[trial], machine.entity, Purpose::Process);
+        match pick(&exit.targets, &variables, || stream.uniform(state.ticks[trial] as u32)) {
+            Some(mode) => scratch.turns.push(Turn { machine: at as u32, lane, mode }),
+            None => fail(state, trial, Fault::Branches { attached: at as u32 }),
+        }
+    }
+
+    /// Enters the states that were decided on; to be called with the ticks and positions after the step. Whether
+    /// the range of some force changed.
+    pub(super) fn turn(&self, program: &Program, state: &mut State, scratch: &Scratch) -> bool {
+        let mut ranges = false;
+        for &Turn { machine: at, lane, mode } in &scratch.turns {
+            let machine = &self.machines[at as usize];
+            let trial = trial_of(state.layout, lane);
+            if state.faulty.has(trial) {
+                continue;
+            }
+            let slot = state.slot(machine.agent as usize, trial);
+            let old = state.behaviours.modes[machine.behaviour as usize][slot.block].0[slot.lane] as usize;
+            self.enter(program, state, at as usize, slot, mode);
+            let modes = &self.conducts[machine.conduct as usize].modes;
+            if modes[old].changes_something() || modes[mode as usize].changes_something() {
+                ranges |= self.apply(program, state, machine.agent as usize, trial);
+            }
+        }
+        ranges
+    }
+
+    /// Enters a state: the times at which it may end are drawn.
+    fn enter(&self, program: &Program, state: &mut State, at: usize, slot: Slot, mode: u32) {
+        let machine = &self.machines[at];
+        let conduct = &self.conducts[machine.conduct as usize];
+        let trial = trial_of(state.layout, slot.lane);
+        let stream = Stream::of(state.keys[trial], machine.entity, Purpose::Delay);
+        let now = state.ticks[trial] as f64;
+        let (behaviour, block, lane) = (machine.behaviour as usize, slot.block, slot.lane);
+        let standing = &mut state.behaviours;
+        let entered = &mut standing.entered[behaviour][block][lane];
+        let first = entered.wrapping_mul(conduct.delays);
+        *entered = entered.wrapping_add(1);
+        standing.modes[behaviour][block].0[lane] = f64::from(mode);
+        standing.keys[behaviour][block][lane] = state.keys[trial];
+        let (mut due, mut chosen) = (f64::INFINITY, 0);
+        for (number, exit) in conduct.modes[mode as usize].exits.iter().enumerate() {
+            if let Trigger::After { law, number: draw } = &exit.trigger {
+                let after = law.draw(stream.uniform(first.wrapping_add(*draw)));
+                let end = now + conduct::steps(after, program.dt);
+                if end < due {
+                    (due, chosen) = (end, number as u32);
+                }
+            }
+        }
+        standing.due[behaviour][block].0[lane] = due;
+        standing.exit[behaviour][block][lane] = chosen;
+    }
+
+    /// Gives an agent the parameters and the route that its behaviours want now. Whether a range changed.
+    fn apply(&self, program: &Program, state: &mut State, agent: usize, trial: usize) -> bool {
+        let slot = state.slot(agent, trial);
+        // Replicas of a trial go on under other keys: what was drawn stays.
+        let key = state.behaviours.own_keys[slot.block][slot.lane];
+        let Some(own) = start::own_parameters(program, key, AgentId(agent as u32)) else { return false };
+        let mut values = own;
+        let mut known: Vec<f64> = state.variables.iter().map(|lanes| lanes.0[trial]).collect();
+        known.extend(own);
+        let mut route = OWN_ROUTE;
+        let mut round = 0;
+        for at in self.machines_of(agent) {
+            let machine = &self.machines[at];
+            let mode = state.behaviours.modes[machine.behaviour as usize][slot.block].0[slot.lane] as usize;
+            let Some(mode) = self.conducts[machine.conduct as usize].modes.get(mode) else { continue };
+            let entered = state.behaviours.entered[machine.behaviour as usize][slot.block][slot.lane];
+            for (parameter, amount) in &mode.changes {
+                let value = match amount {
+                    Amount::Computed(num) => num.evaluate(&known).unwrap_or(f64::NAN),
+                    Amount::Drawn(law) => {
+                        let key = state.behaviours.keys[machine.behaviour as usize][slot.block][slot.lane];
+                        let draw = (name_hash(parameter.name()) as u32).wrapping_add(entered);
+                        law.draw(Stream::of(key, machine.entity, Purpose::Parameter).uniform(draw))
+                    }
+                };
+                if !parameter.allows(value) {
+                    fail(state, trial, Fault::Change { attached: at as u32, parameter: *parameter, value });
+                    return false;
+                }
+                values[*parameter as usize] = value;
+            }
+            if let Some(stage) = mode.route {
+                (route, round) = (stage, entered);
+            }
+        }
+        let ranges = write(state, slot, &values);
+        dynamics::prepare(state, program.dt, slot);
+        let (present, home) = state.behaviours.detours[slot.block][slot.lane];
+        if route == present {
+            drive::renew(program, state, slot);
+            return ranges;
+        }
+        let stage = drive::stage(state, slot);
+        let home = if present == OWN_ROUTE { stage } else { home };
+        state.behaviours.detours[slot.block][slot.lane] = (route, home);
+        let (stage, round) = if route == OWN_ROUTE { (home, 0) } else { (route, round) };
+        drive::divert(program, state, slot, stage, round);
+        ranges
+    }
+}
+
+/// Writes the parameters of a slot; whether a range changed.
+fn write(state: &mut State, slot: Slot, values: &[f64; Parameter::ALL.len()]) -> bool {
+    let of = |parameter: Parameter| values[parameter as usize];
+    let put = |field: &mut [Lanes], value: f64| {
+        let old = std::mem::replace(&mut field[slot.block].0[slot.lane], value);
+        old.to_bits() != value.to_bits()
+    };
+    put(&mut state.speed, of(Parameter::Speed));
+    put(&mut state.tau, of(Parameter::Tau));
+    put(&mut state.a, of(Parameter::A) * of(Parameter::Attention));
+    put(&mut state.lambda, of(Parameter::Lambda));
+    put(&mut state.a2, of(Parameter::A2) * of(Parameter::Attention));
+    put(&mut state.lambda2, of(Parameter::Lambda2));
+    put(&mut state.noise, of(Parameter::Noise));
+    put(&mut state.b, of(Parameter::B)) | put(&mut state.b2, of(Parameter::B2))
+}
+
+fn fail(state: &mut State, trial: usize, fault: Fault) {
+    if !state.faulty.has(trial) {
+        state.faulty |= Mask::lane(trial);
+        state.faults[trial] = Some(fault);
+    }
+}

@@ -1,0 +1,110 @@
+//! Behaviours as they were understood, for `smc show`.
+
+use super::model::{law, number, way};
+use crate::model::{
+    AgentId, Amount, Arithmetic, Attached, Function, Num, Parameter, Scenario, Transition, Trigger,
+};
+use std::fmt::Write;
+
+/// The behaviours of an agent.
+pub(super) fn describe(out: &mut String, scenario: &Scenario, id: AgentId) {
+    let attached = scenario.behaviours.of(id);
+    for one in attached {
+        let declared = &scenario.behaviours.declared[one.behaviour.0 as usize];
+        let _ = writeln!(out, "      with {}", declared.name);
+        for (name, mode) in declared.states.iter().zip(&one.conduct.states) {
+            let mut parts: Vec<String> = mode
+                .changes
+                .iter()
+                .map(|(parameter, amount)| {
+                    let unit = unit(*parameter);
+                    let value = match amount {
+                        Amount::Drawn(value) => law(value, unit),
+                        Amount::Computed(num) => match num {
+                            Num::Constant(value) if !unit.is_empty() => format!("{} {unit}", number(*value)),
+                            num => expression(scenario, num),
+                        },
+                    };
+                    format!("{} = {value}", parameter.name())
+                })
+                .collect();
+            parts.extend(mode.route.as_ref().map(|route| way(scenario, route)));
+            parts.extend(mode.transitions.iter().map(|t| transition(scenario, &declared.states, t)));
+            let _ = writeln!(out, "        {name}: {}", parts.join("; "));
+        }
+        if let Some(advice) = advice(scenario, one) {
+            let _ = writeln!(out, "        on advice: {advice}");
+        }
+    }
+}
+
+fn advice(scenario: &Scenario, one: &Attached) -> Option<String> {
+    let choices: Vec<String> = one
+        .conduct
+        .advice
+        .iter()
+        .map(|(weight, follow)| {
+            format!("{}: {}", expression(scenario, weight), if *follow { "follow" } else { "ignore" })
+        })
+        .collect();
+    (!choices.is_empty()).then(|| choices.join(" | "))
+}
+
+fn transition(scenario: &Scenario, states: &[String], transition: &Transition) -> String {
+    let when = match &transition.trigger {
+        Trigger::After(time) => format!("after {}", law(time, "s")),
+        Trigger::When(_) => "when its condition holds".to_owned(),
+    };
+    let name = |at: u32| states.get(at as usize).map_or("", String::as_str);
+    let targets: Vec<String> = match transition.targets.as_slice() {
+        [(_, only)] => vec![name(*only).to_owned()],
+        several => {
+            several.iter().map(|(w, at)| format!("{}: {}", expression(scenario, w), name(*at))).collect()
+        }
+    };
+    format!("{when} -> {}", targets.join(" | "))
+}
+
+/// An expression over processes and own parameters.
+fn expression(scenario: &Scenario, num: &Num) -> String {
+    let inner = |num: &Num| expression(scenario, num);
+    match num {
+        Num::Constant(value) => number(*value),
+        Num::Variable(id) => {
+            let (at, variables) = (id.0 as usize, &scenario.processes.variables);
+            match variables.get(at) {
+                Some(variable) => variable.name.clone(),
+                None => Parameter::ALL.get(at - variables.len()).map_or("", |own| own.name()).to_owned(),
+            }
+        }
+        Num::Combine(operator, a, b) => {
+            let sign = match operator {
+                Arithmetic::Add => "+",
+                Arithmetic::Subtract => "-",
+                Arithmetic::Multiply => "*",
+                Arithmetic::Divide => "/",
+                Arithmetic::Power => "^",
+                Arithmetic::Min => return format!("min({}, {})", inner(a), inner(b)),
+                Arithmetic::Max => return format!("max({}, {})", inner(a), inner(b)),
+                Arithmetic::Atan2 | Arithmetic::Modulo => return "…".to_owned(),
+            };
+            let side = |num: &Num| match num {
+                Num::Combine(..) => format!("({})", inner(num)),
+                num => inner(num),
+            };
+            format!("{} {sign} {}", side(a), side(b))
+        }
+        Num::Apply(Function::Negate, a) => format!("-{}", inner(a)),
+        _ => "…".to_owned(),
+    }
+}
+
+fn unit(parameter: Parameter) -> &'static str {
+    match parameter {
+        Parameter::Speed | Parameter::Noise => "m/s",
+        Parameter::Tau => "s",
+        Parameter::A | Parameter::A2 => "N",
+        Parameter::B | Parameter::B2 => "m",
+        Parameter::Lambda | Parameter::Lambda2 | Parameter::Attention => "",
+    }
+}
