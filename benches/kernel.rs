@@ -1,7 +1,8 @@
 //! Speed of the moving part: million agent-steps per second on one core, with noise, per-agent parameters
 //! and contact. The scenes are rebuilt bit for bit by `splitmix64`: corridor20 (20 m x 4 m, ten against
 //! ten), room200 (20 m x 20 m, both directions), open2000 and open20000 (one person a square metre, two
-//! streams, no walls), dense200 (four persons a square metre in a box).
+//! streams, no walls), dense200 (four persons a square metre in a box); walls-corridor20 and walls-open2000 are
+//! the same scenes with 5 000 pieces of wall beside them.
 //!
 //! `cargo bench --bench kernel -- [scene ...] [base|avx2|best] [lanes|cells] [own-b]`: best of several, each
 //! from the start. `own-b`: every agent has its own range of the social force too.
@@ -115,6 +116,18 @@ fn open(n: usize) -> Scene {
     let points = lattice(n, (0.0, 0.0), (side, side), 0.3, &mut rng);
     let walkers = by_coin(points, |at| (at.x + 60.0, at.x - 60.0), &mut rng);
     Scene { name: format!("open{n}"), walkers, walls: Vec::new(), steps: (2_000_000 / n).clamp(20, 400) }
+}
+
+/// Among as many pieces of wall as an imported building has, most of them far from everybody: a field of
+/// 5 000 beside the scene.
+fn among_walls(mut scene: Scene, far: f64) -> Scene {
+    let mut rng = SplitMix64(5);
+    for at in lattice(5_000, (far, 0.0), (far + 150.0, 100.0), 0.3, &mut rng) {
+        let end = at + Vec2::new(2.0 * rng.uniform() - 1.0, 2.0 * rng.uniform() - 1.0);
+        scene.walls.push(Segment::new(at, end));
+    }
+    scene.name.insert_str(0, "walls-");
+    scene
 }
 
 fn uniform(low: f64, high: f64) -> Law {
@@ -291,7 +304,16 @@ fn main() {
     let own_bs: &[bool] = if words.iter().any(|word| word == "own-b") { &[true] } else { &[false] };
     let is_option = |word: &str| level(word).is_some() || layout_of(word).is_some() || word == "own-b";
     let wanted: Vec<&String> = words.iter().filter(|word| !is_option(word)).collect();
-    let scenes = [corridor20(), room200(), dense200(), open(2_000), open(20_000), open(100_000)];
+    let scenes = [
+        corridor20(),
+        room200(),
+        dense200(),
+        open(2_000),
+        open(20_000),
+        open(100_000),
+        among_walls(corridor20(), 25.0),
+        among_walls(open(2_000), 80.0),
+    ];
     let mut out = std::io::stdout().lock();
     for scene in scenes {
         if !wanted.is_empty() && !wanted.iter().any(|name| scene.name.starts_with(name.as_str())) {

@@ -1,4 +1,4 @@
-//! Steps per second of small processes, through compiler, kernel, monitor and procedure, beside a plain
+//! Steps (and jumps) per second of small processes, through compiler, kernel, monitor and procedure, beside a plain
 //! hand-written loop of the same chain in the same run. One thread.
 //!
 //! `cargo bench --bench processes`
@@ -132,6 +132,43 @@ fn leader(random: &mut Fast) -> (u64, bool) {
     (8, false)
 }
 
+/// The tandem queue with room for five at each counter, from jump to jump.
+fn tandem(random: &mut Fast) -> (u64, bool) {
+    let (mut first, mut second_phase, mut second) = (0u8, false, 0u8);
+    let mut time = 0.0;
+    let mut jumps = 0;
+    loop {
+        if first == 5 && second_phase && second == 5 {
+            return (jumps, true);
+        }
+        let arrive = if first < 5 { 20.0 } else { 0.0 };
+        let again = if first > 0 && !second_phase { 0.2 } else { 0.0 };
+        let serve = match (first > 0 && second < 5, second_phase) {
+            (false, _) => 0.0,
+            (true, false) => 1.8,
+            (true, true) => 2.0,
+        };
+        let leave = if second > 0 { 4.0 } else { 0.0 };
+        let total = arrive + again + serve + leave;
+        let unit = |word: u64| ((word >> 11) as f64 + 0.5) * (1.0 / 9_007_199_254_740_992.0);
+        time -= unit(random.next()).ln() / total;
+        if time > 10.0 {
+            return (jumps, false);
+        }
+        jumps += 1;
+        let pick = unit(random.next()) * total;
+        if pick < arrive {
+            first += 1;
+        } else if pick < arrive + again {
+            second_phase = true;
+        } else if pick < arrive + again + serve {
+            (first, second_phase, second) = (first - 1, false, second + 1);
+        } else {
+            second -= 1;
+        }
+    }
+}
+
 fn main() {
     let repository = env!("CARGO_MANIFEST_DIR");
     let read = |name: &str| {
@@ -142,6 +179,8 @@ fn main() {
     line("die", run, plain(4_000_000, die));
     let run = ours(&read("leader"), &query("F<=#8 elected", 500_000));
     line("leader election", run, plain(4_000_000, leader));
+    let run = ours(&read("tandem"), &query("F<=10 s counter.full", 100_000));
+    line("tandem queue", run, plain(200_000, tandem));
     let (_, _, seconds) =
         ours(&read("die"), "estimate P(F<=#5 (die.s == 7 & die.d == 6)) within 0.01 confidence 95 %");
     println!("{:<28} {:>7.1} ms from text to result", "die, 0.01, 95 %", seconds * 1e3);

@@ -123,6 +123,58 @@ fn both_layouts_sum_the_plain_forces() {
     }
 }
 
+/// Barriers that nobody feels, of many sizes, between those of a scene.
+fn among_thousands(scene: &Crowd, rng: &mut Numbers) -> Crowd {
+    let mut crowded = crowd(scene.people.clone(), "0.01");
+    crowded.groups.clone_from(&scene.groups);
+    for obstacle in &scene.obstacles {
+        for _ in 0..1_000 {
+            let at = p(rng.between(40.0, 300.0), rng.between(-200.0, 300.0));
+            let size = rng.between(0.1, 20.0);
+            crowded.obstacles.push(wall(at, at + p(size, rng.between(-size, size))));
+        }
+        crowded.obstacles.push(obstacle.clone());
+    }
+    crowded
+}
+
+#[test]
+fn thousands_of_barriers_change_no_bit_of_the_forces_of_a_few() {
+    let mut rng = Numbers(5);
+    for round in 0..6 {
+        let kind = Kind { own_b: round & 1 > 0, second: false, ties: false };
+        let few = random(60, 11.0, kind, &mut rng);
+        let many = among_thousands(&few, &mut rng);
+        for layout in [Layout::Trials, Layout::Agents] {
+            let (mut one, mut other) = (few.start(layout), many.start(layout));
+            for _ in 0..5 {
+                for i in 0..60 {
+                    assert_eq!(one.force(i), other.force(i), "{layout:?}, agent {i}");
+                }
+                one.steps(4);
+                other.steps(4);
+            }
+        }
+    }
+}
+
+#[test]
+fn hundreds_of_near_barriers_sum_to_the_plain_forces() {
+    let mut rng = Numbers(6);
+    let mut scene = random(50, 10.0, Kind { own_b: true, second: false, ties: false }, &mut rng);
+    for _ in 0..300 {
+        let at = p(rng.between(-2.0, 12.0), rng.between(-2.0, 12.0));
+        scene.obstacles.push(wall(at, at + p(rng.between(-0.5, 0.5), rng.between(-0.5, 0.5))));
+    }
+    for layout in [Layout::Trials, Layout::Agents] {
+        let run = scene.start(layout);
+        for i in 0..50 {
+            let (found, wanted) = (run.force(i), plain(&scene, i));
+            assert!((found - wanted).norm() <= 1e-7 * wanted.norm() + 1e-9, "{layout:?}, agent {i}");
+        }
+    }
+}
+
 #[test]
 fn eight_different_trials_side_by_side_each_have_their_own_forces() {
     let mut rng = Numbers(8);

@@ -13,8 +13,9 @@ pub enum Clock {
     Steps,
     /// Steps of a fixed length in seconds, exact.
     Stepped(Decimal),
-    /// Continuous time: the state is constant between the jumps of processes with rates.
-    Jumps,
+    /// Continuous time: the state is constant between the jumps of processes with rates. Bounds and the
+    /// horizon are counted in ticks of so many seconds, exact; jumps may come at any time.
+    Jumps(Decimal),
 }
 
 impl Clock {
@@ -23,15 +24,20 @@ impl Clock {
         match self {
             Self::Steps => 1.0,
             Self::Stepped(step) => step.to_f64(),
-            Self::Jumps => 0.0,
+            Self::Jumps(_) => 0.0,
         }
+    }
+
+    /// Whether it is continuous time.
+    pub const fn is_jumps(self) -> bool {
+        matches!(self, Self::Jumps(_))
     }
 
     /// The tick at `time` seconds, or the two nearest ticks if none is exactly there.
     pub fn tick_at(self, time: Decimal) -> Result<Tick, (Tick, Tick)> {
         let ticks = match self {
-            Self::Stepped(step) => time.div(step),
-            Self::Steps | Self::Jumps => Some(time),
+            Self::Stepped(tick) | Self::Jumps(tick) => time.div(tick),
+            Self::Steps => Some(time),
         };
         let Some(ticks) = ticks else { return Err((Tick(0), Tick(u64::MAX))) };
         if ticks.is_negative() {
@@ -50,8 +56,10 @@ impl Clock {
     pub fn seconds(self, tick: Tick) -> f64 {
         match self {
             // Multiply before dividing: 3 steps of 1/3 s are exactly 1 s.
-            Self::Stepped(step) => tick.0 as f64 * step.numerator() as f64 / step.denominator() as f64,
-            Self::Steps | Self::Jumps => tick.0 as f64,
+            Self::Stepped(length) | Self::Jumps(length) => {
+                tick.0 as f64 * length.numerator() as f64 / length.denominator() as f64
+            }
+            Self::Steps => tick.0 as f64,
         }
     }
 }

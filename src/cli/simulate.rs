@@ -5,10 +5,14 @@ use super::inputs;
 use super::terminal::{Colors, say};
 use crate::base::geometry::Vec2;
 use crate::base::random::TrialKey;
+use crate::base::tick::{Clock, Tick};
 use crate::compile::nearest::nearest;
-use crate::data::table::{Row, write_csv, write_json, write_json_lines};
+use crate::data::table::{
+    Held, Row, StateRow, write_csv, write_json, write_json_lines, write_states_csv, write_states_json,
+    write_states_json_lines,
+};
 use crate::kernel::{Program, Scratch, Slot, State, dynamics, start};
-use crate::model::Scenario;
+use crate::model::{Domain, Scenario};
 use crate::report::ExitCode as Exit;
 use std::io::{BufWriter, Write};
 use std::sync::Arc;
@@ -35,6 +39,8 @@ struct Walk<'p> {
     trial: u64,
     agent: usize,
     running: bool,
+    /// Jumps since the start of the trial, in continuous time.
+    jumps: u64,
     /// Trials that ended before their time.
     notes: Vec<String>,
 }
@@ -51,6 +57,7 @@ impl<'p> Walk<'p> {
             trial: arguments.trial,
             agent: 0,
             running: false,
+            jumps: 0,
             notes: Vec::new(),
         }
     }
@@ -68,6 +75,7 @@ impl<'p> Walk<'p> {
                         let lanes = crate::base::lanes::Mask::lane(0);
                         dynamics::refresh(self.program, &mut self.state, &mut self.scratch, lanes);
                         self.running = true;
+                        self.jumps = 0;
                         return true;
                     }
                     Err(fault) => {
@@ -78,6 +86,21 @@ impl<'p> Walk<'p> {
                 }
             }
             let tick = self.state.ticks[0];
+            let clock = self.program.scenario.clock;
+            if clock.is_jumps() && self.state.faulty.is_empty() {
+                let jumped = dynamics::jump(self.program, &mut self.state, &mut self.scratch);
+                let end = clock.seconds(Tick(self.last));
+                if !jumped.is_empty() && self.state.faulty.is_empty() && self.state.clocks.now[0] <= end {
+                    self.jumps += 1;
+                    if self.jumps.is_multiple_of(self.arguments.every.max(1)) {
+                        return true;
+                    }
+                } else if self.state.faulty.is_empty() {
+                    self.running = false;
+                    self.trial += 1;
+                }
+                continue;
+            }
             if let Some(fault) = self.state.faults[0].filter(|_| !self.state.faulty.is_empty()) {
                 let what = fault.describe(&self.program.scenario);
                 self.notes.push(format!("trial {} ends in an error of the model: {what}", self.trial));
@@ -94,7 +117,7 @@ impl<'p> Walk<'p> {
             }
             if tick >= self.last || !self.state.diverged.is_empty() {
                 if !self.state.diverged.is_empty() {
-                    let time = self.program.scenario.clock.seconds(crate::base::tick::Tick(tick));
+                    let time = self.program.scenario.clock.seconds(Tick(tick));
                     self.notes.push(format!(
                         "trial {} diverged at {time} s: somebody left every human speed; a smaller step may help",
                         self.trial
@@ -109,6 +132,26 @@ impl<'p> Walk<'p> {
                 return true;
             }
         }
+    }
+}
+
+impl Walk<'_> {
+    /// Seconds since the start of the trial (steps where steps have no length).
+    fn time(&self) -> f64 {
+        match self.program.scenario.clock {
+            Clock::Jumps(_) => self.state.clocks.now[0],
+            clock => clock.seconds(Tick(self.state.ticks[0])),
+        }
+    }
+
+    /// The present state, where there are no people.
+    fn state_row(&self) -> StateRow {
+        let variables = self.program.scenario.processes.variables.iter().zip(&self.state.variables);
+        let values = variables.map(|(variable, lanes)| match variable.domain {
+            Domain::Truth => Held::Truth(lanes.0[0] != 0.0),
+            _ => Held::Number(lanes.0[0]),
+        });
+        StateRow { time: self.time(), trial: self.trial, values: values.collect() }
     }
 }
 
@@ -130,7 +173,7 @@ impl<'p> Iterator for Walk<'p> {
         };
         let at = |field: &[crate::base::lanes::Lanes]| field[slot.block].0[slot.lane];
         let record = Record {
-            time: self.program.scenario.clock.seconds(crate::base::tick::Tick(self.state.ticks[0])),
+            time: self.time(),
             trial: self.trial,
             agent: self.agent,
             position: Vec2::new(at(&self.state.x), at(&self.state.y)),
@@ -206,7 +249,11 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
             say("error: `--until` takes a time in seconds\n");
             return Exit::Wrong;
         }
-        last = last.min((until / scenario.clock.step_seconds()).round() as u64);
+        // The longest time that is a whole number of ticks, in continuous time of very short ones.
+        last = last.min(match scenario.clock {
+            Clock::Jumps(tick) => (until / tick.to_f64()).floor() as u64,
+            clock => (until / clock.step_seconds()).round() as u64,
+        });
     }
     let program = Program::new(scenario.clone());
     let mut walk = Walk::new(&program, arguments, advice, last);
@@ -239,6 +286,15 @@ fn write(
     scenario: &Scenario,
     walk: &mut Walk<'_>,
 ) -> std::io::Result<u64> {
+    if scenario.agents.is_empty() {
+        let names: Vec<&str> = scenario.processes.variables.iter().map(|v| v.name.as_str()).collect();
+        let rows = std::iter::from_fn(|| walk.advance().then(|| walk.state_row()));
+        return match format {
+            TableFormat::Csv => write_states_csv(out, &names, rows),
+            TableFormat::Json => write_states_json(out, &names, rows),
+            TableFormat::Jsonl => write_states_json_lines(out, &names, rows),
+        };
+    }
     let rows = walk.map(|record| Row {
         time: record.time,
         trial: record.trial,

@@ -8,6 +8,7 @@ use super::process::Declared;
 use super::study::Texts;
 use super::symbols::{Scope, ScopeId};
 use super::typed::Typed;
+use crate::base::decimal::Decimal;
 use crate::base::geometry::{Shape, Vec2};
 use crate::base::tick::{Clock, Tick};
 use crate::data::tracks::Recording;
@@ -84,6 +85,10 @@ pub(super) struct Elaborator<'a> {
     pub(super) clock: Clock,
     /// Last tick.
     pub(super) horizon: Tick,
+    /// Times that ticks of continuous time measure, as far as they can.
+    pub(super) measured: Vec<Decimal>,
+    /// Times that ticks of continuous time would have to measure too.
+    pub(super) between: Vec<Decimal>,
     /// Whether formulas over time are allowed at present.
     pub(super) temporal: bool,
     /// What is observed.
@@ -126,6 +131,8 @@ impl<'a> Elaborator<'a> {
             passing: BTreeSet::new(),
             clock: Clock::Steps,
             horizon: Tick(0),
+            measured: Vec::new(),
+            between: Vec::new(),
             temporal: false,
             tree: Tree::default(),
             atoms: Vec::new(),

@@ -7,7 +7,7 @@ use super::study::{Column, MeasureKind, Root, Sought};
 use super::symbols::{Meaning, ScopeId};
 use super::typed::Typed;
 use crate::base::tick::Clock;
-use crate::logic::{Node, NodeId, Relation, Term, TermId};
+use crate::logic::{Invalid, Node, NodeId, Relation, SignalMonitor, Term, TermId};
 use crate::syntax::ast::{self, BinaryOp, Expr, ExprKind, Moment};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -39,6 +39,7 @@ impl Elaborator<'_> {
             _ => body.span,
         };
         self.within_horizon(reach, place)?;
+        self.watchable(Root::Formula(node), place)?;
         if let Node::Constant(value) = self.tree.nodes[node.0 as usize] {
             let warning = Diagnostic::warning("W0501", place, format!("this is always {value}"))
                 .hint("it does not depend on what happens in a trial");
@@ -77,6 +78,7 @@ impl Elaborator<'_> {
         }
         let reach = Reaches::new(&self.tree, self.horizon).term(term);
         self.within_horizon(reach, body.span)?;
+        self.watchable(Root::Metric(term), body.span)?;
         Ok((term, dimension, reach.unbounded))
     }
 
@@ -107,6 +109,15 @@ impl Elaborator<'_> {
 
     /// A formula with its margins.
     fn robustness_of(&mut self, formula: &Expr, scope: ScopeId) -> Lowered<(NodeId, Dimension, bool)> {
+        if self.clock.is_jumps() {
+            let error = Diagnostic::error(
+                "E0508",
+                formula.span,
+                "the robustness of a formula is known on clocks with steps only",
+            )
+            .hint("give the scenario a `step`; rates and delays are then seen at the steps");
+            return self.report(error);
+        }
         let (node, dimension) = self.robustness(formula.span, |this| {
             this.temporal = true;
             let typed = this.lower(formula, &Locals::of(scope));
@@ -245,6 +256,25 @@ impl Elaborator<'_> {
         Column { root: Root::Formula(node), text: column.text.clone() }
     }
 
+    /// Whether there is a monitor for it in continuous time.
+    fn watchable(&mut self, root: Root, span: Span) -> Lowered<()> {
+        // Bounds between ticks are not right yet.
+        let (Clock::Jumps(tick), true) = (self.clock, self.between.is_empty()) else { return Ok(()) };
+        let made = match root {
+            Root::Formula(node) => SignalMonitor::formula(&self.tree, node, self.horizon, tick),
+            Root::Metric(term) => SignalMonitor::metric(&self.tree, term, self.horizon, tick),
+            // Refused before it gets here.
+            Root::Robustness(..) => return Err(super::elaborator::Reported),
+        };
+        match made {
+            Ok(_) => Ok(()),
+            Err(reason @ Invalid::BeyondHorizon { .. }) => {
+                self.report(Diagnostic::error("E0502", span, reason.to_string()))
+            }
+            Err(reason) => self.report(Diagnostic::error("E0508", span, reason.to_string())),
+        }
+    }
+
     fn within_horizon(&mut self, reach: Reach, span: Span) -> Lowered<()> {
         if reach.ticks <= self.horizon.0 {
             return Ok(());
@@ -266,11 +296,11 @@ impl Elaborator<'_> {
     /// A number of ticks in words.
     pub(super) fn duration(&self, ticks: u64) -> String {
         match self.clock {
-            Clock::Stepped(_) => {
+            Clock::Stepped(_) | Clock::Jumps(_) => {
                 let seconds = self.clock.seconds(crate::base::tick::Tick(ticks));
                 format!("{} s", (seconds * 1e9).round() / 1e9)
             }
-            _ => format!("{ticks} steps"),
+            Clock::Steps => format!("{ticks} steps"),
         }
     }
 }

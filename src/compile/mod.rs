@@ -15,6 +15,7 @@ mod lower;
 pub mod margin;
 mod measures;
 pub mod methods;
+mod moments;
 pub mod nearest;
 mod number;
 mod people;

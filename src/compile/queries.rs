@@ -8,6 +8,7 @@ use super::number::Number;
 use super::settings::Setting;
 use super::study::{Ask, Column, Estimator, Measure, MeasureKind, Query, Study, Target, World};
 use super::symbols::ScopeId;
+use crate::base::decimal::Decimal;
 use crate::model::Scenario;
 use crate::syntax::ast::{self, Binding, Clauses, Expr, PropertyFile, PropertyItem, QueryKind, ScenarioFile};
 use crate::syntax::diagnostic::{Diagnostic, Severity};
@@ -42,13 +43,30 @@ pub(super) struct Compiler<'a> {
     pub(super) sites: Vec<Site<'a>>,
     queries: Vec<Query>,
     next_index: usize,
+    /// Times that ticks of continuous time must measure.
+    measured: Vec<Decimal>,
 }
 
 /// Compiles a scenario and property files. All errors are returned at once; a study only where there is none.
 pub fn compile(input: &Input<'_>) -> (Option<Study>, Vec<Diagnostic>) {
-    let mut compiler = Compiler { input, sites: Vec::new(), queries: Vec::new(), next_index: 0 };
-    compiler.run();
-    compiler.finish()
+    let mut measured: Vec<Decimal> = Vec::new();
+    loop {
+        let mut compiler = Compiler {
+            input,
+            sites: Vec::new(),
+            queries: Vec::new(),
+            next_index: 0,
+            measured: measured.clone(),
+        };
+        compiler.run();
+        // Bounds in continuous time that fall between its ticks: once more, with finer ticks.
+        let between = compiler.sites.iter().flat_map(|site| &site.elaborator.between);
+        let more: Vec<Decimal> = between.filter(|time| !measured.contains(time)).copied().collect();
+        if more.is_empty() {
+            return compiler.finish();
+        }
+        measured.extend(more);
+    }
 }
 
 impl<'a> Compiler<'a> {
@@ -111,6 +129,7 @@ impl<'a> Compiler<'a> {
             self.input.properties,
             self.input.files,
             settings.clone(),
+            &self.measured,
         );
         self.sites.push(Site { settings, elaborator, scenario, columns: Vec::new() });
         self.sites.len() - 1

@@ -3,10 +3,12 @@
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::files::Files;
+use super::moments;
 use super::number::Number;
 use super::people::People;
 use super::process::Declared;
 use super::symbols::Meaning;
+use crate::base::decimal::Decimal;
 use crate::base::tick::{Clock, Tick};
 use crate::model::{BehaviourId, Moves, Scenario};
 use crate::syntax::ast::{Item, PropertyFile, PropertyItem, ScenarioFile};
@@ -25,8 +27,10 @@ impl<'a> Elaborator<'a> {
         properties: &'a [PropertyFile],
         files: &Files,
         settings: BTreeMap<String, Number>,
+        measured: &[Decimal],
     ) -> (Self, Option<Scenario>) {
         let mut this = Self::new(sources, settings);
+        this.measured = measured.to_vec();
         this.declare(scenario);
         this.declare_properties(properties);
         let built = this.build(scenario, files).ok();
@@ -271,8 +275,11 @@ impl<'a> Elaborator<'a> {
             missing(self, "horizon", "30 s");
         }
         if free {
-            self.clock = if Self::has_timing(file) { Clock::Jumps } else { Clock::Steps };
+            self.clock = Clock::Steps;
             let Some((horizon, _)) = horizon else { return Err(Reported) };
+            if Self::has_timing(file) {
+                return self.settle_continuous(horizon, failed);
+            }
             return self.settle_horizon(horizon, failed);
         }
         let (Some((horizon, _)), Some((step, _))) = (horizon, step) else { return Err(Reported) };
@@ -286,6 +293,25 @@ impl<'a> Elaborator<'a> {
         };
         self.clock = Clock::Stepped(exact);
         self.settle_horizon(horizon, failed)
+    }
+
+    /// Continuous time up to a horizon.
+    fn settle_continuous(&mut self, horizon: &crate::syntax::ast::Expr, failed: bool) -> Lowered<()> {
+        let end = self.number_of(horizon, Dimension::TIME, &Locals::of(0))?;
+        if end.value <= 0.0 {
+            return self.report(Diagnostic::error(
+                "E0505",
+                horizon.span,
+                "the horizon must be later than the start",
+            ));
+        }
+        let tick = moments::tick(end.exact, end.value, &self.measured);
+        let Some((tick, last)) = tick.and_then(|(tick, end)| Some((tick, end.div(tick)?.as_whole()?))) else {
+            return self.report(Diagnostic::error("E0501", horizon.span, "this time is out of range"));
+        };
+        self.clock = Clock::Jumps(tick);
+        self.horizon = Tick(last as u64);
+        if failed { Err(Reported) } else { Ok(()) }
     }
 
     fn settle_horizon(&mut self, horizon: &crate::syntax::ast::Expr, failed: bool) -> Lowered<()> {

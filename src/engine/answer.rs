@@ -167,9 +167,8 @@ impl Answers<'_> {
         result.clipped = tally.clipped;
         result.shrunk = tally.shrunk;
         if tally.counts.trials > 0
-            && let Ok(monitor) = subject.monitor(column)
+            && let Ok(implications) = subject.implications(column)
         {
-            let implications = monitor.antecedents().count();
             let idle = (0..implications.min(64)).filter(|k| tally.triggered >> k & 1 == 0).count();
             if idle > 0 {
                 let which = if implications == 1 {

@@ -116,7 +116,7 @@ impl<'s> Contrast<'s> {
             }
         }
         let seconds: f64 =
-            (0..2).map(|side| sides[side].seconds_per_trial(self.jobs[side].subject.horizon.0)).sum();
+            (0..2).map(|side| sides[side].seconds_per_trial(self.jobs[side].subject.most_steps())).sum();
         let width = self.range.map_or(1.0, |(low, high)| high - low);
         let pairs = match self.within {
             Some(within) => forecast::contrast(&glimpse, width, within, self.delta),

@@ -5,8 +5,9 @@
 
 use super::budget::Budget;
 use super::cell::{Cell, Item};
+use super::runner::Runner;
 use super::subject::Subject;
-use super::worker::{Finished, Worker};
+use super::worker::Finished;
 use crate::logic::Invalid;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
@@ -68,7 +69,7 @@ pub struct Job<'s> {
     pub columns: Vec<usize>,
     /// Seed of all random numbers.
     pub seed: u64,
-    workers: Mutex<Vec<Worker>>,
+    workers: Mutex<Vec<Runner>>,
     /// Steps made so far, of all trials, consumed or not.
     pub steps: AtomicU64,
 }
@@ -87,16 +88,16 @@ impl<'s> Job<'s> {
         }
     }
 
-    fn worker(&self) -> Result<Worker, Invalid> {
+    fn worker(&self) -> Result<Runner, Invalid> {
         let warm = self.workers.lock().ok().and_then(|mut list| list.pop());
         match warm {
             Some(worker) if worker.serves(&self.columns) => Ok(worker),
-            _ => Worker::new(self.subject, &self.columns),
+            _ => Runner::new(self.subject, &self.columns),
         }
     }
 
-    fn keep(&self, mut worker: Worker) {
-        self.steps.fetch_add(std::mem::take(&mut worker.steps), Ordering::Relaxed);
+    fn keep(&self, mut worker: Runner) {
+        self.steps.fetch_add(worker.take_steps(), Ordering::Relaxed);
         if let Ok(mut list) = self.workers.lock() {
             list.push(worker);
         }

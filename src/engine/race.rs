@@ -230,7 +230,7 @@ impl<'s> Contest<'s> {
         let most = (arms as u64).saturating_mul(budget.max_trials);
         let trials = forecast::race(&glimpses, &differences, self.scale(), self.field.rule);
         let trials = trials.max(rehearsal.items.len() as u64).min(most);
-        let seconds = rehearsal.seconds_per_trial(self.job.subject.horizon.0);
+        let seconds = rehearsal.seconds_per_trial(self.job.subject.most_steps());
         self.ahead = (affordable && rehearsal.is_complete()).then_some(rehearsal);
         Ok(Forecast {
             query: self.query.text.clone(),

@@ -48,13 +48,15 @@ impl Rehearsal {
         self.cells.rows().flatten()
     }
 
-    /// Seconds a trial takes, all threads at work. Where none finished, a trial takes all steps to the horizon.
-    pub(super) fn seconds_per_trial(&self, horizon: u64) -> f64 {
+    /// Seconds a trial takes, all threads at work. Where none finished, a trial takes all steps to the horizon; where
+    /// that is not known, twice as many as were made so far.
+    pub(super) fn seconds_per_trial(&self, horizon: Option<u64>) -> f64 {
         let finished = self.rows().count();
         if finished == self.items.len() {
             return self.seconds / finished.max(1) as f64;
         }
         let longest = |row: &[Cell]| row.iter().map(|cell| cell.steps).max().unwrap_or(0) as f64;
+        let horizon = horizon.unwrap_or_else(|| 2 * self.steps / self.items.len().max(1) as u64);
         let steps = if finished == 0 {
             horizon.max(1) as f64
         } else {

@@ -1,10 +1,11 @@
 //! A world made ready to run: a program of the kernel and what is observed in it.
 
 use super::observer::Observer;
-use crate::base::tick::Tick;
+use crate::base::tick::{Clock, Tick};
 use crate::compile::study::{Root, Texts, World};
+use crate::kernel::process::View;
 use crate::kernel::{Code, Program};
-use crate::logic::{Invalid, Monitor, Node, NodeId, Robustness, Term, TermId, Tree};
+use crate::logic::{Invalid, Monitor, Node, NodeId, Robustness, SignalMonitor, Term, TermId, Tree};
 use crate::model::{Bool, Num};
 
 /// A world made ready to run.
@@ -49,6 +50,11 @@ impl Subject {
         }
     }
 
+    /// Steps to the horizon; `None` in continuous time, where nobody knows how many jumps come.
+    pub(super) fn most_steps(&self) -> Option<u64> {
+        (!self.program.scenario.clock.is_jumps()).then_some(self.horizon.0)
+    }
+
     /// Truth values observed in each state.
     pub fn atoms(&self) -> &[Bool] {
         &self.atoms
@@ -90,19 +96,45 @@ impl Subject {
         }
     }
 
+    /// Number of the implications of a column that are watched.
+    pub(super) fn implications(&self, column: usize) -> Result<usize, Invalid> {
+        if self.program.scenario.clock.is_jumps() {
+            return Ok(self.signal_monitor(column)?.implications());
+        }
+        Ok(self.monitor(column)?.antecedents().count())
+    }
+
+    /// A monitor of a column in continuous time.
+    pub fn signal_monitor(&self, column: usize) -> Result<SignalMonitor, Invalid> {
+        let Clock::Jumps(tick) = self.program.scenario.clock else { return Err(Invalid::NoSteps) };
+        match self.columns[column] {
+            Root::Formula(node) => SignalMonitor::formula(&self.tree, node, self.horizon, tick),
+            Root::Metric(term) => SignalMonitor::metric(&self.tree, term, self.horizon, tick),
+            Root::Robustness(..) => Err(Invalid::NoMargin),
+        }
+    }
+
+    /// A look at what some columns use in continuous time; what they do not use reads as a constant.
+    pub fn view(&self, columns: &[usize]) -> View {
+        let (atoms, signals) = self.observed(columns);
+        View::new(&self.program.scenario, &atoms, &signals)
+    }
+
     /// Code that reads what some columns use; what they do not use reads as a constant.
     pub fn code(&self, columns: &[usize]) -> Code {
-        let mut used = Used {
-            tree: &self.tree,
-            atoms: vec![false; self.atoms.len()],
-            signals: vec![false; self.signals.len()],
-        };
-        for &column in columns {
-            match self.columns[column] {
-                Root::Formula(node) | Root::Robustness(node, _) => used.node(node),
-                Root::Metric(term) => used.term(term),
-            }
-        }
+        let (atoms, signals) = self.observed(columns);
+        Code::compile(&self.program.scenario, &atoms, &signals)
+    }
+
+    /// The numbers of the atoms that a column uses.
+    pub(super) fn atoms_of(&self, column: usize) -> Vec<usize> {
+        let used = self.used(&[column]);
+        (0..self.atoms.len()).filter(|&k| used.atoms[k]).collect()
+    }
+
+    /// The atoms and signals that some columns use, others as constants.
+    fn observed(&self, columns: &[usize]) -> (Vec<Bool>, Vec<Num>) {
+        let used = self.used(columns);
         let atoms: Vec<Bool> = self
             .atoms
             .iter()
@@ -115,7 +147,22 @@ impl Subject {
             .zip(&used.signals)
             .map(|(signal, used)| if *used { signal.clone() } else { Num::Constant(0.0) })
             .collect();
-        Code::compile(&self.program.scenario, &atoms, &signals)
+        (atoms, signals)
+    }
+
+    fn used(&self, columns: &[usize]) -> Used<'_> {
+        let mut used = Used {
+            tree: &self.tree,
+            atoms: vec![false; self.atoms.len()],
+            signals: vec![false; self.signals.len()],
+        };
+        for &column in columns {
+            match self.columns[column] {
+                Root::Formula(node) | Root::Robustness(node, _) => used.node(node),
+                Root::Metric(term) => used.term(term),
+            }
+        }
+        used
     }
 
     /// Sheets for some columns.

@@ -67,7 +67,7 @@ impl<'q> Survey<'q> {
         let width = executor.width(&self.job) as u64;
         let size = width.min(round(&self.inquiries, 0, width, budget));
         let rehearsal = Rehearsal::run(&self.job, Item::run(0, size), executor, budget)?;
-        let seconds = rehearsal.seconds_per_trial(self.job.subject.horizon.0);
+        let seconds = rehearsal.seconds_per_trial(self.job.subject.most_steps());
         let forecast = |inquiry: &Inquiry<'_>| {
             let mut glimpse = Glimpse::default();
             let range = inquiry.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));

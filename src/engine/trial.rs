@@ -19,14 +19,18 @@ pub(super) fn fault(subject: &Subject, item: Item, seed: u64) -> Fault {
         return Fault::Unsuitable;
     }
     dynamics::refresh(program, &mut state, &mut scratch, Mask::lane(0));
-    while state.faulty.is_empty() && state.ticks[0] < subject.horizon.0 {
+    if scenario.clock.is_jumps() {
+        while state.faulty.is_empty() && !dynamics::jump(program, &mut state, &mut scratch).is_empty() {}
+    }
+    while state.faulty.is_empty() && !scenario.clock.is_jumps() && state.ticks[0] < subject.horizon.0 {
         dynamics::step(program, &mut state, &mut scratch);
     }
     let Some(fault) = state.faults[0] else { return Fault::Unsuitable };
     let before = Tick(state.ticks[0].saturating_sub(1));
     let time = match scenario.clock {
         Clock::Steps => format!("step {}", before.0),
-        clock => format!("{} s", clock.seconds(before)),
+        Clock::Stepped(_) => format!("{} s", scenario.clock.seconds(before)),
+        Clock::Jumps(_) => format!("{} s", state.clocks.now[0]),
     };
     let what = fault.describe(scenario);
     let values = process::Fault::state(&scenario.processes, |k| state.variables[k].0[0]);

@@ -3,6 +3,7 @@
 
 use super::blame;
 use super::outcome::{Shows, Witness};
+use super::recall;
 use super::session::Call;
 use super::subject::Subject;
 use super::tally::Tally;
@@ -54,6 +55,20 @@ fn witness(
         return None;
     }
     let program = &subject.program;
+    let unit = if program.scenario.clock == Clock::Steps { "steps" } else { "s" };
+    let mut command = call.simulate.clone();
+    for (name, value) in settings {
+        command.push_str(&format!(" --set '{name}={value}'"));
+    }
+    command.push_str(&format!(" --seed {} --trial {trial}", call.seed));
+    if let Some((declaration, option)) = advice {
+        let label = &program.scenario.moves.get(declaration)?.options.get(option)?.0;
+        command.push_str(&format!(" --move '{label}'"));
+    }
+    if program.scenario.clock.is_jumps() {
+        let (time, value, what) = recall::decision(subject, column, trial, call.seed, dimension)?;
+        return Some(Witness { shows, trial, value, time, unit, what, command });
+    }
     let code = subject.code(&[column]);
     let mut monitor = subject.monitor(column).ok()?;
     let mut state = State::new(program.layout, program.scenario.agents.len());
@@ -97,16 +112,6 @@ fn witness(
         }
     };
     let time = program.scenario.clock.seconds(at);
-    let mut command = call.simulate.clone();
-    for (name, value) in settings {
-        command.push_str(&format!(" --set '{name}={value}'"));
-    }
-    command.push_str(&format!(" --seed {} --trial {trial}", call.seed));
-    if let Some((declaration, option)) = advice {
-        let label = &program.scenario.moves.get(declaration)?.options.get(option)?.0;
-        command.push_str(&format!(" --move '{label}'"));
-    }
-    let unit = if program.scenario.clock == Clock::Steps { "steps" } else { "s" };
     Some(Witness { shows, trial, value, time, unit, what, command })
 }
 

@@ -48,7 +48,7 @@ pub(super) struct Finished {
 }
 
 impl Finished {
-    fn push(&mut self, place: usize, cells: &[Cell]) {
+    pub(super) fn push(&mut self, place: usize, cells: &[Cell]) {
         self.places.push(place);
         self.cells.extend_from_slice(cells);
     }

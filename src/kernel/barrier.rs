@@ -4,44 +4,17 @@
 //! counts once, and an end repels along the line to that end. Inside a solid the normal points out.
 //! Given-Wilson et al. 2017, equations (5) and (6), with `d_ib` the distance from the centre of the body.
 
-use super::vector::{Doubles, Part, Truths, larger, smaller};
-use crate::base::geometry::{Bounds, Segment, Shape, Vec2};
-use crate::base::lanes::Mask;
+use super::edges::{Edges, squared_distance};
+use super::vector::{Doubles, Part};
+use crate::base::geometry::{Bounds, Shape, Vec2};
 use crate::model::{Barrier, Obstacle};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
-/// A straight piece of a surface.
-#[derive(Clone, Copy, Debug)]
-struct Edge {
-    a: Vec2,
-    along: Vec2,
-    /// One over the squared length; 0 for a point.
-    inverse_square: f64,
-    /// Ordinate of the other end.
-    end_y: f64,
-    /// Abscissa gained per ordinate, for the crossing test.
-    slope: f64,
-}
-
-impl Edge {
-    fn new(segment: Segment) -> Self {
-        let along = segment.b - segment.a;
-        let square = along.dot(&along);
-        Self {
-            a: segment.a,
-            along,
-            inverse_square: if square > 0.0 { 1.0 / square } else { 0.0 },
-            end_y: segment.b.y,
-            slope: if along.y == 0.0 { 0.0 } else { along.x / along.y },
-        }
-    }
-}
-
 #[derive(Clone, Debug)]
 enum Form {
-    Wall(Vec<Edge>),
-    Polygon(Vec<Edge>),
+    Wall(Edges),
+    Polygon(Edges),
     Disc { centre: Vec2, radius: f64 },
 }
 
@@ -68,14 +41,14 @@ impl Surface {
     pub(super) fn new(barrier: &Barrier) -> Option<Self> {
         let (form, bounds) = match &barrier.obstacle {
             Obstacle::Wall(segments) => (
-                Form::Wall(segments.iter().copied().map(Edge::new).collect()),
+                Form::Wall(Edges::new(segments.iter().copied())),
                 Bounds::around(segments.iter().flat_map(|s| [s.a, s.b]))?,
             ),
             Obstacle::Solid(shape @ Shape::Circle { centre, radius }) => {
                 (Form::Disc { centre: *centre, radius: *radius }, shape.bounds())
             }
             Obstacle::Solid(Shape::Polygon(polygon)) => (
-                Form::Polygon(polygon.segments().map(Edge::new).collect()),
+                Form::Polygon(Edges::new(polygon.segments())),
                 Bounds::around(polygon.segments().map(|s| s.a))?,
             ),
         };
@@ -90,15 +63,7 @@ impl Surface {
         x: Doubles<S>,
         y: Doubles<S>,
     ) -> Doubles<S> {
-        let beside = larger::<S>(
-            larger::<S>(part.c(self.bounds.low.x) - x, x - part.c(self.bounds.high.x)),
-            part.c(0.0),
-        );
-        let above = larger::<S>(
-            larger::<S>(part.c(self.bounds.low.y) - y, y - part.c(self.bounds.high.y)),
-            part.c(0.0),
-        );
-        beside * beside + above * above
+        squared_distance(part, &self.bounds, x, y)
     }
 
     /// The nearest points to eight places.
@@ -114,15 +79,15 @@ impl Surface {
                 Nearest { nx: dx * q, ny: dy * q, distance: d - part.c(*radius) }
             }
             Form::Wall(edges) => {
-                let (dx, dy) = nearest_edge(part, edges, x, y);
+                let (dx, dy) = edges.nearest(part, x, y);
                 let d = (dx * dx + dy * dy + tiny).sqrt();
                 let q = part.c(1.0) / d;
                 Nearest { nx: dx * q, ny: dy * q, distance: d }
             }
             Form::Polygon(edges) => {
-                let (dx, dy) = nearest_edge(part, edges, x, y);
+                let (dx, dy) = edges.nearest(part, x, y);
                 let d = (dx * dx + dy * dy + tiny).sqrt();
-                let inside = inside(part, edges, x, y);
+                let inside = edges.inside(part, x, y);
                 let sign = inside.select(part.c(-1.0), part.c(1.0));
                 let q = sign / d;
                 Nearest { nx: dx * q, ny: dy * q, distance: sign * d }
@@ -141,77 +106,20 @@ impl Surface {
                 let (n, distance) = normal(p - centre);
                 (n, distance - radius)
             }
-            Form::Wall(edges) => normal(from_edges(edges, p)),
+            Form::Wall(edges) => normal(edges.nearest_to(p)),
             Form::Polygon(edges) => {
-                let (n, distance) = normal(from_edges(edges, p));
-                let mut inside = false;
-                for e in edges {
-                    if (e.a.y > p.y) != (e.end_y > p.y) && p.x < e.a.x + (p.y - e.a.y) * e.slope {
-                        inside = !inside;
-                    }
-                }
-                if inside { (-n, -distance) } else { (n, distance) }
+                let (n, distance) = normal(edges.nearest_to(p));
+                if edges.surround(p) { (-n, -distance) } else { (n, distance) }
             }
         }
     }
-}
-
-/// Vector from the nearest point of the edges.
-#[inline(always)]
-fn nearest_edge<S: Simd>(
-    part: Part<S>,
-    edges: &[Edge],
-    x: Doubles<S>,
-    y: Doubles<S>,
-) -> (Doubles<S>, Doubles<S>) {
-    let (mut best, mut bx, mut by) = (part.c(f64::INFINITY), part.c(0.0), part.c(0.0));
-    for e in edges {
-        let (px, py) = (x - part.c(e.a.x), y - part.c(e.a.y));
-        let share = (px * part.c(e.along.x) + py * part.c(e.along.y)) * part.c(e.inverse_square);
-        let share = smaller::<S>(larger::<S>(share, part.c(0.0)), part.c(1.0));
-        let (dx, dy) = (px - share * part.c(e.along.x), py - share * part.c(e.along.y));
-        let square = dx * dx + dy * dy;
-        let closer = square.simd_lt(best);
-        best = closer.select(square, best);
-        bx = closer.select(dx, bx);
-        by = closer.select(dy, by);
-    }
-    (bx, by)
-}
-
-/// Even-odd rule over all edges, so that the holes of a polygon are outside.
-#[inline(always)]
-fn inside<S: Simd>(part: Part<S>, edges: &[Edge], x: Doubles<S>, y: Doubles<S>) -> Truths<S> {
-    let mut inside = part.mask(Mask::NONE);
-    for e in edges {
-        let straddles = part.c(e.a.y).simd_gt(y) ^ part.c(e.end_y).simd_gt(y);
-        let left = x.simd_lt(part.c(e.a.x) + (y - part.c(e.a.y)) * part.c(e.slope));
-        inside ^= straddles & left;
-    }
-    inside
-}
-
-fn from_edges(edges: &[Edge], p: Vec2) -> Vec2 {
-    let mut best = (f64::INFINITY, Vec2::zeros());
-    for e in edges {
-        let from = p - e.a;
-        let share = from.dot(&e.along) * e.inverse_square;
-        let share = if share > 0.0 { share } else { 0.0 };
-        let share = if share < 1.0 { share } else { 1.0 };
-        let d = from - e.along * share;
-        let square = d.dot(&d);
-        if square < best.0 {
-            best = (square, d);
-        }
-    }
-    best.1
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::vector::parts;
     use super::*;
-    use crate::base::geometry::Polygon;
+    use crate::base::geometry::{Polygon, Segment};
     use crate::base::lanes::Lanes;
     use fearless_simd::{Level, dispatch};
 

@@ -135,6 +135,12 @@ pub fn step(program: &Program, state: &mut State, scratch: &mut Scratch) {
     dispatch!(scratch.level, simd => finish(simd, program, state, scratch));
 }
 
+/// Continuous time: every occupied lane goes to its next jump, if that comes up to and with the horizon. Returns
+/// the lanes that did; the times are in `state.clocks`. In others nothing more happens.
+pub fn jump(program: &Program, state: &mut State, scratch: &mut Scratch) -> Mask {
+    program.processes.jump(program.layout, state, &mut scratch.processes)
+}
+
 /// The slots of a block that belong to some lanes.
 fn slots(layout: Layout, lanes: Mask) -> Mask {
     match layout {

@@ -9,6 +9,7 @@
 //! compression, which is contact (and counted once).
 
 use super::barrier::Surface;
+use super::nearby::Nearby;
 use super::noise;
 use crate::model::{Body, Law, Parameter, Scenario};
 
@@ -40,6 +41,8 @@ pub(super) struct Cohesion {
 pub struct Forces {
     /// Walls and obstacles.
     pub(super) surfaces: Vec<Surface>,
+    /// Which of them may be near.
+    pub(super) nearby: Nearby,
     /// Groups with an attraction.
     pub(super) groups: Vec<Cohesion>,
     /// Per agent: set in a body of several persons. Empty if there are not two of them.
@@ -85,8 +88,10 @@ impl Forces {
         let first_range = shared_constant(scenario, |body| &body.b).filter(|_| same);
         let second_range = if second { shared_constant(scenario, |body| &body.b2) } else { Some(1.0) };
         let shared = first_range.zip(second_range).filter(|_| ties.is_empty());
+        let surfaces: Vec<Surface> = scenario.scene.barriers.iter().filter_map(Surface::new).collect();
         Self {
-            surfaces: scenario.scene.barriers.iter().filter_map(Surface::new).collect(),
+            nearby: Nearby::new(&surfaces.iter().map(|surface| surface.bounds).collect::<Vec<_>>()),
+            surfaces,
             groups: scenario
                 .groups
                 .iter()

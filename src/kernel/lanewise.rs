@@ -10,8 +10,9 @@ use super::forces::{Forces, REACH};
 use super::program::Program;
 use super::state::State;
 use super::vector::{Doubles, Part, exp2, larger, parts};
-use crate::base::geometry::Vec2;
+use crate::base::geometry::{Bounds, Vec2};
 use crate::base::lanes::{LANES, Lanes, Mask};
+use crate::base::math::at_least;
 use crate::base::random::TrialKey;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -96,6 +97,7 @@ pub(super) struct Lanewise {
     neighbours: Neighbours,
     /// How far beyond touching each body is felt or may be touched, with the skin, m.
     reaches: Vec<Lanes>,
+    room: Vec<u32>,
     stale: bool,
 }
 
@@ -245,7 +247,9 @@ impl Lanewise {
                 }
             }
             list.first_surface.push(list.surfaces.len() as u32);
-            for (k, surface) in forces.surfaces.iter().enumerate() {
+            let around = around(one, &reaches[i]);
+            for &k in forces.nearby.find(&around, &mut self.room) {
+                let surface = &forces.surfaces[k as usize];
                 let mut near = false;
                 for part in parts(simd) {
                     let limit = larger::<S>(part.load(&one.r) + part.load(&reaches[i]), part.c(0.0));
@@ -254,7 +258,7 @@ impl Lanewise {
                     near |= square.simd_lt(limit * limit).any_true();
                 }
                 if near {
-                    list.surfaces.push(k as u32);
+                    list.surfaces.push(k);
                 }
             }
         }
@@ -371,6 +375,21 @@ impl Lanewise {
             }
         }
     }
+}
+
+/// A rectangle around all that an agent can reach in any lane, amply.
+fn around(one: &Walker, reach: &Lanes) -> Bounds {
+    let mut low = Vec2::repeat(f64::INFINITY);
+    let mut high = Vec2::repeat(f64::NEG_INFINITY);
+    for lane in 0..LANES {
+        let at = Vec2::new(one.x.0[lane], one.y.0[lane]);
+        let reach = at_least(one.r.0[lane] + reach.0[lane], 0.0);
+        let reach = Vec2::repeat(reach + 1e-9 * (reach + at.x.abs() + at.y.abs()));
+        // Where something is no number, nothing is in reach.
+        low = low.inf(&(at - reach));
+        high = high.sup(&(at + reach));
+    }
+    Bounds { low, high }
 }
 
 /// A term in registers.

@@ -10,8 +10,10 @@ pub mod code;
 mod contact;
 pub mod drive;
 pub mod dynamics;
+mod edges;
 pub mod forces;
 mod lanewise;
+mod nearby;
 mod noise;
 pub mod process;
 pub mod program;
@@ -20,6 +22,6 @@ pub mod state;
 mod vector;
 
 pub use code::{Code, Readings};
-pub use dynamics::{Scratch, refresh, step};
+pub use dynamics::{Scratch, jump, refresh, step};
 pub use program::Program;
 pub use state::{Layout, Slot, State};

@@ -112,6 +112,8 @@ pub struct State {
 
     /// Values of the variables of processes, whose lanes are trials in both layouts.
     pub variables: Vec<Lanes>,
+    /// Clocks of processes with rates and delays.
+    pub clocks: super::process::Clocks,
     /// Lanes whose trial a process has ended by an error of the model; the variables are those before it.
     pub faulty: Mask,
     /// What the error is.
@@ -165,6 +167,7 @@ impl State {
             queues: super::start::Queues::default(),
             behaviours: super::behaviour::Standing::default(),
             variables: Vec::new(),
+            clocks: super::process::Clocks::default(),
             faulty: Mask::NONE,
             faults: [None; LANES],
         }

@@ -36,20 +36,19 @@ pub(super) fn parts<S: Simd>(simd: S) -> impl Iterator<Item = Part<S>> {
     (0..LANES / Doubles::<S>::LEN).map(move |k| Part { simd, at: k * Doubles::<S>::LEN })
 }
 
+/// The first part of a block. It serves for vectors that start anywhere.
+#[inline(always)]
+pub(super) fn first_part<S: Simd>(simd: S) -> Part<S> {
+    Part { simd, at: 0 }
+}
+
+/// Lanes of a vector of the machine.
+#[inline(always)]
+pub(super) const fn width<S: Simd>() -> usize {
+    Doubles::<S>::LEN
+}
+
 impl<S: Simd> Part<S> {
-    /// Index of its first lane.
-    #[inline(always)]
-    pub(super) fn at(self) -> usize {
-        self.at
-    }
-
-    /// Number of its lanes.
-    #[inline(always)]
-    #[allow(clippy::unused_self, reason = "it names the machine")]
-    pub(super) fn len(self) -> usize {
-        Doubles::<S>::LEN
-    }
-
     /// The same number in every lane.
     #[inline(always)]
     pub(super) fn c(self, value: f64) -> Doubles<S> {
@@ -83,6 +82,19 @@ impl<S: Simd> Part<S> {
     #[inline(always)]
     pub(super) fn store(self, value: Doubles<S>, lanes: &mut Lanes) {
         value.store_slice(&mut lanes.0[self.at..self.at + Doubles::<S>::LEN]);
+    }
+
+    /// Stores into its lanes of eight consecutive numbers.
+    #[inline(always)]
+    pub(super) fn put(self, value: Doubles<S>, eight: &mut [f64]) {
+        value.store_slice(&mut eight[self.at..self.at + Doubles::<S>::LEN]);
+    }
+
+    /// Takes a value off its lanes of eight consecutive numbers.
+    #[inline(always)]
+    pub(super) fn take(self, value: Doubles<S>, eight: &mut [f64]) {
+        let eight = &mut eight[self.at..self.at + Doubles::<S>::LEN];
+        (Doubles::<S>::from_slice(self.simd, eight) - value).store_slice(eight);
     }
 
     /// Stores the lanes of `mask`; the bytes of the others stay.

@@ -40,7 +40,7 @@ fn scenario(out: &mut String, world: &World) {
         Clock::Steps => {
             let _ = writeln!(out, "  horizon {} steps", scenario.horizon.0);
         }
-        Clock::Jumps => {
+        Clock::Jumps(_) => {
             let _ = writeln!(out, "  horizon {end} s, continuous time");
         }
     }

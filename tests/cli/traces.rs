@@ -105,6 +105,54 @@ fn comparisons_use_common_random_numbers() {
 }
 
 #[test]
+fn without_people_every_step_and_every_jump_is_a_row() {
+    let place = Place::new(&[
+        ("die.scn", include_str!("../../models/die.scn")),
+        ("queue.scn", include_str!("../../models/queue.scn")),
+        ("queue.bltl", "estimate P(F<=10 s (queue.n == 5)) by fixed(trials = 30)\n"),
+    ]);
+    let steps = rows(&place, "die.scn", &["--trials", "2", "--until", "3"]);
+    let times: Vec<f64> = steps.iter().map(|row| row["time"].as_f64().unwrap()).collect();
+    assert_eq!(times, [0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 2.0, 3.0]);
+    assert!(steps.iter().all(|row| row["die.s"].is_u64() && row["die.d"].is_u64()));
+    assert_eq!((&steps[0]["die.s"], &steps[7]["trial"]), (&Value::from(0), &Value::from(1)));
+
+    let jumps = rows(&place, "queue.scn", &["--trial", "1"]);
+    let at = |row: &Value| (row["time"].as_f64().unwrap(), row["queue.n"].as_i64().unwrap());
+    assert_eq!(at(&jumps[0]), (0.0, 0));
+    for pair in jumps.windows(2) {
+        let ((before, from), (after, to)) = (at(&pair[0]), at(&pair[1]));
+        assert!(before < after && after <= 10.0 && (from - to).abs() == 1, "{pair:?}");
+    }
+    let some = rows(&place, "queue.scn", &["--trial", "1", "--every", "3", "--until", "5"]);
+    let expected: Vec<&Value> = jumps.iter().filter(|row| at(row).0 <= 5.0).step_by(3).collect();
+    assert_eq!(some.iter().collect::<Vec<_>>(), expected);
+    let csv = place.call(&["simulate", "queue.scn", "--trial", "1"]);
+    assert_eq!(csv.out.lines().next(), Some("time,trial,queue.n"));
+    assert_eq!(csv.out.lines().count(), 1 + jumps.len());
+    let json = place.call(&["simulate", "queue.scn", "--trial", "1", "--format", "json"]).json();
+    assert_eq!(json["columns"], serde_json::json!(["time", "trial", "queue.n"]));
+    assert_eq!(json["rows"].as_array().unwrap().len(), jumps.len());
+
+    // The replay of a witness shows the jump that decided it.
+    let said = place.call(&["check", "queue.scn", "queue.bltl", "-q", "--format", "json"]).json();
+    let witnesses = said["results"][0]["witnesses"].as_array().unwrap();
+    assert_eq!(witnesses.len(), 2);
+    for witness in witnesses {
+        let command = witness["command"].as_str().unwrap();
+        let words: Vec<&str> = command.strip_prefix("smc simulate queue.scn ").unwrap().split(' ').collect();
+        let full = rows(&place, "queue.scn", &words).iter().map(at).find(|(_, n)| *n == 5);
+        let decided = witness["time"].as_f64().unwrap();
+        match full {
+            Some((time, _)) => {
+                assert!((time - decided).abs() < 1e-9 && witness["what"] == "`queue.n == 5` holds")
+            }
+            None => assert!(decided == 10.0 && witness["what"] == "`queue.n == 5` fails"),
+        }
+    }
+}
+
+#[test]
 fn people_who_come_in_have_rows_while_they_are_there_and_states_have_columns() {
     let place = Place::new(&[("a.scn", include_str!("../../models/distracted.scn"))]);
     let rows = rows(&place, "a.scn", &["--until", "12", "--every", "10"]);

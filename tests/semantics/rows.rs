@@ -155,7 +155,10 @@ fn a_horizon_that_is_too_short_is_an_error_with_both_numbers() {
 #[test]
 fn a_clock_without_steps_has_no_states() {
     let (tree, root) = formula(Node::Globally(window(0, Some(5)), P));
-    assert_eq!(Monitor::formula(&tree, root, Tick(9), Clock::Jumps).err(), Some(Invalid::NoSteps));
+    assert_eq!(
+        Monitor::formula(&tree, root, Tick(9), Clock::Jumps(Decimal::ONE)).err(),
+        Some(Invalid::NoSteps)
+    );
 }
 
 fn metric(make: impl FnOnce(&mut Tree, TermId) -> Term) -> (Tree, TermId) {

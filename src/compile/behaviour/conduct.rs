@@ -109,17 +109,6 @@ impl<'a> Elaborator<'a> {
         failed.map_or(Ok(mode), Err)
     }
 
-    /// The time after which a state ends.
-    fn delay(&mut self, after: &Value, locals: &Locals) -> Lowered<Law> {
-        let law = self.law(after, Dimension::TIME, locals)?;
-        if law.bounds().0 < 0.0 {
-            let error = Diagnostic::error("E0405", value_span(after), "a state cannot last a negative time")
-                .hint("truncate the distribution: `… in 0 s .. 20 s`");
-            return self.report(error);
-        }
-        Ok(law)
-    }
-
     /// The value of a parameter while a state lasts.
     fn amount(
         &mut self,

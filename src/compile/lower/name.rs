@@ -32,6 +32,12 @@ impl<'a> Elaborator<'a> {
         }
         let Some((scope, meaning)) = self.find(name, locals.scope) else {
             return match name {
+                "time" if self.clock.is_jumps() => {
+                    let error =
+                        Diagnostic::error("E0508", span, "in continuous time a state has no time of its own")
+                            .hint("use a bound, as in `F[4 s, 5 s]`, or `time_until(…)`");
+                    self.report(error)
+                }
                 "time" => Ok(Typed::Num(crate::model::Num::Time, self.time_dimension())),
                 "everyone" => {
                     Ok(Typed::Agents { set: Set { members: self.everyone(), except: None }, particle: false })

@@ -2,6 +2,7 @@
 
 use super::super::dimension::Dimension;
 use super::super::elaborator::{Elaborator, Locals, Lowered};
+use super::super::moments;
 use super::super::number::Number;
 use super::super::typed::Typed;
 use crate::base::decimal::Decimal;
@@ -52,7 +53,7 @@ impl Elaborator<'_> {
             Temporal::Finally => Node::Finally(window, body),
             Temporal::Globally => Node::Globally(window, body),
             Temporal::Next => {
-                if self.clock == Clock::Jumps {
+                if self.clock.is_jumps() {
                     let error = Diagnostic::error("E0507", span, "in continuous time there is no next state")
                         .hint("use `F[a, b]`, or give the scenario a step");
                     return self.report(error);
@@ -101,6 +102,11 @@ impl Elaborator<'_> {
         locals: &Locals,
     ) -> Lowered<Typed> {
         self.expect_temporal(span, locals)?;
+        if aggregate == Aggregate::Sum && self.clock.is_jumps() {
+            let error = Diagnostic::error("E0508", span, "in continuous time there are no states to add up")
+                .hint("use `mean`, the time average");
+            return self.report(error);
+        }
         let window = self.window(Some(bound), locals);
         let typed = self.lower(body, locals)?;
         let (term, dimension) = self.as_term(typed, body.span)?;
@@ -160,7 +166,7 @@ impl Elaborator<'_> {
             || (number.dimension.is_none() && self.clock == Clock::Steps);
         if steps {
             return match number.as_whole().and_then(|n| u64::try_from(n).ok()) {
-                Some(n) if self.clock != Clock::Jumps => Ok(Tick(n)),
+                Some(n) if !self.clock.is_jumps() => Ok(Tick(n)),
                 Some(_) => self.report(
                     Diagnostic::error("E0503", span, "a scenario in continuous time has no steps")
                         .hint("write a time, as in `5 s`"),
@@ -176,10 +182,14 @@ impl Elaborator<'_> {
         if number.dimension != Dimension::TIME {
             return self.wrong_dimension(span, Dimension::TIME, number.dimension);
         }
-        let Clock::Stepped(step) = self.clock else {
-            let error = Diagnostic::error("E0503", span, "this scenario has steps without a length")
-                .hint("write the bound in steps, as in `#10` or `10 steps`");
-            return self.report(error);
+        let step = match self.clock {
+            Clock::Stepped(step) => step,
+            Clock::Jumps(tick) => return self.moment(number, tick, span),
+            Clock::Steps => {
+                let error = Diagnostic::error("E0503", span, "this scenario has steps without a length")
+                    .hint("write the bound in steps, as in `#10` or `10 steps`");
+                return self.report(error);
+            }
         };
         let exact = number.exact.or_else(|| nearest_tick(number.value, step));
         let found = exact.map(|time| self.clock.tick_at(time));
@@ -195,6 +205,27 @@ impl Elaborator<'_> {
                 self.report(error)
             }
             _ => self.report(Diagnostic::error("E0501", span, "this time is out of range")),
+        }
+    }
+
+    /// A time in continuous time, as ticks. One between two ticks is noted: all will be compiled again.
+    fn moment(&mut self, number: Number, tick: Decimal, span: Span) -> Lowered<Tick> {
+        let Some(time) = number.exact.or_else(|| moments::nearest(number.value, tick)) else {
+            return self.report(Diagnostic::error("E0501", span, "this time is out of range"));
+        };
+        match self.clock.tick_at(time) {
+            Ok(found) => Ok(found),
+            Err((below, above)) if above.0 < u64::MAX => {
+                let horizon = Decimal::whole(self.horizon.0 as i64).mul(tick);
+                if horizon.and_then(|horizon| moments::finer(tick, horizon, time)).is_none() {
+                    let error = Diagnostic::error("E0501", span, "this time is too fine for the horizon")
+                        .hint("about twelve digits lie between the shortest time and the horizon");
+                    return self.report(error);
+                }
+                self.between.push(time);
+                Ok(below)
+            }
+            Err(_) => self.report(Diagnostic::error("E0501", span, "this time is out of range")),
         }
     }
 }

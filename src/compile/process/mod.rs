@@ -5,6 +5,7 @@
 
 mod names;
 mod reachable;
+mod timing;
 
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
@@ -12,7 +13,6 @@ use super::number::Number;
 use super::people::People;
 use super::symbols::unknown;
 use super::typed::Typed;
-use crate::base::tick::Clock;
 use crate::model::process::are_weights;
 use crate::model::{Bool, Branch, Command, Domain, Num, Process, Processes, Timing, Variable, VariableId};
 use crate::syntax::ast::process::{self as ast, Domain as Written, ProcessDecl, ProcessItem};
@@ -304,7 +304,7 @@ impl<'a> Elaborator<'a> {
     fn command(&mut self, at: usize, copy: u32, command: &ast::Command, locals: &Locals) -> Lowered<Command> {
         let guard = self.lower(&command.guard, locals);
         let guard = guard.and_then(|typed| self.as_truth(typed, command.guard.span));
-        let timing = self.timing(command);
+        let timing = self.timing(command, locals);
         let branches: Vec<Lowered<Branch>> =
             command.branches.iter().map(|branch| self.branch(at, copy, branch, locals)).collect();
         let branches = branches.into_iter().collect::<Lowered<Vec<_>>>();
@@ -329,27 +329,6 @@ impl<'a> Elaborator<'a> {
             return self.report(error);
         }
         Ok(Command { guard, timing, branches })
-    }
-
-    fn timing(&mut self, command: &ast::Command) -> Lowered<Timing> {
-        let place = match &command.timing {
-            None if self.clock == Clock::Jumps => {
-                let error = Diagnostic::error(
-                    "E0905",
-                    command.span,
-                    "this command has no rate, and other commands of this scenario have",
-                )
-                .hint("give it `at` a rate or `after` a distribution, or set a `step` for the scenario");
-                return self.report(error);
-            }
-            None => return Ok(Timing::Step),
-            Some(ast::Timing::Rate(rate)) => rate.span,
-            Some(ast::Timing::Delay(delay)) => super::laws::value_span(delay),
-        };
-        self.report(
-            Diagnostic::error("E0213", place, "this version simulates no commands with rates or delays")
-                .hint("a command without one fires at each step"),
-        )
     }
 
     fn branch(&mut self, at: usize, copy: u32, branch: &ast::Branch, locals: &Locals) -> Lowered<Branch> {

@@ -1,11 +1,12 @@
 //! Errors that some trial could run into, found before any does.
 //!
 //! Where processes depend on nothing but themselves and have few states, all states that a trial can reach
-//! are walked through, breadth first, as far as the horizon. Where there are too many, or agents come in, errors show while running.
+//! are walked through, breadth first, as far as the horizon. Where there are too many, or agents or delays come in,
+//! errors show while running.
 
 use super::super::elaborator::Elaborator;
 use crate::model::process::are_weights;
-use crate::model::{Command, Domain, Process, Processes, Variable};
+use crate::model::{Command, Domain, Process, Processes, Timing, Variable};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::collections::BTreeSet;
@@ -37,6 +38,12 @@ impl Elaborator<'_> {
         if processes.variables.iter().any(|v| v.domain.values().is_none()) {
             return;
         }
+        let commands = || processes.list.iter().flat_map(|process| &process.commands);
+        let jumps = self.clock.is_jumps();
+        // Which of several delays ends first is not known here, nor how jumps and steps meet.
+        if commands().any(|c| matches!(c.timing, Timing::Delay(_)) || (!jumps && c.timing != Timing::Step)) {
+            return;
+        }
         let initial: Vec<i64> = processes.variables.iter().map(|v| v.initial as i64).collect();
         let mut known = BTreeSet::from([initial.clone()]);
         let mut front = vec![initial];
@@ -44,7 +51,12 @@ impl Elaborator<'_> {
         for _ in 0..self.horizon.0 {
             let mut next_front = Vec::new();
             for state in std::mem::take(&mut front) {
-                let successors = match successors(processes, spans, &state) {
+                let found = if jumps {
+                    jumped(processes, spans, &state)
+                } else {
+                    successors(processes, spans, &state)
+                };
+                let successors = match found {
                     Ok(successors) => successors,
                     Err(End::Unknown) => return,
                     Err(End::Wrong(wrong)) => {
@@ -120,6 +132,40 @@ fn successors(processes: &Processes, spans: &[Vec<Span>], state: &[i64]) -> Resu
             .collect();
     }
     Ok(joint)
+}
+
+/// The states that can follow where processes jump one at a time.
+fn jumped(processes: &Processes, spans: &[Vec<Span>], state: &[i64]) -> Result<Vec<Vec<i64>>, End> {
+    let values: Vec<f64> = state.iter().map(|value| *value as f64).collect();
+    let mut changes = Vec::new();
+    for (process, spans) in processes.list.iter().zip(spans) {
+        for (command, span) in process.commands.iter().zip(spans) {
+            let Timing::Rate(rate) = &command.timing else { continue };
+            if !command.guard.evaluate(&values).ok_or(End::Unknown)? {
+                continue;
+            }
+            let rate = rate.evaluate(&values).ok_or(End::Unknown)?;
+            if !(rate >= 0.0 && rate.is_finite()) {
+                return Err(End::Wrong(Wrong {
+                    code: "E0904",
+                    span: *span,
+                    what: format!("the rate of this command would be {rate} /s"),
+                    hint: Some("a rate is a finite number, not negative; 0 disables the command"),
+                }));
+            }
+            if rate > 0.0 {
+                branches(command, *span, &processes.variables, &values, &mut changes)?;
+            }
+        }
+    }
+    let after = changes.iter().map(|change| {
+        let mut after = state.to_vec();
+        for &(variable, value) in change {
+            after[variable] = value;
+        }
+        after
+    });
+    Ok(after.collect())
 }
 
 /// What one process can do at a step.

@@ -80,7 +80,7 @@ impl<'s> Question<'s> {
         let width = executor.width(&job) as u64;
         let few = width.min(self.rule.plain).min(budget.max_trials);
         let rehearsal = Rehearsal::run(&job, Item::run(0, few), executor, budget)?;
-        let seconds = rehearsal.seconds_per_trial(self.subject.horizon.0);
+        let seconds = rehearsal.seconds_per_trial(self.subject.most_steps());
         // How many levels there will be is not known: as many as two decades take.
         let paths = self.rule.runs.saturating_mul(self.rule.replicas).saturating_mul(DECADES);
         let trials = self.rule.plain.saturating_add(paths).min(budget.max_trials);

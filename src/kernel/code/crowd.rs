@@ -80,7 +80,7 @@ impl<S: Simd> Probe<S> {
         view: &View<'_, S, ONE>,
         members: Members<'_>,
     ) -> Vector<S> {
-        let mut best = view.splat(f64::INFINITY);
+        let (mut best, zero) = (view.splat(f64::INFINITY), view.splat(0.0));
         if self.measure == Measure::Centres {
             members.each(
                 view,
@@ -98,6 +98,14 @@ impl<S: Simd> Probe<S> {
             view,
             #[inline(always)]
             |member, here| {
+                // No square root for a member that is surely farther in every lane. A NaN is never passed over.
+                let squared = self.squared(view, member);
+                let both = self.radius + view.load(&view.state.radius, member);
+                let reach = (best + both) + (best.abs() + both) * MARGIN + 1e-30;
+                let farther = reach.simd_gt(zero) & squared.simd_gt(reach * reach);
+                if narrow(farther) == Mask::ALL {
+                    return;
+                }
                 let joined = lesser(best, self.value(view, member));
                 best = if here == Mask::ALL { joined } else { widen(view.simd, here).select(joined, best) };
             },

@@ -36,6 +36,16 @@ impl<'a> Lowering<'a> {
         Self { scenario, graph: Graph::default(), lists: Vec::new(), depth: 0 }
     }
 
+    /// A second lowering of the same expressions, which knows from the start what was found in the first: so
+    /// that a comparison over a crowd can use the smallest measure that comes after it.
+    pub(super) fn again(first: Self) -> Self {
+        let mut second = Self { lists: first.lists, ..Self::new(first.scenario) };
+        for node in first.graph.nodes.into_iter().filter(|node| matches!(node, Node::Nearest(..))) {
+            second.graph.enter(node);
+        }
+        second
+    }
+
     fn list(&mut self, members: Vec<u32>) -> u32 {
         let known = self.lists.iter().position(|list| *list == members);
         known.unwrap_or_else(|| {
@@ -433,9 +443,23 @@ impl<'a> Lowering<'a> {
         if bound.open.is_some() || self.graph.depends_on(bound.id, var) {
             return None;
         }
-        let far = Node::AllFar { who, crowd, measure, test, wanted: all, bound: bound.id };
-        let far = self.graph.enter(far);
+        let far = self.far(who, crowd, measure, (test, all), bound.id);
         Some(if all { far } else { self.not(far) })
+    }
+
+    fn far(
+        &mut self,
+        who: Who,
+        crowd: Crowd,
+        measure: Measure,
+        (test, wanted): (Comparison, bool),
+        bound: Id,
+    ) -> Id {
+        // Over nobody the nearest is infinitely far away, and farther than a finite bound.
+        let finite = matches!(self.graph.nodes[bound as usize],
+            Node::Constant(bits) if f64::from_bits(bits).is_finite());
+        let nearest = self.graph.find(&Node::Nearest(who, crowd, measure)).filter(|_| finite);
+        self.graph.enter(Node::AllFar { who, crowd, measure, test, wanted, bound, nearest })
     }
 
     fn comparison(&mut self, comparison: Comparison, a: &Num, b: &Num) -> Value {
@@ -455,14 +479,7 @@ impl<'a> Lowering<'a> {
 
     fn contact(&mut self, who: Who) -> Id {
         let (crowd, zero) = (self.others(who), self.graph.constant(0.0));
-        let free = self.graph.enter(Node::AllFar {
-            who,
-            crowd,
-            measure: Measure::GapFixedFirst,
-            test: Comparison::AtMost,
-            wanted: false,
-            bound: zero,
-        });
+        let free = self.far(who, crowd, Measure::GapFixedFirst, (Comparison::AtMost, false), zero);
         let mut touch = self.not(free);
         if let Some(walls) = self.gap_to_scene(who) {
             let at_wall = self.graph.enter(Node::Compare(Comparison::AtMost, walls, zero));

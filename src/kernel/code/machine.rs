@@ -277,7 +277,14 @@ impl<S: Simd, const ONE: bool> Machine<'_, S, ONE> {
                 }
             }
             Node::Somebody(crowd) => crowd::somebody(&view, self.members(crowd)),
-            Node::AllFar { who, crowd, measure, test, wanted, bound } => {
+            Node::AllFar { who, crowd, measure, test, wanted, bound, nearest } => {
+                if let Some(nearest) = nearest.map(|id| self.number(id))
+                    && narrow(nearest.simd_eq(nearest)) == Mask::ALL
+                {
+                    // What the nearest does, all do: none is no number.
+                    let holds = compare_all(test, nearest, self.number(bound));
+                    return if wanted { holds } else { !holds };
+                }
                 let probe = Probe::new(&view, self.who(who), measure);
                 probe.all_far(&view, self.members(crowd), self.number(bound), test, wanted)
             }

@@ -65,10 +65,14 @@ pub struct Readings {
 
 impl Code {
     /// Compiles the truth values and numbers that monitors and metrics want to know of each state.
-    pub fn compile(scenario: &Scenario, atoms: &[Bool], signals: &[Num]) -> Self {
-        let mut lowering = lower::Lowering::new(scenario);
-        let atoms: Vec<lower::Value> = atoms.iter().map(|atom| lowering.truth(atom)).collect();
-        let signals: Vec<lower::Value> = signals.iter().map(|signal| lowering.number(signal)).collect();
+    pub fn compile<'a>(scenario: &'a Scenario, atoms: &[Bool], signals: &[Num]) -> Self {
+        let lower = |mut lowering: lower::Lowering<'a>| {
+            let atoms: Vec<lower::Value> = atoms.iter().map(|atom| lowering.truth(atom)).collect();
+            let signals: Vec<lower::Value> = signals.iter().map(|signal| lowering.number(signal)).collect();
+            (lowering, atoms, signals)
+        };
+        let (first, ..) = lower(lower::Lowering::new(scenario));
+        let (mut lowering, atoms, signals) = lower(lower::Lowering::again(first));
         let mut open: Vec<Id> = atoms.iter().chain(&signals).filter_map(|value| value.open).collect();
         open.sort_unstable();
         open.dedup();
@@ -92,7 +96,7 @@ impl Code {
             schedule,
             step: match scenario.clock {
                 Clock::Stepped(step) => (step.numerator() as f64, step.denominator() as f64),
-                Clock::Steps | Clock::Jumps => (1.0, 1.0),
+                Clock::Steps | Clock::Jumps(_) => (1.0, 1.0),
             },
             level: Level::new(),
         }

@@ -126,6 +126,8 @@ pub(super) enum Node {
         wanted: bool,
         /// The bound.
         bound: Id,
+        /// The smallest measure over the same crowd, where something else needs it anyway.
+        nearest: Option<Id>,
     },
 }
 
@@ -161,7 +163,7 @@ impl Node {
             Self::Combine(_, a, b) | Self::Compare(_, a, b) => vec![a, b],
             Self::Select(c, a, b) => vec![c, a, b],
             Self::And(all) | Self::Or(all) => all.iter_mut().collect(),
-            Self::AllFar { bound, .. } => vec![bound],
+            Self::AllFar { bound, nearest, .. } => std::iter::once(bound).chain(nearest).collect(),
             Self::Constant(_)
             | Self::Time
             | Self::Variable(_)
@@ -233,6 +235,11 @@ impl Graph {
         self.nodes.push(node);
         self.free.push(free);
         id
+    }
+
+    /// The node with this value, if it was entered.
+    pub(super) fn find(&self, node: &Node) -> Option<Id> {
+        self.known.get(node).copied()
     }
 
     /// A number.

@@ -4,10 +4,11 @@
 //! numbers are those of `Stream::uniform_pair(tick)`, to the last bit (a test holds it).
 
 use crate::base::lanes::{LANES, Lanes};
+use crate::base::math;
 use crate::base::random::{self, Purpose, Stream, philox};
 use crate::kernel::noise::unit_open;
 use crate::kernel::state::State;
-use crate::kernel::vector::parts;
+use crate::kernel::vector::{ln, parts};
 use fearless_simd::{Level, Simd, dispatch};
 
 const MULTIPLIER: [u64; 2] = [0xD251_1F53, 0xCD9E_8D57];
@@ -31,7 +32,8 @@ impl Draws<'_> {
         let seed = state.keys[0].seed;
         let same = state.occupied.iter().all(|lane| state.keys[lane].seed == seed);
         if same {
-            dispatch!(self.level, simd => all(simd, state, self.word))
+            let words = [u64::from(self.word); LANES];
+            dispatch!(self.level, simd => all::<_, false>(simd, state, &state.ticks, &words))
         } else {
             let mut pair = [[0.5; LANES]; 2];
             for lane in state.occupied.iter() {
@@ -46,21 +48,54 @@ impl Draws<'_> {
     /// Those of one lane.
     fn of_lane(&self, lane: usize) -> [f64; 2] {
         let stream = Stream::of(self.state.keys[lane], 0, Purpose::Process);
-        let mut counter = stream.counter(self.state.ticks[lane] as u32);
-        counter[1] = self.word;
-        let block = philox(counter, stream.key());
-        let word = |k: usize| u64::from(block[k]) | u64::from(block[k + 1]) << 32;
-        [random::unit_open(word(0)), random::unit_open(word(2))]
+        at(stream, self.state.ticks[lane] as u32, self.word)
     }
 }
 
-/// The numbers of all lanes, whose seeds are those of the first.
+/// For the draws of these numbers of the entities that the words name, lane by lane: a unit exponential number
+/// (by the inverse distribution function) and a uniform one.
+#[inline]
+pub(super) fn exponentials(
+    level: Level,
+    state: &State,
+    draws: &[u64; LANES],
+    words: &[u64; LANES],
+) -> [[f64; LANES]; 2] {
+    let seed = state.keys[0].seed;
+    if state.occupied.iter().all(|lane| state.keys[lane].seed == seed) {
+        return dispatch!(level, simd => all::<_, true>(simd, state, draws, words));
+    }
+    let mut pair = [[0.5; LANES]; 2];
+    for lane in state.occupied.iter() {
+        let stream = Stream::of(state.keys[lane], 0, Purpose::Process);
+        let [first, second] = at(stream, draws[lane] as u32, words[lane] as u32);
+        pair[0][lane] = -math::ln(first);
+        pair[1][lane] = second;
+    }
+    pair
+}
+
+/// The uniform numbers of one draw of a named entity of a stream's trial.
+fn at(stream: Stream, draw: u32, word: u32) -> [f64; 2] {
+    let mut counter = stream.counter(draw);
+    counter[1] = word;
+    let block = philox(counter, stream.key());
+    let word = |k: usize| u64::from(block[k]) | u64::from(block[k + 1]) << 32;
+    [random::unit_open(word(0)), random::unit_open(word(2))]
+}
+
+/// The numbers of all lanes, whose seeds are those of the first. The first is made exponential where `WAIT`.
 #[inline(always)]
-fn all<S: Simd>(simd: S, state: &State, word: u32) -> [[f64; LANES]; 2] {
+fn all<S: Simd, const WAIT: bool>(
+    simd: S,
+    state: &State,
+    draws: &[u64; LANES],
+    words: &[u64; LANES],
+) -> [[f64; LANES]; 2] {
     let mut counter = [[0u64; LANES]; 3];
     for lane in 0..LANES {
         let key = &state.keys[lane];
-        counter[0][lane] = state.ticks[lane] & LOW;
+        counter[0][lane] = draws[lane] & LOW;
         counter[1][lane] = key.index & LOW;
         counter[2][lane] = (key.index >> 32 & 0xffff) | u64::from(key.branch) << 16;
     }
@@ -73,19 +108,16 @@ fn all<S: Simd>(simd: S, state: &State, word: u32) -> [[f64; LANES]; 2] {
     let mut out = [Lanes::ZERO; 2];
     for part in parts(simd) {
         let low = part.word(LOW);
-        let mut c = [
-            part.words(&counter[0]),
-            part.word(u64::from(word)),
-            part.words(&counter[1]),
-            part.words(&counter[2]),
-        ];
+        let mut c =
+            [part.words(&counter[0]), part.words(words), part.words(&counter[1]), part.words(&counter[2])];
         // Above its low half a counter word may hold anything between rounds.
         for round in &keys {
             let a = (c[0] & low) * part.word(MULTIPLIER[0]);
             let b = (c[2] & low) * part.word(MULTIPLIER[1]);
             c = [(b >> 32) ^ (c[1] ^ part.word(round[0])), b, (a >> 32) ^ (c[3] ^ part.word(round[1])), a];
         }
-        part.store(unit_open(part, (c[0] & low) | (c[1] << 32)), &mut out[0]);
+        let first = unit_open(part, (c[0] & low) | (c[1] << 32));
+        part.store(if WAIT { part.c(0.0) - ln(part, first) } else { first }, &mut out[0]);
         part.store(unit_open(part, (c[2] & low) | (c[3] << 32)), &mut out[1]);
     }
     out.map(|lanes| lanes.0)
@@ -113,11 +145,13 @@ mod tests {
             }
             for entity in [0, 5, 0x00ff_ffff] {
                 let word = Stream::of(TrialKey::default(), entity, Purpose::Process).counter(0)[1];
+                let waits = exponentials(Level::new(), &state, &state.ticks, &[u64::from(word); LANES]);
                 let pair = Draws { level: Level::new(), state: &state, word }.pair();
                 for lane in 0..LANES {
                     let stream = Stream::of(state.keys[lane], entity, Purpose::Process);
                     let expected = stream.uniform_pair(state.ticks[lane] as u32);
                     assert_eq!([pair[0][lane], pair[1][lane]], expected);
+                    assert_eq!([waits[0][lane], waits[1][lane]], [-math::ln(expected[0]), expected[1]]);
                 }
             }
         }

@@ -27,6 +27,20 @@ pub enum Fault {
         /// The value that it cannot hold.
         value: f64,
     },
+    /// A rate is negative or not finite.
+    Rate {
+        /// The process.
+        process: u32,
+        /// Its command.
+        command: u32,
+        /// The rate, 1/s.
+        value: f64,
+    },
+    /// Time does not go on: jump follows jump at one time.
+    Stuck {
+        /// The process that jumped last.
+        process: u32,
+    },
     /// The probabilities of a transition of a behaviour are negative or do not sum to 1.
     Branches {
         /// Which of the behaviours that agents have.
@@ -99,6 +113,17 @@ impl Fault {
                 command + 1,
                 name(process)
             ),
+            Self::Rate { process, command, value } => format!(
+                "the rate of command {} of `{}` is {value} /s: a rate is a finite number, not negative",
+                command + 1,
+                name(process)
+            ),
+            Self::Stuck { process } => {
+                format!(
+                    "time does not go on: more than 100000 jumps at one time, the last one of `{}`",
+                    name(process)
+                )
+            }
             Self::Branches { attached } => {
                 format!(
                     "the probabilities of a transition of {} are negative or do not sum to 1",

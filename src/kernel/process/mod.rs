@@ -5,23 +5,34 @@
 //! Guards, probabilities and updates are linear code over lanes; a process that depends on few values only
 //! is a table made by that same code.
 
+mod clocks;
 mod commands;
+mod delay;
 mod draws;
 mod fault;
+mod keys;
+mod race;
+mod rates;
 mod table;
+mod timed;
+mod view;
 
+pub use clocks::Clocks;
 pub use fault::Fault;
 use fault::Faults;
+pub use view::{Sight, View};
 
 use super::code::{Code, Readings};
 use super::state::{Layout, State};
-use crate::base::lanes::{Lanes, Mask};
+use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::random::{Purpose, Stream, TrialKey};
+use crate::base::tick::{Clock, Tick};
 use crate::model::{Domain, Scenario};
 use commands::Commands;
 use draws::Draws;
 use fearless_simd::Level;
 use table::Table;
+use timed::{Timed, is_timed};
 
 /// One process.
 #[derive(Clone, Debug)]
@@ -44,6 +55,10 @@ pub struct Processes {
     /// Values of the variables at the start.
     pub(super) initial: Vec<f64>,
     machines: Vec<Machine>,
+    /// Those with rates and delays.
+    timed: Option<Timed>,
+    clock: Clock,
+    horizon: Tick,
     /// Guards, probabilities and updates of those that are no tables.
     code: Option<Code>,
     level: Level,
@@ -55,6 +70,8 @@ pub(super) struct Scratch {
     readings: Readings,
     next: Vec<Lanes>,
     faults: Faults,
+    /// What was read for those with rates and delays.
+    timed: Readings,
 }
 
 impl Processes {
@@ -72,6 +89,7 @@ impl Processes {
             .list
             .iter()
             .enumerate()
+            .filter(|(_, process)| !is_timed(process))
             .map(|(number, process)| {
                 let table = Table::of(scenario, number, &domains, rows);
                 let form = match table {
@@ -86,6 +104,9 @@ impl Processes {
         Self {
             initial: processes.variables.iter().map(|v| v.initial).collect(),
             machines,
+            timed: Timed::of(scenario, &domains, rows, Level::new()),
+            clock: scenario.clock,
+            horizon: scenario.horizon,
             code: coded.then(|| Code::compile(scenario, &atoms, &signals)),
             level: Level::new(),
         }
@@ -100,6 +121,7 @@ impl Processes {
     pub fn at_baseline(mut self) -> Self {
         self.level = Level::baseline();
         self.code = self.code.map(Code::at_baseline);
+        self.timed = self.timed.map(Timed::at_baseline);
         self
     }
 
@@ -111,15 +133,50 @@ impl Processes {
         }
         state.faulty &= !Mask::lane(lane);
         state.faults[lane] = None;
+        if let Some(timed) = &self.timed {
+            timed.load(state, lane);
+        }
+    }
+
+    /// Continuous time: the next jump of every occupied lane, if it comes up to and with the horizon. These
+    /// lanes; the time of the jump is in `state.clocks`.
+    pub(super) fn jump(&self, layout: Layout, state: &mut State, scratch: &mut Scratch) -> Mask {
+        let Some(timed) = &self.timed else { return Mask::NONE };
+        let fresh = state.clocks.fresh & state.occupied;
+        if !fresh.is_empty() {
+            timed.look(layout, state, &mut scratch.timed, fresh);
+        }
+        let lanes = state.occupied & !state.faulty;
+        let until = [self.clock.seconds(self.horizon); LANES];
+        timed.ring(layout, state, &mut scratch.timed, lanes, &until)
+    }
+
+    /// Lets processes with rates and delays jump up to and with the next step. What they read of others is what
+    /// was there at the last step.
+    fn between(&self, timed: &Timed, layout: Layout, state: &mut State, readings: &mut Readings) {
+        let until = state.ticks.map(|tick| self.clock.seconds(Tick(tick + 1)));
+        loop {
+            let lanes = state.occupied & !state.faulty;
+            if timed.ring(layout, state, readings, lanes, &until).is_empty() {
+                return;
+            }
+        }
     }
 
     /// One step of all processes. Lanes that are faulty keep their values.
     pub(super) fn step(&self, layout: Layout, state: &mut State, scratch: &mut Scratch) {
-        let lanes = state.occupied & !state.faulty;
-        if self.machines.is_empty() || lanes.is_empty() {
+        let mut lanes = state.occupied & !state.faulty;
+        if (self.machines.is_empty() && self.timed.is_none()) || lanes.is_empty() {
             return;
         }
-        let Scratch { readings, next, faults } = scratch;
+        let Scratch { readings, next, faults, timed: timed_readings } = scratch;
+        if let Some(timed) = &self.timed {
+            for lane in lanes.iter() {
+                state.clocks.now[lane] = self.clock.seconds(Tick(state.ticks[lane]));
+            }
+            timed.look(layout, state, timed_readings, lanes);
+            lanes &= !state.faulty;
+        }
         if let Some(code) = &self.code {
             code.read(layout, state, readings);
         }
@@ -132,8 +189,15 @@ impl Processes {
                 Form::Code(commands) => commands.step(lanes, readings, &draws, next, faults),
             }
         }
+        if let Some(timed) = &self.timed {
+            self.between(timed, layout, state, timed_readings);
+            for &variable in &timed.written {
+                next[variable as usize] = state.variables[variable as usize];
+            }
+            lanes &= !state.faulty;
+        }
         let wrong = faults.lanes() & lanes;
-        if wrong.is_empty() {
+        if wrong.is_empty() && state.faulty.is_empty() {
             std::mem::swap(&mut state.variables, next);
             return;
         }

@@ -46,6 +46,15 @@ enum Way {
     Cells(Box<Cells>),
 }
 
+/// An implication `a => b` whose left side is one of the present state.
+#[derive(Clone, Copy, Debug)]
+struct Watched {
+    /// Where the left side is in the code of the present state.
+    slot: usize,
+    /// The last second at which it is asked about.
+    last: f64,
+}
+
 /// The monitor of one formula or metric, one trial at a time.
 ///
 /// The bounds of the tree and the horizon are in ticks of `quantum` seconds each: any length of which all of them are
@@ -62,6 +71,8 @@ pub struct SignalMonitor {
     horizon: f64,
     reading: Option<Reading>,
     decided_at: f64,
+    watched: Vec<Watched>,
+    triggered: u64,
 }
 
 impl SignalMonitor {
@@ -84,7 +95,7 @@ impl SignalMonitor {
     }
 
     fn of(tree: &Tree, root: Part, horizon: Tick, quantum: Decimal) -> Result<Self, Invalid> {
-        let (present, way, scale) = plan(tree, root, horizon, quantum)?;
+        let (present, way, scale, watched) = plan(tree, root, horizon, quantum)?;
         let horizon = scale.horizon();
         let mut monitor = Self {
             present,
@@ -96,6 +107,8 @@ impl SignalMonitor {
             horizon,
             reading: None,
             decided_at: 0.0,
+            watched,
+            triggered: 0,
         };
         monitor.start();
         Ok(monitor)
@@ -104,7 +117,7 @@ impl SignalMonitor {
     /// A new trial begins; what was known of the last one is forgotten.
     pub fn start(&mut self) {
         (self.begun, self.since, self.moment) = (false, 0.0, 0);
-        (self.reading, self.decided_at) = (None, 0.0);
+        (self.reading, self.decided_at, self.triggered) = (None, 0.0, 0);
         match &mut self.way {
             Way::Direct(direct) => direct.clear(),
             Way::Cells(cells) => cells.clear(),
@@ -153,6 +166,11 @@ impl SignalMonitor {
     /// The present state lasts to before `end`.
     #[inline]
     fn close(&mut self, end: f64) {
+        for (k, watched) in self.watched.iter().enumerate() {
+            if self.since <= watched.last && self.present.truth(watched.slot) {
+                self.triggered |= 1 << k.min(63);
+            }
+        }
         match &mut self.way {
             Way::Direct(direct) => {
                 if let Some((reading, at)) = direct.step(self.since, end, &self.present) {
@@ -169,6 +187,17 @@ impl SignalMonitor {
                 }
             }
         }
+    }
+
+    /// Number of implications whose left sides are conditions of one state.
+    pub fn implications(&self) -> usize {
+        self.watched.len()
+    }
+
+    /// Those of them that the present or last trial triggered, bit k for the k-th (the 64th stands for all
+    /// beyond). One that no trial ever triggers holds for want of a case.
+    pub fn triggered(&self) -> u64 {
+        self.triggered
     }
 
     /// The reading, if there is one.

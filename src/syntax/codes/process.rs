@@ -42,6 +42,18 @@ Right:\n\
 \x20   process p { var n: 0 .. 5 = 0  when n < 5 -> n = n + 1 }",
     },
     Page {
+        code: "E0904",
+        title: "a rate is no rate",
+        text: "\
+A rate is a finite number of events per second, not negative, in every state in which its command is enabled. A rate\n\
+of 0 disables the command, as a guard does.\n\
+\n\
+Wrong:\n\
+\x20   process p { var n: 0 .. 9 = 0  when n < 9 at (5 - 2 * n) * 1 /s -> n = n + 1 }\n\
+Right:\n\
+\x20   process p { var n: 0 .. 9 = 0  when n < 3 at (5 - 2 * n) * 1 /s -> n = n + 1 }",
+    },
+    Page {
         code: "E0905",
         title: "commands with and without times are mixed",
         text: "\
@@ -52,6 +64,19 @@ Wrong:\n\
 \x20   process p { var n: 0 .. 5 = 0  when n < 5 at 1 /s -> n = n + 1  when n == 5 -> n = 0 }\n\
 Right:\n\
 \x20   process p { var n: 0 .. 5 = 0  when n < 5 at 1 /s -> n = n + 1  when n == 5 at 2 /s -> n = 0 }",
+    },
+    Page {
+        code: "E0906",
+        title: "a delay can be negative",
+        text: "\
+A command with `after` waits for a drawn time, and nobody can wait a negative one. Cut the distribution off, or take one\n\
+that has no negative part.\n\
+\n\
+Wrong:\n\
+\x20   when up after normal(5 s, 2 s) -> up = false\n\
+Right:\n\
+\x20   when up after normal(5 s, 2 s) in 0 s .. 20 s -> up = false\n\
+\x20   when up after gamma(5 s, 2 s) -> up = false",
     },
     Page {
         code: "E0911",

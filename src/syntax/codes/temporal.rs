@@ -81,6 +81,21 @@ Right:\n\
 \x20   property p = F[0 s, 1 s] (queue.n > 3)",
     },
     Page {
+        code: "E0508",
+        title: "this has no meaning in continuous time",
+        text: "\
+A scenario of processes with rates alone has no steps: its state lasts from one jump to the next. There are no states to\n\
+add up, `time` goes on while the state stays, and a time or a time average that moves with a window can only be compared\n\
+with a constant.\n\
+\n\
+Wrong:\n\
+\x20   estimate E(sum<=10 s (queue.n)) in 0 .. 50\n\
+\x20   property late = F (queue.n > 3 & time > 5 s)\n\
+Right:\n\
+\x20   estimate E(mean<=10 s (queue.n)) in 0 .. 5\n\
+\x20   property late = F[5 s, 10 s] (queue.n > 3)",
+    },
+    Page {
         code: "W0501",
         title: "this is always the same",
         text: "\

@@ -144,7 +144,7 @@ impl Plan {
         clock: Clock,
         slides: bool,
     ) -> Result<Self, Invalid> {
-        if clock == Clock::Jumps {
+        if clock.is_jumps() {
             return Err(Invalid::NoSteps);
         }
         if horizon.0 > LONGEST_HORIZON {

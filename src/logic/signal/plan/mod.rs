@@ -4,15 +4,15 @@ mod formulas;
 mod now;
 mod numbers;
 
-use super::Way;
 use super::cells::{Cell, Cells, Root};
 use super::moment::{FOREVER, LONGEST_HORIZON, Moment, Scale};
 use super::number::{Number, Source};
 use super::present::Present;
 use super::truth::{Machine, Ref, Truth};
+use super::{Watched, Way};
 use crate::base::decimal::Decimal;
 use crate::base::tick::Tick;
-use crate::logic::formula::{Tree, Window};
+use crate::logic::formula::{Node, Tree, Window};
 use crate::logic::invalid::Invalid;
 use crate::logic::reach::{Ask, Part, below, children_first};
 use std::collections::BTreeMap;
@@ -20,13 +20,13 @@ use std::collections::BTreeMap;
 /// Most cells.
 const MOST_CELLS: usize = 1 << 18;
 
-/// The code of present states, the way to the answer, and the scale of time.
+/// The code of present states, the way to the answer, the scale of time, and the implications.
 pub(super) fn plan(
     tree: &Tree,
     root: Part,
     horizon: Tick,
     quantum: Decimal,
-) -> Result<(Present, Way, Scale), Invalid> {
+) -> Result<(Present, Way, Scale, Vec<Watched>), Invalid> {
     let order = children_first(tree, root)?;
     if horizon.0 > LONGEST_HORIZON {
         return Err(Invalid::TooLong { horizon: horizon.0, limit: LONGEST_HORIZON });
@@ -34,7 +34,8 @@ pub(super) fn plan(
     if quantum.is_negative() || quantum.numerator() == 0 {
         return Err(Invalid::NoSteps);
     }
-    let needed = last_tick(tree, &order, horizon)?;
+    let asked = asked(tree, &order, horizon)?;
+    let needed = asked.last;
     if needed > horizon.0 {
         return Err(Invalid::BeyondHorizon { needed, horizon: horizon.0 });
     }
@@ -54,27 +55,42 @@ pub(super) fn plan(
         known_numbers: BTreeMap::new(),
         known_comparisons: BTreeMap::new(),
     };
+    let mut watched = Vec::new();
     for part in order {
         builder.note(part);
+        if let Some(slot) = builder.antecedent(part) {
+            let last = asked.parts.get(&key(part)).copied().unwrap_or(needed);
+            watched.push(Watched { slot, last: scale.time(Tick(last)) });
+        }
     }
     if let Some(direct) = builder.direct(root) {
-        return Ok((builder.present, Way::Direct(direct), scale));
+        return Ok((builder.present, Way::Direct(direct), scale, watched));
     }
     let root = match root {
         Part::Node(id) => Root::Truth(builder.truth(id, (0, 0))?),
         Part::Term(id) => Root::Number(builder.number(id, (0, 0))?),
     };
     let cells = Cells::new(builder.truths, builder.numbers, builder.order, root);
-    Ok((builder.present, Way::Cells(Box::new(cells)), scale))
+    Ok((builder.present, Way::Cells(Box::new(cells)), scale, watched))
 }
 
-/// The last tick that is looked at, or reached from below by what is asked at every instant before it.
-fn last_tick(tree: &Tree, order: &[Part], horizon: Tick) -> Result<u64, Invalid> {
-    let mut asked: BTreeMap<(bool, u32), u64> = BTreeMap::new();
-    let key = |part: Part| match part {
+/// The last ticks at which parts are asked about.
+struct Asked {
+    /// Of each part.
+    parts: BTreeMap<(bool, u32), u64>,
+    /// Of all, or what is reached from below by what is asked at every instant before it.
+    last: u64,
+}
+
+fn key(part: Part) -> (bool, u32) {
+    match part {
         Part::Node(id) => (false, id.0),
         Part::Term(id) => (true, id.0),
-    };
+    }
+}
+
+fn asked(tree: &Tree, order: &[Part], horizon: Tick) -> Result<Asked, Invalid> {
+    let mut asked: BTreeMap<(bool, u32), u64> = BTreeMap::new();
     if let Some(root) = order.last() {
         asked.insert(key(*root), 0);
     }
@@ -103,7 +119,7 @@ fn last_tick(tree: &Tree, order: &[Part], horizon: Tick) -> Result<u64, Invalid>
             *known = latest.max(*known);
         }
     }
-    Ok(last)
+    Ok(Asked { parts: asked, last })
 }
 
 /// The first and the last moment at which something is asked about.
@@ -128,6 +144,17 @@ struct Builder<'t> {
 }
 
 impl Builder<'_> {
+    /// Where the left side of an implication is in the code of present states: `a => b` is lowered to `!a | b`.
+    fn antecedent(&self, part: Part) -> Option<usize> {
+        let Part::Node(id) = part else { return None };
+        let Node::Or(parts) = &self.tree.nodes[id.0 as usize] else { return None };
+        let [first, _] = parts.as_slice() else { return None };
+        match &self.tree.nodes[first.0 as usize] {
+            Node::Not(antecedent) => self.node_slots[antecedent.0 as usize],
+            _ => None,
+        }
+    }
+
     /// The last moment of a trial.
     fn last(&self) -> Moment {
         self.scale.end() - 1

@@ -1,0 +1,60 @@
+//! When commands fire: rates and delays.
+
+use crate::compile::dimension::Dimension;
+use crate::compile::elaborator::{Elaborator, Locals, Lowered};
+use crate::compile::laws;
+use crate::model::{Law, Num, Timing};
+use crate::syntax::ast::process as ast;
+use crate::syntax::ast::{Expr, Value};
+use crate::syntax::diagnostic::Diagnostic;
+
+/// 1/s
+const PER_SECOND: Dimension = Dimension([0, 0, -1, 0, 0]);
+
+impl Elaborator<'_> {
+    pub(super) fn timing(&mut self, command: &ast::Command, locals: &Locals) -> Lowered<Timing> {
+        match &command.timing {
+            None if self.clock.is_jumps() => {
+                let error = Diagnostic::error(
+                    "E0905",
+                    command.span,
+                    "this command has no rate, and other commands of this scenario have",
+                )
+                .hint("give it `at` a rate or `after` a distribution, or set a `step` for the scenario");
+                self.report(error)
+            }
+            None => Ok(Timing::Step),
+            Some(ast::Timing::Rate(rate)) => self.rate(rate, locals).map(Timing::Rate),
+            Some(ast::Timing::Delay(delay)) => self.delay(delay, locals).map(Timing::Delay),
+        }
+    }
+
+    fn rate(&mut self, rate: &Expr, locals: &Locals) -> Lowered<Num> {
+        let typed = self.lower(rate, locals)?;
+        let (num, dimension) = self.as_num(typed, rate.span)?;
+        if dimension != PER_SECOND {
+            return self.wrong_dimension(rate.span, PER_SECOND, dimension);
+        }
+        match num {
+            Num::Constant(value) if !(value >= 0.0 && value.is_finite()) => {
+                self.report(Diagnostic::error("E0904", rate.span, format!("a rate cannot be {value} /s")))
+            }
+            num => Ok(num),
+        }
+    }
+
+    /// The law of a delay: a time that is never negative.
+    pub(in crate::compile) fn delay(&mut self, delay: &Value, locals: &Locals) -> Lowered<Law> {
+        let law = self.law(delay, Dimension::TIME, locals)?;
+        let (least, _) = law.bounds();
+        if least < 0.0 {
+            let span = laws::value_span(delay);
+            let error = Diagnostic::error("E0906", span, "this delay can be negative").hint(format!(
+                "cut it off, as in `{} in 0 s .. 60 s`",
+                self.text(span).split(" in ").next().unwrap_or_default()
+            ));
+            return self.report(error);
+        }
+        Ok(law)
+    }
+}

@@ -1,0 +1,57 @@
+//! A worker of whatever kind the clock of a scenario needs.
+
+use super::budget::Budget;
+use super::cell::Item;
+use super::jumper::Jumper;
+use super::subject::Subject;
+use super::worker::{Finished, Worker};
+use crate::logic::Invalid;
+
+/// Runs trials one after the other.
+pub(super) enum Runner {
+    /// From step to step.
+    Steps(Box<Worker>),
+    /// From jump to jump.
+    Jumps(Box<Jumper>),
+}
+
+impl Runner {
+    /// A worker for some columns of a subject.
+    pub(super) fn new(subject: &Subject, columns: &[usize]) -> Result<Self, Invalid> {
+        Ok(if subject.program.scenario.clock.is_jumps() {
+            Self::Jumps(Box::new(Jumper::new(subject, columns)?))
+        } else {
+            Self::Steps(Box::new(Worker::new(subject, columns)?))
+        })
+    }
+
+    /// Whether it observes just these columns.
+    pub(super) fn serves(&self, columns: &[usize]) -> bool {
+        match self {
+            Self::Steps(worker) => worker.serves(columns),
+            Self::Jumps(jumper) => jumper.serves(columns),
+        }
+    }
+
+    /// Runs items until `next` gives no more, or the budget says stop; then unfinished trials are dropped.
+    pub(super) fn run(
+        &mut self,
+        subject: &Subject,
+        seed: u64,
+        next: &mut dyn FnMut() -> Option<(usize, Item)>,
+        budget: &Budget,
+    ) -> Finished {
+        match self {
+            Self::Steps(worker) => worker.run(subject, seed, next, budget),
+            Self::Jumps(jumper) => jumper.run(subject, seed, next, budget),
+        }
+    }
+
+    /// Steps or jumps made since this was asked last, of all lanes.
+    pub(super) fn take_steps(&mut self) -> u64 {
+        std::mem::take(match self {
+            Self::Steps(worker) => &mut worker.steps,
+            Self::Jumps(jumper) => &mut jumper.steps,
+        })
+    }
+}

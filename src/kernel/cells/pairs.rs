@@ -1,0 +1,244 @@
+//! Social forces between the agents of one large crowd.
+//!
+//! For each strip first the work is listed, without a distance: for each agent the vectors of others behind it
+//! in the strip and of those in reach in the next strip. Then the list is worked off, in one loop
+//! without a branch that hangs on a distance. A vector that catches nobody in reach adds zero.
+
+use super::grid::Grid;
+use super::sort::low_bits;
+use super::{Cells, Terms};
+use crate::base::lanes::{LANES, Lanes, Mask};
+use crate::kernel::contact::Contacts;
+use crate::kernel::forces::Forces;
+use crate::kernel::lanewise::{Sum, decay};
+use crate::kernel::vector::{Doubles, Part, first_part, parts, width};
+use fearless_simd::Simd;
+use fearless_simd::prelude::*;
+use std::f64::consts::LOG2_E;
+
+/// A vector of others that one agent looks at.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Task {
+    /// Place of the agent in its strip.
+    one: u32,
+    /// Place of the first of the others.
+    others: u32,
+    /// Logical lane of the first.
+    lane: u32,
+}
+
+/// Those of a vector who may touch an agent within a step.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Touch {
+    one: u32,
+    others: u32,
+    lanes: Mask,
+}
+
+impl Cells {
+    /// All social forces between agents. With `SHARED` one B for all; with `SECOND` the second term too; with
+    /// `TIES` a factor for pairs of bodies of several persons.
+    #[inline(always)]
+    pub(super) fn pairs<S: Simd, const SHARED: bool, const SECOND: bool, const TIES: bool>(
+        &mut self,
+        simd: S,
+        grid: &Grid,
+        forces: &Forces,
+        contacts: &mut Contacts,
+    ) {
+        for strip in 0..grid.strips {
+            self.list(simd, grid, strip);
+            let from = self.strip(grid, strip).start;
+            let found = self.work_off::<S, SHARED, SECOND, TIES>(simd, forces, from);
+            for touch in &self.touches[..found] {
+                for lane in touch.lanes.iter() {
+                    let (a, b) = (self.agent[touch.one as usize], self.agent[touch.others as usize + lane]);
+                    contacts.push_pair(a.min(b), a.max(b), Mask::lane(0));
+                }
+            }
+            for (k, sum) in self.own.iter().enumerate() {
+                self.fx[from + k] += total(&sum.x);
+                self.fy[from + k] += total(&sum.y);
+            }
+        }
+    }
+
+    /// Lists the work of a strip.
+    #[inline(always)]
+    fn list<S: Simd>(&mut self, simd: S, grid: &Grid, strip: usize) {
+        let row = grid.row();
+        let here = self.strip(grid, strip);
+        let own = &self.start[strip * row..(strip + 1) * row];
+        let above = self.start.get((strip + 1) * row..(strip + 2) * row);
+        self.own.clear();
+        self.own.resize(here.len(), Sum::default());
+        self.tasks.clear();
+        let tasks = &mut self.tasks;
+        let mut push = |one: usize, from: u32, to: u32| {
+            let (one, mut others, mut lane) = (one as u32, from, 0);
+            // One at least: whether it is empty is harder to foresee than it is to add zero.
+            loop {
+                tasks.push(Task { one, others, lane });
+                others += width::<S>() as u32;
+                lane = (lane + width::<S>() as u32) % LANES as u32;
+                if others >= to {
+                    break;
+                }
+            }
+        };
+        for k in here.clone().step_by(LANES) {
+            let (mut end, mut left, mut right) = (Lanes::ZERO, Lanes::ZERO, Lanes::ZERO);
+            for part in parts(simd) {
+                let eight = k..k + LANES;
+                let (x, y) = (part.slice(&self.x[eight.clone()]), part.slice(&self.y[eight.clone()]));
+                let reach = grid.reach_of(part, part.slice(&self.r[eight]));
+                part.store(grid.column(part, x + reach), &mut end);
+                let reach = grid.reach_above(part, strip, y, reach);
+                part.store(grid.column(part, x - reach), &mut left);
+                part.store(grid.column(part, x + reach), &mut right);
+            }
+            for lane in 0..LANES.min(here.end - k) {
+                let i = k + lane;
+                push(i - here.start, i as u32 + 1, own[low_bits(end.0[lane]) as usize + 1]);
+                if let Some(above) = above {
+                    let from = above[low_bits(left.0[lane]) as usize];
+                    push(i - here.start, from, above[low_bits(right.0[lane]) as usize + 1]);
+                }
+            }
+        }
+        if self.touches.len() <= self.tasks.len() {
+            self.touches.resize(self.tasks.len() + 1, Touch::default());
+        }
+    }
+
+    /// Works the list off. Gives how many touches were found.
+    #[inline(always)]
+    fn work_off<S: Simd, const SHARED: bool, const SECOND: bool, const TIES: bool>(
+        &mut self,
+        simd: S,
+        forces: &Forces,
+        from: usize,
+    ) -> usize {
+        let part = first_part(simd);
+        let length = self.agent.len();
+        // Of one length, so that one comparison shows that all are long enough.
+        let (xs, ys, rs) = (&self.x[..length], &self.y[..length], &self.r[..length]);
+        let (fx, fy) = (&mut self.fx[..length], &mut self.fy[..length]);
+        let term = Slices::of(&self.term, length);
+        let second = if SECOND { Slices::of(&self.second, length) } else { term };
+        let margin = part.c(-forces.margin);
+        let rate = |b: f64| SHARED.then_some(LOG2_E / b);
+        let rates = forces.shared.map_or((None, None), |(b, b2)| (rate(b), rate(b2)));
+        let mut found = 0;
+        for task in &self.tasks {
+            let (i, j) = (from + task.one as usize, task.others as usize);
+            let dx = part.c(xs[i]) - part.slice(&xs[j..j + LANES]);
+            let dy = part.c(ys[i]) - part.slice(&ys[j..j + LANES]);
+            let d = (dx * dx + dy * dy + part.c(1e-300)).sqrt();
+            let q = part.c(1.0) / d;
+            let gap = part.c(rs[i]) + part.slice(&rs[j..j + LANES]) - d;
+            let lanes = part.bits(gap.simd_gt(margin));
+            self.touches[found] = Touch { one: i as u32, others: j as u32, lanes };
+            found += usize::from(!lanes.is_empty());
+            let both = (term.one(part, i, rates.0), term.eight(part, j, rates.0));
+            let (mut on_i, mut on_j) = repel::<S, SHARED>(part, gap, (dx, dy), q, &both);
+            if SECOND {
+                let both = (second.one(part, i, rates.1), second.eight(part, j, rates.1));
+                let more = repel::<S, SHARED>(part, gap, (dx, dy), q, &both);
+                on_i += more.0;
+                on_j += more.1;
+            }
+            if TIES {
+                let both = part.c(self.tie[i]) + part.slice(&self.tie[j..j + LANES]);
+                let mean = part.c(0.5) * both;
+                let factor = mean.simd_eq(mean).select(mean, part.c(1.0));
+                on_i *= factor;
+                on_j *= factor;
+            }
+            part.take(on_j * dx, &mut fx[j..j + LANES]);
+            part.take(on_j * dy, &mut fy[j..j + LANES]);
+            let (sum, lane) = (&mut self.own[task.one as usize], task.lane as usize);
+            let (sum_x, sum_y) = (&mut sum.x.0[lane..], &mut sum.y.0[lane..]);
+            part.put(part.slice(sum_x) + on_i * dx, sum_x);
+            part.put(part.slice(sum_y) + on_i * dy, sum_y);
+        }
+        found
+    }
+}
+
+/// A term of all agents.
+#[derive(Clone, Copy)]
+struct Slices<'a> {
+    even: &'a [f64],
+    ex: &'a [f64],
+    ey: &'a [f64],
+    rate: &'a [f64],
+}
+
+impl<'a> Slices<'a> {
+    fn of(terms: &'a Terms, length: usize) -> Self {
+        Self {
+            even: &terms.even[..length],
+            ex: &terms.ex[..length],
+            ey: &terms.ey[..length],
+            rate: &terms.rate[..length],
+        }
+    }
+
+    /// Of one agent, in every lane.
+    #[inline(always)]
+    fn one<S: Simd>(&self, part: Part<S>, i: usize, rate: Option<f64>) -> Loaded<S> {
+        Loaded {
+            even: part.c(self.even[i]),
+            ex: part.c(self.ex[i]),
+            ey: part.c(self.ey[i]),
+            rate: part.c(rate.unwrap_or_else(|| self.rate[i])),
+        }
+    }
+
+    /// Of eight agents.
+    #[inline(always)]
+    fn eight<S: Simd>(&self, part: Part<S>, j: usize, rate: Option<f64>) -> Loaded<S> {
+        let eight = j..j + LANES;
+        Loaded {
+            even: part.slice(&self.even[eight.clone()]),
+            ex: part.slice(&self.ex[eight.clone()]),
+            ey: part.slice(&self.ey[eight.clone()]),
+            rate: rate.map_or_else(|| part.slice(&self.rate[eight]), |rate| part.c(rate)),
+        }
+    }
+}
+
+/// A term in registers.
+#[derive(Clone, Copy)]
+struct Loaded<S: Simd> {
+    even: Doubles<S>,
+    ex: Doubles<S>,
+    ey: Doubles<S>,
+    rate: Doubles<S>,
+}
+
+/// Force on the first and on the second of a pair over their distance 1/q; `gap` is their overlap, (dx, dy) =
+/// n/q points from the second to the first.
+#[inline(always)]
+fn repel<S: Simd, const SHARED: bool>(
+    part: Part<S>,
+    gap: Doubles<S>,
+    (dx, dy): (Doubles<S>, Doubles<S>),
+    q: Doubles<S>,
+    (one, other): &(Loaded<S>, Loaded<S>),
+) -> (Doubles<S>, Doubles<S>) {
+    let e = decay(part, gap * one.rate) * q;
+    let e2 = if SHARED { e } else { decay(part, gap * other.rate) * q };
+    (
+        e * (one.even - (dx * one.ex + dy * one.ey) * q),
+        e2 * (other.even + (dx * other.ex + dy * other.ey) * q),
+    )
+}
+
+/// Sum of eight lanes, always in the same order.
+#[inline(always)]
+fn total(lanes: &Lanes) -> f64 {
+    let l = &lanes.0;
+    ((l[0] + l[4]) + (l[2] + l[6])) + ((l[1] + l[5]) + (l[3] + l[7]))
+}

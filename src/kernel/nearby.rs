@@ -1,0 +1,189 @@
+//! Which surfaces may be near: a grid over the rectangles around them.
+//!
+//! For scenes with thousands of barriers, as buildings imported from files have them. A question gives all
+//! surfaces whose rectangles meet a given one, and perhaps some more, in ascending order; whoever asks looks
+//! closely at each. So it changes no bit whether a surface was found here or in a look at all of them.
+
+use crate::base::geometry::{Bounds, Vec2};
+
+/// Up to so many surfaces, a look at each is as fast.
+const FEW: usize = 16;
+
+/// At most so many entries a surface, on average: large surfaces are in many squares.
+const MOST_ENTRIES: usize = 64;
+
+/// Squares of the plane and the surfaces that reach into each.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Nearby {
+    all: Vec<u32>,
+    /// `None` where all are looked at.
+    squares: Option<Squares>,
+}
+
+#[derive(Clone, Debug)]
+struct Squares {
+    low: Vec2,
+    per_side: f64,
+    columns: usize,
+    rows: usize,
+    /// Where the list of each square starts; one more at the end.
+    first: Vec<u32>,
+    surfaces: Vec<u32>,
+}
+
+impl Nearby {
+    /// For surfaces inside these rectangles.
+    pub(super) fn new(bounds: &[Bounds]) -> Self {
+        let squares = if bounds.len() > FEW { Squares::new(bounds) } else { None };
+        Self { all: (0..bounds.len() as u32).collect(), squares }
+    }
+
+    /// Whether all surfaces are always near.
+    #[cfg(test)]
+    fn is_plain(&self) -> bool {
+        self.squares.is_none()
+    }
+
+    /// The surfaces that may meet a rectangle, ascending. `room` is overwritten.
+    pub(super) fn find<'a>(&'a self, around: &Bounds, room: &'a mut Vec<u32>) -> &'a [u32] {
+        let Some(squares) = &self.squares else { return &self.all };
+        room.clear();
+        let columns = squares.columns(around.low.x, around.high.x);
+        let rows = squares.rows(around.low.y, around.high.y);
+        for row in rows.clone() {
+            for column in columns.clone() {
+                room.extend_from_slice(squares.at(row, column));
+            }
+        }
+        if rows.len() * columns.len() > 1 {
+            room.sort_unstable();
+            room.dedup();
+        }
+        room
+    }
+}
+
+impl Squares {
+    /// `None` where coordinates are infinite or no numbers.
+    fn new(bounds: &[Bounds]) -> Option<Self> {
+        let all = Bounds::around(bounds.iter().flat_map(|b| [b.low, b.high]))?;
+        let size = all.high - all.low;
+        if !(size.x.is_finite() && size.y.is_finite() && size.x + size.y > 0.0) {
+            return None;
+        }
+        // As many squares as surfaces, about; fewer while large surfaces are in too many of them.
+        let count = bounds.len() as f64;
+        let mut side = (size.x * size.y / count).sqrt();
+        let least = (size.x + size.y) / (2.0 * count);
+        side = if side > least { side } else { least };
+        loop {
+            let mut squares = Self {
+                low: all.low,
+                per_side: 1.0 / side,
+                columns: (size.x / side) as usize + 1,
+                rows: (size.y / side) as usize + 1,
+                first: Vec::new(),
+                surfaces: Vec::new(),
+            };
+            let entries: usize =
+                bounds.iter().map(|b| squares.rows_of(b).len() * squares.columns_of(b).len()).sum();
+            if entries <= MOST_ENTRIES * bounds.len() {
+                squares.fill(bounds);
+                return Some(squares);
+            }
+            side *= 2.0;
+        }
+    }
+
+    fn fill(&mut self, bounds: &[Bounds]) {
+        let mut lists = vec![Vec::new(); self.rows * self.columns];
+        for (k, b) in bounds.iter().enumerate() {
+            for row in self.rows_of(b) {
+                for column in self.columns_of(b) {
+                    lists[row * self.columns + column].push(k as u32);
+                }
+            }
+        }
+        for list in lists {
+            self.first.push(self.surfaces.len() as u32);
+            self.surfaces.extend(list);
+        }
+        self.first.push(self.surfaces.len() as u32);
+    }
+
+    /// Which of `count` intervals: never falls as `v` rises. The cast saturates, and takes NaN to 0.
+    fn place(&self, v: f64, count: usize) -> usize {
+        ((v * self.per_side) as usize).min(count - 1)
+    }
+
+    fn columns(&self, low: f64, high: f64) -> std::ops::Range<usize> {
+        self.place(low - self.low.x, self.columns)..self.place(high - self.low.x, self.columns) + 1
+    }
+
+    fn rows(&self, low: f64, high: f64) -> std::ops::Range<usize> {
+        self.place(low - self.low.y, self.rows)..self.place(high - self.low.y, self.rows) + 1
+    }
+
+    fn columns_of(&self, b: &Bounds) -> std::ops::Range<usize> {
+        self.columns(b.low.x, b.high.x)
+    }
+
+    fn rows_of(&self, b: &Bounds) -> std::ops::Range<usize> {
+        self.rows(b.low.y, b.high.y)
+    }
+
+    fn at(&self, row: usize, column: usize) -> &[u32] {
+        let square = row * self.columns + column;
+        &self.surfaces[self.first[square] as usize..self.first[square + 1] as usize]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_that_meets_a_rectangle_is_missed_and_the_order_is_ascending() {
+        // Pieces of many sizes, one as large as the scene, some outside of where anybody asks.
+        let piece = |k: u32| {
+            let (x, y) = (f64::from(k * 7919 % 997) * 0.11 - 20.0, f64::from(k * 104_729 % 1009) * 0.07);
+            let size = 0.3 + f64::from(k % 13);
+            Bounds { low: Vec2::new(x, y), high: Vec2::new(x + size, y + size * f64::from(k % 3)) }
+        };
+        for count in [1, FEW, FEW + 1, 300, 3_000] {
+            let mut bounds: Vec<Bounds> = (0..count as u32).map(piece).collect();
+            bounds[0] = Bounds { low: Vec2::new(-30.0, -5.0), high: Vec2::new(100.0, 90.0) };
+            let nearby = Nearby::new(&bounds);
+            assert_eq!(nearby.is_plain(), count <= FEW);
+            let mut room = Vec::new();
+            let mut looked_at = 0;
+            for ask in 0..200 {
+                let low = Vec2::new(f64::from(ask % 20) * 6.0 - 40.0, f64::from(ask / 20) * 9.0 - 10.0);
+                let around = Bounds { low, high: low + Vec2::new(0.1 * f64::from(ask), 2.0) };
+                let found = nearby.find(&around, &mut room);
+                looked_at += found.len();
+                assert!(found.is_sorted_by(|a, b| a < b));
+                for (k, b) in bounds.iter().enumerate() {
+                    let meets = b.low.x <= around.high.x
+                        && around.low.x <= b.high.x
+                        && b.low.y <= around.high.y
+                        && around.low.y <= b.high.y;
+                    assert!(!meets || found.binary_search(&(k as u32)).is_ok(), "{k} is missing");
+                }
+            }
+            assert!(count < 1_000 || looked_at < 200 * count / 4, "{looked_at}");
+        }
+    }
+
+    #[test]
+    fn surfaces_on_one_point_or_without_end_are_all_near() {
+        let point = Bounds { low: Vec2::zeros(), high: Vec2::zeros() };
+        let endless = Bounds { low: Vec2::zeros(), high: Vec2::new(f64::INFINITY, 0.0) };
+        for odd in [point, endless] {
+            let nearby = Nearby::new(&[odd; 2 * FEW]);
+            let mut room = Vec::new();
+            assert!(nearby.is_plain());
+            assert_eq!(nearby.find(&point, &mut room).len(), 2 * FEW);
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! The clocks of processes with rates and delays, as part of the state of a batch of trials.
+
+use crate::base::lanes::{LANES, Lanes, Mask};
+
+/// When everything that waits will happen.
+///
+/// Each process has one clock for all its commands with rates and one for each command with a delay.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Clocks {
+    /// When each clock rings, s; infinite where it does not run.
+    pub(super) due: Vec<Lanes>,
+    /// Of a race: its rate, 1/s.
+    pub(super) rate: Vec<Lanes>,
+    /// Of a race: what was left of its exponential number when the rate last changed.
+    pub(super) fuel: Vec<Lanes>,
+    /// The number in (0, 1) that decides what happens.
+    pub(super) pick: Vec<Lanes>,
+    /// Of each process: races begun so far.
+    pub(super) races: Vec<[u32; LANES]>,
+    /// Of each process: delays drawn so far.
+    pub(super) delays: Vec<[u32; LANES]>,
+    /// Of each process that is a table: its present row.
+    pub(super) rows: Vec<[u32; LANES]>,
+    /// Time of the last jump, s.
+    pub now: [f64; LANES],
+    /// Jumps since the start of the trial.
+    pub jumps: [u64; LANES],
+    /// How many of the last jumps were at the present time.
+    pub(super) crowd: [u32; LANES],
+    /// Lanes whose clocks have not been set yet.
+    pub(super) fresh: Mask,
+}
+
+impl Clocks {
+    /// A trial begins in a lane.
+    pub(super) fn load(&mut self, clocks: usize, processes: usize, lane: usize) {
+        for (list, value) in [
+            (&mut self.due, f64::INFINITY),
+            (&mut self.rate, 0.0),
+            (&mut self.fuel, 0.0),
+            (&mut self.pick, 0.0),
+        ] {
+            list.resize(clocks, Lanes::ZERO);
+            for lanes in list {
+                lanes.0[lane] = value;
+            }
+        }
+        for list in [&mut self.races, &mut self.delays, &mut self.rows] {
+            list.resize(processes, [0; LANES]);
+            for lanes in list {
+                lanes[lane] = 0;
+            }
+        }
+        self.now[lane] = 0.0;
+        self.jumps[lane] = 0;
+        self.crowd[lane] = 0;
+        self.fresh |= Mask::lane(lane);
+    }
+
+    /// The clock that rings first in each lane, and when.
+    #[inline(always)]
+    pub(super) fn first(&self) -> ([usize; LANES], [f64; LANES]) {
+        let (mut which, mut when) = ([0; LANES], [f64::INFINITY; LANES]);
+        for (k, due) in self.due.iter().enumerate() {
+            for lane in 0..LANES {
+                let sooner = due.0[lane] < when[lane];
+                which[lane] = if sooner { k } else { which[lane] };
+                when[lane] = if sooner { due.0[lane] } else { when[lane] };
+            }
+        }
+        (which, when)
+    }
+}

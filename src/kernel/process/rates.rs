@@ -1,0 +1,186 @@
+//! A process with rates and delays as a table: for each combination of the values it reads, its rate and what may
+//! happen. It is made by the code that runs processes without a table, so both take the same way.
+
+use super::super::code::{Code, Readings};
+use super::super::state::{Layout, State};
+use super::fault::Fault;
+use super::keys::Keys;
+use super::race::{Race, Way, reads};
+use crate::base::lanes::{LANES, Lanes, Mask};
+use crate::model::{Domain, Scenario};
+use std::collections::BTreeSet;
+
+/// Most ways of all rows.
+const MOST_ENTRIES: usize = 1 << 18;
+
+/// Ways of one clock in one row: the first one, and how many. A clock without ways does not run.
+#[derive(Clone, Copy, Debug)]
+struct Ways {
+    first: u32,
+    count: u32,
+}
+
+/// A process as a table.
+#[derive(Clone, Debug)]
+pub(super) struct Rates {
+    pub(super) keys: Keys,
+    /// Rate of the race in each row, and 1 over it; NaN where one is wrong.
+    totals: Vec<(f64, f64)>,
+    /// What is wrong there.
+    wrong: Vec<(usize, Fault)>,
+    /// Number of clocks: the race and each command with a delay.
+    clocks: usize,
+    /// Row by row, the ways of each clock.
+    ways: Vec<Ways>,
+    /// Where the share of each way ends in (0, 1].
+    ends: Vec<f64>,
+    /// The variables that it sets.
+    written: Vec<u32>,
+    /// New values, way by way; NaN where a variable stays.
+    values: Vec<f64>,
+    /// The error of each way; few have one.
+    faults: Vec<Option<Fault>>,
+}
+
+impl Rates {
+    /// The table of a process, if it reads few values and nothing but variables. `delayed` are its commands
+    /// with delays.
+    pub(super) fn of(
+        scenario: &Scenario,
+        number: usize,
+        domains: &[Domain],
+        delayed: &[usize],
+        most: u64,
+    ) -> Option<Self> {
+        let process = &scenario.processes.list[number];
+        let mut read = BTreeSet::new();
+        if !reads(process, &mut read) {
+            return None;
+        }
+        let keys = Keys::of(&read, domains, most)?;
+        let (mut atoms, mut signals) = (Vec::new(), Vec::new());
+        let race = Race::of(number, process, domains, &mut atoms, &mut signals);
+        let code = Code::compile(scenario, &atoms, &signals);
+        let mut table = Self {
+            keys,
+            totals: Vec::new(),
+            wrong: Vec::new(),
+            clocks: 1 + delayed.len(),
+            ways: Vec::new(),
+            ends: Vec::new(),
+            written: race.written().into_iter().collect(),
+            values: Vec::new(),
+            faults: Vec::new(),
+        };
+        let mut state = State::new(Layout::Trials, 0);
+        state.occupied = Mask::ALL;
+        state.variables = vec![Lanes::ZERO; domains.len()];
+        let mut readings = Readings::default();
+        for start in (0..table.keys.rows()).step_by(LANES) {
+            let here = LANES.min((table.keys.rows() - start) as usize);
+            for lane in 0..here {
+                table.keys.put(start + lane as u64, &mut state.variables, lane);
+            }
+            code.read(Layout::Trials, &state, &mut readings);
+            for lane in 0..here {
+                table.enter(&race, delayed, &readings, lane);
+            }
+            if table.ends.len() > MOST_ENTRIES {
+                return None;
+            }
+        }
+        Some(table)
+    }
+
+    /// Adds a row.
+    fn enter(&mut self, race: &Race, delayed: &[usize], readings: &Readings, lane: usize) {
+        match race.total(readings, lane) {
+            Ok(total) => self.totals.push((total, 1.0 / total)),
+            Err(fault) => {
+                self.wrong.push((self.totals.len(), fault));
+                self.totals.push((f64::NAN, f64::NAN));
+            }
+        }
+        let mut found: Vec<(Way, f64)> = Vec::new();
+        race.ends(readings, lane, |way, end| {
+            found.push((way, end));
+            true
+        });
+        self.clock(race, &found, readings, lane);
+        for &command in delayed {
+            found.clear();
+            if race.enabled(command, readings, lane) {
+                race.ends_of(command, readings, lane, |way, end| {
+                    found.push((way, end));
+                    true
+                });
+            }
+            self.clock(race, &found, readings, lane);
+        }
+    }
+
+    /// Adds the ways of a clock.
+    fn clock(&mut self, race: &Race, found: &[(Way, f64)], readings: &Readings, lane: usize) {
+        self.ways.push(Ways { first: self.ends.len() as u32, count: found.len() as u32 });
+        for (k, &(way, end)) in found.iter().enumerate() {
+            // Rounding leaves no gap after the last one.
+            self.ends.push(if k + 1 == found.len() { 1.0 } else { end });
+            let values = way.and_then(|way| race.values(way, readings, lane));
+            self.faults.push(values.as_ref().err().copied());
+            let values = values.unwrap_or_default();
+            for variable in &self.written {
+                let new = values.iter().find(|(v, _)| v == variable);
+                self.values.push(new.map_or(f64::NAN, |(_, value)| *value));
+            }
+        }
+    }
+
+    /// The rate of the race in a row, and 1 over it.
+    #[inline(always)]
+    pub(super) fn total(&self, row: usize) -> Result<(f64, f64), Fault> {
+        let total = self.totals[row];
+        if total.0.is_nan() {
+            return Err(self.wrong_rate(row));
+        }
+        Ok(total)
+    }
+
+    #[cold]
+    fn wrong_rate(&self, row: usize) -> Fault {
+        let found = self.wrong.iter().find(|(wrong, _)| *wrong == row);
+        found.map_or(Fault::Rate { process: 0, command: 0, value: f64::NAN }, |(_, fault)| *fault)
+    }
+
+    /// Whether a clock runs in a row.
+    #[inline(always)]
+    pub(super) fn runs(&self, row: usize, clock: usize) -> bool {
+        self.ways[row * self.clocks + clock].count > 0
+    }
+
+    /// A clock rings in a lane: what belongs to a number in (0, 1) happens.
+    #[inline(always)]
+    pub(super) fn fire(
+        &self,
+        row: usize,
+        clock: usize,
+        u: f64,
+        lane: usize,
+        variables: &mut [Lanes],
+    ) -> Result<(), Fault> {
+        let ways = self.ways[row * self.clocks + clock];
+        let mut entry = ways.first as usize;
+        // Ends ascend, so the way is the number of ends passed: no jump depends on chance.
+        for k in 0..(ways.count as usize).saturating_sub(1) {
+            entry += usize::from(u >= self.ends[ways.first as usize + k]);
+        }
+        if let Some(fault) = self.faults[entry] {
+            return Err(fault);
+        }
+        let width = self.written.len();
+        for (&variable, &new) in self.written.iter().zip(&self.values[entry * width..]) {
+            let old = &mut variables[variable as usize].0[lane];
+            *old = if new.is_nan() { *old } else { new };
+        }
+        Ok(())
+    }
+}
