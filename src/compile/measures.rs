@@ -110,12 +110,8 @@ impl Elaborator<'_> {
     /// A formula with its margins.
     fn robustness_of(&mut self, formula: &Expr, scope: ScopeId) -> Lowered<(NodeId, Dimension, bool)> {
         if self.clock.is_jumps() {
-            let error = Diagnostic::error(
-                "E0508",
-                formula.span,
-                "the robustness of a formula is known on clocks with steps only",
-            )
-            .hint("give the scenario a `step`; rates and delays are then seen at the steps");
+            let error = Diagnostic::error("E0508", formula.span, "there is no robustness in continuous time")
+                .hint("splitting needs it too; give the scenario a `step`, and jumps are seen at the steps");
             return self.report(error);
         }
         let (node, dimension) = self.robustness(formula.span, |this| {
@@ -263,8 +259,7 @@ impl Elaborator<'_> {
         let made = match root {
             Root::Formula(node) => SignalMonitor::formula(&self.tree, node, self.horizon, tick),
             Root::Metric(term) => SignalMonitor::metric(&self.tree, term, self.horizon, tick),
-            // Refused before it gets here.
-            Root::Robustness(..) => return Err(super::elaborator::Reported),
+            Root::Robustness(..) => return Ok(()),
         };
         match made {
             Ok(_) => Ok(()),

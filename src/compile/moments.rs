@@ -69,7 +69,7 @@ mod tests {
     fn decimals_need_no_second_round_and_thirds_do() {
         let ten = exact("10");
         let (first, _) = tick(Some(ten), 10.0, &[]).unwrap();
-        for fits in ["0.1", "3.25", "0.000000001", "10"] {
+        for fits in ["0.1", "3.25", "0.00000001", "10"] {
             assert!(exact(fits).div(first).unwrap().as_whole().is_some(), "{fits}");
         }
         let third = Decimal::ratio(1, 3).unwrap();

@@ -145,9 +145,13 @@ fn without_people_every_step_and_every_jump_is_a_row() {
         let decided = witness["time"].as_f64().unwrap();
         match full {
             Some((time, _)) => {
-                assert!((time - decided).abs() < 1e-9 && witness["what"] == "`queue.n == 5` holds")
+                assert!((time - decided).abs() < 1e-9);
+                assert_eq!(witness["what"], "`queue.n == 5` holds");
             }
-            None => assert!(decided == 10.0 && witness["what"] == "`queue.n == 5` fails"),
+            None => {
+                assert_eq!(decided, 10.0);
+                assert_eq!(witness["what"], "`queue.n == 5` fails");
+            }
         }
     }
 }

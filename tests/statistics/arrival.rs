@@ -165,5 +165,5 @@ fn full_arrival() {
     in_order(4_000);
     first_come(1_000);
     deadline(4_000);
-    deadline_of_threads(2_000);
+    deadline_of_threads(1_000);
 }

@@ -13,11 +13,24 @@ use std::collections::BTreeSet;
 /// Most ways of all rows.
 const MOST_ENTRIES: usize = 1 << 18;
 
-/// Ways of one clock in one row: the first one, and how many. A clock without ways does not run.
+/// The ends of so many ways are looked at together.
+const BLOCK: usize = 4;
+
+/// Ways of one clock in one row. A clock without ways does not run.
 #[derive(Clone, Copy, Debug)]
 struct Ways {
+    /// The first one.
     first: u32,
-    count: u32,
+    /// The first block of ends, and how many blocks.
+    block: u32,
+    blocks: u32,
+}
+
+/// A new value of a variable, as bits: those of the old one that stay, and those that are set.
+#[derive(Clone, Copy, Debug)]
+struct Change {
+    stay: u64,
+    set: u64,
 }
 
 /// A process as a table.
@@ -32,14 +45,15 @@ pub(super) struct Rates {
     clocks: usize,
     /// Row by row, the ways of each clock.
     ways: Vec<Ways>,
-    /// Where the share of each way ends in (0, 1].
-    ends: Vec<f64>,
+    /// Where the share of each way ends in (0, 1]; blocks are filled up with 1.
+    ends: Vec<[f64; BLOCK]>,
     /// The variables that it sets.
     written: Vec<u32>,
-    /// New values, way by way; NaN where a variable stays.
-    values: Vec<f64>,
-    /// The error of each way; few have one.
+    /// New values, way by way.
+    values: Vec<Change>,
+    /// The error of each way, and whether there is any.
     faults: Vec<Option<Fault>>,
+    faulty: bool,
 }
 
 impl Rates {
@@ -71,6 +85,7 @@ impl Rates {
             written: race.written().into_iter().collect(),
             values: Vec::new(),
             faults: Vec::new(),
+            faulty: false,
         };
         let mut state = State::new(Layout::Trials, 0);
         state.occupied = Mask::ALL;
@@ -85,7 +100,7 @@ impl Rates {
             for lane in 0..here {
                 table.enter(&race, delayed, &readings, lane);
             }
-            if table.ends.len() > MOST_ENTRIES {
+            if table.faults.len() > MOST_ENTRIES {
                 return None;
             }
         }
@@ -121,16 +136,33 @@ impl Rates {
 
     /// Adds the ways of a clock.
     fn clock(&mut self, race: &Race, found: &[(Way, f64)], readings: &Readings, lane: usize) {
-        self.ways.push(Ways { first: self.ends.len() as u32, count: found.len() as u32 });
-        for (k, &(way, end)) in found.iter().enumerate() {
-            // Rounding leaves no gap after the last one.
-            self.ends.push(if k + 1 == found.len() { 1.0 } else { end });
+        self.ways.push(Ways {
+            first: self.faults.len() as u32,
+            block: self.ends.len() as u32,
+            blocks: found.len().div_ceil(BLOCK) as u32,
+        });
+        for ways in found.chunks(BLOCK) {
+            let mut ends = [1.0; BLOCK];
+            for (end, (_, found)) in ends.iter_mut().zip(ways) {
+                *end = *found;
+            }
+            self.ends.push(ends);
+        }
+        // Rounding leaves no gap after the last one.
+        if let (Some(ends), Some(last)) = (self.ends.last_mut(), found.len().checked_sub(1)) {
+            ends[last % BLOCK] = 1.0;
+        }
+        for &(way, _) in found {
             let values = way.and_then(|way| race.values(way, readings, lane));
+            self.faulty |= values.is_err();
             self.faults.push(values.as_ref().err().copied());
             let values = values.unwrap_or_default();
             for variable in &self.written {
                 let new = values.iter().find(|(v, _)| v == variable);
-                self.values.push(new.map_or(f64::NAN, |(_, value)| *value));
+                self.values.push(match new {
+                    Some((_, value)) => Change { stay: 0, set: value.to_bits() },
+                    None => Change { stay: u64::MAX, set: 0 },
+                });
             }
         }
     }
@@ -154,7 +186,7 @@ impl Rates {
     /// Whether a clock runs in a row.
     #[inline(always)]
     pub(super) fn runs(&self, row: usize, clock: usize) -> bool {
-        self.ways[row * self.clocks + clock].count > 0
+        self.ways[row * self.clocks + clock].blocks > 0
     }
 
     /// A clock rings in a lane: what belongs to a number in (0, 1) happens.
@@ -170,16 +202,20 @@ impl Rates {
         let ways = self.ways[row * self.clocks + clock];
         let mut entry = ways.first as usize;
         // Ends ascend, so the way is the number of ends passed: no jump depends on chance.
-        for k in 0..(ways.count as usize).saturating_sub(1) {
-            entry += usize::from(u >= self.ends[ways.first as usize + k]);
+        for ends in &self.ends[ways.block as usize..(ways.block + ways.blocks) as usize] {
+            for &end in ends {
+                entry += usize::from(u >= end);
+            }
         }
-        if let Some(fault) = self.faults[entry] {
+        if self.faulty
+            && let Some(fault) = self.faults[entry]
+        {
             return Err(fault);
         }
         let width = self.written.len();
-        for (&variable, &new) in self.written.iter().zip(&self.values[entry * width..]) {
-            let old = &mut variables[variable as usize].0[lane];
-            *old = if new.is_nan() { *old } else { new };
+        for (&variable, change) in self.written.iter().zip(&self.values[entry * width..][..width]) {
+            let value = &mut variables[variable as usize].0[lane];
+            *value = f64::from_bits(value.to_bits() & change.stay | change.set);
         }
         Ok(())
     }
