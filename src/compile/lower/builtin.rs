@@ -1,7 +1,7 @@
 //! Names of the built-in functions and distributions.
 
 /// Built-in functions by name, for hints.
-pub(in crate::compile) const FUNCTIONS: [&str; 40] = [
+pub(in crate::compile) const FUNCTIONS: [&str; 41] = [
     "abs",
     "area",
     "atan2",
@@ -27,6 +27,7 @@ pub(in crate::compile) const FUNCTIONS: [&str; 40] = [
     "norm",
     "others",
     "position",
+    "present",
     "radius",
     "robustness",
     "round",

@@ -152,16 +152,4 @@ Wrong:\n\
 Right:\n\
 \x20   property p = G<=2 s !contact(crowd[1])",
     },
-    Page {
-        code: "E0213",
-        title: "not simulated in this version",
-        text: "\
-The language has commands with rates and delays, and this version reads and formats them, but it does not simulate\n\
-them.\n\
-\n\
-Wrong:\n\
-\x20   when n < 5 at 2 /s -> n = n + 1\n\
-Right:\n\
-\x20   when n < 5 -> 1/10: n = n + 1 | 9/10: { }",
-    },
 ];
