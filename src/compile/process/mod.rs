@@ -298,6 +298,16 @@ impl<'a> Elaborator<'a> {
             )
             .hint("make them two processes: one of steps, one of times; each can read the other");
             self.note(error);
+        } else if commands.iter().any(timed)
+            && let Some(span) = decl.items.iter().find_map(|item| match item {
+                ProcessItem::Choose(span) => Some(*span),
+                _ => None,
+            })
+        {
+            let error =
+                Diagnostic::error("E0905", span, "commands with times race; there is nothing to choose")
+                    .hint("leave `choose` out: the earliest command fires");
+            self.note(error);
         }
     }
 
