@@ -327,7 +327,7 @@ pub struct Ranking {
     pub choice: String,
     /// Certified: the choice is at most so much worse than the best. Infinite where nothing is certified.
     pub gap: f64,
-    /// Whether other options could not be told from the choice within the certified gap.
+    /// Whether other options carry the same certificate.
     pub tied: bool,
     /// All options, best first.
     pub options: Vec<RankedOption>,
@@ -351,11 +351,11 @@ pub struct RankedOption {
 pub enum Status {
     /// The recommended one.
     Chosen,
-    /// Within the wanted gap of the choice: a difference, if any, does not matter.
+    /// It carries the same certificate as the choice: it, too, is at most the wanted loss worse than the best.
     Tied,
     /// Shown to be worse than the choice.
     Beaten,
-    /// Not told apart from the choice when sampling stopped.
+    /// Neither: it may be the best by no more than the certified gap, and may be much worse.
     Open,
 }
 

@@ -37,8 +37,6 @@ pub(super) struct Podium {
     pub(super) values: Vec<(f64, stats::Interval)>,
     /// The choice.
     pub(super) choice: Choice,
-    /// Options not dropped.
-    pub(super) live: Vec<usize>,
     /// Whether the ranking is certified.
     pub(super) finished: bool,
     /// Why it stopped.
@@ -110,14 +108,6 @@ impl Procedure {
             Self::Booleans(race) => race.choice(Some(deviations)),
             Self::Scores { race, .. } => race.choice(Some(deviations)),
             Self::Each(each) => each.choice(Some(deviations)),
-        }
-    }
-
-    fn live(&self, arms: usize) -> Vec<usize> {
-        match self {
-            Self::Booleans(race) => race.live().to_vec(),
-            Self::Scores { race, .. } => race.live().to_vec(),
-            Self::Each(_) => (0..arms).collect(),
         }
     }
 
@@ -307,7 +297,6 @@ impl<'s> Contest<'s> {
         Ok(Podium {
             tallies,
             values,
-            live: self.procedure.live(arms),
             finished: self.procedure.finished(),
             choice,
             stop,

@@ -48,14 +48,16 @@ pub(super) fn ranked(podium: &Podium, labels: &[&str]) -> Ranking {
         let ((fa, va, ia), (fb, vb, ib)) = (key(a), key(b));
         fa.cmp(&fb).then(va.total_cmp(&vb)).then(ia.cmp(&ib))
     });
-    let options = order
+    let options: Vec<RankedOption> = order
         .iter()
         .map(|&arm| {
             let (estimate, interval) = podium.values[arm];
             let status = if arm == choice.arm {
                 Status::Chosen
-            } else if podium.live.contains(&arm) {
-                if podium.finished && choice.tied.contains(&arm) { Status::Tied } else { Status::Open }
+            } else if podium.finished && choice.certified.contains(&arm) {
+                Status::Tied
+            } else if choice.open.contains(&arm) {
+                Status::Open
             } else {
                 Status::Beaten
             };
@@ -68,6 +70,6 @@ pub(super) fn ranked(podium: &Podium, labels: &[&str]) -> Ranking {
         })
         .collect();
     let gap = choice.gap * podium.scale;
-    let tied = podium.finished && !choice.tied.is_empty();
+    let tied = options.iter().any(|option| option.status == Status::Tied);
     Ranking { choice: labels[choice.arm].to_owned(), gap, tied, options }
 }

@@ -130,7 +130,7 @@ fn scores_of_zero_and_one_race_like_booleans() {
         }
         assert_eq!(reals.trials(), booleans.trials());
         let (one, other) = (reals.choice(None), booleans.choice(None));
-        assert_eq!((one.arm, one.tied, one.certified), (other.arm, other.tied, other.certified));
+        assert_eq!((one.arm, one.open, one.certified), (other.arm, other.open, other.certified));
         assert!((one.gap - other.gap).abs() < 1e-6);
     }
 }
@@ -147,7 +147,7 @@ fn arms_that_never_differ_are_certified_equal_and_the_least_deviation_decides() 
     assert_eq!(race.trials(), 9 * 448);
     let deviations = [3.0, 2.0, 1.0, 0.5, 0.0, 0.5, 1.0, 2.0, 3.0];
     let choice = race.choice(Some(&deviations));
-    assert_eq!((choice.arm, choice.certified.len(), choice.tied.len()), (4, 9, 8));
+    assert_eq!((choice.arm, choice.certified.len(), choice.open.len()), (4, 9, 8));
     assert!(choice.gap <= 0.02);
 }
 

@@ -93,7 +93,7 @@ fn section(page: &mut String, group: &[QueryResult]) {
             page,
             "<p>Choose <strong>{}</strong>{}.</p>",
             escape(&ranking.choice),
-            if ranking.tied { ", tied with others within the certified gap" } else { "" }
+            if ranking.tied { "; so are those marked tied" } else { "" }
         );
     }
     for result in group {

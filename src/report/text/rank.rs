@@ -17,7 +17,7 @@ pub(super) fn write(text: &mut String, result: &QueryResult, ranking: &Ranking, 
         format!("{choice} leads, but nothing is certified yet")
     };
     if ranking.tied {
-        said += "; tied with others within that gap";
+        said += "; so are those marked tied";
     }
     block::line(text, &said);
     let rows: Vec<Vec<Cell>> = ranking

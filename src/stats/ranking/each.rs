@@ -134,11 +134,11 @@ impl Each {
                 }
             }
         }
-        let tied = (0..k)
+        let open = (0..k)
             .filter(|other| {
                 *other != arm && (!finished || self.shares(*other).1 + self.epsilon > self.shares(leader).0)
             })
             .collect();
-        Choice { arm, gap: if finished { gap_of(arm) } else { 1.0 }, tied, certified }
+        Choice { arm, gap: if finished { gap_of(arm) } else { 1.0 }, open, certified }
     }
 }

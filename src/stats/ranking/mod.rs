@@ -35,7 +35,7 @@ pub struct Choice {
     /// is certified, and possible before the end only for races.
     pub gap: f64,
     /// Other arms that are not known to be worse than the leader.
-    pub tied: Vec<usize>,
+    pub open: Vec<usize>,
     /// Arms, the chosen one included, that each carry the full certificate: within epsilon of the best.
     pub certified: Vec<usize>,
 }

@@ -237,7 +237,7 @@ impl<T: Table> Race<T> {
         // The certificate is at least what the stopping rule has checked.
         let most = if certified.contains(&arm) { math::at_most(self.epsilon, 1.0) } else { 1.0 };
         let gap = self.gap_below(arm, most);
-        let tied = live.into_iter().filter(|other| *other != arm).collect();
-        Choice { arm, gap, tied, certified }
+        let open = live.into_iter().filter(|other| *other != arm).collect();
+        Choice { arm, gap, open, certified }
     }
 }
