@@ -30,6 +30,8 @@ pub(super) type Lowered<T> = Result<T, Reported>;
 const DEEPEST: u32 = 1000;
 /// How many expression nodes one combination of parameter values may expand to.
 const MOST_NODES: u64 = 4_000_000;
+/// How many conditions on states it may have.
+const MOST_ATOMS: usize = 5_000;
 
 /// Names of enclosing expressions: function arguments and quantified agents.
 #[derive(Clone, Debug, Default)]
@@ -274,6 +276,18 @@ impl<'a> Elaborator<'a> {
     pub(super) fn atom(&mut self, truth: Bool, span: Span) -> NodeId {
         if let Bool::Constant(value) = truth {
             return self.node(Node::Constant(value));
+        }
+        if self.atoms.len() >= MOST_ATOMS {
+            if !self.failed() {
+                let error = Diagnostic::error(
+                    "E0211",
+                    span,
+                    format!("this is written out into more than {MOST_ATOMS} conditions"),
+                )
+                .hint("quantifiers over formulas are written out for every agent; quantify over states where you can");
+                self.note(error);
+            }
+            return self.node(Node::Constant(false));
         }
         let at = self.atoms.iter().position(|a| *a == truth).unwrap_or_else(|| {
             self.atoms.push(truth);

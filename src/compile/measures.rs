@@ -40,6 +40,11 @@ impl Elaborator<'_> {
         };
         self.within_horizon(reach, place)?;
         self.watchable(Root::Formula(node), place)?;
+        if !matches!(self.tree.nodes[node.0 as usize], Node::Constant(_)) && !self.depends_on_states(node) {
+            let warning = Diagnostic::warning("W0501", place, "this is always the same")
+                .hint("it does not depend on what happens in a trial");
+            self.note(warning);
+        }
         if let Node::Constant(value) = self.tree.nodes[node.0 as usize] {
             let warning = Diagnostic::warning("W0501", place, format!("this is always {value}"))
                 .hint("it does not depend on what happens in a trial");
@@ -47,6 +52,35 @@ impl Elaborator<'_> {
         }
         let text = self.text(body.span);
         Ok((Column { root: Root::Formula(node), text }, reach.unbounded))
+    }
+
+    /// Whether a formula reads any state.
+    fn depends_on_states(&self, node: NodeId) -> bool {
+        // Children stand before their parents: one pass over both lists settles all.
+        let mut nodes: Vec<bool> = Vec::with_capacity(self.tree.nodes.len());
+        let term = |id: TermId| self.reads_state(id);
+        for made in &self.tree.nodes[..=node.0 as usize] {
+            let of = |id: &NodeId| nodes.get(id.0 as usize).copied().unwrap_or(true);
+            let reads = match made {
+                Node::Constant(_) => false,
+                Node::Atom(_) => true,
+                Node::Compare(_, a, b) => term(*a) || term(*b),
+                Node::Not(a) | Node::Finally(_, a) | Node::Globally(_, a) => of(a),
+                Node::And(list) | Node::Or(list) => list.iter().any(of),
+                Node::Until(_, a, b) | Node::WeakUntil(_, a, b) | Node::Release(_, a, b) => of(a) || of(b),
+            };
+            nodes.push(reads);
+        }
+        nodes.last().copied().unwrap_or(true)
+    }
+
+    fn reads_state(&self, id: TermId) -> bool {
+        match &self.tree.terms[id.0 as usize] {
+            Term::Constant(_) => false,
+            Term::Signal(_) | Term::TimeUntil(_) => true,
+            Term::Combine(_, a, b) => self.reads_state(*a) || self.reads_state(*b),
+            Term::Abs(a) | Term::Window(_, _, a) | Term::Later(_, a) | Term::AtEnd(a) => self.reads_state(*a),
+        }
     }
 
     /// A metric read at the start of a trace.

@@ -204,6 +204,11 @@ impl<'a> Compiler<'a> {
                 let settings = self.described(base, point, swept);
                 // Bonferroni: the claims of a family share its error.
                 let family = family.map(|delta| delta / members.max(1) as f64);
+                if let (Some(_), Some(span)) = (family, own_errors(&query.clauses)) {
+                    let warning = Diagnostic::warning("W0601", span, "this query leaves the family")
+                        .hint("its own error counts instead of its share; leave it out to hold jointly with the others");
+                    self.sites[base].elaborator.note(warning);
+                }
                 let _ = self.query(query, scope, base, point, &settings, family);
             }
         }
@@ -462,6 +467,13 @@ fn metrics(measures: &[ast::Measure]) -> usize {
 /// Whether the error of a query comes from its family rather than from its own clause.
 pub(super) fn family_clauses(clauses: &Clauses) -> bool {
     clauses.confidence.is_none()
+}
+
+/// Where a query states errors of its own.
+fn own_errors(clauses: &Clauses) -> Option<Span> {
+    let named = |name: &str| matches!(name, "alpha" | "beta" | "delta");
+    let argument = clauses.by.iter().flat_map(|method| &method.arguments).find(|a| named(&a.name.name));
+    clauses.confidence.as_ref().map(|c| c.span).or(argument.map(|a| a.name.span))
 }
 
 /// The name of the property that is asked about, if it is one name.

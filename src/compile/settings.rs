@@ -123,6 +123,9 @@ impl<'a> Elaborator<'a> {
                 let (default, _) = self.param(&setting.name, setting.span)?;
                 let step = self.number(by, &locals)?;
                 let unit = Self::unit_of_default(default).and_then(|unit| dimension::resolve(unit).ok());
+                if !step.dimension.is_none() && step.dimension != first.dimension {
+                    return self.wrong_dimension(setting.span, first.dimension, step.dimension);
+                }
                 let step = match unit {
                     Some(unit) if step.dimension.is_none() => {
                         step.times(Number::literal(Decimal::ONE, &unit)).unwrap_or(step)

@@ -17,6 +17,7 @@ use super::watch::Watch;
 use super::witness;
 use super::words;
 use crate::compile::study::{Ask, Measure, MeasureKind, Query, Root};
+use crate::logic::{Term, TermId, Tree};
 use crate::stats::{Coverage, Decision};
 
 fn unit(measure: &Measure) -> String {
@@ -86,9 +87,12 @@ impl Answers<'_> {
             result.low = interval.low;
             result.high = interval.high;
             result.interval = words::interval(coverage, error);
-            let robust = matches!(subject.columns[measure.target.column], Root::Robustness(..));
-            if matches!(measure.kind, MeasureKind::Quantile { .. }) && interval.high.is_infinite() && !robust
-            {
+            // Only a time that does not come lies beyond the horizon; a distance to nobody is infinite.
+            let time = match subject.columns[measure.target.column] {
+                Root::Metric(term) => waits(&subject.tree, term),
+                Root::Formula(_) | Root::Robustness(..) => false,
+            };
+            if matches!(measure.kind, MeasureKind::Quantile { .. }) && interval.high.is_infinite() && time {
                 result.censored = Some(subject.program.scenario.clock.seconds(subject.horizon));
             }
             if kind == Kind::Estimate {
@@ -321,4 +325,14 @@ fn total(tallies: &[Tally]) -> Tally {
         sum.triggered |= tally.triggered;
     }
     sum
+}
+
+/// Whether a number is a time until something, or made of one.
+fn waits(tree: &Tree, term: TermId) -> bool {
+    match &tree.terms[term.0 as usize] {
+        Term::TimeUntil(_) => true,
+        Term::Constant(_) | Term::Signal(_) => false,
+        Term::Combine(_, a, b) => waits(tree, *a) || waits(tree, *b),
+        Term::Abs(a) | Term::Window(_, _, a) | Term::Later(_, a) | Term::AtEnd(a) => waits(tree, *a),
+    }
 }

@@ -294,14 +294,7 @@ impl<'s> Contest<'s> {
                 }
             })
             .collect();
-        Ok(Podium {
-            tallies,
-            values,
-            finished: self.procedure.finished(),
-            choice,
-            stop,
-            scale: self.scale(),
-        })
+        Ok(Podium { tallies, values, finished: self.procedure.finished(), choice, stop, scale: self.scale() })
     }
 
     /// Shows the first trials of a round to the procedure, option by option; false where these are not all.

@@ -148,3 +148,16 @@ fn help_for_shells_and_manuals() {
         assert!(said.out.contains(words), "{words}\n{}", said.out);
     }
 }
+
+#[test]
+fn warnings_point_at_families_that_are_left_and_formulas_that_never_change() {
+    let said = checked(
+        "family confidence 95 %\n\
+         estimate P(F<=1 s contact(user)) within 0.3 confidence 90 %\n\
+         check P(F<=1 s contact(user)) >= 0.5 by sprt(alpha = 0.01, beta = 0.01, indifference = 0.1)\n\
+         check P(G<=1 s (1 m < 2 m)) >= 0.5\n",
+        &[],
+    );
+    assert_eq!(said.err.matches("warning[W0601]: this query leaves the family").count(), 2, "{}", said.err);
+    assert_eq!(said.err.matches("warning[W0501]: this is always the same").count(), 1, "{}", said.err);
+}

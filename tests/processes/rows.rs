@@ -136,3 +136,10 @@ fn arrays_labels_lets_truth_values_and_real_numbers() {
         ],
     );
 }
+
+#[test]
+fn variables_of_an_array_may_be_called_as_coordinates_are() {
+    let scenario = "horizon = 3 steps\nprocess a[3] { var x: 0 .. 9 = 2\n var y: 0 .. 9 = 0\n\
+                    when a[1].x < 4 -> { x = a[2].x + 1; y = 1 } }";
+    exactly(scenario, &[("X (a[3].x == 3 & a[1].y == 1)", 1.0), ("G (a[2].x < 4)", 0.0)]);
+}

@@ -50,6 +50,10 @@ impl Elaborator<'_> {
                 if matches!(field.name.as_str(), "x" | "y") && !matches!(base.kind, ExprKind::Name(_)) =>
             {
                 let typed = self.lower(base, locals)?;
+                // A variable of a process may be called so.
+                if let Typed::Process { .. } | Typed::Processes(_) = typed {
+                    return self.lower_member(base, field, locals);
+                }
                 let (x, y, dimension) = self.as_vector(typed, base.span)?;
                 Ok(Typed::Num(if field.name == "x" { x } else { y }, dimension))
             }

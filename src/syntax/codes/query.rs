@@ -115,4 +115,18 @@ Wrong:\n\
 Right:\n\
 \x20   E(robustness(G<=5 s (speed(user) / 1 m/s < 2 & clearance(user) / 0.5 m > 1))) in -1 .. 1",
     },
+    Page {
+        code: "W0601",
+        title: "this query leaves its family",
+        text: "\
+With `family confidence` all queries of a file hold jointly, each with an equal share of the error. A query that states\n\
+errors of its own is held to those, and the joint statement is about the others only.\n\
+\n\
+Probably wrong:\n\
+\x20   family confidence 95 %\n\
+\x20   estimate P(safe) within 0.01 confidence 99 %\n\
+Clear:\n\
+\x20   family confidence 95 %\n\
+\x20   estimate P(safe) within 0.01",
+    },
 ];
