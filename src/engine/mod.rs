@@ -23,6 +23,7 @@ pub mod subject;
 mod survey;
 mod tally;
 mod trial;
+mod walker;
 mod watch;
 mod witness;
 mod words;

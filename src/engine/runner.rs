@@ -4,6 +4,7 @@ use super::budget::Budget;
 use super::cell::Item;
 use super::jumper::Jumper;
 use super::subject::Subject;
+use super::walker::Walker;
 use super::worker::{Finished, Worker};
 use crate::logic::Invalid;
 
@@ -11,6 +12,8 @@ use crate::logic::Invalid;
 pub(super) enum Runner {
     /// From step to step.
     Steps(Box<Worker>),
+    /// From state to state of a small finite chain.
+    Walks(Box<Walker>),
     /// From jump to jump.
     Jumps(Box<Jumper>),
 }
@@ -20,6 +23,8 @@ impl Runner {
     pub(super) fn new(subject: &Subject, columns: &[usize]) -> Result<Self, Invalid> {
         Ok(if subject.program.scenario.clock.is_jumps() {
             Self::Jumps(Box::new(Jumper::new(subject, columns)?))
+        } else if let Some(walker) = Walker::of(subject, columns) {
+            Self::Walks(Box::new(walker))
         } else {
             Self::Steps(Box::new(Worker::new(subject, columns)?))
         })
@@ -29,6 +34,7 @@ impl Runner {
     pub(super) fn serves(&self, columns: &[usize]) -> bool {
         match self {
             Self::Steps(worker) => worker.serves(columns),
+            Self::Walks(walker) => walker.serves(columns),
             Self::Jumps(jumper) => jumper.serves(columns),
         }
     }
@@ -43,6 +49,7 @@ impl Runner {
     ) -> Finished {
         match self {
             Self::Steps(worker) => worker.run(subject, seed, next, budget),
+            Self::Walks(walker) => walker.run(subject, seed, next, budget),
             Self::Jumps(jumper) => jumper.run(subject, seed, next, budget),
         }
     }
@@ -51,6 +58,7 @@ impl Runner {
     pub(super) fn take_steps(&mut self) -> u64 {
         std::mem::take(match self {
             Self::Steps(worker) => &mut worker.steps,
+            Self::Walks(walker) => &mut walker.steps,
             Self::Jumps(jumper) => &mut jumper.steps,
         })
     }

@@ -7,6 +7,7 @@ use crate::kernel::process::View;
 use crate::kernel::{Code, Program};
 use crate::logic::{Invalid, Monitor, Node, NodeId, Robustness, SignalMonitor, Term, TermId, Tree};
 use crate::model::{Bool, Num};
+use std::collections::BTreeSet;
 
 /// A world made ready to run.
 pub struct Subject {
@@ -124,6 +125,13 @@ impl Subject {
     pub fn code(&self, columns: &[usize]) -> Code {
         let (atoms, signals) = self.observed(columns);
         Code::compile(&self.program.scenario, &atoms, &signals)
+    }
+
+    /// Whether what some columns use is made of variables of processes and nothing else.
+    pub(super) fn reads_variables_only(&self, columns: &[usize]) -> bool {
+        let (atoms, signals) = self.observed(columns);
+        let mut read = BTreeSet::new();
+        atoms.iter().all(|atom| atom.reads(&mut read)) && signals.iter().all(|s| s.reads(&mut read))
     }
 
     /// The numbers of the atoms that a column uses.

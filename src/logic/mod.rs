@@ -3,6 +3,7 @@
 //! The logic reads truth values and numbers of each state by index; it knows nothing of people.
 
 pub mod explain;
+pub mod flat;
 pub mod formula;
 pub mod invalid;
 pub mod monitor;
@@ -12,6 +13,7 @@ pub mod signal;
 mod source;
 
 pub use explain::{Explanation, Reason, explain};
+pub use flat::{Flat, Present, Sort};
 pub use formula::{
     Aggregation, AtomId, Node, NodeId, Operation, Relation, SignalId, Term, TermId, Tree, Window,
 };

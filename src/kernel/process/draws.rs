@@ -5,7 +5,7 @@
 
 use crate::base::lanes::{LANES, Lanes};
 use crate::base::math;
-use crate::base::random::{self, Purpose, Stream, philox};
+use crate::base::random::{self, Purpose, Stream, TrialKey, philox};
 use crate::kernel::noise::unit_open;
 use crate::kernel::state::State;
 use crate::kernel::vector::{ln, parts};
@@ -94,24 +94,47 @@ fn all<S: Simd, const WAIT: bool>(
 ) -> [[f64; LANES]; 2] {
     let mut counter = [[0u64; LANES]; 3];
     for lane in 0..LANES {
-        let key = &state.keys[lane];
         counter[0][lane] = draws[lane] & LOW;
-        counter[1][lane] = key.index & LOW;
-        counter[2][lane] = (key.index >> 32 & 0xffff) | u64::from(key.branch) << 16;
+        [counter[1][lane], counter[2][lane]] = trial_words(state.keys[lane]);
     }
-    let mut key = [state.keys[0].seed as u32, (state.keys[0].seed >> 32) as u32];
+    blocks::<_, WAIT>(simd, &counter, words, &round_keys(state.keys[0].seed))
+}
+
+/// Keys of the rounds.
+pub(super) type RoundKeys = [[u64; 2]; ROUNDS];
+
+/// The keys of the rounds of a seed.
+pub(super) fn round_keys(seed: u64) -> RoundKeys {
+    let mut key = [seed as u32, (seed >> 32) as u32];
     let mut keys = [[0u64; 2]; ROUNDS];
     for round in &mut keys {
         *round = [u64::from(key[0]), u64::from(key[1])];
         key = [key[0].wrapping_add(WEYL[0]), key[1].wrapping_add(WEYL[1])];
     }
+    keys
+}
+
+/// The two parts of the counter that name a trial.
+pub(super) fn trial_words(key: TrialKey) -> [u64; 2] {
+    [key.index & LOW, (key.index >> 32 & 0xffff) | u64::from(key.branch) << 16]
+}
+
+/// The two numbers of each lane. Of the counter: the draw, and the two parts of the trial; `words` name the
+/// processes.
+#[inline(always)]
+pub(super) fn blocks<S: Simd, const WAIT: bool>(
+    simd: S,
+    counter: &[[u64; LANES]; 3],
+    words: &[u64; LANES],
+    keys: &RoundKeys,
+) -> [[f64; LANES]; 2] {
     let mut out = [Lanes::ZERO; 2];
     for part in parts(simd) {
         let low = part.word(LOW);
         let mut c =
             [part.words(&counter[0]), part.words(words), part.words(&counter[1]), part.words(&counter[2])];
         // Above its low half a counter word may hold anything between rounds.
-        for round in &keys {
+        for round in keys {
             let a = (c[0] & low) * part.word(MULTIPLIER[0]);
             let b = (c[2] & low) * part.word(MULTIPLIER[1]);
             c = [(b >> 32) ^ (c[1] ^ part.word(round[0])), b, (a >> 32) ^ (c[3] ^ part.word(round[1])), a];
@@ -127,7 +150,6 @@ fn all<S: Simd, const WAIT: bool>(
 mod tests {
     use super::*;
     use crate::base::lanes::Mask;
-    use crate::base::random::TrialKey;
     use crate::kernel::state::Layout;
 
     #[test]

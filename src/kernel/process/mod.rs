@@ -5,6 +5,7 @@
 //! Guards, probabilities and updates are linear code over lanes; a process that depends on few values only
 //! is a table made by that same code.
 
+mod chain;
 mod clocks;
 mod commands;
 mod delay;
@@ -17,6 +18,7 @@ mod table;
 mod timed;
 mod view;
 
+pub use chain::{Chain, Walk};
 pub use clocks::Clocks;
 pub use fault::Fault;
 use fault::Faults;
@@ -62,6 +64,8 @@ pub struct Processes {
     /// Guards, probabilities and updates of those that are no tables.
     code: Option<Code>,
     level: Level,
+    /// All of them as one chain, where they are few and small.
+    chain: Option<Chain>,
 }
 
 /// Room to work. It holds no part of the state.
@@ -100,16 +104,28 @@ impl Processes {
                 Machine { word: stream.counter(0)[1], form }
             })
             .collect();
+        let timed = Timed::of(scenario, &domains, rows, Level::new());
+        // Agents are no part of a chain.
+        let alone = scenario.agents.is_empty() && scenario.sources.is_empty() && timed.is_none();
+        let initial: Vec<f64> = processes.variables.iter().map(|v| v.initial).collect();
+        let chain = if alone { Chain::of(&machines, &initial, &domains) } else { None };
         let coded = machines.iter().any(|machine| matches!(machine.form, Form::Code(_)));
         Self {
-            initial: processes.variables.iter().map(|v| v.initial).collect(),
+            initial,
             machines,
-            timed: Timed::of(scenario, &domains, rows, Level::new()),
+            timed,
             clock: scenario.clock,
             horizon: scenario.horizon,
             code: coded.then(|| Code::compile(scenario, &atoms, &signals)),
             level: Level::new(),
+            chain,
         }
+    }
+
+    /// All of them as one finite chain, if they are small tables that read nothing but variables, there is
+    /// nobody else, and no reachable state has an error.
+    pub fn chain(&self) -> Option<&Chain> {
+        self.chain.as_ref()
     }
 
     /// Whether there is anything to do.
@@ -122,6 +138,7 @@ impl Processes {
         self.level = Level::baseline();
         self.code = self.code.map(Code::at_baseline);
         self.timed = self.timed.map(Timed::at_baseline);
+        self.chain = self.chain.map(Chain::at_baseline);
         self
     }
 

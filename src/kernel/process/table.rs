@@ -147,6 +147,30 @@ impl Table {
         }
     }
 
+    /// The variables that it writes.
+    pub(super) fn written(&self) -> &[u32] {
+        &self.written
+    }
+
+    /// What may happen where the variables have these values: where each branch ends in (0, 1], and what it
+    /// writes. `None` where a branch is an error.
+    #[allow(clippy::type_complexity, reason = "said in the line above")]
+    pub(super) fn outcomes(&self, variables: &[f64]) -> Option<Vec<(f64, Vec<(u32, f64)>)>> {
+        let place =
+            self.keys.iter().fold(self.origin, |sum, (id, stride)| sum + variables[*id as usize] * stride);
+        let row = self.rows.get(place as usize).filter(|row| !row.faulty)?;
+        let entries = row.first as usize..(row.first + row.count) as usize;
+        let width = self.written.len();
+        Some(
+            entries
+                .map(|entry| {
+                    let new = self.written.iter().zip(&self.values[entry * width..]);
+                    (self.ends[entry], new.filter(|(_, v)| !v.is_nan()).map(|(k, v)| (*k, *v)).collect())
+                })
+                .collect(),
+        )
+    }
+
     /// One step: new values go to `next`.
     #[inline]
     pub(super) fn step(

@@ -1,0 +1,211 @@
+//! Small finite processes as one Markov chain: a row of numbers for each state.
+//!
+//! The variables of all processes together are the mixed-radix digits of one number, the state. For each process
+//! and state it is known where the branches end in (0, 1], and by how much each branch moves that number. All
+//! processes look at the old state and write variables of their own, so their moves add up. Numbers come from the
+//! same addresses as elsewhere, and pass the same ends: a walk visits the states that the general path visits.
+
+use super::draws::{RoundKeys, blocks, round_keys, trial_words};
+use super::keys::Keys;
+use super::{Form, Machine};
+use crate::base::lanes::{LANES, Lanes};
+use crate::base::random::TrialKey;
+use crate::model::{Domain, VariableId};
+use fearless_simd::{Level, Simd, dispatch};
+use std::collections::BTreeSet;
+
+/// Most states, reachable or not.
+const MOST_STATES: u64 = 1 << 14;
+/// Most ways from state to state.
+const MOST_WAYS: usize = 1 << 17;
+/// No number in (0, 1) passes it.
+const NEVER: f64 = 2.0;
+
+/// What a process does in each state.
+#[derive(Clone, Debug)]
+struct Steps {
+    /// The part of the counter that names the process.
+    word: u64,
+    /// Most branches in a state; each state has so many places.
+    most: usize,
+    /// Whether chance decides, by state.
+    open: Vec<bool>,
+    /// Where each branch ends in (0, 1], state by state.
+    ends: Vec<f64>,
+    /// What each branch adds to the number of the state.
+    moves: Vec<i32>,
+}
+
+/// Processes as one chain.
+#[derive(Clone, Debug)]
+pub struct Chain {
+    keys: Keys,
+    steps: Vec<Steps>,
+    initial: u32,
+    reachable: Vec<u32>,
+    level: Level,
+}
+
+/// Eight trials of a chain. A lane without a trial walks on somewhere.
+#[derive(Clone, Debug)]
+pub struct Walk {
+    /// The state of each lane.
+    pub states: [u32; LANES],
+    /// Steps made by each lane.
+    pub ticks: [u64; LANES],
+    /// The two parts of the counter that name the trials.
+    trials: [[u64; LANES]; 2],
+    keys: RoundKeys,
+}
+
+impl Chain {
+    /// The chain of these processes, if they are tables and few states are reachable, none of them with an error.
+    pub(super) fn of(machines: &[Machine], initial: &[f64], domains: &[Domain]) -> Option<Self> {
+        let mut tables = Vec::new();
+        let mut written = BTreeSet::new();
+        for machine in machines {
+            let Form::Table(table) = &machine.form else { return None };
+            if !table.written().iter().all(|&variable| written.insert(variable)) {
+                return None;
+            }
+            tables.push((machine.word, table));
+        }
+        let all: BTreeSet<VariableId> = (0..domains.len() as u32).map(VariableId).collect();
+        let keys = Keys::of(&all, domains, MOST_STATES)?;
+        let states = keys.rows() as usize;
+        let mut values: Vec<Lanes> = initial.iter().map(|&value| Lanes::splat(value)).collect();
+        let start = u32::try_from(keys.row(&values, 0)).ok()?;
+        let mut seen = vec![false; states];
+        *seen.get_mut(start as usize)? = true;
+        let mut reachable = vec![start];
+        let mut found: Vec<Vec<Vec<(f64, i32)>>> = vec![vec![Vec::new(); states]; tables.len()];
+        let (mut done, mut ways) = (0, 0usize);
+        while let Some(&state) = reachable.get(done) {
+            done += 1;
+            keys.put(u64::from(state), &mut values, 0);
+            let old: Vec<f64> = values.iter().map(|lanes| lanes.0[0]).collect();
+            let mut targets = vec![state as i32];
+            for (found, (_, table)) in found.iter_mut().zip(&tables) {
+                let mut branches = Vec::new();
+                for (end, new) in table.outcomes(&old)? {
+                    for &(variable, value) in &new {
+                        values[variable as usize].0[0] = value;
+                    }
+                    branches.push((end, keys.row(&values, 0) as i32 - state as i32));
+                    for &(variable, _) in &new {
+                        values[variable as usize].0[0] = old[variable as usize];
+                    }
+                }
+                targets = targets.iter().flat_map(|t| branches.iter().map(move |(_, by)| t + by)).collect();
+                targets.sort_unstable();
+                targets.dedup();
+                ways += targets.len();
+                if ways > MOST_WAYS {
+                    return None;
+                }
+                found[state as usize] = branches;
+            }
+            for target in targets {
+                let place = usize::try_from(target).ok().filter(|&place| place < states)?;
+                if !std::mem::replace(&mut seen[place], true) {
+                    reachable.push(target as u32);
+                }
+            }
+        }
+        let steps = found.iter().zip(&tables).map(|(found, (word, _))| Steps::of(*word, found));
+        Some(Self { steps: steps.collect(), keys, initial: start, reachable, level: Level::new() })
+    }
+
+    /// The same chain for the plainest vectors of the machine.
+    pub(super) fn at_baseline(mut self) -> Self {
+        self.level = Level::baseline();
+        self
+    }
+
+    /// Number of states, reachable or not: a state is a number below it.
+    pub fn states(&self) -> usize {
+        self.keys.rows() as usize
+    }
+
+    /// The state in which trials begin.
+    pub fn initial(&self) -> u32 {
+        self.initial
+    }
+
+    /// The states that some trial may visit.
+    pub fn reachable(&self) -> &[u32] {
+        &self.reachable
+    }
+
+    /// Puts the values of a state into a lane of all variables.
+    pub fn values(&self, state: u32, variables: &mut [Lanes], lane: usize) {
+        self.keys.put(u64::from(state), variables, lane);
+    }
+
+    /// Eight lanes without a trial.
+    pub fn walk(&self, seed: u64) -> Walk {
+        Walk {
+            states: [self.initial; LANES],
+            ticks: [0; LANES],
+            trials: [[0; LANES]; 2],
+            keys: round_keys(seed),
+        }
+    }
+
+    /// Begins a trial; its seed must be that of the walk.
+    #[inline]
+    pub fn load(&self, walk: &mut Walk, lane: usize, trial: TrialKey) {
+        walk.states[lane] = self.initial;
+        walk.ticks[lane] = 0;
+        [walk.trials[0][lane], walk.trials[1][lane]] = trial_words(trial);
+    }
+
+    /// One step of all lanes.
+    #[inline]
+    pub fn step(&self, walk: &mut Walk) {
+        dispatch!(self.level, simd => advance(simd, self, walk));
+    }
+}
+
+impl Steps {
+    fn of(word: u32, found: &[Vec<(f64, i32)>]) -> Self {
+        let most = found.iter().map(Vec::len).max().unwrap_or(1).max(1);
+        let mut ends = vec![NEVER; found.len() * most];
+        let mut moves = vec![0; found.len() * most];
+        for (state, branches) in found.iter().enumerate() {
+            for (k, &(end, by)) in branches.iter().enumerate() {
+                moves[state * most + k] = by;
+                // The last branch takes all that is left.
+                if k + 1 < branches.len() {
+                    ends[state * most + k] = end;
+                }
+            }
+        }
+        let open = found.iter().map(|branches| branches.len() > 1).collect();
+        Self { word: u64::from(word), most, open, ends, moves }
+    }
+}
+
+#[inline(always)]
+fn advance<S: Simd>(simd: S, chain: &Chain, walk: &mut Walk) {
+    let old = walk.states;
+    let counter = [walk.ticks.map(|tick| tick & 0xffff_ffff), walk.trials[0], walk.trials[1]];
+    for steps in &chain.steps {
+        let mut places = old.map(|state| state as usize * steps.most);
+        // Where no lane needs a number, none is drawn: numbers have addresses, none is used up.
+        if steps.most > 1 && old.iter().any(|&state| steps.open[state as usize]) {
+            let [numbers, _] = blocks::<_, false>(simd, &counter, &[steps.word; LANES], &walk.keys);
+            // Ends ascend, so the branch is the number of ends passed: no jump depends on chance.
+            for (place, number) in places.iter_mut().zip(numbers) {
+                let ends = &steps.ends[*place..*place + steps.most - 1];
+                *place += ends.iter().map(|&end| usize::from(number >= end)).sum::<usize>();
+            }
+        }
+        for (state, place) in walk.states.iter_mut().zip(places) {
+            *state = state.wrapping_add_signed(steps.moves[place]);
+        }
+    }
+    for tick in &mut walk.ticks {
+        *tick += 1;
+    }
+}
