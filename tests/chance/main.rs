@@ -6,56 +6,25 @@ mod arrivals;
 mod behaviours;
 mod draws;
 mod presence;
+#[path = "../processes/texts.rs"]
+mod texts;
 
 use smc::base::lanes::{LANES, Mask};
 use smc::base::random::TrialKey;
-use smc::compile::{Files, Input, Study, compile};
-use smc::engine::outcome::Run;
-use smc::engine::{Budget, Call, Nobody, Threads};
+use smc::compile::Study;
 use smc::kernel::{Layout, Program, Scratch, State, dynamics, start};
 use smc::model::Scenario;
-use smc::syntax::diagnostic::Severity;
-use smc::syntax::parse::{parse_properties, parse_scenario};
-use smc::syntax::render::render;
-use smc::syntax::source::{Source, SourceId};
 use std::sync::Arc;
+pub(crate) use texts::answered;
 
-/// Compiles two texts.
+/// Compiles two texts that are right.
 pub(crate) fn compiled(scenario: &str, properties: &str) -> Study {
-    let sources =
-        [Source::new(SourceId(0), "model.scn", scenario), Source::new(SourceId(1), "prop.bltl", properties)];
-    let (scenario, mut diagnostics) = parse_scenario(&sources[0]);
-    let (properties, more) = parse_properties(&sources[1]);
-    diagnostics.extend(more);
-    let (study, found) = compile(&Input {
-        sources: &sources,
-        scenario: &scenario,
-        properties: &[properties],
-        files: &Files::default(),
-        settings: &[],
-    });
-    diagnostics.extend(found);
-    let wrong = diagnostics.iter().any(|d| d.severity == Severity::Error);
-    study.filter(|_| !wrong).unwrap_or_else(|| panic!("{}", render(&diagnostics, &sources, false)))
+    texts::compiled(scenario, properties).unwrap_or_else(|errors| panic!("{errors}"))
 }
 
 /// The scenario of a text.
 pub(crate) fn scenario(text: &str) -> Arc<Scenario> {
     compiled(text, "").worlds[0].scenario.clone()
-}
-
-/// Runs a study.
-pub(crate) fn answered(study: &Study, seed: u64, threads: usize, most: u64) -> Run {
-    let call = Call {
-        seed,
-        command: String::new(),
-        simulate: "smc simulate model.scn".to_owned(),
-        only: Vec::new(),
-        place: &|_| (String::new(), 0),
-        file: String::new(),
-    };
-    let budget = Budget::new(most, None);
-    smc::engine::run(study, &call, &Threads::new(Some(threads)).unwrap(), &budget, &Nobody).unwrap()
 }
 
 /// A batch of trials under way.

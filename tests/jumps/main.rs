@@ -8,49 +8,17 @@ mod errors;
 mod exact;
 mod random;
 mod rows;
+#[path = "../processes/texts.rs"]
+mod texts;
 mod traces;
 
-use smc::compile::{Files, Input, Study, compile};
+use smc::compile::Study;
 use smc::engine::outcome::Run;
-use smc::engine::{Budget, Call, Nobody, Threads};
-use smc::syntax::diagnostic::Severity;
-use smc::syntax::parse::{parse_properties, parse_scenario};
-use smc::syntax::render::render;
-use smc::syntax::source::{Source, SourceId};
-
-/// Compiles two texts; the study, or the errors as rendered.
-pub(crate) fn compiled(scenario: &str, properties: &str) -> Result<Study, String> {
-    let sources =
-        [Source::new(SourceId(0), "model.scn", scenario), Source::new(SourceId(1), "prop.bltl", properties)];
-    let (scenario, mut diagnostics) = parse_scenario(&sources[0]);
-    let (properties, more) = parse_properties(&sources[1]);
-    diagnostics.extend(more);
-    let input = Input {
-        sources: &sources,
-        scenario: &scenario,
-        properties: &[properties],
-        files: &Files::default(),
-        settings: &[],
-    };
-    let (study, found) = compile(&input);
-    diagnostics.extend(found);
-    study
-        .filter(|_| diagnostics.iter().all(|d| d.severity != Severity::Error))
-        .ok_or_else(|| render(&diagnostics, &sources, false))
-}
+pub(crate) use texts::compiled;
 
 /// Runs a study with a seed.
 pub(crate) fn answered(study: &Study, seed: u64, threads: usize) -> Run {
-    let call = Call {
-        seed,
-        command: String::new(),
-        simulate: String::new(),
-        only: Vec::new(),
-        place: &|_| (String::new(), 0),
-        file: String::new(),
-    };
-    let budget = Budget::new(1_000_000, None);
-    smc::engine::run(study, &call, &Threads::new(Some(threads)).unwrap(), &budget, &Nobody).unwrap()
+    texts::answered(study, seed, threads, 1_000_000)
 }
 
 /// So many of a number of trials fulfil a formula.

@@ -8,51 +8,20 @@ mod errors;
 mod examples;
 mod rows;
 mod tallies;
+mod texts;
 
 use smc::base::lanes::{LANES, Mask};
 use smc::base::random::TrialKey;
+use smc::compile::Study;
 use smc::compile::study::World;
-use smc::compile::{Files, Input, Study, compile};
+use smc::engine::Subject;
 use smc::engine::outcome::Run;
-use smc::engine::{Budget, Call, Nobody, Subject, Threads};
 use smc::kernel::{Readings, Scratch, State, dynamics, start};
-use smc::syntax::parse::{parse_properties, parse_scenario};
-use smc::syntax::render::render;
-use smc::syntax::source::{Source, SourceId};
-
-/// Compiles two texts; the study, or the errors as rendered.
-pub(crate) fn compiled(scenario: &str, properties: &str) -> Result<Study, String> {
-    let sources =
-        [Source::new(SourceId(0), "model.scn", scenario), Source::new(SourceId(1), "prop.bltl", properties)];
-    let (scenario, mut diagnostics) = parse_scenario(&sources[0]);
-    let (properties, more) = parse_properties(&sources[1]);
-    diagnostics.extend(more);
-    let input = Input {
-        sources: &sources,
-        scenario: &scenario,
-        properties: &[properties],
-        files: &Files::default(),
-        settings: &[],
-    };
-    let (study, found) = compile(&input);
-    diagnostics.extend(found);
-    study
-        .filter(|_| diagnostics.iter().all(|d| d.severity != smc::syntax::diagnostic::Severity::Error))
-        .ok_or_else(|| render(&diagnostics, &sources, false))
-}
+pub(crate) use texts::compiled;
 
 /// Runs a study with a seed.
 pub(crate) fn answered(study: &Study, seed: u64, threads: usize) -> Run {
-    let call = Call {
-        seed,
-        command: String::new(),
-        simulate: String::new(),
-        only: Vec::new(),
-        place: &|_| (String::new(), 0),
-        file: String::new(),
-    };
-    let budget = Budget::new(1_000_000, None);
-    smc::engine::run(study, &call, &Threads::new(Some(threads)).unwrap(), &budget, &Nobody).unwrap()
+    texts::answered(study, seed, threads, 1_000_000)
 }
 
 /// What trials show: the values of all variables at each tick, and the verdict of each column.
