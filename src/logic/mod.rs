@@ -21,5 +21,5 @@ pub use invalid::Invalid;
 pub use monitor::robustness::Robustness;
 pub use monitor::{Antecedent, Monitor};
 pub use offline::Recording;
-pub use signal::{Reading, SignalMonitor};
+pub use signal::{Glance, Reading, SignalMonitor};
 pub use source::{Source, sides, sources};
