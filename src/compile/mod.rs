@@ -5,6 +5,7 @@
 
 mod asks;
 mod behaviour;
+mod bounds;
 pub mod dimension;
 mod elaborator;
 mod files;

@@ -380,7 +380,7 @@ impl<'a> Compiler<'a> {
                 };
                 let share = family.map_or(1.0, |delta| delta / super::methods::DEFAULT_DELTA);
                 let (within, delta) =
-                    self.sites[base].elaborator.comparison_clauses(clauses, dimension, share, &locals)?;
+                    self.sites[base].elaborator.comparison_clauses(clauses, &a.kind, dimension, share, &locals)?;
                 let ask = Ask::Compare {
                     first: a,
                     second: b,

@@ -40,6 +40,13 @@ pub(super) fn find(
     picks.iter().filter_map(one).collect()
 }
 
+/// The name of a suggested move.
+pub(super) fn label(subject: &Subject, advice: Option<(usize, usize)>) -> Option<&str> {
+    let (declaration, option) = advice?;
+    let moves = subject.program.scenario.moves.get(declaration)?;
+    moves.options.get(option).map(|(label, _)| label.as_str())
+}
+
 /// Runs one trial again and says what decided it; `dimension` is the unit of a metric.
 fn witness(
     subject: &Subject,
@@ -61,8 +68,7 @@ fn witness(
         command.push_str(&format!(" --set '{name}={value}'"));
     }
     command.push_str(&format!(" --seed {} --trial {trial}", call.seed));
-    if let Some((declaration, option)) = advice {
-        let label = &program.scenario.moves.get(declaration)?.options.get(option)?.0;
+    if let Some(label) = label(subject, advice) {
         command.push_str(&format!(" --move '{label}'"));
     }
     if program.scenario.clock.is_jumps() {

@@ -91,7 +91,11 @@ pub(in crate::report) fn printed(result: &QueryResult, value: &Interval) -> (Str
 }
 
 fn value(text: &mut String, result: &QueryResult, palette: Palette) {
-    let Some(estimate) = result.estimate else { return };
+    let Some(estimate) = result.estimate else {
+        let sampled = result.counts.trials > 0;
+        line(text, if sampled { "nothing is known" } else { "nothing was sampled" });
+        return;
+    };
     let (shown, range) = printed(result, &Interval { estimate, low: result.low, high: result.high });
     let kind = if result.interval.is_empty() { String::new() } else { format!("  {}", result.interval) };
     line(
@@ -157,6 +161,8 @@ pub(in crate::report) fn trials(result: &QueryResult) -> String {
     let cause = match result.stopped_by {
         Stop::Boundary => "stopped at the boundary of the test",
         Stop::Width => "stopped when narrow enough",
+        Stop::Unresolved if counts.unresolved == counts.trials => "stopped because all of them are unresolved",
+        Stop::Unresolved => "stopped because unresolved trials keep it open, however many more there are",
         Stop::Plan => "as planned",
         Stop::Cap => "stopped at the largest number of trials",
         Stop::Deadline => "stopped when time was up",

@@ -9,12 +9,18 @@ use crate::report::palette::{Paint, Palette};
 
 /// Writes the lines under the head.
 pub(super) fn write(text: &mut String, result: &QueryResult, ranking: &Ranking, palette: Palette) {
-    let choice = palette.paint(Paint::Good, &ranking.choice);
+    let Some(choice) = &ranking.choice else {
+        let sampled = result.counts.trials > 0;
+        let why = if sampled { "no trial is resolved" } else { "nothing was sampled" };
+        block::line(text, &format!("no choice: {why}"));
+        return;
+    };
+    let choice = palette.paint(Paint::Good, choice);
     let unit = if result.unit.is_empty() { String::new() } else { format!(" {}", result.unit) };
-    let mut said = if ranking.gap.is_finite() {
+    let mut said = if !result.certifies.is_empty() {
         format!("choose {choice}: at most {}{unit} worse than the best", plain(at_most(ranking.gap)))
     } else {
-        format!("{choice} leads, but nothing is certified yet")
+        format!("{choice} leads so far, but nothing is certified yet")
     };
     if ranking.tied {
         said += "; so are those marked tied";
