@@ -54,6 +54,11 @@ impl Compiler<'_> {
             );
             return elaborator.report(error.hint(hint));
         }
+        // Where a confidence is stated, or comes from a family, it is also that of the interval.
+        let beside = match family {
+            Some(delta) if family_clauses(clauses) => delta,
+            _ => elaborator.delta(clauses, &locals)?.unwrap_or(super::methods::DEFAULT_DELTA),
+        };
         let mut at_least = matches!(relation, BinaryOp::AtLeast | BinaryOp::Greater);
         let mut or_equal = matches!(relation, BinaryOp::AtLeast | BinaryOp::AtMost);
         let Observed { column, kind, unbounded } = observed?;
@@ -93,7 +98,7 @@ impl Compiler<'_> {
         };
         let column = self.column(site, column);
         let measure = Measure { target: Target { world: site, column }, kind };
-        Ok((Ask::Check { measure, at_least, or_equal, threshold: theta, test }, unbounded))
+        Ok((Ask::Check { measure, at_least, or_equal, threshold: theta, test, beside }, unbounded))
     }
 
     /// A ranking: whose moves, by which score.
@@ -127,7 +132,8 @@ impl Compiler<'_> {
             }
         };
         let share = family.map_or(1.0, |delta| delta / super::methods::DEFAULT_DELTA);
-        let (epsilon, delta, ranking) = elaborator.ranking(clauses, &measured.kind, dimension, share, &locals)?;
+        let (epsilon, delta, ranking) =
+            elaborator.ranking(clauses, &measured.kind, dimension, share, &locals)?;
         if let (Ranking::Okamoto, MeasureKind::Expectation { .. }, Some(method)) =
             (ranking, &measured.kind, &clauses.by)
         {

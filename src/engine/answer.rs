@@ -93,9 +93,12 @@ impl Answers<'_> {
         result.stopped_by = stop;
         result.replay = self.replay(query, "--max-trials", counts.trials);
         result.elapsed_s = inquiry.seconds;
-        let subject_words = measured_words(query, measure);
-        let mut beside = procedure::BESIDE;
-        if let Some((interval, coverage, error)) = inquiry.procedure.interval(counts) {
+        let subject_words = measured_words(query, measure, inquiry.tally.clipped);
+        let mut beside = match query.ask {
+            Ask::Check { beside, .. } => beside,
+            _ => 0.0,
+        };
+        if let Some((interval, coverage, error)) = inquiry.procedure.interval(counts, beside) {
             beside = error;
             // Where no trial is resolved the middle of what is legal is no estimate.
             result.estimate = (counts.unresolved < counts.trials).then_some(interval.estimate);
@@ -125,7 +128,8 @@ impl Answers<'_> {
                     _ => format!("in {}", words::ends(interval.low, interval.high, &result.unit)),
                 };
                 if says_something(&query.ask, interval.low, interval.high) {
-                    result.certifies = format!("{subject_words} {claim}, error at most {}", words::error(error));
+                    result.certifies =
+                        format!("{subject_words} {claim}, error at most {}", words::error(error));
                 }
                 let fixed = coverage == Coverage::FixedSize;
                 if fixed && result.estimate.is_some() && matches!(stop, Stop::Deadline | Stop::Interrupt) {
@@ -136,7 +140,8 @@ impl Answers<'_> {
                 }
             }
         }
-        if let Ask::Check { at_least, .. } = &query.ask {
+        if let Ask::Check { at_least, threshold, .. } = &query.ask {
+            result.of = words::asked(&query.text).map(|event| format!("P({event})"));
             let decision = inquiry.procedure.decision();
             result.verdict = Some(match decision {
                 Some(Decision::Above) if *at_least => Verdict::Satisfied,
@@ -145,7 +150,8 @@ impl Answers<'_> {
                 Some(Decision::Within) | None => Verdict::Undecided,
             });
             result.certifies = match inquiry.procedure.statement() {
-                Some(statement) => words::statement(&subject_words, &statement, &result.unit),
+                Some(statement) => words::quantile(&query.text, *threshold, &statement)
+                    .unwrap_or_else(|| words::statement(&subject_words, &statement, &result.unit)),
                 None if !says_something(&query.ask, result.low, result.high) => String::new(),
                 None => format!(
                     "{subject_words} in {}, error at most {}",
@@ -160,8 +166,7 @@ impl Answers<'_> {
                 );
             }
         }
-        result.distribution =
-            inquiry.procedure.distribution().filter(|_| counts.unresolved < counts.trials);
+        result.distribution = inquiry.procedure.distribution().filter(|_| counts.unresolved < counts.trials);
         self.tell(&mut result, subject, &inquiry.tally, measure.target.column);
         self.lament_one(&mut result, subject, &inquiry.tally, measure.target.column);
         let picks = match (&measure.kind, kind) {
@@ -209,7 +214,13 @@ impl Answers<'_> {
     }
 
     /// The same of a result of one world, in which nobody was advised.
-    pub(super) fn lament_one(&self, result: &mut QueryResult, subject: &Subject, tally: &Tally, column: usize) {
+    pub(super) fn lament_one(
+        &self,
+        result: &mut QueryResult,
+        subject: &Subject,
+        tally: &Tally,
+        column: usize,
+    ) {
         let settings = result.settings.clone();
         let item = |index| Item { advice: None, index };
         let first = tally.first[2].map(|index| First { subject, column, item: item(index), settings });
@@ -224,7 +235,9 @@ impl Answers<'_> {
         }
         let how_many = match (counts.trials, unresolved) {
             (1, _) => "the only trial is unresolved".to_owned(),
-            (all, some) if all == some => format!("all {all} trials are unresolved, so that nothing is known"),
+            (all, some) if all == some => {
+                format!("all {all} trials are unresolved, so that nothing is known")
+            }
             (all, 1) => format!("1 of {all} trials is unresolved"),
             (all, some) => format!("{some} of {all} trials are unresolved"),
         };
@@ -284,7 +297,7 @@ impl Answers<'_> {
             settings.iter().map(|(name, value)| format!("{name} = {value}")).collect::<Vec<_>>().join(", ")
         };
         let labels = [label(&settings[0]), label(&settings[1])];
-        let name = measured_words(query, first);
+        let name = measured_words(query, first, joined.clipped);
         if says_something(&query.ask, result.low, result.high) {
             result.certifies = format!(
                 "{name} under {} less that under {} in {}, error at most {}",
@@ -330,7 +343,7 @@ impl Answers<'_> {
         self.lament(&mut result, joined.counts.unresolved, lost.as_ref());
         let labels: Vec<&str> = declared.options.iter().map(|(label, _)| label.as_str()).collect();
         let ranked = standing::ranked(&podium, &labels);
-        let score = measured_words(query, measure);
+        let score = measured_words(query, measure, joined.clipped);
         if let Some(choice) = &ranked.choice {
             if ranked.gap < podium.scale {
                 result.certifies = format!(
@@ -380,16 +393,17 @@ fn says_something(ask: &Ask, low: f64, high: f64) -> bool {
     low > least || high < most
 }
 
-/// The measure as one would say it: `P(safe)`.
-fn measured_words(query: &Query, measure: &Measure) -> String {
-    words::measured(
-        &query.text,
-        match measure.kind {
-            MeasureKind::Probability => 'P',
-            MeasureKind::Expectation { .. } => 'E',
-            MeasureKind::Quantile { .. } => 'Q',
-        },
-    )
+/// The measure as one would say it: `P(safe)`. Where trials left the declared range, what is known of the expectation
+/// is known of the clipped metric alone, and is said of that.
+fn measured_words(query: &Query, measure: &Measure, clipped: u64) -> String {
+    match &measure.kind {
+        MeasureKind::Probability => words::measured(&query.text, 'P'),
+        MeasureKind::Quantile { .. } => words::measured(&query.text, 'Q'),
+        MeasureKind::Expectation { range, dimension } => {
+            let said = words::measured(&query.text, 'E');
+            if clipped == 0 { said } else { words::clipped(&said, *range, &dimension.to_string()) }
+        }
+    }
 }
 
 fn total(tallies: &[Tally]) -> Tally {

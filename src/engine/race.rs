@@ -19,7 +19,7 @@ use crate::stats::ranking::{Allocation, Booleans, Choice, Each, Race, Scores, Sh
 use crate::stats::{self, Mean, Outcome};
 
 /// Trials an option gets in a round: traces of crowds are slow.
-const WORD: u64 = 32;
+pub(super) const WORD: u64 = 32;
 
 /// The procedure of a ranking.
 #[allow(clippy::large_enum_variant, reason = "there is one at a time")]
@@ -241,9 +241,9 @@ impl<'s> Contest<'s> {
         // Each option's interval is one of as many that hold jointly.
         let delta = self.field.rule.1 / arms as f64;
         let mut means: Vec<Mean> = match self.range {
-            Some((low, high)) => (0..arms)
-                .map(|_| Mean::fixed(low, high, super::budget::DEFAULT_TRIALS, delta))
-                .collect::<Result<_, _>>()?,
+            Some((low, high)) => {
+                (0..arms).map(|_| Mean::sequential(low, high, delta)).collect::<Result<_, _>>()?
+            }
             None => Vec::new(),
         };
         let mut tallies = vec![Tally::default(); arms];

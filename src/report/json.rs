@@ -4,9 +4,10 @@
 //! lies beyond the horizon, in whole or by an end of its interval, says so by `"censored": true`. Everything
 //! but `elapsed_s` is a function of input, seed and version.
 
+use crate::base::random;
 use crate::engine::outcome::{
-    Comparison, Counts, Distribution, Failure, Finding, Interval, Method, QueryResult, Ranking, Rare, Run, Shows,
-    Side, Witness,
+    Comparison, Counts, Distribution, Failure, Finding, Interval, Method, QueryResult, Ranking, Rare, Run,
+    Shows, Side, Witness,
 };
 use serde_json::{Map, Value, json};
 
@@ -17,11 +18,15 @@ pub fn render(run: &Run) -> String {
 
 /// The report of a run as a JSON value.
 pub fn object(run: &Run) -> Value {
+    let inputs: Vec<Value> =
+        run.inputs.iter().map(|(file, print)| json!({ "file": file, "hash": print.to_string() })).collect();
     let mut object = json!({
         "schema": 1,
         "scenario": run.scenario,
         "seed": run.seed,
         "version": run.version,
+        "generator": { "name": random::GENERATOR, "layout": random::LAYOUT },
+        "inputs": inputs,
         "results": run.results.iter().map(result).collect::<Vec<_>>(),
         "diagnostics": run.diagnostics.iter().map(finding).collect::<Vec<_>>(),
         "warnings": run.warnings,
@@ -74,6 +79,7 @@ fn result(result: &QueryResult) -> Value {
     put("low", json!(result.low));
     put("high", json!(result.high));
     put("censored", json!(result.censored.is_some()));
+    put("of", json!(result.of));
     put("unit", json!(result.unit));
     put("interval", json!(result.interval));
     put("method", method(&result.method));

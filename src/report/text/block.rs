@@ -98,9 +98,14 @@ fn value(text: &mut String, result: &QueryResult, palette: Palette) {
     };
     let (shown, range) = printed(result, &Interval { estimate, low: result.low, high: result.high });
     let kind = if result.interval.is_empty() { String::new() } else { format!("  {}", result.interval) };
+    let of = result.of.as_ref().map_or(String::new(), |of| format!("{of}: "));
     line(
         text,
-        &format!("{}  {range}{}", palette.paint(Paint::Strong, &shown), palette.paint(Paint::Faint, &kind)),
+        &format!(
+            "{of}{}  {range}{}",
+            palette.paint(Paint::Strong, &shown),
+            palette.paint(Paint::Faint, &kind)
+        ),
     );
 }
 
@@ -146,8 +151,10 @@ pub(in crate::report) fn trials(result: &QueryResult) -> String {
     let mut text = counted(counts.trials, "trial");
     let mut parts = Vec::new();
     if counts.successes + counts.failures > 0 {
-        parts.push(format!("{} hold", count(counts.successes)));
-        parts.push(format!("{} fail", count(counts.failures)));
+        // Of a quantile the event is not the claim, so that it does not hold or fail.
+        let words = if result.of.is_some() { ["with it", "without"] } else { ["hold", "fail"] };
+        parts.push(format!("{} {}", count(counts.successes), words[0]));
+        parts.push(format!("{} {}", count(counts.failures), words[1]));
     }
     if counts.unresolved > 0 {
         parts.push(format!("{} unresolved", count(counts.unresolved)));
@@ -161,7 +168,9 @@ pub(in crate::report) fn trials(result: &QueryResult) -> String {
     let cause = match result.stopped_by {
         Stop::Boundary => "stopped at the boundary of the test",
         Stop::Width => "stopped when narrow enough",
-        Stop::Unresolved if counts.unresolved == counts.trials => "stopped because all of them are unresolved",
+        Stop::Unresolved if counts.unresolved == counts.trials => {
+            "stopped because all of them are unresolved"
+        }
         Stop::Unresolved => "stopped because unresolved trials keep it open, however many more there are",
         Stop::Plan => "as planned",
         Stop::Cap => "stopped at the largest number of trials",
