@@ -110,11 +110,16 @@ fn state(result: &mut QueryResult, found: &Found, delta: f64) {
                 format!("{}, of the plain trials", words::interval(plain.coverage, DISAGREEMENT));
             let stopped = matches!(found.stop, Stop::Cap | Stop::Deadline | Stop::Interrupt);
             result.warnings.push(match spread {
+                // The bound is that of one side, at the error that was asked for.
+                Some(spread) if over && spread.mean <= plain.high => format!(
+                    "{DISAGREES}: splitting says {}, which the plain trials exclude at {}: refused; more of them (`plain`) tell whether that is chance",
+                    words::number(spread.mean),
+                    words::level(delta)
+                ),
                 Some(spread) if !agrees => format!(
                     "{DISAGREES}: splitting says {}, which the plain trials exclude at {}: refused; the robustness does not see the way on which the event comes",
                     words::number(spread.mean),
-                    // The bound is that of one side at the error that was asked for.
-                    if over && spread.mean <= plain.high { words::level(delta) } else { words::level(DISAGREEMENT) }
+                    words::level(DISAGREEMENT)
                 ),
                 Some(_) if found.blind => format!(
                     "{DISAGREES}: no run reached the event, and the robustness rose in none of them before it; ask for the opposite, or for an event that comes by and by"
