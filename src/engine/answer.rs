@@ -142,6 +142,7 @@ impl Answers<'_> {
         }
         if let Ask::Check { at_least, threshold, .. } = &query.ask {
             result.of = words::asked(&query.text).map(|event| format!("P({event})"));
+            result.against = result.of.is_some() && !*at_least;
             let decision = inquiry.procedure.decision();
             result.verdict = Some(match decision {
                 Some(Decision::Above) if *at_least => Verdict::Satisfied,

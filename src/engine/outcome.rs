@@ -74,6 +74,8 @@ pub struct QueryResult {
     /// Of which probability the figures are, where the query names something else: the check of a quantile is decided
     /// as one of `P(metric <= threshold)`.
     pub of: Option<String>,
+    /// Whether the claim is that this probability is small, so that a trial with the event speaks against it.
+    pub against: bool,
     /// Unit of the three numbers before; empty for probabilities.
     pub unit: String,
     /// Kind and level of the interval: `time-uniform, 95 %`.
@@ -128,6 +130,7 @@ impl QueryResult {
             low: f64::NEG_INFINITY,
             high: f64::INFINITY,
             of: None,
+            against: false,
             unit: String::new(),
             interval: String::new(),
             method: Method::default(),

@@ -113,7 +113,7 @@ fn result(result: &QueryResult) -> Value {
         put("splitting", rare(found));
     }
     put("warnings", json!(result.warnings));
-    put("witnesses", result.witnesses.iter().map(witness).collect());
+    put("witnesses", result.witnesses.iter().map(|one| witness(one, result.against)).collect());
     put("replay", json!(result.replay));
     put("elapsed_s", json!(result.elapsed_s));
     Value::Object(object)
@@ -153,12 +153,12 @@ fn side(side: &Side) -> Value {
     Value::Object(numbered("settings", &side.label, &side.value, &side.counts))
 }
 
-fn witness(witness: &Witness) -> Value {
+fn witness(witness: &Witness, against: bool) -> Value {
     json!({
         "shows": witness.shows.name(),
         "passing": match witness.shows {
-            Shows::Fails => Some(false),
-            Shows::Holds => Some(true),
+            Shows::Fails => Some(against),
+            Shows::Holds => Some(!against),
             Shows::Lowest | Shows::Highest => None,
         },
         "trial": witness.trial,

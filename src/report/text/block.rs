@@ -39,7 +39,7 @@ pub(super) fn write(text: &mut String, result: &QueryResult, palette: Palette) {
     }
     remarks(text, result, "", palette);
     for witness in &result.witnesses {
-        self::witness(text, witness, palette);
+        self::witness(text, witness, result.of.is_some(), palette);
     }
 }
 
@@ -197,19 +197,25 @@ pub(super) fn remarks(text: &mut String, result: &QueryResult, at: &str, palette
 }
 
 /// A trial that shows why, and the command that shows the trial.
-pub(super) fn witness(text: &mut String, witness: &Witness, palette: Palette) {
+pub(super) fn witness(text: &mut String, witness: &Witness, of: bool, palette: Palette) {
     let Witness { shows, trial, time, unit, what, command, .. } = witness;
     let paint = match shows {
         Shows::Fails => Paint::Bad,
         Shows::Holds => Paint::Good,
         Shows::Lowest | Shows::Highest => Paint::Neutral,
     };
+    // Of a quantile the event is not the claim.
+    let (word, paint) = match shows {
+        Shows::Fails if of => ("without it", Paint::Neutral),
+        Shows::Holds if of => ("with it", Paint::Neutral),
+        _ => (shows.name(), paint),
+    };
     let decided = if witness.value.is_some() { "at" } else { "decided at" };
     line(
         text,
         &format!(
             "{} in trial {}, {decided} {} {unit}: {what}",
-            palette.paint(paint, shows.name()),
+            palette.paint(paint, word),
             count(*trial),
             plain(*time)
         ),
