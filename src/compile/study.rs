@@ -1,6 +1,7 @@
 //! What compilation yields: worlds to run and questions to answer about them.
 
 use super::dimension::Dimension;
+use super::written::Written;
 use crate::logic::{NodeId, Relation, TermId, Tree};
 use crate::model::{Bool, Num, Scenario};
 use crate::syntax::source::Span;
@@ -14,6 +15,8 @@ pub struct Study {
     pub title: String,
     /// The scenario under each combination of parameter values that is asked about.
     pub worlds: Vec<World>,
+    /// The world that the call is about: with the values of `--set`, of a sweep the first.
+    pub base: usize,
     /// The questions, in order of files and of writing; a sweep repeats them for each of its points.
     pub queries: Vec<Query>,
 }
@@ -29,6 +32,8 @@ pub struct World {
     pub atoms: Vec<Bool>,
     /// How what is observed was written, for witnesses.
     pub texts: Texts,
+    /// How the scenario was written, for `smc show`.
+    pub written: Written,
     /// Numbers observed in each state.
     pub signals: Vec<Num>,
     /// Formulas and metrics over them.

@@ -125,7 +125,8 @@ impl Answers<'_> {
                     _ => format!("in {}", words::ends(interval.low, interval.high, &result.unit)),
                 };
                 if says_something(&query.ask, interval.low, interval.high) {
-                    result.certifies = format!("{subject_words} {claim}, error at most {}", words::error(error));
+                    result.certifies =
+                        format!("{subject_words} {claim}, error at most {}", words::error(error));
                 }
                 let fixed = coverage == Coverage::FixedSize;
                 if fixed && result.estimate.is_some() && matches!(stop, Stop::Deadline | Stop::Interrupt) {
@@ -160,8 +161,7 @@ impl Answers<'_> {
                 );
             }
         }
-        result.distribution =
-            inquiry.procedure.distribution().filter(|_| counts.unresolved < counts.trials);
+        result.distribution = inquiry.procedure.distribution().filter(|_| counts.unresolved < counts.trials);
         self.tell(&mut result, subject, &inquiry.tally, measure.target.column);
         self.lament_one(&mut result, subject, &inquiry.tally, measure.target.column);
         let picks = match (&measure.kind, kind) {
@@ -209,7 +209,13 @@ impl Answers<'_> {
     }
 
     /// The same of a result of one world, in which nobody was advised.
-    pub(super) fn lament_one(&self, result: &mut QueryResult, subject: &Subject, tally: &Tally, column: usize) {
+    pub(super) fn lament_one(
+        &self,
+        result: &mut QueryResult,
+        subject: &Subject,
+        tally: &Tally,
+        column: usize,
+    ) {
         let settings = result.settings.clone();
         let item = |index| Item { advice: None, index };
         let first = tally.first[2].map(|index| First { subject, column, item: item(index), settings });
@@ -224,7 +230,9 @@ impl Answers<'_> {
         }
         let how_many = match (counts.trials, unresolved) {
             (1, _) => "the only trial is unresolved".to_owned(),
-            (all, some) if all == some => format!("all {all} trials are unresolved, so that nothing is known"),
+            (all, some) if all == some => {
+                format!("all {all} trials are unresolved, so that nothing is known")
+            }
             (all, 1) => format!("1 of {all} trials is unresolved"),
             (all, some) => format!("{some} of {all} trials are unresolved"),
         };

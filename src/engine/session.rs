@@ -330,7 +330,12 @@ impl<'a> Session<'a> {
 
     /// The results of a group, by the places of its queries; and what was wrong with the model, if a trial
     /// showed that it is.
-    fn answer(&self, group: Group<'_>, executor: &dyn Executor, watch: &dyn Watch) -> Result<Answered, Fault> {
+    fn answer(
+        &self,
+        group: Group<'_>,
+        executor: &dyn Executor,
+        watch: &dyn Watch,
+    ) -> Result<Answered, Fault> {
         let Group { mut places, sampling } = group;
         let answers = Answers { call: self.call, budget: self.budget };
         let mut broken = None;
