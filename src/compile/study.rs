@@ -5,7 +5,7 @@ use super::written::Written;
 use crate::logic::{NodeId, Relation, TermId, Tree};
 use crate::model::{Bool, Num, Scenario};
 use crate::syntax::source::Span;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// Everything a call asks.
@@ -47,6 +47,8 @@ pub struct World {
 pub struct Texts {
     /// Each atom.
     pub atoms: Vec<String>,
+    /// Those of them that ask whether somebody is there, where a quantifier does and nobody wrote it.
+    pub implied: BTreeSet<u32>,
     /// Each signal, and its dimension.
     pub signals: Vec<(String, Dimension)>,
     /// Comparisons of numbers over time, by the index of their node, and the dimension of their sides.

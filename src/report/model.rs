@@ -122,8 +122,7 @@ fn people(out: &mut String, world: &World) {
         match scenario.sources.iter().find(|source| source.name == stem) {
             Some(source) => {
                 let (count, every) = (source.members.len(), law(&source.every, "s"));
-                let places = counted(count as u64, "person").replace("persons", "people");
-                let _ = writeln!(out, "  source {stem}: one comes every {every}, room for {places}");
+                let _ = writeln!(out, "  source {stem}: one every {every}, at most {count}");
             }
             None => {
                 let _ = writeln!(out, "  {name}");
