@@ -157,7 +157,8 @@ impl Elaborator<'_> {
                     _ => 0.0,
                 };
                 if indifference < least {
-                    let said = format!("`indifference` is {indifference}, but is at least {least} with `{name}`");
+                    let said =
+                        format!("`indifference` is {indifference}, but is at least {least} with `{name}`");
                     let error = Diagnostic::error("E0604", span, said);
                     return self.report(error.hint("`sprt`, and the default test, know no such limit"));
                 }
