@@ -90,7 +90,7 @@ impl Procedure {
             Test::ThreeWay { alpha, indifference } => {
                 AnyTest::ThreeWay(ThreeWay::new(theta, indifference, alpha)?)
             }
-            Test::Interval { delta, .. } => {
+            Test::Interval { delta } => {
                 let MeasureKind::Expectation { range: (low, high), .. } = measure.kind else {
                     return Err(Fault::Unsuitable);
                 };
@@ -412,7 +412,7 @@ pub(super) fn method(ask: &Ask, procedure: Option<&Procedure>) -> Method {
                 Test::ThreeWay { alpha, indifference } => {
                     named("three_way", &[("alpha", alpha), theta, ("indifference", indifference)])
                 }
-                Test::Interval { delta, .. } => named("empirical_bernstein", &[("delta", delta), theta]),
+                Test::Interval { delta } => named("empirical_bernstein", &[("delta", delta), theta]),
             }
         }
         Ask::Estimate { estimator, measure } => match (*estimator, &measure.kind) {

@@ -274,7 +274,7 @@ fn procedure(ask: &Ask) -> String {
                 Test::ThreeWay { alpha, indifference } => {
                     format!("three-way e-process, error {alpha}, indifference {indifference}")
                 }
-                Test::Interval { delta, .. } => format!("time-uniform interval of the mean, error {delta}"),
+                Test::Interval { delta } => format!("time-uniform interval of the mean, error {delta}"),
             };
             format!("against {}: {test}", number(*threshold))
         }
