@@ -2,8 +2,8 @@
 
 use super::dimension::Dimension;
 use super::elaborator::{Locals, Lowered, Reported};
-use super::measures::Observed;
 use super::families::Allowance;
+use super::measures::Observed;
 use super::queries::Compiler;
 use super::study::{Ask, Measure, MeasureKind, Ranking, Target};
 use super::symbols::ScopeId;
@@ -128,7 +128,8 @@ impl Compiler<'_> {
             }
         };
         let allowance = Allowance { family, claims: 1 };
-        let (epsilon, delta, ranking) = elaborator.ranking(clauses, (&measured.kind, measure.span), dimension, allowance, &locals)?;
+        let (epsilon, delta, ranking) =
+            elaborator.ranking(clauses, (&measured.kind, measure.span), dimension, allowance, &locals)?;
         if let (Ranking::Okamoto, MeasureKind::Expectation { .. }, Some(method)) =
             (ranking, &measured.kind, &clauses.by)
         {

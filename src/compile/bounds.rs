@@ -19,12 +19,7 @@ pub(super) const WIDEST: f64 = 0.5;
 
 impl Elaborator<'_> {
     /// A probability of error, below one half.
-    pub(super) fn error_of(
-        &mut self,
-        value: Option<(f64, Span)>,
-        default: f64,
-        name: &str,
-    ) -> Lowered<f64> {
+    pub(super) fn error_of(&mut self, value: Option<(f64, Span)>, default: f64, name: &str) -> Lowered<f64> {
         match value {
             None => Ok(default),
             Some((value, _)) if value > 0.0 && value < COIN => Ok(value),

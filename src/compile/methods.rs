@@ -19,7 +19,7 @@ pub const DEFAULT_EPSILON: f64 = 0.01;
 /// Loss that does not matter to a ranking, unless it says otherwise.
 pub const DEFAULT_LOSS: f64 = 0.02;
 /// Trials of an expectation, a quantile or a comparison that names no half width.
-pub const DEFAULT_TRIALS: u64 = 1000;
+pub const PLANNED_TRIALS: u64 = 1000;
 
 /// Named numbers of a method, in order of their names here.
 struct Arguments<'m, const N: usize> {
@@ -142,7 +142,8 @@ impl Elaborator<'_> {
         let name = method.name.name.as_str();
         match name {
             "sprt" | "sprt2" | "plan" => {
-                let arguments = self.arguments(method, ["alpha", "beta", "indifference"], Dimension::NONE, locals)?;
+                let arguments =
+                    self.arguments(method, ["alpha", "beta", "indifference"], Dimension::NONE, locals)?;
                 let alpha = self.error_of(arguments.values[0], error, "alpha");
                 let beta = self.error_of(arguments.values[1], error, "beta");
                 let (indifference, span) = self.required(&arguments, 2, "indifference")?;
@@ -154,7 +155,8 @@ impl Elaborator<'_> {
                     _ => 0.0,
                 };
                 if indifference < least {
-                    let said = format!("`indifference` is {indifference}, but is at least {least} with `{name}`");
+                    let said =
+                        format!("`indifference` is {indifference}, but is at least {least} with `{name}`");
                     let error = Diagnostic::error("E0604", span, said);
                     return self.report(error.hint("`sprt`, and the default test, know no such limit"));
                 }
@@ -231,7 +233,7 @@ impl Elaborator<'_> {
             return Ok(match (within, probability) {
                 (Some(epsilon), _) => Estimator::Default { epsilon, delta },
                 (None, true) => Estimator::Default { epsilon: DEFAULT_EPSILON, delta },
-                (None, false) => Estimator::Fixed { trials: DEFAULT_TRIALS, delta },
+                (None, false) => Estimator::Fixed { trials: PLANNED_TRIALS, delta },
             });
         };
         let name = method.name.name.as_str();
@@ -315,7 +317,8 @@ impl Elaborator<'_> {
             return self.report(error);
         }
         let adaptive = method.name.name == "splitting";
-        let arguments = self.arguments(method, ["replicas", "runs", "plain", "delta", "kill"], Dimension::NONE, locals)?;
+        let arguments =
+            self.arguments(method, ["replicas", "runs", "plain", "delta", "kill"], Dimension::NONE, locals)?;
         let replicas = self.whole_in(arguments.values[0], "replicas", (10, 1_000_000), 1000)?;
         let runs = self.whole_in(arguments.values[1], "runs", (2, 1000), 20)?;
         let plain = self.whole_in(arguments.values[2], "plain", (100, 1_000_000_000), replicas * runs / 2)?;
@@ -399,7 +402,8 @@ impl Elaborator<'_> {
             // What does not matter in metres nobody knows but who asks.
             None if !dimension.is_none() => {
                 let error = Diagnostic::error("E0604", measured, "how much worse may a choice be?");
-                return self.report(error.hint(format!("say what does not matter, in {dimension}: `within …`")));
+                return self
+                    .report(error.hint(format!("say what does not matter, in {dimension}: `within …`")));
             }
             None => (DEFAULT_LOSS, measured),
         };

@@ -96,9 +96,13 @@ impl<'a> Compiler<'a> {
                 let error = Diagnostic::error(
                     "E0405",
                     setting.span,
-                    format!("with this there are {combinations} combinations of values, more than {MOST_POINTS}"),
+                    format!(
+                        "with this there are {combinations} combinations of values, more than {MOST_POINTS}"
+                    ),
                 );
-                self.sites[plain].elaborator.note(error.hint("sweep fewer parameters at once, or by larger steps"));
+                self.sites[plain]
+                    .elaborator
+                    .note(error.hint("sweep fewer parameters at once, or by larger steps"));
                 continue;
             }
             points = points
@@ -139,7 +143,8 @@ impl<'a> Compiler<'a> {
     /// The world of a combination of parameter values.
     fn site(&mut self, settings: BTreeMap<String, Number>) -> usize {
         // Both zeros are one.
-        let key = settings.iter().map(|(name, number)| (name.clone(), (number.value + 0.0).to_bits())).collect();
+        let key =
+            settings.iter().map(|(name, number)| (name.clone(), (number.value + 0.0).to_bits())).collect();
         let alike = self.known.entry(key).or_default();
         if let Some(at) = alike.iter().find(|at| self.sites[**at].settings == settings) {
             return *at;
@@ -384,9 +389,9 @@ impl<'a> Compiler<'a> {
                     }
                 };
                 let allowance = Allowance { family, claims: 1 };
-                let (within, delta) = self.sites[base].elaborator.comparison_clauses(
-                    clauses, &a.kind, dimension, allowance, &locals,
-                )?;
+                let (within, delta) = self.sites[base]
+                    .elaborator
+                    .comparison_clauses(clauses, &a.kind, dimension, allowance, &locals)?;
                 let ask = Ask::Compare {
                     first: a,
                     second: b,

@@ -6,6 +6,7 @@ use super::cell::Item;
 use super::contrast::Contrast;
 use super::executor::Executor;
 use super::fault::Fault;
+use super::method;
 use super::outcome::{Counts, Kind, QueryResult, Shows, Stop, Verdict, Witness};
 use super::procedure;
 use super::race::Contest;
@@ -88,7 +89,7 @@ impl Answers<'_> {
         };
         let mut result = self.blank(query, kind);
         let stop = inquiry.stop.unwrap_or(Stop::Cap);
-        result.method = procedure::method(&query.ask, Some(&inquiry.procedure));
+        result.method = method::of(&query.ask, Some(&inquiry.procedure));
         result.unit = unit(measure);
         result.stopped_by = stop;
         result.replay = self.replay(query, "--max-trials", counts.trials);
@@ -125,7 +126,8 @@ impl Answers<'_> {
                     _ => format!("in {}", words::ends(interval.low, interval.high, &result.unit)),
                 };
                 if says_something(&query.ask, interval.low, interval.high) {
-                    result.certifies = format!("{subject_words} {claim}, error at most {}", words::error(error));
+                    result.certifies =
+                        format!("{subject_words} {claim}, error at most {}", words::error(error));
                 }
                 let fixed = coverage == Coverage::FixedSize;
                 if fixed && result.estimate.is_some() && matches!(stop, Stop::Deadline | Stop::Interrupt) {
@@ -160,8 +162,7 @@ impl Answers<'_> {
                 );
             }
         }
-        result.distribution =
-            inquiry.procedure.distribution().filter(|_| counts.unresolved < counts.trials);
+        result.distribution = inquiry.procedure.distribution().filter(|_| counts.unresolved < counts.trials);
         self.tell(&mut result, subject, &inquiry.tally, measure.target.column);
         self.lament_one(&mut result, subject, &inquiry.tally, measure.target.column);
         let picks = match (&measure.kind, kind) {
@@ -209,7 +210,13 @@ impl Answers<'_> {
     }
 
     /// The same of a result of one world, in which nobody was advised.
-    pub(super) fn lament_one(&self, result: &mut QueryResult, subject: &Subject, tally: &Tally, column: usize) {
+    pub(super) fn lament_one(
+        &self,
+        result: &mut QueryResult,
+        subject: &Subject,
+        tally: &Tally,
+        column: usize,
+    ) {
         let settings = result.settings.clone();
         let item = |index| Item { advice: None, index };
         let first = tally.first[2].map(|index| First { subject, column, item: item(index), settings });
@@ -224,7 +231,9 @@ impl Answers<'_> {
         }
         let how_many = match (counts.trials, unresolved) {
             (1, _) => "the only trial is unresolved".to_owned(),
-            (all, some) if all == some => format!("all {all} trials are unresolved, so that nothing is known"),
+            (all, some) if all == some => {
+                format!("all {all} trials are unresolved, so that nothing is known")
+            }
             (all, 1) => format!("1 of {all} trials is unresolved"),
             (all, some) => format!("{some} of {all} trials are unresolved"),
         };
@@ -262,7 +271,7 @@ impl Answers<'_> {
         let gap = contrast.run(executor, self.budget, watch)?;
         let mut result = self.blank(query, Kind::Compare);
         let unit = unit(first);
-        result.method = procedure::method(&query.ask, None);
+        result.method = method::of(&query.ask, None);
         if gap.pairs > 0 {
             result.estimate = (gap.unresolved < gap.pairs).then_some(gap.estimate);
             result.low = gap.interval.low;
@@ -317,7 +326,7 @@ impl Answers<'_> {
         let subject = field.subject;
         let declared = &subject.program.scenario.moves[*moves];
         let mut result = self.blank(query, Kind::Rank);
-        result.method = procedure::method(&query.ask, None);
+        result.method = method::of(&query.ask, None);
         result.unit = unit(measure);
         result.stopped_by = podium.stop;
         let joined = total(&podium.tallies);

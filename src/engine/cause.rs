@@ -47,7 +47,9 @@ pub(super) fn unresolved(subject: &Subject, column: usize, item: Item, seed: u64
         observer.observe(lane, &readings);
         if observer.decided().has(0) {
             return match observer.reading(0) {
-                Reading::Unresolved => format!("the metric is not a number at {time}; look for 0 / 0 or ∞ - ∞ in it"),
+                Reading::Unresolved => {
+                    format!("the metric is not a number at {time}; look for 0 / 0 or ∞ - ∞ in it")
+                }
                 _ => String::new(),
             };
         }

@@ -182,7 +182,10 @@ mod tests {
     fn numbers_have_no_noise() {
         assert_eq!(number(0.1 + 0.2), "0.3");
         assert_eq!(number(1e-6), "0.000001");
-        assert_eq!([0.05, 0.01, 0.05 / 3.0, 0.005, 1e-9].map(level), ["95 %", "99 %", "98.33 %", "99.5 %", "99.9999999 %"]);
+        assert_eq!(
+            [0.05, 0.01, 0.05 / 3.0, 0.005, 1e-9].map(level),
+            ["95 %", "99 %", "98.33 %", "99.5 %", "99.9999999 %"]
+        );
         assert_eq!([0.05, 0.05 / 3.0, 1.0 / 3.0].map(error), ["0.05", "0.0167", "0.334"]);
         let said = statement("P(safe)", &Statement { claim: Claim::Above(0.48), error: 0.01 }, "");
         assert_eq!(said, "P(safe) > 0.48, error at most 0.01");

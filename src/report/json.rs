@@ -5,8 +5,8 @@
 //! but `elapsed_s` is a function of input, seed and version.
 
 use crate::engine::outcome::{
-    Comparison, Counts, Distribution, Failure, Finding, Interval, Method, QueryResult, Ranking, Rare, Run, Shows,
-    Side, Witness,
+    Comparison, Counts, Distribution, Failure, Finding, Interval, Method, QueryResult, Ranking, Rare, Run,
+    Shows, Side, Witness,
 };
 use serde_json::{Map, Value, json};
 

@@ -59,7 +59,10 @@ fn errors_without_a_place_and_of_the_call_are_reported_too() {
     };
     let said = call("json", &["--only", "nobody"]);
     validated(&said.json());
-    assert_eq!((said.code, &said.json()["error"]["message"]), (Some(2), &"no query is about `nobody`".into()));
+    assert_eq!(
+        (said.code, &said.json()["error"]["message"]),
+        (Some(2), &"no query is about `nobody`".into())
+    );
     let said = call("github", &["--set", "densty=0.2"]);
     assert!(said.out.starts_with("::error title=E0210::--set densty: unknown parameter"), "{}", said.out);
     let said = call("json", &["--set", "density=1 /m^2"]);

@@ -161,7 +161,9 @@ pub(in crate::report) fn trials(result: &QueryResult) -> String {
     let cause = match result.stopped_by {
         Stop::Boundary => "stopped at the boundary of the test",
         Stop::Width => "stopped when narrow enough",
-        Stop::Unresolved if counts.unresolved == counts.trials => "stopped because all of them are unresolved",
+        Stop::Unresolved if counts.unresolved == counts.trials => {
+            "stopped because all of them are unresolved"
+        }
         Stop::Unresolved => "stopped because unresolved trials keep it open, however many more there are",
         Stop::Plan => "as planned",
         Stop::Cap => "stopped at the largest number of trials",

@@ -167,16 +167,6 @@ impl<T: Table> Race<T> {
         (0..self.arms).map(|arm| self.table.trials(arm)).sum()
     }
 
-    /// Arms not dropped yet.
-    pub fn live(&self) -> &[usize] {
-        &self.live
-    }
-
-    /// The leader of the last complete round.
-    pub const fn leader(&self) -> usize {
-        self.leader
-    }
-
     /// The smallest gap, to a millionth of the largest, such that `arm` is within it of the best but for
     /// probability delta: at any time and for a live arm. 1 if nothing is certified.
     pub fn gap(&mut self, arm: usize) -> f64 {
@@ -225,7 +215,8 @@ impl<T: Table> Race<T> {
                 }
             }
         }
-        let mut arm = self.leader;
+        // In the middle of a round the leader of the last one may be behind, and before the first there is none.
+        let mut arm = if self.finished { self.leader } else { self.ahead() };
         if let Some(deviations) = deviations {
             for other in &certified {
                 let of = |arm: usize| deviations.get(arm).copied().unwrap_or(f64::INFINITY);
