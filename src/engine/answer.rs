@@ -191,21 +191,32 @@ impl Answers<'_> {
         result.steps = tally.steps;
         result.clipped = tally.clipped;
         result.shrunk = tally.shrunk;
-        if tally.counts.trials > 0
-            && let Ok(implications) = subject.implications(column)
+        let Ok(implications) = subject.implications(column) else { return };
+        if tally.counts.trials == 0 {
+            return;
+        }
+        let trials = tally.counts.trials;
+        // The 64th stands for all beyond.
+        let idle = |implied: bool| {
+            let some = implications.iter().take(64).enumerate().filter(|(_, one)| **one == implied);
+            let all: Vec<usize> = some.map(|(k, _)| k).collect();
+            (all.iter().filter(|k| tally.triggered >> **k & 1 == 0).count(), all.len())
+        };
+        match idle(false) {
+            (0, _) => {}
+            (1, 1) => result.warnings.push(format!(
+                "the implication in it was never triggered: the left side was true in none of {trials} trials"
+            )),
+            (idle, all) => result.warnings.push(format!(
+                "{idle} of its {all} implications were never triggered: the left side was true in none of {trials} trials"
+            )),
+        }
+        if let (idle, all @ 1..) = idle(true)
+            && idle == all
         {
-            let idle = (0..implications.min(64)).filter(|k| tally.triggered >> k & 1 == 0).count();
-            if idle > 0 {
-                let which = if implications == 1 {
-                    "the implication in it was".to_owned()
-                } else {
-                    format!("{idle} of its {implications} implications were")
-                };
-                result.warnings.push(format!(
-                    "{which} never triggered: the left side was true in none of {} trials",
-                    tally.counts.trials
-                ));
-            }
+            result.warnings.push(format!(
+                "nobody was there whenever it asked about those who are, in all of {trials} trials"
+            ));
         }
     }
 

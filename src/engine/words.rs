@@ -127,6 +127,11 @@ pub(super) fn level(error: f64) -> String {
     format!("{:.places$} %", 100.0 - error)
 }
 
+/// Of a condition; "holds" and "fails" are said of what was asked.
+pub(super) const fn truth(value: bool) -> &'static str {
+    if value { "is true" } else { "is false" }
+}
+
 /// What a test certifies.
 pub(super) fn statement(subject: &str, statement: &Statement, unit: &str) -> String {
     let claim = match statement.claim {

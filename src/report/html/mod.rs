@@ -3,7 +3,7 @@
 mod chart;
 mod histogram;
 
-use super::number::{count, counted, duration, plain};
+use super::number::{count, counted, duration};
 use super::{certified, one_line, settings, text};
 use crate::engine::outcome::{Failure, Interval, QueryResult, Run, Status, Verdict, Witness};
 use chart::{Mark, Tone};
@@ -98,7 +98,7 @@ fn section(page: &mut String, group: &[QueryResult]) {
             Some(choice) if !first.certifies.is_empty() => format!(
                 "Choose <strong>{}</strong>{}.",
                 escape(choice),
-                if ranking.tied { "; so are those marked tied" } else { "" }
+                if ranking.tied { "; those marked tied carry the same certificate" } else { "" }
             ),
             Some(choice) => {
                 format!("<strong>{}</strong> leads so far, but nothing is certified yet.", escape(choice))
@@ -150,11 +150,11 @@ fn facts(page: &mut String, result: &QueryResult, swept: bool) {
     for Witness { shows, value, trial, time, unit, what, command } in &result.witnesses {
         let _ = writeln!(
             page,
-            "<p>{} in trial {}, {} {} {unit}: <code>{}</code></p>\n<pre>{}</pre>",
+            "<p>{} in trial {}, {} {}: <code>{}</code></p>\n<pre>{}</pre>",
             shows.name(),
             count(*trial),
             if value.is_some() { "at" } else { "decided at" },
-            plain(*time),
+            text::moment(*time, unit),
             escape(what),
             escape(command)
         );
