@@ -83,7 +83,8 @@ fn an_undecided_check_of_a_family_errs_no_more_than_its_share() {
         assert!(result["certifies"].as_str().unwrap().ends_with(", error at most 0.01"), "{result:#}");
         assert_eq!(result["interval"], "time-uniform, 99 %");
     }
-    let sure = &run(UNIFORM, "check P(F<=10 s p.over) >= 0.5 confidence 99.9 %\n", &["--max-trials", "30"])[0];
+    let sure =
+        &run(UNIFORM, "check P(F<=10 s p.over) >= 0.5 confidence 99.9 %\n", &["--max-trials", "30"])[0];
     assert!(sure["certifies"].as_str().unwrap().ends_with("error at most 0.001"), "{sure:#}");
     let alone = &run(UNIFORM, one, &["--max-trials", "30"])[0];
     assert_eq!(alone["interval"], "time-uniform, 95 %");
@@ -100,7 +101,10 @@ fn lost_paths_of_splitting_are_in_neither_reading() {
     assert!(number(result, "low") <= 0.0 && number(result, "high") >= 0.1, "{result:#}");
     assert!(number(result, "estimate") > 0.03, "the middle of both readings: {result:#}");
     let warnings = result["warnings"].to_string();
-    assert!(warnings.contains("paths of splitting diverged: read as reaching the event and as not"), "{warnings}");
+    assert!(
+        warnings.contains("paths of splitting diverged: read as reaching the event and as not"),
+        "{warnings}"
+    );
 }
 
 #[test]
@@ -143,7 +147,8 @@ estimate E(time_until(p.over)) in 0 s .. 20 s
 
 #[test]
 fn a_quantile_that_was_cut_short_holds_at_all_times() {
-    let properties = "estimate Q(0.5, time_until(p.over))\nestimate Q(0.5, time_until(p.over)) by dkw(trials = 1000)\n";
+    let properties =
+        "estimate Q(0.5, time_until(p.over))\nestimate Q(0.5, time_until(p.over)) by dkw(trials = 1000)\n";
     let whole = run(UNIFORM, properties, &[]);
     let short = run(UNIFORM, properties, &["--max-trials", "999"]);
     for (whole, short) in whole.iter().zip(&short) {
@@ -172,7 +177,10 @@ fn the_band_holds_both_readings_of_unresolved_trials() {
 fn checks_of_quantiles_say_what_their_figures_are_of() {
     let properties = "check Q(0.5, time_until(p.over)) >= 7 s\n";
     let result = &run(UNIFORM, properties, &[])[0];
-    assert_eq!((&result["verdict"], &result["of"]), (&"satisfied".into(), &"P(time_until(p.over) < 7 s)".into()));
+    assert_eq!(
+        (&result["verdict"], &result["of"]),
+        (&"satisfied".into(), &"P(time_until(p.over) < 7 s)".into())
+    );
     assert_eq!(
         result["certifies"],
         "Q(0.5, time_until(p.over)) >= 7 s, since P(time_until(p.over) < 7 s) < 0.5, error at most 0.01"
@@ -180,9 +188,15 @@ fn checks_of_quantiles_say_what_their_figures_are_of() {
     let place = Place::new(&[("a.scn", UNIFORM), ("a.bltl", properties)]);
     let text = place.call(&["check", "a.scn", "a.bltl", "-q"]).out;
     assert!(text.contains("P(time_until(p.over) < 7 s): 0."), "{text}");
-    assert!(text.contains("(8 with it, 43 without)") && text.contains("without it in trial 0, decided"), "{text}");
+    assert!(
+        text.contains("(8 with it, 43 without)") && text.contains("without it in trial 0, decided"),
+        "{text}"
+    );
     // A trial below the threshold speaks against the claim.
-    assert_eq!((&result["witnesses"][0]["shows"], &result["witnesses"][0]["passing"]), (&"fails".into(), &true.into()));
+    assert_eq!(
+        (&result["witnesses"][0]["shows"], &result["witnesses"][0]["passing"]),
+        (&"fails".into(), &true.into())
+    );
 }
 
 #[test]
@@ -219,7 +233,10 @@ estimate P(F<=10 s p.over) within 0.003
     has(1, &["epsilon", "delta", "cap", "low", "high"]);
     has(2, &["trials", "delta", "level"]);
     has(3, &["epsilon", "delta", "trials"]);
-    assert_eq!((&results[3]["method"]["name"], number(&results[3]["method"], "trials")), (&"okamoto".into(), 204_938.0));
+    assert_eq!(
+        (&results[3]["method"]["name"], number(&results[3]["method"], "trials")),
+        (&"okamoto".into(), 204_938.0)
+    );
 }
 
 #[test]

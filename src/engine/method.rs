@@ -16,7 +16,7 @@ fn ends(measure: &Measure) -> Vec<(&'static str, f64)> {
 }
 
 /// The name and numbers of a procedure, for reports.
-pub(super) fn method(ask: &Ask, procedure: Option<&Procedure>) -> Method {
+pub(super) fn of(ask: &Ask, procedure: Option<&Procedure>) -> Method {
     let named = |name: &str, numbers: &[(&str, f64)]| Method {
         name: name.to_owned(),
         numbers: numbers.iter().map(|(n, v)| ((*n).to_owned(), *v)).collect(),
@@ -49,7 +49,7 @@ pub(super) fn method(ask: &Ask, procedure: Option<&Procedure>) -> Method {
                 Test::ThreeWay { alpha, indifference } => {
                     named("three_way", &[("alpha", alpha), theta, ("indifference", indifference)])
                 }
-                Test::Interval { delta, .. } => {
+                Test::Interval { delta } => {
                     let numbers = [("delta", delta), theta];
                     named("empirical_bernstein", &[&numbers[..], &ends(measure)].concat())
                 }
@@ -134,7 +134,7 @@ pub(super) fn method(ask: &Ask, procedure: Option<&Procedure>) -> Method {
             }
         },
         Ask::Compare { first, within, delta, .. } => {
-            let planned = ("trials", crate::compile::methods::DEFAULT_TRIALS as f64);
+            let planned = ("trials", crate::compile::methods::PLANNED_TRIALS as f64);
             let numbers = [("delta", *delta), within.map_or(planned, |w| ("epsilon", w))];
             // The mean of the differences of two metrics, or the difference of two shares.
             let name = match first.kind {

@@ -3,14 +3,13 @@
 use super::budget::DEFAULT_TRIALS;
 use super::cell::{Cell, Reading};
 use super::fault::Fault;
-pub(super) use super::method::method;
 use super::outcome::{Distribution, Histogram, Interval, Quantile, Step};
 use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Test};
 use crate::stats::quantile::Sample;
 use crate::stats::test::Verdict as TestVerdict;
 use crate::stats::{
-    self, AnyEstimator, AnyTest, Coverage, Decision, EstimatorReadings, Evidence, FixedSize, Gbas, Massart,
-    Mean, Okamoto, Outcome, Plan, Spending, Sprt, Statement, TestReadings, ThreeWay, TwoSprt,
+    self, AnyEstimator, AnyTest, Coverage, Decision, Defaults, EstimatorReadings, Evidence, FixedSize, Gbas,
+    Massart, Mean, Okamoto, Outcome, Plan, Spending, Sprt, Statement, TestReadings, ThreeWay, TwoSprt,
 };
 use stats::Estimator as _;
 use stats::Test as _;
@@ -65,10 +64,10 @@ pub(super) fn value(cell: &Cell) -> Option<f64> {
 
 impl Procedure {
     /// The procedure of a check or an estimate. `seed` addresses what a procedure draws for itself.
-    pub(super) fn new(ask: &Ask, seed: u64) -> Result<Self, Fault> {
+    pub(super) fn new(ask: &Ask, seed: u64, defaults: &mut Defaults) -> Result<Self, Fault> {
         match ask {
             Ask::Check { measure, threshold, test, .. } => Self::test(measure, *threshold, test),
-            Ask::Estimate { measure, estimator } => Self::estimate(measure, estimator, seed),
+            Ask::Estimate { measure, estimator } => Self::estimate(measure, estimator, seed, defaults),
             Ask::Compare { .. } | Ask::Rank { .. } => Err(Fault::Unsuitable),
         }
     }
@@ -88,22 +87,27 @@ impl Procedure {
             Test::ThreeWay { alpha, indifference } => {
                 AnyTest::ThreeWay(ThreeWay::new(theta, indifference, alpha)?)
             }
-            Test::Interval { delta, .. } => {
+            Test::Interval { delta } => {
                 let MeasureKind::Expectation { range: (low, high), .. } = measure.kind else {
                     return Err(Fault::Unsuitable);
                 };
-                let mean = Box::new(Mean::sequential(low, high, delta)?);
+                let mean = Box::new(Mean::running(low, high, delta)?);
                 return Ok(Self::Mean { mean, threshold: Some(theta), values: Vec::new() });
             }
         };
         Ok(Self::Test(Box::new(TestReadings::new(test))))
     }
 
-    fn estimate(measure: &Measure, estimator: &Estimator, seed: u64) -> Result<Self, Fault> {
+    fn estimate(
+        measure: &Measure,
+        estimator: &Estimator,
+        seed: u64,
+        defaults: &mut Defaults,
+    ) -> Result<Self, Fault> {
         match (&measure.kind, *estimator) {
             (MeasureKind::Probability, estimator) => {
                 let estimator = match estimator {
-                    Estimator::Default { epsilon, delta } => AnyEstimator::within(epsilon, delta)?,
+                    Estimator::Default { epsilon, delta } => defaults.within(epsilon, delta)?,
                     Estimator::Okamoto { epsilon, delta } => {
                         AnyEstimator::Okamoto(Okamoto::new(epsilon, delta)?)
                     }
@@ -199,7 +203,6 @@ impl Procedure {
     /// Whether it is over without having come to what was asked: at its own largest number of trials.
     pub(super) fn is_capped(&self) -> bool {
         match self {
-            Self::Mean { threshold: Some(_), .. } => self.decision().is_none(),
             Self::Probability(estimator) => match estimator.readings().0 {
                 AnyEstimator::Gbas(gbas) => gbas.counts().successes < gbas.needed(),
                 _ => false,

@@ -111,7 +111,7 @@ impl Mean {
 
     /// Values in [low, high], error `delta`, as many trials as somebody shows it: the bets are for all times alike, so
     /// that the interval may be looked at after each trial and is narrow at small numbers of them too.
-    pub fn sequential(low: f64, high: f64, delta: f64) -> Result<Self, Invalid> {
+    pub fn running(low: f64, high: f64, delta: f64) -> Result<Self, Invalid> {
         let mut mean = Self::new(low, high, delta, 0.0, None)?;
         mean.limit = u64::MAX;
         Ok(mean)
@@ -273,10 +273,10 @@ mod tests {
             }
             n
         };
-        let sequential = passed(Mean::sequential(0.0, 20.0, 0.01).unwrap());
+        let sequential = passed(Mean::running(0.0, 20.0, 0.01).unwrap());
         assert!((230..320).contains(&sequential), "{sequential}");
         assert!(passed(Mean::fixed(0.0, 20.0, 1_000_000, 0.01).unwrap()) > 4_000);
-        let endless = Mean::sequential(0.0, 20.0, 0.01).unwrap();
+        let endless = Mean::running(0.0, 20.0, 0.01).unwrap();
         assert!(!endless.is_fixed() && !endless.finished());
     }
 
