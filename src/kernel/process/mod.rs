@@ -36,6 +36,9 @@ use fearless_simd::Level;
 use table::Table;
 use timed::{Timed, is_timed};
 
+/// Most jumps between two steps; a trial that needs more is unresolved.
+const MOST_BETWEEN: u32 = 1 << 20;
+
 /// One process.
 #[derive(Clone, Debug)]
 struct Machine {
@@ -168,15 +171,14 @@ impl Processes {
         timed.ring(layout, state, &mut scratch.timed, lanes, &until)
     }
 
-    /// Lets processes with rates and delays jump up to and with the next step. What they read of others is what
-    /// was there at the last step.
-    fn between(&self, timed: &Timed, layout: Layout, state: &mut State, readings: &mut Readings) {
-        let until = state.ticks.map(|tick| self.clock.seconds(Tick(tick + 1)));
-        loop {
-            let lanes = state.occupied & !state.faulty;
-            if timed.ring(layout, state, readings, lanes, &until).is_empty() {
-                return;
-            }
+    /// With a step: lets what is due at once happen in trials that have just been loaded. The first state is the one
+    /// that holds at time 0.
+    pub(super) fn begin(&self, layout: Layout, state: &mut State, scratch: &mut Scratch, lanes: Mask) {
+        let Some(timed) = self.timed.as_ref().filter(|_| !self.clock.is_jumps()) else { return };
+        let lanes = lanes & state.occupied & state.clocks.fresh;
+        if !lanes.is_empty() {
+            timed.look(layout, state, &mut scratch.timed, lanes);
+            ring(timed, layout, state, &mut scratch.timed, lanes, &[0.0; LANES]);
         }
     }
 
@@ -207,7 +209,9 @@ impl Processes {
             }
         }
         if let Some(timed) = &self.timed {
-            self.between(timed, layout, state, timed_readings);
+            // What they read of others is what was there at the last step.
+            let until = state.ticks.map(|tick| self.clock.seconds(Tick(tick + 1)));
+            ring(timed, layout, state, timed_readings, lanes, &until);
             for &variable in &timed.written {
                 next[variable as usize] = state.variables[variable as usize];
             }
@@ -229,4 +233,22 @@ impl Processes {
             }
         }
     }
+}
+
+/// Lets processes with rates and delays jump up to and with these times.
+fn ring(
+    timed: &Timed,
+    layout: Layout,
+    state: &mut State,
+    readings: &mut Readings,
+    mut lanes: Mask,
+    until: &[f64; LANES],
+) {
+    for _ in 0..MOST_BETWEEN {
+        lanes = timed.ring(layout, state, readings, lanes & !state.faulty, until);
+        if lanes.is_empty() {
+            return;
+        }
+    }
+    state.diverged |= lanes;
 }
