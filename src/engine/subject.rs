@@ -6,9 +6,7 @@ use crate::base::tick::{Clock, Tick};
 use crate::compile::study::{Root, Texts, World};
 use crate::kernel::process::View;
 use crate::kernel::{Code, Program, Readings};
-use crate::logic::{
-    Invalid, Monitor, Needs, Node, NodeId, Robustness, SignalMonitor, Term, TermId, Tree,
-};
+use crate::logic::{Invalid, Monitor, Needs, Node, NodeId, Robustness, SignalMonitor, Term, TermId, Tree};
 use crate::model::{Bool, Num};
 use std::collections::BTreeSet;
 
@@ -56,7 +54,8 @@ pub(super) fn lost(needs: &Needs, readings: &Readings, ticks: &[u64; LANES]) -> 
         lost |= lanes.iter().filter(|&lane| needs.atom(place, ticks[lane])).map(Mask::lane).fold(lost, join);
     }
     for (place, lanes) in signals.iter().enumerate() {
-        lost |= lanes.iter().filter(|&lane| needs.signal(place, ticks[lane])).map(Mask::lane).fold(lost, join);
+        lost |=
+            lanes.iter().filter(|&lane| needs.signal(place, ticks[lane])).map(Mask::lane).fold(lost, join);
     }
     lost & readings.unresolved
 }

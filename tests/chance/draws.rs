@@ -60,14 +60,14 @@ fn another_behaviour_leaves_the_first_as_it_is() {
 
 #[test]
 fn the_pauses_of_a_detour_do_not_depend_on_the_routes_of_others() {
-    let stray = "behaviour stray { state a { after 1 s -> b }\n\
-                 state b { route = (3, 5) -> wait uniform(1 s, 9 s) -> (3, 30) } }\n";
+    let stray = "behaviour stray { state a { after 0.2 s -> b }\n\
+                 state b { route = wait uniform(0.2 s, 2 s) -> (3, 30) } }\n";
     let with = format!("{stray}{}", CROWD.replace(": adult {", ": adult with stray {"));
     let other = "agent other: adult { at = (-200, 0)  route = (-250, 0) -> wait 1 s -> west }\n";
     let plain = trace(&with, Layout::Trials);
-    assert_eq!(plain, trace(&format!("{with}{other}"), Layout::Trials));
-    assert_eq!(plain, trace(&format!("{other}{with}"), Layout::Trials));
-    assert_ne!(plain, trace(&with.replace("uniform(1 s, 9 s)", "uniform(0.1 s, 0.2 s)"), Layout::Trials));
+    assert!(plain == trace(&format!("{with}{other}"), Layout::Trials));
+    assert!(plain == trace(&format!("{other}{with}"), Layout::Trials));
+    assert!(plain != trace(&with.replace("uniform(0.2 s, 2 s)", "uniform(0.2 s, 1 s)"), Layout::Trials));
 }
 
 #[test]

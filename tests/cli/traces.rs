@@ -127,7 +127,10 @@ fn comparisons_use_common_random_numbers() {
     let (p, q) = (count("first", "successes") / pairs, count("second", "successes") / pairs);
     let independent = pairs * (p * (1.0 - q) + q * (1.0 - p));
     assert!(pairs >= 100.0 && p > 0.02 && p < 0.98, "{result}");
-    assert!(discordant < 0.25 * independent, "{discordant} discordant pairs, {independent:.0} if independent");
+    assert!(
+        discordant < 0.25 * independent,
+        "{discordant} discordant pairs, {independent:.0} if independent"
+    );
 }
 
 #[test]

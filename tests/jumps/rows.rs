@@ -208,10 +208,10 @@ fn with_a_step_the_same_process_is_seen_at_the_steps() {
 }
 
 #[test]
-fn a_process_that_never_stops_between_two_steps_ends_its_trial() {
-    let text = "horizon = 4 s\nstep = 1 s\nprocess p { var s: 0 .. 1 = 0\n when s == 0 after 0.5 s -> s = 1\n\
-                when s == 1 after 0 s -> s = s }";
-    let study = compiled(text, "estimate P(F (p.s == 1)) by fixed(trials = 3)").unwrap();
+fn a_process_that_jumps_too_often_between_two_steps_ends_its_trial() {
+    let text =
+        "horizon = 4 s\nstep = 1 s\nprocess p { var s: 0 .. 1 = 0\n when true at 3000000 /s -> s = 1 - s }";
+    let study = compiled(text, "estimate P(F[3 s, 3 s] (p.s == 0)) by fixed(trials = 3)").unwrap();
     let counts = crate::answered(&study, 0, 1).results[0].counts;
     assert_eq!((counts.trials, counts.unresolved), (3, 3));
 }

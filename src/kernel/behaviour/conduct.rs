@@ -87,9 +87,10 @@ impl Conduct {
                 });
                 Mode {
                     changes: changes.collect(),
-                    route: mode.route.as_ref().map(|route| {
-                        drive.detour(scenario, route, &format!("{}.{name}", declared.name))
-                    }),
+                    route: mode
+                        .route
+                        .as_ref()
+                        .map(|route| drive.detour(scenario, route, &format!("{}.{name}", declared.name))),
                     exits,
                 }
             })
