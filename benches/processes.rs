@@ -119,14 +119,14 @@ fn die(random: &mut Fast) -> (u64, bool) {
     (5, false)
 }
 
-/// Itai and Rodeh with three nodes and ids 1 to 4: a round is drawing and comparing.
+/// Itai and Rodeh with three nodes and ids 1 to 4: a round is drawing, and after a tie one step more.
 fn leader(random: &mut Fast) -> (u64, bool) {
     for round in 1..=4u64 {
         let word = random.next();
         let ids = [word >> 62, word >> 60 & 3, word >> 58 & 3];
         let largest = ids[0].max(ids[1]).max(ids[2]);
         if ids.iter().filter(|id| **id == largest).count() == 1 {
-            return (2 * round, true);
+            return (2 * round - 1, true);
         }
     }
     (8, false)

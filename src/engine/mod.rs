@@ -9,6 +9,7 @@ pub mod executor;
 mod fault;
 mod forecast;
 mod jumper;
+mod leaper;
 mod observer;
 pub mod outcome;
 mod procedure;

@@ -23,5 +23,5 @@ pub use monitor::robustness::Robustness;
 pub use monitor::{Antecedent, Monitor};
 pub use need::Needs;
 pub use offline::Recording;
-pub use signal::{Reading, SignalMonitor};
+pub use signal::{Glance, Reading, SignalMonitor};
 pub use source::{Source, sides, sources};

@@ -4,12 +4,14 @@
 //! and state it is known where the branches end in (0, 1], and by how much each branch moves that number. All
 //! processes look at the old state and write variables of their own, so their moves add up. Numbers come from the
 //! same addresses as elsewhere, and pass the same ends: a walk visits the states that the general path visits.
+//!
+//! Many trials walk side by side, all at the same tick. Those that have ended are taken out and the others move
+//! up, so no lane is idle; and the numbers of all of them are drawn in one go, before anybody moves.
 
-use super::draws::{RoundKeys, blocks, round_keys, trial_words};
+use super::draws::{Draw, RoundKeys, round_keys};
 use super::keys::Keys;
 use super::{Form, Machine};
 use crate::base::lanes::{LANES, Lanes};
-use crate::base::random::TrialKey;
 use crate::model::{Domain, VariableId};
 use fearless_simd::{Level, Simd, dispatch};
 use std::collections::BTreeSet;
@@ -46,15 +48,19 @@ pub struct Chain {
     level: Level,
 }
 
-/// Eight trials of a chain. A lane without a trial walks on somewhere.
+/// Trials of a chain side by side, eight to a block. Places beyond the last trial walk on somewhere.
 #[derive(Clone, Debug)]
 pub struct Walk {
-    /// The state of each lane.
-    pub states: [u32; LANES],
-    /// Steps made by each lane.
-    pub ticks: [u64; LANES],
-    /// The two parts of the counter that name the trials.
-    trials: [[u64; LANES]; 2],
+    /// How many trials are left.
+    len: usize,
+    /// Steps made by each of them.
+    tick: u64,
+    /// Their indices.
+    trials: Vec<[u64; LANES]>,
+    states: Vec<[u32; LANES]>,
+    /// Room for the next states, and for one number of each trial.
+    next: Vec<[u32; LANES]>,
+    numbers: Vec<Lanes>,
     keys: RoundKeys,
 }
 
@@ -142,28 +148,75 @@ impl Chain {
         self.keys.put(u64::from(state), variables, lane);
     }
 
-    /// Eight lanes without a trial.
+    /// Whether a trial never leaves a state, and nothing is left to chance in it.
+    pub fn is_still(&self, state: u32) -> bool {
+        let state = state as usize;
+        self.steps.iter().all(|steps| !steps.open[state] && steps.moves[state * steps.most] == 0)
+    }
+
+    /// A walk without trials.
     pub fn walk(&self, seed: u64) -> Walk {
         Walk {
-            states: [self.initial; LANES],
-            ticks: [0; LANES],
-            trials: [[0; LANES]; 2],
+            len: 0,
+            tick: 0,
+            trials: Vec::new(),
+            states: Vec::new(),
+            next: Vec::new(),
+            numbers: Vec::new(),
             keys: round_keys(seed),
         }
     }
 
-    /// Begins a trial; its seed must be that of the walk.
-    #[inline]
-    pub fn load(&self, walk: &mut Walk, lane: usize, trial: TrialKey) {
-        walk.states[lane] = self.initial;
-        walk.ticks[lane] = 0;
-        [walk.trials[0][lane], walk.trials[1][lane]] = trial_words(trial);
+    /// The trials with these indices begin; those of before are gone.
+    pub fn begin(&self, walk: &mut Walk, trials: impl ExactSizeIterator<Item = u64>) {
+        let blocks = trials.len().div_ceil(LANES);
+        (walk.len, walk.tick) = (trials.len(), 0);
+        walk.trials.resize(blocks, [0; LANES]);
+        walk.states.clear();
+        walk.states.resize(blocks, [self.initial; LANES]);
+        walk.next.resize(blocks, [self.initial; LANES]);
+        walk.numbers.resize(blocks, Lanes::ZERO);
+        for (place, trial) in walk.trials.as_flattened_mut().iter_mut().zip(trials) {
+            *place = trial;
+        }
     }
 
-    /// One step of all lanes.
+    /// One step of all trials.
     #[inline]
     pub fn step(&self, walk: &mut Walk) {
         dispatch!(self.level, simd => advance(simd, self, walk));
+        walk.tick += 1;
+    }
+}
+
+impl Walk {
+    /// How many trials are left.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether no trial is left.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Steps made by each trial.
+    pub fn tick(&self) -> u64 {
+        self.tick
+    }
+
+    /// Shows the places and states of all trials, in order, and keeps those for which `stays`.
+    #[inline(always)]
+    pub fn retain(&mut self, mut stays: impl FnMut(usize, u32) -> bool) {
+        let (trials, states) = (self.trials.as_flattened_mut(), self.states.as_flattened_mut());
+        let mut kept = 0;
+        // Each is written to the next free place, and the place is kept or not: no jump depends on chance.
+        for place in 0..self.len {
+            let state = states[place];
+            (trials[kept], states[kept]) = (trials[place], state);
+            kept += usize::from(stays(place, state));
+        }
+        self.len = kept;
     }
 }
 
@@ -184,28 +237,45 @@ impl Steps {
         let open = found.iter().map(|branches| branches.len() > 1).collect();
         Self { word: u64::from(word), most, open, ends, moves }
     }
+
+    /// Adds the moves that the numbers choose.
+    #[inline(always)]
+    fn apply(&self, most: usize, old: &[[u32; LANES]], next: &mut [[u32; LANES]], numbers: &[Lanes]) {
+        for ((old, next), numbers) in old.iter().zip(next).zip(numbers) {
+            for lane in 0..LANES {
+                let first = old[lane] as usize * most;
+                // Ends ascend, so the branch is the number of ends passed: no jump depends on chance.
+                let ends = self.ends[first..first + most - 1].iter();
+                let branch: usize = ends.map(|&end| usize::from(numbers.0[lane] >= end)).sum();
+                next[lane] = next[lane].wrapping_add_signed(self.moves[first + branch]);
+            }
+        }
+    }
 }
 
 #[inline(always)]
 fn advance<S: Simd>(simd: S, chain: &Chain, walk: &mut Walk) {
-    let old = walk.states;
-    let counter = [walk.ticks.map(|tick| tick & 0xffff_ffff), walk.trials[0], walk.trials[1]];
+    let blocks = walk.len.div_ceil(LANES);
+    let Walk { len, tick, trials, states, next, numbers, keys } = walk;
+    let (old, next, numbers) = (&states[..blocks], &mut next[..blocks], &mut numbers[..blocks]);
+    next.copy_from_slice(old);
     for steps in &chain.steps {
-        let mut places = old.map(|state| state as usize * steps.most);
-        // Where no lane needs a number, none is drawn: numbers have addresses, none is used up.
-        if steps.most > 1 && old.iter().any(|&state| steps.open[state as usize]) {
-            let [numbers, _] = blocks::<_, false>(simd, &counter, &[steps.word; LANES], &walk.keys);
-            // Ends ascend, so the branch is the number of ends passed: no jump depends on chance.
-            for (place, number) in places.iter_mut().zip(numbers) {
-                let ends = &steps.ends[*place..*place + steps.most - 1];
-                *place += ends.iter().map(|&end| usize::from(number >= end)).sum::<usize>();
+        // Where no trial needs a number, none is drawn: numbers have addresses, none is used up.
+        if old.as_flattened()[..*len].iter().any(|&state| steps.open[state as usize]) {
+            let draw = Draw { number: *tick, word: steps.word, keys };
+            draw.uniform(simd, &trials[..blocks], numbers);
+            // Compiled for the common numbers of branches.
+            match steps.most {
+                2 => steps.apply(2, old, next, numbers),
+                3 => steps.apply(3, old, next, numbers),
+                4 => steps.apply(4, old, next, numbers),
+                most => steps.apply(most, old, next, numbers),
+            }
+        } else {
+            for (state, next) in old.as_flattened().iter().zip(next.as_flattened_mut()) {
+                *next = next.wrapping_add_signed(steps.moves[*state as usize * steps.most]);
             }
         }
-        for (state, place) in walk.states.iter_mut().zip(places) {
-            *state = state.wrapping_add_signed(steps.moves[place]);
-        }
     }
-    for tick in &mut walk.ticks {
-        *tick += 1;
-    }
+    std::mem::swap(states, &mut walk.next);
 }

@@ -10,6 +10,7 @@ mod clocks;
 mod commands;
 mod delay;
 mod draws;
+mod embedded;
 mod fault;
 mod keys;
 mod race;
@@ -20,6 +21,7 @@ mod view;
 
 pub use chain::{Chain, Walk};
 pub use clocks::Clocks;
+pub use embedded::{Embedded, Leaps, Stay};
 pub use fault::Fault;
 use fault::Faults;
 pub use view::{Sight, View};
@@ -69,6 +71,8 @@ pub struct Processes {
     level: Level,
     /// All of them as one chain, where they are few and small.
     chain: Option<Chain>,
+    /// The one that there is as the chain of its jumps, in continuous time.
+    embedded: Option<Embedded>,
 }
 
 /// Room to work. It holds no part of the state.
@@ -109,9 +113,14 @@ impl Processes {
             .collect();
         let timed = Timed::of(scenario, &domains, rows, Level::new());
         // Agents are no part of a chain.
-        let alone = scenario.agents.is_empty() && scenario.sources.is_empty() && timed.is_none();
+        let alone = scenario.agents.is_empty() && scenario.sources.is_empty();
         let initial: Vec<f64> = processes.variables.iter().map(|v| v.initial).collect();
-        let chain = if alone { Chain::of(&machines, &initial, &domains) } else { None };
+        let chain = if alone && timed.is_none() { Chain::of(&machines, &initial, &domains) } else { None };
+        let single = timed.as_ref().filter(|_| alone && machines.is_empty() && scenario.clock.is_jumps());
+        let until = scenario.clock.seconds(scenario.horizon);
+        let embedded = single
+            .and_then(Timed::alone)
+            .and_then(|process| Embedded::of(process, &initial, &domains, until));
         let coded = machines.iter().any(|machine| matches!(machine.form, Form::Code(_)));
         Self {
             initial,
@@ -122,6 +131,7 @@ impl Processes {
             code: coded.then(|| Code::compile(scenario, &atoms, &signals)),
             level: Level::new(),
             chain,
+            embedded,
         }
     }
 
@@ -129,6 +139,12 @@ impl Processes {
     /// nobody else, and no reachable state has an error.
     pub fn chain(&self) -> Option<&Chain> {
         self.chain.as_ref()
+    }
+
+    /// The chain of its jumps, if there is one process with rates and few states, nobody else, and no reachable state
+    /// has an error.
+    pub fn embedded(&self) -> Option<&Embedded> {
+        self.embedded.as_ref()
     }
 
     /// Whether there is anything to do.
@@ -142,6 +158,7 @@ impl Processes {
         self.code = self.code.map(Code::at_baseline);
         self.timed = self.timed.map(Timed::at_baseline);
         self.chain = self.chain.map(Chain::at_baseline);
+        self.embedded = self.embedded.map(Embedded::at_baseline);
         self
     }
 
