@@ -2,6 +2,7 @@
 
 use super::arguments::Model;
 use crate::compile::{Files, Input, Setting, SettingValue, Study, compile, requests};
+use crate::engine::outcome::{Finding, Spot};
 use crate::syntax::ast::ScenarioFile;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::parse::{decode, parse_properties, parse_scenario, parse_value};
@@ -17,6 +18,24 @@ pub(super) struct Inputs {
     pub(super) diagnostics: Vec<Diagnostic>,
     /// What compilation yields, if nothing is wrong.
     pub(super) study: Option<Study>,
+}
+
+/// Errors and warnings as reports quote them.
+pub(super) fn findings(diagnostics: &[Diagnostic], sources: &[Source]) -> Vec<Finding> {
+    let spot = |span: Span| {
+        let source = sources.iter().find(|source| source.id == span.source)?;
+        let (start, end) = (source.line_column(span.start), source.line_column(span.end));
+        Some(Spot { file: source.name.clone(), start, end })
+    };
+    let one = |diagnostic: &Diagnostic| Finding {
+        error: diagnostic.severity == Severity::Error,
+        code: diagnostic.code.to_owned(),
+        spot: diagnostic.place.as_ref().and_then(|label| spot(label.span)),
+        message: diagnostic.title.clone(),
+        label: diagnostic.place.as_ref().map_or(String::new(), |label| label.text.clone()),
+        hint: diagnostic.hint.clone(),
+    };
+    diagnostics.iter().map(one).collect()
 }
 
 /// Bytes of a file, or of standard input for `-`.

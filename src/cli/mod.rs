@@ -70,12 +70,10 @@ fn diagnose(inputs: &inputs::Inputs, colors: Colors) {
     }
 }
 
-/// Refuses a scenario whose people cannot be placed.
-fn crowded(reason: String, colors: Colors) -> Exit {
-    let error = Diagnostic::placeless("E0801", reason)
-        .hint("fewer people, a larger shape to start from, or smaller radii");
-    say(&render(&[error], &[], colors.err));
-    Exit::Wrong
+/// What is said of a scenario whose people cannot be placed.
+fn crowded(reason: String) -> Diagnostic {
+    Diagnostic::placeless("E0801", reason)
+        .hint("fewer people, a larger shape to start from, or smaller radii")
 }
 
 /// Whether everybody can be placed, as far as areas tell.

@@ -127,7 +127,8 @@ impl Compiler<'_> {
             }
         };
         let share = family.map_or(1.0, |delta| delta / super::methods::DEFAULT_DELTA);
-        let (epsilon, delta, ranking) = elaborator.ranking(clauses, dimension, share, &locals)?;
+        let (epsilon, delta, ranking) =
+            elaborator.ranking(clauses, &measured.kind, dimension, share, &locals)?;
         if let (Ranking::Okamoto, MeasureKind::Expectation { .. }, Some(method)) =
             (ranking, &measured.kind, &clauses.by)
         {

@@ -1,5 +1,6 @@
 //! Procedures: from the text of a query and the documented defaults, never from the budget.
 
+use super::bounds::WIDEST;
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered};
 use super::nearest::nearest;
@@ -60,19 +61,6 @@ impl Elaborator<'_> {
         if failed { Err(super::elaborator::Reported) } else { Ok(Arguments { method, values }) }
     }
 
-    /// A probability of error in (0, 1).
-    fn error_of(&mut self, value: Option<(f64, Span)>, default: f64, name: &str) -> Lowered<f64> {
-        match value {
-            None => Ok(default),
-            Some((value, _)) if value > 0.0 && value < 1.0 => Ok(value),
-            Some((value, span)) => self.report(Diagnostic::error(
-                "E0604",
-                span,
-                format!("`{name}` is {value}, but lies between 0 and 1"),
-            )),
-        }
-    }
-
     fn required<const N: usize>(
         &mut self,
         arguments: &Arguments<'_, N>,
@@ -99,11 +87,11 @@ impl Elaborator<'_> {
     /// One minus a confidence.
     pub(super) fn confidence(&mut self, expr: &Expr, locals: &Locals) -> Lowered<f64> {
         let number = self.number_of(expr, Dimension::NONE, locals)?;
-        if number.value <= 0.0 || number.value >= 1.0 {
+        if number.value <= 0.5 || number.value >= 1.0 {
             let error = Diagnostic::error(
                 "E0604",
                 expr.span,
-                format!("a confidence of {} is not between 0 and 1", number.value),
+                format!("a confidence of {} is not between 50 % and 100 %", number.value),
             )
             .hint("write `confidence 95 %` or `confidence 0.95`");
             return self.report(error);
@@ -163,6 +151,17 @@ impl Elaborator<'_> {
                 let (indifference, span) = self.required(&arguments, 2, "indifference")?;
                 let (alpha, beta) = (alpha?, beta?);
                 self.region(threshold, indifference, at, span)?;
+                let least = match name {
+                    "sprt2" => 1e-5,
+                    "plan" => 5e-4,
+                    _ => 0.0,
+                };
+                if indifference < least {
+                    let said =
+                        format!("`indifference` is {indifference}, but is at least {least} with `{name}`");
+                    let error = Diagnostic::error("E0604", span, said);
+                    return self.report(error.hint("`sprt`, and the default test, know no such limit"));
+                }
                 Ok(match name {
                     "sprt" => Test::Sprt { alpha, beta, indifference },
                     "sprt2" => Test::Sprt2 { alpha, beta, indifference },
@@ -229,6 +228,10 @@ impl Elaborator<'_> {
             return self.report(error);
         }
         let probability = matches!(kind, MeasureKind::Probability);
+        let within = match (&clauses.within, within) {
+            (Some(expr), Some(epsilon)) => Some(self.width((epsilon, expr.span), kind, WIDEST)?),
+            _ => None,
+        };
         let Some(method) = &clauses.by else {
             return Ok(match (within, probability) {
                 (Some(epsilon), _) => Estimator::Default { epsilon, delta },
@@ -241,11 +244,13 @@ impl Elaborator<'_> {
             let arguments = self.arguments(method, ["trials", "delta"], locals)?;
             let (trials, span) = self.required(&arguments, 0, "trials")?;
             let delta = self.error_of(arguments.values[1], delta, "delta")?;
-            if trials < 1.0 || trials.fract() != 0.0 || trials > 1e12 {
+            // The values of a quantile are kept.
+            let most = if quantile { 1e9 } else { 1e12 };
+            if trials < 1.0 || trials.fract() != 0.0 || trials > most {
                 return self.report(Diagnostic::error(
                     "E0604",
                     span,
-                    "`trials` must be a whole, positive number",
+                    format!("`trials` must be a whole number from 1 to {most:e}"),
                 ));
             }
             let trials = trials as u64;
@@ -280,12 +285,13 @@ impl Elaborator<'_> {
         let delta = self.error_of(arguments.values[1], delta, "delta")?;
         let epsilon = match (arguments.values[0], within) {
             (Some((epsilon, span)), None) => {
-                if epsilon <= 0.0 || (probability && epsilon >= 1.0) {
-                    return self.report(Diagnostic::error(
-                        "E0604",
-                        span,
-                        format!("`epsilon` is {epsilon}, but lies between 0 and 1"),
-                    ));
+                // A relative error has no scale.
+                if name == "gbas" && !(1e-4..=0.999).contains(&epsilon) {
+                    let said = format!("`epsilon` is {epsilon}, but lies between 0.0001 and 0.999");
+                    return self.report(Diagnostic::error("E0604", span, said));
+                }
+                if name != "gbas" {
+                    self.width((epsilon, span), kind, WIDEST)?;
                 }
                 epsilon
             }
@@ -359,6 +365,7 @@ impl Elaborator<'_> {
     pub(super) fn comparison_clauses(
         &mut self,
         clauses: &Clauses,
+        kind: &MeasureKind,
         dimension: Dimension,
         share: f64,
         locals: &Locals,
@@ -371,6 +378,10 @@ impl Elaborator<'_> {
             ));
         }
         let within = self.within(clauses, dimension, locals)?;
+        if let (Some(expr), Some(epsilon)) = (&clauses.within, within) {
+            // The difference ranges over twice as much.
+            self.width((epsilon, expr.span), kind, 2.0 * WIDEST)?;
+        }
         let delta = self.delta(clauses, locals)?.unwrap_or(DEFAULT_DELTA) * share;
         Ok((within, delta))
     }
@@ -379,11 +390,15 @@ impl Elaborator<'_> {
     pub(super) fn ranking(
         &mut self,
         clauses: &Clauses,
+        kind: &MeasureKind,
         dimension: Dimension,
         share: f64,
         locals: &Locals,
     ) -> Lowered<(f64, f64, Ranking)> {
         let within = self.within(clauses, dimension, locals)?;
+        if let (Some(expr), Some(loss)) = (&clauses.within, within) {
+            self.width((loss, expr.span), kind, 2.0 * WIDEST)?;
+        }
         let delta = self.delta(clauses, locals)?.unwrap_or(DEFAULT_DELTA) * share;
         let Some(method) = &clauses.by else {
             return Ok((within.unwrap_or(DEFAULT_LOSS), delta, Ranking::Betting));
@@ -396,7 +411,10 @@ impl Elaborator<'_> {
         };
         let arguments = self.arguments(method, ["epsilon", "delta"], locals)?;
         let delta = self.error_of(arguments.values[1], delta, "delta")?;
-        let epsilon = self.error_of(arguments.values[0], within.unwrap_or(DEFAULT_LOSS), "epsilon")?;
+        let epsilon = match arguments.values[0] {
+            Some(found) => self.width(found, kind, 2.0 * WIDEST)?,
+            None => within.unwrap_or(DEFAULT_LOSS),
+        };
         Ok((epsilon, delta, ranking))
     }
 }

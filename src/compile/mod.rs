@@ -5,6 +5,7 @@
 
 mod asks;
 mod behaviour;
+mod bounds;
 pub mod dimension;
 mod elaborator;
 mod files;
@@ -32,8 +33,10 @@ mod symbols;
 mod typed;
 mod ways;
 mod world;
+mod written;
 
 pub use files::{Files, Request, requests};
 pub use queries::{Input, compile};
 pub use settings::{Setting, SettingValue};
 pub use study::Study;
+pub use written::Written;

@@ -43,6 +43,8 @@ pub(super) struct Compiler<'a> {
     pub(super) sites: Vec<Site<'a>>,
     queries: Vec<Query>,
     next_index: usize,
+    /// The world of the values of `--set`, of a sweep the first.
+    base: usize,
     /// Times that ticks of continuous time must measure.
     measured: Vec<Decimal>,
 }
@@ -56,6 +58,7 @@ pub fn compile(input: &Input<'_>) -> (Option<Study>, Vec<Diagnostic>) {
             sites: Vec::new(),
             queries: Vec::new(),
             next_index: 0,
+            base: 0,
             measured: measured.clone(),
         };
         compiler.run();
@@ -109,9 +112,12 @@ impl<'a> Compiler<'a> {
             self.sites[plain].columns.clear();
         }
         self.check_properties(plain);
-        for point in &points {
+        for (number, point) in points.iter().enumerate() {
             self.next_index = 0;
             let base = self.site(point.clone());
+            if number == 0 {
+                self.base = base;
+            }
             for (number, file) in self.input.properties.iter().enumerate() {
                 self.file(file, number + 1, base, point, &swept);
             }
@@ -379,8 +385,9 @@ impl<'a> Compiler<'a> {
                     }
                 };
                 let share = family.map_or(1.0, |delta| delta / super::methods::DEFAULT_DELTA);
-                let (within, delta) =
-                    self.sites[base].elaborator.comparison_clauses(clauses, dimension, share, &locals)?;
+                let (within, delta) = self.sites[base]
+                    .elaborator
+                    .comparison_clauses(clauses, &a.kind, dimension, share, &locals)?;
                 let ask = Ask::Compare {
                     first: a,
                     second: b,
@@ -434,25 +441,30 @@ impl<'a> Compiler<'a> {
         if diagnostics.iter().any(|d| d.severity == Severity::Error) {
             return (None, diagnostics);
         }
+        let named = |at: usize| {
+            let names: Vec<&str> = self.sites[at].settings.keys().map(String::as_str).collect();
+            self.described(at, &self.sites[at].settings, &names)
+        };
+        let described: Vec<_> = (0..self.sites.len()).map(named).collect();
         let mut worlds = Vec::with_capacity(self.sites.len());
         let mut title = String::new();
-        for site in self.sites {
+        for (site, settings) in self.sites.into_iter().zip(described) {
             let Some(scenario) = site.scenario else { return (None, diagnostics) };
             title.clone_from(&scenario.title);
-            let settings =
-                site.settings.iter().map(|(name, number)| (name.clone(), number.value.to_string())).collect();
             let elaborator = site.elaborator;
+            let written = elaborator.written(self.input.scenario);
             worlds.push(World {
                 settings,
                 scenario: Arc::new(scenario),
                 atoms: elaborator.atoms,
+                written,
                 texts: elaborator.texts,
                 signals: elaborator.signals,
                 tree: elaborator.tree,
                 columns: site.columns,
             });
         }
-        (Some(Study { title, worlds, queries: self.queries }), diagnostics)
+        (Some(Study { title, worlds, base: self.base, queries: self.queries }), diagnostics)
     }
 }
 

@@ -2,6 +2,8 @@
 //!
 //! Everything but the times is a function of input, seed and version. Counts are those of consumed trials.
 
+pub use super::finding::{Finding, Spot};
+
 /// Everything one call has computed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Run {
@@ -13,6 +15,8 @@ pub struct Run {
     pub version: String,
     /// Results in the order of the queries; a swept query has one per setting.
     pub results: Vec<QueryResult>,
+    /// What the front end says of the inputs: warnings, and where nothing could run, errors.
+    pub diagnostics: Vec<Finding>,
     /// Warnings that belong to no query.
     pub warnings: Vec<String>,
     /// Whether it was interrupted; the results are what is known so far.
@@ -57,12 +61,12 @@ pub struct QueryResult {
     pub certifies: String,
     /// `the horizon of 30 s` where a formula has no bound of its own.
     pub within: Option<String>,
-    /// The estimate; `None` where there is none, infinite where it lies beyond the horizon. Of a `compare`
+    /// The estimate; `None` where there is none (nothing was sampled), infinite where it lies beyond the horizon. Of a `compare`
     /// the difference, of a `rank` the score of the choice.
     pub estimate: Option<f64>,
-    /// Lower end of the interval.
+    /// Lower end of the interval; of what is legal where nothing is known.
     pub low: f64,
-    /// Upper end of the interval; may be infinite.
+    /// Upper end of the interval, or of what is legal; may be infinite.
     pub high: f64,
     /// Unit of the three numbers before; empty for probabilities.
     pub unit: String,
@@ -215,6 +219,9 @@ pub enum Stop {
     Boundary,
     /// The interval, or the gap of a ranking, became as narrow as asked for.
     Width,
+    /// More trials of this kind would not help: how the unresolved ones are read decides the verdict, or keeps
+    /// the interval wide.
+    Unresolved,
     /// The number of trials was planned beforehand.
     Plan,
     /// The largest number of trials was reached.
@@ -233,6 +240,7 @@ impl Stop {
         match self {
             Self::Boundary => "boundary",
             Self::Width => "width",
+            Self::Unresolved => "unresolved",
             Self::Plan => "plan",
             Self::Cap => "cap",
             Self::Deadline => "deadline",
@@ -323,9 +331,10 @@ pub struct Side {
 /// The outcome of a `rank`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ranking {
-    /// The recommended option.
-    pub choice: String,
-    /// Certified: the choice is at most so much worse than the best. Infinite where nothing is certified.
+    /// The recommended option; `None` where nothing was sampled, or no trial is resolved.
+    pub choice: Option<String>,
+    /// Certified: the choice is at most so much worse than the best. All that there can be where nothing is known yet;
+    /// infinite where nothing is chosen.
     pub gap: f64,
     /// Whether other options carry the same certificate.
     pub tied: bool,

@@ -236,6 +236,23 @@ impl Procedure {
         matches!(self, Self::Test(test) if matches!(test.verdict(), Some(TestVerdict::Split(..))))
     }
 
+    /// Whether the interval is wider than was asked for, as that of both readings of unresolved trials can be.
+    pub(super) fn is_wide(&self, ask: &Ask) -> bool {
+        let Ask::Estimate { estimator, .. } = ask else { return false };
+        let epsilon = match *estimator {
+            Estimator::Default { epsilon, .. }
+            | Estimator::Massart { epsilon, .. }
+            | Estimator::Spending { epsilon, .. } => epsilon,
+            _ => return false,
+        };
+        let interval = match self {
+            Self::Probability(estimator) => estimator.interval(),
+            Self::Mean { mean, .. } => mean.interval(),
+            Self::Test(_) | Self::Quantile { .. } => return false,
+        };
+        interval.half_width() > epsilon * (1.0 + 1e-9)
+    }
+
     /// What the decision of a test certifies.
     pub(super) fn statement(&self) -> Option<Statement> {
         let decision = self.decision()?;
@@ -356,11 +373,8 @@ fn around(estimate: f64, interval: stats::Interval) -> Interval {
     Interval { estimate, low: interval.low, high: interval.high }
 }
 
-/// Share of successes; unresolved trials count half.
+/// Share of successes; unresolved trials count half. Of no trials it is not a number.
 pub(super) fn share(counts: super::outcome::Counts) -> f64 {
-    if counts.trials == 0 {
-        return 0.5;
-    }
     (counts.successes as f64 + 0.5 * counts.unresolved as f64) / counts.trials as f64
 }
 

@@ -256,15 +256,20 @@ impl<'s> Contest<'s> {
             if budget.must_stop() {
                 break halt();
             }
+            let mut wanted = round.items.len();
             if round.shares.iter().any(|share| share.to > budget.max_trials) {
-                break Stop::Cap;
+                if budget.max_trials == 0 || round.shares.iter().any(|share| share.from > 0) {
+                    break Stop::Cap;
+                }
+                // Few trials are better than none: the first of the first round, of all options alike.
+                wanted = round.items.iter().take_while(|item| item.index < budget.max_trials).count();
             }
             let consumed: u64 = tallies.iter().map(|t| t.counts.trials).sum();
             let left = budget.max_total.map_or(u64::MAX, |total| total.saturating_sub(consumed));
             if left == 0 {
                 break Stop::Cap;
             }
-            let wanted = round.items.len().min(usize::try_from(left).unwrap_or(usize::MAX));
+            wanted = wanted.min(usize::try_from(left).unwrap_or(usize::MAX));
             let rows = match self.ahead.take() {
                 Some(ahead) => ahead.cells,
                 None => executor.run(&self.job, &round.items[..wanted], budget)?,

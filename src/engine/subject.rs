@@ -125,12 +125,21 @@ impl Subject {
         }
     }
 
-    /// Number of the implications of a column that are watched.
-    pub(super) fn implications(&self, column: usize) -> Result<usize, Invalid> {
+    /// The implications of a column that are watched; of each, whether it is one of a quantifier that asks about
+    /// those who are there, so that nobody wrote it.
+    pub(super) fn implications(&self, column: usize) -> Result<Vec<bool>, Invalid> {
         if self.program.scenario.clock.is_jumps() {
-            return Ok(self.signal_monitor(column)?.implications());
+            return Ok(vec![false; self.signal_monitor(column)?.implications()]);
         }
-        Ok(self.monitor(column)?.antecedents().count())
+        let of_presence = |implication: NodeId| {
+            let Node::Or(parts) = &self.tree.nodes[implication.0 as usize] else { return false };
+            let Some(Node::Not(left)) = parts.first().map(|part| &self.tree.nodes[part.0 as usize]) else {
+                return false;
+            };
+            let Node::Atom(atom) = self.tree.nodes[left.0 as usize] else { return false };
+            self.texts.implied.contains(&atom.0)
+        };
+        Ok(self.monitor(column)?.antecedents().map(|one| of_presence(one.implication)).collect())
     }
 
     /// A monitor of a column in continuous time.

@@ -65,7 +65,7 @@ impl<'q> Survey<'q> {
         budget: &Budget,
     ) -> Result<Vec<Forecast>, Fault> {
         let width = executor.width(&self.job) as u64;
-        let size = width.min(round(&self.inquiries, 0, width, budget));
+        let size = width.min(round(&self.inquiries, 0, width, budget)).min(budget.max_trials);
         let rehearsal = Rehearsal::run(&self.job, Item::run(0, size), executor, budget)?;
         let seconds = rehearsal.seconds_per_trial(self.job.subject.most_steps());
         let forecast = |inquiry: &Inquiry<'_>| {
@@ -98,6 +98,9 @@ impl<'q> Survey<'q> {
         let started = budget.elapsed();
         let mut next = 0u64;
         let mut items = Vec::new();
+        if budget.max_trials == 0 {
+            self.inquiries.iter_mut().for_each(|inquiry| inquiry.stop = Some(Stop::Cap));
+        }
         while self.inquiries.iter().any(|i| i.stop.is_none()) {
             if budget.must_stop() {
                 close(&mut self.inquiries, budget);
@@ -180,6 +183,10 @@ impl Inquiry<'_> {
         match &self.procedure {
             procedure if procedure.is_capped() => Stop::Cap,
             procedure if procedure.is_planned() => Stop::Plan,
+            procedure if procedure.split() => Stop::Unresolved,
+            procedure if self.tally.counts.unresolved > 0 && procedure.is_wide(&self.query.ask) => {
+                Stop::Unresolved
+            }
             Procedure::Test(_) | Procedure::Mean { threshold: Some(_), .. } => Stop::Boundary,
             _ => Stop::Width,
         }

@@ -104,9 +104,29 @@ fn closing(text: &str) -> Option<usize> {
     None
 }
 
-/// A share as a percentage.
-pub(super) fn percent(share: f64) -> String {
-    format!("{} %", number(100.0 * share))
+/// A probability of error in three digits, rounded upward.
+pub(super) fn error(error: f64) -> String {
+    number(at_most(error))
+}
+
+/// The level that an error leaves, as a percentage, rounded downward: never more than is true.
+pub(super) fn level(error: f64) -> String {
+    let error = 100.0 * at_most(error);
+    if !(error > 0.0 && error < 100.0) {
+        return format!("{} %", number(100.0 - error));
+    }
+    // As many places as the three digits of the error have.
+    let (mut places, mut scale) = (0usize, 1.0);
+    while places < 15 && (error * scale - (error * scale).round()).abs() > 1e-9 * error * scale {
+        places += 1;
+        scale *= 10.0;
+    }
+    format!("{:.places$} %", 100.0 - error)
+}
+
+/// Of a condition; "holds" and "fails" are said of what was asked.
+pub(super) const fn truth(value: bool) -> &'static str {
+    if value { "is true" } else { "is false" }
 }
 
 /// What a test certifies.
@@ -118,7 +138,7 @@ pub(super) fn statement(subject: &str, statement: &Statement, unit: &str) -> Str
             format!("{} < {subject} < {}", quantity(low, unit), quantity(high, unit))
         }
     };
-    format!("{claim}, error at most {}", number(statement.error))
+    format!("{claim}, error at most {}", self::error(statement.error))
 }
 
 /// Kind and level of an interval.
@@ -128,7 +148,7 @@ pub(super) fn interval(coverage: Coverage, error: f64) -> String {
         Coverage::Sequential => "sequential",
         Coverage::TimeUniform => "time-uniform",
     };
-    format!("{kind}, {}", percent(1.0 - error))
+    format!("{kind}, {}", level(error))
 }
 
 #[cfg(test)]
@@ -160,7 +180,11 @@ mod tests {
     fn numbers_have_no_noise() {
         assert_eq!(number(0.1 + 0.2), "0.3");
         assert_eq!(number(1e-6), "0.000001");
-        assert_eq!(percent(1.0 - 0.05), "95 %");
+        assert_eq!(
+            [0.05, 0.01, 0.05 / 3.0, 0.005, 1e-9].map(level),
+            ["95 %", "99 %", "98.33 %", "99.5 %", "99.9999999 %"]
+        );
+        assert_eq!([0.05, 0.05 / 3.0, 1.0 / 3.0].map(error), ["0.05", "0.0167", "0.334"]);
         let said = statement("P(safe)", &Statement { claim: Claim::Above(0.48), error: 0.01 }, "");
         assert_eq!(said, "P(safe) > 0.48, error at most 0.01");
     }

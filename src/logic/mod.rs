@@ -2,6 +2,7 @@
 //!
 //! The logic reads truth values and numbers of each state by index; it knows nothing of people.
 
+mod critical;
 pub mod explain;
 pub mod flat;
 pub mod formula;
@@ -13,6 +14,7 @@ mod reach;
 pub mod signal;
 mod source;
 
+pub use critical::{Critical, critical};
 pub use explain::{Explanation, Reason, explain};
 pub use flat::{Flat, Present, Sort};
 pub use formula::{

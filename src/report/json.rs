@@ -5,8 +5,8 @@
 //! but `elapsed_s` is a function of input, seed and version.
 
 use crate::engine::outcome::{
-    Comparison, Counts, Distribution, Failure, Interval, Method, QueryResult, Ranking, Rare, Run, Shows,
-    Side, Witness,
+    Comparison, Counts, Distribution, Failure, Finding, Interval, Method, QueryResult, Ranking, Rare, Run,
+    Shows, Side, Witness,
 };
 use serde_json::{Map, Value, json};
 
@@ -23,6 +23,7 @@ pub fn object(run: &Run) -> Value {
         "seed": run.seed,
         "version": run.version,
         "results": run.results.iter().map(result).collect::<Vec<_>>(),
+        "diagnostics": run.diagnostics.iter().map(finding).collect::<Vec<_>>(),
         "warnings": run.warnings,
         "interrupted": run.interrupted,
         "error": Value::Null,
@@ -37,6 +38,21 @@ pub fn object(run: &Run) -> Value {
         object["error"] = json!({ "bug": bug, "message": message });
     }
     object
+}
+
+fn finding(finding: &Finding) -> Value {
+    let spot = finding.spot.as_ref();
+    json!({
+        "code": finding.code,
+        "severity": if finding.error { "error" } else { "warning" },
+        "file": spot.map(|spot| &spot.file),
+        "line": spot.map(|spot| spot.start.0),
+        "column": spot.map(|spot| spot.start.1),
+        "end": spot.map(|spot| json!({ "line": spot.end.0, "column": spot.end.1 })),
+        "message": finding.message,
+        "label": finding.label,
+        "hint": finding.hint,
+    })
 }
 
 fn result(result: &QueryResult) -> Value {

@@ -175,11 +175,11 @@ fn without_people_every_step_and_every_jump_is_a_row() {
         match full {
             Some((time, _)) => {
                 assert!((time - decided).abs() < 1e-9);
-                assert_eq!(witness["what"], "`queue.n == 5` holds");
+                assert_eq!(witness["what"], "`queue.n == 5` is true");
             }
             None => {
                 assert_eq!(decided, 10.0);
-                assert_eq!(witness["what"], "`queue.n == 5` fails");
+                assert_eq!(witness["what"], "`queue.n == 5` is false");
             }
         }
     }
@@ -199,6 +199,81 @@ fn people_who_come_in_have_rows_while_they_are_there_and_states_have_columns() {
     assert!((1..61).contains(&first.len()) && of("doors[30]").is_empty());
     assert!(first[0]["time"].as_f64().unwrap() > 0.0 && first.iter().all(|row| row["present"] == true));
     assert!(rows.iter().all(|row| row.get("heedful").is_none()), "a behaviour without states has no column");
+}
+
+#[test]
+fn show_prints_conditions_and_processes_as_written() {
+    let place = Place::new(&[
+        ("robot.scn", include_str!("../../models/robot.scn")),
+        ("queue.scn", include_str!("../../models/queue.scn")),
+        ("robot.bltl", include_str!("../../properties/robot.bltl")),
+    ]);
+    let said = place.call(&["show", "robot.scn", "robot.bltl"]).out;
+    for line in [
+        "  param outage = 0.004 in 0 .. 1\n",
+        "  let drop = if(robot in glare, 3 * outage, outage)\n",
+        "  when !works -> 1/75: works = true | 74/75: { }\n",
+        "      with wary(1.5 m) (its gap)\n",
+        "        walking: when distance(self, robot) < gap -> 0.7: waiting | 0.3: passing\n",
+        "        seeing: when !sensor.works -> blind\n",
+    ] {
+        assert!(said.contains(line), "{line}\n{said}");
+    }
+    assert!(!said.contains("its condition"), "{said}");
+    // A comparison looks at other worlds too; what is shown is the one that was called for.
+    assert!(!said.contains("set outage"), "{said}");
+    let said = place.call(&["show", "robot.scn", "--set", "outage=0.5"]).out;
+    assert!(said.contains("  set outage = 0.5\n"), "{said}");
+    let said = place.call(&["show", "queue.scn"]).out;
+    assert!(
+        said.contains("Process queue\n  var n: 0 .. 5 = 0\n  when n < 5 at lambda -> n = n + 1\n"),
+        "{said}"
+    );
+    assert!(!said.contains("People"), "{said}");
+}
+
+const DOOR: &str = "horizon = 12 s
+step = 0.05 s
+scene { region hall: rect (0, 0) .. (5, 5) }
+kind adult: sfm preset helbing2000 { noise = 0.05 m/s }
+agent me: adult { at = (9, 2)  route = (20, 2) }
+source door: adult { at = uniform in hall  every = exponential(5 s)  route = (20, 2) }
+";
+
+#[test]
+fn witnesses_name_only_who_is_there() {
+    let properties = "\
+property all = forall a in door: F<=10 s (distance(a, me) < 1 m)
+property space = G<=12 s (forall a in door: distance(a, me) > 5 m)
+property some = F<=12 s (exists a in door: travelled(a) > 2 m)
+property late = F<=4 s (forall a in door: F<=8 s (travelled(a) > 2 m))
+estimate P(all) by fixed(trials = 12)
+estimate P(space) by fixed(trials = 12)
+estimate P(some) by fixed(trials = 12)
+estimate P(late) by fixed(trials = 12)
+";
+    let place = Place::new(&[("a.scn", DOOR), ("a.bltl", properties)]);
+    let json = place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "json"]).json();
+    let mut named = 0;
+    for result in json["results"].as_array().unwrap() {
+        for witness in result["witnesses"].as_array().unwrap() {
+            let what = witness["what"].as_str().unwrap();
+            let trial = witness["trial"].to_string();
+            let rows = place.call(&["simulate", "a.scn", "--trial", &trial]).out;
+            for k in 1..40 {
+                let name = format!("door[{k}]");
+                if what.contains(&name) {
+                    named += 1;
+                    assert!(rows.contains(&name), "{what} in trial {trial}");
+                }
+            }
+            assert!(!what.contains(" holds") && !what.contains(" fails"), "{what}");
+        }
+    }
+    assert!(named > 0);
+    assert_eq!(json["results"][0]["witnesses"][0]["what"], "none of those it asks about is there");
+    let warnings = json["results"][0]["warnings"].to_string();
+    assert!(warnings.contains("nobody was there") && !warnings.contains("implications"), "{warnings}");
 }
 
 #[test]

@@ -31,12 +31,13 @@ impl Answers<'_> {
         let counts = found.plain.counts;
         result.replay = self.replay(query, "--max-trials", counts.trials + found.paths);
         self.tell(&mut result, subject, &found.plain, column);
+        self.lament_one(&mut result, subject, &found.plain, column);
         let name = words::measured(&query.text, 'P');
         // The only statement that holds without a condition is that of the plain trials.
         result.certifies = format!(
             "{name} <= {}, error at most {} (from the plain trials alone)",
             words::number(words::at_most(found.bound)),
-            words::number(rule.delta)
+            words::error(rule.delta)
         );
         if counts.trials == 0 {
             result.certifies = String::new();
@@ -75,7 +76,7 @@ fn state(result: &mut QueryResult, found: &Found, delta: f64) {
             result.low = spread.low;
             result.high = spread.high;
             result.interval =
-                format!("asymptotic, {}, {} runs: not certified", words::percent(1.0 - delta), spread.runs);
+                format!("asymptotic, {}, {} runs: not certified", words::level(delta), spread.runs);
             if spread.extinct > 0 {
                 result.warnings.push(format!(
                     "{} of {} runs never reached the event; with more replicas the estimate scatters less",

@@ -7,7 +7,7 @@ mod distribution;
 mod rank;
 mod sweep;
 
-pub(super) use block::{printed, trials};
+pub(super) use block::{moment, printed, trials};
 
 use super::number::{count, counted, duration};
 use super::palette::{Paint, Palette};

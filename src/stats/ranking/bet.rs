@@ -17,11 +17,24 @@ pub(super) fn bets() -> [f64; BETS] {
     bets
 }
 
+/// Logarithm of the number of bets: between the mean and the highest of them.
+const LN_BETS: f64 = 2.484_906_649_788_000_4;
+
+/// Terms so far below the highest change no bit of the sum: a dozen of them stay far below half a unit in its
+/// last place.
+const NOTHING: f64 = -45.0;
+
 /// The logarithm of the mean of exponentials.
 pub(super) fn log_mean(logs: &[f64; BETS]) -> f64 {
     let most = highest(logs);
-    let sum: f64 = logs.iter().map(|log| math::exp(log - most)).sum();
+    let counted = logs.iter().map(|log| log - most).filter(|log| *log > NOTHING);
+    let sum: f64 = counted.map(math::exp).sum();
     most + math::ln(sum / BETS as f64)
+}
+
+/// The smaller of the logarithm of the mean and of `least`.
+pub(super) fn log_mean_below(logs: &[f64; BETS], least: f64) -> f64 {
+    if highest(logs) - LN_BETS >= least { least } else { math::at_most(log_mean(logs), least) }
 }
 
 fn highest(logs: &[f64; BETS]) -> f64 {
@@ -35,8 +48,39 @@ pub(super) fn log_mean_near(logs: &[f64; BETS], threshold: f64) -> f64 {
     if most < threshold {
         return most;
     }
-    let least = most - math::ln(BETS as f64);
+    let least = most - LN_BETS;
     if least >= threshold { least } else { log_mean(logs) }
+}
+
+/// Whether the logarithm of the mean reaches a threshold. Bounds of the exponentials, `(1 - x/n)^n` and
+/// `(1 + x/n)^-n`, mostly decide; what they leave open is computed.
+pub(super) fn reaches(logs: &[f64; BETS], threshold: f64) -> bool {
+    let most = highest(logs);
+    if most < threshold {
+        return false;
+    }
+    if most - LN_BETS >= threshold {
+        return true;
+    }
+    let (mut low, mut high) = ([0.0; BETS], [0.0; BETS]);
+    for k in 0..BETS {
+        let part = (most - logs[k]) * (1.0 / 64.0);
+        let (mut below, mut above) = (math::at_least(1.0 - part, 0.0), 1.0 / (1.0 + part));
+        for _ in 0..6 {
+            below *= below;
+            above *= above;
+        }
+        (low[k], high[k]) = (below, above);
+    }
+    let wanted = BETS as f64 * math::exp(threshold - most);
+    // The rounding of all this stays below the slack.
+    if low.iter().sum::<f64>() > wanted * (1.0 + 1e-12) {
+        true
+    } else if high.iter().sum::<f64>() < wanted * (1.0 - 1e-12) {
+        false
+    } else {
+        log_mean(logs) >= threshold
+    }
 }
 
 /// Logarithms of the factors of one Boolean trial that the rival wins, ties or loses, for each bet.

@@ -45,8 +45,9 @@ Right:\n\
         code: "E0604",
         title: "wrong arguments of a procedure",
         text: "\
-An argument is unknown, missing, given twice or outside its range. Probabilities of error, widths and confidences lie\n\
-strictly between 0 and 1, numbers of trials are whole and positive.\n\
+An argument is unknown, missing, given twice or outside its range. Probabilities of error lie between 0 and 0.5 and\n\
+confidences between 50 % and 100 %: who errs as often as not says nothing. The half width of an interval is at most half of\n\
+what the measure ranges over, numbers of trials are whole and positive.\n\
 \n\
 Wrong:\n\
 \x20   estimate P(safe) within 0.01 confidence 95\n\
