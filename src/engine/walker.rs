@@ -12,7 +12,8 @@ use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::compile::study::Root;
 use crate::kernel::process::Walk;
 use crate::kernel::{Readings, State};
-use crate::logic::{Flat, Present, Sort};
+use crate::logic::flat::Present as Reads;
+use crate::logic::{Flat, Sort};
 
 /// Steps between two looks at the clock.
 const CLOCK_EVERY: u64 = 256;
@@ -31,15 +32,11 @@ struct Sorts {
     stop: u64,
 }
 
-/// What a trial came to at a step: its place in the block, its state, the columns that were open, and those of them
-/// that are decided now.
-#[derive(Clone, Copy, Debug, Default)]
-struct Event {
-    slot: u32,
-    state: u32,
-    open: u64,
-    fresh: u64,
-}
+/// The classes of states, to find quickly where something may be decided: some goal is reached, some column stops,
+/// and any.
+const GOAL: u8 = 1;
+const STOP: u8 = 2;
+const ANY: u8 = 4;
 
 /// Trials on a chain.
 pub(super) struct Walker {
@@ -47,20 +44,30 @@ pub(super) struct Walker {
     flats: Vec<Flat>,
     /// By state.
     sorts: Vec<Sorts>,
+    classes: Vec<u8>,
     walk: Option<(u64, Walk)>,
-    /// Of each trial on its way: its place in the block, and the columns that are open.
-    open: Vec<(u32, u64)>,
-    /// What happened at a step.
-    events: Vec<Event>,
+    /// The columns that are open, by place in the block.
+    open: Vec<u64>,
     rounds: u64,
     /// Steps made, of all trials; those too that lead nowhere and were left out.
     pub(super) steps: u64,
 }
 
+/// The present tick for the columns, bit k for the k-th of them.
+struct Present {
+    tick: u64,
+    /// The goal counts.
+    begun: u64,
+    /// Nothing counts after it.
+    over: u64,
+    /// To reach the goal makes it false.
+    negated: u64,
+}
+
 /// One lane of what was read.
 struct Lane<'r>(&'r Readings, usize);
 
-impl Present for Lane<'_> {
+impl Reads for Lane<'_> {
     fn atom(&self, atom: usize) -> bool {
         self.0.atoms.get(atom).is_some_and(|lanes| lanes.has(self.1))
     }
@@ -111,13 +118,16 @@ impl Walker {
         // A column that the first state decides needs no walk.
         let first = sorts[chain.initial() as usize];
         let waits = |(k, flat): (usize, &Flat)| flat.verdict(first.sort(k), 0).is_none();
+        let some = |bits: u64, class: u8| if bits == 0 { 0 } else { class };
+        let class = |sorts: &Sorts| ANY | some(sorts.goal, GOAL) | some(sorts.stop, STOP);
+        let classes = sorts.iter().map(class).collect();
         flats.iter().enumerate().all(waits).then(|| Self {
             columns: columns.to_vec(),
             flats,
             sorts,
+            classes,
             walk: None,
             open: Vec::new(),
-            events: Vec::new(),
             rounds: 0,
             steps: 0,
         })
@@ -139,8 +149,11 @@ impl Walker {
         chain.begin(walk, block.items.iter().map(|item| item.index));
         let all = STILL | (STILL - 1) >> (MOST_COLUMNS - self.columns.len());
         self.open.clear();
-        self.open.extend((0..block.items.len() as u32).map(|slot| (slot, all)));
-        self.events.resize(block.items.len(), Event::default());
+        self.open.resize(block.items.len(), all);
+        let columns = |is: &dyn Fn(&Flat) -> bool| {
+            self.flats.iter().enumerate().map(|(k, flat)| u64::from(is(flat)) << k).sum::<u64>()
+        };
+        let negated = columns(&Flat::is_negated);
         while !walk.is_empty() {
             if budget.is_interrupted() || (self.rounds.is_multiple_of(CLOCK_EVERY) && budget.is_over()) {
                 return;
@@ -148,33 +161,69 @@ impl Walker {
             self.rounds += 1;
             self.steps += walk.len() as u64;
             chain.step(walk);
-            let tick = walk.tick();
             // From here on it is the same tick for all.
-            let columns = |is: &dyn Fn(&Flat) -> bool| {
-                self.flats.iter().enumerate().map(|(k, flat)| u64::from(is(flat)) << k).sum::<u64>()
-            };
+            let tick = walk.tick();
             let (begun, over) = (columns(&|flat| flat.has_begun(tick)), columns(&|flat| flat.is_over(tick)));
-            let (open, events, sorts) = (&mut self.open[..], &mut self.events[..], &self.sorts[..]);
-            let (mut kept, mut happened) = (0, 0);
-            walk.retain(|place, state| {
-                let (slot, before) = open[place];
-                let sorts = sorts[state as usize];
-                let fresh = (sorts.goal & begun | sorts.stop | over) & before;
-                let left = before & !fresh;
-                open[kept] = (slot, left);
-                events[happened] = Event { slot, state, open: before, fresh };
-                happened += usize::from(fresh != 0);
-                // Some column is open, and the trial may leave its state.
-                let stays = left > STILL;
-                kept += usize::from(stays);
-                stays
-            });
-            for k in 0..happened {
-                let event = self.events[k];
-                self.steps += settle(&self.flats, self.sorts[event.state as usize], event, tick, block);
+            let present = Present { tick, begun, over, negated };
+            let watch = match (over, begun) {
+                (0, 0) => STOP,
+                (0, _) => STOP | GOAL,
+                _ => ANY,
+            };
+            for k in 0..walk.sift(&self.classes, watch) {
+                let (slot, state) = walk.sifted(k);
+                let place = slot as usize;
+                let row = &mut block.cells[place * self.flats.len()..][..self.flats.len()];
+                let (left, skipped) =
+                    present.settle(&self.flats, self.sorts[state as usize], self.open[place], row);
+                self.steps += skipped;
+                if left > STILL {
+                    self.open[place] = left;
+                    walk.put_back((slot, state), block.items[place].index);
+                } else {
+                    block.finished[place] = true;
+                }
             }
         }
     }
+}
+
+impl Present {
+    /// Fills the cells of the columns that a state decides. Which columns are open after it, and how many steps were
+    /// left out.
+    #[inline]
+    fn settle(&self, flats: &[Flat], sorts: Sorts, open: u64, row: &mut [Cell]) -> (u64, u64) {
+        let reached = sorts.goal & self.begun;
+        let fresh = (reached | sorts.stop | self.over) & open;
+        let left = open & !fresh;
+        for k in bits(fresh & !STILL) {
+            let reading = Reading::Truth((reached ^ self.negated) >> k & 1 == 1);
+            row[k] = Cell { reading, steps: self.tick, ..Cell::BLANK };
+        }
+        if left & STILL != 0 || left == 0 {
+            return (left, 0);
+        }
+        // A state that is never left decides the others at ticks that are known.
+        let mut last = self.tick;
+        for k in bits(left) {
+            let (flat, sort) = (&flats[k], sorts.sort(k));
+            let at = flat.settled(sort, self.tick);
+            let reading = Reading::Truth(flat.verdict(sort, at) == Some(true));
+            row[k] = Cell { reading, steps: at, ..Cell::BLANK };
+            last = last.max(at);
+        }
+        (0, last - self.tick)
+    }
+}
+
+/// The bits of a set, ascending.
+#[inline]
+fn bits(set: u64) -> impl Iterator<Item = usize> {
+    std::iter::successors((set != 0).then_some(set), |left| {
+        let left = left & (left - 1);
+        (left != 0).then_some(left)
+    })
+    .map(|left| left.trailing_zeros() as usize)
 }
 
 impl Sorts {
@@ -183,28 +232,6 @@ impl Sorts {
     fn sort(self, column: usize) -> Sort {
         Sort { hold: self.stop >> column & 1 == 0, goal: self.goal >> column & 1 == 1 }
     }
-}
-
-/// Fills the cells of the columns that are decided at a tick; how many steps were left out.
-#[inline]
-fn settle(flats: &[Flat], sorts: Sorts, event: Event, tick: u64, block: &mut Block<'_>) -> u64 {
-    let still = event.fresh & STILL != 0;
-    let decided = if still { event.open } else { event.fresh };
-    let mut last = tick;
-    let row = &mut block.cells[event.slot as usize * flats.len()..][..flats.len()];
-    for (k, (flat, cell)) in flats.iter().zip(row).enumerate() {
-        if decided >> k & 1 == 1 {
-            // A state that is never left decides at a tick that is known.
-            let at = if event.fresh >> k & 1 == 1 { tick } else { flat.settled(sorts.sort(k), tick) };
-            let truth = flat.verdict(sorts.sort(k), at) == Some(true);
-            *cell = Cell { reading: Reading::Truth(truth), steps: at, ..Cell::BLANK };
-            last = last.max(at);
-        }
-    }
-    if still || event.open & !event.fresh == STILL {
-        block.finished[event.slot as usize] = true;
-    }
-    last - tick
 }
 
 #[cfg(test)]

@@ -79,6 +79,11 @@ impl Flat {
         }
     }
 
+    /// Whether to reach the goal makes it false.
+    pub fn is_negated(&self) -> bool {
+        self.negated
+    }
+
     /// Whether the goal counts at the state with this number.
     pub fn has_begun(&self, at: u64) -> bool {
         at >= self.from

@@ -155,6 +155,9 @@ fn a_state_that_is_never_left_decides_at_its_tick() {
     assert_eq!(cells(&subject, &columns, 0, 300, Some(300)), general);
     let ticks = |column: usize| general.0.iter().skip(column).step_by(4).map(|cell| cell.steps).max();
     assert_eq!([0, 1, 2, 3].map(ticks), [Some(7), Some(9), Some(6), Some(9)]);
+    let mut plain = subject;
+    plain.program.processes = plain.program.processes.clone().at_baseline();
+    assert_eq!(cells(&plain, &columns, 0, 300, Some(300)), general);
 }
 
 #[test]

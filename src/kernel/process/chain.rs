@@ -4,16 +4,12 @@
 //! and state it is known where the branches end in (0, 1], and by how much each branch moves that number. All
 //! processes look at the old state and write variables of their own, so their moves add up. Numbers come from the
 //! same addresses as elsewhere, and pass the same ends: a walk visits the states that the general path visits.
-//!
-//! Many trials walk side by side, all at the same tick. Those that have ended are taken out and the others move
-//! up, so no lane is idle; and the numbers of all of them are drawn in one go, before anybody moves.
 
-use super::draws::{Draw, RoundKeys, round_keys};
 use super::keys::Keys;
 use super::{Form, Machine};
 use crate::base::lanes::{LANES, Lanes};
 use crate::model::{Domain, VariableId};
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::Level;
 use std::collections::BTreeSet;
 
 /// Most states, reachable or not.
@@ -25,43 +21,29 @@ const NEVER: f64 = 2.0;
 
 /// What a process does in each state.
 #[derive(Clone, Debug)]
-struct Steps {
+pub(super) struct Steps {
     /// The part of the counter that names the process.
-    word: u64,
+    pub(super) word: u64,
     /// Most branches in a state; each state has so many places.
-    most: usize,
+    pub(super) most: usize,
     /// Whether chance decides, by state.
-    open: Vec<bool>,
+    pub(super) open: Vec<bool>,
     /// Where each branch ends in (0, 1], state by state.
     ends: Vec<f64>,
-    /// What each branch adds to the number of the state.
-    moves: Vec<i32>,
+    /// The same ends but the last, where all states in which chance decides have them in common.
+    pub(super) common: Option<Vec<f64>>,
+    /// What each branch adds to the number of the state; without chance all do the same.
+    pub(super) moves: Vec<i32>,
 }
 
 /// Processes as one chain.
 #[derive(Clone, Debug)]
 pub struct Chain {
     keys: Keys,
-    steps: Vec<Steps>,
-    initial: u32,
+    pub(super) steps: Vec<Steps>,
+    pub(super) initial: u32,
     reachable: Vec<u32>,
-    level: Level,
-}
-
-/// Trials of a chain side by side, eight to a block. Places beyond the last trial walk on somewhere.
-#[derive(Clone, Debug)]
-pub struct Walk {
-    /// How many trials are left.
-    len: usize,
-    /// Steps made by each of them.
-    tick: u64,
-    /// Their indices.
-    trials: Vec<[u64; LANES]>,
-    states: Vec<[u32; LANES]>,
-    /// Room for the next states, and for one number of each trial.
-    next: Vec<[u32; LANES]>,
-    numbers: Vec<Lanes>,
-    keys: RoundKeys,
+    pub(super) level: Level,
 }
 
 impl Chain {
@@ -153,71 +135,6 @@ impl Chain {
         let state = state as usize;
         self.steps.iter().all(|steps| !steps.open[state] && steps.moves[state * steps.most] == 0)
     }
-
-    /// A walk without trials.
-    pub fn walk(&self, seed: u64) -> Walk {
-        Walk {
-            len: 0,
-            tick: 0,
-            trials: Vec::new(),
-            states: Vec::new(),
-            next: Vec::new(),
-            numbers: Vec::new(),
-            keys: round_keys(seed),
-        }
-    }
-
-    /// The trials with these indices begin; those of before are gone.
-    pub fn begin(&self, walk: &mut Walk, trials: impl ExactSizeIterator<Item = u64>) {
-        let blocks = trials.len().div_ceil(LANES);
-        (walk.len, walk.tick) = (trials.len(), 0);
-        walk.trials.resize(blocks, [0; LANES]);
-        walk.states.clear();
-        walk.states.resize(blocks, [self.initial; LANES]);
-        walk.next.resize(blocks, [self.initial; LANES]);
-        walk.numbers.resize(blocks, Lanes::ZERO);
-        for (place, trial) in walk.trials.as_flattened_mut().iter_mut().zip(trials) {
-            *place = trial;
-        }
-    }
-
-    /// One step of all trials.
-    #[inline]
-    pub fn step(&self, walk: &mut Walk) {
-        dispatch!(self.level, simd => advance(simd, self, walk));
-        walk.tick += 1;
-    }
-}
-
-impl Walk {
-    /// How many trials are left.
-    pub fn len(&self) -> usize {
-        self.len
-    }
-
-    /// Whether no trial is left.
-    pub fn is_empty(&self) -> bool {
-        self.len == 0
-    }
-
-    /// Steps made by each trial.
-    pub fn tick(&self) -> u64 {
-        self.tick
-    }
-
-    /// Shows the places and states of all trials, in order, and keeps those for which `stays`.
-    #[inline(always)]
-    pub fn retain(&mut self, mut stays: impl FnMut(usize, u32) -> bool) {
-        let (trials, states) = (self.trials.as_flattened_mut(), self.states.as_flattened_mut());
-        let mut kept = 0;
-        // Each is written to the next free place, and the place is kept or not: no jump depends on chance.
-        for place in 0..self.len {
-            let state = states[place];
-            (trials[kept], states[kept]) = (trials[place], state);
-            kept += usize::from(stays(place, state));
-        }
-        self.len = kept;
-    }
 }
 
 impl Steps {
@@ -226,6 +143,9 @@ impl Steps {
         let mut ends = vec![NEVER; found.len() * most];
         let mut moves = vec![0; found.len() * most];
         for (state, branches) in found.iter().enumerate() {
+            if let [(_, by)] = branches[..] {
+                moves[state * most..][..most].fill(by);
+            }
             for (k, &(end, by)) in branches.iter().enumerate() {
                 moves[state * most + k] = by;
                 // The last branch takes all that is left.
@@ -234,13 +154,33 @@ impl Steps {
                 }
             }
         }
-        let open = found.iter().map(|branches| branches.len() > 1).collect();
-        Self { word: u64::from(word), most, open, ends, moves }
+        let open: Vec<bool> = found.iter().map(|branches| branches.len() > 1).collect();
+        let mut chances = ends.chunks(most).zip(&open).filter(|(_, open)| **open).map(|(ends, _)| ends);
+        let first = chances.next().unwrap_or(&[NEVER]);
+        let common = chances.all(|ends| ends == first).then(|| first[..first.len() - 1].to_vec());
+        Self { word: u64::from(word), most, open, common, ends, moves }
+    }
+
+    /// Adds the moves of these branches.
+    #[inline(always)]
+    pub(super) fn take(&self, old: &[[u32; LANES]], next: &mut [[u32; LANES]], branches: &[[u64; LANES]]) {
+        for ((old, next), branches) in old.iter().zip(next).zip(branches) {
+            for lane in 0..LANES {
+                let place = old[lane] as usize * self.most + branches[lane] as usize;
+                next[lane] = next[lane].wrapping_add_signed(self.moves[place]);
+            }
+        }
     }
 
     /// Adds the moves that the numbers choose.
     #[inline(always)]
-    fn apply(&self, most: usize, old: &[[u32; LANES]], next: &mut [[u32; LANES]], numbers: &[Lanes]) {
+    pub(super) fn apply(
+        &self,
+        most: usize,
+        old: &[[u32; LANES]],
+        next: &mut [[u32; LANES]],
+        numbers: &[Lanes],
+    ) {
         for ((old, next), numbers) in old.iter().zip(next).zip(numbers) {
             for lane in 0..LANES {
                 let first = old[lane] as usize * most;
@@ -251,31 +191,4 @@ impl Steps {
             }
         }
     }
-}
-
-#[inline(always)]
-fn advance<S: Simd>(simd: S, chain: &Chain, walk: &mut Walk) {
-    let blocks = walk.len.div_ceil(LANES);
-    let Walk { len, tick, trials, states, next, numbers, keys } = walk;
-    let (old, next, numbers) = (&states[..blocks], &mut next[..blocks], &mut numbers[..blocks]);
-    next.copy_from_slice(old);
-    for steps in &chain.steps {
-        // Where no trial needs a number, none is drawn: numbers have addresses, none is used up.
-        if old.as_flattened()[..*len].iter().any(|&state| steps.open[state as usize]) {
-            let draw = Draw { number: *tick, word: steps.word, keys };
-            draw.uniform(simd, &trials[..blocks], numbers);
-            // Compiled for the common numbers of branches.
-            match steps.most {
-                2 => steps.apply(2, old, next, numbers),
-                3 => steps.apply(3, old, next, numbers),
-                4 => steps.apply(4, old, next, numbers),
-                most => steps.apply(most, old, next, numbers),
-            }
-        } else {
-            for (state, next) in old.as_flattened().iter().zip(next.as_flattened_mut()) {
-                *next = next.wrapping_add_signed(steps.moves[*state as usize * steps.most]);
-            }
-        }
-    }
-    std::mem::swap(states, &mut walk.next);
 }

@@ -9,6 +9,7 @@ use crate::base::random::{self, Purpose, Stream, TrialKey, philox};
 use crate::kernel::noise::unit_open;
 use crate::kernel::state::State;
 use crate::kernel::vector::{Doubles, Part, Words, ln, parts};
+use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
 
 const MULTIPLIER: [u64; 2] = [0xD251_1F53, 0xCD9E_8D57];
@@ -169,12 +170,36 @@ impl Draw<'_> {
         [part.word(self.number & LOW), part.word(self.word), trials & part.word(LOW), high]
     }
 
-    /// The first number of each trial. Blocks of trials do not wait for one another, so the machine works at many at once.
+    /// The first number of each trial. Blocks of trials do not wait for one another, so the machine works at many at
+    /// once.
     #[inline(always)]
     pub(super) fn uniform<S: Simd>(&self, simd: S, trials: &[[u64; LANES]], out: &mut [Lanes]) {
         for (trials, out) in trials.iter().zip(out) {
             for part in parts(simd) {
                 part.store(block(part, self.counter(part, trials), self.keys)[0], out);
+            }
+        }
+    }
+
+    /// How many of these ends, which ascend, the first number of each trial passes.
+    #[inline(always)]
+    pub(super) fn branch<S: Simd>(
+        &self,
+        simd: S,
+        trials: &[[u64; LANES]],
+        ends: &[f64],
+        out: &mut [[u64; LANES]],
+    ) {
+        for (trials, out) in trials.iter().zip(out) {
+            for part in parts(simd) {
+                let number = block(part, self.counter(part, trials), self.keys)[0];
+                let mut branch = part.word(0);
+                for &end in ends {
+                    // The bits of the smallest double are those of 1; nothing is computed with it.
+                    let passed = number.simd_ge(part.c(end)).select(part.c(f64::from_bits(1)), part.c(0.0));
+                    branch = branch + passed.to_bits();
+                }
+                part.put_words(branch, out);
             }
         }
     }

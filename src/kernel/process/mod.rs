@@ -18,13 +18,15 @@ mod rates;
 mod table;
 mod timed;
 mod view;
+mod walk;
 
-pub use chain::{Chain, Walk};
+pub use chain::Chain;
 pub use clocks::Clocks;
 pub use embedded::{Embedded, Leaps, Stay};
 pub use fault::Fault;
 use fault::Faults;
 pub use view::{Sight, View};
+pub use walk::Walk;
 
 use super::code::{Code, Readings};
 use super::state::{Layout, State};
