@@ -229,7 +229,7 @@ fn show_prints_conditions_and_processes_as_written() {
         said.contains("Process queue\n  var n: 0 .. 5 = 0\n  when n < 5 at lambda -> n = n + 1\n"),
         "{said}"
     );
-    assert!(!said.contains("People"), "{said}");
+    assert!(!said.contains("People:"), "{said}");
 }
 
 const DOOR: &str = "horizon = 12 s
