@@ -204,14 +204,14 @@ fn move_on<S: Simd>(simd: S, program: &Program, state: &mut State, scratch: &mut
             kick(part, state, block, moving);
         }
     }
-    mover.contact(state, scratch);
+    mover.contact(simd, state, scratch);
     for (block, &moving) in scratch.moving.iter().enumerate() {
         let words = mover.words(state, block);
         for part in parts(simd) {
             mover.drift_and_drive(part, state, block, (moving, scratch.moved[block]), &words);
         }
     }
-    mover.contact(state, scratch);
+    mover.contact(simd, state, scratch);
     for (block, &moving) in scratch.moving.iter().enumerate() {
         let start = (&scratch.seen_x[block], &scratch.seen_y[block]);
         for part in parts(simd) {
@@ -291,10 +291,15 @@ impl Mover<'_> {
         part.store_in(here, vy, &mut state.vy[block]);
     }
 
-    fn contact(&self, state: &mut State, scratch: &mut Scratch) {
-        scratch.moved.clear();
-        scratch.moved.resize(state.x.len(), Mask::NONE);
-        scratch.contacts.advance(self.program, state, &mut scratch.moved, self.half);
+    #[inline(always)]
+    fn contact<S: Simd>(&self, simd: S, state: &mut State, scratch: &mut Scratch) {
+        let Scratch { contacts, moved, .. } = scratch;
+        moved.clear();
+        moved.resize(state.x.len(), Mask::NONE);
+        simd.vectorize(
+            #[inline(always)]
+            || contacts.advance(simd, self.program, state, moved, self.half),
+        );
     }
 
     #[inline(always)]

@@ -127,7 +127,7 @@ impl Lanewise {
         }
         sums.clear();
         sums.resize(state.agents, Sum::default());
-        contacts.clear(state.agents);
+        contacts.clear();
         let all = forces.shared.unwrap_or((1.0, 1.0));
         // A function each: four loops in one would share its registers badly.
         match (forces.shared.is_some(), forces.second) {

@@ -77,7 +77,7 @@ impl Cells {
         let forces = &program.forces;
         sums.clear();
         sums.resize(state.x.len(), Sum::default());
-        contacts.clear(state.agents);
+        contacts.clear();
         if !state.occupied.has(0) {
             return;
         }
