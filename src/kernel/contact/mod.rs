@@ -14,6 +14,7 @@
 //! depends on that lane alone.
 
 mod flow;
+mod overlap;
 mod throng;
 
 use super::program::Program;
@@ -21,7 +22,7 @@ use super::state::{Slot, State};
 use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Lanes, Mask};
 use fearless_simd::Simd;
-use flow::Flow;
+use flow::flow;
 use throng::Throng;
 
 /// Candidates of contact of each lane, and room to work.
@@ -31,7 +32,6 @@ pub(super) struct Contacts {
     /// The same, gathered; up to date in these lanes.
     throngs: [Throng; LANES],
     gathered: Mask,
-    flow: Flow,
 }
 
 /// Who may touch what within a step, in one lane.
@@ -103,7 +103,7 @@ impl Contacts {
                 self.gathered |= Mask::lane(lane);
             }
             if throng.heat(program, state, h) {
-                self.flow.run(simd, program, throng, h);
+                flow(simd, program, throng, h);
                 throng.hand_back(state, moved);
             }
         }

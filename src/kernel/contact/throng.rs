@@ -3,8 +3,9 @@
 //! Gathered once a step. Bodies that hang together by candidates form a cluster (union-find, the smaller
 //! index the root). The pairs stand in *turns*: the turn of a pair comes after those of all earlier pairs of
 //! either body, and pairs of one turn share no body. So each body meets its neighbours in their order
-//! whatever stands between, and the processor works on many pairs at a time.
+//! whatever stands between, and the processor works on several pairs at a time.
 
+use super::overlap::{Touch, Touches};
 use super::{Candidates, at, within_reach, within_reach_of_surface};
 use crate::base::geometry::Vec2;
 use crate::base::lanes::Mask;
@@ -21,7 +22,13 @@ struct Body {
     radius: f64,
     k1: f64,
     k2: f64,
+    /// One over the mass, 1/kg.
+    inverse: f64,
+    /// In the end, the root of its cluster.
+    parent: u32,
     cluster: u32,
+    /// Next free turn.
+    turn: u32,
 }
 
 /// How a body moves.
@@ -30,31 +37,6 @@ pub(super) struct Motion {
     pub(super) v: Vec2,
     /// One over the mass, 1/kg.
     pub(super) inverse: f64,
-}
-
-/// Two bodies that may touch.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Pair {
-    pub(super) a: u32,
-    pub(super) b: u32,
-    cluster: u32,
-    turn: u32,
-    /// Distance at which they touch, m.
-    pub(super) touch: f64,
-    pub(super) k1: f64,
-    pub(super) k2: f64,
-    /// Sum of the inverse masses, 1/kg.
-    pub(super) inverse: f64,
-}
-
-/// A body that may touch a surface.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct AtWall {
-    pub(super) body: u32,
-    pub(super) surface: u32,
-    pub(super) radius: f64,
-    pub(super) k1: f64,
-    pub(super) k2: f64,
 }
 
 /// Bodies that hang together.
@@ -71,21 +53,21 @@ struct Cluster {
 pub(super) struct Throng {
     bodies: Vec<Body>,
     clusters: Vec<Cluster>,
-    pairs: Vec<Pair>,
-    walls: Vec<AtWall>,
+    /// The pairs in the order of candidates, each with its turn.
+    pairs: Vec<(u32, Touch)>,
+    walls: Vec<Touch>,
+    /// Where the pairs of each turn start.
+    starts: Vec<u32>,
     /// Place of each body, m.
     pub(super) x: Vec<Vec2>,
     pub(super) motions: Vec<Motion>,
-    /// The pairs of hot clusters, in turns, and their bodies at walls.
-    pub(super) hot_pairs: Vec<Pair>,
-    pub(super) hot_walls: Vec<AtWall>,
+    /// Pairs of hot clusters, in turns, and bodies of hot clusters at walls; perhaps others too.
+    pub(super) hot_pairs: Touches,
+    pub(super) hot_walls: Touches,
+    /// How many clusters those are from.
+    listed: usize,
     /// Index of each agent's body.
     index: Vec<u32>,
-    parent: Vec<u32>,
-    /// Next free turn of each body.
-    next: Vec<u32>,
-    listed: Vec<Pair>,
-    starts: Vec<u32>,
 }
 
 impl Throng {
@@ -98,10 +80,7 @@ impl Throng {
         lane: usize,
     ) {
         self.bodies.clear();
-        self.motions.clear();
-        self.parent.clear();
-        self.next.clear();
-        self.listed.clear();
+        self.pairs.clear();
         self.walls.clear();
         self.index.resize(state.agents, NOBODY);
         for &(i, j) in &candidates.pairs {
@@ -113,6 +92,7 @@ impl Throng {
         }
         for &(i, j) in &candidates.pairs {
             let (Some(a), Some(b)) = (self.body(state, i, lane), self.body(state, j, lane)) else { continue };
+            self.unite(a, b);
             let (one, other) = (&self.bodies[a as usize], &self.bodies[b as usize]);
             // The constants of a pair are the means of the two bodies'. Two bodies of several persons do
             // not compress each other and have their own friction constant.
@@ -120,29 +100,32 @@ impl Throng {
                 Some(friction) => (0.0, friction),
                 None => (0.5 * (one.k1 + other.k1), 0.5 * (one.k2 + other.k2)),
             };
-            let touch = one.radius + other.radius;
-            let inverse = self.motions[a as usize].inverse + self.motions[b as usize].inverse;
-            let turn = self.next[a as usize].max(self.next[b as usize]);
-            self.next[a as usize] = turn + 1;
-            self.next[b as usize] = turn + 1;
-            self.listed.push(Pair { a, b, cluster: 0, turn, touch, k1, k2, inverse });
-            self.unite(a, b);
+            let (distance, inverse) = (one.radius + other.radius, one.inverse + other.inverse);
+            let turn = one.turn.max(other.turn);
+            self.bodies[a as usize].turn = turn + 1;
+            self.bodies[b as usize].turn = turn + 1;
+            self.pairs.push((turn, Touch { a, b, cluster: 0, distance, k1, k2, inverse }));
         }
         for &(i, surface) in &candidates.walls {
-            let Some(body) = self.body(state, i, lane) else { continue };
-            let Body { radius, k1, k2, .. } = self.bodies[body as usize];
-            self.walls.push(AtWall { body, surface, radius, k1, k2 });
+            let Some(a) = self.body(state, i, lane) else { continue };
+            let Body { radius: distance, k1, k2, inverse, .. } = self.bodies[a as usize];
+            self.walls.push(Touch { a, b: surface, cluster: 0, distance, k1, k2, inverse });
         }
         self.find_clusters();
-        self.take_turns();
+        self.listed = 0;
     }
 
     /// Index of an agent's body; `None` if it is absent.
+    #[inline(always)]
     fn body(&mut self, state: &State, agent: u32, lane: usize) -> Option<u32> {
         let known = self.index[agent as usize];
         if known != NOBODY {
             return Some(known);
         }
+        self.enter(state, agent, lane)
+    }
+
+    fn enter(&mut self, state: &State, agent: u32, lane: usize) -> Option<u32> {
         let slot = state.slot(agent as usize, lane);
         if !state.present[slot.block].has(slot.lane) {
             return None;
@@ -154,76 +137,52 @@ impl Throng {
             radius: state.radius[slot.block].0[slot.lane],
             k1: state.k1[slot.block].0[slot.lane],
             k2: state.k2[slot.block].0[slot.lane],
+            inverse: 1.0 / state.mass[slot.block].0[slot.lane],
+            parent: index,
             cluster: 0,
+            turn: 0,
         });
-        let inverse = 1.0 / state.mass[slot.block].0[slot.lane];
-        self.motions.push(Motion { v: Vec2::zeros(), inverse });
-        self.parent.push(index);
-        self.next.push(0);
         Some(index)
     }
 
+    #[inline(always)]
     fn unite(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.parent[a.max(b) as usize] = a.min(b);
+        if self.bodies[a as usize].parent != self.bodies[b as usize].parent {
+            let (a, b) = (self.root(a), self.root(b));
+            self.bodies[a.max(b) as usize].parent = a.min(b);
+        }
     }
 
     fn root(&mut self, body: u32) -> u32 {
-        let mut root = body;
-        while self.parent[root as usize] != root {
-            let above = self.parent[self.parent[root as usize] as usize];
-            self.parent[root as usize] = above;
-            root = above;
+        let mut body = body;
+        loop {
+            let parent = self.bodies[body as usize].parent;
+            if parent == body {
+                return body;
+            }
+            let above = self.bodies[parent as usize].parent;
+            self.bodies[body as usize].parent = above;
+            body = above;
         }
-        root
     }
 
     /// Numbers the clusters, and finds how stiff each is.
     fn find_clusters(&mut self) {
         self.clusters.clear();
-        for body in 0..self.bodies.len() {
-            let root = self.root(body as u32) as usize;
-            self.bodies[body].cluster = if root == body {
+        for index in 0..self.bodies.len() {
+            let parent = self.bodies[index].parent as usize;
+            self.bodies[index].cluster = if parent == index {
                 self.clusters.push(Cluster { hot: false, stiffest: 0.0 });
                 self.clusters.len() as u32 - 1
             } else {
-                // The root came before.
-                self.bodies[root].cluster
+                // Whoever is above came before.
+                self.bodies[parent].cluster
             };
         }
-        let mut stiffen = |cluster: u32, by: f64| {
-            let stiffest = &mut self.clusters[cluster as usize].stiffest;
-            *stiffest = math::at_least(by, *stiffest);
-        };
-        for pair in &mut self.listed {
-            pair.cluster = self.bodies[pair.a as usize].cluster;
-            stiffen(pair.cluster, pair.k1 * pair.inverse);
-        }
-        for wall in &self.walls {
-            let body = wall.body as usize;
-            stiffen(self.bodies[body].cluster, wall.k1 * self.motions[body].inverse);
-        }
-    }
-
-    /// Puts the pairs in turns: a counting sort.
-    fn take_turns(&mut self) {
-        self.starts.clear();
-        for pair in &self.listed {
-            let turn = pair.turn as usize;
-            if turn >= self.starts.len() {
-                self.starts.resize(turn + 1, 0);
-            }
-            self.starts[turn] += 1;
-        }
-        let mut total = 0;
-        for start in &mut self.starts {
-            (*start, total) = (total, total + *start);
-        }
-        self.pairs.resize(self.listed.len(), Pair::default());
-        for pair in &self.listed {
-            let next = &mut self.starts[pair.turn as usize];
-            self.pairs[*next as usize] = *pair;
-            *next += 1;
+        for touch in self.pairs.iter_mut().map(|(_, touch)| touch).chain(&mut self.walls) {
+            touch.cluster = self.bodies[touch.a as usize].cluster;
+            let stiffest = &mut self.clusters[touch.cluster as usize].stiffest;
+            *stiffest = math::at_least(touch.k1 * touch.inverse, *stiffest);
         }
     }
 
@@ -231,38 +190,67 @@ impl Throng {
     /// within `h` seconds. False if there is none.
     pub(super) fn heat(&mut self, program: &Program, state: &State, h: f64) -> bool {
         self.x.clear();
-        for (body, motion) in self.bodies.iter().zip(&mut self.motions) {
+        self.motions.clear();
+        for body in &self.bodies {
             self.x.push(at(&state.x, &state.y, body.slot));
-            motion.v = at(&state.vx, &state.vy, body.slot);
+            self.motions.push(Motion { v: at(&state.vx, &state.vy, body.slot), inverse: body.inverse });
         }
         for cluster in &mut self.clusters {
             cluster.hot = false;
         }
         let (x, motions) = (&self.x, &self.motions);
         let moving = |body: u32| (x[body as usize], motions[body as usize].v);
-        let mut any = false;
-        for pair in &self.pairs {
-            let hot = &mut self.clusters[pair.cluster as usize].hot;
-            if !*hot && within_reach(pair.touch, moving(pair.a), moving(pair.b), h) {
-                (*hot, any) = (true, true);
+        let mut cold = self.clusters.len();
+        for (_, touch) in &self.pairs {
+            if cold == 0 {
+                break;
+            }
+            let hot = &mut self.clusters[touch.cluster as usize].hot;
+            if !*hot && within_reach(touch.distance, moving(touch.a), moving(touch.b), h) {
+                *hot = true;
+                cold -= 1;
             }
         }
-        for wall in &self.walls {
-            let hot = &mut self.clusters[self.bodies[wall.body as usize].cluster as usize].hot;
-            if !*hot && within_reach_of_surface(program, wall.surface, wall.radius, moving(wall.body), h) {
-                (*hot, any) = (true, true);
+        for touch in &self.walls {
+            let hot = &mut self.clusters[touch.cluster as usize].hot;
+            if !*hot && within_reach_of_surface(program, touch.b, touch.distance, moving(touch.a), h) {
+                *hot = true;
+                cold -= 1;
             }
         }
-        if any {
-            let (bodies, clusters) = (&self.bodies, &self.clusters);
-            let is_hot = |cluster: u32| clusters[cluster as usize].hot;
-            self.hot_pairs.clear();
-            self.hot_pairs.extend(self.pairs.iter().filter(|pair| is_hot(pair.cluster)));
-            self.hot_walls.clear();
-            let at_hot = |wall: &&AtWall| is_hot(bodies[wall.body as usize].cluster);
-            self.hot_walls.extend(self.walls.iter().filter(at_hot));
+        let hot = self.clusters.len() - cold;
+        if hot > 0 && !(hot == self.listed && cold == 0) {
+            self.list_hot();
+            self.listed = hot;
         }
-        any
+        hot > 0
+    }
+
+    /// Puts the pairs of hot clusters in turns: a counting sort.
+    fn list_hot(&mut self) {
+        self.starts.clear();
+        let clusters = &self.clusters;
+        let is_hot = |touch: &Touch| clusters[touch.cluster as usize].hot;
+        for (turn, _) in self.pairs.iter().filter(|(_, touch)| is_hot(touch)) {
+            if *turn as usize >= self.starts.len() {
+                self.starts.resize(*turn as usize + 1, 0);
+            }
+            self.starts[*turn as usize] += 1;
+        }
+        let mut total = 0;
+        for start in &mut self.starts {
+            (*start, total) = (total, total + *start);
+        }
+        self.hot_pairs.reset(total as usize);
+        for (turn, touch) in self.pairs.iter().filter(|(_, touch)| is_hot(touch)) {
+            let next = &mut self.starts[*turn as usize];
+            self.hot_pairs.set(*next as usize, touch);
+            *next += 1;
+        }
+        self.hot_walls.reset(self.walls.iter().filter(|touch| is_hot(touch)).count());
+        for (k, touch) in self.walls.iter().filter(|touch| is_hot(touch)).enumerate() {
+            self.hot_walls.set(k, touch);
+        }
     }
 
     /// Largest k1 over mass of the hot clusters, 1/s^2.
