@@ -287,7 +287,8 @@ mod tests {
     #[test]
     fn exponentials_equal_the_scalar_ones_to_the_last_bit() {
         let odd = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -0.0, -708.0, -708.5, 709.0, 709.5];
-        let many = (0..5_000).map(|k| std::array::from_fn(|l| (f64::from(8 * k) + l as f64 - 20_000.0) / 27.3));
+        let many =
+            (0..5_000).map(|k| std::array::from_fn(|l| (f64::from(8 * k) + l as f64 - 20_000.0) / 27.3));
         for x in many.chain([odd]) {
             let found = dispatch!(Level::new(), simd => five(simd, x))[4];
             assert_eq!(found.map(f64::to_bits), x.map(|x| math::exp(x).to_bits()));

@@ -29,6 +29,8 @@ use throng::Throng;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Contacts {
     candidates: [Candidates; LANES],
+    /// Lanes that have any.
+    listed: Mask,
     /// The same, gathered; up to date in these lanes.
     throngs: [Throng; LANES],
     gathered: Mask,
@@ -45,21 +47,23 @@ struct Candidates {
 impl Contacts {
     /// Forgets all candidates.
     pub(super) fn clear(&mut self) {
-        for lane in &mut self.candidates {
-            lane.pairs.clear();
-            lane.walls.clear();
+        for lane in self.listed.iter() {
+            self.candidates[lane].pairs.clear();
+            self.candidates[lane].walls.clear();
         }
+        self.listed = Mask::NONE;
         self.gathered = Mask::NONE;
     }
 
     /// Whether there is no candidate in any lane.
     pub(super) fn is_empty(&self) -> bool {
-        self.candidates.iter().all(|lane| lane.pairs.is_empty() && lane.walls.is_empty())
+        self.listed.is_empty()
     }
 
     /// Agents `i` and `j` may touch within a step in these lanes.
     #[inline]
     pub(super) fn push_pair(&mut self, i: u32, j: u32, lanes: Mask) {
+        self.listed |= lanes;
         for lane in lanes.iter() {
             self.candidates[lane].pairs.push((i, j));
         }
@@ -68,6 +72,7 @@ impl Contacts {
     /// Agent `i` may touch surface `surface` within a step in these lanes.
     #[inline]
     pub(super) fn push_wall(&mut self, i: u32, surface: u32, lanes: Mask) {
+        self.listed |= lanes;
         for lane in lanes.iter() {
             self.candidates[lane].walls.push((i, surface));
         }
@@ -92,7 +97,7 @@ impl Contacts {
         moved: &mut [Mask],
         h: f64,
     ) {
-        for lane in state.occupied.iter() {
+        for lane in (state.occupied & self.listed).iter() {
             let candidates = &self.candidates[lane];
             let throng = &mut self.throngs[lane];
             if !self.gathered.has(lane) {

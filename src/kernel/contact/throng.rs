@@ -72,13 +72,7 @@ pub(super) struct Throng {
 
 impl Throng {
     /// Gathers the candidates of a lane.
-    pub(super) fn gather(
-        &mut self,
-        program: &Program,
-        state: &State,
-        candidates: &Candidates,
-        lane: usize,
-    ) {
+    pub(super) fn gather(&mut self, program: &Program, state: &State, candidates: &Candidates, lane: usize) {
         self.bodies.clear();
         self.pairs.clear();
         self.walls.clear();
