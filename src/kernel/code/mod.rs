@@ -9,6 +9,7 @@
 //! `max` of something that is no number are no number; comparisons with it are false.
 
 mod arithmetic;
+mod barriers;
 mod crowd;
 pub(crate) mod ground;
 pub(crate) mod lanes;
@@ -23,6 +24,7 @@ use super::state::{Layout, State};
 use crate::base::lanes::{Lanes, Mask};
 use crate::base::tick::Clock;
 use crate::model::{Bool, Num, Scenario};
+use barriers::Barriers;
 use fearless_simd::{Level, dispatch};
 use ground::Ground;
 use machine::Frame;
@@ -38,7 +40,7 @@ pub struct Code {
     registers: Arc<Vec<Lanes>>,
     lists: Vec<Vec<u32>>,
     regions: Vec<Ground>,
-    barriers: Vec<Ground>,
+    barriers: Barriers,
     atoms: Vec<Id>,
     signals: Vec<Id>,
     unresolved: Option<Id>,
@@ -98,7 +100,7 @@ impl Code {
             registers: Arc::new(registers),
             lists: lowering.lists,
             regions: scenario.scene.regions.iter().map(|region| Ground::region(&region.shape)).collect(),
-            barriers: Ground::barriers(&scenario.scene),
+            barriers: Barriers::new(&scenario.scene),
             schedule,
             step: match scenario.clock {
                 Clock::Stepped(step) => (step.numerator() as f64, step.denominator() as f64),
