@@ -8,6 +8,7 @@ mod behaviour;
 mod bounds;
 pub mod dimension;
 mod elaborator;
+mod families;
 mod files;
 mod filter;
 mod kinds;

@@ -239,12 +239,10 @@ pub enum Test {
         /// Half width of the region.
         indifference: f64,
     },
-    /// Decide by an interval of the estimate: expectations and quantiles.
+    /// Decide by the interval of an expectation, which holds at all numbers of trials at once.
     Interval {
         /// Error.
         delta: f64,
-        /// Fixed number of trials, for quantiles.
-        trials: u64,
     },
 }
 

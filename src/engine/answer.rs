@@ -6,6 +6,7 @@ use super::cell::Item;
 use super::contrast::Contrast;
 use super::executor::Executor;
 use super::fault::Fault;
+use super::method;
 use super::outcome::{Counts, Kind, QueryResult, Shows, Stop, Verdict, Witness};
 use super::procedure;
 use super::race::Contest;
@@ -88,7 +89,7 @@ impl Answers<'_> {
         };
         let mut result = self.blank(query, kind);
         let stop = inquiry.stop.unwrap_or(Stop::Cap);
-        result.method = procedure::method(&query.ask, Some(&inquiry.procedure));
+        result.method = method::of(&query.ask, Some(&inquiry.procedure));
         result.unit = unit(measure);
         result.stopped_by = stop;
         result.replay = self.replay(query, "--max-trials", counts.trials);
@@ -281,7 +282,7 @@ impl Answers<'_> {
         let gap = contrast.run(executor, self.budget, watch)?;
         let mut result = self.blank(query, Kind::Compare);
         let unit = unit(first);
-        result.method = procedure::method(&query.ask, None);
+        result.method = method::of(&query.ask, None);
         if gap.pairs > 0 {
             result.estimate = (gap.unresolved < gap.pairs).then_some(gap.estimate);
             result.low = gap.interval.low;
@@ -336,7 +337,7 @@ impl Answers<'_> {
         let subject = field.subject;
         let declared = &subject.program.scenario.moves[*moves];
         let mut result = self.blank(query, Kind::Rank);
-        result.method = procedure::method(&query.ask, None);
+        result.method = method::of(&query.ask, None);
         result.unit = unit(measure);
         result.stopped_by = podium.stop;
         let joined = total(&podium.tallies);

@@ -12,6 +12,7 @@ pub mod finding;
 mod forecast;
 mod jumper;
 mod leaper;
+mod method;
 mod observer;
 pub mod outcome;
 mod procedure;

@@ -16,6 +16,7 @@ use super::tally::Tally;
 use super::watch::{Outlook, Watch};
 use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Query, Study};
 use crate::kernel::start;
+use crate::stats::Defaults;
 
 /// What the command line adds to a study.
 pub struct Call<'c> {
@@ -247,6 +248,7 @@ impl<'a> Session<'a> {
     {
         let mut groups = Vec::new();
         let mut taken = vec![false; asked.len()];
+        let mut defaults = Defaults::default();
         for (at, &query) in asked.iter().enumerate() {
             if taken[at] {
                 continue;
@@ -266,8 +268,10 @@ impl<'a> Session<'a> {
                     for &k in &together {
                         taken[k] = true;
                     }
-                    let inquiries =
-                        together.iter().map(|&k| self.inquiry(asked[k])).collect::<Result<_, _>>()?;
+                    let inquiries = together
+                        .iter()
+                        .map(|&k| self.inquiry(asked[k], &mut defaults))
+                        .collect::<Result<_, _>>()?;
                     (together, Sampling::Survey(Survey::new(self.subject(world)?, inquiries, self.call.seed)))
                 }
                 Ask::Compare { .. } => (vec![at], Sampling::Contrast(self.contrast(query)?)),
@@ -278,7 +282,7 @@ impl<'a> Session<'a> {
         Ok(groups)
     }
 
-    fn inquiry<'q>(&self, query: &'q Query) -> Result<Inquiry<'q>, Fault> {
+    fn inquiry<'q>(&self, query: &'q Query, defaults: &mut Defaults) -> Result<Inquiry<'q>, Fault> {
         let (Ask::Check { measure, .. } | Ask::Estimate { measure, .. }) = &query.ask else {
             return Err(Fault::Unsuitable);
         };
@@ -286,7 +290,7 @@ impl<'a> Session<'a> {
             query,
             column: measure.target.column,
             range: range(measure),
-            procedure: Procedure::new(&query.ask, self.call.seed)?,
+            procedure: Procedure::new(&query.ask, self.call.seed, defaults)?,
             tally: Tally::default(),
             glimpse: Glimpse::default(),
             stop: None,

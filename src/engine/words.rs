@@ -83,7 +83,10 @@ pub(super) fn measured(query: &str, letter: char) -> String {
     let metric =
         measure.split_once(',').map_or(measure, |(_, rest)| rest.strip_suffix(')').unwrap_or(rest)).trim();
     let rest = text[end..].trim_start();
-    let relation = if rest.starts_with('>') || rest.starts_with('≥') { "<" } else { "<=" };
+    // `Q <= x` and `Q > x` are about P(metric <= x), `Q < x` and `Q >= x` about P(metric < x).
+    let greater = rest.starts_with(['>', '≥']);
+    let or_equal = rest.starts_with(['≤', '≥']) || rest.get(1..).is_some_and(|rest| rest.starts_with('='));
+    let relation = if greater == or_equal { "<" } else { "<=" };
     let bound = rest.trim_start_matches(['<', '>', '=', '≤', '≥']).trim_start();
     let stop =
         [" by ", " under ", " confidence ", " within "].iter().filter_map(|word| bound.find(word)).min();
@@ -160,6 +163,10 @@ mod tests {
         assert_eq!(measured("check P(a & (b)) >= 0.5", 'P'), "P(a & (b))");
         assert_eq!(measured("check Q(0.9, f(a)) <= 15 s confidence 95 %", 'P'), "P(f(a) <= 15 s)");
         assert_eq!(measured("check Q(0.9, f(a)) >= 15 s", 'P'), "P(f(a) < 15 s)");
+        assert_eq!(measured("check Q(0.9, f(a)) ≥ 15 s", 'P'), "P(f(a) < 15 s)");
+        assert_eq!(measured("check Q(0.9, f(a)) ≤ 15 s", 'P'), "P(f(a) <= 15 s)");
+        assert_eq!(measured("check Q(0.9, f(a)) < 15 s", 'P'), "P(f(a) < 15 s)");
+        assert_eq!(measured("check Q(0.9, f(a)) > 15 s", 'P'), "P(f(a) <= 15 s)");
         assert_eq!(measured("estimate Q(0.9, f(a))", 'Q'), "Q(0.9, f(a))");
     }
 

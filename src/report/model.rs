@@ -317,7 +317,7 @@ fn procedure(ask: &Ask) -> String {
                 Test::ThreeWay { alpha, indifference } => {
                     format!("three-way e-process, error {alpha}, indifference {indifference}")
                 }
-                Test::Interval { delta, .. } => {
+                Test::Interval { delta } => {
                     format!("time-uniform interval of the mean, error {}", at_most(*delta))
                 }
             };

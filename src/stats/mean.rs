@@ -106,6 +106,13 @@ impl Mean {
         Ok(mean)
     }
 
+    /// Values in [low, high], error `delta`, for as long as it is fed: somebody else says when to stop.
+    pub fn running(low: f64, high: f64, delta: f64) -> Result<Self, Invalid> {
+        let mut mean = Self::new(low, high, delta, None)?;
+        mean.limit = u64::MAX;
+        Ok(mean)
+    }
+
     fn new(low: f64, high: f64, delta: f64, aim: Option<u64>) -> Result<Self, Invalid> {
         probability("delta", delta)?;
         if !(low < high && (high - low).is_finite()) {
@@ -166,7 +173,7 @@ impl Mean {
 
     /// Whether the number of trials is fixed beforehand.
     pub const fn is_fixed(&self) -> bool {
-        self.epsilon.is_none()
+        self.epsilon.is_none() && self.limit < u64::MAX
     }
 
     /// The number of trials after which it has surely stopped.

@@ -33,6 +33,15 @@ pub fn ranks(n: u64, q: f64, delta: f64) -> (Option<u64>, Option<u64>) {
     ((lower >= 1).then_some(lower), (upper <= n).then_some(upper))
 }
 
+/// The rank, from 1, of the empirical `q`-quantile of `n` values: the least one that is not below `q n`. A level such as
+/// 0.07 is a rounded one, and so is its product; what is within that of a whole number is that number.
+fn rank(n: u64, q: f64) -> u64 {
+    let product = q * n as f64;
+    let whole = product.round();
+    let near = (product - whole).abs() <= math::at_least(1e-9, 4.0 * f64::EPSILON * product);
+    math::at_least(if near { whole } else { product.ceil() }, 1.0) as u64
+}
+
 /// Half-width of the band: sqrt(ln(2 / delta) / (2 n)).
 pub fn band(n: u64, delta: f64) -> f64 {
     (math::ln(2.0 / delta) / (2.0 * n as f64)).sqrt()
@@ -157,7 +166,7 @@ impl Sample {
         let each = delta / qs.len() as f64;
         let of = |q: f64| {
             let (lower, upper) = ranks(n, q, each);
-            let middle = Some(math::at_least((q * n as f64).ceil(), 1.0) as u64);
+            let middle = Some(rank(n, q));
             Quantile {
                 q,
                 low_estimate: self.at(middle, self.unresolved, f64::NEG_INFINITY),
@@ -185,6 +194,23 @@ mod tests {
         assert_eq!(ranks(1000, 0.95, 0.05), (Some(936), Some(964)));
         assert_eq!(ranks(1000, 0.99, 0.05), (Some(983), Some(997)));
         assert!((band(1000, 0.05) - 0.042_947).abs() < 1e-6);
+    }
+
+    #[test]
+    fn ranks_of_rounded_levels_are_exact() {
+        for n in [1, 7, 100, 1000, 4096, 1_000_000_000] {
+            for percent in 1..100_u64 {
+                let exact = (percent * n).div_ceil(100).max(1);
+                assert_eq!(rank(n, percent as f64 / 100.0), exact, "{percent} % of {n}");
+            }
+        }
+        let mut sample = Sample::new(100).unwrap();
+        (1..=100).for_each(|k| {
+            sample.observe(Some(f64::from(k)));
+        });
+        let found = sample.quantiles(&[0.07, 0.14, 0.28, 0.55, 0.56], 0.05).unwrap();
+        let estimates: Vec<f64> = found.iter().map(|quantile| quantile.high_estimate).collect();
+        assert_eq!(estimates, [7.0, 14.0, 28.0, 55.0, 56.0]);
     }
 
     #[test]

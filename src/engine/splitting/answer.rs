@@ -5,6 +5,7 @@ use super::{Found, Question, run};
 use crate::engine::answer::Answers;
 use crate::engine::executor::Executor;
 use crate::engine::fault::Fault;
+use crate::engine::method;
 use crate::engine::outcome::{Kind, QueryResult, Rare, Stop};
 use crate::engine::procedure;
 use crate::engine::watch::Watch;
@@ -26,7 +27,7 @@ impl Answers<'_> {
         let Question { query, subject, column, rule, .. } = *question;
         let found = run(question, executor, self.budget, watch)?;
         let mut result = self.blank(query, Kind::Estimate);
-        result.method = procedure::method(&query.ask, None);
+        result.method = method::of(&query.ask, None);
         result.stopped_by = found.stop;
         let counts = found.plain.counts;
         result.replay = self.replay(query, "--max-trials", counts.trials + found.paths);
