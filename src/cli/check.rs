@@ -4,6 +4,7 @@ use super::arguments::{Check, OutputFormat};
 use super::inputs;
 use super::progress::Progress;
 use super::terminal::{Colors, print, say};
+use crate::base::fingerprint::Fingerprint;
 use crate::compile::Study;
 use crate::compile::nearest::nearest;
 use crate::engine::budget::DEFAULT_TRIALS;
@@ -18,7 +19,12 @@ use std::sync::Arc;
 pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     let inputs = inputs::load(&arguments.model, &arguments.properties);
     super::diagnose(&inputs, colors);
-    let desk = Desk { arguments, colors, findings: inputs::findings(&inputs.diagnostics, &inputs.sources) };
+    let desk = Desk {
+        arguments,
+        colors,
+        findings: inputs::findings(&inputs.diagnostics, &inputs.sources),
+        prints: inputs.prints.clone(),
+    };
     let Some(study) = &inputs.study else { return desk.refused() };
     let only = match chosen(study, &arguments.only) {
         Ok(only) => only,
@@ -69,6 +75,7 @@ struct Desk<'a> {
     arguments: &'a Check,
     colors: Colors,
     findings: Vec<Finding>,
+    prints: Vec<(String, Fingerprint)>,
 }
 
 impl Desk<'_> {
@@ -122,6 +129,7 @@ impl Desk<'_> {
             scenario: self.arguments.model.scenario.clone(),
             seed: self.arguments.seed,
             version: env!("CARGO_PKG_VERSION").to_owned(),
+            inputs: self.prints,
             diagnostics: self.findings,
             failure: Some(Failure::Input(reason)),
             replay: format!("{} --seed {}", command("check", self.arguments, true), self.arguments.seed),
@@ -138,7 +146,7 @@ impl Desk<'_> {
 
     /// Prints the results of a run.
     fn finish(self, run: Run) -> Exit {
-        let run = Run { diagnostics: self.findings, ..run };
+        let run = Run { inputs: self.prints, diagnostics: self.findings, ..run };
         let palette = if self.colors.out { Palette::ANSI } else { Palette::PLAIN };
         let mut exit = report::exit_code(&run);
         if let Err(reason) = print(&report::render(&run, format(self.arguments.format), palette)) {

@@ -55,6 +55,8 @@ impl Compiler<'_> {
             );
             return elaborator.report(error.hint(hint));
         }
+        // Where a confidence is stated, or comes from a family, it is also that of the interval.
+        let beside = allowance.error(elaborator.delta(clauses, &locals)?, super::methods::DEFAULT_DELTA);
         let mut at_least = matches!(relation, BinaryOp::AtLeast | BinaryOp::Greater);
         let or_equal = matches!(relation, BinaryOp::AtLeast | BinaryOp::AtMost);
         let Observed { column, kind, unbounded } = observed?;
@@ -94,7 +96,7 @@ impl Compiler<'_> {
         };
         let column = self.column(site, column);
         let measure = Measure { target: Target { world: site, column }, kind };
-        Ok((Ask::Check { measure, at_least, or_equal, threshold: theta, test }, unbounded))
+        Ok((Ask::Check { measure, at_least, or_equal, threshold: theta, test, beside }, unbounded))
     }
 
     /// A ranking: whose moves, by which score.

@@ -129,6 +129,8 @@ pub enum Ask {
         threshold: f64,
         /// The procedure.
         test: Test,
+        /// Error of the interval beside the verdict.
+        beside: f64,
     },
     /// What is the value of a measure?
     Estimate {

@@ -8,7 +8,6 @@ use super::executor::Executor;
 use super::fault::Fault;
 use super::method;
 use super::outcome::{Counts, Kind, QueryResult, Shows, Stop, Verdict, Witness};
-use super::procedure;
 use super::race::Contest;
 use super::session::Call;
 use super::standing;
@@ -94,9 +93,12 @@ impl Answers<'_> {
         result.stopped_by = stop;
         result.replay = self.replay(query, "--max-trials", counts.trials);
         result.elapsed_s = inquiry.seconds;
-        let subject_words = measured_words(query, measure);
-        let mut beside = procedure::BESIDE;
-        if let Some((interval, coverage, error)) = inquiry.procedure.interval(counts) {
+        let subject_words = measured_words(query, measure, inquiry.tally.clipped);
+        let mut beside = match query.ask {
+            Ask::Check { beside, .. } => beside,
+            _ => 0.0,
+        };
+        if let Some((interval, coverage, error)) = inquiry.procedure.interval(counts, beside) {
             beside = error;
             // Where no trial is resolved the middle of what is legal is no estimate.
             result.estimate = (counts.unresolved < counts.trials).then_some(interval.estimate);
@@ -138,7 +140,9 @@ impl Answers<'_> {
                 }
             }
         }
-        if let Ask::Check { at_least, .. } = &query.ask {
+        if let Ask::Check { at_least, threshold, .. } = &query.ask {
+            result.of = words::asked(&query.text).map(|event| format!("P({event})"));
+            result.against = result.of.is_some() && !*at_least;
             let decision = inquiry.procedure.decision();
             result.verdict = Some(match decision {
                 Some(Decision::Above) if *at_least => Verdict::Satisfied,
@@ -147,7 +151,8 @@ impl Answers<'_> {
                 Some(Decision::Within) | None => Verdict::Undecided,
             });
             result.certifies = match inquiry.procedure.statement() {
-                Some(statement) => words::statement(&subject_words, &statement, &result.unit),
+                Some(statement) => words::quantile(&query.text, *threshold, &statement)
+                    .unwrap_or_else(|| words::statement(&subject_words, &statement, &result.unit)),
                 None if !says_something(&query.ask, result.low, result.high) => String::new(),
                 None => format!(
                     "{subject_words} in {}, error at most {}",
@@ -304,7 +309,7 @@ impl Answers<'_> {
             settings.iter().map(|(name, value)| format!("{name} = {value}")).collect::<Vec<_>>().join(", ")
         };
         let labels = [label(&settings[0]), label(&settings[1])];
-        let name = measured_words(query, first);
+        let name = measured_words(query, first, joined.clipped);
         if says_something(&query.ask, result.low, result.high) {
             result.certifies = format!(
                 "{name} under {} less that under {} in {}, error at most {}",
@@ -350,7 +355,7 @@ impl Answers<'_> {
         self.lament(&mut result, joined.counts.unresolved, lost.as_ref());
         let labels: Vec<&str> = declared.options.iter().map(|(label, _)| label.as_str()).collect();
         let ranked = standing::ranked(&podium, &labels);
-        let score = measured_words(query, measure);
+        let score = measured_words(query, measure, joined.clipped);
         if let Some(choice) = &ranked.choice {
             if ranked.gap < podium.scale {
                 result.certifies = format!(
@@ -400,16 +405,17 @@ fn says_something(ask: &Ask, low: f64, high: f64) -> bool {
     low > least || high < most
 }
 
-/// The measure as one would say it: `P(safe)`.
-fn measured_words(query: &Query, measure: &Measure) -> String {
-    words::measured(
-        &query.text,
-        match measure.kind {
-            MeasureKind::Probability => 'P',
-            MeasureKind::Expectation { .. } => 'E',
-            MeasureKind::Quantile { .. } => 'Q',
-        },
-    )
+/// The measure as one would say it: `P(safe)`. Where trials left the declared range, what is known of the expectation
+/// is known of the clipped metric alone, and is said of that.
+fn measured_words(query: &Query, measure: &Measure, clipped: u64) -> String {
+    match &measure.kind {
+        MeasureKind::Probability => words::measured(&query.text, 'P'),
+        MeasureKind::Quantile { .. } => words::measured(&query.text, 'Q'),
+        MeasureKind::Expectation { range, dimension } => {
+            let said = words::measured(&query.text, 'E');
+            if clipped == 0 { said } else { words::clipped(&said, *range, &dimension.to_string()) }
+        }
+    }
 }
 
 fn total(tallies: &[Tally]) -> Tally {

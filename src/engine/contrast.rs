@@ -105,12 +105,13 @@ impl<'s> Contrast<'s> {
 
     /// Runs the first pairs, and forecasts from them what the comparison is likely to take.
     pub(super) fn rehearse(&mut self, executor: &dyn Executor, budget: &Budget) -> Result<Forecast, Fault> {
-        let size = (executor.width(&self.jobs[0]) as u64).min(self.planned(budget)).min(budget.max_trials);
+        let size = Rehearsal::size(executor.width(&self.jobs[0]) as u64)
+            .min(self.planned(budget))
+            .min(budget.max_trials);
         let one = |job: &Job<'_>| Rehearsal::run(job, Item::run(0, size), executor, budget);
         let sides = [one(&self.jobs[0])?, one(&self.jobs[1])?];
         let mut glimpse = Glimpse::default();
-        for (a, b) in sides[0].cells.rows().zip(sides[1].cells.rows()) {
-            let (Some(a), Some(b)) = (a, b) else { continue };
+        for (a, b) in sides[0].seen().zip(sides[1].seen()) {
             if let (Some(a), Some(b)) = (self.score(&a[0]), self.score(&b[0])) {
                 glimpse.add(a - b);
             }

@@ -1,10 +1,19 @@
-//! The name and numbers of a procedure, for reports.
+//! The name of a procedure and all its numbers, for reports: with them, the seed and the inputs a result can be had again.
 
 use super::budget::DEFAULT_TRIALS;
 use super::outcome::Method;
 use super::procedure::{MASSART_SHARE, Procedure};
-use crate::compile::study::{Ask, Estimator, MeasureKind, Ranking, Test};
+use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Ranking, Test};
 use crate::stats::{self, AnyEstimator, AnyTest};
+
+/// What a procedure knows of a measure: the range of a metric, the level of a quantile.
+fn ends(measure: &Measure) -> Vec<(&'static str, f64)> {
+    match measure.kind {
+        MeasureKind::Probability => Vec::new(),
+        MeasureKind::Expectation { range: (low, high), .. } => vec![("low", low), ("high", high)],
+        MeasureKind::Quantile { level, .. } => vec![("level", level)],
+    }
+}
 
 /// The name and numbers of a procedure, for reports.
 pub(super) fn of(ask: &Ask, procedure: Option<&Procedure>) -> Method {
@@ -13,7 +22,7 @@ pub(super) fn of(ask: &Ask, procedure: Option<&Procedure>) -> Method {
         numbers: numbers.iter().map(|(n, v)| ((*n).to_owned(), *v)).collect(),
     };
     match ask {
-        Ask::Check { threshold, test, .. } => {
+        Ask::Check { threshold, test, measure, .. } => {
             let theta = ("theta", *threshold);
             match *test {
                 Test::Sprt { alpha, beta, indifference } => {
@@ -40,7 +49,10 @@ pub(super) fn of(ask: &Ask, procedure: Option<&Procedure>) -> Method {
                 Test::ThreeWay { alpha, indifference } => {
                     named("three_way", &[("alpha", alpha), theta, ("indifference", indifference)])
                 }
-                Test::Interval { delta } => named("empirical_bernstein", &[("delta", delta), theta]),
+                Test::Interval { delta } => {
+                    let numbers = [("delta", delta), theta];
+                    named("empirical_bernstein", &[&numbers[..], &ends(measure)].concat())
+                }
             }
         }
         Ask::Estimate { estimator, measure } => match (*estimator, &measure.kind) {
@@ -53,21 +65,29 @@ pub(super) fn of(ask: &Ask, procedure: Option<&Procedure>) -> Method {
                                 &[("epsilon", epsilon), ("delta", delta), ("gamma", c.gamma())],
                             );
                         }
-                        AnyEstimator::Spending(_) => "spending",
+                        AnyEstimator::Spending(spending) => {
+                            let looks = ("looks", spending.looks().len() as f64);
+                            return named("spending", &[("epsilon", epsilon), ("delta", delta), looks]);
+                        }
                         _ => "okamoto",
                     },
                     _ => "calibrated",
                 };
-                named(name, &[("epsilon", epsilon), ("delta", delta)])
+                let mut numbers = vec![("epsilon", epsilon), ("delta", delta)];
+                numbers.extend(procedure.and_then(Procedure::limit).map(|n| ("trials", n as f64)));
+                named(name, &numbers)
             }
             (Estimator::Default { epsilon, delta }, _) => {
-                named("empirical_bernstein", &[("epsilon", epsilon), ("delta", delta)])
+                let cap = procedure.and_then(Procedure::limit).map(|n| ("cap", n as f64));
+                let numbers: Vec<_> =
+                    [("epsilon", epsilon), ("delta", delta)].into_iter().chain(cap).collect();
+                named("empirical_bernstein", &[&numbers[..], &ends(measure)].concat())
             }
             (Estimator::Okamoto { epsilon, delta }, _) => {
                 let trials = procedure.and_then(Procedure::limit).map(|n| ("trials", n as f64));
                 let numbers: Vec<_> =
                     [("epsilon", epsilon), ("delta", delta)].into_iter().chain(trials).collect();
-                named("okamoto", &numbers)
+                named("okamoto", &[&numbers[..], &ends(measure)].concat())
             }
             (Estimator::Massart { epsilon, delta }, _) => {
                 let auxiliary = ("auxiliary", MASSART_SHARE * delta);
@@ -95,7 +115,7 @@ pub(super) fn of(ask: &Ask, procedure: Option<&Procedure>) -> Method {
                 named("gbas", &numbers)
             }
             (Estimator::Band { trials, delta }, _) => {
-                named("dkw", &[("trials", trials as f64), ("delta", delta)])
+                named("dkw", &[&[("trials", trials as f64), ("delta", delta)], &ends(measure)[..]].concat())
             }
             (Estimator::Splitting(rule), _) => {
                 let name = if rule.adaptive { "splitting" } else { "fixed_effort" };
@@ -110,21 +130,27 @@ pub(super) fn of(ask: &Ask, procedure: Option<&Procedure>) -> Method {
                     MeasureKind::Expectation { .. } => "empirical_bernstein",
                     MeasureKind::Quantile { .. } => "order_statistics",
                 };
-                named(name, &[("trials", trials as f64), ("delta", delta)])
+                named(name, &[&[("trials", trials as f64), ("delta", delta)], &ends(measure)[..]].concat())
             }
         },
-        Ask::Compare { within, delta, .. } => {
-            let mut numbers = vec![("delta", *delta)];
-            numbers.extend(within.map(|w| ("epsilon", w)));
-            named("paired_betting", &numbers)
+        Ask::Compare { first, within, delta, .. } => {
+            let planned = ("trials", crate::compile::methods::PLANNED_TRIALS as f64);
+            let numbers = [("delta", *delta), within.map_or(planned, |w| ("epsilon", w))];
+            // The mean of the differences of two metrics, or the difference of two shares.
+            let name = match first.kind {
+                MeasureKind::Expectation { .. } => "empirical_bernstein",
+                _ => "paired_betting",
+            };
+            named(name, &[&numbers[..], &ends(first)].concat())
         }
-        Ask::Rank { epsilon, delta, ranking, .. } => {
+        Ask::Rank { epsilon, delta, ranking, measure, .. } => {
             let name = match ranking {
                 Ranking::Betting => "betting",
                 Ranking::OneChallenger => "one_challenger",
                 Ranking::Okamoto => "okamoto",
             };
-            named(name, &[("epsilon", *epsilon), ("delta", *delta)])
+            let word = ("word", super::race::WORD as f64);
+            named(name, &[&[("epsilon", *epsilon), ("delta", *delta), word], &ends(measure)[..]].concat())
         }
     }
 }

@@ -18,9 +18,6 @@ use stats::Test as _;
 const BINS: usize = 40;
 /// Most steps of an empirical distribution function.
 const STEPS: usize = 100;
-/// Error of the interval beside the verdict of a test.
-pub(super) const BESIDE: f64 = 0.05;
-
 /// A procedure of one query.
 pub(super) enum Procedure {
     /// Is a probability above a threshold?
@@ -273,8 +270,12 @@ impl Procedure {
         }
     }
 
-    /// Estimate and interval, and the kind of the interval.
-    pub(super) fn interval(&mut self, counts: super::outcome::Counts) -> Option<(Interval, Coverage, f64)> {
+    /// Estimate and interval, and the kind of the interval. `beside` is the error of that beside the verdict of a test.
+    pub(super) fn interval(
+        &mut self,
+        counts: super::outcome::Counts,
+        beside: f64,
+    ) -> Option<(Interval, Coverage, f64)> {
         if counts.trials == 0 {
             return None;
         }
@@ -283,10 +284,10 @@ impl Procedure {
                 // An interval beside a test holds at its stopping time: that of the confidence sequence.
                 let reading = |successes| {
                     let read = stats::Counts { successes, failures: counts.trials - successes };
-                    stats::sequence::interval(read, BESIDE)
+                    stats::sequence::interval(read, beside)
                 };
                 let hull = reading(counts.successes).hull(reading(counts.successes + counts.unresolved));
-                Some((around(share(counts), hull), Coverage::TimeUniform, BESIDE))
+                Some((around(share(counts), hull), Coverage::TimeUniform, beside))
             }
             Self::Probability(estimator) => {
                 let interval = estimator.interval();
@@ -305,7 +306,9 @@ impl Procedure {
                 Some((around(0.5 * (low + high), interval), coverage, interval.error))
             }
             Self::Quantile { sample, level, delta, band } => {
-                Some((quantile(sample, *level, *delta, *band)?, Coverage::FixedSize, *delta))
+                // Where somebody or the clock ended it before its number of trials, it holds at all times.
+                let coverage = if sample.finished() { Coverage::FixedSize } else { Coverage::TimeUniform };
+                Some((quantile(sample, *level, *delta, *band)?, coverage, *delta))
             }
         }
     }
@@ -316,13 +319,17 @@ impl Procedure {
             Self::Mean { mean, values, threshold } => {
                 // Only a number of trials that was fixed beforehand has a band.
                 let fixed = threshold.is_none() && mean.is_fixed() && mean.finished();
-                let band = fixed.then(|| stats::quantile::band(mean.read().0, mean.interval().error));
+                let (trials, unresolved, _) = mean.read();
+                let lost = unresolved as f64 / trials as f64;
+                // Each reading of the unresolved trials moves the function by their share at most.
+                let band =
+                    fixed.then(|| (stats::quantile::band(trials, mean.interval().error) + lost).min(1.0));
                 (values.clone(), Vec::new(), band)
             }
             Self::Quantile { sample, level, delta, band } => {
                 let found = quantile(sample, *level, *delta, *band);
                 let quantiles = found.map(|value| Quantile { level: *level, value });
-                let reach = sample.finished().then(|| stats::quantile::band(sample.trials(), *delta));
+                let reach = (sample.trials() > 0).then(|| sample.reach(*delta));
                 (sample.sorted().to_vec(), quantiles.into_iter().collect(), reach)
             }
             _ => return None,

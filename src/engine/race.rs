@@ -19,7 +19,7 @@ use crate::stats::ranking::{Allocation, Booleans, Choice, Each, Race, Scores, Sh
 use crate::stats::{self, Mean, Outcome};
 
 /// Trials an option gets in a round: traces of crowds are slow.
-const WORD: u64 = 32;
+pub(super) const WORD: u64 = 32;
 
 /// The procedure of a ranking.
 #[allow(clippy::large_enum_variant, reason = "there is one at a time")]

@@ -68,6 +68,7 @@ pub fn run(
         scenario: if study.title.is_empty() { call.file.clone() } else { study.title.clone() },
         seed: call.seed,
         version: env!("CARGO_PKG_VERSION").to_owned(),
+        inputs: Vec::new(),
         diagnostics: Vec::new(),
         warnings: Vec::new(),
         interrupted: budget.is_interrupted(),

@@ -65,14 +65,15 @@ impl<'q> Survey<'q> {
         budget: &Budget,
     ) -> Result<Vec<Forecast>, Fault> {
         let width = executor.width(&self.job) as u64;
-        let size = width.min(round(&self.inquiries, 0, width, budget)).min(budget.max_trials);
+        let size =
+            Rehearsal::size(width).min(round(&self.inquiries, 0, width, budget)).min(budget.max_trials);
         let rehearsal = Rehearsal::run(&self.job, Item::run(0, size), executor, budget)?;
         let seconds = rehearsal.seconds_per_trial(self.job.subject.most_steps());
         let forecast = |inquiry: &Inquiry<'_>| {
             let mut glimpse = Glimpse::default();
             let range = inquiry.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
             if let Some(place) = self.job.columns.iter().position(|c| *c == inquiry.column) {
-                rehearsal.rows().for_each(|row| glimpse.read(&row[place], range));
+                rehearsal.seen().for_each(|row| glimpse.read(&row[place], range));
             }
             let expected = forecast::inquiry(&inquiry.query.ask, &inquiry.procedure, &glimpse);
             let trials = expected.unwrap_or(u64::MAX).min(budget.max_trials);
