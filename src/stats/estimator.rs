@@ -146,7 +146,6 @@ impl Estimator for AnyEstimator {
             Self::Okamoto(e) => e.finished(),
             Self::Massart(e) => e.finished(),
             Self::FixedSize(e) => e.finished(),
-            Self::Sequence(e) => e.finished(),
             Self::Gbas(e) => e.finished(),
         }
     }
