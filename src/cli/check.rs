@@ -160,6 +160,20 @@ impl Desk<'_> {
     }
 }
 
+/// A report of a call that a bug ended, in formats for machines.
+pub(super) fn fallen(chosen: OutputFormat, scenario: String, seed: u64) {
+    let run = Run {
+        scenario,
+        seed,
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        failure: Some(Failure::Bug("smc has a bug; standard error says more".to_owned())),
+        ..Run::default()
+    };
+    if chosen != OutputFormat::Text {
+        let _ = print(&report::render(&run, format(chosen), Palette::PLAIN));
+    }
+}
+
 const fn format(chosen: OutputFormat) -> Format {
     match chosen {
         OutputFormat::Text => Format::Text,

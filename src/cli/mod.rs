@@ -34,11 +34,19 @@ pub fn run() -> process::ExitCode {
             return process::ExitCode::from(if fine { 0 } else { Exit::Wrong.code() });
         }
     };
+    let asked = if let Command::Check(check) = &arguments.command {
+        Some((check.format, check.model.scenario.clone(), check.seed))
+    } else {
+        None
+    };
     let worker = std::thread::Builder::new().stack_size(STACK).spawn(move || dispatch(&arguments));
     let exit = match worker.map(std::thread::JoinHandle::join) {
         Ok(Ok(exit)) => exit,
         Ok(Err(_)) => {
             say("this is a bug in smc; please report it with the files of this call\n");
+            if let Some((format, scenario, seed)) = asked {
+                check::fallen(format, scenario, seed);
+            }
             Exit::Bug
         }
         Err(error) => {

@@ -55,6 +55,9 @@ impl Elaborator<'_> {
         if (NARROWEST..=widest).contains(&part) {
             return Ok(epsilon);
         }
+        if epsilon <= 0.0 {
+            return self.report(Diagnostic::error("E0604", at, "a width must be positive"));
+        }
         let unit = if dimension.is_none() { String::new() } else { format!(" {dimension}") };
         let (word, end, hint) = if part < NARROWEST {
             let hint = "so narrow an interval takes more trials than there is time for";

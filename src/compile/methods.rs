@@ -95,7 +95,7 @@ impl Elaborator<'_> {
             let error = Diagnostic::error(
                 "E0604",
                 expr.span,
-                format!("a confidence of {} is not between 50 % and 100 %", number.value),
+                format!("a confidence of {} does not lie above 50 % and below 100 %", number.value),
             )
             .hint("write `confidence 95 %` or `confidence 0.95`");
             return self.report(error);

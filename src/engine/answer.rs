@@ -168,7 +168,7 @@ impl Answers<'_> {
             }
         }
         result.distribution = inquiry.procedure.distribution().filter(|_| counts.unresolved < counts.trials);
-        self.tell(&mut result, subject, &inquiry.tally, measure.target.column);
+        Self::tell(&mut result, subject, &inquiry.tally, measure.target.column);
         self.lament_one(&mut result, subject, &inquiry.tally, measure.target.column);
         let picks = match (&measure.kind, kind) {
             (MeasureKind::Probability, _) | (_, Kind::Check) => witness::sides(&inquiry.tally),
@@ -191,7 +191,7 @@ impl Answers<'_> {
     }
 
     /// Counts, and what they warn of.
-    pub(super) fn tell(&self, result: &mut QueryResult, subject: &Subject, tally: &Tally, column: usize) {
+    pub(super) fn tell(result: &mut QueryResult, subject: &Subject, tally: &Tally, column: usize) {
         result.counts = tally.counts;
         result.steps = tally.steps;
         result.clipped = tally.clipped;
@@ -297,7 +297,7 @@ impl Answers<'_> {
         result.stopped_by = gap.stop;
         result.replay = self.replay(query, "--max-trials", gap.pairs);
         let joined = total(&gap.sides);
-        self.tell(&mut result, subject, &joined, first.target.column);
+        Self::tell(&mut result, subject, &joined, first.target.column);
         let lost = (0..2).find_map(|side| {
             let index = gap.sides[side].first[2]?;
             let settings = result.settings.iter().chain(&settings[side]).cloned().collect();
@@ -347,7 +347,7 @@ impl Answers<'_> {
         result.stopped_by = podium.stop;
         let joined = total(&podium.tallies);
         result.replay = self.replay(query, "--total-trials", joined.counts.trials);
-        self.tell(&mut result, subject, &joined, measure.target.column);
+        Self::tell(&mut result, subject, &joined, measure.target.column);
         let lost = podium.tallies.iter().enumerate().find_map(|(arm, tally)| {
             let item = Item { advice: Some((*moves, arm)), index: tally.first[2]? };
             Some(First { subject, column: measure.target.column, item, settings: result.settings.clone() })

@@ -11,6 +11,7 @@ mod fault;
 pub mod finding;
 mod forecast;
 mod jumper;
+mod leaper;
 mod method;
 mod observer;
 pub mod outcome;

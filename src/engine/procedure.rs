@@ -240,11 +240,11 @@ impl Procedure {
     /// Whether the interval is wider than was asked for, as that of both readings of unresolved trials can be.
     pub(super) fn is_wide(&self, ask: &Ask) -> bool {
         let Ask::Estimate { estimator, .. } = ask else { return false };
-        let epsilon = match *estimator {
-            Estimator::Default { epsilon, .. }
-            | Estimator::Massart { epsilon, .. }
-            | Estimator::Spending { epsilon, .. } => epsilon,
-            _ => return false,
+        let (Estimator::Default { epsilon, .. }
+        | Estimator::Massart { epsilon, .. }
+        | Estimator::Spending { epsilon, .. }) = *estimator
+        else {
+            return false;
         };
         let interval = match self {
             Self::Probability(estimator) => estimator.interval(),

@@ -98,6 +98,7 @@ impl<'q> Survey<'q> {
     ) -> Result<(), Fault> {
         let started = budget.elapsed();
         let mut next = 0u64;
+        let mut items = Vec::new();
         if budget.max_trials == 0 {
             self.inquiries.iter_mut().for_each(|inquiry| inquiry.stop = Some(Stop::Cap));
         }
@@ -106,14 +107,17 @@ impl<'q> Survey<'q> {
                 close(&mut self.inquiries, budget);
                 break;
             }
-            let (items, cells) = match self.ahead.take() {
-                Some(ahead) => (ahead.items, ahead.cells),
+            let cells = match self.ahead.take() {
+                Some(ahead) => {
+                    items = ahead.items;
+                    ahead.cells
+                }
                 None => {
                     self.job.narrow(columns(&self.inquiries));
                     let width = executor.width(&self.job) as u64;
-                    let items = Item::run(next, round(&self.inquiries, next, width, budget));
-                    let cells = executor.run(&self.job, &items, budget)?;
-                    (items, cells)
+                    items.clear();
+                    items.extend(Item::row(next, round(&self.inquiries, next, width, budget)));
+                    executor.run(&self.job, &items, budget)?
                 }
             };
             next += items.len() as u64;
@@ -121,6 +125,7 @@ impl<'q> Survey<'q> {
                 close(&mut self.inquiries, budget);
                 break;
             }
+            self.job.reuse(cells);
             if let Some(inquiry) = self.inquiries.iter().find(|i| i.stop.is_none()) {
                 let expected = forecast::inquiry(&inquiry.query.ask, &inquiry.procedure, &inquiry.glimpse);
                 watch.consumed(&inquiry.query.text, next, expected.map(|n| n.max(next)));
@@ -135,14 +140,18 @@ impl<'q> Survey<'q> {
 
     /// Shows a round to the inquiries, trial by trial; false where time ended it.
     fn read(&mut self, items: &[Item], cells: &Cells, started: f64, budget: &Budget) -> Result<bool, Fault> {
+        // Who still reads, and which cell of a row.
+        let mut readers = Vec::new();
+        for inquiry in self.inquiries.iter_mut().filter(|i| i.stop.is_none()) {
+            if let Some(place) = self.job.columns.iter().position(|c| *c == inquiry.column) {
+                readers.push((inquiry, place));
+            }
+        }
         for (item, row) in items.iter().zip(cells.rows()) {
             // What follows an unfinished trial is not looked at: outcomes count in index order.
             let Some(row) = row else { return Ok(false) };
-            for inquiry in self.inquiries.iter_mut().filter(|i| i.stop.is_none()) {
-                let Some(place) = self.job.columns.iter().position(|c| *c == inquiry.column) else {
-                    continue;
-                };
-                let cell = &row[place];
+            for (inquiry, place) in readers.iter_mut().filter(|(i, _)| i.stop.is_none()) {
+                let cell = &row[*place];
                 if cell.reading == Reading::Faulty {
                     return Err(super::trial::fault(self.job.subject, *item, self.job.seed));
                 }

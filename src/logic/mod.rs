@@ -8,6 +8,7 @@ pub mod flat;
 pub mod formula;
 pub mod invalid;
 pub mod monitor;
+mod need;
 pub mod offline;
 mod reach;
 pub mod signal;
@@ -22,6 +23,7 @@ pub use formula::{
 pub use invalid::Invalid;
 pub use monitor::robustness::Robustness;
 pub use monitor::{Antecedent, Monitor};
+pub use need::Needs;
 pub use offline::Recording;
-pub use signal::{Reading, SignalMonitor};
+pub use signal::{Glance, Reading, SignalMonitor};
 pub use source::{Source, sides, sources};

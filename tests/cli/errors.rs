@@ -241,3 +241,12 @@ fn levels_are_never_rounded_up() {
     assert!(said.out.contains("98.33 %") && said.out.contains("error at most 0.0167\n"), "{}", said.out);
     assert!(!said.out.contains("333"), "{}", said.out);
 }
+
+#[test]
+fn a_stream_of_outcomes_that_is_none_is_an_object_too() {
+    let place = Place::new(&[("a.csv", "maybe\n")]);
+    let words = ["drift", "a.csv", "--before", "0.9", "--after", "0.8", "--format", "json"];
+    let said = place.call(&words);
+    assert_eq!(said.code, Some(2));
+    assert!(said.json()["error"]["message"].as_str().unwrap().contains("a.csv"), "{}", said.out);
+}

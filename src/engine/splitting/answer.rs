@@ -33,7 +33,7 @@ impl Answers<'_> {
         result.stopped_by = found.stop;
         let counts = found.plain.counts;
         result.replay = self.replay(query, "--max-trials", counts.trials + found.paths);
-        self.tell(&mut result, subject, &found.plain, column);
+        Self::tell(&mut result, subject, &found.plain, column);
         self.lament_one(&mut result, subject, &found.plain, column);
         let name = words::measured(&query.text, 'P');
         // The only statement that holds without a condition is that of the plain trials.
