@@ -90,6 +90,7 @@ impl Scratch {
 /// Makes freshly loaded lanes ready for their first step: what follows from their parameters, and the
 /// forces at their present positions. Other lanes keep their bytes.
 pub fn refresh(program: &Program, state: &mut State, scratch: &mut Scratch, lanes: Mask) {
+    program.processes.begin(program.layout, state, &mut scratch.processes, lanes);
     if state.agents == 0 {
         return;
     }

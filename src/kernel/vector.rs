@@ -84,6 +84,12 @@ impl<S: Simd> Part<S> {
         value.store_slice(&mut lanes.0[self.at..self.at + Doubles::<S>::LEN]);
     }
 
+    /// Stores into its lanes of eight words.
+    #[inline(always)]
+    pub(super) fn put_words(self, value: Words<S>, eight: &mut [u64; LANES]) {
+        value.store_slice(&mut eight[self.at..self.at + Doubles::<S>::LEN]);
+    }
+
     /// Stores into its lanes of eight consecutive numbers.
     #[inline(always)]
     pub(super) fn put(self, value: Doubles<S>, eight: &mut [f64]) {

@@ -357,4 +357,11 @@ pub(super) fn collect(code: &Code, state: &State, readings: &mut Readings) {
     readings.signals.extend(code.signals.iter().map(|&id| readings.numbers[id as usize]));
     let open = code.unresolved.map_or(Mask::NONE, |id| readings.truths[id as usize]);
     readings.unresolved = open & state.occupied;
+    let (atoms, signals) = &mut readings.missing;
+    for (missing, ids) in [(atoms, &code.open.0), (signals, &code.open.1)] {
+        missing.clear();
+        if !readings.unresolved.is_empty() {
+            missing.extend(ids.iter().map(|id| id.map_or(Mask::NONE, |id| readings.truths[id as usize])));
+        }
+    }
 }

@@ -11,7 +11,7 @@ use crate::base::math;
 use crate::kernel::program::Program;
 use fearless_simd::Simd;
 
-/// Frequency of the stiffest contact times the sub-step: 0.5 % of its period at most.
+/// Frequency of the stiffest contact times the sub-step: an eighteenth of its period at most (2 pi / 0.35).
 const PHASE: f64 = 0.35;
 /// Contacts of one body in a dense packing stiffen each other by about this factor.
 const PACKING: f64 = 4.0;
