@@ -213,6 +213,11 @@ impl Search<'_> {
                     }
                 }
             }
+            Bool::Iff(a, b) => {
+                let first = self.holds(a);
+                self.walk(a, first);
+                self.walk(b, first == truth);
+            }
             Bool::Forall(set, body) | Bool::Exists(set, body) => {
                 if matches!(atom, Bool::Forall(..)) == truth {
                     return;
@@ -338,6 +343,7 @@ fn instantiate_bool(truth: &Bool, depth: u32, id: AgentId) -> Bool {
         Bool::Not(inner) => Bool::Not(Box::new(b(inner))),
         Bool::And(list) => Bool::And(list.iter().map(b).collect()),
         Bool::Or(list) => Bool::Or(list.iter().map(b).collect()),
+        Bool::Iff(x, y) => Bool::Iff(Box::new(b(x)), Box::new(b(y))),
         Bool::In(w, region) => Bool::In(who(*w, depth, id), *region),
         Bool::Present(w) => Bool::Present(who(*w, depth, id)),
         Bool::Contact(w) => Bool::Contact(who(*w, depth, id)),

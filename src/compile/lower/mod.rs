@@ -10,6 +10,7 @@ mod tally;
 mod temporal;
 
 pub(super) use builtin::DISTRIBUTIONS;
+pub(super) use logic::relation;
 
 use super::dimension::{self, Dimension};
 use super::elaborator::{Elaborator, Locals, Lowered};

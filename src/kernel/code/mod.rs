@@ -12,6 +12,7 @@ mod arithmetic;
 mod crowd;
 pub(crate) mod ground;
 pub(crate) mod lanes;
+mod lists;
 mod lower;
 mod machine;
 mod node;
@@ -90,7 +91,7 @@ impl Code {
             signals: signals.iter().map(register).collect(),
             unresolved: unresolved.map(|id| schedule.registers[id as usize]),
             registers: Arc::new(registers),
-            lists: lowering.lists,
+            lists: lowering.lists.all,
             regions: scenario.scene.regions.iter().map(|region| Ground::region(&region.shape)).collect(),
             barriers: Ground::barriers(&scenario.scene),
             schedule,
