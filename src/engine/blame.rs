@@ -1,5 +1,6 @@
 //! What decided a trial: the atom, comparison or number, and the agents in it.
 
+use super::budget::Budget;
 use super::subject::Subject;
 use super::words;
 use crate::base::tick::{Clock, Tick};
@@ -29,7 +30,7 @@ const NAMED: usize = 3;
 
 impl Record {
     /// Calls `look` with the record in the form that `logic` reads.
-    fn read<T>(&self, subject: &Subject, look: impl FnOnce(&Recording<'_>) -> T) -> T {
+    fn read<T>(&self, subject: &Subject, budget: &Budget, look: impl FnOnce(&Recording<'_>) -> T) -> T {
         let atoms =
             |atom: AtomId, at: u64| self.atoms.get(at as usize).is_some_and(|row| row[atom.0 as usize]);
         let signals = |signal: SignalId, at: u64| {
@@ -41,6 +42,7 @@ impl Record {
             seen: self.atoms.len() as u64,
             horizon: subject.horizon,
             clock: subject.program.scenario.clock,
+            stop: &|| budget.is_late(),
         })
     }
 }
@@ -49,10 +51,10 @@ impl Record {
 pub(super) fn truth(
     subject: &Subject,
     root: NodeId,
-    record: &Record,
+    (record, budget): (&Record, &Budget),
     state_at: impl Fn(Tick) -> Option<State>,
 ) -> String {
-    record.read(subject, |recording| {
+    record.read(subject, budget, |recording| {
         let Ok(explanation) = explain(&subject.tree, root, recording) else { return String::new() };
         // The last reason in time is the one that closed the case.
         let last = explanation.reasons.iter().max_by_key(|reason| (reason.to, reason.from));
@@ -69,10 +71,10 @@ pub(super) fn number(
     subject: &Subject,
     root: TermId,
     (value, unit): (f64, &str),
-    record: &Record,
+    (record, budget): (&Record, &Budget),
     state_at: impl Fn(Tick) -> Option<State>,
 ) -> (Option<Tick>, String) {
-    record.read(subject, |recording| {
+    record.read(subject, budget, |recording| {
         let (_, found) = sources(&subject.tree, root, Tick(0), recording);
         let never =
             value == f64::INFINITY && matches!(subject.tree.terms[root.0 as usize], Term::TimeUntil(_));

@@ -139,6 +139,11 @@ impl Subject {
         self.leaves(&[column]).0.into_iter().map(|atom| atom.0 as usize).collect()
     }
 
+    /// The numbers of the signals that a column uses.
+    pub(super) fn signals_of(&self, column: usize) -> Vec<usize> {
+        self.leaves(&[column]).1.into_iter().map(|signal| signal.0 as usize).collect()
+    }
+
     /// The atoms and signals that some columns use, others as constants.
     fn observed(&self, columns: &[usize]) -> (Vec<Bool>, Vec<Num>) {
         let (used_atoms, used_signals) = self.leaves(columns);

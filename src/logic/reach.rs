@@ -123,12 +123,7 @@ impl Asked {
 /// Where the parts below `root`, asked about at tick 0, are asked about. With a horizon, parts below one that ranges up to
 /// it are asked about there too, so that a bound looks beyond it. In `dense` time the left operand of an until is asked
 /// about up to just before the end of its window, which is a tick further than the last state before it.
-pub(super) fn asked(
-    tree: &Tree,
-    root: Part,
-    horizon: Option<Tick>,
-    dense: bool,
-) -> Result<Asked, Invalid> {
+pub(super) fn asked(tree: &Tree, root: Part, horizon: Option<Tick>, dense: bool) -> Result<Asked, Invalid> {
     let order = children_first(tree, root)?;
     let slot = |part: Part| match part {
         Part::Node(id) => id.0 as usize,

@@ -86,7 +86,10 @@ mod tests {
         assert_ne!(digest(&twice(speed(3))), digest(&twice(speed(4))));
         assert_eq!(Num::Constant(0.0), Num::Constant(-0.0));
         assert_eq!(digest(&Num::Constant(0.0)), digest(&Num::Constant(-0.0)));
-        let set = |members: &[u32], except| Set { members: members.iter().map(|&id| AgentId(id)).collect(), except };
+        let set = |members: &[u32], except| Set {
+            members: members.iter().map(|&id| AgentId(id)).collect(),
+            except,
+        };
         let all = Bool::Forall(set(&[1, 2], None), Box::new(Bool::Constant(true)));
         let any = Bool::Exists(set(&[1, 2], None), Box::new(Bool::Constant(true)));
         assert_ne!(digest(&all), digest(&any));

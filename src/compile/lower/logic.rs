@@ -101,7 +101,12 @@ impl Elaborator<'_> {
         let span = Span { end: right.span.end, ..left.span };
         match (&a, &b) {
             (Typed::Tally(formulas), Typed::Number(bound)) if bound.dimension.is_none() => {
-                return Ok(Typed::Formula(self.tally(formulas, relation(comparison(op)), bound.value, span)?));
+                return Ok(Typed::Formula(self.tally(
+                    formulas,
+                    relation(comparison(op)),
+                    bound.value,
+                    span,
+                )?));
             }
             (Typed::Number(bound), Typed::Tally(formulas)) if bound.dimension.is_none() => {
                 return Ok(Typed::Formula(self.tally(

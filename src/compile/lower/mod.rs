@@ -4,6 +4,7 @@ mod arithmetic;
 mod builtin;
 mod call;
 mod logic;
+mod mention;
 mod name;
 mod quantifier;
 mod tally;

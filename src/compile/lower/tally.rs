@@ -57,6 +57,9 @@ impl Elaborator<'_> {
             return Ok(self.node(Node::Constant(false)));
         }
         let k = bound as usize;
+        if k == 1 {
+            return Ok(self.node(Node::Or(formulas.to_vec())));
+        }
         if n.saturating_mul(k.min(n - k + 1)) > LARGEST {
             let error =
                 Diagnostic::error("E0504", span, format!("{n} formulas over time are too many to count"))
