@@ -56,6 +56,7 @@ pub(super) fn decision(
             let text = if what.is_empty() { value_text } else { format!("{value_text}, when {what}") };
             Some((at, Some(value), text))
         }
+        _ if what.is_empty() => Some((at, None, "its time was over".to_owned())),
         _ => Some((at, None, what)),
     }
 }
@@ -125,7 +126,7 @@ impl Past {
         let word = |k: &usize| {
             let text = subject.texts.atoms.get(*k).map_or("", String::as_str);
             let holds = self.atoms.get(*k).is_some_and(|(holds, _)| *holds);
-            format!("`{text}` {}", if holds { "holds" } else { "fails" })
+            format!("`{text}` {}", words::truth(holds))
         };
         atoms.iter().take(NAMED).map(word).collect::<Vec<_>>().join(", ")
     }

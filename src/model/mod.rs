@@ -5,6 +5,7 @@ pub mod behaviour;
 mod digest;
 mod evaluation;
 pub mod expression;
+mod lacking;
 pub mod law;
 pub mod moves;
 pub mod process;

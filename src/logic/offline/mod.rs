@@ -101,6 +101,16 @@ impl<'a> Offline<'a> {
         self.graph.terms[id.0 as usize].and_then(|slot| self.tracks[slot].number(at))
     }
 
+    /// A number's slot at a state, `None` while it is open.
+    pub(super) fn value(&self, slot: usize, at: u64) -> Option<f64> {
+        self.tracks[slot].number(at)
+    }
+
+    /// Number of states seen.
+    pub(super) fn seen(&self) -> u64 {
+        self.recording.seen
+    }
+
     /// A number that does not depend on any state.
     pub(super) fn constant(&self, id: TermId) -> Option<f64> {
         self.graph.constants[id.0 as usize]
