@@ -6,6 +6,7 @@
 
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Lowered};
+use super::lower::relation;
 use crate::logic::{Invalid, Node, NodeId, Relation, Robustness, Term, TermId};
 use crate::model::{Arithmetic, Bool, Comparison, Field, Fold, Function, Num, Place, Set, Who};
 use crate::syntax::diagnostic::Diagnostic;
@@ -225,6 +226,10 @@ impl Rewriting<'_, '_> {
                 let list = list.iter().map(|one| self.condition(one)).collect();
                 self.elaborator.node(Node::Or(list))
             }
+            Bool::Iff(a, b) => {
+                let (a, b) = (self.condition(a), self.condition(b));
+                self.elaborator.iff(a, b)
+            }
             // Who has not come in yet has no numbers: then the truth decides.
             _ if self.elaborator.coming => {
                 let margin = margin(truth);
@@ -247,17 +252,6 @@ impl Rewriting<'_, '_> {
                 self.comparison(Relation::Greater, margin, zero)
             }
         }
-    }
-}
-
-fn relation(comparison: Comparison) -> Relation {
-    match comparison {
-        Comparison::Less => Relation::Less,
-        Comparison::AtMost => Relation::AtMost,
-        Comparison::Greater => Relation::Greater,
-        Comparison::AtLeast => Relation::AtLeast,
-        Comparison::Equal => Relation::Equal,
-        Comparison::Unequal => Relation::Unequal,
     }
 }
 
@@ -287,6 +281,7 @@ pub fn margin(truth: &Bool) -> Num {
         Bool::Not(inner) => negated(margin(inner)),
         Bool::And(list) => joined(Arithmetic::Min, f64::INFINITY, list),
         Bool::Or(list) => joined(Arithmetic::Max, f64::NEG_INFINITY, list),
+        Bool::Iff(a, b) => combine(Arithmetic::Agree, margin(a), margin(b)),
         Bool::Compare(comparison, a, b) => match comparison {
             Comparison::Equal | Comparison::Unequal => infinite(truth),
             Comparison::Less | Comparison::AtMost => difference(truth, b, a),
@@ -405,6 +400,7 @@ fn may_be_none(num: &Num) -> bool {
                     | Arithmetic::Min
                     | Arithmetic::Max
                     | Arithmetic::Atan2
+                    | Arithmetic::Agree
             ) || may_be_none(a)
                 || may_be_none(b)
         }

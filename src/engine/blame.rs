@@ -1,5 +1,6 @@
 //! What decided a trial: the atom, comparison or number, and the agents in it.
 
+use super::budget::Budget;
 use super::subject::Subject;
 use super::words;
 use crate::base::tick::{Clock, Tick};
@@ -30,7 +31,7 @@ const NAMED: usize = 3;
 
 impl Record {
     /// Calls `look` with the record in the form that `logic` reads.
-    fn read<T>(&self, subject: &Subject, look: impl FnOnce(&Recording<'_>) -> T) -> T {
+    fn read<T>(&self, subject: &Subject, budget: &Budget, look: impl FnOnce(&Recording<'_>) -> T) -> T {
         let atoms =
             |atom: AtomId, at: u64| self.atoms.get(at as usize).is_some_and(|row| row[atom.0 as usize]);
         let signals = |signal: SignalId, at: u64| {
@@ -42,6 +43,7 @@ impl Record {
             seen: self.atoms.len() as u64,
             horizon: subject.horizon,
             clock: subject.program.scenario.clock,
+            stop: &|| budget.is_late(),
         })
     }
 }
@@ -50,10 +52,10 @@ impl Record {
 pub(super) fn truth(
     subject: &Subject,
     root: NodeId,
-    record: &Record,
+    (record, budget): (&Record, &Budget),
     state_at: impl Fn(Tick) -> Option<State>,
 ) -> String {
-    record.read(subject, |recording| {
+    record.read(subject, budget, |recording| {
         let Ok(explanation) = explain(&subject.tree, root, recording) else { return String::new() };
         // Of those who are not there nothing is to be said, unless there is nobody else.
         let absent = |reason: &&Reason| {
@@ -80,10 +82,10 @@ pub(super) fn number(
     subject: &Subject,
     root: TermId,
     (value, unit): (f64, &str),
-    record: &Record,
+    (record, budget): (&Record, &Budget),
     state_at: impl Fn(Tick) -> Option<State>,
 ) -> (Option<Tick>, String) {
-    record.read(subject, |recording| {
+    record.read(subject, budget, |recording| {
         let (_, found) = sources(&subject.tree, root, Tick(0), recording);
         let never =
             value == f64::INFINITY && matches!(subject.tree.terms[root.0 as usize], Term::TimeUntil(_));
@@ -112,10 +114,10 @@ pub(super) fn margin(
     subject: &Subject,
     root: NodeId,
     (value, unit): (Option<f64>, &str),
-    record: &Record,
+    (record, budget): (&Record, &Budget),
     state_at: impl Fn(Tick) -> Option<State>,
 ) -> (Option<Tick>, String) {
-    record.read(subject, |recording| {
+    record.read(subject, budget, |recording| {
         let Some(found) = critical(&subject.tree, root, recording) else {
             return (None, value.map_or(String::new(), |value| words::brief(value, unit)));
         };
@@ -268,6 +270,11 @@ impl Search<'_> {
                     }
                 }
             }
+            Bool::Iff(a, b) => {
+                let first = self.holds(a);
+                self.walk(a, first);
+                self.walk(b, first == truth);
+            }
             Bool::Forall(set, body) | Bool::Exists(set, body) => {
                 if matches!(atom, Bool::Forall(..)) == truth {
                     return;
@@ -394,6 +401,7 @@ fn instantiate_bool(truth: &Bool, depth: u32, id: AgentId) -> Bool {
         Bool::Not(inner) => Bool::Not(Box::new(b(inner))),
         Bool::And(list) => Bool::And(list.iter().map(b).collect()),
         Bool::Or(list) => Bool::Or(list.iter().map(b).collect()),
+        Bool::Iff(x, y) => Bool::Iff(Box::new(b(x)), Box::new(b(y))),
         Bool::In(w, region) => Bool::In(who(*w, depth, id), *region),
         Bool::Present(w) => Bool::Present(who(*w, depth, id)),
         Bool::Contact(w) => Bool::Contact(who(*w, depth, id)),

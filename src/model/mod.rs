@@ -2,7 +2,8 @@
 
 pub mod agent;
 pub mod behaviour;
-pub mod evaluation;
+mod digest;
+mod evaluation;
 pub mod expression;
 mod lacking;
 pub mod law;
