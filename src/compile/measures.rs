@@ -7,7 +7,7 @@ use super::study::{Column, MeasureKind, Root, Sought};
 use super::symbols::{Meaning, ScopeId};
 use super::typed::Typed;
 use crate::base::tick::Clock;
-use crate::logic::{Invalid, Node, NodeId, Relation, SignalMonitor, Term, TermId};
+use crate::logic::{Invalid, Node, NodeId, Relation, SignalMonitor, SignalRobustness, Term, TermId};
 use crate::syntax::ast::{self, BinaryOp, Expr, ExprKind, Moment};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -143,11 +143,6 @@ impl Elaborator<'_> {
 
     /// A formula with its margins.
     fn robustness_of(&mut self, formula: &Expr, scope: ScopeId) -> Lowered<(NodeId, Dimension, bool)> {
-        if self.clock.is_jumps() {
-            let error = Diagnostic::error("E0508", formula.span, "there is no robustness in continuous time")
-                .hint("splitting needs it too; give the scenario a `step`, and jumps are seen at the steps");
-            return self.report(error);
-        }
         let (node, dimension) = self.robustness(formula.span, |this| {
             this.temporal = true;
             let typed = this.lower(formula, &Locals::of(scope));
@@ -156,6 +151,7 @@ impl Elaborator<'_> {
         })?;
         let reach = Reaches::new(&self.tree, self.horizon).node(node);
         self.within_horizon(reach, formula.span)?;
+        self.watchable(Root::Robustness(node, Sought::Value), formula.span)?;
         Ok((node, dimension, reach.unbounded))
     }
 
@@ -291,16 +287,16 @@ impl Elaborator<'_> {
         // Bounds between ticks are not right yet.
         let (Clock::Jumps(tick), true) = (self.clock, self.between.is_empty()) else { return Ok(()) };
         let made = match root {
-            Root::Formula(node) => SignalMonitor::formula(&self.tree, node, self.horizon, tick),
-            Root::Metric(term) => SignalMonitor::metric(&self.tree, term, self.horizon, tick),
-            Root::Robustness(..) => return Ok(()),
+            Root::Formula(node) => SignalMonitor::formula(&self.tree, node, self.horizon, tick).err(),
+            Root::Metric(term) => SignalMonitor::metric(&self.tree, term, self.horizon, tick).err(),
+            Root::Robustness(node, _) => SignalRobustness::new(&self.tree, node, self.horizon, tick).err(),
         };
         match made {
-            Ok(_) => Ok(()),
-            Err(reason @ Invalid::BeyondHorizon { .. }) => {
+            None => Ok(()),
+            Some(reason @ Invalid::BeyondHorizon { .. }) => {
                 self.report(Diagnostic::error("E0502", span, reason.to_string()))
             }
-            Err(reason) => self.report(Diagnostic::error("E0508", span, reason.to_string())),
+            Some(reason) => self.report(Diagnostic::error("E0508", span, reason.to_string())),
         }
     }
 

@@ -195,8 +195,13 @@ impl Answers<'_> {
             });
             let full = tally.first[2].and_then(|index| trial::overrun(subject, index, self.call.seed));
             let why = full.unwrap_or_else(|| {
-                "somebody left every human speed, or a mean was over nobody; a smaller step may help"
-                    .to_owned()
+                if subject.program.scenario.clock.is_jumps() {
+                    "a mean was over nobody, or more than a million pieces of a trial had to be kept"
+                        .to_owned()
+                } else {
+                    "somebody left every human speed, or a mean was over nobody; a smaller step may help"
+                        .to_owned()
+                }
             });
             result.warnings.push(format!("{} trials are unresolved: {why}{first}", tally.counts.unresolved));
         }

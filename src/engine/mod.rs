@@ -10,6 +10,7 @@ mod fault;
 mod forecast;
 mod jumper;
 mod observer;
+mod onlooker;
 pub mod outcome;
 mod procedure;
 mod race;

@@ -5,9 +5,14 @@ use crate::base::tick::{Clock, Tick};
 use crate::compile::study::{Root, Texts, World};
 use crate::kernel::process::View;
 use crate::kernel::{Code, Program};
-use crate::logic::{Invalid, Monitor, Node, NodeId, Robustness, SignalMonitor, Term, TermId, Tree};
+use crate::logic::{
+    Invalid, Monitor, Node, NodeId, Robustness, SignalMonitor, SignalRobustness, Term, TermId, Tree,
+};
 use crate::model::{Bool, Num};
 use std::collections::BTreeSet;
+
+/// Most jumps of a trial.
+const MOST_JUMPS: u64 = 1 << 26;
 
 /// A world made ready to run.
 pub struct Subject {
@@ -21,6 +26,8 @@ pub struct Subject {
     pub horizon: Tick,
     /// How atoms, signals and comparisons were written.
     pub texts: Texts,
+    /// Most jumps of a trial in continuous time; one that needs more is unresolved.
+    pub most_jumps: u64,
     atoms: Vec<Bool>,
     signals: Vec<Num>,
 }
@@ -46,6 +53,7 @@ impl Subject {
             tree: world.tree.clone(),
             columns: world.columns.iter().map(|c| c.root).collect(),
             texts: world.texts.clone(),
+            most_jumps: MOST_JUMPS,
             atoms: world.atoms.clone(),
             signals: world.signals.clone(),
         }
@@ -100,7 +108,10 @@ impl Subject {
     /// Number of the implications of a column that are watched.
     pub(super) fn implications(&self, column: usize) -> Result<usize, Invalid> {
         if self.program.scenario.clock.is_jumps() {
-            return Ok(self.signal_monitor(column)?.implications());
+            return Ok(match self.columns[column] {
+                Root::Robustness(..) => 0,
+                Root::Formula(_) | Root::Metric(_) => self.signal_monitor(column)?.implications(),
+            });
         }
         Ok(self.monitor(column)?.antecedents().count())
     }
@@ -112,6 +123,15 @@ impl Subject {
             Root::Formula(node) => SignalMonitor::formula(&self.tree, node, self.horizon, tick),
             Root::Metric(term) => SignalMonitor::metric(&self.tree, term, self.horizon, tick),
             Root::Robustness(..) => Err(Invalid::NoMargin),
+        }
+    }
+
+    /// The robustness of a column in continuous time, if it is one.
+    pub fn signal_robustness(&self, column: usize) -> Result<SignalRobustness, Invalid> {
+        let Clock::Jumps(tick) = self.program.scenario.clock else { return Err(Invalid::NoSteps) };
+        match self.columns[column] {
+            Root::Robustness(node, _) => SignalRobustness::new(&self.tree, node, self.horizon, tick),
+            Root::Formula(_) | Root::Metric(_) => Err(Invalid::NoMargin),
         }
     }
 

@@ -37,9 +37,12 @@ pub(super) fn fault(subject: &Subject, item: Item, seed: u64) -> Fault {
     Fault::Model(format!("trial {} at {time}: {what}\n  the state is {values}", item.index))
 }
 
-/// Says which source lets no more people in, where that leaves a trial unresolved.
+/// Says which process jumps without end, or which source lets no more people in, where that leaves a trial unresolved.
 pub(super) fn overrun(subject: &Subject, index: u64, seed: u64) -> Option<String> {
     let program = &subject.program;
+    if program.scenario.clock.is_jumps() {
+        return restless(subject, index, seed);
+    }
     let sources = &program.scenario.sources;
     if sources.is_empty() {
         return None;
@@ -53,3 +56,25 @@ pub(super) fn overrun(subject: &Subject, index: u64, seed: u64) -> Option<String
     }
     state.queues.overrun(sources, 0)
 }
+
+/// Says which process jumps most in a trial that needs more jumps than are possible.
+fn restless(subject: &Subject, index: u64, seed: u64) -> Option<String> {
+    let program = &subject.program;
+    let (mut state, mut scratch) = (State::new(program.layout, 0), Scratch::new());
+    start::load(program, &mut state, 0, TrialKey { seed, index, branch: 0 }, None).ok()?;
+    while state.clocks.jumps[0] < subject.most_jumps {
+        if dynamics::jump(program, &mut state, &mut scratch).is_empty() || !state.faulty.is_empty() {
+            return None;
+        }
+    }
+    let (process, rate) = program.processes.busiest(&state, 0)?;
+    let name = &program.scenario.processes.list.get(process as usize)?.name;
+    let rate = if rate > 0.0 { format!(", now at a rate of {rate} /s") } else { String::new() };
+    Some(format!(
+        "more than {} jumps by {} s, most of them of `{name}`{rate}; a shorter horizon or slower rates may help",
+        subject.most_jumps, state.clocks.now[0]
+    ))
+}
+
+#[cfg(test)]
+mod tests;

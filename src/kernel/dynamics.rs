@@ -30,6 +30,7 @@ use super::state::{Layout, Slot, State};
 use super::vector::{Doubles, Part, Words, parts};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::math;
+use crate::base::random::TrialKey;
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
 
@@ -138,7 +139,26 @@ pub fn step(program: &Program, state: &mut State, scratch: &mut Scratch) {
 /// Continuous time: every occupied lane goes to its next jump, if that comes up to and with the horizon. Returns
 /// the lanes that did; the times are in `state.clocks`. In others nothing more happens.
 pub fn jump(program: &Program, state: &mut State, scratch: &mut Scratch) -> Mask {
-    program.processes.jump(program.layout, state, &mut scratch.processes)
+    jump_until(program, state, scratch, &[f64::INFINITY; LANES])
+}
+
+/// The same up to and with a time of each lane, s, or the horizon if that comes first.
+pub fn jump_until(program: &Program, state: &mut State, scratch: &mut Scratch, until: &[f64; LANES]) -> Mask {
+    let last = program.processes.last();
+    let until = until.map(|time| if time < last { time } else { last });
+    program.processes.jump(program.layout, state, &mut scratch.processes, &until)
+}
+
+/// Continuous time: the trial of a lane, in which all has happened that comes up to and with a time, s, goes on from
+/// there under another key. Exponential waits begin anew, delays keep what is left of them.
+pub fn renew(
+    program: &Program,
+    state: &mut State,
+    scratch: &mut Scratch,
+    lane: usize,
+    from: (f64, TrialKey),
+) {
+    program.processes.renew(program.layout, state, &mut scratch.processes, lane, from);
 }
 
 /// The slots of a block that belong to some lanes.

@@ -21,5 +21,6 @@ pub use invalid::Invalid;
 pub use monitor::robustness::Robustness;
 pub use monitor::{Antecedent, Monitor};
 pub use offline::Recording;
+pub use signal::robustness::{Bounds, SignalRobustness};
 pub use signal::{Reading, SignalMonitor};
 pub use source::{Source, sides, sources};

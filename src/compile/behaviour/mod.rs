@@ -12,7 +12,7 @@ use super::symbols::{Meaning, unknown};
 use super::typed::Typed;
 use crate::model::{AgentId, Attached, Behaviour, BehaviourId, Behaviours, Mode, Parameter, Route, Who};
 use crate::syntax::ast::process::{BehaviourDecl, BehaviourItem, StateDecl};
-use crate::syntax::ast::{Expr, ExprKind, Ident};
+use crate::syntax::ast::{Expr, ExprKind, Ident, LetDecl};
 use crate::syntax::diagnostic::Diagnostic;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -37,6 +37,10 @@ fn states(decl: &BehaviourDecl) -> impl Iterator<Item = &StateDecl> {
         .filter_map(|item| if let BehaviourItem::State(state) = item { Some(state) } else { None })
 }
 
+fn lets(decl: &BehaviourDecl) -> impl Iterator<Item = &LetDecl> {
+    decl.items.iter().filter_map(|item| if let BehaviourItem::Let(decl) = item { Some(decl) } else { None })
+}
+
 impl<'a> Elaborator<'a> {
     /// Declares a behaviour and checks what needs no arguments: names of states, fields and events.
     pub(super) fn declare_behaviour(&mut self, decl: &'a BehaviourDecl) {
@@ -49,19 +53,12 @@ impl<'a> Elaborator<'a> {
                     self.check_state(state, &names);
                     &state.name
                 }
-                BehaviourItem::Let(decl) => {
-                    if let Some(argument) = decl.arguments.first() {
-                        let error = Diagnostic::error("E0305", argument.span, "a name here has no arguments")
-                            .hint("declare the function outside of the behaviour");
-                        self.note(error);
-                    }
-                    &decl.name
-                }
+                BehaviourItem::Let(decl) => &decl.name,
                 BehaviourItem::On(on) => {
                     if !EVENTS.contains(&on.event.name.as_str()) {
                         let known = EVENTS.into_iter();
                         let error = unknown("event", &on.event.name, on.event.span, "E0201", known)
-                            .hint("the only event is `advice`: a move is suggested to the agent");
+                            .hint("the only event is `advice`: a move is suggested to the agent; what happens around it is a condition of a state, as in `when self in exit -> …`, `when contact(self) -> …`");
                         self.note(error);
                     }
                     self.check_targets(on.choices.iter().map(|choice| &choice.target), &OUTCOMES, "reaction");
@@ -224,6 +221,7 @@ impl<'a> Elaborator<'a> {
             let value = self.lower(argument, &Locals::of(0))?;
             locals.names.push((name.name.clone(), value));
         }
+        locals.behaviour = Some((id.0, locals.names.len() + 1));
         let first = with.members.first().copied().unwrap_or(AgentId(0));
         let conduct = Arc::new(self.conduct(decl, &of(&locals, first), variables)?);
         let entity = people.entities(&format!("{}.{}", with.name, decl.name.name), with.members.len() as u32);
@@ -242,7 +240,8 @@ impl<'a> Elaborator<'a> {
             let id = BehaviourId(k as u32);
             let used = self.withs.iter().any(|with| with.behaviours.iter().any(|(known, ..)| *known == id));
             if !used && decl.arguments.is_empty() && !self.agent_names.is_empty() {
-                let locals = of(&Locals::of(0), AgentId(0));
+                let locals = Locals { behaviour: Some((id.0, 1)), ..Locals::of(0) };
+                let locals = of(&locals, AgentId(0));
                 let _: Result<_, Reported> = self.conduct(decl, &locals, variables);
                 let _: Result<_, Reported> = self.conditions(decl, &locals);
             }

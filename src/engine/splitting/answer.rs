@@ -32,7 +32,7 @@ impl Answers<'_> {
         result.replay = self.replay(query, "--max-trials", counts.trials + found.paths);
         self.tell(&mut result, subject, &found.plain, column);
         let name = words::measured(&query.text, 'P');
-        // The only statement that holds without a condition is that of the plain trials.
+        // From above the only statement that holds without a condition is that of the plain trials.
         result.certifies = format!(
             "{name} <= {}, error at most {} (from the plain trials alone)",
             words::number(words::at_most(found.bound)),
@@ -40,6 +40,14 @@ impl Answers<'_> {
         );
         if counts.trials == 0 {
             result.certifies = String::new();
+        }
+        if let Some(spread) = found.spread.filter(|spread| spread.floor > 0.0) {
+            result.certifies = format!(
+                "{}; {name} >= {}, error at most {} (from the runs, which are unbiased)",
+                result.certifies,
+                words::number(words::at_least(spread.floor)),
+                words::number(rule.delta)
+            );
         }
         state(&mut result, &found, rule.delta);
         let picks = witness::sides(&found.plain);
@@ -67,6 +75,7 @@ fn state(result: &mut QueryResult, found: &Found, delta: f64) {
         plain_low: if sampled { plain.low } else { 0.0 },
         plain_high: if sampled { plain.high } else { 1.0 },
         plain_bound: if sampled { found.bound } else { 1.0 },
+        floor: found.spread.map_or(0.0, |s| s.floor),
         agrees,
     });
     match found.spread {

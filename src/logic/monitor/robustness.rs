@@ -13,7 +13,7 @@ use super::plan::{Answer, Plan};
 use super::track::select;
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::tick::{Clock, Tick};
-use crate::logic::formula::{NodeId, Relation, Tree};
+use crate::logic::formula::{NodeId, Tree};
 use crate::logic::invalid::Invalid;
 use crate::logic::reach::Part;
 
@@ -55,18 +55,6 @@ impl Bounds {
     /// This in the lanes of the set, the other elsewhere.
     fn within(self, lanes: u8, other: Self) -> Self {
         Self { lower: select(lanes, self.lower, other.lower), upper: select(lanes, self.upper, other.upper) }
-    }
-}
-
-/// The margin of `x r y`: how far the sides may move before the comparison changes.
-fn margin(relation: Relation, x: Lanes, y: Lanes) -> Lanes {
-    // Two equal infinities are no distance apart.
-    let less = |x: f64, y: f64| if x == y { 0.0 } else { x - y };
-    match relation {
-        Relation::Less | Relation::AtMost => y.zip(x, less),
-        Relation::Greater | Relation::AtLeast => x.zip(y, less),
-        Relation::Equal => x.zip(y, |x, y| -less(x, y).abs()),
-        Relation::Unequal => x.zip(y, |x, y| less(x, y).abs()),
     }
 }
 
@@ -268,7 +256,7 @@ fn step(cells: &mut [Cell], margins: &mut [Margin], k: usize, atoms: &[Lanes], c
             own.now = Bounds::known(atoms.get(*atom).copied().unwrap_or(Lanes::splat(f64::NAN)));
         }
         Machine::CompareNow(relation, x, y) => {
-            own.now = Bounds::known(margin(*relation, before[*x].value, before[*y].value));
+            own.now = Bounds::known(before[*x].value.zip(before[*y].value, |x, y| relation.margin(x, y)));
         }
         Machine::AnyNow(children) | Machine::AnyHeld(children) => {
             own.now = children.iter().fold(Bounds::FALSE, |all, child| all.or(present(below, *child)));

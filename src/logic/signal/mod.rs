@@ -12,6 +12,7 @@ mod moment;
 mod number;
 mod plan;
 mod present;
+pub mod robustness;
 mod stream;
 mod track;
 mod truth;
