@@ -41,6 +41,8 @@ pub(super) struct Sheet {
     pub(super) places: Vec<usize>,
     /// One a column.
     pub(super) observers: Vec<Observer>,
+    /// Whether each column follows single people of a source.
+    pub(super) follows: Vec<bool>,
 }
 
 impl Subject {
@@ -154,6 +156,12 @@ impl Subject {
         atoms.iter().all(|atom| atom.reads(&mut read)) && signals.iter().all(|s| s.reads(&mut read))
     }
 
+    /// Whether a column follows single people of a source: it knows no more once a place is given to a second person.
+    pub(super) fn follows(&self, column: usize) -> bool {
+        let (atoms, signals) = self.observed(&[column]);
+        self.program.arrivals.are_named(&atoms, &signals)
+    }
+
     /// The numbers of the atoms that a column uses.
     pub(super) fn atoms_of(&self, column: usize) -> Vec<usize> {
         let used = self.used(&[column]);
@@ -206,7 +214,8 @@ impl Subject {
             .map(|places| {
                 let chosen: Vec<usize> = places.iter().map(|&p| columns[p]).collect();
                 let observers = chosen.iter().map(|&c| self.observer(c)).collect::<Result<Vec<_>, _>>()?;
-                Ok(Sheet { code: self.code(&chosen), places, observers })
+                let follows = chosen.iter().map(|&column| self.follows(column)).collect();
+                Ok(Sheet { code: self.code(&chosen), places, observers, follows })
             })
             .collect()
     }

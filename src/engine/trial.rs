@@ -54,7 +54,7 @@ pub(super) fn overrun(subject: &Subject, index: u64, seed: u64) -> Option<String
     while state.queues.full.is_empty() && state.diverged.is_empty() && state.ticks[0] < subject.horizon.0 {
         dynamics::step(program, &mut state, &mut scratch);
     }
-    state.queues.overrun(sources, 0)
+    state.queues.overrun(sources, 0).or_else(|| state.queues.lost_sight(sources, 0))
 }
 
 /// Says which process jumps most in a trial that needs more jumps than are possible.

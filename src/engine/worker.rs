@@ -159,9 +159,11 @@ impl Worker {
         for (sheet, readings) in self.sheets.iter_mut().zip(&mut self.readings) {
             sheet.code.run(&subject.program, &self.state, readings);
             let lost = readings.unresolved & watched;
-            let lanes = watched & !lost;
-            for (observer, &place) in sheet.observers.iter_mut().zip(&sheet.places) {
-                let open = lanes & !self.settled[place];
+            for (k, observer) in sheet.observers.iter_mut().enumerate() {
+                let place = sheet.places[k];
+                let gone = if sheet.follows[k] { self.state.queues.reused & watched } else { Mask::NONE };
+                let lost = lost | gone;
+                let open = watched & !lost & !self.settled[place];
                 if !open.is_empty() {
                     observer.observe(open, readings);
                 }

@@ -23,7 +23,7 @@ use super::cells::Cells;
 use super::contact::Contacts;
 use super::drive;
 use super::lanewise::{Lanewise, Sum};
-use super::noise::Draws;
+use super::noise::{Draws, word_of};
 use super::process;
 use super::program::Program;
 use super::state::{Layout, Slot, State};
@@ -253,6 +253,9 @@ impl Mover<'_> {
     #[inline(always)]
     fn words(&self, state: &State, block: usize) -> [u64; LANES] {
         let words = &self.program.forces.noise_words;
+        if !state.queues.reused.is_empty() {
+            return self.words_of_later(state, block);
+        }
         match state.layout {
             Layout::Trials => [u64::from(words[block]); LANES],
             Layout::Agents => {
@@ -264,6 +267,20 @@ impl Mover<'_> {
                 out
             }
         }
+    }
+
+    /// The same where some places of sources are used by later people.
+    #[cold]
+    fn words_of_later(&self, state: &State, block: usize) -> [u64; LANES] {
+        let agents = &self.program.scenario.agents;
+        std::array::from_fn(|k| {
+            let (agent, lane) = match state.layout {
+                Layout::Trials => (block, k),
+                Layout::Agents => (block * LANES + k, 0),
+            };
+            let entity = agents.get(agent).map_or(0, |known| known.entity + state.queues.later(agent, lane));
+            u64::from(word_of(entity))
+        })
     }
 
     /// Driving and noise over the whole step.

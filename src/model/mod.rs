@@ -5,6 +5,7 @@ pub mod behaviour;
 pub mod evaluation;
 pub mod expression;
 pub mod law;
+pub mod mention;
 pub mod moves;
 pub mod process;
 pub mod scenario;

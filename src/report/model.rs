@@ -93,7 +93,7 @@ fn people(out: &mut String, scenario: &Scenario) {
         match scenario.sources.iter().find(|source| source.name == stem) {
             Some(source) => {
                 let (count, every) = (source.members.len(), law(&source.every, "s"));
-                let _ = writeln!(out, "  source {stem}: one every {every}, at most {count}");
+                let _ = writeln!(out, "  source {stem}: one every {every}, at most {count} at once");
             }
             None => {
                 let _ = writeln!(out, "  {name}");

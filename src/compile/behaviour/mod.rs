@@ -29,6 +29,8 @@ pub(super) struct With<'a> {
     /// Name of the declaration.
     name: String,
     members: Vec<AgentId>,
+    /// Of a source: how many may come.
+    pub(super) most: u32,
 }
 
 fn states(decl: &BehaviourDecl) -> impl Iterator<Item = &StateDecl> {
@@ -154,7 +156,7 @@ impl<'a> Elaborator<'a> {
             }
             behaviours.push((id, arguments, expr));
         }
-        With { behaviours, name: name.name.clone(), members: Vec::new() }
+        With { behaviours, name: name.name.clone(), members: Vec::new(), most: 0 }
     }
 
     /// Gives behaviours to the members of a declaration.
@@ -225,11 +227,16 @@ impl<'a> Elaborator<'a> {
         let first = with.members.first().copied().unwrap_or(AgentId(0));
         let conduct = Arc::new(self.conduct(decl, &of(&locals, first), variables)?);
         let entity = people.entities(&format!("{}.{}", with.name, decl.name.name), with.members.len() as u32);
+        // Later people on the places of a source have numbers of their own.
+        let later = match with.most {
+            0 => 0,
+            most => people.entities(&format!("{}.{}.later", with.name, decl.name.name), most),
+        };
         let mut out = Vec::with_capacity(with.members.len());
         for (k, &agent) in with.members.iter().enumerate() {
             let guards = self.conditions(decl, &of(&locals, agent))?;
-            let entity = entity + k as u32;
-            out.push(Attached { agent, behaviour: id, entity, conduct: conduct.clone(), guards });
+            let (entity, later) = (entity + k as u32, later + k as u32);
+            out.push(Attached { agent, behaviour: id, entity, later, conduct: conduct.clone(), guards });
         }
         Ok(out)
     }

@@ -1,6 +1,6 @@
 //! Paths in lanes: each with the monitor of its formula and the robustness that is its level.
 
-use super::leaper::Leaper;
+use super::hopper::Hopper;
 use super::path::Path;
 use crate::base::lanes::{LANES, Mask};
 use crate::engine::budget::Budget;
@@ -46,13 +46,15 @@ struct Bird {
     formula: (Code, Observer),
     level: (Code, Robustness),
     readings: [Readings; 2],
+    /// Whether the formula follows single people of a source.
+    follows: bool,
     busy: [Option<Busy>; LANES],
 }
 
 /// A batch, as the clock needs it.
 enum Batch {
     Steps(Box<Bird>),
-    Jumps(Box<Leaper>),
+    Jumps(Box<Hopper>),
 }
 
 impl Batch {
@@ -65,7 +67,7 @@ impl Batch {
     ) -> (Landed, Option<(usize, Fault)>) {
         match self {
             Self::Steps(bird) => bird.run(subject, paths, take, budget),
-            Self::Jumps(leaper) => leaper.run(subject, paths, take, budget),
+            Self::Jumps(hopper) => hopper.run(subject, paths, take, budget),
         }
     }
 }
@@ -90,7 +92,7 @@ impl<'s> Flock<'s> {
         let (subject, [formula, level]) = (self.subject, self.columns);
         let program = &subject.program;
         if program.scenario.clock.is_jumps() {
-            return Ok(Batch::Jumps(Box::new(Leaper::new(subject, self.columns)?)));
+            return Ok(Batch::Jumps(Box::new(Hopper::new(subject, self.columns)?)));
         }
         Ok(Batch::Steps(Box::new(Bird {
             state: State::new(program.layout, program.scenario.agents.len()),
@@ -98,6 +100,7 @@ impl<'s> Flock<'s> {
             formula: (subject.code(&[formula]), subject.observer(formula)?),
             level: (subject.code(&[level]), subject.robustness(level)?),
             readings: [Readings::default(), Readings::default()],
+            follows: subject.follows(formula),
             busy: [const { None }; LANES],
         })))
     }
@@ -230,7 +233,10 @@ impl Bird {
         self.level.0.run(&subject.program, &self.state, of_level);
         let occupied = self.state.occupied;
         // A level without a value is none yet; a formula without one is lost.
-        let ended = self.state.diverged | self.state.queues.full;
+        let mut ended = self.state.diverged | self.state.queues.full;
+        if self.follows {
+            ended |= self.state.queues.reused;
+        }
         let lost = (ended | of_formula.unresolved | of_level.unresolved) & occupied;
         let watched = occupied & !lost;
         self.formula.1.observe(watched, of_formula);

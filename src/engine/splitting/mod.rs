@@ -3,7 +3,7 @@
 
 mod answer;
 mod flock;
-mod leaper;
+mod hopper;
 mod path;
 
 use super::budget::Budget;

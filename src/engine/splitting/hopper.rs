@@ -28,7 +28,7 @@ struct Busy {
 }
 
 /// A batch of lanes.
-pub(super) struct Leaper {
+pub(super) struct Hopper {
     state: State,
     scratch: Scratch,
     view: View,
@@ -39,7 +39,7 @@ pub(super) struct Leaper {
     most: u64,
 }
 
-impl Leaper {
+impl Hopper {
     /// For a column that is a formula, and one that is the robustness that is its level.
     pub(super) fn new(subject: &Subject, columns: [usize; 2]) -> Result<Self, Invalid> {
         let [formula, level] = columns;
