@@ -14,6 +14,7 @@ use crate::data::table::{
 use crate::kernel::{Program, Scratch, Slot, State, dynamics, start};
 use crate::model::{AgentId, Domain, Scenario};
 use crate::report::ExitCode as Exit;
+use crate::syntax::render::render;
 use std::io::{BufWriter, Write};
 use std::sync::Arc;
 
@@ -121,8 +122,9 @@ impl<'p> Walk<'p> {
                 if !self.state.diverged.is_empty() {
                     let time = self.program.scenario.clock.seconds(Tick(tick));
                     self.notes.push(format!(
-                        "trial {} diverged at {time} s: somebody left every human speed; a smaller step may help",
-                        self.trial
+                        "trial {} diverged at {time} s: {}; a smaller step may help",
+                        self.trial,
+                        crate::engine::runaway(&self.program.scenario, &self.state)
                     ));
                 }
                 self.running = false;
@@ -244,7 +246,8 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
         None => None,
     };
     if let Err(reason) = super::placeable(&scenario) {
-        return super::crowded(reason, colors);
+        say(&render(&[super::crowded(reason)], &[], colors.err));
+        return Exit::Wrong;
     }
     let mut last = scenario.horizon.0;
     if let Some(until) = arguments.until {

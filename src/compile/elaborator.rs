@@ -13,7 +13,7 @@ use crate::base::geometry::{Shape, Vec2};
 use crate::base::tick::{Clock, Tick};
 use crate::data::tracks::Recording;
 use crate::logic::{Node, NodeId, Relation, SignalId, Term, TermId, Tree};
-use crate::model::{AgentId, Bool, Num, Scene};
+use crate::model::{AgentId, Bool, Num, Scene, Who};
 use crate::syntax::ast::{BehaviourDecl, Expr};
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::source::{Source, Span};
@@ -298,6 +298,19 @@ impl<'a> Elaborator<'a> {
             self.atoms.len() - 1
         });
         self.node(Node::Atom(crate::logic::AtomId(at as u32)))
+    }
+
+    /// Whether somebody is there, which nobody wrote: it is named for what it is.
+    pub(super) fn presence(&mut self, id: AgentId, span: Span) -> NodeId {
+        let node = self.atom(Bool::Present(Who::Agent(id)), span);
+        if let (Node::Atom(atom), Some(name)) =
+            (&self.tree.nodes[node.0 as usize], self.agent_names.get(id.0 as usize))
+            && let Some(text) = self.texts.atoms.get_mut(atom.0 as usize)
+        {
+            *text = format!("present({name})");
+            self.texts.implied.insert(atom.0);
+        }
+        node
     }
 
     /// A comparison of numbers over time.

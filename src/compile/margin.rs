@@ -71,9 +71,15 @@ impl Elaborator<'_> {
                 .hint("robustness measures how far comparisons with `<`, `<=`, `>`, `>=`, contacts and regions are from changing");
             return self.report(error);
         };
-        let node =
-            Rewriting { elaborator: self, dimension, span, nodes: BTreeMap::new(), terms: BTreeMap::new() }
-                .node(node);
+        let node = Rewriting {
+            elaborator: self,
+            dimension,
+            span,
+            text: String::new(),
+            nodes: BTreeMap::new(),
+            terms: BTreeMap::new(),
+        }
+        .node(node);
         let made = match self.clock {
             Clock::Jumps(tick) => SignalRobustness::new(&self.tree, node, self.horizon, tick).err(),
             clock => Robustness::new(&self.tree, node, self.horizon, clock).err(),
@@ -96,6 +102,8 @@ struct Rewriting<'e, 'a> {
     elaborator: &'e mut Elaborator<'a>,
     dimension: Dimension,
     span: Span,
+    /// The condition that is rewritten, as written.
+    text: String,
     nodes: BTreeMap<u32, NodeId>,
     terms: BTreeMap<u32, TermId>,
 }
@@ -109,11 +117,15 @@ impl Rewriting<'_, '_> {
             node @ Node::Constant(_) => self.elaborator.node(node),
             Node::Atom(atom) => {
                 let truth = self.elaborator.atoms[atom.0 as usize].clone();
+                let text = self.elaborator.texts.atoms.get(atom.0 as usize).cloned();
+                self.text = text.unwrap_or_default();
                 self.condition(&truth)
             }
             Node::Compare(relation, a, b) => {
                 let (a, b) = (self.term(a), self.term(b));
-                self.elaborator.node(Node::Compare(relation, a, b))
+                let text = self.elaborator.texts.comparisons.get(&id.0).map(|(text, _)| text.clone());
+                self.text = text.unwrap_or_default();
+                self.comparison(relation, a, b)
             }
             Node::Not(a) => {
                 let a = self.node(a);
@@ -187,6 +199,11 @@ impl Rewriting<'_, '_> {
         made
     }
 
+    /// A comparison that stands for a condition, and is named as it was written.
+    fn comparison(&mut self, relation: Relation, a: TermId, b: TermId) -> NodeId {
+        self.elaborator.comparison((relation, a, b), self.text.clone(), self.dimension)
+    }
+
     fn number(&mut self, num: &Num) -> TermId {
         self.elaborator.signal(num.clone(), self.dimension, self.span)
     }
@@ -214,19 +231,19 @@ impl Rewriting<'_, '_> {
                 let is_number = Bool::Compare(Comparison::Equal, same.0, same.1);
                 let margin = Num::If(Box::new(is_number), Box::new(margin), Box::new(infinite(truth)));
                 let (margin, zero) = (self.number(&margin), self.elaborator.term(Term::Constant(0.0)));
-                self.elaborator.node(Node::Compare(Relation::Greater, margin, zero))
+                self.comparison(Relation::Greater, margin, zero)
             }
             Bool::Compare(comparison, a, b)
                 if !matches!(comparison, Comparison::Equal | Comparison::Unequal)
                     && depth(truth).is_none() =>
             {
                 let (a, b) = (self.number(a), self.number(b));
-                self.elaborator.node(Node::Compare(relation(*comparison), a, b))
+                self.comparison(relation(*comparison), a, b)
             }
             _ => {
                 let margin = self.number(&margin(truth));
                 let zero = self.elaborator.term(Term::Constant(0.0));
-                self.elaborator.node(Node::Compare(Relation::Greater, margin, zero))
+                self.comparison(Relation::Greater, margin, zero)
             }
         }
     }

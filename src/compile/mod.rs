@@ -5,8 +5,10 @@
 
 mod asks;
 mod behaviour;
+mod bounds;
 pub mod dimension;
 mod elaborator;
+mod families;
 mod files;
 mod filter;
 mod kinds;
@@ -32,8 +34,10 @@ mod symbols;
 mod typed;
 mod ways;
 mod world;
+mod written;
 
 pub use files::{Files, Request, requests};
 pub use queries::{Input, compile};
 pub use settings::{Setting, SettingValue};
 pub use study::Study;
+pub use written::Written;

@@ -5,7 +5,8 @@ use super::words;
 use crate::base::tick::{Clock, Tick};
 use crate::kernel::{Code, Readings, State};
 use crate::logic::{
-    AtomId, Node, NodeId, Reason, Recording, SignalId, Source, Term, TermId, explain, sides, sources,
+    AtomId, Node, NodeId, Reason, Recording, SignalId, Source, Term, TermId, critical, explain, sides,
+    sources,
 };
 use crate::model::{AgentId, Bool, Num, Place, Scenario, Set, Who};
 
@@ -54,9 +55,19 @@ pub(super) fn truth(
 ) -> String {
     record.read(subject, |recording| {
         let Ok(explanation) = explain(&subject.tree, root, recording) else { return String::new() };
+        // Of those who are not there nothing is to be said, unless there is nobody else.
+        let absent = |reason: &&Reason| {
+            let Node::Atom(atom) = subject.tree.nodes[reason.leaf.0 as usize] else { return false };
+            !reason.value && matches!(subject.atoms()[atom.0 as usize], Bool::Present(_))
+        };
         // The last reason in time is the one that closed the case.
-        let last = explanation.reasons.iter().max_by_key(|reason| (reason.to, reason.from));
+        let said = explanation.reasons.iter().filter(|reason| !absent(reason));
+        let last = said.max_by_key(|reason| (reason.to, reason.from));
         match last {
+            None if explanation.reasons.len() > 1 => "none of those it asks about is there".to_owned(),
+            None if explanation.reasons.len() == 1 => {
+                closing(subject, &explanation.reasons[0], recording, &state_at)
+            }
             Some(reason) => closing(subject, reason, recording, &state_at),
             None if explanation.verdict.is_some() => "it does not depend on what happens".to_owned(),
             None => String::new(),
@@ -93,6 +104,42 @@ pub(super) fn number(
                 (None, format!("{text}: {}", list.join(" and ")))
             }
         }
+    })
+}
+
+/// Which condition has the margin that the robustness of a formula is in a trial, and when.
+pub(super) fn margin(
+    subject: &Subject,
+    root: NodeId,
+    (value, unit): (Option<f64>, &str),
+    record: &Record,
+    state_at: impl Fn(Tick) -> Option<State>,
+) -> (Option<Tick>, String) {
+    record.read(subject, |recording| {
+        let Some(found) = critical(&subject.tree, root, recording) else {
+            return (None, value.map_or(String::new(), |value| words::brief(value, unit)));
+        };
+        let shown = words::brief(value.unwrap_or(found.margin), unit);
+        let mut said = format!("margin {shown}");
+        if let Some((text, _)) =
+            subject.texts.comparisons.get(&found.leaf.0).filter(|(text, _)| !text.is_empty())
+        {
+            said = format!("{said}, of `{text}`");
+        }
+        if let (Some(state), Node::Compare(_, x, y)) =
+            (state_at(found.at), &subject.tree.nodes[found.leaf.0 as usize])
+        {
+            let mut search = Search { subject, state: &state, found: Vec::new() };
+            for side in [x, y] {
+                if let Term::Signal(signal) = &subject.tree.terms[side.0 as usize] {
+                    search.extremum(&subject.signals()[signal.0 as usize]);
+                }
+            }
+            search.found.truncate(NAMED);
+            let found = search.found;
+            said.push_str(&names(subject, &found, Some(&state)));
+        }
+        (Some(found.at), said)
     })
 }
 
@@ -145,8 +192,12 @@ fn closing(
     recording: &Recording<'_>,
     state_at: &impl Fn(Tick) -> Option<State>,
 ) -> String {
-    let word = if reason.value { "holds" } else { "fails" };
+    let word = words::truth(reason.value);
     match &subject.tree.nodes[reason.leaf.0 as usize] {
+        Node::Atom(atom) if let Bool::Present(Who::Agent(id)) = &subject.atoms()[atom.0 as usize] => {
+            let name = subject.program.scenario.agents.get(id.0 as usize).map_or("", |agent| &agent.name);
+            format!("{name} is {}there", if reason.value { "" } else { "not " })
+        }
         Node::Atom(atom) => {
             let Some(text) = subject.texts.atoms.get(atom.0 as usize) else { return String::new() };
             let blamed =
@@ -197,12 +248,17 @@ impl Search<'_> {
         }
     }
 
-    fn members(set: &Set) -> Vec<AgentId> {
+    /// Those of a set who are there: nobody else counts.
+    fn members(&self, set: &Set) -> Vec<AgentId> {
         let out = match set.except {
             Some(Who::Agent(id)) => Some(id),
             _ => None,
         };
-        set.members.iter().copied().filter(|id| Some(*id) != out).collect()
+        let there = |id: AgentId| {
+            let slot = self.state.slot(id.0 as usize, 0);
+            self.state.present[slot.block].has(slot.lane)
+        };
+        set.members.iter().copied().filter(|id| Some(*id) != out && there(*id)).collect()
     }
 
     fn walk(&mut self, atom: &Bool, truth: bool) {
@@ -224,7 +280,7 @@ impl Search<'_> {
                 if matches!(atom, Bool::Forall(..)) == truth {
                     return;
                 }
-                for id in Self::members(set) {
+                for id in self.members(set) {
                     let one = instantiate_bool(body, 0, id);
                     if self.holds(&one) == truth {
                         self.name(id);
@@ -266,7 +322,8 @@ impl Search<'_> {
                 self.extremum(a);
                 self.extremum(b);
             }
-            Num::Apply(_, a) => self.extremum(a),
+            // The margin of who may not be there yet stands in a condition.
+            Num::Apply(_, a) | Num::If(_, a, _) => self.extremum(a),
             _ => {}
         }
         let Num::Fold(fold, set, body) = num else { return };
@@ -275,7 +332,7 @@ impl Search<'_> {
             crate::model::Fold::Max => false,
             crate::model::Fold::Sum | crate::model::Fold::Mean => return,
         };
-        let members = Self::members(set);
+        let members = self.members(set);
         let values: Vec<Num> = members.iter().map(|id| instantiate_num(body, 0, *id)).collect();
         let code = Code::compile(&self.subject.program.scenario, &[], &values);
         let mut readings = Readings::default();

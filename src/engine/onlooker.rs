@@ -56,6 +56,16 @@ impl Onlooker {
         }
     }
 
+    /// Whether what is unresolved is so because the metric is no number.
+    pub(super) fn is_no_number(&self) -> bool {
+        match self {
+            Self::Plain(monitor) => {
+                matches!(monitor.reading(), Some(logic::Reading::Value(value)) if value.is_nan())
+            }
+            Self::Robustness(..) => false,
+        }
+    }
+
     /// The implications that the trial triggered, as bits.
     pub(super) fn triggered(&self) -> u64 {
         match self {

@@ -57,7 +57,7 @@ pub(super) fn decision(
     }
     let word = |k: &usize| {
         let text = subject.texts.atoms.get(*k).map_or("", String::as_str);
-        format!("`{text}` {}", if now[*k] { "holds" } else { "fails" })
+        format!("`{text}` {}", words::truth(now[*k]))
     };
     let what = named.iter().take(NAMED).map(word).collect::<Vec<_>>().join(", ");
     match monitor.reading() {
@@ -69,6 +69,7 @@ pub(super) fn decision(
             let text = if what.is_empty() { value_text } else { format!("{value_text}, when {what}") };
             Some((at, Some(value), text))
         }
+        _ if what.is_empty() => Some((at, None, "its time was over".to_owned())),
         _ => Some((at, None, what)),
     }
 }

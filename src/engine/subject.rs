@@ -1,12 +1,13 @@
 //! A world made ready to run: a program of the kernel and what is observed in it.
 
 use super::observer::Observer;
+use crate::base::lanes::{LANES, Mask};
 use crate::base::tick::{Clock, Tick};
 use crate::compile::study::{Root, Texts, World};
 use crate::kernel::process::View;
-use crate::kernel::{Code, Program};
+use crate::kernel::{Code, Program, Readings};
 use crate::logic::{
-    Invalid, Monitor, Node, NodeId, Robustness, SignalMonitor, SignalRobustness, Term, TermId, Tree,
+    Invalid, Monitor, Needs, Node, NodeId, Robustness, SignalMonitor, SignalRobustness, Term, TermId, Tree,
 };
 use crate::model::{Bool, Num};
 use std::collections::BTreeSet;
@@ -43,6 +44,33 @@ pub(super) struct Sheet {
     pub(super) observers: Vec<Observer>,
     /// Whether each column follows single people of a source.
     pub(super) follows: Vec<bool>,
+    /// When they look at what.
+    needs: Needs,
+}
+
+impl Sheet {
+    /// The lanes in which something is looked at in the present state that has no value there.
+    pub(super) fn lost(&self, readings: &Readings, ticks: &[u64; LANES]) -> Mask {
+        lost(&self.needs, readings, ticks)
+    }
+}
+
+/// The lanes in which something is needed at their ticks that has no value.
+pub(super) fn lost(needs: &Needs, readings: &Readings, ticks: &[u64; LANES]) -> Mask {
+    let mut lost = Mask::NONE;
+    let (atoms, signals) = &readings.missing;
+    for (place, lanes) in atoms.iter().enumerate() {
+        lost |= lanes.iter().filter(|&lane| needs.atom(place, ticks[lane])).map(Mask::lane).fold(lost, join);
+    }
+    for (place, lanes) in signals.iter().enumerate() {
+        lost |=
+            lanes.iter().filter(|&lane| needs.signal(place, ticks[lane])).map(Mask::lane).fold(lost, join);
+    }
+    lost & readings.unresolved
+}
+
+fn join(a: Mask, b: Mask) -> Mask {
+    a | b
 }
 
 impl Subject {
@@ -107,15 +135,26 @@ impl Subject {
         }
     }
 
-    /// Number of the implications of a column that are watched.
-    pub(super) fn implications(&self, column: usize) -> Result<usize, Invalid> {
+    /// The implications of a column that are watched; of each, whether it is one of a quantifier that asks about
+    /// those who are there, so that nobody wrote it.
+    pub(super) fn implications(&self, column: usize) -> Result<Vec<bool>, Invalid> {
         if self.program.scenario.clock.is_jumps() {
             return Ok(match self.columns[column] {
-                Root::Robustness(..) => 0,
-                Root::Formula(_) | Root::Metric(_) => self.signal_monitor(column)?.implications(),
+                Root::Robustness(..) => Vec::new(),
+                Root::Formula(_) | Root::Metric(_) => {
+                    vec![false; self.signal_monitor(column)?.implications()]
+                }
             });
         }
-        Ok(self.monitor(column)?.antecedents().count())
+        let of_presence = |implication: NodeId| {
+            let Node::Or(parts) = &self.tree.nodes[implication.0 as usize] else { return false };
+            let Some(Node::Not(left)) = parts.first().map(|part| &self.tree.nodes[part.0 as usize]) else {
+                return false;
+            };
+            let Node::Atom(atom) = self.tree.nodes[left.0 as usize] else { return false };
+            self.texts.implied.contains(&atom.0)
+        };
+        Ok(self.monitor(column)?.antecedents().map(|one| of_presence(one.implication)).collect())
     }
 
     /// A monitor of a column in continuous time.
@@ -201,6 +240,20 @@ impl Subject {
         used
     }
 
+    /// When some columns look at what.
+    pub(super) fn needs(&self, columns: &[usize]) -> Result<Needs, Invalid> {
+        let mut needs = Needs::default();
+        for &column in columns {
+            match self.columns[column] {
+                Root::Formula(node) | Root::Robustness(node, _) => {
+                    needs.add_formula(&self.tree, node, self.horizon)?;
+                }
+                Root::Metric(term) => needs.add_metric(&self.tree, term, self.horizon)?,
+            }
+        }
+        Ok(needs)
+    }
+
     /// Sheets for some columns.
     pub(super) fn sheets(&self, columns: &[usize]) -> Result<Vec<Sheet>, Invalid> {
         let together = self.code(columns);
@@ -215,7 +268,8 @@ impl Subject {
                 let chosen: Vec<usize> = places.iter().map(|&p| columns[p]).collect();
                 let observers = chosen.iter().map(|&c| self.observer(c)).collect::<Result<Vec<_>, _>>()?;
                 let follows = chosen.iter().map(|&column| self.follows(column)).collect();
-                Ok(Sheet { code: self.code(&chosen), places, observers, follows })
+                let (code, needs) = (self.code(&chosen), self.needs(&chosen)?);
+                Ok(Sheet { code, places, observers, follows, needs })
             })
             .collect()
     }

@@ -158,7 +158,8 @@ impl Worker {
         let mut touched = diverged;
         for (sheet, readings) in self.sheets.iter_mut().zip(&mut self.readings) {
             sheet.code.run(&subject.program, &self.state, readings);
-            let lost = readings.unresolved & watched;
+            // Without a value where one is needed, nothing more can be said.
+            let lost = sheet.lost(readings, &self.state.ticks) & watched;
             for (k, observer) in sheet.observers.iter_mut().enumerate() {
                 let place = sheet.places[k];
                 let gone = if sheet.follows[k] { self.state.queues.reused & watched } else { Mask::NONE };

@@ -79,6 +79,30 @@ impl Flat {
         }
     }
 
+    /// Whether to reach the goal makes it false.
+    pub fn is_negated(&self) -> bool {
+        self.negated
+    }
+
+    /// Whether the goal counts at the state with this number.
+    pub fn has_begun(&self, at: u64) -> bool {
+        at >= self.from
+    }
+
+    /// Whether nothing counts after the state with this number.
+    pub fn is_over(&self, at: u64) -> bool {
+        at >= self.to
+    }
+
+    /// Where the verdict falls if from the state with this number on all are of this sort.
+    pub fn settled(&self, sort: Sort, at: u64) -> u64 {
+        match sort {
+            Sort { hold: false, .. } => at,
+            Sort { goal: true, .. } => at.max(self.from).min(self.to),
+            Sort { .. } => at.max(self.to),
+        }
+    }
+
     /// The verdict at the state with this number, if it falls there and did not fall before.
     #[inline(always)]
     pub fn verdict(&self, sort: Sort, at: u64) -> Option<bool> {

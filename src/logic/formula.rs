@@ -188,7 +188,7 @@ pub enum Term {
     Window(Aggregation, Window, TermId),
     /// The number at the state so many ticks later.
     Later(Tick, TermId),
-    /// The number at the last state before the horizon (the state at the horizon).
+    /// The number at the last state, which is the one at the horizon.
     AtEnd(TermId),
     /// Seconds until the formula first holds, counted from the present state; infinite if it never does
     /// up to the horizon.

@@ -4,6 +4,7 @@ pub mod agent;
 pub mod behaviour;
 pub mod evaluation;
 pub mod expression;
+mod lacking;
 pub mod law;
 pub mod mention;
 pub mod moves;

@@ -42,7 +42,7 @@ impl Elaborator<'_> {
         &mut self,
         op: BinaryOp,
         a: (Typed, Span),
-        b: (Typed, Span),
+        mut b: (Typed, Span),
         locals: &Locals,
     ) -> Lowered<Typed> {
         // An implication of a formula stays visible to the monitor, which counts how often it was triggered.
@@ -56,6 +56,12 @@ impl Elaborator<'_> {
                 BinaryOp::Implies => any(negated(a), b),
                 _ => any(all(a.clone(), b.clone()), all(negated(a), negated(b))),
             }));
+        }
+        if let (Typed::Truth(when), Typed::Truth(then)) = (&a.0, &b.0)
+            && then.may_lack_value()
+        {
+            // `a => b` is `a => (!a | b)`: where the guard is false, nobody misses what the rest lacks.
+            b.0 = Typed::Truth(any(negated(when.clone()), then.clone()));
         }
         let (a, b) = (self.as_formula(a.0, a.1)?, self.as_formula(b.0, b.1)?);
         let node = match op {

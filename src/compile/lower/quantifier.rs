@@ -228,7 +228,7 @@ impl Elaborator<'_> {
                 nodes.push(node);
                 continue;
             }
-            let present = self.atom(Bool::Present(Who::Agent(id)), span);
+            let present = self.presence(id, span);
             nodes.push(if quantifier == Quantifier::Forall {
                 let absent = self.node(Node::Not(present));
                 self.node(Node::Or(vec![absent, node]))

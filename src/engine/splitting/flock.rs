@@ -24,8 +24,21 @@ pub(super) struct Flown {
     pub(super) flight: Flight,
     /// Steps of the model, those up to where it branched off included.
     pub(super) steps: u64,
+    /// When it ended.
+    pub(super) ended: u64,
     /// Whether it diverged, or its formula had no truth.
     pub(super) lost: bool,
+}
+
+impl Flown {
+    /// What it came to, where a lost path is read as reaching the event, or as not.
+    pub(super) fn read(self, lost_reaches: bool) -> Flight {
+        let mut flight = self.flight;
+        if self.lost && lost_reaches {
+            flight.rise(self.ended, f64::INFINITY);
+        }
+        flight
+    }
 }
 
 /// Paths that came to an end, by their places.
@@ -259,7 +272,7 @@ impl Bird {
                     busy.flown.flight.rise(time, f64::INFINITY);
                 }
             }
-            busy.flown.steps = time;
+            (busy.flown.steps, busy.flown.ended) = (time, time);
             if let Some(busy) = self.busy[lane].take() {
                 done.push((busy.place, busy.flown));
             }

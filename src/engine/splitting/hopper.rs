@@ -193,7 +193,7 @@ impl Hopper {
             return;
         }
         busy.flown.lost = lost;
-        busy.flown.steps = jumps;
+        (busy.flown.steps, busy.flown.ended) = (jumps, next.to_bits());
         if let Some(busy) = self.busy[lane].take() {
             done.push((busy.place, busy.flown));
         }

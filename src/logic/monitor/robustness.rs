@@ -99,7 +99,6 @@ pub struct Robustness {
     running: u8,
     settled: u8,
     bounds: Bounds,
-    settled_at: [u64; LANES],
 }
 
 impl Robustness {
@@ -137,7 +136,6 @@ impl Robustness {
             running: 0,
             settled: 0,
             bounds: Bounds::OPEN,
-            settled_at: [0; LANES],
         })
     }
 
@@ -180,9 +178,6 @@ impl Robustness {
         let fresh = work & self.bounds.lower.compare(self.bounds.upper, |lower, upper| lower == upper).0;
         if fresh != 0 {
             self.settled |= fresh;
-            for lane in Mask(fresh).iter() {
-                self.settled_at[lane] = now - self.calendar.starts[lane];
-            }
             self.calendar.stop(Mask(fresh));
         }
     }
@@ -223,16 +218,6 @@ impl Robustness {
     /// The lanes in which it is known.
     pub fn settled(&self) -> Mask {
         Mask(self.settled)
-    }
-
-    /// The lanes in which its sign is known: whoever asks for the verdict alone can stop there.
-    pub fn signed(&self) -> Mask {
-        self.bounds.lower.compare(self.bounds.upper, |lower, upper| lower > 0.0 || upper < 0.0)
-    }
-
-    /// The own position of each settled lane's state at which it was settled.
-    pub fn settled_at(&self) -> [u64; LANES] {
-        self.settled_at
     }
 }
 

@@ -44,10 +44,11 @@ fn a_trial_of_too_many_jumps_is_unresolved_and_the_process_is_named() {
     for cell in &finished.cells {
         assert_eq!((cell.reading, cell.steps), (Reading::Unresolved, 500));
     }
-    let words = overrun(&subject, 0, 7).unwrap();
-    assert!(words.starts_with("more than 500 jumps by 0.") && words.contains("of `blinker["), "{words}");
+    let item = Item { index: 0, advice: None };
+    let words = unresolved(&subject, 0, item, 7);
+    assert!(words.contains("500 times by 0.") && words.contains("most of them of `blinker["), "{words}");
     assert!(words.contains("at a rate of 1500 /s"), "{words}");
     // Enough jumps: nobody is to blame.
     subject.most_jumps = 100_000;
-    assert_eq!(overrun(&subject, 0, 7), None);
+    assert_eq!(unresolved(&subject, 0, item, 7), "");
 }
