@@ -34,11 +34,19 @@ pub fn run() -> process::ExitCode {
             return process::ExitCode::from(if fine { 0 } else { Exit::Wrong.code() });
         }
     };
+    let asked = if let Command::Check(check) = &arguments.command {
+        Some((check.format, check.model.scenario.clone(), check.seed))
+    } else {
+        None
+    };
     let worker = std::thread::Builder::new().stack_size(STACK).spawn(move || dispatch(&arguments));
     let exit = match worker.map(std::thread::JoinHandle::join) {
         Ok(Ok(exit)) => exit,
         Ok(Err(_)) => {
             say("this is a bug in smc; please report it with the files of this call\n");
+            if let Some((format, scenario, seed)) = asked {
+                check::fallen(format, scenario, seed);
+            }
             Exit::Bug
         }
         Err(error) => {
@@ -70,12 +78,10 @@ fn diagnose(inputs: &inputs::Inputs, colors: Colors) {
     }
 }
 
-/// Refuses a scenario whose people cannot be placed.
-fn crowded(reason: String, colors: Colors) -> Exit {
-    let error = Diagnostic::placeless("E0801", reason)
-        .hint("fewer people, a larger shape to start from, or smaller radii");
-    say(&render(&[error], &[], colors.err));
-    Exit::Wrong
+/// What is said of a scenario whose people cannot be placed.
+fn crowded(reason: String) -> Diagnostic {
+    Diagnostic::placeless("E0801", reason)
+        .hint("fewer people, a larger shape to start from, or smaller radii")
 }
 
 /// Whether everybody can be placed, as far as areas tell.

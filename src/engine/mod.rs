@@ -3,14 +3,18 @@
 mod answer;
 mod blame;
 pub mod budget;
+mod cause;
 pub mod cell;
 mod contrast;
 pub mod executor;
 mod fault;
+pub mod finding;
 mod forecast;
 mod jumper;
 mod leaper;
+mod method;
 mod observer;
+mod onlooker;
 pub mod outcome;
 mod procedure;
 mod race;
@@ -31,6 +35,7 @@ mod words;
 mod worker;
 
 pub use budget::Budget;
+pub use cause::runaway;
 pub use executor::{Executor, Threads};
 pub use fault::Fault;
 pub use session::{Call, crowded, forecast, run};

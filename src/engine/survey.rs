@@ -65,14 +65,15 @@ impl<'q> Survey<'q> {
         budget: &Budget,
     ) -> Result<Vec<Forecast>, Fault> {
         let width = executor.width(&self.job) as u64;
-        let size = width.min(round(&self.inquiries, 0, width, budget));
+        let size =
+            Rehearsal::size(width).min(round(&self.inquiries, 0, width, budget)).min(budget.max_trials);
         let rehearsal = Rehearsal::run(&self.job, Item::run(0, size), executor, budget)?;
         let seconds = rehearsal.seconds_per_trial(self.job.subject.most_steps());
         let forecast = |inquiry: &Inquiry<'_>| {
             let mut glimpse = Glimpse::default();
             let range = inquiry.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
             if let Some(place) = self.job.columns.iter().position(|c| *c == inquiry.column) {
-                rehearsal.rows().for_each(|row| glimpse.read(&row[place], range));
+                rehearsal.seen().for_each(|row| glimpse.read(&row[place], range));
             }
             let expected = forecast::inquiry(&inquiry.query.ask, &inquiry.procedure, &glimpse);
             let trials = expected.unwrap_or(u64::MAX).min(budget.max_trials);
@@ -98,6 +99,9 @@ impl<'q> Survey<'q> {
         let started = budget.elapsed();
         let mut next = 0u64;
         let mut items = Vec::new();
+        if budget.max_trials == 0 {
+            self.inquiries.iter_mut().for_each(|inquiry| inquiry.stop = Some(Stop::Cap));
+        }
         while self.inquiries.iter().any(|i| i.stop.is_none()) {
             if budget.must_stop() {
                 close(&mut self.inquiries, budget);
@@ -205,6 +209,10 @@ impl Inquiry<'_> {
         match &self.procedure {
             procedure if procedure.is_capped() => Stop::Cap,
             procedure if procedure.is_planned() => Stop::Plan,
+            procedure if procedure.split() => Stop::Unresolved,
+            procedure if self.tally.counts.unresolved > 0 && procedure.is_wide(&self.query.ask) => {
+                Stop::Unresolved
+            }
             Procedure::Test(_) | Procedure::Mean { threshold: Some(_), .. } => Stop::Boundary,
             _ => Stop::Width,
         }

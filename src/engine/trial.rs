@@ -36,20 +36,3 @@ pub(super) fn fault(subject: &Subject, item: Item, seed: u64) -> Fault {
     let values = process::Fault::state(&scenario.processes, |k| state.variables[k].0[0]);
     Fault::Model(format!("trial {} at {time}: {what}\n  the state is {values}", item.index))
 }
-
-/// Says which source lets no more people in, where that leaves a trial unresolved.
-pub(super) fn overrun(subject: &Subject, index: u64, seed: u64) -> Option<String> {
-    let program = &subject.program;
-    let sources = &program.scenario.sources;
-    if sources.is_empty() {
-        return None;
-    }
-    let mut state = State::new(program.layout, program.scenario.agents.len());
-    let mut scratch = Scratch::new();
-    start::load(program, &mut state, 0, TrialKey { seed, index, branch: 0 }, None).ok()?;
-    dynamics::refresh(program, &mut state, &mut scratch, Mask::lane(0));
-    while state.queues.full.is_empty() && state.diverged.is_empty() && state.ticks[0] < subject.horizon.0 {
-        dynamics::step(program, &mut state, &mut scratch);
-    }
-    state.queues.overrun(sources, 0)
-}

@@ -40,6 +40,9 @@ use fearless_simd::Level;
 use table::Table;
 use timed::{Timed, is_timed};
 
+/// Most jumps between two steps; a trial that needs more is unresolved.
+const MOST_BETWEEN: u32 = 1 << 20;
+
 /// One process.
 #[derive(Clone, Debug)]
 struct Machine {
@@ -174,28 +177,64 @@ impl Processes {
         }
     }
 
-    /// Continuous time: the next jump of every occupied lane, if it comes up to and with the horizon. These
-    /// lanes; the time of the jump is in `state.clocks`.
-    pub(super) fn jump(&self, layout: Layout, state: &mut State, scratch: &mut Scratch) -> Mask {
+    /// Continuous time: the next jump of every occupied lane, if it comes up to and with `until`, s, which is at most
+    /// the horizon. These lanes; the time of the jump is in `state.clocks`.
+    pub(super) fn jump(
+        &self,
+        layout: Layout,
+        state: &mut State,
+        scratch: &mut Scratch,
+        until: &[f64; LANES],
+    ) -> Mask {
         let Some(timed) = &self.timed else { return Mask::NONE };
+        self.set_clocks(timed, layout, state, scratch);
+        let lanes = state.occupied & !state.faulty;
+        timed.ring(layout, state, &mut scratch.timed, lanes, until)
+    }
+
+    /// Sets the clocks of trials that have just begun.
+    fn set_clocks(&self, timed: &Timed, layout: Layout, state: &mut State, scratch: &mut Scratch) {
         let fresh = state.clocks.fresh & state.occupied;
         if !fresh.is_empty() {
             timed.look(layout, state, &mut scratch.timed, fresh);
         }
-        let lanes = state.occupied & !state.faulty;
-        let until = [self.clock.seconds(self.horizon); LANES];
-        timed.ring(layout, state, &mut scratch.timed, lanes, &until)
     }
 
-    /// Lets processes with rates and delays jump up to and with the next step. What they read of others is what
-    /// was there at the last step.
-    fn between(&self, timed: &Timed, layout: Layout, state: &mut State, readings: &mut Readings) {
-        let until = state.ticks.map(|tick| self.clock.seconds(Tick(tick + 1)));
-        loop {
-            let lanes = state.occupied & !state.faulty;
-            if timed.ring(layout, state, readings, lanes, &until).is_empty() {
-                return;
-            }
+    /// Continuous time: from `at` on, s, before which nothing more happens under the old one, the trial of a lane
+    /// goes on under another key.
+    pub(super) fn renew(
+        &self,
+        layout: Layout,
+        state: &mut State,
+        scratch: &mut Scratch,
+        lane: usize,
+        (at, key): (f64, TrialKey),
+    ) {
+        if let Some(timed) = &self.timed {
+            self.set_clocks(timed, layout, state, scratch);
+            state.keys[lane] = key;
+            timed.renew(state, lane, at);
+        }
+    }
+
+    /// The time of the last instant of a trial, s.
+    pub(super) fn last(&self) -> f64 {
+        self.clock.seconds(self.horizon)
+    }
+
+    /// The process with rates or delays that has waited most often in the trial of a lane, and its present rate, 1/s.
+    pub fn busiest(&self, state: &State, lane: usize) -> Option<(u32, f64)> {
+        self.timed.as_ref()?.busiest(state, lane)
+    }
+
+    /// With a step: lets what is due at once happen in trials that have just been loaded. The first state is the one
+    /// that holds at time 0.
+    pub(super) fn begin(&self, layout: Layout, state: &mut State, scratch: &mut Scratch, lanes: Mask) {
+        let Some(timed) = self.timed.as_ref().filter(|_| !self.clock.is_jumps()) else { return };
+        let lanes = lanes & state.occupied & state.clocks.fresh;
+        if !lanes.is_empty() {
+            timed.look(layout, state, &mut scratch.timed, lanes);
+            ring(timed, layout, state, &mut scratch.timed, lanes, &[0.0; LANES]);
         }
     }
 
@@ -226,7 +265,9 @@ impl Processes {
             }
         }
         if let Some(timed) = &self.timed {
-            self.between(timed, layout, state, timed_readings);
+            // What they read of others is what was there at the last step.
+            let until = state.ticks.map(|tick| self.clock.seconds(Tick(tick + 1)));
+            ring(timed, layout, state, timed_readings, lanes, &until);
             for &variable in &timed.written {
                 next[variable as usize] = state.variables[variable as usize];
             }
@@ -248,4 +289,22 @@ impl Processes {
             }
         }
     }
+}
+
+/// Lets processes with rates and delays jump up to and with these times.
+fn ring(
+    timed: &Timed,
+    layout: Layout,
+    state: &mut State,
+    readings: &mut Readings,
+    mut lanes: Mask,
+    until: &[f64; LANES],
+) {
+    for _ in 0..MOST_BETWEEN {
+        lanes = timed.ring(layout, state, readings, lanes & !state.faulty, until);
+        if lanes.is_empty() {
+            return;
+        }
+    }
+    state.diverged |= lanes;
 }
