@@ -12,7 +12,7 @@ use crate::data::table::{
     write_states_json_lines,
 };
 use crate::kernel::{Program, Scratch, Slot, State, dynamics, start};
-use crate::model::{Domain, Scenario};
+use crate::model::{AgentId, Domain, Scenario};
 use crate::report::ExitCode as Exit;
 use crate::syntax::render::render;
 use std::io::{BufWriter, Write};
@@ -23,6 +23,8 @@ struct Record<'s> {
     time: f64,
     trial: u64,
     agent: usize,
+    /// The name, where it is that of a later person on the place of a source.
+    arrival: Option<String>,
     position: Vec2,
     velocity: Vec2,
     /// States of behaviours, in the order of their declaration; empty in who has none.
@@ -178,6 +180,7 @@ impl<'p> Iterator for Walk<'p> {
             time: self.time(),
             trial: self.trial,
             agent: self.agent,
+            arrival: self.state.queues.arrival(&self.program.scenario.sources, AgentId(self.agent as u32), 0),
             position: Vec2::new(at(&self.state.x), at(&self.state.y)),
             velocity: Vec2::new(at(&self.state.vx), at(&self.state.vy)),
             modes: modes(self.program, &self.state, slot),
@@ -301,7 +304,10 @@ fn write(
     let rows = walk.map(|record| Row {
         time: record.time,
         trial: record.trial,
-        agent: &scenario.agents[record.agent].name,
+        agent: match record.arrival {
+            Some(name) => name.into(),
+            None => scenario.agents[record.agent].name.as_str().into(),
+        },
         position: record.position,
         velocity: record.velocity,
         present: true,

@@ -2,6 +2,7 @@
 
 use super::behaviour::With;
 use super::dimension::{Dimension, describe};
+use super::interned::Interned;
 use super::margin::Margins;
 use super::number::Number;
 use super::process::Declared;
@@ -44,6 +45,8 @@ pub(super) struct Locals {
     pub(super) running: u32,
     /// The process, and which of its copies, whose names come next.
     pub(super) process: Option<(u32, u32)>,
+    /// The behaviour whose names come next, and how many of the bound names they see.
+    pub(super) behaviour: Option<(u32, usize)>,
 }
 
 impl Locals {
@@ -99,6 +102,8 @@ pub(super) struct Elaborator<'a> {
     pub(super) atoms: Vec<Bool>,
     /// Numbers observed.
     pub(super) signals: Vec<Num>,
+    /// Where nodes, terms, atoms and signals are.
+    known: [Interned; 4],
     /// How atoms, signals and comparisons were written.
     pub(super) texts: Texts,
     /// Names in circles that were reported.
@@ -139,6 +144,7 @@ impl<'a> Elaborator<'a> {
             tree: Tree::default(),
             atoms: Vec::new(),
             signals: Vec::new(),
+            known: Default::default(),
             texts: Texts::default(),
             circles: Vec::new(),
             diagnostics: Vec::new(),
@@ -258,18 +264,12 @@ impl<'a> Elaborator<'a> {
 
     /// A formula node, shared with equal ones.
     pub(super) fn node(&mut self, node: Node) -> NodeId {
-        match self.tree.nodes.iter().position(|n| *n == node) {
-            Some(at) => NodeId(at as u32),
-            None => self.tree.node(node),
-        }
+        NodeId(self.known[0].place(&mut self.tree.nodes, node).0 as u32)
     }
 
     /// A numeric node, shared with equal ones.
     pub(super) fn term(&mut self, term: Term) -> TermId {
-        match self.tree.terms.iter().position(|t| *t == term) {
-            Some(at) => TermId(at as u32),
-            None => self.tree.term(term),
-        }
+        TermId(self.known[1].place(&mut self.tree.terms, term).0 as u32)
     }
 
     /// The formula that reads a truth value of the present state.
@@ -289,12 +289,11 @@ impl<'a> Elaborator<'a> {
             }
             return self.node(Node::Constant(false));
         }
-        let at = self.atoms.iter().position(|a| *a == truth).unwrap_or_else(|| {
-            self.atoms.push(truth);
+        let (at, new) = self.known[2].place(&mut self.atoms, truth);
+        if new {
             let text = bare(&self.text(span)).to_owned();
             self.texts.atoms.push(text);
-            self.atoms.len() - 1
-        });
+        }
         self.node(Node::Atom(crate::logic::AtomId(at as u32)))
     }
 
@@ -328,12 +327,11 @@ impl<'a> Elaborator<'a> {
         if let Num::Constant(value) = num {
             return self.term(Term::Constant(value));
         }
-        let at = self.signals.iter().position(|s| *s == num).unwrap_or_else(|| {
-            self.signals.push(num);
+        let (at, new) = self.known[3].place(&mut self.signals, num);
+        if new {
             let text = bare(&self.text(span)).to_owned();
             self.texts.signals.push((text, dimension));
-            self.signals.len() - 1
-        });
+        }
         self.term(Term::Signal(SignalId(at as u32)))
     }
 

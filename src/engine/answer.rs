@@ -187,7 +187,15 @@ impl Answers<'_> {
         advice: Option<(usize, usize)>,
         picks: &[(Shows, u64)],
     ) -> Vec<Witness> {
-        witness::find(subject, column, advice, picks, self.call, &result.settings, &result.unit)
+        witness::find(
+            subject,
+            column,
+            advice,
+            picks,
+            (self.call, self.budget),
+            &result.settings,
+            &result.unit,
+        )
     }
 
     /// Counts, and what they warn of.

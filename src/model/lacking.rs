@@ -41,6 +41,7 @@ impl Bool {
                 false
             }
             Self::Compare(_, a, b) => a.may_lack_value() || b.may_lack_value(),
+            Self::Iff(a, b) => a.may_lack_value() || b.may_lack_value(),
             Self::Not(a) | Self::Forall(_, a) | Self::Exists(_, a) => a.may_lack_value(),
             Self::And(all) | Self::Or(all) => all.iter().any(Self::may_lack_value),
         }

@@ -2,10 +2,12 @@
 
 pub mod agent;
 pub mod behaviour;
-pub mod evaluation;
+mod digest;
+mod evaluation;
 pub mod expression;
 mod lacking;
 pub mod law;
+pub mod mention;
 pub mod moves;
 pub mod process;
 pub mod scenario;

@@ -13,6 +13,7 @@ mod barriers;
 mod crowd;
 pub(crate) mod ground;
 pub(crate) mod lanes;
+mod lists;
 mod lower;
 mod machine;
 mod node;
@@ -98,7 +99,7 @@ impl Code {
             unresolved: unresolved.map(|id| schedule.registers[id as usize]),
             open: (atoms.iter().map(missing).collect(), signals.iter().map(missing).collect()),
             registers: Arc::new(registers),
-            lists: lowering.lists,
+            lists: lowering.lists.all,
             regions: scenario.scene.regions.iter().map(|region| Ground::region(&region.shape)).collect(),
             barriers: Barriers::new(&scenario.scene),
             schedule,

@@ -9,6 +9,7 @@
 mod boolean;
 mod calendar;
 mod cell;
+mod margins;
 mod numbers;
 mod plan;
 pub mod robustness;
