@@ -55,14 +55,14 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     if arguments.forecast {
         return match forecast(study, &call, &threads, &budget) {
             Ok(outlook) => tell(&outlook, arguments.format),
-            Err(Fault::Placement(reason)) => super::crowded(reason, colors),
+            Err(Fault::Placement { reason, place }) => super::crowded(reason, place, &inputs, colors),
             Err(fault) => refuse(&fault.to_string()),
         };
     }
     let progress = Progress::new(arguments.quiet);
     let run = match run_study(study, &call, &threads, &budget, &progress) {
         Ok(run) => run,
-        Err(Fault::Placement(reason)) => return super::crowded(reason, colors),
+        Err(Fault::Placement { reason, place }) => return super::crowded(reason, place, &inputs, colors),
         Err(fault) => return refuse(&fault.to_string()),
     };
     finish(arguments, &run, colors)

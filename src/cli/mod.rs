@@ -12,10 +12,10 @@ mod show;
 mod simulate;
 mod terminal;
 
-use crate::model::Scenario;
 use crate::report::ExitCode as Exit;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::render::render;
+use crate::syntax::source::Span;
 use arguments::{Arguments, Command};
 use clap::Parser;
 use std::process;
@@ -71,17 +71,12 @@ fn diagnose(inputs: &inputs::Inputs, colors: Colors) {
 }
 
 /// Refuses a scenario whose people cannot be placed.
-fn crowded(reason: String, colors: Colors) -> Exit {
-    let error = Diagnostic::placeless("E0801", reason)
-        .hint("fewer people, a larger shape to start from, or smaller radii");
-    say(&render(&[error], &[], colors.err));
+fn crowded(reason: String, place: Option<Span>, inputs: &inputs::Inputs, colors: Colors) -> Exit {
+    let error = match place {
+        Some(span) => Diagnostic::error("E0801", span, reason),
+        None => Diagnostic::placeless("E0801", reason),
+    };
+    let error = error.hint("fewer people, a larger shape to start from, or smaller radii");
+    say(&render(&[error], &inputs.sources, colors.err));
     Exit::Wrong
-}
-
-/// Whether everybody can be placed, as far as areas tell.
-fn placeable(scenario: &Scenario) -> Result<(), String> {
-    match crate::kernel::start::check_area(scenario).first() {
-        Some(crowding) => Err(crate::engine::crowded(scenario, crowding)),
-        None => Ok(()),
-    }
 }

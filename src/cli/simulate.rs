@@ -11,6 +11,7 @@ use crate::data::table::{
     Held, Row, StateRow, write_csv, write_json, write_json_lines, write_states_csv, write_states_json,
     write_states_json_lines,
 };
+use crate::engine::{Fault, placeable};
 use crate::kernel::{Program, Scratch, Slot, State, dynamics, start};
 use crate::model::{Domain, Scenario};
 use crate::report::ExitCode as Exit;
@@ -79,7 +80,8 @@ impl<'p> Walk<'p> {
                         return true;
                     }
                     Err(fault) => {
-                        self.notes.push(format!("trial {} cannot start: {fault}", self.trial));
+                        let why = fault.describe(&self.program.scenario);
+                        self.notes.push(format!("trial {} cannot start: {why}", self.trial));
                         self.trial += 1;
                         continue;
                     }
@@ -240,8 +242,8 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
         Some(Ok(advice)) => Some(advice),
         None => None,
     };
-    if let Err(reason) = super::placeable(&scenario) {
-        return super::crowded(reason, colors);
+    if let Err(Fault::Placement { reason, place }) = placeable(world) {
+        return super::crowded(reason, place, &inputs, colors);
     }
     let mut last = scenario.horizon.0;
     if let Some(until) = arguments.until {

@@ -5,12 +5,15 @@ use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::kinds::Kind;
 use super::laws::value_span;
+use super::places::Written;
 use super::symbols::{Meaning, unknown};
 use crate::base::geometry::Vec2;
 use crate::base::random::name_hash;
 use crate::model::{Agent, AgentId, Body, Group, Law, Particle, Position, Route, Start, Who};
 use crate::syntax::ast::{AgentsDecl, Expr, ExprKind, Field, GroupDecl, Ident, Value};
 use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::typed::Typed;
@@ -32,11 +35,23 @@ pub(super) struct People {
     pub(super) agents: Vec<Agent>,
     /// Groups.
     pub(super) groups: Vec<Group>,
+    /// Where the starts are written.
+    pub(super) places: Written,
+    /// Who comes in by a source.
+    pub(super) coming: BTreeSet<AgentId>,
     /// First numbers and sizes of the ranges of entities in use.
     ranges: Vec<(u32, u32)>,
 }
 
 impl People {
+    /// Remembers where the start of some people is written: their field `at`, or else `other`.
+    pub(super) fn written(&mut self, members: &[AgentId], fields: &[&Field], other: Span) {
+        let at = fields.iter().find(|field| field.name.name == "at").map(|field| value_span(&field.value));
+        if let Some(first) = members.first() {
+            self.places.push((*first, at.unwrap_or(other)));
+        }
+    }
+
     /// A range of `size` stable numbers for a declaration; where hashes collide, the next free range.
     pub(super) fn entities(&mut self, path: &str, size: u32) -> u32 {
         const ALL: u64 = 1 << 24;
@@ -94,6 +109,7 @@ impl<'a> Elaborator<'a> {
         let members = self.people(&decl.name, count, decl.plural, people, |_| {
             (Arc::new(body.clone()), start.clone(), route.clone())
         });
+        people.written(&members, &rest, decl.name.span);
         self.attach(with, &members);
         let meaning = match members.as_slice() {
             [one] if !decl.plural => Meaning::Agent(*one),
@@ -161,6 +177,7 @@ impl<'a> Elaborator<'a> {
                 (Arc::new(body.clone()), start.clone(), route.clone())
             });
             people.agents[members[0].0 as usize].particle = Some(particle);
+            people.written(&members, &rest, decl.name.span);
             self.attach(with, &members);
             self.scopes[0]
                 .define(&decl.name.name, Meaning::Agents { members: members.into(), particle: true });
@@ -169,6 +186,7 @@ impl<'a> Elaborator<'a> {
         let members = self.people(&decl.name, count, true, people, |_| {
             (Arc::new(body.clone()), start.clone(), route.clone())
         });
+        people.written(&members, &rest, decl.name.span);
         self.attach(with, &members);
         let index = people.groups.len() as u32;
         for member in &members {
@@ -399,6 +417,7 @@ impl<'a> Elaborator<'a> {
             }
             (Arc::new(body), Start { position: Position::Point(found[k].position), velocity }, route.clone())
         });
+        people.written(&members, &[], recorded.span);
         self.attach(with, &members);
         let meaning = match members.as_slice() {
             [one] if !decl.plural => Meaning::Agent(*one),

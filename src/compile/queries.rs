@@ -450,6 +450,7 @@ impl<'a> Compiler<'a> {
                 signals: elaborator.signals,
                 tree: elaborator.tree,
                 columns: site.columns,
+                places: elaborator.places,
             });
         }
         (Some(Study { title, worlds, queries: self.queries }), diagnostics)

@@ -50,6 +50,8 @@ impl<'a> Elaborator<'a> {
         let members = self.members(&decl.name, places, true, first, people, |_| {
             (body.clone(), start.clone(), route.clone())
         });
+        people.written(&members, &rest, decl.name.span);
+        people.coming.extend(&members);
         for member in &members {
             self.may_be_absent(*member);
         }

@@ -96,6 +96,7 @@ impl<'a> Elaborator<'a> {
 
     fn build(&mut self, file: &'a ScenarioFile, files: &Files) -> Lowered<Scenario> {
         let clock = self.settle_clock(file);
+        self.timeless = clock.is_err();
         let variables = self.settle_variables();
         for item in &file.items {
             if let Item::Tracks { name, format, path } = item {
@@ -149,6 +150,7 @@ impl<'a> Elaborator<'a> {
             }
         }
         self.check_unused(file);
+        self.check_places(&people);
         clock?;
         if self.failed() {
             return Err(Reported);
@@ -157,6 +159,7 @@ impl<'a> Elaborator<'a> {
             .items
             .iter()
             .find_map(|item| if let Item::Title(text) = item { Some(text.value.clone()) } else { None });
+        self.places = people.places;
         Ok(Scenario {
             title: title.unwrap_or_default(),
             clock: self.clock,
@@ -268,6 +271,10 @@ impl<'a> Elaborator<'a> {
         });
         // Processes alone need no step: they have their own, or rates.
         let free = step.is_none() && !self.processes.is_empty() && !bodies;
+        if !free {
+            // Should the step or the horizon be wrong: bounds in seconds still make sense.
+            self.clock = Clock::Stepped(Decimal::ONE);
+        }
         if step.is_none() && !free {
             missing(self, "step", "0.02 s");
         }

@@ -193,7 +193,7 @@ impl Answers<'_> {
                     self.call.simulate, self.call.seed
                 )
             });
-            let full = tally.first[2].and_then(|index| trial::overrun(subject, index, self.call.seed));
+            let full = tally.first[2].and_then(|index| trial::reason(subject, index, self.call.seed));
             let why = full.unwrap_or_else(|| {
                 "somebody left every human speed, or a mean was over nobody; a smaller step may help"
                     .to_owned()

@@ -1,5 +1,6 @@
 //! What can go wrong in the engine.
 
+use crate::syntax::source::Span;
 use thiserror::Error;
 
 /// Why a query cannot be run.
@@ -15,8 +16,13 @@ pub enum Fault {
     #[error("this procedure does not fit what is measured")]
     Unsuitable,
     /// People that cannot be placed.
-    #[error("{0}")]
-    Placement(String),
+    #[error("{reason}")]
+    Placement {
+        /// In words.
+        reason: String,
+        /// Where the start of the first of them is written.
+        place: Option<Span>,
+    },
     /// A trial in which the model is wrong.
     #[error("{0}")]
     Model(String),

@@ -14,8 +14,9 @@ use super::subject::Subject;
 use super::survey::{Inquiry, Survey};
 use super::tally::Tally;
 use super::watch::{Outlook, Watch};
-use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Query, Study};
+use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Query, Study, World};
 use crate::kernel::start;
+use crate::model::Scenario;
 
 /// What the command line adds to a study.
 pub struct Call<'c> {
@@ -123,11 +124,8 @@ fn subjects(study: &Study, asked: &[&Query]) -> Result<Vec<Option<Subject>>, Fau
     for query in asked {
         for world in worlds(&query.ask) {
             if subjects[world].is_none() {
+                placeable(&study.worlds[world])?;
                 let subject = Subject::new(&study.worlds[world]);
-                let crowding = start::check_area(&subject.program.scenario);
-                if let Some(first) = crowding.first() {
-                    return Err(Fault::Placement(crowded(&subject.program.scenario, first)));
-                }
                 subjects[world] = Some(subject);
             }
         }
@@ -177,8 +175,16 @@ enum Sampling<'q> {
     Split(Question<'q>),
 }
 
+/// Whether everybody can be placed, as far as areas tell.
+pub fn placeable(world: &World) -> Result<(), Fault> {
+    let crowding = start::check_area(&world.scenario);
+    let Some(first) = crowding.first() else { return Ok(()) };
+    let place = first.agents.first().and_then(|agent| world.place_of(*agent));
+    Err(Fault::Placement { reason: crowded(&world.scenario, first), place })
+}
+
 /// More people than fit, in words.
-pub fn crowded(scenario: &crate::model::Scenario, crowding: &start::Crowding) -> String {
+fn crowded(scenario: &Scenario, crowding: &start::Crowding) -> String {
     let names: Vec<&str> = crowding
         .agents
         .iter()

@@ -37,16 +37,20 @@ pub(super) fn fault(subject: &Subject, item: Item, seed: u64) -> Fault {
     Fault::Model(format!("trial {} at {time}: {what}\n  the state is {values}", item.index))
 }
 
-/// Says which source lets no more people in, where that leaves a trial unresolved.
-pub(super) fn overrun(subject: &Subject, index: u64, seed: u64) -> Option<String> {
+/// Says why a trial is unresolved, where that is known: people find no place to start, or a source lets no more in.
+pub(super) fn reason(subject: &Subject, index: u64, seed: u64) -> Option<String> {
     let program = &subject.program;
     let sources = &program.scenario.sources;
+    let mut state = State::new(program.layout, program.scenario.agents.len());
+    let mut scratch = Scratch::new();
+    // What is advised changes nobody's place.
+    let key = TrialKey { seed, index, branch: 0 };
+    if let Err(fault) = start::load(program, &mut state, 0, key, None) {
+        return Some(format!("at the start {}", fault.describe(&program.scenario)));
+    }
     if sources.is_empty() {
         return None;
     }
-    let mut state = State::new(program.layout, program.scenario.agents.len());
-    let mut scratch = Scratch::new();
-    start::load(program, &mut state, 0, TrialKey { seed, index, branch: 0 }, None).ok()?;
     dynamics::refresh(program, &mut state, &mut scratch, Mask::lane(0));
     while state.queues.full.is_empty() && state.diverged.is_empty() && state.ticks[0] < subject.horizon.0 {
         dynamics::step(program, &mut state, &mut scratch);

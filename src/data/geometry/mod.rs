@@ -9,5 +9,5 @@ pub mod ring;
 pub mod wkt;
 
 pub use feature::{Feature, Geometry, GeometryError, PropertyValue};
-pub use geojson::read_geojson;
+pub use geojson::{read_geojson, select_geojson};
 pub use wkt::read_wkt;
