@@ -8,7 +8,7 @@ use crate::compile::Study;
 use crate::compile::nearest::nearest;
 use crate::engine::budget::DEFAULT_TRIALS;
 use crate::engine::outcome::{Failure, Run};
-use crate::engine::{Budget, Call, Fault, Outlook, Threads, forecast, run as run_study};
+use crate::engine::{Budget, Call, Outlook, Threads, forecast, run as run_study};
 use crate::report::{self, ExitCode as Exit, Format, Palette};
 use crate::syntax::source::{Source, Span};
 use std::sync::Arc;
@@ -28,7 +28,13 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     if arguments.max_trials == Some(0) || arguments.total_trials == Some(0) {
         return refuse("no trials at all: that runs nothing");
     }
-    let threads = match Threads::new(arguments.threads) {
+    let most = most_threads();
+    if arguments.threads.is_some_and(|threads| threads > most) {
+        say(&format!(
+            "warning: {most} threads are as many as help here; results are the same with any number\n"
+        ));
+    }
+    let threads = match Threads::new(arguments.threads.map(|threads| threads.min(most))) {
         Ok(threads) => threads,
         Err(error) => return refuse(&format!("no threads can be started: {error}")),
     };
@@ -55,17 +61,21 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     if arguments.forecast {
         return match forecast(study, &call, &threads, &budget) {
             Ok(outlook) => tell(&outlook, arguments.format),
-            Err(Fault::Placement { reason, place }) => super::crowded(reason, place, &inputs, colors),
-            Err(fault) => refuse(&fault.to_string()),
+            Err(fault) => super::refused(fault, &inputs, colors),
         };
     }
     let progress = Progress::new(arguments.quiet);
     let run = match run_study(study, &call, &threads, &budget, &progress) {
         Ok(run) => run,
-        Err(Fault::Placement { reason, place }) => return super::crowded(reason, place, &inputs, colors),
-        Err(fault) => return refuse(&fault.to_string()),
+        Err(fault) => return super::refused(fault, &inputs, colors),
     };
     finish(arguments, &run, colors)
+}
+
+/// So many threads are run at most: each has trials of its own to begin and to throw away.
+fn most_threads() -> usize {
+    let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    (2 * cores).max(16)
 }
 
 /// Prints a forecast.
@@ -125,7 +135,13 @@ fn chosen(study: &Study, only: &[String]) -> Result<Vec<usize>, String> {
             let names = study.queries.iter().filter_map(|q| q.name.as_deref());
             let hint =
                 nearest(wanted, names).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
-            return Err(format!("no query is about `{wanted}`{hint}"));
+            let last = study.queries.iter().map(|q| q.index).max();
+            return Err(match (number, last) {
+                (Some(number), Some(last)) => {
+                    format!("there is no query {number}: they are numbered from 0 to {last}")
+                }
+                _ => format!("no query is about `{wanted}`{hint}"),
+            });
         }
         chosen.extend(found);
     }

@@ -178,6 +178,13 @@ pub(super) fn load(model: &Model, properties: &[String]) -> Inputs {
             }
         }
     }
+    for directory in model.data.iter().filter(|directory| !directory.is_dir()) {
+        let what = if directory.exists() { "no directory" } else { "not there" };
+        let error = Diagnostic::placeless("E0701", format!("`--data {}` is {what}", directory.display()));
+        reader
+            .diagnostics
+            .push(error.hint("it names a folder in which recordings and imports are looked for"));
+    }
     let settings: Vec<Setting> = model.set.iter().filter_map(|text| reader.setting(text)).collect();
     let mut files = Files::default();
     for request in requests(&scenario) {

@@ -12,10 +12,10 @@ mod show;
 mod simulate;
 mod terminal;
 
+use crate::engine::Fault;
 use crate::report::ExitCode as Exit;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::render::render;
-use crate::syntax::source::Span;
 use arguments::{Arguments, Command};
 use clap::Parser;
 use std::process;
@@ -70,13 +70,22 @@ fn diagnose(inputs: &inputs::Inputs, colors: Colors) {
     }
 }
 
-/// Refuses a scenario whose people cannot be placed.
-fn crowded(reason: String, place: Option<Span>, inputs: &inputs::Inputs, colors: Colors) -> Exit {
-    let error = match place {
-        Some(span) => Diagnostic::error("E0801", span, reason),
-        None => Diagnostic::placeless("E0801", reason),
+/// Says why the engine refuses a call.
+fn refused(fault: Fault, inputs: &inputs::Inputs, colors: Colors) -> Exit {
+    let error = match fault {
+        Fault::Placement { reason, place } => {
+            let error = match place {
+                Some(span) => Diagnostic::error("E0801", span, reason),
+                None => Diagnostic::placeless("E0801", reason),
+            };
+            error.hint("fewer people, a larger shape to start from, or smaller radii")
+        }
+        Fault::Procedure { place, reason } => Diagnostic::error("E0604", place, reason.to_string()),
+        fault => {
+            say(&format!("error: {fault}\n"));
+            return Exit::Wrong;
+        }
     };
-    let error = error.hint("fewer people, a larger shape to start from, or smaller radii");
     say(&render(&[error], &inputs.sources, colors.err));
     Exit::Wrong
 }

@@ -69,6 +69,8 @@ pub(super) struct Elaborator<'a> {
     pub(super) expanding: Vec<(ScopeId, String)>,
     /// Recordings read so far.
     pub(super) recordings: Vec<Option<Recording>>,
+    /// Who of which recording is among the people, and where that is written.
+    pub(super) recorded: BTreeMap<(usize, u32), Span>,
     /// Shapes of regions known so far.
     pub(super) shapes: Vec<Option<Lowered<Shape>>>,
     /// Kinds known so far.
@@ -137,6 +139,7 @@ impl<'a> Elaborator<'a> {
             constants: BTreeMap::new(),
             expanding: Vec::new(),
             recordings: Vec::new(),
+            recorded: BTreeMap::new(),
             shapes: Vec::new(),
             kinds: BTreeMap::new(),
             scene: Scene::default(),

@@ -9,6 +9,14 @@ pub enum Fault {
     /// A procedure refuses its parameters.
     #[error(transparent)]
     Statistics(#[from] crate::stats::Invalid),
+    /// A procedure refuses the parameters of a query.
+    #[error("{reason}")]
+    Procedure {
+        /// The query.
+        place: Span,
+        /// Why.
+        reason: crate::stats::Invalid,
+    },
     /// A monitor cannot be built.
     #[error(transparent)]
     Logic(#[from] crate::logic::Invalid),

@@ -219,6 +219,15 @@ fn surveyed(ask: &Ask) -> Option<usize> {
     }
 }
 
+/// Gives what a procedure refuses the place of its query.
+fn refused(query: &Query) -> impl Fn(Fault) -> Fault {
+    let place = query.span;
+    move |fault| match fault {
+        Fault::Statistics(reason) => Fault::Procedure { place, reason },
+        other => other,
+    }
+}
+
 /// The range of an expectation.
 fn range(measure: &Measure) -> Option<(f64, f64)> {
     match measure.kind {
@@ -264,12 +273,16 @@ impl<'a> Session<'a> {
                     for &k in &together {
                         taken[k] = true;
                     }
-                    let inquiries =
-                        together.iter().map(|&k| self.inquiry(asked[k])).collect::<Result<_, _>>()?;
+                    let inquiries = together
+                        .iter()
+                        .map(|&k| self.inquiry(asked[k]).map_err(refused(asked[k])))
+                        .collect::<Result<_, _>>()?;
                     (together, Sampling::Survey(Survey::new(self.subject(world)?, inquiries, self.call.seed)))
                 }
-                Ask::Compare { .. } => (vec![at], Sampling::Contrast(self.contrast(query)?)),
-                Ask::Rank { .. } => (vec![at], Sampling::Race(self.contest(query)?)),
+                Ask::Compare { .. } => {
+                    (vec![at], Sampling::Contrast(self.contrast(query).map_err(refused(query))?))
+                }
+                Ask::Rank { .. } => (vec![at], Sampling::Race(self.contest(query).map_err(refused(query))?)),
             };
             groups.push(Group { places, sampling });
         }

@@ -155,3 +155,41 @@ fn what_the_draw_makes_impossible_is_unresolved() {
     let said = place.call(&["simulate", "a.scn", "--trials", "60"]);
     assert!(said.err.contains("cannot start: `crowd["), "{}", said.err);
 }
+
+#[test]
+fn nobody_comes_twice_from_a_recording() {
+    let tracks =
+        "0 1 1.0 0 2.0 1.0 0 0\n0 2 3.0 0 2.0 1.0 0 0\n10 1 1.4 0 2.0 1.0 0 0\n10 2 3.4 0 2.0 1.0 0 0\n";
+    let place = Place::new(&[("t.txt", tracks)]);
+    let show = |people: &str| {
+        let scenario = format!(
+            "horizon = 1 s  step = 0.02 s\ntracks t = eth_biwi \"t.txt\"\n\
+             kind adult: sfm preset helbing2000 {{ noise = 0.05 m/s }}\n{people}\n"
+        );
+        place.write("a.scn", scenario.as_bytes());
+        place.call(&["show", "a.scn"])
+    };
+    let user = "agent user: adult from t at 0 s id 1\n";
+    assert_eq!(show(&format!("{user}agents rest: adult from t at 0 s except 1")).code, Some(0));
+    for (people, said) in [
+        (format!("{user}agents rest: adult from t at 0.2 s"), "person 1 of `t` is there already"),
+        (format!("{user}agent other: adult from t at 0.2 s id 1"), "person 1 of `t` is there already"),
+        ("agents rest: adult from t at 0 s except 1, 1".to_owned(), "person 1 is named twice"),
+    ] {
+        let found = show(&people);
+        assert_eq!(found.code, Some(2), "{people}");
+        assert!(found.err.starts_with("error[E0703]") && found.err.contains(said), "{}", found.err);
+        assert_eq!(found.err.matches("error").count(), 1, "{}", found.err);
+    }
+}
+
+#[test]
+fn what_comes_from_standard_input_is_formatted_as_what_it_is() {
+    let place = Place::new(&[]);
+    let said = place.fed(&["fmt", "-"], "estimate   P(true) within 0.1");
+    assert_eq!((said.code, said.out.as_str()), (Some(0), "estimate P(true) within 0.1\n"), "{}", said.err);
+    let said = place.fed(&["fmt", "-"], "horizon   = 3 s");
+    assert_eq!((said.code, said.out.as_str()), (Some(0), "horizon = 3 s\n"), "{}", said.err);
+    let said = place.fed(&["fmt", "-", "--language", "scn"], "estimate   P(true) within 0.1");
+    assert_eq!((said.code, said.out.as_str()), (Some(2), ""));
+}
