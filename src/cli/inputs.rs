@@ -217,7 +217,9 @@ pub(super) fn load(model: &Model, properties: &[String]) -> Inputs {
             .filter(|d| {
                 let names =
                     matches!(d.code, "E0201" | "E0203" | "E0205" | "E0208" | "E0209" | "E0505" | "E0606");
-                !(names && (scenario_broken || broken(d.place.as_ref().map(|p| p.span))))
+                // A process that could not be read may have had rates, and time would be another.
+                let times = scenario_broken && matches!(d.code, "E0503" | "E0507" | "E0508");
+                !(times || names && (scenario_broken || broken(d.place.as_ref().map(|p| p.span))))
             })
             .collect();
         diagnostics.extend(found);

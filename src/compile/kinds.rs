@@ -4,7 +4,7 @@ use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::laws::value_span;
 use super::presets::{PARAMETERS, PRESETS, law};
 use super::symbols::{Meaning, unknown};
-use crate::model::{Body, Law};
+use crate::model::{Body, Law, TOP_SPEED};
 use crate::syntax::ast::{Field, Ident, KindDecl};
 use crate::syntax::diagnostic::Diagnostic;
 
@@ -202,6 +202,11 @@ pub(super) fn out_of_range(name: &str, law: &Law) -> Option<String> {
     }
     if !positive && low < 0.0 {
         return Some(format!("`{name}` cannot be negative{truncate}"));
+    }
+    if matches!(name, "speed" | "noise") && low > TOP_SPEED {
+        return Some(format!(
+            "a `{name}` of more than {TOP_SPEED} m/s is nobody's: every trial would diverge"
+        ));
     }
     if share && high > 1.0 {
         return Some(format!("`{name}` lies between 0 and 1{truncate}"));

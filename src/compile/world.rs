@@ -62,6 +62,14 @@ impl<'a> Elaborator<'a> {
                 }
                 Item::Source(decl) => (&decl.name, Meaning::Declared),
             };
+            let reserved = match (&meaning, name.name.as_str()) {
+                (Meaning::Kind(_), "sfm") => Some("`sfm` is the social force model, from which kinds start"),
+                (_, "self") => Some("`self` is whoever has a behaviour"),
+                _ => None,
+            };
+            if let Some(text) = reserved {
+                self.note(Diagnostic::error("E0202", name.span, text).hint("choose another name"));
+            }
             if let Err(error) = self.scopes[0].declare(&name.name, name.span, meaning) {
                 self.note(error);
             }
@@ -86,6 +94,9 @@ impl<'a> Elaborator<'a> {
                     )
                     .related(first.span, "declared here");
                     self.note(error);
+                    // What it means in this file is anybody's guess: no further error comes of its uses.
+                    self.broken.insert((self.scopes.len(), name.name.clone()));
+                    let _ = scope.declare(&name.name, name.span, meaning);
                 } else if let Err(error) = scope.declare(&name.name, name.span, meaning) {
                     self.note(error);
                 }
@@ -185,17 +196,17 @@ impl<'a> Elaborator<'a> {
                 Item::Param { name, value, range } => {
                     let declared = self.lower_declared(&name.name, value.span);
                     if let (Some((low, high)), Ok(super::typed::Typed::Number(number))) = (range, declared)
-                        && let (Ok(low), Ok(high)) = (
-                            self.number_of(low, number.dimension, &locals),
-                            self.number_of(high, number.dimension, &locals),
-                        )
+                        && let range_span = low.span.to(high.span)
+                        && let Ok(low) = self.number_of(low, number.dimension, &locals)
+                        && let Ok(high) = self.number_of(high, number.dimension, &locals)
                         && (number.value < low.value || number.value > high.value)
                     {
-                        self.note(Diagnostic::error(
-                            "E0405",
-                            value.span,
-                            format!("the default of `{}` lies outside its range", name.name),
-                        ));
+                        self.note(if low.value > high.value {
+                            Diagnostic::error("E0405", range_span, "this range is empty")
+                        } else {
+                            let text = format!("the default of `{}` lies outside its range", name.name);
+                            Diagnostic::error("E0405", value.span, text)
+                        });
                     }
                 }
                 Item::Kind(decl)

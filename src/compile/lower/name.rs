@@ -80,7 +80,11 @@ impl<'a> Elaborator<'a> {
             }
             Meaning::Property(formula) => {
                 let inner = Locals { running: locals.running, ..Locals::of(scope) };
-                self.expand_once(scope, name, span, |this| this.lower(formula, &inner))
+                self.expand_once(scope, name, span, |this| match this.lower(formula, &inner)? {
+                    typed @ (Typed::Truth(_) | Typed::Formula(_)) => Ok(typed),
+                    // Said where it is declared, however often it is used.
+                    found => this.mismatch(formula.span, "a condition", &found),
+                })
             }
             Meaning::Region(id, _) => Ok(Typed::Region(id)),
             Meaning::Barrier(id) => Ok(Typed::Barrier(id)),
