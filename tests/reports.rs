@@ -190,7 +190,7 @@ fn rank() -> QueryResult {
         counts: counts(2_700, 500, 0),
         stopped_by: Stop::Width,
         rank: Some(Ranking {
-            choice: "heading 15 deg".into(),
+            choice: Some("heading 15 deg".into()),
             gap: 0.017_23,
             tied: true,
             options: vec![

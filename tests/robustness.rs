@@ -100,3 +100,46 @@ estimate E(robustness(calm)) in -1 .. 3
     assert_eq!(found[0]["unit"], "");
     assert!(found[0]["estimate"].as_f64().unwrap() > 0.0);
 }
+
+#[test]
+fn a_witness_names_the_moment_and_the_condition_of_its_margin() {
+    let query = "estimate E(robustness(G<=3 s (distance(user, crowd[1]) > 0.2 m))) in -1 m .. 9 m by fixed(trials = 20)\n\
+                 estimate P(robustness(G<=3 s (forall a in crowd: distance(user, a) > 0.2 m)) >= 1 m) by fixed(trials = 20)\n";
+    let place = Place::new(&[("a.scn", SMALL), ("a.bltl", query)]);
+    let json = place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "json"]).json();
+    let lowest = &json["results"][0]["witnesses"][0];
+    assert_eq!(lowest["shows"], "lowest");
+    let what = lowest["what"].as_str().unwrap();
+    assert!(what.starts_with("margin ") && what.contains("`distance(user, crowd[1]) > 0.2 m`"), "{what}");
+    // The states of the trial say the same.
+    let trial = lowest["trial"].to_string();
+    let rows = place.call(&["simulate", "a.scn", "--trial", &trial, "--until", "3"]).out;
+    let mut lines = rows.lines();
+    let head: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let column = |name: &str| head.iter().position(|h| *h == name).unwrap();
+    let (time, agent, x, y) = (column("time"), column("agent"), column("x"), column("y"));
+    let mut places = std::collections::BTreeMap::new();
+    for line in lines {
+        let cells: Vec<&str> = line.split(',').collect();
+        let point = (cells[x].parse::<f64>().unwrap(), cells[y].parse::<f64>().unwrap());
+        places.insert((cells[time].to_owned(), cells[agent].to_owned()), point);
+    }
+    let mut least = (f64::INFINITY, 0.0);
+    for ((time, agent), (x, y)) in &places {
+        if agent == "user" {
+            let (a, b) = places[&(time.clone(), "crowd[1]".to_owned())];
+            let gap = ((x - a) * (x - a) + (y - b) * (y - b)).sqrt() - 0.2;
+            if gap < least.0 {
+                least = (gap, time.parse::<f64>().unwrap());
+            }
+        }
+    }
+    assert!((lowest["value"].as_f64().unwrap() - least.0).abs() < 1e-6, "{lowest} {least:?}");
+    assert!((lowest["time"].as_f64().unwrap() - least.1).abs() < 1e-9, "{lowest} {least:?}");
+    // A side of a threshold says the margin and whose it is.
+    let found = json["results"][1]["witnesses"].as_array().unwrap();
+    assert!(!found.is_empty());
+    for witness in found {
+        assert!(witness["what"].as_str().unwrap().contains(": crowd["), "{witness}");
+    }
+}

@@ -86,13 +86,13 @@ pub(super) struct Check {
     /// Number of threads; all cores by default. Never changes a result.
     #[arg(short = 'j', long)]
     pub(super) threads: Option<usize>,
-    /// Most trials of one query.
+    /// Most trials of one query (of a ranking: of one option); one million by default.
     #[arg(long, value_name = "N")]
     pub(super) max_trials: Option<u64>,
     /// Most trials of one ranking, over all its options.
     #[arg(long, value_name = "N")]
     pub(super) total_trials: Option<u64>,
-    /// Time for the whole call, such as `50ms`, `2s`, `5min`.
+    /// Time for the whole call, such as `50ms`, `2s`, `5min`; no limit by default.
     #[arg(long, value_parser = parse_duration)]
     pub(super) timeout: Option<std::time::Duration>,
     /// Format of the results on standard output.
@@ -121,6 +121,7 @@ pub(super) enum OutputFormat {
     /// One object; see docs/schema/verdict.schema.json.
     Json,
     /// For continuous integration: `JUnit` XML.
+    #[value(help = "For continuous integration: JUnit XML")]
     Junit,
     /// Annotations of GitHub workflows.
     Github,

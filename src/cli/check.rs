@@ -4,12 +4,14 @@ use super::arguments::{Check, OutputFormat};
 use super::inputs;
 use super::progress::Progress;
 use super::terminal::{Colors, print, say};
+use crate::base::fingerprint::Fingerprint;
 use crate::compile::Study;
 use crate::compile::nearest::nearest;
 use crate::engine::budget::DEFAULT_TRIALS;
-use crate::engine::outcome::{Failure, Run};
-use crate::engine::{Budget, Call, Outlook, Threads, forecast, run as run_study};
+use crate::engine::outcome::{Failure, Finding, Run};
+use crate::engine::{Budget, Call, Fault, Outlook, Threads, forecast, run as run_study};
 use crate::report::{self, ExitCode as Exit, Format, Palette};
+use crate::syntax::render::render;
 use crate::syntax::source::{Source, Span};
 use std::sync::Arc;
 
@@ -17,16 +19,20 @@ use std::sync::Arc;
 pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     let inputs = inputs::load(&arguments.model, &arguments.properties);
     super::diagnose(&inputs, colors);
-    let Some(study) = &inputs.study else { return Exit::Wrong };
+    let desk = Desk {
+        arguments,
+        colors,
+        sources: &inputs.sources,
+        findings: inputs::findings(&inputs.diagnostics, &inputs.sources),
+        prints: inputs.prints.clone(),
+    };
+    let Some(study) = &inputs.study else { return desk.refused() };
     let only = match chosen(study, &arguments.only) {
         Ok(only) => only,
-        Err(reason) => return refuse(&reason),
+        Err(reason) => return desk.refuse(reason),
     };
     if arguments.threads == Some(0) {
-        return refuse("`--threads 0` runs nothing");
-    }
-    if arguments.max_trials == Some(0) || arguments.total_trials == Some(0) {
-        return refuse("no trials at all: that runs nothing");
+        return desk.refuse("`--threads 0` runs nothing");
     }
     let most = most_threads();
     if arguments.threads.is_some_and(|threads| threads > most) {
@@ -36,7 +42,7 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     }
     let threads = match Threads::new(arguments.threads.map(|threads| threads.min(most))) {
         Ok(threads) => threads,
-        Err(error) => return refuse(&format!("no threads can be started: {error}")),
+        Err(error) => return desk.refuse(format!("no threads can be started: {error}")),
     };
     let mut budget = Budget::new(arguments.max_trials.unwrap_or(DEFAULT_TRIALS), arguments.timeout);
     budget.max_total = arguments.total_trials;
@@ -60,16 +66,15 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     };
     if arguments.forecast {
         return match forecast(study, &call, &threads, &budget) {
-            Ok(outlook) => tell(&outlook, arguments.format),
-            Err(fault) => super::refused(fault, &inputs, colors),
+            Ok(outlook) => desk.tell(&outlook),
+            Err(fault) => desk.fault(&fault),
         };
     }
     let progress = Progress::new(arguments.quiet);
-    let run = match run_study(study, &call, &threads, &budget, &progress) {
-        Ok(run) => run,
-        Err(fault) => return super::refused(fault, &inputs, colors),
-    };
-    finish(arguments, &run, colors)
+    match run_study(study, &call, &threads, &budget, &progress) {
+        Ok(run) => desk.finish(run),
+        Err(fault) => desk.fault(&fault),
+    }
 }
 
 /// So many threads are run at most: each has trials of its own to begin and to throw away.
@@ -78,46 +83,129 @@ fn most_threads() -> usize {
     (2 * cores).max(16)
 }
 
-/// Prints a forecast.
-fn tell(outlook: &Outlook, format: OutputFormat) -> Exit {
-    let text = match format {
-        OutputFormat::Json => report::outlook::json(outlook),
-        _ => report::outlook::text(outlook),
-    };
-    match print(&text) {
-        Ok(()) => Exit::Success,
-        Err(reason) => refuse(&reason),
+/// Where what a call has to say is handed out, in the format that was asked for.
+struct Desk<'a> {
+    arguments: &'a Check,
+    colors: Colors,
+    sources: &'a [Source],
+    findings: Vec<Finding>,
+    prints: Vec<(String, Fingerprint)>,
+}
+
+impl Desk<'_> {
+    /// Prints a forecast.
+    fn tell(self, outlook: &Outlook) -> Exit {
+        let text = match self.arguments.format {
+            OutputFormat::Json => report::outlook::json(outlook),
+            _ => report::outlook::text(outlook),
+        };
+        match print(&text) {
+            Ok(()) => Exit::Success,
+            Err(reason) => self.refuse(reason),
+        }
+    }
+
+    /// The call is wrong in a way that no file shows.
+    fn refuse(self, reason: impl Into<String>) -> Exit {
+        let reason = reason.into();
+        say(&format!("error: {reason}\n"));
+        self.hand_out(reason)
+    }
+
+    /// The inputs are wrong; standard error has said how.
+    fn refused(self) -> Exit {
+        let mut errors = self.findings.iter().filter(|finding| finding.error);
+        let first = errors.next().map_or_else(|| "the inputs are wrong".to_owned(), Finding::line);
+        let reason = match errors.count() {
+            0 => first,
+            1 => format!("{first} (and 1 more error)"),
+            more => format!("{first} (and {more} more errors)"),
+        };
+        self.hand_out(reason)
+    }
+
+    /// Nothing could be run.
+    fn fault(mut self, fault: &Fault) -> Exit {
+        match super::refusal(fault) {
+            Some(error) => {
+                say(&render(std::slice::from_ref(&error), self.sources, self.colors.err));
+                self.findings.extend(inputs::findings(&[error], self.sources));
+                self.refused()
+            }
+            None => self.refuse(fault.to_string()),
+        }
+    }
+
+    /// A report of a run that never began, in formats for machines; people have read it already.
+    fn hand_out(self, reason: String) -> Exit {
+        let run = Run {
+            scenario: self.arguments.model.scenario.clone(),
+            seed: self.arguments.seed,
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            inputs: self.prints,
+            diagnostics: self.findings,
+            failure: Some(Failure::Input(reason)),
+            replay: format!("{} --seed {}", command("check", self.arguments, true), self.arguments.seed),
+            ..Run::default()
+        };
+        if self.arguments.format != OutputFormat::Text
+            && let Err(reason) = print(&report::render(&run, format(self.arguments.format), Palette::PLAIN))
+        {
+            say(&format!("error: {reason}\n"));
+        }
+        page(self.arguments, &run);
+        Exit::Wrong
+    }
+
+    /// Prints the results of a run.
+    fn finish(self, run: Run) -> Exit {
+        let run = Run { inputs: self.prints, diagnostics: self.findings, ..run };
+        let palette = if self.colors.out { Palette::ANSI } else { Palette::PLAIN };
+        let mut exit = report::exit_code(&run);
+        if let Err(reason) = print(&report::render(&run, format(self.arguments.format), palette)) {
+            say(&format!("error: {reason}\n"));
+            exit = exit.worse(Exit::Wrong);
+        }
+        if let Some(Failure::Input(reason) | Failure::Bug(reason)) = &run.failure {
+            say(&format!("error: {reason}\n"));
+        }
+        exit.worse(page(self.arguments, &run))
     }
 }
 
-fn refuse(reason: &str) -> Exit {
-    say(&format!("error: {reason}\n"));
-    Exit::Wrong
+/// A report of a call that a bug ended, in formats for machines.
+pub(super) fn fallen(chosen: OutputFormat, scenario: String, seed: u64) {
+    let run = Run {
+        scenario,
+        seed,
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        failure: Some(Failure::Bug("smc has a bug; standard error says more".to_owned())),
+        ..Run::default()
+    };
+    if chosen != OutputFormat::Text {
+        let _ = print(&report::render(&run, format(chosen), Palette::PLAIN));
+    }
 }
 
-#[allow(clippy::disallowed_methods, reason = "files are written by the command line")]
-fn finish(arguments: &Check, run: &Run, colors: Colors) -> Exit {
-    let format = match arguments.format {
+const fn format(chosen: OutputFormat) -> Format {
+    match chosen {
         OutputFormat::Text => Format::Text,
         OutputFormat::Json => Format::Json,
         OutputFormat::Junit => Format::Junit,
         OutputFormat::Github => Format::Github,
-    };
-    let palette = if colors.out { Palette::ANSI } else { Palette::PLAIN };
-    if let Err(reason) = print(&report::render(run, format, palette)) {
-        return refuse(&reason);
     }
-    if let Some(Failure::Input(reason) | Failure::Bug(reason)) = &run.failure {
-        say(&format!("error: {reason}\n"));
-    }
-    let mut exit = report::exit_code(run);
+}
+
+/// Writes the page that was asked for, if one was.
+#[allow(clippy::disallowed_methods, reason = "files are written by the command line")]
+fn page(arguments: &Check, run: &Run) -> Exit {
     if let Some(path) = &arguments.report
         && let Err(error) = std::fs::write(path, report::render(run, Format::Html, Palette::PLAIN))
     {
         say(&format!("error: `{}` cannot be written: {error}\n", path.display()));
-        exit = exit.worse(Exit::Wrong);
+        return Exit::Wrong;
     }
-    exit
+    Exit::Success
 }
 
 /// Indices of the queries that `--only` names.

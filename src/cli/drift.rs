@@ -20,6 +20,10 @@ pub(super) fn run(arguments: &Drift) -> Exit {
         Ok(false) => Exit::Success,
         Err(reason) => {
             say(&format!("error: {reason}\n"));
+            if arguments.format == DriftFormat::Json {
+                let error = json!({ "schema": 1, "error": { "bug": false, "message": reason } });
+                let _ = print(&format!("{error}\n"));
+            }
             Exit::Wrong
         }
     }

@@ -1,7 +1,9 @@
 //! Files of a call: read, decoded, parsed, compiled.
 
 use super::arguments::Model;
+use crate::base::fingerprint::Fingerprint;
 use crate::compile::{Files, Input, Setting, SettingValue, Study, compile, requests};
+use crate::engine::outcome::{Finding, Spot};
 use crate::syntax::ast::ScenarioFile;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::parse::{decode, parse_properties, parse_scenario, parse_value};
@@ -15,8 +17,28 @@ pub(super) struct Inputs {
     pub(super) sources: Vec<Source>,
     /// Errors and warnings.
     pub(super) diagnostics: Vec<Diagnostic>,
+    /// Each file and the fingerprint of its bytes.
+    pub(super) prints: Vec<(String, Fingerprint)>,
     /// What compilation yields, if nothing is wrong.
     pub(super) study: Option<Study>,
+}
+
+/// Errors and warnings as reports quote them.
+pub(super) fn findings(diagnostics: &[Diagnostic], sources: &[Source]) -> Vec<Finding> {
+    let spot = |span: Span| {
+        let source = sources.iter().find(|source| source.id == span.source)?;
+        let (start, end) = (source.line_column(span.start), source.line_column(span.end));
+        Some(Spot { file: source.name.clone(), start, end })
+    };
+    let one = |diagnostic: &Diagnostic| Finding {
+        error: diagnostic.severity == Severity::Error,
+        code: diagnostic.code.to_owned(),
+        spot: diagnostic.place.as_ref().and_then(|label| spot(label.span)),
+        message: diagnostic.title.clone(),
+        label: diagnostic.place.as_ref().map_or(String::new(), |label| label.text.clone()),
+        hint: diagnostic.hint.clone(),
+    };
+    diagnostics.iter().map(one).collect()
 }
 
 /// Bytes of a file, or of standard input for `-`.
@@ -46,6 +68,7 @@ pub(super) fn shown(name: &str) -> &str {
 
 struct Reader {
     sources: Vec<Source>,
+    prints: Vec<(String, Fingerprint)>,
     diagnostics: Vec<Diagnostic>,
 }
 
@@ -59,6 +82,7 @@ impl Reader {
                 return None;
             }
         };
+        self.prints.push((shown(name).to_owned(), Fingerprint::of(&bytes)));
         match decode(id, shown(name), &bytes) {
             Ok(source) => {
                 self.sources.push(source.clone());
@@ -150,7 +174,7 @@ fn find(path: &str, scenario: &str, data: &[PathBuf]) -> Result<PathBuf, String>
 /// Reads, parses and compiles what a call names.
 #[allow(clippy::disallowed_methods, reason = "files are opened by the command line")]
 pub(super) fn load(model: &Model, properties: &[String]) -> Inputs {
-    let mut reader = Reader { sources: Vec::new(), diagnostics: Vec::new() };
+    let mut reader = Reader { sources: Vec::new(), prints: Vec::new(), diagnostics: Vec::new() };
     let twice = std::iter::once(&model.scenario).chain(properties).filter(|name| *name == "-").count() > 1;
     if twice {
         reader.diagnostics.push(Diagnostic::placeless("E0701", "standard input can be read once only"));
@@ -191,9 +215,12 @@ pub(super) fn load(model: &Model, properties: &[String]) -> Inputs {
         let contents = find(&request.path, &model.scenario, &model.data).and_then(|path| {
             std::fs::read(&path).map_err(|e| format!("`{}` cannot be read: {e}", request.path))
         });
+        if let Ok(bytes) = &contents {
+            reader.prints.push((request.path.clone(), Fingerprint::of(bytes)));
+        }
         files.insert(request.path, contents);
     }
-    let Reader { sources, mut diagnostics } = reader;
+    let Reader { sources, prints, mut diagnostics } = reader;
     let mut study = None;
     if complete {
         let input = Input {
@@ -228,5 +255,5 @@ pub(super) fn load(model: &Model, properties: &[String]) -> Inputs {
     if diagnostics.iter().any(|d| d.severity == Severity::Error) {
         study = None;
     }
-    Inputs { sources, diagnostics, study }
+    Inputs { sources, diagnostics, prints, study }
 }

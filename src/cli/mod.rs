@@ -34,11 +34,19 @@ pub fn run() -> process::ExitCode {
             return process::ExitCode::from(if fine { 0 } else { Exit::Wrong.code() });
         }
     };
+    let asked = if let Command::Check(check) = &arguments.command {
+        Some((check.format, check.model.scenario.clone(), check.seed))
+    } else {
+        None
+    };
     let worker = std::thread::Builder::new().stack_size(STACK).spawn(move || dispatch(&arguments));
     let exit = match worker.map(std::thread::JoinHandle::join) {
         Ok(Ok(exit)) => exit,
         Ok(Err(_)) => {
             say("this is a bug in smc; please report it with the files of this call\n");
+            if let Some((format, scenario, seed)) = asked {
+                check::fallen(format, scenario, seed);
+            }
             Exit::Bug
         }
         Err(error) => {
@@ -70,22 +78,17 @@ fn diagnose(inputs: &inputs::Inputs, colors: Colors) {
     }
 }
 
-/// Says why the engine refuses a call.
-fn refused(fault: Fault, inputs: &inputs::Inputs, colors: Colors) -> Exit {
-    let error = match fault {
+/// What the engine refuses, where it has a code.
+fn refusal(fault: &Fault) -> Option<Diagnostic> {
+    match fault {
         Fault::Placement { reason, place } => {
             let error = match place {
-                Some(span) => Diagnostic::error("E0801", span, reason),
-                None => Diagnostic::placeless("E0801", reason),
+                Some(span) => Diagnostic::error("E0801", *span, reason.as_str()),
+                None => Diagnostic::placeless("E0801", reason.as_str()),
             };
-            error.hint("fewer people, a larger shape to start from, or smaller radii")
+            Some(error.hint("fewer people, a larger shape to start from, or smaller radii"))
         }
-        Fault::Procedure { place, reason } => Diagnostic::error("E0604", place, reason.to_string()),
-        fault => {
-            say(&format!("error: {fault}\n"));
-            return Exit::Wrong;
-        }
-    };
-    say(&render(&[error], &inputs.sources, colors.err));
-    Exit::Wrong
+        Fault::Procedure { place, reason } => Some(Diagnostic::error("E0604", *place, reason.to_string())),
+        _ => None,
+    }
 }

@@ -11,10 +11,11 @@ use crate::data::table::{
     Held, Row, StateRow, write_csv, write_json, write_json_lines, write_states_csv, write_states_json,
     write_states_json_lines,
 };
-use crate::engine::placeable;
+use crate::engine::{no_start, placeable};
 use crate::kernel::{Program, Scratch, Slot, State, dynamics, start};
 use crate::model::{Domain, Scenario};
 use crate::report::ExitCode as Exit;
+use crate::syntax::render::render;
 use std::io::{BufWriter, Write};
 use std::sync::Arc;
 
@@ -80,7 +81,7 @@ impl<'p> Walk<'p> {
                         return true;
                     }
                     Err(fault) => {
-                        let why = fault.describe(&self.program.scenario);
+                        let why = no_start(&self.program.scenario, fault);
                         self.notes.push(format!("trial {} cannot start: {why}", self.trial));
                         self.trial += 1;
                         continue;
@@ -121,8 +122,9 @@ impl<'p> Walk<'p> {
                 if !self.state.diverged.is_empty() {
                     let time = self.program.scenario.clock.seconds(Tick(tick));
                     self.notes.push(format!(
-                        "trial {} diverged at {time} s: somebody left every human speed; a smaller step may help",
-                        self.trial
+                        "trial {} diverged at {time} s: {}; a smaller step may help",
+                        self.trial,
+                        crate::engine::runaway(&self.program.scenario, &self.state)
                     ));
                 }
                 self.running = false;
@@ -248,7 +250,11 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
         None => None,
     };
     if let Err(fault) = placeable(world) {
-        return super::refused(fault, &inputs, colors);
+        match super::refusal(&fault) {
+            Some(error) => say(&render(&[error], &inputs.sources, colors.err)),
+            None => say(&format!("error: {fault}\n")),
+        }
+        return Exit::Wrong;
     }
     let mut last = scenario.horizon.0;
     if let Some(until) = arguments.until {

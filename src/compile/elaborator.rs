@@ -2,6 +2,7 @@
 
 use super::behaviour::With;
 use super::dimension::{Dimension, describe};
+use super::interned::Interned;
 use super::kinds::Kind;
 use super::margin::Margins;
 use super::number::Number;
@@ -15,7 +16,7 @@ use crate::base::geometry::{Shape, Vec2};
 use crate::base::tick::{Clock, Tick};
 use crate::data::tracks::Recording;
 use crate::logic::{Node, NodeId, Relation, SignalId, Term, TermId, Tree};
-use crate::model::{AgentId, Bool, Num, Scene};
+use crate::model::{AgentId, Bool, Num, Scene, Who};
 use crate::syntax::ast::{BehaviourDecl, Expr};
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::source::{Source, Span};
@@ -107,6 +108,8 @@ pub(super) struct Elaborator<'a> {
     pub(super) atoms: Vec<Bool>,
     /// Numbers observed.
     pub(super) signals: Vec<Num>,
+    /// Where nodes, terms, atoms and signals are.
+    known: [Interned; 4],
     /// How atoms, signals and comparisons were written.
     pub(super) texts: Texts,
     /// Names in circles that were reported.
@@ -119,8 +122,6 @@ pub(super) struct Elaborator<'a> {
     pub(super) depth: u32,
     /// Where the outermost expression that is being lowered stands.
     outermost: Span,
-    /// Whether it was said that something nests or grows beyond reason.
-    endless: bool,
     /// Names that were expanded in vain: what is wrong with them was said.
     pub(super) broken: BTreeSet<(ScopeId, String)>,
     /// Whether the scenario has no clock that can be told; then errors of times say nothing.
@@ -158,13 +159,13 @@ impl<'a> Elaborator<'a> {
             tree: Tree::default(),
             atoms: Vec::new(),
             signals: Vec::new(),
+            known: Default::default(),
             texts: Texts::default(),
             circles: Vec::new(),
             diagnostics: Vec::new(),
             margins: None,
             depth: 0,
             outermost: Span::default(),
-            endless: false,
             broken: BTreeSet::new(),
             timeless: false,
             nodes: 0,
@@ -230,11 +231,8 @@ impl<'a> Elaborator<'a> {
         }
         self.nodes += 1;
         // Said once: what is too long is so wherever one looks at it.
-        if self.depth >= DEEPEST || self.nodes > MOST_NODES {
-            if self.endless {
-                return Err(Reported);
-            }
-            self.endless = true;
+        if (self.depth >= DEEPEST || self.nodes > MOST_NODES) && self.endless() {
+            return Err(Reported);
         }
         if self.depth >= DEEPEST {
             let mut error = Diagnostic::error(
@@ -260,15 +258,19 @@ impl<'a> Elaborator<'a> {
         Ok(())
     }
 
+    /// Whether it was said that something nests or grows beyond reason.
+    fn endless(&self) -> bool {
+        self.diagnostics.iter().any(|d| d.code == "E0211")
+    }
+
     /// An error where names lead through too many others.
     pub(super) fn expand_further(&mut self, span: Span) -> Lowered<()> {
         if self.expanding.len() < DEEPEST as usize {
             return Ok(());
         }
-        if self.endless {
+        if self.endless() {
             return Err(Reported);
         }
-        self.endless = true;
         let first = self.expanding.first().map_or("", |(_, name)| name.as_str());
         let text = format!("`{first}` leads through more than {DEEPEST} names");
         self.report(Diagnostic::error("E0211", span, text))
@@ -316,18 +318,12 @@ impl<'a> Elaborator<'a> {
 
     /// A formula node, shared with equal ones.
     pub(super) fn node(&mut self, node: Node) -> NodeId {
-        match self.tree.nodes.iter().position(|n| *n == node) {
-            Some(at) => NodeId(at as u32),
-            None => self.tree.node(node),
-        }
+        NodeId(self.known[0].place(&mut self.tree.nodes, node).0 as u32)
     }
 
     /// A numeric node, shared with equal ones.
     pub(super) fn term(&mut self, term: Term) -> TermId {
-        match self.tree.terms.iter().position(|t| *t == term) {
-            Some(at) => TermId(at as u32),
-            None => self.tree.term(term),
-        }
+        TermId(self.known[1].place(&mut self.tree.terms, term).0 as u32)
     }
 
     /// The formula that reads a truth value of the present state.
@@ -347,13 +343,25 @@ impl<'a> Elaborator<'a> {
             }
             return self.node(Node::Constant(false));
         }
-        let at = self.atoms.iter().position(|a| *a == truth).unwrap_or_else(|| {
-            self.atoms.push(truth);
+        let (at, new) = self.known[2].place(&mut self.atoms, truth);
+        if new {
             let text = bare(&self.text(span)).to_owned();
             self.texts.atoms.push(text);
-            self.atoms.len() - 1
-        });
+        }
         self.node(Node::Atom(crate::logic::AtomId(at as u32)))
+    }
+
+    /// Whether somebody is there, which nobody wrote: it is named for what it is.
+    pub(super) fn presence(&mut self, id: AgentId, span: Span) -> NodeId {
+        let node = self.atom(Bool::Present(Who::Agent(id)), span);
+        if let (Node::Atom(atom), Some(name)) =
+            (&self.tree.nodes[node.0 as usize], self.agent_names.get(id.0 as usize))
+            && let Some(text) = self.texts.atoms.get_mut(atom.0 as usize)
+        {
+            *text = format!("present({name})");
+            self.texts.implied.insert(atom.0);
+        }
+        node
     }
 
     /// A comparison of numbers over time.
@@ -373,12 +381,11 @@ impl<'a> Elaborator<'a> {
         if let Num::Constant(value) = num {
             return self.term(Term::Constant(value));
         }
-        let at = self.signals.iter().position(|s| *s == num).unwrap_or_else(|| {
-            self.signals.push(num);
+        let (at, new) = self.known[3].place(&mut self.signals, num);
+        if new {
             let text = bare(&self.text(span)).to_owned();
             self.texts.signals.push((text, dimension));
-            self.signals.len() - 1
-        });
+        }
         self.term(Term::Signal(SignalId(at as u32)))
     }
 

@@ -6,6 +6,7 @@
 
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Lowered};
+use super::lower::relation;
 use crate::logic::{Invalid, Node, NodeId, Relation, Robustness, Term, TermId};
 use crate::model::{Arithmetic, Bool, Comparison, Field, Fold, Function, Num, Place, Set, Who};
 use crate::syntax::diagnostic::Diagnostic;
@@ -70,9 +71,15 @@ impl Elaborator<'_> {
                 .hint("robustness measures how far comparisons with `<`, `<=`, `>`, `>=`, contacts and regions are from changing");
             return self.report(error);
         };
-        let node =
-            Rewriting { elaborator: self, dimension, span, nodes: BTreeMap::new(), terms: BTreeMap::new() }
-                .node(node);
+        let node = Rewriting {
+            elaborator: self,
+            dimension,
+            span,
+            text: String::new(),
+            nodes: BTreeMap::new(),
+            terms: BTreeMap::new(),
+        }
+        .node(node);
         match Robustness::new(&self.tree, node, self.horizon, self.clock) {
             Err(Invalid::NoMargin) => {
                 let error = Diagnostic::error("E0610", span, "a condition in this formula has no margin")
@@ -97,6 +104,8 @@ struct Rewriting<'e, 'a> {
     elaborator: &'e mut Elaborator<'a>,
     dimension: Dimension,
     span: Span,
+    /// The condition that is rewritten, as written.
+    text: String,
     nodes: BTreeMap<u32, NodeId>,
     terms: BTreeMap<u32, TermId>,
 }
@@ -110,11 +119,15 @@ impl Rewriting<'_, '_> {
             node @ Node::Constant(_) => self.elaborator.node(node),
             Node::Atom(atom) => {
                 let truth = self.elaborator.atoms[atom.0 as usize].clone();
+                let text = self.elaborator.texts.atoms.get(atom.0 as usize).cloned();
+                self.text = text.unwrap_or_default();
                 self.condition(&truth)
             }
             Node::Compare(relation, a, b) => {
                 let (a, b) = (self.term(a), self.term(b));
-                self.elaborator.node(Node::Compare(relation, a, b))
+                let text = self.elaborator.texts.comparisons.get(&id.0).map(|(text, _)| text.clone());
+                self.text = text.unwrap_or_default();
+                self.comparison(relation, a, b)
             }
             Node::Not(a) => {
                 let a = self.node(a);
@@ -188,6 +201,11 @@ impl Rewriting<'_, '_> {
         made
     }
 
+    /// A comparison that stands for a condition, and is named as it was written.
+    fn comparison(&mut self, relation: Relation, a: TermId, b: TermId) -> NodeId {
+        self.elaborator.comparison((relation, a, b), self.text.clone(), self.dimension)
+    }
+
     fn number(&mut self, num: &Num) -> TermId {
         self.elaborator.signal(num.clone(), self.dimension, self.span)
     }
@@ -208,6 +226,10 @@ impl Rewriting<'_, '_> {
                 let list = list.iter().map(|one| self.condition(one)).collect();
                 self.elaborator.node(Node::Or(list))
             }
+            Bool::Iff(a, b) => {
+                let (a, b) = (self.condition(a), self.condition(b));
+                self.elaborator.iff(a, b)
+            }
             // Who has not come in yet has no numbers: then the truth decides.
             _ if self.elaborator.coming => {
                 let margin = margin(truth);
@@ -215,32 +237,21 @@ impl Rewriting<'_, '_> {
                 let is_number = Bool::Compare(Comparison::Equal, same.0, same.1);
                 let margin = Num::If(Box::new(is_number), Box::new(margin), Box::new(infinite(truth)));
                 let (margin, zero) = (self.number(&margin), self.elaborator.term(Term::Constant(0.0)));
-                self.elaborator.node(Node::Compare(Relation::Greater, margin, zero))
+                self.comparison(Relation::Greater, margin, zero)
             }
             Bool::Compare(comparison, a, b)
                 if !matches!(comparison, Comparison::Equal | Comparison::Unequal)
                     && depth(truth).is_none() =>
             {
                 let (a, b) = (self.number(a), self.number(b));
-                self.elaborator.node(Node::Compare(relation(*comparison), a, b))
+                self.comparison(relation(*comparison), a, b)
             }
             _ => {
                 let margin = self.number(&margin(truth));
                 let zero = self.elaborator.term(Term::Constant(0.0));
-                self.elaborator.node(Node::Compare(Relation::Greater, margin, zero))
+                self.comparison(Relation::Greater, margin, zero)
             }
         }
-    }
-}
-
-fn relation(comparison: Comparison) -> Relation {
-    match comparison {
-        Comparison::Less => Relation::Less,
-        Comparison::AtMost => Relation::AtMost,
-        Comparison::Greater => Relation::Greater,
-        Comparison::AtLeast => Relation::AtLeast,
-        Comparison::Equal => Relation::Equal,
-        Comparison::Unequal => Relation::Unequal,
     }
 }
 
@@ -270,6 +281,7 @@ pub fn margin(truth: &Bool) -> Num {
         Bool::Not(inner) => negated(margin(inner)),
         Bool::And(list) => joined(Arithmetic::Min, f64::INFINITY, list),
         Bool::Or(list) => joined(Arithmetic::Max, f64::NEG_INFINITY, list),
+        Bool::Iff(a, b) => combine(Arithmetic::Agree, margin(a), margin(b)),
         Bool::Compare(comparison, a, b) => match comparison {
             Comparison::Equal | Comparison::Unequal => infinite(truth),
             Comparison::Less | Comparison::AtMost => difference(truth, b, a),
@@ -388,6 +400,7 @@ fn may_be_none(num: &Num) -> bool {
                     | Arithmetic::Min
                     | Arithmetic::Max
                     | Arithmetic::Atan2
+                    | Arithmetic::Agree
             ) || may_be_none(a)
                 || may_be_none(b)
         }

@@ -5,10 +5,13 @@
 
 mod asks;
 mod behaviour;
+mod bounds;
 pub mod dimension;
 mod elaborator;
+mod families;
 mod files;
 mod filter;
+mod interned;
 mod kinds;
 mod laws;
 mod lower;
@@ -23,7 +26,6 @@ mod places;
 pub mod presets;
 mod process;
 mod queries;
-mod reach;
 mod recordings;
 mod scenery;
 mod settings;
@@ -33,8 +35,10 @@ mod symbols;
 mod typed;
 mod ways;
 mod world;
+mod written;
 
 pub use files::{Files, Request, requests};
 pub use queries::{Input, compile};
 pub use settings::{Setting, SettingValue};
 pub use study::Study;
+pub use written::Written;

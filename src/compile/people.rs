@@ -22,6 +22,8 @@ use super::typed::Typed;
 const STANDS: f64 = 0.05;
 /// Most agents of a scenario.
 const MOST_AGENTS: usize = 1_000_000;
+/// Most stable numbers of a declaration.
+const MOST_ENTITIES: u64 = 1 << 20;
 /// Friction where two particles overlap, kg/(m s), unless the group sets its own: two couples that pass
 /// through each other with an overlap of a metre lose half of their relative speed in about a second.
 const PARTICLE_FRICTION: f64 = 40.0;
@@ -52,10 +54,11 @@ impl People {
         }
     }
 
-    /// A range of `size` stable numbers for a declaration; where hashes collide, the next free range.
+    /// A range of `size` stable numbers for a declaration; where ranges collide, the next free one. It begins where
+    /// the name says, whatever the size: who is there already keeps its numbers when more are declared.
     pub(super) fn entities(&mut self, path: &str, size: u32) -> u32 {
         const ALL: u64 = 1 << 24;
-        let mut first = name_hash(path) % (ALL - u64::from(size).min(ALL - 1));
+        let mut first = name_hash(path) % (ALL - MOST_ENTITIES);
         while let Some((start, length)) = self.ranges.iter().find(|(start, length)| {
             first < u64::from(start + length) && u64::from(*start) < first + u64::from(size)
         }) {

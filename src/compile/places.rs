@@ -114,19 +114,18 @@ impl Elaborator<'_> {
                     let first = if comes { id } else { *points.entry(key).or_insert(id) };
                     self.beside_barriers(agent, *p, comes, &barriers, span).or_else(|| {
                         let other = &people.agents[first.0 as usize];
-                        (first != id)
-                            .then(|| self.together(other, agent, written(&people.places, first), span))
+                        (first != id).then(|| together(other, agent, written(&people.places, first), span))
                     })
                 }
                 // All of a declaration start alike.
                 Position::Within(_) | Position::Near { .. } if id != first_of(&people.places, id) => None,
-                Position::Within(shape) => self.without_room(agent, shape, &barriers, span),
+                Position::Within(shape) => without_room(agent, shape, &barriers, span),
                 Position::Near { agent: anchor, within } => {
                     let other = &people.agents[anchor.0 as usize];
-                    self.too_near(agent, other, *within, span).or_else(|| match other.start.position {
+                    too_near(agent, other, *within, span).or_else(|| match other.start.position {
                         Position::Point(centre) => {
                             let disc = Shape::Circle { centre, radius: *within };
-                            self.without_room(agent, &disc, &barriers, span)
+                            without_room(agent, &disc, &barriers, span)
                         }
                         _ => None,
                     })
@@ -189,50 +188,6 @@ impl Elaborator<'_> {
         })
     }
 
-    /// Two at one point.
-    fn together(&self, first: &Agent, second: &Agent, other: Option<Span>, span: Span) -> Diagnostic {
-        let text = format!("`{}` and `{}` start at the same point", first.name, second.name);
-        let error = Diagnostic::error("E0409", span, text);
-        match other {
-            Some(other) if other != span => error
-                .related(other, "taken here")
-                .hint("bodies that overlap shrink until they touch, these cannot"),
-            _ => error.hint("give each a place of its own, or choose by chance: `at = uniform in …`"),
-        }
-    }
-
-    /// A shape that barriers fill.
-    fn without_room(
-        &self,
-        agent: &Agent,
-        shape: &Shape,
-        barriers: &[Solid<'_>],
-        span: Span,
-    ) -> Option<Diagnostic> {
-        let radius = least_radius(agent);
-        if barriers.is_empty() || has_room(shape, radius, barriers) {
-            return None;
-        }
-        let text = format!(
-            "`{}` finds no free place here: walls and obstacles leave no room for a radius of at least {radius:.3} m",
-            agent.name
-        );
-        Some(Diagnostic::error("E0801", span, text).hint("a larger shape to start from, or smaller radii"))
-    }
-
-    /// Two bodies that are larger than the distance at which they are to be.
-    fn too_near(&self, agent: &Agent, anchor: &Agent, within: f64, span: Span) -> Option<Diagnostic> {
-        let sum = least_radius(agent) + least_radius(anchor);
-        if sum <= within {
-            return None;
-        }
-        let text = format!(
-            "`{}` cannot start within {within} m of `{}`: their bodies touch at {sum:.3} m or more",
-            agent.name, anchor.name
-        );
-        Some(Diagnostic::error("E0801", span, text).hint("the distance is that of their middles"))
-    }
-
     /// More around somebody than fit.
     fn crowded_around(&mut self, people: &People, anchor: AgentId, members: &[(AgentId, f64)]) {
         let centre = &people.agents[anchor.0 as usize];
@@ -267,6 +222,44 @@ impl Elaborator<'_> {
             }
         }
     }
+}
+
+/// Two at one point.
+fn together(first: &Agent, second: &Agent, other: Option<Span>, span: Span) -> Diagnostic {
+    let text = format!("`{}` and `{}` start at the same point", first.name, second.name);
+    let error = Diagnostic::error("E0409", span, text);
+    match other {
+        Some(other) if other != span => error
+            .related(other, "taken here")
+            .hint("bodies that overlap shrink until they touch, these cannot"),
+        _ => error.hint("give each a place of its own, or choose by chance: `at = uniform in …`"),
+    }
+}
+
+/// A shape that barriers fill.
+fn without_room(agent: &Agent, shape: &Shape, barriers: &[Solid<'_>], span: Span) -> Option<Diagnostic> {
+    let radius = least_radius(agent);
+    if barriers.is_empty() || has_room(shape, radius, barriers) {
+        return None;
+    }
+    let text = format!(
+        "`{}` finds no free place here: walls and obstacles leave no room for a radius of at least {radius:.3} m",
+        agent.name
+    );
+    Some(Diagnostic::error("E0801", span, text).hint("a larger shape to start from, or smaller radii"))
+}
+
+/// Two bodies that are larger than the distance at which they are to be.
+fn too_near(agent: &Agent, anchor: &Agent, within: f64, span: Span) -> Option<Diagnostic> {
+    let sum = least_radius(agent) + least_radius(anchor);
+    if sum <= within {
+        return None;
+    }
+    let text = format!(
+        "`{}` cannot start within {within} m of `{}`: their bodies touch at {sum:.3} m or more",
+        agent.name, anchor.name
+    );
+    Some(Diagnostic::error("E0801", span, text).hint("the distance is that of their middles"))
 }
 
 /// The first of the people of a declaration.

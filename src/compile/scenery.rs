@@ -6,7 +6,7 @@ use super::files::Files;
 use super::filter;
 use super::symbols::Meaning;
 use crate::base::geometry::{Polygon, Segment, Shape, Vec2};
-use crate::data::geometry::{Feature, Geometry, PropertyValue, read_wkt, select_geojson};
+use crate::data::geometry::{Feature, Geometry, PropertyValue, Select, read_wkt, select_geojson};
 use crate::model::{Barrier, BarrierId, Obstacle, Region, RegionId};
 use crate::syntax::ast::{Expr, Ident, SceneItem, ShapeExpr, Text};
 use crate::syntax::diagnostic::Diagnostic;
@@ -250,12 +250,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// The features of a file that are selected. Filters come first: what is wrong with the others does not matter.
-    fn features(
-        &mut self,
-        path: &Text,
-        files: &Files,
-        select: &mut dyn FnMut(&str, &[(String, PropertyValue)]) -> bool,
-    ) -> Lowered<Vec<Feature>> {
+    fn features(&mut self, path: &Text, files: &Files, select: &mut Select<'_>) -> Lowered<Vec<Feature>> {
         let bytes = match files.get(&path.value) {
             Ok(bytes) => bytes,
             Err(reason) => return self.report(missing(path.span, &reason)),

@@ -2,7 +2,8 @@
 //!
 //! Without a `limit` so many places are kept that a trial needs more with a probability below 1e-9: the smallest n
 //! with e^(th) E[e^(-tX)]^n below it for some t, h the horizon and X the time between arrivals (the bound of
-//! Chernoff 1952 on the sum of n of them).
+//! Chernoff 1952 on the sum of n of them). The expectation is known, or bounded from above by that of times that are
+//! a little shorter.
 
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered};
@@ -10,7 +11,7 @@ use super::laws::{truncate, value_span};
 use super::people::People;
 use super::symbols::Meaning;
 use crate::base::math;
-use crate::model::{Law, Route, Source};
+use crate::model::{Family, Law, Route, Source};
 use crate::syntax::ast::process::SourceDecl;
 use crate::syntax::ast::{Field, Value};
 use crate::syntax::diagnostic::Diagnostic;
@@ -156,15 +157,12 @@ impl<'a> Elaborator<'a> {
 
 /// So many arrivals within a time that more are rarer than one in a thousand million.
 fn enough(every: &Law, horizon: f64) -> Option<usize> {
-    const POINTS: u32 = 512;
-    let law = every.ready();
-    let times: Vec<f64> = (0..POINTS).map(|k| law.draw((f64::from(k) + 0.5) / f64::from(POINTS))).collect();
+    let times = Times::of(every);
     let mut best = f64::INFINITY;
     for k in 0..=120 {
         // From a hundredth to ten thousand of one over the mean.
         let t = math::exp((f64::from(k) / 20.0 - 2.0) * std::f64::consts::LN_10) / every.mean();
-        let transform = times.iter().map(|time| math::exp(-t * time)).sum::<f64>() / f64::from(POINTS);
-        let count = (RARE + t * horizon) / -math::ln(transform);
+        let count = (RARE + t * horizon) / -math::ln(times.transform(t));
         if count > 0.0 && count < best {
             best = count;
         }
@@ -172,10 +170,53 @@ fn enough(every: &Law, horizon: f64) -> Option<usize> {
     best.is_finite().then(|| best.ceil() as usize)
 }
 
+/// Times between arrivals, or times that are a little shorter.
+enum Times {
+    /// Exponential ones of a mean.
+    Exponential(f64),
+    /// Some times with their probabilities, which sum to 1.
+    Listed(Vec<(f64, f64)>),
+}
+
+impl Times {
+    fn of(law: &Law) -> Self {
+        const POINTS: u32 = 1024;
+        // What rounding can do to a time that is drawn.
+        const ROUNDING: f64 = 1e-9;
+        match law {
+            Law::Random { family: Family::Exponential { mean }, low, high }
+                if *low <= 0.0 && *high == f64::INFINITY =>
+            {
+                return Self::Exponential(*mean);
+            }
+            // These are not drawn in the order of their size.
+            Law::Random { family: Family::Choice(options), low, high } => {
+                let kept = options.iter().filter(|(value, _)| low <= value && value <= high);
+                let mass: f64 = kept.clone().map(|(_, weight)| weight).sum();
+                return Self::Listed(kept.map(|(value, weight)| (*value, weight / mass)).collect());
+            }
+            _ => {}
+        }
+        // What is drawn rises with the uniform number: on each part of its range the least is that at its start.
+        let ready = law.ready();
+        let part = 1.0 / f64::from(POINTS);
+        let least = |k: u32| if k == 0 { law.bounds().0 } else { ready.draw(f64::from(k) * part) };
+        Self::Listed((0..POINTS).map(|k| (least(k) * (1.0 - ROUNDING), part)).collect())
+    }
+
+    /// At least E[e^(-tX)].
+    fn transform(&self, t: f64) -> f64 {
+        match self {
+            Self::Exponential(mean) => 1.0 / (1.0 + t * mean),
+            Self::Listed(times) => times.iter().map(|(time, weight)| weight * math::exp(-t * time)).sum(),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::Family;
+    use crate::base::special::ln_gamma;
 
     fn law(family: Family) -> Law {
         Law::Random { family, low: f64::NEG_INFINITY, high: f64::INFINITY }
@@ -189,5 +230,50 @@ mod tests {
         // With constant times nothing is left to chance.
         assert_eq!(enough(&Law::Constant(4.0), 30.0), Some(8));
         assert_eq!(enough(&law(Family::Choice(vec![(0.0, 1.0)])), 30.0), None);
+    }
+
+    #[test]
+    fn no_transform_is_too_small() {
+        let uniform =
+            |low: f64, high: f64, t: f64| (math::exp(-t * low) - math::exp(-t * high)) / (t * (high - low));
+        for t in [0.01, 0.3, 1.0, 4.0, 30.0, 1000.0] {
+            let cut = Law::Random { family: Family::Exponential { mean: 1.0 }, low: 0.0, high: 20.0 };
+            let rest = math::exp(-20.0);
+            let whole = (1.0 - rest * math::exp(-20.0 * t)) / ((1.0 + t) * (1.0 - rest));
+            for (law, exact) in [
+                (law(Family::Exponential { mean: 2.0 }), 1.0 / (1.0 + 2.0 * t)),
+                (cut, whole),
+                (law(Family::Uniform { low: 0.0, high: 2.0 }), uniform(0.0, 2.0, t)),
+                (law(Family::Uniform { low: 1.0, high: 2.0 }), uniform(1.0, 2.0, t)),
+                (
+                    law(Family::Choice(vec![(2.0, 0.25), (1.0, 0.75)])),
+                    0.25 * math::exp(-2.0 * t) + 0.75 * math::exp(-t),
+                ),
+                (Law::Constant(3.0), math::exp(-3.0 * t)),
+            ] {
+                let bound = Times::of(&law).transform(t);
+                assert!(bound >= exact * (1.0 - 1e-12), "{law:?} {t}: {bound} {exact}");
+                assert!(bound <= exact + 1.001 / 1024.0, "{law:?} {t}: {bound} {exact}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_bound_holds_for_poisson_arrivals() {
+        // More than n arrivals with probability above 1e-9: some trial has too few places.
+        for mean in [1e-3, 0.02, 0.5, 3.0, 40.0, 1000.0] {
+            let places = enough(&law(Family::Exponential { mean: 1.0 }), mean).unwrap();
+            let cut = Law::Random { family: Family::Exponential { mean: 1.0 }, low: 0.0, high: 60.0 };
+            assert!(enough(&cut, mean).unwrap() >= places, "{mean}");
+            let exactly = |n: usize| math::exp(n as f64 * math::ln(mean) - mean - ln_gamma(n as f64 + 1.0));
+            let more: f64 = (places + 1..places + 200).map(exactly).sum();
+            assert!(more < 1e-9, "{mean}: {places} places, {more}");
+        }
+        // Twice as many places as arrivals would be too careful.
+        assert!(enough(&law(Family::Uniform { low: 0.0, high: 2.0 }), 1000.0).unwrap() < 1150);
+        for (gap, horizon, most) in [(1.0, 100.0, 100), (4.0, 28.0, 7), (0.5, 0.4, 0)] {
+            let places = enough(&Law::Constant(gap), horizon).unwrap();
+            assert!(places >= most && places <= most + 1, "{gap} {horizon}: {places}");
+        }
     }
 }

@@ -1,10 +1,11 @@
 //! What compilation yields: worlds to run and questions to answer about them.
 
 use super::dimension::Dimension;
+use super::written::Written;
 use crate::logic::{NodeId, Relation, TermId, Tree};
 use crate::model::{AgentId, Bool, Num, Scenario};
 use crate::syntax::source::Span;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// Everything a call asks.
@@ -14,6 +15,8 @@ pub struct Study {
     pub title: String,
     /// The scenario under each combination of parameter values that is asked about.
     pub worlds: Vec<World>,
+    /// The world that the call is about: with the values of `--set`, of a sweep the first.
+    pub base: usize,
     /// The questions, in order of files and of writing; a sweep repeats them for each of its points.
     pub queries: Vec<Query>,
 }
@@ -29,6 +32,8 @@ pub struct World {
     pub atoms: Vec<Bool>,
     /// How what is observed was written, for witnesses.
     pub texts: Texts,
+    /// How the scenario was written, for `smc show`.
+    pub written: Written,
     /// Numbers observed in each state.
     pub signals: Vec<Num>,
     /// Formulas and metrics over them.
@@ -51,6 +56,8 @@ impl World {
 pub struct Texts {
     /// Each atom.
     pub atoms: Vec<String>,
+    /// Those of them that ask whether somebody is there, where a quantifier does and nobody wrote it.
+    pub implied: BTreeSet<u32>,
     /// Each signal, and its dimension.
     pub signals: Vec<(String, Dimension)>,
     /// Comparisons of numbers over time, by the index of their node, and the dimension of their sides.
@@ -131,6 +138,8 @@ pub enum Ask {
         threshold: f64,
         /// The procedure.
         test: Test,
+        /// Error of the interval beside the verdict.
+        beside: f64,
     },
     /// What is the value of a measure?
     Estimate {
@@ -241,12 +250,10 @@ pub enum Test {
         /// Half width of the region.
         indifference: f64,
     },
-    /// Decide by an interval of the estimate: expectations and quantiles.
+    /// Decide by the interval of an expectation, which holds at all numbers of trials at once.
     Interval {
         /// Error.
         delta: f64,
-        /// Fixed number of trials, for quantiles.
-        trials: u64,
     },
 }
 

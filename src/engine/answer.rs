@@ -1,18 +1,19 @@
 //! Answers: what a procedure has found, put into words and numbers.
 
 use super::budget::Budget;
+use super::cause;
+use super::cell::Item;
 use super::contrast::Contrast;
 use super::executor::Executor;
 use super::fault::Fault;
-use super::outcome::{Kind, QueryResult, Shows, Stop, Verdict, Witness};
-use super::procedure;
+use super::method;
+use super::outcome::{Counts, Kind, QueryResult, Shows, Stop, Verdict, Witness};
 use super::race::Contest;
 use super::session::Call;
 use super::standing;
 use super::subject::Subject;
 use super::survey::{Inquiry, Survey};
 use super::tally::Tally;
-use super::trial;
 use super::watch::Watch;
 use super::witness;
 use super::words;
@@ -29,6 +30,18 @@ fn unit(measure: &Measure) -> String {
     }
 }
 
+/// The first of the unresolved trials of a result.
+pub(super) struct First<'s> {
+    /// Where it was run.
+    pub(super) subject: &'s Subject,
+    /// What was asked of it.
+    pub(super) column: usize,
+    /// The trial.
+    pub(super) item: Item,
+    /// Values of swept and `under` parameters.
+    pub(super) settings: Vec<(String, String)>,
+}
+
 /// Puts what was found into results.
 pub(super) struct Answers<'a> {
     /// What the command line said.
@@ -41,7 +54,10 @@ impl Answers<'_> {
     /// What is known of a query before its first trial.
     pub(super) fn blank(&self, query: &Query, kind: Kind) -> QueryResult {
         let (file, line) = (self.call.place)(query.span);
+        let (low, high) = legal(&query.ask);
         QueryResult {
+            low,
+            high,
             name: query.name.clone(),
             file,
             line,
@@ -53,9 +69,7 @@ impl Answers<'_> {
 
     /// The call that stops at the same trial; `limit` is the option that counts them.
     pub(super) fn replay(&self, query: &Query, limit: &str, trials: u64) -> String {
-        let call = format!("{} --only {} --seed {}", self.call.command, query.index, self.call.seed);
-        // Where there was no time for a trial there is nothing to be replayed.
-        if trials == 0 { call } else { format!("{call} {limit} {trials}") }
+        format!("{} --only {} --seed {} {limit} {trials}", self.call.command, query.index, self.call.seed)
     }
 
     /// The results of a survey that has stopped.
@@ -74,16 +88,20 @@ impl Answers<'_> {
         };
         let mut result = self.blank(query, kind);
         let stop = inquiry.stop.unwrap_or(Stop::Cap);
-        result.method = procedure::method(&query.ask, Some(&inquiry.procedure));
+        result.method = method::of(&query.ask, Some(&inquiry.procedure));
         result.unit = unit(measure);
         result.stopped_by = stop;
         result.replay = self.replay(query, "--max-trials", counts.trials);
         result.elapsed_s = inquiry.seconds;
-        let subject_words = measured_words(query, measure);
-        let mut beside = procedure::BESIDE;
-        if let Some((interval, coverage, error)) = inquiry.procedure.interval(counts) {
+        let subject_words = measured_words(query, measure, inquiry.tally.clipped);
+        let mut beside = match query.ask {
+            Ask::Check { beside, .. } => beside,
+            _ => 0.0,
+        };
+        if let Some((interval, coverage, error)) = inquiry.procedure.interval(counts, beside) {
             beside = error;
-            result.estimate = Some(interval.estimate);
+            // Where no trial is resolved the middle of what is legal is no estimate.
+            result.estimate = (counts.unresolved < counts.trials).then_some(interval.estimate);
             result.low = interval.low;
             result.high = interval.high;
             result.interval = words::interval(coverage, error);
@@ -109,9 +127,12 @@ impl Answers<'_> {
                     }
                     _ => format!("in {}", words::ends(interval.low, interval.high, &result.unit)),
                 };
-                result.certifies = format!("{subject_words} {claim}, error at most {}", words::number(error));
+                if says_something(&query.ask, interval.low, interval.high) {
+                    result.certifies =
+                        format!("{subject_words} {claim}, error at most {}", words::error(error));
+                }
                 let fixed = coverage == Coverage::FixedSize;
-                if fixed && matches!(stop, Stop::Deadline | Stop::Interrupt) {
+                if fixed && result.estimate.is_some() && matches!(stop, Stop::Deadline | Stop::Interrupt) {
                     result.warnings.push(
                         "the interval is for a number of trials fixed in advance, but sampling was cut short"
                             .to_owned(),
@@ -119,7 +140,9 @@ impl Answers<'_> {
                 }
             }
         }
-        if let Ask::Check { at_least, .. } = &query.ask {
+        if let Ask::Check { at_least, threshold, .. } = &query.ask {
+            result.of = words::asked(&query.text).map(|event| format!("P({event})"));
+            result.against = result.of.is_some() && !*at_least;
             let decision = inquiry.procedure.decision();
             result.verdict = Some(match decision {
                 Some(Decision::Above) if *at_least => Verdict::Satisfied,
@@ -128,22 +151,25 @@ impl Answers<'_> {
                 Some(Decision::Within) | None => Verdict::Undecided,
             });
             result.certifies = match inquiry.procedure.statement() {
-                Some(statement) => words::statement(&subject_words, &statement, &result.unit),
+                Some(statement) => words::quantile(&query.text, *threshold, &statement)
+                    .unwrap_or_else(|| words::statement(&subject_words, &statement, &result.unit)),
+                None if !says_something(&query.ask, result.low, result.high) => String::new(),
                 None => format!(
                     "{subject_words} in {}, error at most {}",
                     words::ends(result.low, result.high, &result.unit),
-                    words::number(beside)
+                    words::error(beside)
                 ),
             };
-            if inquiry.procedure.split() {
+            if inquiry.procedure.split() && counts.unresolved < counts.trials {
                 result.warnings.push(
                     "unresolved trials decide: read as failures and as successes they give opposite verdicts"
                         .to_owned(),
                 );
             }
         }
-        result.distribution = inquiry.procedure.distribution();
-        self.tell(&mut result, subject, &inquiry.tally, measure.target.column);
+        result.distribution = inquiry.procedure.distribution().filter(|_| counts.unresolved < counts.trials);
+        Self::tell(&mut result, subject, &inquiry.tally, measure.target.column);
+        self.lament_one(&mut result, subject, &inquiry.tally, measure.target.column);
         let picks = match (&measure.kind, kind) {
             (MeasureKind::Probability, _) | (_, Kind::Check) => witness::sides(&inquiry.tally),
             _ => witness::extremes(&inquiry.tally),
@@ -161,45 +187,95 @@ impl Answers<'_> {
         advice: Option<(usize, usize)>,
         picks: &[(Shows, u64)],
     ) -> Vec<Witness> {
-        witness::find(subject, column, advice, picks, self.call, &result.settings, &result.unit)
+        witness::find(
+            subject,
+            column,
+            advice,
+            picks,
+            (self.call, self.budget),
+            &result.settings,
+            &result.unit,
+        )
     }
 
     /// Counts, and what they warn of.
-    pub(super) fn tell(&self, result: &mut QueryResult, subject: &Subject, tally: &Tally, column: usize) {
+    pub(super) fn tell(result: &mut QueryResult, subject: &Subject, tally: &Tally, column: usize) {
         result.counts = tally.counts;
         result.steps = tally.steps;
         result.clipped = tally.clipped;
         result.shrunk = tally.shrunk;
-        if tally.counts.trials > 0
-            && let Ok(implications) = subject.implications(column)
+        let Ok(implications) = subject.implications(column) else { return };
+        if tally.counts.trials == 0 {
+            return;
+        }
+        let trials = tally.counts.trials;
+        // The 64th stands for all beyond.
+        let idle = |implied: bool| {
+            let some = implications.iter().take(64).enumerate().filter(|(_, one)| **one == implied);
+            let all: Vec<usize> = some.map(|(k, _)| k).collect();
+            (all.iter().filter(|k| tally.triggered >> **k & 1 == 0).count(), all.len())
+        };
+        match idle(false) {
+            (0, _) => {}
+            (1, 1) => result.warnings.push(format!(
+                "the implication in it was never triggered: the left side was true in none of {trials} trials"
+            )),
+            (idle, all) => result.warnings.push(format!(
+                "{idle} of its {all} implications were never triggered: the left side was true in none of {trials} trials"
+            )),
+        }
+        if let (idle, all @ 1..) = idle(true)
+            && idle == all
         {
-            let idle = (0..implications.min(64)).filter(|k| tally.triggered >> k & 1 == 0).count();
-            if idle > 0 {
-                let which = if implications == 1 {
-                    "the implication in it was".to_owned()
-                } else {
-                    format!("{idle} of its {implications} implications were")
-                };
-                result.warnings.push(format!(
-                    "{which} never triggered: the left side was true in none of {} trials",
-                    tally.counts.trials
-                ));
+            result.warnings.push(format!(
+                "nobody was there whenever it asked about those who are, in all of {trials} trials"
+            ));
+        }
+    }
+
+    /// The same of a result of one world, in which nobody was advised.
+    pub(super) fn lament_one(
+        &self,
+        result: &mut QueryResult,
+        subject: &Subject,
+        tally: &Tally,
+        column: usize,
+    ) {
+        let settings = result.settings.clone();
+        let item = |index| Item { advice: None, index };
+        let first = tally.first[2].map(|index| First { subject, column, item: item(index), settings });
+        self.lament(result, tally.counts.unresolved, first.as_ref());
+    }
+
+    /// Says how many trials are unresolved, why the first of them is, and how to look at it.
+    pub(super) fn lament(&self, result: &mut QueryResult, unresolved: u64, first: Option<&First<'_>>) {
+        let counts = Counts { unresolved, ..result.counts };
+        if unresolved == 0 {
+            return;
+        }
+        let how_many = match (counts.trials, unresolved) {
+            (1, _) => "the only trial is unresolved".to_owned(),
+            (all, some) if all == some => {
+                format!("all {all} trials are unresolved, so that nothing is known")
             }
-        }
-        if tally.counts.unresolved > 0 {
-            let first = tally.first[2].map_or(String::new(), |index| {
-                format!(
-                    "; see trial {index}: {} --trial {index} --seed {}",
-                    self.call.simulate, self.call.seed
-                )
-            });
-            let full = tally.first[2].and_then(|index| trial::reason(subject, index, self.call.seed));
-            let why = full.unwrap_or_else(|| {
-                "somebody left every human speed, or a mean was over nobody; a smaller step may help"
-                    .to_owned()
-            });
-            result.warnings.push(format!("{} trials are unresolved: {why}{first}", tally.counts.unresolved));
-        }
+            (all, 1) => format!("1 of {all} trials is unresolved"),
+            (all, some) => format!("{some} of {all} trials are unresolved"),
+        };
+        let shown = first.map_or(String::new(), |first| {
+            let why = cause::unresolved(first.subject, first.column, first.item, self.call.seed);
+            let index = first.item.index;
+            let mut command = self.call.simulate.clone();
+            for (name, value) in &first.settings {
+                command.push_str(&format!(" --set '{name}={value}'"));
+            }
+            command.push_str(&format!(" --trial {index} --seed {}", self.call.seed));
+            if let Some(label) = witness::label(first.subject, first.item.advice) {
+                command.push_str(&format!(" --move '{label}'"));
+            }
+            let why = if why.is_empty() { why } else { format!("{why}; ") };
+            format!("; trial {index}: {why}see {command}")
+        });
+        result.warnings.push(format!("{how_many}{shown}"));
     }
 
     /// Runs a comparison, and its result.
@@ -211,34 +287,46 @@ impl Answers<'_> {
     ) -> Result<QueryResult, Fault> {
         let started = self.budget.elapsed();
         let query = contrast.query();
-        let Ask::Compare { first, settings, delta, .. } = &query.ask else {
+        let Ask::Compare { first, second, settings, delta, .. } = &query.ask else {
             return Err(Fault::Unsuitable);
         };
-        let subject = contrast.subject(0);
+        let subjects = [contrast.subject(0), contrast.subject(1)];
+        let subject = subjects[0];
         let gap = contrast.run(executor, self.budget, watch)?;
         let mut result = self.blank(query, Kind::Compare);
         let unit = unit(first);
-        result.method = procedure::method(&query.ask, None);
-        result.estimate = (gap.pairs > 0).then_some(gap.estimate);
-        result.low = gap.interval.low;
-        result.high = gap.interval.high;
-        result.interval = words::interval(gap.interval.coverage, gap.interval.error);
+        result.method = method::of(&query.ask, None);
+        if gap.pairs > 0 {
+            result.estimate = (gap.unresolved < gap.pairs).then_some(gap.estimate);
+            result.low = gap.interval.low;
+            result.high = gap.interval.high;
+            result.interval = words::interval(gap.interval.coverage, gap.interval.error);
+        }
         result.stopped_by = gap.stop;
         result.replay = self.replay(query, "--max-trials", gap.pairs);
         let joined = total(&gap.sides);
-        self.tell(&mut result, subject, &joined, first.target.column);
+        Self::tell(&mut result, subject, &joined, first.target.column);
+        let lost = (0..2).find_map(|side| {
+            let index = gap.sides[side].first[2]?;
+            let settings = result.settings.iter().chain(&settings[side]).cloned().collect();
+            let (subject, column) = (subjects[side], [first, second][side].target.column);
+            Some(First { subject, column, item: Item { advice: None, index }, settings })
+        });
+        self.lament(&mut result, joined.counts.unresolved, lost.as_ref());
         let label = |settings: &[(String, String)]| {
             settings.iter().map(|(name, value)| format!("{name} = {value}")).collect::<Vec<_>>().join(", ")
         };
         let labels = [label(&settings[0]), label(&settings[1])];
-        let name = measured_words(query, first);
-        result.certifies = format!(
-            "{name} under {} less that under {} in {}, error at most {}",
-            labels[0],
-            labels[1],
-            words::ends(result.low, result.high, &unit),
-            words::number(*delta)
-        );
+        let name = measured_words(query, first, joined.clipped);
+        if says_something(&query.ask, result.low, result.high) {
+            result.certifies = format!(
+                "{name} under {} less that under {} in {}, error at most {}",
+                labels[0],
+                labels[1],
+                words::ends(result.low, result.high, &unit),
+                words::error(*delta)
+            );
+        }
         result.unit = unit;
         result.compare = Some(standing::sides(&gap, &labels, *delta));
         result.elapsed_s = self.budget.elapsed() - started;
@@ -262,54 +350,80 @@ impl Answers<'_> {
         let subject = field.subject;
         let declared = &subject.program.scenario.moves[*moves];
         let mut result = self.blank(query, Kind::Rank);
-        result.method = procedure::method(&query.ask, None);
+        result.method = method::of(&query.ask, None);
         result.unit = unit(measure);
         result.stopped_by = podium.stop;
         let joined = total(&podium.tallies);
         result.replay = self.replay(query, "--total-trials", joined.counts.trials);
-        self.tell(&mut result, subject, &joined, measure.target.column);
-        result.clipped = joined.clipped;
+        Self::tell(&mut result, subject, &joined, measure.target.column);
+        let lost = podium.tallies.iter().enumerate().find_map(|(arm, tally)| {
+            let item = Item { advice: Some((*moves, arm)), index: tally.first[2]? };
+            Some(First { subject, column: measure.target.column, item, settings: result.settings.clone() })
+        });
+        self.lament(&mut result, joined.counts.unresolved, lost.as_ref());
         let labels: Vec<&str> = declared.options.iter().map(|(label, _)| label.as_str()).collect();
         let ranked = standing::ranked(&podium, &labels);
-        let gap = ranked.gap;
-        let score = measured_words(query, measure);
-        result.certifies = if gap < podium.scale {
-            format!(
-                "{score} of `{}` is within {} of the best, error at most {}",
-                ranked.choice,
-                words::quantity(words::at_most(gap), &result.unit),
-                words::number(*delta)
-            )
-        } else {
-            format!("nothing: `{}` has the best score so far", ranked.choice)
-        };
-        let chosen = &ranked.options[0].value;
-        result.estimate = Some(chosen.estimate);
-        result.low = chosen.low;
-        result.high = chosen.high;
-        result.interval = format!("{}, all options jointly", words::interval(Coverage::TimeUniform, *delta));
-        let arm = podium.choice.arm;
-        let picks = match measure.kind {
-            MeasureKind::Probability => witness::sides(&podium.tallies[arm]),
-            _ => witness::extremes(&podium.tallies[arm]),
-        };
-        result.witnesses = self.witnesses(&result, subject, field.column, Some((*moves, arm)), &picks);
+        let score = measured_words(query, measure, joined.clipped);
+        if let Some(choice) = &ranked.choice {
+            if ranked.gap < podium.scale {
+                result.certifies = format!(
+                    "{score} of `{choice}` is within {} of the best, error at most {}",
+                    words::quantity(words::at_most(ranked.gap), &result.unit),
+                    words::error(*delta)
+                );
+            }
+            let chosen = &ranked.options[0].value;
+            result.estimate = Some(chosen.estimate);
+            result.low = chosen.low;
+            result.high = chosen.high;
+            result.interval =
+                format!("{}, all options jointly", words::interval(Coverage::TimeUniform, *delta));
+            let arm = podium.choice.arm;
+            let picks = match measure.kind {
+                MeasureKind::Probability => witness::sides(&podium.tallies[arm]),
+                _ => witness::extremes(&podium.tallies[arm]),
+            };
+            result.witnesses = self.witnesses(&result, subject, field.column, Some((*moves, arm)), &picks);
+        }
         result.rank = Some(ranked);
         result.elapsed_s = self.budget.elapsed() - started;
         Ok(result)
     }
 }
 
-/// The measure as one would say it: `P(safe)`.
-fn measured_words(query: &Query, measure: &Measure) -> String {
-    words::measured(
-        &query.text,
-        match measure.kind {
-            MeasureKind::Probability => 'P',
-            MeasureKind::Expectation { .. } => 'E',
-            MeasureKind::Quantile { .. } => 'Q',
-        },
-    )
+/// What a number can be: between 0 and 1, or in the declared range.
+fn legal(ask: &Ask) -> (f64, f64) {
+    let of = |measure: &Measure| match measure.kind {
+        MeasureKind::Probability => (0.0, 1.0),
+        MeasureKind::Expectation { range, .. } => range,
+        MeasureKind::Quantile { .. } => (f64::NEG_INFINITY, f64::INFINITY),
+    };
+    match ask {
+        Ask::Check { measure, .. } | Ask::Estimate { measure, .. } | Ask::Rank { measure, .. } => of(measure),
+        Ask::Compare { first, .. } => {
+            let (low, high) = of(first);
+            (low - high, high - low)
+        }
+    }
+}
+
+/// Whether an interval excludes anything that can be.
+fn says_something(ask: &Ask, low: f64, high: f64) -> bool {
+    let (least, most) = legal(ask);
+    low > least || high < most
+}
+
+/// The measure as one would say it: `P(safe)`. Where trials left the declared range, what is known of the expectation
+/// is known of the clipped metric alone, and is said of that.
+fn measured_words(query: &Query, measure: &Measure, clipped: u64) -> String {
+    match &measure.kind {
+        MeasureKind::Probability => words::measured(&query.text, 'P'),
+        MeasureKind::Quantile { .. } => words::measured(&query.text, 'Q'),
+        MeasureKind::Expectation { range, dimension } => {
+            let said = words::measured(&query.text, 'E');
+            if clipped == 0 { said } else { words::clipped(&said, *range, &dimension.to_string()) }
+        }
+    }
 }
 
 fn total(tallies: &[Tally]) -> Tally {

@@ -1,11 +1,13 @@
 //! What decided a trial: the atom, comparison or number, and the agents in it.
 
+use super::budget::Budget;
 use super::subject::Subject;
 use super::words;
 use crate::base::tick::{Clock, Tick};
 use crate::kernel::{Code, Readings, State};
 use crate::logic::{
-    AtomId, Node, NodeId, Reason, Recording, SignalId, Source, Term, TermId, explain, sides, sources,
+    AtomId, Node, NodeId, Reason, Recording, SignalId, Source, Term, TermId, critical, explain, sides,
+    sources,
 };
 use crate::model::{AgentId, Bool, Num, Place, Scenario, Set, Who};
 
@@ -29,7 +31,7 @@ const NAMED: usize = 3;
 
 impl Record {
     /// Calls `look` with the record in the form that `logic` reads.
-    fn read<T>(&self, subject: &Subject, look: impl FnOnce(&Recording<'_>) -> T) -> T {
+    fn read<T>(&self, subject: &Subject, budget: &Budget, look: impl FnOnce(&Recording<'_>) -> T) -> T {
         let atoms =
             |atom: AtomId, at: u64| self.atoms.get(at as usize).is_some_and(|row| row[atom.0 as usize]);
         let signals = |signal: SignalId, at: u64| {
@@ -41,6 +43,7 @@ impl Record {
             seen: self.atoms.len() as u64,
             horizon: subject.horizon,
             clock: subject.program.scenario.clock,
+            stop: &|| budget.is_late(),
         })
     }
 }
@@ -49,14 +52,24 @@ impl Record {
 pub(super) fn truth(
     subject: &Subject,
     root: NodeId,
-    record: &Record,
+    (record, budget): (&Record, &Budget),
     state_at: impl Fn(Tick) -> Option<State>,
 ) -> String {
-    record.read(subject, |recording| {
+    record.read(subject, budget, |recording| {
         let Ok(explanation) = explain(&subject.tree, root, recording) else { return String::new() };
+        // Of those who are not there nothing is to be said, unless there is nobody else.
+        let absent = |reason: &&Reason| {
+            let Node::Atom(atom) = subject.tree.nodes[reason.leaf.0 as usize] else { return false };
+            !reason.value && matches!(subject.atoms()[atom.0 as usize], Bool::Present(_))
+        };
         // The last reason in time is the one that closed the case.
-        let last = explanation.reasons.iter().max_by_key(|reason| (reason.to, reason.from));
+        let said = explanation.reasons.iter().filter(|reason| !absent(reason));
+        let last = said.max_by_key(|reason| (reason.to, reason.from));
         match last {
+            None if explanation.reasons.len() > 1 => "none of those it asks about is there".to_owned(),
+            None if explanation.reasons.len() == 1 => {
+                closing(subject, &explanation.reasons[0], recording, &state_at)
+            }
             Some(reason) => closing(subject, reason, recording, &state_at),
             None if explanation.verdict.is_some() => "it does not depend on what happens".to_owned(),
             None => String::new(),
@@ -69,10 +82,10 @@ pub(super) fn number(
     subject: &Subject,
     root: TermId,
     (value, unit): (f64, &str),
-    record: &Record,
+    (record, budget): (&Record, &Budget),
     state_at: impl Fn(Tick) -> Option<State>,
 ) -> (Option<Tick>, String) {
-    record.read(subject, |recording| {
+    record.read(subject, budget, |recording| {
         let (_, found) = sources(&subject.tree, root, Tick(0), recording);
         let never =
             value == f64::INFINITY && matches!(subject.tree.terms[root.0 as usize], Term::TimeUntil(_));
@@ -93,6 +106,41 @@ pub(super) fn number(
                 (None, format!("{text}: {}", list.join(" and ")))
             }
         }
+    })
+}
+
+/// Which condition has the margin that the robustness of a formula is in a trial, and when.
+pub(super) fn margin(
+    subject: &Subject,
+    root: NodeId,
+    (value, unit): (Option<f64>, &str),
+    (record, budget): (&Record, &Budget),
+    state_at: impl Fn(Tick) -> Option<State>,
+) -> (Option<Tick>, String) {
+    record.read(subject, budget, |recording| {
+        let Some(found) = critical(&subject.tree, root, recording) else {
+            return (None, value.map_or(String::new(), |value| words::brief(value, unit)));
+        };
+        let shown = words::brief(value.unwrap_or(found.margin), unit);
+        let mut said = format!("margin {shown}");
+        if let Some((text, _)) =
+            subject.texts.comparisons.get(&found.leaf.0).filter(|(text, _)| !text.is_empty())
+        {
+            said = format!("{said}, of `{text}`");
+        }
+        if let (Some(state), Node::Compare(_, x, y)) =
+            (state_at(found.at), &subject.tree.nodes[found.leaf.0 as usize])
+        {
+            let mut search = Search { subject, state: &state, found: Vec::new() };
+            for side in [x, y] {
+                if let Term::Signal(signal) = &subject.tree.terms[side.0 as usize] {
+                    search.extremum(&subject.signals()[signal.0 as usize]);
+                }
+            }
+            search.found.truncate(NAMED);
+            said.push_str(&names(subject, &search.found));
+        }
+        (Some(found.at), said)
     })
 }
 
@@ -140,8 +188,12 @@ fn closing(
     recording: &Recording<'_>,
     state_at: &impl Fn(Tick) -> Option<State>,
 ) -> String {
-    let word = if reason.value { "holds" } else { "fails" };
+    let word = words::truth(reason.value);
     match &subject.tree.nodes[reason.leaf.0 as usize] {
+        Node::Atom(atom) if let Bool::Present(Who::Agent(id)) = &subject.atoms()[atom.0 as usize] => {
+            let name = subject.program.scenario.agents.get(id.0 as usize).map_or("", |agent| &agent.name);
+            format!("{name} is {}there", if reason.value { "" } else { "not " })
+        }
         Node::Atom(atom) => {
             let Some(text) = subject.texts.atoms.get(atom.0 as usize) else { return String::new() };
             let blamed = |state| blamed(subject, &subject.atoms()[atom.0 as usize], reason.value, &state);
@@ -190,12 +242,17 @@ impl Search<'_> {
         }
     }
 
-    fn members(set: &Set) -> Vec<AgentId> {
+    /// Those of a set who are there: nobody else counts.
+    fn members(&self, set: &Set) -> Vec<AgentId> {
         let out = match set.except {
             Some(Who::Agent(id)) => Some(id),
             _ => None,
         };
-        set.members.iter().copied().filter(|id| Some(*id) != out).collect()
+        let there = |id: AgentId| {
+            let slot = self.state.slot(id.0 as usize, 0);
+            self.state.present[slot.block].has(slot.lane)
+        };
+        set.members.iter().copied().filter(|id| Some(*id) != out && there(*id)).collect()
     }
 
     fn walk(&mut self, atom: &Bool, truth: bool) {
@@ -213,11 +270,16 @@ impl Search<'_> {
                     }
                 }
             }
+            Bool::Iff(a, b) => {
+                let first = self.holds(a);
+                self.walk(a, first);
+                self.walk(b, first == truth);
+            }
             Bool::Forall(set, body) | Bool::Exists(set, body) => {
                 if matches!(atom, Bool::Forall(..)) == truth {
                     return;
                 }
-                for id in Self::members(set) {
+                for id in self.members(set) {
                     let one = instantiate_bool(body, 0, id);
                     if self.holds(&one) == truth {
                         self.name(id);
@@ -259,7 +321,8 @@ impl Search<'_> {
                 self.extremum(a);
                 self.extremum(b);
             }
-            Num::Apply(_, a) => self.extremum(a),
+            // The margin of who may not be there yet stands in a condition.
+            Num::Apply(_, a) | Num::If(_, a, _) => self.extremum(a),
             _ => {}
         }
         let Num::Fold(fold, set, body) = num else { return };
@@ -268,7 +331,7 @@ impl Search<'_> {
             crate::model::Fold::Max => false,
             crate::model::Fold::Sum | crate::model::Fold::Mean => return,
         };
-        let members = Self::members(set);
+        let members = self.members(set);
         let values: Vec<Num> = members.iter().map(|id| instantiate_num(body, 0, *id)).collect();
         let code = Code::compile(&self.subject.program.scenario, &[], &values);
         let mut readings = Readings::default();
@@ -338,6 +401,7 @@ fn instantiate_bool(truth: &Bool, depth: u32, id: AgentId) -> Bool {
         Bool::Not(inner) => Bool::Not(Box::new(b(inner))),
         Bool::And(list) => Bool::And(list.iter().map(b).collect()),
         Bool::Or(list) => Bool::Or(list.iter().map(b).collect()),
+        Bool::Iff(x, y) => Bool::Iff(Box::new(b(x)), Box::new(b(y))),
         Bool::In(w, region) => Bool::In(who(*w, depth, id), *region),
         Bool::Present(w) => Bool::Present(who(*w, depth, id)),
         Bool::Contact(w) => Bool::Contact(who(*w, depth, id)),

@@ -93,7 +93,7 @@ pub(super) fn inquiry(ask: &Ask, procedure: &Procedure, glimpse: &Glimpse) -> Op
             let one = |theta: f64| wald(p, theta, 0.5 * indifference, *alpha, *alpha);
             one(threshold - 0.5 * indifference).max(one(threshold + 0.5 * indifference))
         }
-        Ask::Check { threshold, test: Test::Interval { delta, .. }, measure, .. } => {
+        Ask::Check { threshold, test: Test::Interval { delta }, measure, .. } => {
             let MeasureKind::Expectation { range: (low, high), .. } = measure.kind else { return limit };
             let range = high - low;
             let gap = (glimpse.mean() - threshold).abs().max(1e-6 * range);

@@ -17,7 +17,7 @@ use crate::logic::{self, Invalid, SignalMonitor};
 const CLOCK_EVERY: u32 = 256;
 
 /// Most jumps of a trial; one that needs more is unresolved.
-const MOST_JUMPS: u64 = 1 << 26;
+pub(super) const MOST_JUMPS: u64 = 1 << 26;
 
 /// A batch of lanes with the monitors of some columns.
 pub(super) struct Jumper {

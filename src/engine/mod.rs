@@ -3,12 +3,16 @@
 mod answer;
 mod blame;
 pub mod budget;
+mod cause;
 pub mod cell;
 mod contrast;
 pub mod executor;
 mod fault;
+pub mod finding;
 mod forecast;
 mod jumper;
+mod leaper;
+mod method;
 mod observer;
 pub mod outcome;
 mod procedure;
@@ -30,6 +34,7 @@ mod words;
 mod worker;
 
 pub use budget::Budget;
+pub use cause::{no_start, runaway};
 pub use executor::{Executor, Threads};
 pub use fault::Fault;
 pub use session::{Call, forecast, placeable, run};

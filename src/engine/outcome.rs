@@ -2,6 +2,9 @@
 //!
 //! Everything but the times is a function of input, seed and version. Counts are those of consumed trials.
 
+pub use super::finding::{Finding, Spot};
+use crate::base::fingerprint::Fingerprint;
+
 /// Everything one call has computed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Run {
@@ -11,8 +14,12 @@ pub struct Run {
     pub seed: u64,
     /// Version of the program.
     pub version: String,
+    /// Each file that was read and its fingerprint: scenario, properties, then what the scenario names.
+    pub inputs: Vec<(String, Fingerprint)>,
     /// Results in the order of the queries; a swept query has one per setting.
     pub results: Vec<QueryResult>,
+    /// What the front end says of the inputs: warnings, and where nothing could run, errors.
+    pub diagnostics: Vec<Finding>,
     /// Warnings that belong to no query.
     pub warnings: Vec<String>,
     /// Whether it was interrupted; the results are what is known so far.
@@ -57,13 +64,18 @@ pub struct QueryResult {
     pub certifies: String,
     /// `the horizon of 30 s` where a formula has no bound of its own.
     pub within: Option<String>,
-    /// The estimate; `None` where there is none, infinite where it lies beyond the horizon. Of a `compare`
+    /// The estimate; `None` where there is none (nothing was sampled), infinite where it lies beyond the horizon. Of a `compare`
     /// the difference, of a `rank` the score of the choice.
     pub estimate: Option<f64>,
-    /// Lower end of the interval.
+    /// Lower end of the interval; of what is legal where nothing is known.
     pub low: f64,
-    /// Upper end of the interval; may be infinite.
+    /// Upper end of the interval, or of what is legal; may be infinite.
     pub high: f64,
+    /// Of which probability the figures are, where the query names something else: the check of a quantile is decided
+    /// as one of `P(metric <= threshold)`.
+    pub of: Option<String>,
+    /// Whether the claim is that this probability is small, so that a trial with the event speaks against it.
+    pub against: bool,
     /// Unit of the three numbers before; empty for probabilities.
     pub unit: String,
     /// Kind and level of the interval: `time-uniform, 95 %`.
@@ -117,6 +129,8 @@ impl QueryResult {
             estimate: None,
             low: f64::NEG_INFINITY,
             high: f64::INFINITY,
+            of: None,
+            against: false,
             unit: String::new(),
             interval: String::new(),
             method: Method::default(),
@@ -215,6 +229,9 @@ pub enum Stop {
     Boundary,
     /// The interval, or the gap of a ranking, became as narrow as asked for.
     Width,
+    /// More trials of this kind would not help: how the unresolved ones are read decides the verdict, or keeps
+    /// the interval wide.
+    Unresolved,
     /// The number of trials was planned beforehand.
     Plan,
     /// The largest number of trials was reached.
@@ -233,6 +250,7 @@ impl Stop {
         match self {
             Self::Boundary => "boundary",
             Self::Width => "width",
+            Self::Unresolved => "unresolved",
             Self::Plan => "plan",
             Self::Cap => "cap",
             Self::Deadline => "deadline",
@@ -323,9 +341,10 @@ pub struct Side {
 /// The outcome of a `rank`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ranking {
-    /// The recommended option.
-    pub choice: String,
-    /// Certified: the choice is at most so much worse than the best. Infinite where nothing is certified.
+    /// The recommended option; `None` where nothing was sampled, or no trial is resolved.
+    pub choice: Option<String>,
+    /// Certified: the choice is at most so much worse than the best. All that there can be where nothing is known yet;
+    /// infinite where nothing is chosen.
     pub gap: f64,
     /// Whether other options carry the same certificate.
     pub tied: bool,
@@ -380,8 +399,9 @@ pub struct Distribution {
     pub quantiles: Vec<Quantile>,
     /// The empirical distribution function, at a hundred shares at most.
     pub empirical: Vec<Step>,
-    /// Where the number of trials was fixed beforehand: the true function is nowhere farther than this from
-    /// the empirical one, with the error of the result (Dvoretzky, Kiefer, Wolfowitz; Massart).
+    /// The true function is nowhere farther than this from the empirical one, with the error of the result (Dvoretzky,
+    /// Kiefer, Wolfowitz; Massart), however unresolved trials are read. `None` where the number of trials depends on
+    /// the values.
     pub band: Option<f64>,
 }
 

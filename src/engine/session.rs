@@ -17,6 +17,7 @@ use super::watch::{Outlook, Watch};
 use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Query, Study, World};
 use crate::kernel::start;
 use crate::model::Scenario;
+use crate::stats::Defaults;
 
 /// What the command line adds to a study.
 pub struct Call<'c> {
@@ -52,18 +53,14 @@ pub fn run(
     let mut results: Vec<Option<QueryResult>> = asked.iter().map(|_| None).collect();
     let mut failure = None;
     for group in groups {
-        match session.answer(group, executor, watch) {
-            Ok(found) => {
-                for (k, result) in found {
-                    results[k] = Some(result);
-                }
-            }
-            // What was decided before stays decided.
-            Err(Fault::Model(reason)) => {
-                failure = Some(Failure::Input(reason));
-                break;
-            }
-            Err(fault) => return Err(fault),
+        let (found, broken) = session.answer(group, executor, watch)?;
+        for (k, result) in found {
+            results[k] = Some(result);
+        }
+        // What was decided before stays decided.
+        if let Some(reason) = broken {
+            failure = Some(Failure::Input(reason));
+            break;
         }
     }
     watch.finished();
@@ -72,6 +69,8 @@ pub fn run(
         scenario: if study.title.is_empty() { call.file.clone() } else { study.title.clone() },
         seed: call.seed,
         version: env!("CARGO_PKG_VERSION").to_owned(),
+        inputs: Vec::new(),
+        diagnostics: Vec::new(),
         warnings: Vec::new(),
         interrupted: budget.is_interrupted(),
         failure,
@@ -236,6 +235,17 @@ fn range(measure: &Measure) -> Option<(f64, f64)> {
     }
 }
 
+/// Results by the places of their queries, and what was wrong with the model.
+type Answered = (Vec<(usize, QueryResult)>, Option<String>);
+
+/// What is wrong with the model, if the fault is one of it.
+fn reason(fault: Fault) -> Result<String, Fault> {
+    match fault {
+        Fault::Model(reason) => Ok(reason),
+        fault => Err(fault),
+    }
+}
+
 struct Session<'a> {
     call: &'a Call<'a>,
     budget: &'a Budget,
@@ -254,6 +264,7 @@ impl<'a> Session<'a> {
     {
         let mut groups = Vec::new();
         let mut taken = vec![false; asked.len()];
+        let mut defaults = Defaults::default();
         for (at, &query) in asked.iter().enumerate() {
             if taken[at] {
                 continue;
@@ -275,7 +286,7 @@ impl<'a> Session<'a> {
                     }
                     let inquiries = together
                         .iter()
-                        .map(|&k| self.inquiry(asked[k]).map_err(refused(asked[k])))
+                        .map(|&k| self.inquiry(asked[k], &mut defaults).map_err(refused(asked[k])))
                         .collect::<Result<_, _>>()?;
                     (together, Sampling::Survey(Survey::new(self.subject(world)?, inquiries, self.call.seed)))
                 }
@@ -289,7 +300,7 @@ impl<'a> Session<'a> {
         Ok(groups)
     }
 
-    fn inquiry<'q>(&self, query: &'q Query) -> Result<Inquiry<'q>, Fault> {
+    fn inquiry<'q>(&self, query: &'q Query, defaults: &mut Defaults) -> Result<Inquiry<'q>, Fault> {
         let (Ask::Check { measure, .. } | Ask::Estimate { measure, .. }) = &query.ask else {
             return Err(Fault::Unsuitable);
         };
@@ -297,7 +308,7 @@ impl<'a> Session<'a> {
             query,
             column: measure.target.column,
             range: range(measure),
-            procedure: Procedure::new(&query.ask, self.call.seed)?,
+            procedure: Procedure::new(&query.ask, self.call.seed, defaults)?,
             tally: Tally::default(),
             glimpse: Glimpse::default(),
             stop: None,
@@ -339,24 +350,35 @@ impl<'a> Session<'a> {
         Contest::new(query, field, self.call.seed)
     }
 
-    /// The results of a group, by the places of its queries.
+    /// The results of a group, by the places of its queries; and what was wrong with the model, if a trial
+    /// showed that it is.
     fn answer(
         &self,
         group: Group<'_>,
         executor: &dyn Executor,
         watch: &dyn Watch,
-    ) -> Result<Vec<(usize, QueryResult)>, Fault> {
-        let Group { places, sampling } = group;
+    ) -> Result<Answered, Fault> {
+        let Group { mut places, sampling } = group;
         let answers = Answers { call: self.call, budget: self.budget };
+        let mut broken = None;
         let results = match sampling {
             Sampling::Survey(mut survey) => {
-                survey.run(executor, self.budget, watch)?;
-                answers.survey(survey)?
+                if let Err(fault) = survey.run(executor, self.budget, watch) {
+                    broken = Some(reason(fault)?);
+                    // Those that had stopped before that trial do not know of it.
+                    let mut decided = survey.inquiries.iter().map(|inquiry| inquiry.stop.is_some());
+                    places.retain(|_| decided.next().unwrap_or(false));
+                    survey.inquiries.retain(|inquiry| inquiry.stop.is_some());
+                }
+                answers.survey(survey)
             }
-            Sampling::Contrast(contrast) => vec![answers.contrast(contrast, executor, watch)?],
-            Sampling::Race(contest) => vec![answers.race(contest, executor, watch)?],
-            Sampling::Split(question) => vec![answers.split(&question, executor, watch)?],
+            Sampling::Contrast(contrast) => answers.contrast(contrast, executor, watch).map(|one| vec![one]),
+            Sampling::Race(contest) => answers.race(contest, executor, watch).map(|one| vec![one]),
+            Sampling::Split(question) => answers.split(&question, executor, watch).map(|one| vec![one]),
         };
-        Ok(places.into_iter().zip(results).collect())
+        match results {
+            Ok(results) => Ok((places.into_iter().zip(results).collect(), broken)),
+            Err(fault) => Ok((Vec::new(), Some(reason(fault)?))),
+        }
     }
 }

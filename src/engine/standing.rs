@@ -11,7 +11,8 @@ pub(super) fn sides(contrast: &Gap, labels: &[String; 2], delta: f64) -> Compari
         let counts = contrast.sides[at].counts;
         let value = if let Some(mean) = contrast.means.get(at) {
             let ((low, high), interval) = (mean.estimate(), mean.interval());
-            Interval { estimate: 0.5 * (low + high), low: interval.low, high: interval.high }
+            let estimate = if counts.trials == 0 { f64::NAN } else { 0.5 * (low + high) };
+            Interval { estimate, low: interval.low, high: interval.high }
         } else {
             let reading = |successes: u64| {
                 let read = crate::stats::Counts { successes, failures: counts.trials - successes };
@@ -25,7 +26,7 @@ pub(super) fn sides(contrast: &Gap, labels: &[String; 2], delta: f64) -> Compari
     let difference = Side {
         label: "first - second".to_owned(),
         value: Interval {
-            estimate: contrast.estimate,
+            estimate: if contrast.pairs == 0 { f64::NAN } else { contrast.estimate },
             low: contrast.interval.low,
             high: contrast.interval.high,
         },
@@ -42,6 +43,9 @@ pub(super) fn sides(contrast: &Gap, labels: &[String; 2], delta: f64) -> Compari
 /// The options of a ranking, the choice first, then by score.
 pub(super) fn ranked(podium: &Podium, labels: &[&str]) -> Ranking {
     let choice = &podium.choice;
+    // One of several is chosen for what it did in trials; the only one there is needs none.
+    let told = |tally: &super::tally::Tally| tally.counts.trials > tally.counts.unresolved;
+    let chosen = podium.finished || podium.tallies.iter().any(told);
     let mut order: Vec<usize> = (0..labels.len()).collect();
     let key = |arm: &usize| (*arm != choice.arm, -podium.values[*arm].0, *arm);
     order.sort_by(|a, b| {
@@ -52,7 +56,10 @@ pub(super) fn ranked(podium: &Podium, labels: &[&str]) -> Ranking {
         .iter()
         .map(|&arm| {
             let (estimate, interval) = podium.values[arm];
-            let status = if arm == choice.arm {
+            let estimate = if podium.tallies[arm].counts.trials == 0 { f64::NAN } else { estimate };
+            let status = if !chosen {
+                Status::Open
+            } else if arm == choice.arm {
                 Status::Chosen
             } else if podium.finished && choice.certified.contains(&arm) {
                 Status::Tied
@@ -69,7 +76,7 @@ pub(super) fn ranked(podium: &Podium, labels: &[&str]) -> Ranking {
             }
         })
         .collect();
-    let gap = choice.gap * podium.scale;
+    let gap = if chosen { choice.gap * podium.scale } else { f64::INFINITY };
     let tied = options.iter().any(|option| option.status == Status::Tied);
-    Ranking { choice: labels[choice.arm].to_owned(), gap, tied, options }
+    Ranking { choice: chosen.then(|| labels[choice.arm].to_owned()), gap, tied, options }
 }

@@ -65,14 +65,15 @@ impl<'q> Survey<'q> {
         budget: &Budget,
     ) -> Result<Vec<Forecast>, Fault> {
         let width = executor.width(&self.job) as u64;
-        let size = width.min(round(&self.inquiries, 0, width, budget));
+        let size =
+            Rehearsal::size(width).min(round(&self.inquiries, 0, width, budget)).min(budget.max_trials);
         let rehearsal = Rehearsal::run(&self.job, Item::run(0, size), executor, budget)?;
         let seconds = rehearsal.seconds_per_trial(self.job.subject.most_steps());
         let forecast = |inquiry: &Inquiry<'_>| {
             let mut glimpse = Glimpse::default();
             let range = inquiry.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
             if let Some(place) = self.job.columns.iter().position(|c| *c == inquiry.column) {
-                rehearsal.rows().for_each(|row| glimpse.read(&row[place], range));
+                rehearsal.seen().for_each(|row| glimpse.read(&row[place], range));
             }
             let expected = forecast::inquiry(&inquiry.query.ask, &inquiry.procedure, &glimpse);
             let trials = expected.unwrap_or(u64::MAX).min(budget.max_trials);
@@ -97,19 +98,26 @@ impl<'q> Survey<'q> {
     ) -> Result<(), Fault> {
         let started = budget.elapsed();
         let mut next = 0u64;
+        let mut items = Vec::new();
+        if budget.max_trials == 0 {
+            self.inquiries.iter_mut().for_each(|inquiry| inquiry.stop = Some(Stop::Cap));
+        }
         while self.inquiries.iter().any(|i| i.stop.is_none()) {
             if budget.must_stop() {
                 close(&mut self.inquiries, budget);
                 break;
             }
-            let (items, cells) = match self.ahead.take() {
-                Some(ahead) => (ahead.items, ahead.cells),
+            let cells = match self.ahead.take() {
+                Some(ahead) => {
+                    items = ahead.items;
+                    ahead.cells
+                }
                 None => {
                     self.job.narrow(columns(&self.inquiries));
                     let width = executor.width(&self.job) as u64;
-                    let items = Item::run(next, round(&self.inquiries, next, width, budget));
-                    let cells = executor.run(&self.job, &items, budget)?;
-                    (items, cells)
+                    items.clear();
+                    items.extend(Item::row(next, round(&self.inquiries, next, width, budget)));
+                    executor.run(&self.job, &items, budget)?
                 }
             };
             next += items.len() as u64;
@@ -117,6 +125,7 @@ impl<'q> Survey<'q> {
                 close(&mut self.inquiries, budget);
                 break;
             }
+            self.job.reuse(cells);
             if let Some(inquiry) = self.inquiries.iter().find(|i| i.stop.is_none()) {
                 let expected = forecast::inquiry(&inquiry.query.ask, &inquiry.procedure, &inquiry.glimpse);
                 watch.consumed(&inquiry.query.text, next, expected.map(|n| n.max(next)));
@@ -131,14 +140,18 @@ impl<'q> Survey<'q> {
 
     /// Shows a round to the inquiries, trial by trial; false where time ended it.
     fn read(&mut self, items: &[Item], cells: &Cells, started: f64, budget: &Budget) -> Result<bool, Fault> {
+        // Who still reads, and which cell of a row.
+        let mut readers = Vec::new();
+        for inquiry in self.inquiries.iter_mut().filter(|i| i.stop.is_none()) {
+            if let Some(place) = self.job.columns.iter().position(|c| *c == inquiry.column) {
+                readers.push((inquiry, place));
+            }
+        }
         for (item, row) in items.iter().zip(cells.rows()) {
             // What follows an unfinished trial is not looked at: outcomes count in index order.
             let Some(row) = row else { return Ok(false) };
-            for inquiry in self.inquiries.iter_mut().filter(|i| i.stop.is_none()) {
-                let Some(place) = self.job.columns.iter().position(|c| *c == inquiry.column) else {
-                    continue;
-                };
-                let cell = &row[place];
+            for (inquiry, place) in readers.iter_mut().filter(|(i, _)| i.stop.is_none()) {
+                let cell = &row[*place];
                 if cell.reading == Reading::Faulty {
                     return Err(super::trial::fault(self.job.subject, *item, self.job.seed));
                 }
@@ -171,6 +184,10 @@ impl Inquiry<'_> {
         match &self.procedure {
             procedure if procedure.is_capped() => Stop::Cap,
             procedure if procedure.is_planned() => Stop::Plan,
+            procedure if procedure.split() => Stop::Unresolved,
+            procedure if self.tally.counts.unresolved > 0 && procedure.is_wide(&self.query.ask) => {
+                Stop::Unresolved
+            }
             Procedure::Test(_) | Procedure::Mean { threshold: Some(_), .. } => Stop::Boundary,
             _ => Stop::Width,
         }

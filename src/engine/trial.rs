@@ -36,24 +36,3 @@ pub(super) fn fault(subject: &Subject, item: Item, seed: u64) -> Fault {
     let values = process::Fault::state(&scenario.processes, |k| state.variables[k].0[0]);
     Fault::Model(format!("trial {} at {time}: {what}\n  the state is {values}", item.index))
 }
-
-/// Says why a trial is unresolved, where that is known: people find no place to start, or a source lets no more in.
-pub(super) fn reason(subject: &Subject, index: u64, seed: u64) -> Option<String> {
-    let program = &subject.program;
-    let sources = &program.scenario.sources;
-    let mut state = State::new(program.layout, program.scenario.agents.len());
-    let mut scratch = Scratch::new();
-    // What is advised changes nobody's place.
-    let key = TrialKey { seed, index, branch: 0 };
-    if let Err(fault) = start::load(program, &mut state, 0, key, None) {
-        return Some(format!("at the start {}", fault.describe(&program.scenario)));
-    }
-    if sources.is_empty() {
-        return None;
-    }
-    dynamics::refresh(program, &mut state, &mut scratch, Mask::lane(0));
-    while state.queues.full.is_empty() && state.diverged.is_empty() && state.ticks[0] < subject.horizon.0 {
-        dynamics::step(program, &mut state, &mut scratch);
-    }
-    state.queues.overrun(sources, 0)
-}

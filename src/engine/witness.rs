@@ -2,6 +2,9 @@
 //! value of a metric; when that was decided, and by what.
 
 use super::blame;
+use super::budget::Budget;
+use super::cell::Reading;
+use super::observer::Observer;
 use super::outcome::{Shows, Witness};
 use super::recall;
 use super::session::Call;
@@ -32,28 +35,31 @@ pub(super) fn find(
     column: usize,
     advice: Option<(usize, usize)>,
     picks: &[(Shows, u64)],
-    call: &Call<'_>,
+    (call, budget): (&Call<'_>, &Budget),
     settings: &[(String, String)],
     unit: &str,
 ) -> Vec<Witness> {
-    let one = |pick: &(Shows, u64)| witness(subject, column, advice, *pick, call, settings, unit);
+    let one = |pick: &(Shows, u64)| witness(subject, column, advice, *pick, (call, budget), settings, unit);
     picks.iter().filter_map(one).collect()
 }
 
-/// Runs one trial again and says what decided it; `dimension` is the unit of a metric.
+/// The name of a suggested move.
+pub(super) fn label(subject: &Subject, advice: Option<(usize, usize)>) -> Option<&str> {
+    let (declaration, option) = advice?;
+    let moves = subject.program.scenario.moves.get(declaration)?;
+    moves.options.get(option).map(|(label, _)| label.as_str())
+}
+
+/// Runs one trial again and says what decided it; `dimension` is the unit of a metric. None where the time is over.
 fn witness(
     subject: &Subject,
     column: usize,
     advice: Option<(usize, usize)>,
     (shows, trial): (Shows, u64),
-    call: &Call<'_>,
+    (call, budget): (&Call<'_>, &Budget),
     settings: &[(String, String)],
     dimension: &str,
 ) -> Option<Witness> {
-    if matches!(subject.columns[column], Root::Robustness(..)) {
-        // Nothing that decides it can be named yet.
-        return None;
-    }
     let program = &subject.program;
     let unit = if program.scenario.clock == Clock::Steps { "steps" } else { "s" };
     let mut command = call.simulate.clone();
@@ -61,16 +67,15 @@ fn witness(
         command.push_str(&format!(" --set '{name}={value}'"));
     }
     command.push_str(&format!(" --seed {} --trial {trial}", call.seed));
-    if let Some((declaration, option)) = advice {
-        let label = &program.scenario.moves.get(declaration)?.options.get(option)?.0;
+    if let Some(label) = label(subject, advice) {
         command.push_str(&format!(" --move '{label}'"));
     }
     if program.scenario.clock.is_jumps() {
-        let (time, value, what) = recall::decision(subject, column, trial, call.seed, dimension)?;
+        let (time, value, what) = recall::decision(subject, column, (trial, call.seed), dimension, budget)?;
         return Some(Witness { shows, trial, value, time, unit, what, command });
     }
     let code = subject.code(&[column]);
-    let mut monitor = subject.monitor(column).ok()?;
+    let mut observer = subject.observer(column).ok()?;
     let mut state = State::new(program.layout, program.scenario.agents.len());
     let mut scratch = Scratch::new();
     let mut readings = Readings::default();
@@ -78,19 +83,22 @@ fn witness(
     start::load(program, &mut state, 0, key, advice).ok()?;
     let lane = Mask::lane(0);
     dynamics::refresh(program, &mut state, &mut scratch, lane);
-    monitor.start(0);
+    observer.start(0);
     let mut record = blame::Record::default();
     let mut states: Vec<State> = Vec::new();
     let kept = if program.scenario.agents.len() <= LARGEST_KEPT { KEPT } else { 0 };
     loop {
         code.run(program, &state, &mut readings);
-        monitor.observe(lane, &readings.atoms, &readings.signals);
+        observer.observe(lane, &readings);
         record.push(&readings);
         if states.len() < kept {
             states.push(state.clone());
         }
-        if monitor.decided().has(0) || state.ticks[0] >= subject.horizon.0 || !state.diverged.is_empty() {
+        if observer.decided().has(0) || state.ticks[0] >= subject.horizon.0 || !state.diverged.is_empty() {
             break;
+        }
+        if budget.is_late() {
+            return None;
         }
         dynamics::step(program, &mut state, &mut scratch);
     }
@@ -98,18 +106,26 @@ fn witness(
         // States beyond those kept are made again.
         states.get(tick.0 as usize).cloned().or_else(|| replay(subject, key, advice, tick.0))
     };
-    let (value, at, what) = match subject.columns[column] {
-        Root::Formula(root) => {
-            (None, Tick(monitor.decided_at()[0]), blame::truth(subject, root, &record, state_at))
+    let now = Tick(state.ticks[0]);
+    let (value, at, what) = match (subject.columns[column], &observer) {
+        (Root::Formula(root), Observer::Formula(monitor)) => {
+            (None, Tick(monitor.decided_at()[0]), blame::truth(subject, root, (&record, budget), state_at))
         }
-        // No atom decides how far a formula is from changing.
-        Root::Robustness(..) => return None,
-        Root::Metric(root) => {
+        (Root::Robustness(root, _), _) => {
+            let value = match observer.reading(0) {
+                Reading::Value(value) => Some(value),
+                _ => None,
+            };
+            let (at, what) = blame::margin(subject, root, (value, dimension), (&record, budget), state_at);
+            (value, at.unwrap_or(now), what)
+        }
+        (Root::Metric(root), Observer::Metric(monitor)) => {
             // The monitor may know the value before the last state of a window.
             let value = monitor.value().0[0];
-            let (at, what) = blame::number(subject, root, (value, dimension), &record, state_at);
+            let (at, what) = blame::number(subject, root, (value, dimension), (&record, budget), state_at);
             (Some(value), at.unwrap_or(Tick(monitor.decided_at()[0])), what)
         }
+        _ => return None,
     };
     let time = program.scenario.clock.seconds(at);
     Some(Witness { shows, trial, value, time, unit, what, command })

@@ -83,11 +83,51 @@ pub(super) fn measured(query: &str, letter: char) -> String {
     let metric =
         measure.split_once(',').map_or(measure, |(_, rest)| rest.strip_suffix(')').unwrap_or(rest)).trim();
     let rest = text[end..].trim_start();
-    let relation = if rest.starts_with('>') || rest.starts_with('≥') { "<" } else { "<=" };
+    // `Q <= x` and `Q > x` are about P(metric <= x), `Q < x` and `Q >= x` about P(metric < x).
+    let greater = rest.starts_with(['>', '≥']);
+    let or_equal = rest.starts_with(['≤', '≥']) || rest.get(1..).is_some_and(|rest| rest.starts_with('='));
+    let relation = if greater == or_equal { "<" } else { "<=" };
     let bound = rest.trim_start_matches(['<', '>', '=', '≤', '≥']).trim_start();
     let stop =
         [" by ", " under ", " confidence ", " within "].iter().filter_map(|word| bound.find(word)).min();
     format!("P({metric} {relation} {})", bound[..stop.unwrap_or(bound.len())].trim())
+}
+
+/// The event that the check of a quantile is decided by, `m < 3 m` for `check Q(0.5, m) >= 3 m`; `None` of other checks.
+pub(super) fn asked(query: &str) -> Option<String> {
+    let rest = query.trim_start().strip_prefix("check")?;
+    if !rest.trim_start().starts_with('Q') {
+        return None;
+    }
+    Some(measured(query, 'P').strip_prefix("P(")?.strip_suffix(')')?.to_owned())
+}
+
+/// What the decided check of a quantile certifies, if that is about the level it asks for: the claim about the
+/// quantile, and the probability that it follows from.
+pub(super) fn quantile(query: &str, level: f64, said: &Statement) -> Option<String> {
+    let event = asked(query)?;
+    let (at, sign) =
+        event.rfind(" <= ").map(|at| (at, " <= ")).or_else(|| Some((event.rfind(" < ")?, " < ")))?;
+    let bound = &event[at + sign.len()..];
+    // P(m <= x) > q makes the q-quantile at most x, and P(m < x) < q makes it at least x.
+    let (relation, beyond) = match (said.claim, sign) {
+        (Claim::Above(theta), _) if theta == level => (sign.trim(), ">"),
+        (Claim::Below(theta), " <= ") if theta == level => (">", "<"),
+        (Claim::Below(theta), _) if theta == level => (">=", "<"),
+        _ => return None,
+    };
+    Some(format!(
+        "{} {relation} {bound}, since P({event}) {beyond} {}, error at most {}",
+        measured(query, 'Q'),
+        number(level),
+        error(said.error)
+    ))
+}
+
+/// An expectation of a metric that was clipped to its range: `E(m, clipped to 0 s .. 20 s)`.
+pub(super) fn clipped(said: &str, (low, high): (f64, f64), unit: &str) -> String {
+    let inner = said.strip_suffix(')').unwrap_or(said);
+    format!("{inner}, clipped to {} .. {})", quantity(low, unit), quantity(high, unit))
 }
 
 /// One past the parenthesis that closes the first one.
@@ -104,9 +144,29 @@ fn closing(text: &str) -> Option<usize> {
     None
 }
 
-/// A share as a percentage.
-pub(super) fn percent(share: f64) -> String {
-    format!("{} %", number(100.0 * share))
+/// A probability of error in three digits, rounded upward.
+pub(super) fn error(error: f64) -> String {
+    number(at_most(error))
+}
+
+/// The level that an error leaves, as a percentage, rounded downward: never more than is true.
+pub(super) fn level(error: f64) -> String {
+    let error = 100.0 * at_most(error);
+    if !(error > 0.0 && error < 100.0) {
+        return format!("{} %", number(100.0 - error));
+    }
+    // As many places as the three digits of the error have.
+    let (mut places, mut scale) = (0usize, 1.0);
+    while places < 15 && (error * scale - (error * scale).round()).abs() > 1e-9 * error * scale {
+        places += 1;
+        scale *= 10.0;
+    }
+    format!("{:.places$} %", 100.0 - error)
+}
+
+/// Of a condition; "holds" and "fails" are said of what was asked.
+pub(super) const fn truth(value: bool) -> &'static str {
+    if value { "is true" } else { "is false" }
 }
 
 /// What a test certifies.
@@ -118,7 +178,7 @@ pub(super) fn statement(subject: &str, statement: &Statement, unit: &str) -> Str
             format!("{} < {subject} < {}", quantity(low, unit), quantity(high, unit))
         }
     };
-    format!("{claim}, error at most {}", number(statement.error))
+    format!("{claim}, error at most {}", self::error(statement.error))
 }
 
 /// Kind and level of an interval.
@@ -128,7 +188,7 @@ pub(super) fn interval(coverage: Coverage, error: f64) -> String {
         Coverage::Sequential => "sequential",
         Coverage::TimeUniform => "time-uniform",
     };
-    format!("{kind}, {}", percent(1.0 - error))
+    format!("{kind}, {}", level(error))
 }
 
 #[cfg(test)]
@@ -140,7 +200,42 @@ mod tests {
         assert_eq!(measured("check P(a & (b)) >= 0.5", 'P'), "P(a & (b))");
         assert_eq!(measured("check Q(0.9, f(a)) <= 15 s confidence 95 %", 'P'), "P(f(a) <= 15 s)");
         assert_eq!(measured("check Q(0.9, f(a)) >= 15 s", 'P'), "P(f(a) < 15 s)");
+        assert_eq!(measured("check Q(0.9, f(a)) ≥ 15 s", 'P'), "P(f(a) < 15 s)");
+        assert_eq!(measured("check Q(0.9, f(a)) ≤ 15 s", 'P'), "P(f(a) <= 15 s)");
+        assert_eq!(measured("check Q(0.9, f(a)) < 15 s", 'P'), "P(f(a) < 15 s)");
+        assert_eq!(measured("check Q(0.9, f(a)) > 15 s", 'P'), "P(f(a) <= 15 s)");
         assert_eq!(measured("estimate Q(0.9, f(a))", 'Q'), "Q(0.9, f(a))");
+    }
+
+    #[test]
+    fn checks_of_quantiles_certify_quantiles() {
+        let said = |query: &str, claim| quantile(query, 0.9, &Statement { claim, error: 0.01 });
+        let (above, below) = (Claim::Above(0.9), Claim::Below(0.9));
+        assert_eq!(
+            said("check Q(0.9, f(a)) >= 3 m", below).unwrap(),
+            "Q(0.9, f(a)) >= 3 m, since P(f(a) < 3 m) < 0.9, error at most 0.01"
+        );
+        assert_eq!(
+            said("check Q(0.9, f(a)) >= 3 m", above).unwrap(),
+            "Q(0.9, f(a)) < 3 m, since P(f(a) < 3 m) > 0.9, error at most 0.01"
+        );
+        assert_eq!(
+            said("check Q(0.9, f(a)) <= 3 m", above).unwrap(),
+            "Q(0.9, f(a)) <= 3 m, since P(f(a) <= 3 m) > 0.9, error at most 0.01"
+        );
+        assert_eq!(
+            said("check Q(0.9, f(a)) <= 3 m confidence 99 %", below).unwrap(),
+            "Q(0.9, f(a)) > 3 m, since P(f(a) <= 3 m) < 0.9, error at most 0.01"
+        );
+        // An indifference region certifies another level.
+        assert_eq!(said("check Q(0.9, f(a)) <= 3 m", Claim::Above(0.88)), None);
+        assert_eq!(said("check P(F f(a)) <= 0.9", below), None);
+        assert_eq!(asked("check P(a) >= 0.5"), None);
+    }
+
+    #[test]
+    fn clipped_metrics_are_said_to_be() {
+        assert_eq!(clipped("E(time_until(a))", (0.0, 20.0), "s"), "E(time_until(a), clipped to 0 s .. 20 s)");
     }
 
     #[test]
@@ -160,7 +255,11 @@ mod tests {
     fn numbers_have_no_noise() {
         assert_eq!(number(0.1 + 0.2), "0.3");
         assert_eq!(number(1e-6), "0.000001");
-        assert_eq!(percent(1.0 - 0.05), "95 %");
+        assert_eq!(
+            [0.05, 0.01, 0.05 / 3.0, 0.005, 1e-9].map(level),
+            ["95 %", "99 %", "98.33 %", "99.5 %", "99.9999999 %"]
+        );
+        assert_eq!([0.05, 0.05 / 3.0, 1.0 / 3.0].map(error), ["0.05", "0.0167", "0.334"]);
         let said = statement("P(safe)", &Statement { claim: Claim::Above(0.48), error: 0.01 }, "");
         assert_eq!(said, "P(safe) > 0.48, error at most 0.01");
     }

@@ -158,7 +158,8 @@ impl Worker {
         let mut touched = diverged;
         for (sheet, readings) in self.sheets.iter_mut().zip(&mut self.readings) {
             sheet.code.run(&subject.program, &self.state, readings);
-            let lost = readings.unresolved & watched;
+            // Without a value where one is needed, nothing more can be said.
+            let lost = sheet.lost(readings, &self.state.ticks) & watched;
             let lanes = watched & !lost;
             for (observer, &place) in sheet.observers.iter_mut().zip(&sheet.places) {
                 let open = lanes & !self.settled[place];

@@ -22,10 +22,11 @@ use super::behaviour;
 use super::cells::Cells;
 use super::contact::Contacts;
 use super::drive;
-use super::lanewise::{Lanewise, Sum};
+use super::lanewise::Lanewise;
 use super::noise::Draws;
 use super::process;
 use super::program::Program;
+use super::social::Sum;
 use super::state::{Layout, Slot, State};
 use super::vector::{Doubles, Part, Words, parts};
 use crate::base::lanes::{LANES, Lanes, Mask};
@@ -88,6 +89,7 @@ impl Scratch {
 /// Makes freshly loaded lanes ready for their first step: what follows from their parameters, and the
 /// forces at their present positions. Other lanes keep their bytes.
 pub fn refresh(program: &Program, state: &mut State, scratch: &mut Scratch, lanes: Mask) {
+    program.processes.begin(program.layout, state, &mut scratch.processes, lanes);
     if state.agents == 0 {
         return;
     }
@@ -203,14 +205,14 @@ fn move_on<S: Simd>(simd: S, program: &Program, state: &mut State, scratch: &mut
             kick(part, state, block, moving);
         }
     }
-    mover.contact(state, scratch);
+    mover.contact(simd, state, scratch);
     for (block, &moving) in scratch.moving.iter().enumerate() {
         let words = mover.words(state, block);
         for part in parts(simd) {
             mover.drift_and_drive(part, state, block, (moving, scratch.moved[block]), &words);
         }
     }
-    mover.contact(state, scratch);
+    mover.contact(simd, state, scratch);
     for (block, &moving) in scratch.moving.iter().enumerate() {
         let start = (&scratch.seen_x[block], &scratch.seen_y[block]);
         for part in parts(simd) {
@@ -290,10 +292,15 @@ impl Mover<'_> {
         part.store_in(here, vy, &mut state.vy[block]);
     }
 
-    fn contact(&self, state: &mut State, scratch: &mut Scratch) {
-        scratch.moved.clear();
-        scratch.moved.resize(state.x.len(), Mask::NONE);
-        scratch.contacts.advance(self.program, state, &mut scratch.moved, self.half);
+    #[inline(always)]
+    fn contact<S: Simd>(&self, simd: S, state: &mut State, scratch: &mut Scratch) {
+        let Scratch { contacts, moved, .. } = scratch;
+        moved.clear();
+        moved.resize(state.x.len(), Mask::NONE);
+        simd.vectorize(
+            #[inline(always)]
+            || contacts.advance(simd, self.program, state, moved, self.half),
+        );
     }
 
     #[inline(always)]

@@ -2,16 +2,19 @@
 //!
 //! The logic reads truth values and numbers of each state by index; it knows nothing of people.
 
+mod critical;
 pub mod explain;
 pub mod flat;
 pub mod formula;
 pub mod invalid;
 pub mod monitor;
+mod need;
 pub mod offline;
 mod reach;
 pub mod signal;
 mod source;
 
+pub use critical::{Critical, critical};
 pub use explain::{Explanation, Reason, explain};
 pub use flat::{Flat, Present, Sort};
 pub use formula::{
@@ -20,6 +23,8 @@ pub use formula::{
 pub use invalid::Invalid;
 pub use monitor::robustness::Robustness;
 pub use monitor::{Antecedent, Monitor};
+pub use need::Needs;
 pub use offline::Recording;
-pub use signal::{Reading, SignalMonitor};
+pub use reach::{Part, Reach, leaves, reach};
+pub use signal::{Glance, Reading, SignalMonitor};
 pub use source::{Source, sides, sources};

@@ -2,8 +2,10 @@
 
 pub mod agent;
 pub mod behaviour;
-pub mod evaluation;
+mod digest;
+mod evaluation;
 pub mod expression;
+mod lacking;
 pub mod law;
 pub mod moves;
 pub mod process;

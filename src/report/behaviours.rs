@@ -1,17 +1,27 @@
 //! Behaviours as they were understood, for `smc show`.
 
 use super::model::{law, number, way};
+use crate::compile::study::World;
 use crate::model::{
     AgentId, Amount, Arithmetic, Attached, Function, Num, Parameter, Scenario, Transition, Trigger,
 };
 use std::fmt::Write;
 
 /// The behaviours of an agent.
-pub(super) fn describe(out: &mut String, scenario: &Scenario, id: AgentId) {
+pub(super) fn describe(out: &mut String, world: &World, id: AgentId) {
+    let scenario = &*world.scenario;
     let attached = scenario.behaviours.of(id);
     for one in attached {
         let declared = &scenario.behaviours.declared[one.behaviour.0 as usize];
-        let _ = writeln!(out, "      with {}", declared.name);
+        let place = one.behaviour.0 as usize;
+        let empty = Vec::new();
+        let arguments = world.written.arguments.get(place).unwrap_or(&empty);
+        let conditions = world.written.conditions.get(place).unwrap_or(&empty);
+        let call = world.written.with.get(&(id, one.behaviour)).unwrap_or(&declared.name);
+        // The conditions below speak of arguments by their names.
+        let named =
+            if arguments.is_empty() { String::new() } else { format!(" (its {})", arguments.join(", ")) };
+        let _ = writeln!(out, "      with {call}{named}");
         for (name, mode) in declared.states.iter().zip(&one.conduct.states) {
             let mut parts: Vec<String> = mode
                 .changes
@@ -29,7 +39,9 @@ pub(super) fn describe(out: &mut String, scenario: &Scenario, id: AgentId) {
                 })
                 .collect();
             parts.extend(mode.route.as_ref().map(|route| way(scenario, route)));
-            parts.extend(mode.transitions.iter().map(|t| transition(scenario, &declared.states, t)));
+            parts.extend(
+                mode.transitions.iter().map(|t| transition(scenario, &declared.states, conditions, t)),
+            );
             let _ = writeln!(out, "        {name}: {}", parts.join("; "));
         }
         if let Some(advice) = advice(scenario, one) {
@@ -50,10 +62,10 @@ fn advice(scenario: &Scenario, one: &Attached) -> Option<String> {
     (!choices.is_empty()).then(|| choices.join(" | "))
 }
 
-fn transition(scenario: &Scenario, states: &[String], transition: &Transition) -> String {
+fn transition(scenario: &Scenario, states: &[String], written: &[String], transition: &Transition) -> String {
     let when = match &transition.trigger {
         Trigger::After(time) => format!("after {}", law(time, "s")),
-        Trigger::When(_) => "when its condition holds".to_owned(),
+        Trigger::When(guard) => format!("when {}", written.get(*guard as usize).map_or("…", String::as_str)),
     };
     let name = |at: u32| states.get(at as usize).map_or("", String::as_str);
     let targets: Vec<String> = match transition.targets.as_slice() {
@@ -86,7 +98,7 @@ fn expression(scenario: &Scenario, num: &Num) -> String {
                 Arithmetic::Power => "^",
                 Arithmetic::Min => return format!("min({}, {})", inner(a), inner(b)),
                 Arithmetic::Max => return format!("max({}, {})", inner(a), inner(b)),
-                Arithmetic::Atan2 | Arithmetic::Modulo => return "…".to_owned(),
+                Arithmetic::Atan2 | Arithmetic::Modulo | Arithmetic::Agree => return "…".to_owned(),
             };
             let side = |num: &Num| match num {
                 Num::Combine(..) => format!("({})", inner(num)),

@@ -4,7 +4,7 @@
 //! Values are escaped as the runner unescapes them: `%`, line ends, and in properties `:` and `,` too.
 
 use super::{certified, exit_code, one_line, settings};
-use crate::engine::outcome::{Failure, QueryResult, Run, Verdict};
+use crate::engine::outcome::{Failure, Finding, QueryResult, Run, Spot, Verdict};
 use std::fmt::Write as _;
 
 /// The annotations of a run, one a line.
@@ -28,10 +28,15 @@ pub fn render(run: &Run) -> String {
             annotate("warning", "smc", &format!("{}: {warning}", one_line(&result.query)));
         }
     }
+    for finding in &run.diagnostics {
+        text.push_str(&annotation(finding));
+    }
     for warning in &run.warnings {
         let _ = writeln!(text, "::warning title=smc::{}", data(warning));
     }
     match &run.failure {
+        // Those of the front end are annotated one by one.
+        Some(Failure::Input(_)) if run.diagnostics.iter().any(|finding| finding.error) => {}
         Some(Failure::Input(message)) => {
             let _ = writeln!(text, "::error title=smc::{}", data(message));
         }
@@ -54,6 +59,34 @@ pub fn render(run: &Run) -> String {
     );
     let _ = writeln!(text, "::notice title=smc::{}", data(&summary));
     text
+}
+
+/// An error or warning of the front end, at its place.
+fn annotation(finding: &Finding) -> String {
+    let level = if finding.error { "error" } else { "warning" };
+    // Standard input and the words of the call are no files that an annotation could stand in.
+    let filed = |spot: &&Spot| !spot.file.starts_with(['-', '<']);
+    let at = finding.spot.as_ref().filter(filed).map_or(String::new(), |spot| {
+        let (start, end) = (spot.start, spot.end);
+        // The columns of a mark over several lines would be read as those of its first.
+        let columns = if start.0 == end.0 {
+            format!(",col={},endColumn={}", start.1, end.1)
+        } else {
+            format!(",endLine={},col={}", end.0, start.1)
+        };
+        format!("file={},line={}{columns},", property(&spot.file), start.0)
+    });
+    let mut message = match &finding.spot {
+        Some(spot) if at.is_empty() => format!("{}: {}", spot.file, finding.message),
+        _ => finding.message.clone(),
+    };
+    if !finding.label.is_empty() {
+        let _ = write!(message, ": {}", finding.label);
+    }
+    if let Some(hint) = &finding.hint {
+        let _ = write!(message, "\nhint: {hint}");
+    }
+    format!("::{level} {at}title={}::{}\n", property(&finding.code), data(&message))
 }
 
 fn finding(result: &QueryResult) -> String {

@@ -4,9 +4,10 @@
 //! lies beyond the horizon, in whole or by an end of its interval, says so by `"censored": true`. Everything
 //! but `elapsed_s` is a function of input, seed and version.
 
+use crate::base::random;
 use crate::engine::outcome::{
-    Comparison, Counts, Distribution, Failure, Interval, Method, QueryResult, Ranking, Rare, Run, Shows,
-    Side, Witness,
+    Comparison, Counts, Distribution, Failure, Finding, Interval, Method, QueryResult, Ranking, Rare, Run,
+    Shows, Side, Witness,
 };
 use serde_json::{Map, Value, json};
 
@@ -17,13 +18,18 @@ pub fn render(run: &Run) -> String {
 
 /// The report of a run as a JSON value.
 pub fn object(run: &Run) -> Value {
+    let inputs: Vec<Value> =
+        run.inputs.iter().map(|(file, print)| json!({ "file": file, "hash": print.to_string() })).collect();
     let mut object = json!({
         "schema": 1,
         "scenario": run.scenario,
         "seed": run.seed,
         "version": run.version,
         "results": run.results.iter().map(result).collect::<Vec<_>>(),
+        "diagnostics": run.diagnostics.iter().map(finding).collect::<Vec<_>>(),
         "warnings": run.warnings,
+        "generator": { "name": random::GENERATOR, "layout": random::LAYOUT },
+        "inputs": inputs,
         "interrupted": run.interrupted,
         "error": Value::Null,
         "replay": run.replay,
@@ -37,6 +43,21 @@ pub fn object(run: &Run) -> Value {
         object["error"] = json!({ "bug": bug, "message": message });
     }
     object
+}
+
+fn finding(finding: &Finding) -> Value {
+    let spot = finding.spot.as_ref();
+    json!({
+        "code": finding.code,
+        "severity": if finding.error { "error" } else { "warning" },
+        "file": spot.map(|spot| &spot.file),
+        "line": spot.map(|spot| spot.start.0),
+        "column": spot.map(|spot| spot.start.1),
+        "end": spot.map(|spot| json!({ "line": spot.end.0, "column": spot.end.1 })),
+        "message": finding.message,
+        "label": finding.label,
+        "hint": finding.hint,
+    })
 }
 
 fn result(result: &QueryResult) -> Value {
@@ -58,6 +79,7 @@ fn result(result: &QueryResult) -> Value {
     put("low", json!(result.low));
     put("high", json!(result.high));
     put("censored", json!(result.censored.is_some()));
+    put("of", json!(result.of));
     put("unit", json!(result.unit));
     put("interval", json!(result.interval));
     put("method", method(&result.method));
@@ -91,7 +113,7 @@ fn result(result: &QueryResult) -> Value {
         put("splitting", rare(found));
     }
     put("warnings", json!(result.warnings));
-    put("witnesses", result.witnesses.iter().map(witness).collect());
+    put("witnesses", result.witnesses.iter().map(|one| witness(one, result.against)).collect());
     put("replay", json!(result.replay));
     put("elapsed_s", json!(result.elapsed_s));
     Value::Object(object)
@@ -131,12 +153,12 @@ fn side(side: &Side) -> Value {
     Value::Object(numbered("settings", &side.label, &side.value, &side.counts))
 }
 
-fn witness(witness: &Witness) -> Value {
+fn witness(witness: &Witness, against: bool) -> Value {
     json!({
         "shows": witness.shows.name(),
         "passing": match witness.shows {
-            Shows::Fails => Some(false),
-            Shows::Holds => Some(true),
+            Shows::Fails => Some(against),
+            Shows::Holds => Some(!against),
             Shows::Lowest | Shows::Highest => None,
         },
         "trial": witness.trial,

@@ -5,7 +5,7 @@
 
 use super::palette::Palette;
 use super::{certified, one_line, settings, text};
-use crate::engine::outcome::{Failure, QueryResult, Run, Verdict};
+use crate::engine::outcome::{Failure, Finding, QueryResult, Run, Verdict};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use std::time::Duration;
 
@@ -27,7 +27,10 @@ pub fn render(run: &Run) -> String {
         }
         report.add_test_suite(suite);
     }
-    if let Some(failure) = &run.failure {
+    let errors: Vec<&Finding> = run.diagnostics.iter().filter(|finding| finding.error).collect();
+    if !errors.is_empty() {
+        report.add_test_suite(refused(&errors));
+    } else if let Some(failure) = &run.failure {
         let (Failure::Input(message) | Failure::Bug(message)) = failure;
         let kind = if matches!(failure, Failure::Bug(_)) { "bug" } else { "input" };
         report.add_test_suite(stopped("run", kind, message));
@@ -47,6 +50,19 @@ fn stopped(name: &str, kind: &str, message: &str) -> TestSuite {
     status.set_type(kind).set_message(message);
     let mut suite = TestSuite::new("smc");
     suite.add_test_case(TestCase::new(name, status));
+    suite
+}
+
+/// A test case for each error of the front end.
+fn refused(errors: &[&Finding]) -> TestSuite {
+    let mut suite = TestSuite::new("smc");
+    for finding in errors {
+        let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
+        let hint = finding.hint.as_ref().map_or(String::new(), |hint| format!("\nhint: {hint}"));
+        status.set_type(finding.code.as_str()).set_message(finding.message.as_str());
+        status.set_description(format!("{}{hint}", finding.line()));
+        suite.add_test_case(TestCase::new(finding.line(), status));
+    }
     suite
 }
 

@@ -1,16 +1,19 @@
 //! How a scenario and its questions were understood, in units, for `smc show`.
 
 use super::behaviours;
+use super::number::counted;
 use crate::base::geometry::{Shape, Vec2};
 use crate::base::tick::Clock;
+use crate::compile::Written;
 use crate::compile::study::{Ask, Estimator, MeasureKind, Ranking, Study, Test, World};
+use crate::engine::at_most;
 use crate::model::{Agent, AgentId, Family, Goal, Law, Leg, Obstacle, Position, Route, Scenario};
 use std::fmt::Write;
 
 /// Everything that was understood.
 pub fn describe(study: &Study) -> String {
     let mut out = String::new();
-    let Some(world) = study.worlds.last() else { return out };
+    let Some(world) = study.worlds.get(study.base) else { return out };
     scenario(&mut out, world);
     if !study.queries.is_empty() {
         let _ = writeln!(out, "\nQueries");
@@ -47,8 +50,28 @@ fn scenario(out: &mut String, world: &World) {
     for (name, value) in &world.settings {
         let _ = writeln!(out, "  set {name} = {value}");
     }
+    let written = &world.written;
+    for parameter in &written.parameters {
+        let _ = writeln!(out, "  param {parameter}");
+    }
+    for name in &written.names {
+        let _ = writeln!(out, "  let {name}");
+    }
+    processes(out, written);
     scene(out, scenario);
-    people(out, scenario);
+    if !scenario.agents.is_empty() || written.processes.is_empty() {
+        people(out, world);
+    }
+}
+
+/// The processes as they were written: what is read is the state, and names say which.
+fn processes(out: &mut String, written: &Written) {
+    for (head, lines) in &written.processes {
+        let _ = writeln!(out, "\nProcess {head}");
+        for line in lines {
+            let _ = writeln!(out, "  {line}");
+        }
+    }
 }
 
 fn scene(out: &mut String, scenario: &Scenario) {
@@ -61,7 +84,12 @@ fn scene(out: &mut String, scenario: &Scenario) {
         let _ = match &barrier.obstacle {
             Obstacle::Wall(segments) => {
                 let length: f64 = segments.iter().map(crate::base::geometry::Segment::length).sum();
-                writeln!(out, "  wall{name}: {} segment(s), {} m", segments.len(), number(length))
+                writeln!(
+                    out,
+                    "  wall{name}: {}, {} m",
+                    counted(segments.len() as u64, "segment"),
+                    number(length)
+                )
             }
             Obstacle::Solid(solid) => writeln!(out, "  obstacle{name}: {}", shape(solid)),
         };
@@ -71,7 +99,8 @@ fn scene(out: &mut String, scenario: &Scenario) {
     }
 }
 
-fn people(out: &mut String, scenario: &Scenario) {
+fn people(out: &mut String, world: &World) {
+    let scenario = &*world.scenario;
     let coming: usize = scenario.sources.iter().map(|source| source.members.len()).sum();
     let _ = writeln!(out, "\nPeople: {}", scenario.agents.len() - coming);
     let mut rest = scenario.agents.as_slice();
@@ -100,7 +129,7 @@ fn people(out: &mut String, scenario: &Scenario) {
             }
         }
         agent(out, scenario, first);
-        behaviours::describe(out, scenario, AgentId((scenario.agents.len() - rest.len()) as u32));
+        behaviours::describe(out, world, AgentId((scenario.agents.len() - rest.len()) as u32));
         rest = &rest[count..];
     }
     for group in &scenario.groups {
@@ -170,8 +199,12 @@ fn agent(out: &mut String, scenario: &Scenario, agent: &Agent) {
             format!("within {} m of {}", number(*within), scenario.agents[agent.0 as usize].name)
         }
     };
-    let _ = writeln!(out, "      starts {place} at {} m/s", point(agent.start.velocity));
+    let _ = writeln!(out, "      starts {place}, {}", velocity(agent.start.velocity));
     let _ = writeln!(out, "      {}", way(scenario, &agent.route));
+}
+
+fn velocity(v: Vec2) -> String {
+    if v == Vec2::default() { "at rest".to_owned() } else { format!("with velocity {} m/s", point(v)) }
 }
 
 /// A route in words.
@@ -195,6 +228,9 @@ pub(super) fn way(scenario: &Scenario, route: &Route) -> String {
 
 /// A number without noise of rounding.
 pub(super) fn number(value: f64) -> String {
+    if value != 0.0 && value.abs() < 1e-3 {
+        return super::number::plain(value);
+    }
     let rounded = (value * 1e6).round() / 1e6;
     format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
 }
@@ -211,9 +247,14 @@ fn shape(shape: &Shape) -> String {
             let holes = if polygon.holes.is_empty() {
                 String::new()
             } else {
-                format!(", {} hole(s)", polygon.holes.len())
+                format!(", {}", counted(polygon.holes.len() as u64, "hole"))
             };
             let bounds = shape.bounds();
+            let (width, height) = (bounds.high.x - bounds.low.x, bounds.high.y - bounds.low.y);
+            if corners == 4 && holes.is_empty() && polygon.area() == width * height {
+                let area = number(polygon.area());
+                return format!("rect {} .. {}, {area} m^2", point(bounds.low), point(bounds.high));
+            }
             format!(
                 "{corners} corners{holes}, {} .. {}, {} m^2",
                 point(bounds.low),
@@ -270,11 +311,15 @@ fn procedure(ask: &Ask) -> String {
                         "exact plan of fixed size, alpha {alpha}, beta {beta}, indifference {indifference}"
                     )
                 }
-                Test::EProcess { alpha, beta } => format!("one-sided e-process, errors {alpha} and {beta}"),
+                Test::EProcess { alpha, beta } => {
+                    format!("one-sided e-process, errors {} and {}", at_most(*alpha), at_most(*beta))
+                }
                 Test::ThreeWay { alpha, indifference } => {
                     format!("three-way e-process, error {alpha}, indifference {indifference}")
                 }
-                Test::Interval { delta, .. } => format!("time-uniform interval of the mean, error {delta}"),
+                Test::Interval { delta } => {
+                    format!("time-uniform interval of the mean, error {}", at_most(*delta))
+                }
             };
             format!("against {}: {test}", number(*threshold))
         }
@@ -286,23 +331,30 @@ fn procedure(ask: &Ask) -> String {
             };
             let how = match estimator {
                 Estimator::Default { epsilon, delta } => {
-                    format!("fewest trials for ± {}, error {delta}", number(*epsilon))
+                    format!("fewest trials for ± {}, error {}", number(*epsilon), at_most(*delta))
                 }
                 Estimator::Okamoto { epsilon, delta } => {
-                    format!("Okamoto bound for ± {}, error {delta}", number(*epsilon))
+                    format!("Okamoto bound for ± {}, error {}", number(*epsilon), at_most(*delta))
                 }
                 Estimator::Massart { epsilon, delta } => {
-                    format!("sequential Massart bound for ± {}, error {delta}", number(*epsilon))
+                    format!("sequential Massart bound for ± {}, error {}", number(*epsilon), at_most(*delta))
                 }
                 Estimator::Spending { epsilon, delta } => {
-                    format!("Clopper-Pearson with alpha spending for ± {}, error {delta}", number(*epsilon))
+                    format!(
+                        "Clopper-Pearson with alpha spending for ± {}, error {}",
+                        number(*epsilon),
+                        at_most(*delta)
+                    )
                 }
-                Estimator::Fixed { trials, delta } => format!("{trials} trials, error {delta}"),
+                Estimator::Fixed { trials, delta } => format!("{trials} trials, error {}", at_most(*delta)),
                 Estimator::Band { trials, delta } => {
-                    format!("{trials} trials, band around the distribution function, error {delta}")
+                    format!(
+                        "{trials} trials, band around the distribution function, error {}",
+                        at_most(*delta)
+                    )
                 }
                 Estimator::Relative { epsilon, delta } => {
-                    format!("relative error {}, error {delta}", number(*epsilon))
+                    format!("relative error {}, error {}", number(*epsilon), at_most(*delta))
                 }
                 Estimator::Splitting(rule) => format!(
                     "{}, {} runs of {} paths, after {} plain trials",
@@ -316,9 +368,13 @@ fn procedure(ask: &Ask) -> String {
         }
         Ask::Compare { within, delta, .. } => match within {
             Some(within) => {
-                format!("difference to ± {}, error {delta}, common random numbers", number(*within))
+                format!(
+                    "difference to ± {}, error {}, common random numbers",
+                    number(*within),
+                    at_most(*delta)
+                )
             }
-            None => format!("difference from 1000 pairs, error {delta}, common random numbers"),
+            None => format!("difference from 1000 pairs, error {}, common random numbers", at_most(*delta)),
         },
         Ask::Rank { epsilon, delta, ranking, .. } => {
             let how = match ranking {
@@ -326,7 +382,7 @@ fn procedure(ask: &Ask) -> String {
                 Ranking::OneChallenger => "paired betting, one challenger",
                 Ranking::Okamoto => "Okamoto bound on each option",
             };
-            format!("best within {}, error {delta}: {how}", number(*epsilon))
+            format!("best within {}, error {}: {how}", number(*epsilon), at_most(*delta))
         }
     }
 }

@@ -119,6 +119,12 @@ pub fn plain(x: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
+/// A number in four significant digits, without trailing zeros.
+pub fn brief(x: f64) -> String {
+    let rounded = format!("{x:.3e}").parse::<f64>();
+    plain(rounded.unwrap_or(x))
+}
+
 /// A count with commas: `1,234,567`.
 pub fn count(n: u64) -> String {
     let digits = n.to_string();
@@ -196,6 +202,7 @@ mod tests {
             [3e-6, 0.021, 0.9999, 1.324, 125.0, f64::NAN].map(duration),
             ["3 µs", "21 ms", "1.00 s", "1.32 s", "2 min 5 s", "?"]
         );
+        assert_eq!([-0.013_390_7, 13.0785, 30.0, 12_345.6].map(brief), ["-0.01339", "13.08", "30", "12350"]);
         assert_eq!([0.05, 1e-7, 30.0, 2_093.0, 0.1 + 0.2].map(plain), ["0.05", "1e-7", "30", "2093", "0.3"]);
     }
 

@@ -217,6 +217,23 @@ fn branches_of_transitions_have_their_probabilities() {
 }
 
 #[test]
+fn of_times_that_end_within_one_step_the_shortest_wins() {
+    let first = |a: &str, b: &str| {
+        let text = format!(
+            "horizon = 2 s\nstep = 0.1 s\nkind adult: sfm preset helbing2000 {{ }}\n\
+             behaviour race {{ state a {{ after {a} -> b  after {b} -> c }} state b {{ }} state c {{ }} }}\n\
+             agent me: adult with race {{ at = (0, 0) }}\n"
+        );
+        let study = compiled(&text, "estimate P(F me.race == b) by fixed(trials = 4000)\n");
+        answered(&study, 3, 1, 10_000).results[0].estimate.unwrap()
+    };
+    let n = 4000.0;
+    assert!(near(first("exponential(0.1 s)", "exponential(0.1 s)"), 0.5, 0.5, n));
+    // P(X < Y) of uniform laws on 1 .. 9 and 1 .. 3 is 1/8.
+    assert!(near(first("uniform(0.01 s, 0.09 s)", "uniform(0.01 s, 0.03 s)"), 0.125, 0.331, n));
+}
+
+#[test]
 fn a_state_can_send_elsewhere_and_back() {
     let text = format!(
         "{HEAD}behaviour errand {{ state going {{ after 4 s -> away }}\n\

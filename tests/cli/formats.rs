@@ -3,7 +3,7 @@
 use crate::program::{Place, SMALL, at_root, recordings};
 use std::path::Path;
 
-fn validated(json: &serde_json::Value) {
+pub(crate) fn validated(json: &serde_json::Value) {
     let schema = include_str!("../../docs/schema/verdict.schema.json");
     let schema = serde_json::from_str(schema).unwrap();
     let validator = jsonschema::validator_for(&schema).unwrap();

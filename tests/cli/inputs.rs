@@ -149,11 +149,15 @@ fn what_the_draw_makes_impossible_is_unresolved() {
     let place = Place::new(&[("a.scn", scenario), ("a.bltl", query)]);
     let said = place.call(&["check", "a.scn", "a.bltl", "-q"]);
     assert_eq!(said.code, Some(0), "{}", said.err);
-    assert!(said.out.contains("unresolved: at the start `crowd["), "{}", said.out);
-    assert!(said.out.contains("found no place but in an obstacle or on a wall; see trial "), "{}", said.out);
+    assert!(said.out.contains(": it cannot start: crowd["), "{}", said.out);
+    assert!(
+        said.out.contains("finds no place but in an obstacle or on a wall; give more room"),
+        "{}",
+        said.out
+    );
     assert!(!said.out.contains("smaller step"), "{}", said.out);
     let said = place.call(&["simulate", "a.scn", "--trials", "60"]);
-    assert!(said.err.contains("cannot start: `crowd["), "{}", said.err);
+    assert!(said.err.contains("cannot start: crowd["), "{}", said.err);
 }
 
 #[test]

@@ -3,6 +3,7 @@
 #![allow(clippy::disallowed_methods, reason = "tests read and write files and call the program")]
 
 mod calls;
+mod errors;
 mod forecasts;
 mod formats;
 mod inputs;

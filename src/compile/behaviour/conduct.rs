@@ -7,7 +7,7 @@ use crate::compile::kinds;
 use crate::compile::laws::{distribution, value_span};
 use crate::compile::presets::PARAMETERS;
 use crate::compile::typed::Typed;
-use crate::model::process::are_weights;
+use crate::model::process::wrong_weights;
 use crate::model::{Amount, Bool, Conduct, Law, Mode, Num, Parameter, Transition, Trigger, VariableId};
 use crate::syntax::ast::process::{BehaviourDecl, BehaviourItem, Choice, StateDecl};
 use crate::syntax::ast::{Field, Value};
@@ -195,16 +195,8 @@ impl<'a> Elaborator<'a> {
         }
         let known: Option<Vec<f64>> =
             out.iter().map(|(w, _)| if let Num::Constant(w) = w { Some(*w) } else { None }).collect();
-        if let Some(known) = known
-            && !are_weights(known.iter().copied())
-        {
-            let sum: f64 = known.iter().sum();
-            let text = if known.iter().any(|w| *w < 0.0) {
-                "a probability is negative".to_owned()
-            } else {
-                format!("these probabilities sum to {sum}, not to 1")
-            };
-            return self.report(Diagnostic::error("E0902", span, text));
+        if let Some(wrong) = known.and_then(|known| wrong_weights(&known)) {
+            return self.report(Diagnostic::error("E0902", span, wrong));
         }
         Ok(out)
     }

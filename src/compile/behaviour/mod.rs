@@ -203,6 +203,21 @@ impl<'a> Elaborator<'a> {
         out
     }
 
+    /// How each agent was given each of its behaviours.
+    pub(super) fn written_with(&self) -> BTreeMap<(AgentId, BehaviourId), String> {
+        let each = |with: &With<'a>| {
+            let texts: Vec<_> =
+                with.behaviours.iter().map(|&(id, _, written)| (id, self.text(written.span))).collect();
+            let members = with.members.iter().copied();
+            members
+                .flat_map(|agent| {
+                    texts.iter().map(move |(id, text)| ((agent, *id), text.clone())).collect::<Vec<_>>()
+                })
+                .collect::<Vec<_>>()
+        };
+        self.withs.iter().flat_map(each).collect()
+    }
+
     fn settle_one(
         &mut self,
         with: &With<'a>,

@@ -21,6 +21,9 @@ impl Feature {
     }
 }
 
+/// Whether a feature of a name and properties is taken.
+pub type Select<'s> = dyn FnMut(&str, &[(String, PropertyValue)]) -> bool + 's;
+
 /// The value of a property.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PropertyValue {

@@ -1,6 +1,6 @@
 //! Reader of `GeoJSON` (RFC 7946): a feature collection, one feature, or one geometry.
 
-use super::feature::{self, Feature, Geometry, GeometryError, PropertyValue};
+use super::feature::{self, Feature, Geometry, GeometryError, PropertyValue, Select};
 use crate::base::geometry::Vec2;
 use geojson::feature::Id;
 use geojson::{GeoJson, GeometryValue, JsonValue, Position};
@@ -19,10 +19,7 @@ pub fn read_geojson(text: &str) -> Result<Vec<Feature>, Vec<GeometryError>> {
 ///
 /// # Errors
 /// As [`read_geojson`].
-pub fn select_geojson(
-    text: &str,
-    select: &mut dyn FnMut(&str, &[(String, PropertyValue)]) -> bool,
-) -> Result<Vec<Feature>, Vec<GeometryError>> {
+pub fn select_geojson(text: &str, select: &mut Select<'_>) -> Result<Vec<Feature>, Vec<GeometryError>> {
     let features = match text.parse::<GeoJson>() {
         Ok(GeoJson::FeatureCollection(collection)) => collection.features,
         Ok(GeoJson::Feature(one)) => vec![one],

@@ -27,6 +27,17 @@ pub(super) struct Flown {
     pub(super) lost: bool,
 }
 
+impl Flown {
+    /// What it came to, where a lost path is read as reaching the event, or as not.
+    pub(super) fn read(self, lost_reaches: bool) -> Flight {
+        let mut flight = self.flight;
+        if self.lost && lost_reaches {
+            flight.rise(self.steps, f64::INFINITY);
+        }
+        flight
+    }
+}
+
 /// Paths that came to an end, by their places.
 type Landed = Vec<(usize, Flown)>;
 

@@ -17,6 +17,7 @@ use super::start;
 use super::state::{Layout, Slot, State};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::random::{Purpose, Stream, TrialKey, name_hash};
+use crate::base::tick::steps_over;
 use crate::model::{AgentId, Parameter, Scenario};
 use conduct::{Amount, Conduct, Trigger, pick};
 
@@ -78,6 +79,8 @@ struct Turn {
 pub(super) struct Scratch {
     readings: Readings,
     turns: Vec<Turn>,
+    /// The lanes of each machine that turn.
+    turning: Vec<Mask>,
 }
 
 /// The lane of keys and ticks of a slot.
@@ -102,7 +105,8 @@ impl Behaviours {
             let at = known.iter().rposition(|conduct| std::sync::Arc::ptr_eq(conduct, &one.conduct));
             let conduct = at.unwrap_or_else(|| {
                 known.push(&one.conduct);
-                out.conducts.push(Conduct::new(scenario, &one.conduct, drive));
+                let declared = &all.declared[one.behaviour.0 as usize];
+                out.conducts.push(Conduct::new(scenario, declared, &one.conduct, drive));
                 known.len() - 1
             });
             out.machines.push(Machine {
@@ -183,10 +187,13 @@ impl Behaviours {
 
     /// Looks at the state before a step and notes which states end with it.
     pub(super) fn watch(&self, layout: Layout, state: &mut State, scratch: &mut Scratch) {
-        scratch.turns.clear();
+        for turn in scratch.turns.drain(..) {
+            scratch.turning[turn.machine as usize] = Mask::NONE;
+        }
         if self.is_empty() || state.occupied.is_empty() {
             return;
         }
+        scratch.turning.resize(self.machines.len(), Mask::NONE);
         if let Some(code) = &self.code {
             code.read(layout, state, &mut scratch.readings);
             for at in 0..self.machines.len() {
@@ -215,7 +222,7 @@ impl Behaviours {
                         continue;
                     };
                     // A condition that held before the time had come goes first.
-                    if !scratch.turns.iter().any(|turn| turn.machine as usize == at && turn.lane == lane) {
+                    if !scratch.turning[at].has(lane) {
                         let exit = state.behaviours.exit[behaviour][block][lane];
                         self.decide(at, state, lane, exit, scratch);
                     }
@@ -260,7 +267,10 @@ impl Behaviours {
         let variables: Vec<f64> = state.variables.iter().map(|lanes| lanes.0[trial]).collect();
         let stream = Stream::of(state.keys[trial], machine.entity, Purpose::Process);
         match pick(&exit.targets, &variables, || stream.uniform(state.ticks[trial] as u32)) {
-            Some(mode) => scratch.turns.push(Turn { machine: at as u32, lane, mode }),
+            Some(mode) => {
+                scratch.turns.push(Turn { machine: at as u32, lane, mode });
+                scratch.turning[at] |= Mask::lane(lane);
+            }
             None => fail(state, trial, Fault::Branches { attached: at as u32 }),
         }
     }
@@ -300,17 +310,17 @@ impl Behaviours {
         *entered = entered.wrapping_add(1);
         standing.modes[behaviour][block].0[lane] = f64::from(mode);
         standing.keys[behaviour][block][lane] = state.keys[trial];
-        let (mut due, mut chosen) = (f64::INFINITY, 0);
+        // The shortest time wins, also among those that end with the same step.
+        let (mut shortest, mut chosen) = (f64::INFINITY, 0);
         for (number, exit) in conduct.modes[mode as usize].exits.iter().enumerate() {
             if let Trigger::After { law, number: draw } = &exit.trigger {
                 let after = law.draw(stream.uniform(first.wrapping_add(*draw)));
-                let end = now + conduct::steps(after, program.dt);
-                if end < due {
-                    (due, chosen) = (end, number as u32);
+                if after < shortest {
+                    (shortest, chosen) = (after, number as u32);
                 }
             }
         }
-        standing.due[behaviour][block].0[lane] = due;
+        standing.due[behaviour][block].0[lane] = now + steps_over(shortest, program.dt);
         standing.exit[behaviour][block][lane] = chosen;
     }
 

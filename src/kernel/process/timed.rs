@@ -130,6 +130,14 @@ impl Timed {
         Self { level: Level::baseline(), code: self.code.map(Code::at_baseline), ..self }
     }
 
+    /// The one process that there is, where it is a table and has no delays, and the word that names it.
+    pub(super) fn alone(&self) -> Option<(u64, &Rates)> {
+        match self.racers.as_slice() {
+            [Racer { word, form: Form::Table(table), .. }] if !table.has_delays() => Some((*word, table)),
+            _ => None,
+        }
+    }
+
     /// Begins a trial.
     pub(super) fn load(&self, state: &mut State, lane: usize) {
         state.clocks.load(self.owners.len(), self.racers.len(), lane);

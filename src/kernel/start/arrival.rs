@@ -204,7 +204,8 @@ fn leave_empty(state: &mut State, agent: usize, lane: usize) {
     state.present[slot.block] &= !Mask::lane(slot.lane);
 }
 
-/// A place for an agent that touches nobody, in the `tries`-th attempt to come in.
+/// A place for an agent that touches nobody, in the `tries`-th attempt to come in. Near somebody who is not there
+/// is no place yet.
 fn free_place(
     program: &Program,
     state: &State,
@@ -223,6 +224,9 @@ fn free_place(
         Position::Within(_) => program.starts.sampler(member.0 as usize)?,
         Position::Near { agent, within } => {
             let slot = state.slot(agent.0 as usize, lane);
+            if !state.present[slot.block].has(slot.lane) {
+                return None;
+            }
             let centre = Vec2::new(state.x[slot.block].0[slot.lane], state.y[slot.block].0[slot.lane]);
             around = Sampler::Disc { centre, radius: *within };
             &around

@@ -22,7 +22,7 @@ use super::state::{Layout, State};
 use crate::base::geometry::Vec2;
 use crate::base::lanes::{Lanes, Mask};
 use crate::base::random::TrialKey;
-use crate::model::{AgentId, Move, Parameter, Route, Scenario};
+use crate::model::{AgentId, Move, Parameter, Route};
 use body::Parameters;
 
 /// What loading a trial found worth counting.
@@ -81,29 +81,6 @@ pub enum Fault {
         /// Which of its options.
         option: usize,
     },
-}
-
-impl Fault {
-    /// In words, with the names of the people.
-    pub fn describe(&self, scenario: &Scenario) -> String {
-        let name = |id: &AgentId| {
-            scenario.agents.get(id.0 as usize).map_or_else(String::new, |agent| format!("`{}`", agent.name))
-        };
-        match self {
-            Self::Parameter { agent, name: parameter, value } => {
-                format!("{} has a `{parameter}` of {value}", name(agent))
-            }
-            Self::Nowhere { agent } => format!("{} has no place to start", name(agent)),
-            Self::Order { agent } => format!("{} starts near somebody who is placed later", name(agent)),
-            Self::Inside { agent } => {
-                format!("{} found no place but in an obstacle or on a wall", name(agent))
-            }
-            Self::Together { agents: (one, other) } => {
-                format!("{} and {} found no place but the same point", name(one), name(other))
-            }
-            Self::Advice { .. } => self.to_string(),
-        }
-    }
 }
 
 /// Loads the initial state of a trial into a lane (in `Layout::Agents`: as the only trial). No other lane is

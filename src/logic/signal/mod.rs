@@ -8,6 +8,7 @@
 mod average;
 mod cells;
 mod direct;
+mod glance;
 mod moment;
 mod number;
 mod plan;
@@ -24,6 +25,7 @@ use crate::base::decimal::Decimal;
 use crate::base::tick::Tick;
 use cells::Cells;
 use direct::Direct;
+pub use glance::Glance;
 use moment::{Moment, Scale};
 use plan::plan;
 use present::Present;

@@ -3,7 +3,7 @@
 mod chart;
 mod histogram;
 
-use super::number::{count, counted, duration, plain};
+use super::number::{count, counted, duration};
 use super::{certified, one_line, settings, text};
 use crate::engine::outcome::{Failure, Interval, QueryResult, Run, Status, Verdict, Witness};
 use chart::{Mark, Tone};
@@ -31,6 +31,11 @@ pub fn render(run: &Run) -> String {
     );
     for group in run.results.chunk_by(text::same_sweep) {
         section(&mut page, group);
+    }
+    for finding in &run.diagnostics {
+        let (class, hint) = (if finding.error { "failure" } else { "warning" }, finding.hint.as_deref());
+        let hint = hint.map_or(String::new(), |hint| format!("; {hint}"));
+        let _ = writeln!(page, "<p class=\"{class}\">{}{}</p>", escape(&finding.line()), escape(&hint));
     }
     for warning in &run.warnings {
         let _ = writeln!(page, "<p class=\"warning\">{}</p>", escape(warning));
@@ -86,15 +91,20 @@ fn section(page: &mut String, group: &[QueryResult]) {
     if !first.interval.is_empty() {
         let _ = writeln!(page, "<p class=\"faint\">intervals: {}</p>", escape(&first.interval));
     }
-    if let Some(ranking) = &first.rank
-        && ranking.gap.is_finite()
-    {
-        let _ = writeln!(
-            page,
-            "<p>Choose <strong>{}</strong>{}.</p>",
-            escape(&ranking.choice),
-            if ranking.tied { "; so are those marked tied" } else { "" }
-        );
+    if let Some(ranking) = &first.rank {
+        let said = match &ranking.choice {
+            None if first.counts.trials > 0 => "No choice: no trial is resolved.".to_owned(),
+            None => "No choice: nothing was sampled.".to_owned(),
+            Some(choice) if !first.certifies.is_empty() => format!(
+                "Choose <strong>{}</strong>{}.",
+                escape(choice),
+                if ranking.tied { "; those marked tied carry the same certificate" } else { "" }
+            ),
+            Some(choice) => {
+                format!("<strong>{}</strong> leads so far, but nothing is certified yet.", escape(choice))
+            }
+        };
+        let _ = writeln!(page, "<p>{said}</p>");
     }
     for result in group {
         facts(page, result, group.len() > 1);
@@ -140,11 +150,11 @@ fn facts(page: &mut String, result: &QueryResult, swept: bool) {
     for Witness { shows, value, trial, time, unit, what, command } in &result.witnesses {
         let _ = writeln!(
             page,
-            "<p>{} in trial {}, {} {} {unit}: <code>{}</code></p>\n<pre>{}</pre>",
+            "<p>{} in trial {}, {} {}: <code>{}</code></p>\n<pre>{}</pre>",
             shows.name(),
             count(*trial),
             if value.is_some() { "at" } else { "decided at" },
-            plain(*time),
+            text::moment(*time, unit),
             escape(what),
             escape(command)
         );

@@ -2,6 +2,7 @@
 
 use super::columns::{Cell, lines};
 use super::{compare, distribution, rank};
+use crate::engine::at_most;
 use crate::engine::outcome::{Interval, QueryResult, Rare, Shows, Stop, Verdict, Witness};
 use crate::report::number::{count, counted, duration, interval, plain};
 use crate::report::palette::{Paint, Palette};
@@ -39,7 +40,7 @@ pub(super) fn write(text: &mut String, result: &QueryResult, palette: Palette) {
     }
     remarks(text, result, "", palette);
     for witness in &result.witnesses {
-        self::witness(text, witness, palette);
+        self::witness(text, witness, result.of.is_some(), palette);
     }
 }
 
@@ -91,12 +92,21 @@ pub(in crate::report) fn printed(result: &QueryResult, value: &Interval) -> (Str
 }
 
 fn value(text: &mut String, result: &QueryResult, palette: Palette) {
-    let Some(estimate) = result.estimate else { return };
+    let Some(estimate) = result.estimate else {
+        let sampled = result.counts.trials > 0;
+        line(text, if sampled { "nothing is known" } else { "nothing was sampled" });
+        return;
+    };
     let (shown, range) = printed(result, &Interval { estimate, low: result.low, high: result.high });
     let kind = if result.interval.is_empty() { String::new() } else { format!("  {}", result.interval) };
+    let of = result.of.as_ref().map_or(String::new(), |of| format!("{of}: "));
     line(
         text,
-        &format!("{}  {range}{}", palette.paint(Paint::Strong, &shown), palette.paint(Paint::Faint, &kind)),
+        &format!(
+            "{of}{}  {range}{}",
+            palette.paint(Paint::Strong, &shown),
+            palette.paint(Paint::Faint, &kind)
+        ),
     );
 }
 
@@ -110,8 +120,15 @@ pub(super) fn method(text: &mut String, result: &QueryResult, palette: Palette) 
     if name.is_empty() || named && result.method.numbers.iter().all(|(number, _)| said(number)) {
         return;
     }
-    let numbers: Vec<String> =
-        result.method.numbers.iter().map(|(name, value)| format!("{name} = {}", plain(*value))).collect();
+    let shown = |(name, value): &(String, f64)| match name.as_str() {
+        "alpha" | "beta" | "delta" => format!("{name} = {}", plain(at_most(*value))),
+        // These are in the unit of what is measured.
+        "theta" | "epsilon" if !result.unit.is_empty() => {
+            format!("{name} = {} {}", plain(*value), result.unit)
+        }
+        _ => format!("{name} = {}", plain(*value)),
+    };
+    let numbers: Vec<String> = result.method.numbers.iter().map(shown).collect();
     line(text, &palette.paint(Paint::Faint, &format!("method: {name}({})", numbers.join(", "))));
 }
 
@@ -142,8 +159,10 @@ pub(in crate::report) fn trials(result: &QueryResult) -> String {
     let mut text = counted(counts.trials, "trial");
     let mut parts = Vec::new();
     if counts.successes + counts.failures > 0 {
-        parts.push(format!("{} hold", count(counts.successes)));
-        parts.push(format!("{} fail", count(counts.failures)));
+        // Of a quantile the event is not the claim, so that it does not hold or fail.
+        let words = if result.of.is_some() { ["with it", "without"] } else { ["hold", "fail"] };
+        parts.push(format!("{} {}", count(counts.successes), words[0]));
+        parts.push(format!("{} {}", count(counts.failures), words[1]));
     }
     if counts.unresolved > 0 {
         parts.push(format!("{} unresolved", count(counts.unresolved)));
@@ -156,7 +175,12 @@ pub(in crate::report) fn trials(result: &QueryResult) -> String {
     }
     let cause = match result.stopped_by {
         Stop::Boundary => "stopped at the boundary of the test",
+        Stop::Width if result.rank.is_some() => "stopped once the choice was certain enough",
         Stop::Width => "stopped when narrow enough",
+        Stop::Unresolved if counts.unresolved == counts.trials => {
+            "stopped because all of them are unresolved"
+        }
+        Stop::Unresolved => "stopped because unresolved trials keep it open, however many more there are",
         Stop::Plan => "as planned",
         Stop::Cap => "stopped at the largest number of trials",
         Stop::Deadline => "stopped when time was up",
@@ -181,22 +205,34 @@ pub(super) fn remarks(text: &mut String, result: &QueryResult, at: &str, palette
     }
 }
 
+/// `3.42 s`, `step 5`
+pub(in crate::report) fn moment(time: f64, unit: &str) -> String {
+    if unit == "steps" { format!("step {}", plain(time)) } else { format!("{} {unit}", plain(time)) }
+}
+
 /// A trial that shows why, and the command that shows the trial.
-pub(super) fn witness(text: &mut String, witness: &Witness, palette: Palette) {
+pub(super) fn witness(text: &mut String, witness: &Witness, of: bool, palette: Palette) {
     let Witness { shows, trial, time, unit, what, command, .. } = witness;
     let paint = match shows {
         Shows::Fails => Paint::Bad,
         Shows::Holds => Paint::Good,
         Shows::Lowest | Shows::Highest => Paint::Neutral,
     };
+    // Of a quantile the event is not the claim.
+    let (word, paint) = match shows {
+        Shows::Fails if of => ("without it", Paint::Neutral),
+        Shows::Holds if of => ("with it", Paint::Neutral),
+        _ => (shows.name(), paint),
+    };
     let decided = if witness.value.is_some() { "at" } else { "decided at" };
+    let said = if what.is_empty() { String::new() } else { format!(": {what}") };
     line(
         text,
         &format!(
-            "{} in trial {}, {decided} {} {unit}: {what}",
-            palette.paint(paint, shows.name()),
+            "{} in trial {}, {decided} {}{said}",
+            palette.paint(paint, word),
             count(*trial),
-            plain(*time)
+            moment(*time, unit)
         ),
     );
     if !command.is_empty() {

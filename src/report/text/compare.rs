@@ -9,6 +9,10 @@ use crate::report::palette::{Paint, Palette};
 /// Writes the lines under the head.
 pub(super) fn write(text: &mut String, result: &QueryResult, comparison: &Comparison, palette: Palette) {
     let Comparison { first, second, difference } = comparison;
+    if difference.counts.trials == 0 {
+        block::line(text, "nothing was sampled");
+        return;
+    }
     let row = |side: &Side, paint: Option<Paint>, noun: &str, remark: String| {
         let (estimate, interval) = block::printed(result, &side.value);
         let estimate = Cell::left(estimate);

@@ -2,7 +2,7 @@
 
 use super::block;
 use crate::engine::outcome::{Distribution, Histogram, QueryResult};
-use crate::report::number::{count, interval, plain};
+use crate::report::number::{brief, count, interval, plain};
 use crate::report::palette::{Paint, Palette};
 
 const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
@@ -10,7 +10,8 @@ const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█']
 /// Writes the lines of a distribution.
 pub(super) fn write(text: &mut String, result: &QueryResult, found: &Distribution, palette: Palette) {
     let unit = if result.unit.is_empty() { String::new() } else { format!(" {}", result.unit) };
-    if !found.quantiles.is_empty() {
+    // A single one is what was estimated, and stands above.
+    if found.quantiles.len() > 1 {
         let parts: Vec<String> = found
             .quantiles
             .iter()
@@ -26,9 +27,12 @@ pub(super) fn write(text: &mut String, result: &QueryResult, found: &Distributio
     }
     if let Some(histogram) = &found.histogram {
         let bars = palette.paint(Paint::Neutral, &bars(histogram));
-        let mut said = format!("{}{unit} {bars} {}{unit}", plain(histogram.low), plain(histogram.high));
+        let mut said = format!("{}{unit} {bars} {}{unit}", brief(histogram.low), brief(histogram.high));
         if histogram.beyond > 0 {
-            said = format!("{said}, {} beyond the horizon", count(histogram.beyond));
+            // Only a time that does not come lies beyond the horizon; a distance to nobody is infinite.
+            let time = result.censored.is_some() || result.query.contains("time_until");
+            let word = if time { "beyond the horizon" } else { "infinite" };
+            said = format!("{said}, {} {word}", count(histogram.beyond));
         }
         if let Some(band) = found.band {
             said = format!("{said}, distribution function to ± {}", plain((band * 1000.0).ceil() / 1000.0));

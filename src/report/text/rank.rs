@@ -2,22 +2,26 @@
 
 use super::block;
 use super::columns::Cell;
-use crate::engine::at_most;
 use crate::engine::outcome::{QueryResult, Ranking, Status};
-use crate::report::number::{counted, plain};
+use crate::report::number::counted;
 use crate::report::palette::{Paint, Palette};
 
 /// Writes the lines under the head.
 pub(super) fn write(text: &mut String, result: &QueryResult, ranking: &Ranking, palette: Palette) {
-    let choice = palette.paint(Paint::Good, &ranking.choice);
-    let unit = if result.unit.is_empty() { String::new() } else { format!(" {}", result.unit) };
-    let mut said = if ranking.gap.is_finite() {
-        format!("choose {choice}: at most {}{unit} worse than the best", plain(at_most(ranking.gap)))
+    let Some(choice) = &ranking.choice else {
+        let sampled = result.counts.trials > 0;
+        let why = if sampled { "no trial is resolved" } else { "nothing was sampled" };
+        block::line(text, &format!("no choice: {why}"));
+        return;
+    };
+    let choice = palette.paint(Paint::Good, choice);
+    let mut said = if result.certifies.is_empty() {
+        format!("{choice} leads so far, but nothing is certified yet")
     } else {
-        format!("{choice} leads, but nothing is certified yet")
+        format!("choose {choice}")
     };
     if ranking.tied {
-        said += "; so are those marked tied";
+        said += "; those marked tied carry the same certificate";
     }
     block::line(text, &said);
     let rows: Vec<Vec<Cell>> = ranking

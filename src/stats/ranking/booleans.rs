@@ -1,7 +1,7 @@
 //! Boolean outcomes as bitsets by trial index; a pair is compared by counting bits.
 
 use super::Table;
-use super::bet::{BETS, Factors, bets, log_mean_near};
+use super::bet::{BETS, Factors, bets, log_mean_below, log_mean_near, reaches};
 use crate::stats::Outcome;
 
 /// Outcomes of one arm.
@@ -91,9 +91,22 @@ impl Table for Booleans {
             let room = 64 - bit;
             let (now, later) = rest.split_at(if rest.len() < room { rest.len() } else { room });
             let (mut sure, mut possible) = (0u64, 0u64);
-            for (k, outcome) in now.iter().enumerate() {
-                sure |= u64::from(*outcome == Outcome::True) << k;
-                possible |= u64::from(*outcome != Outcome::False) << k;
+            let mut at = 0;
+            let (bytes, few) = now.as_chunks::<8>();
+            for byte in bytes {
+                let (mut held, mut open) = (0u8, 0u8);
+                for k in 0..8 {
+                    held |= u8::from(byte[k] == Outcome::True) << k;
+                    open |= u8::from(byte[k] != Outcome::False) << k;
+                }
+                sure |= u64::from(held) << at;
+                possible |= u64::from(open) << at;
+                at += 8;
+            }
+            for outcome in few {
+                sure |= u64::from(*outcome == Outcome::True) << at;
+                possible |= u64::from(*outcome != Outcome::False) << at;
+                at += 1;
             }
             let word = (arm.trials / 64) as usize;
             arm.sure[word] |= sure << bit;
@@ -125,11 +138,18 @@ impl Table for Booleans {
         (log_mean_near(&logs(pair, worse), threshold), close)
     }
 
-    fn first_beyond(&mut self, rivals: &[usize], leader: usize, gap: f64, threshold: f64) -> Option<usize> {
+    fn passes(&mut self, rival: usize, leader: usize, threshold: f64) -> (bool, bool) {
+        let pair = self.pair(rival, leader);
+        let [worse, close] = &self.factors;
+        // The evidence against being better at all is the smaller.
+        let close = reaches(&logs(pair, close), threshold);
+        (close && reaches(&logs(pair, worse), threshold), close)
+    }
+
+    fn least_evidence(&mut self, rivals: &[usize], leader: usize, gap: f64) -> f64 {
         let factors = Factors::new(&self.bets, gap);
-        rivals.iter().position(|rival| {
-            let pair = self.pair(*rival, leader);
-            log_mean_near(&logs(pair, &factors), threshold) < threshold
+        rivals.iter().fold(f64::INFINITY, |least, rival| {
+            log_mean_below(&logs(self.pair(*rival, leader), &factors), least)
         })
     }
 }

@@ -7,6 +7,7 @@
 mod bet;
 mod booleans;
 mod each;
+mod gap;
 mod race;
 mod scores;
 
@@ -61,7 +62,10 @@ pub trait Table {
     /// better. Exact values are needed only near `threshold`: they may be any number on the same side.
     fn evidence(&mut self, rival: usize, leader: usize, threshold: f64) -> (f64, f64);
 
-    /// The place of the first of the rivals for which the evidence that it is less than `gap` better than
-    /// `leader` falls short of the threshold.
-    fn first_beyond(&mut self, rivals: &[usize], leader: usize, gap: f64, threshold: f64) -> Option<usize>;
+    /// Whether that evidence reaches the threshold: that `rival` is worse, and that it is less than epsilon better.
+    fn passes(&mut self, rival: usize, leader: usize, threshold: f64) -> (bool, bool);
+
+    /// The logarithm of the evidence that a rival is less than `gap` better than `leader`, of the rival for which
+    /// it is least; infinite without rivals.
+    fn least_evidence(&mut self, rivals: &[usize], leader: usize, gap: f64) -> f64;
 }

@@ -7,7 +7,7 @@
 //! probability at most delta/(k - 1), and there are k - 1 rivals. Chains of eliminations are harmless, and
 //! so is adaptive sampling: every trial exists before it is looked at, and the bound holds for all prefixes.
 
-use super::{Choice, Share, Table};
+use super::{Choice, Share, Table, gap};
 use crate::base::math;
 use crate::stats::invalid::{Invalid, probability, range};
 
@@ -20,9 +20,6 @@ pub enum Allocation {
     /// The least decided one: the best choice under a starving budget. To be chosen before sampling.
     OneChallenger,
 }
-
-/// Steps of the bisection of a gap.
-const STEPS: u32 = 20;
 
 /// A race between arms over a table of outcomes.
 #[derive(Clone, Debug)]
@@ -37,6 +34,10 @@ pub struct Race<T> {
     leader: usize,
     pending: Vec<Share>,
     arms: usize,
+    /// Arms that do not pass yet, with the evidence: room to work.
+    failing: Vec<(usize, f64)>,
+    /// Whether a round is complete.
+    decided: bool,
     finished: bool,
 }
 
@@ -67,6 +68,8 @@ impl<T: Table> Race<T> {
             leader: 0,
             pending: if alone { Vec::new() } else { (0..arms).map(first).collect() },
             arms,
+            failing: Vec::new(),
+            decided: false,
             finished: alone,
         })
     }
@@ -95,11 +98,12 @@ impl<T: Table> Race<T> {
         Ok(())
     }
 
-    /// The live arm with the highest mean; the first of equals.
+    /// The live arm with the highest mean; the first of equals. Who has had no trial is behind all who have.
     fn ahead(&self) -> usize {
         let mut best = self.live[0];
         for arm in &self.live[1..] {
-            if self.table.mean(*arm) > self.table.mean(best) {
+            let (one, other) = (self.table.trials(*arm) > 0, self.table.trials(best) > 0);
+            if one && (!other || self.table.mean(*arm) > self.table.mean(best)) {
                 best = *arm;
             }
         }
@@ -107,49 +111,52 @@ impl<T: Table> Race<T> {
     }
 
     fn decide(&mut self) {
+        self.decided = true;
         let leader = self.ahead();
         self.leader = leader;
-        let mut failing: Vec<(usize, f64)> = Vec::new();
-        let (table, threshold) = (&mut self.table, self.threshold);
+        let one = self.allocation == Allocation::OneChallenger;
+        let (table, threshold, failing) = (&mut self.table, self.threshold, &mut self.failing);
+        failing.clear();
         self.live.retain(|arm| {
             if *arm == leader {
                 return true;
             }
-            let (worse, close) = table.evidence(*arm, leader, threshold);
-            if worse >= threshold {
-                return false;
+            // Who is the only challenger depends on the evidence, not only on which side it lies.
+            let (worse, close, evidence) = if one {
+                let (worse, close) = table.evidence(*arm, leader, threshold);
+                (worse >= threshold, close >= threshold, close)
+            } else {
+                let (worse, close) = table.passes(*arm, leader, threshold);
+                (worse, close, 0.0)
+            };
+            if !worse && !close {
+                failing.push((*arm, evidence));
             }
-            if close < threshold {
-                failing.push((*arm, close));
-            }
-            true
+            !worse
         });
         if failing.is_empty() {
             self.finished = true;
             return;
         }
-        if self.allocation == Allocation::OneChallenger {
+        if one {
             let mut least = failing[0];
             for rival in &failing[1..] {
                 if rival.1 < least.1 {
                     least = *rival;
                 }
             }
-            failing = vec![least];
+            *failing = vec![least];
         }
-        let most = failing.iter().fold(0, |most, (arm, _)| self.table.trials(*arm).max(most));
-        let mut wanted: Vec<usize> = failing.iter().map(|(arm, _)| *arm).collect();
-        if self.table.trials(leader) <= most {
-            wanted.push(leader);
+        let most = failing.iter().fold(0, |most, (arm, _)| table.trials(*arm).max(most));
+        if table.trials(leader) <= most {
+            failing.push((leader, 0.0));
         }
-        wanted.sort_unstable();
-        self.pending = wanted
-            .into_iter()
-            .map(|arm| {
-                let from = self.table.trials(arm);
-                Share { arm, from, to: from + self.word }
-            })
-            .collect();
+        failing.sort_unstable_by_key(|(arm, _)| *arm);
+        let word = self.word;
+        self.pending.extend(failing.iter().map(|(arm, _)| {
+            let from = table.trials(*arm);
+            Share { arm: *arm, from, to: from + word }
+        }));
     }
 
     /// Whether the race is decided.
@@ -167,59 +174,36 @@ impl<T: Table> Race<T> {
         (0..self.arms).map(|arm| self.table.trials(arm)).sum()
     }
 
-    /// Arms not dropped yet.
-    pub fn live(&self) -> &[usize] {
-        &self.live
-    }
-
-    /// The leader of the last complete round.
-    pub const fn leader(&self) -> usize {
-        self.leader
-    }
-
     /// The smallest gap, to a millionth of the largest, such that `arm` is within it of the best but for
     /// probability delta: at any time and for a live arm. 1 if nothing is certified.
     pub fn gap(&mut self, arm: usize) -> f64 {
         self.gap_below(arm, 1.0)
     }
 
-    /// The smallest gap, at most `high`, which is taken for granted.
-    fn gap_below(&mut self, arm: usize, mut high: f64) -> f64 {
-        let mut rivals: Vec<usize> = self.live.iter().copied().filter(|rival| *rival != arm).collect();
-        let (table, threshold) = (&mut self.table, self.threshold);
-        let mut falls_short = |gap: f64| {
-            let short = table.first_beyond(&rivals, arm, gap, threshold);
-            // Who falls short once is likely to do so again.
-            if let Some(place) = short {
-                rivals.swap(0, place);
-            }
-            short.is_some()
-        };
-        if !falls_short(0.0) {
+    /// The smallest gap, at most `most`, which is taken for granted.
+    fn gap_below(&mut self, arm: usize, most: f64) -> f64 {
+        let rivals: Vec<usize> = self.live.iter().copied().filter(|rival| *rival != arm).collect();
+        if rivals.is_empty() {
             return 0.0;
         }
-        let mut low = 0.0;
-        for _ in 0..STEPS {
-            let middle = 0.5 * (low + high);
-            if falls_short(middle) {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        high
+        let (table, threshold) = (&mut self.table, self.threshold);
+        gap::smallest(most, |gap| table.least_evidence(&rivals, arm, gap) - threshold)
     }
 
     /// The choice now, at the end or at a deadline. With `deviations` (one number per arm), the least of
     /// them decides among arms that each carry the full certificate; else the leader is chosen.
     pub fn choice(&mut self, deviations: Option<&[f64]>) -> Choice {
+        if !self.decided {
+            // No round is complete: the trials there are have to do.
+            self.leader = self.ahead();
+        }
         let live = self.live.clone();
         let mut certified = Vec::new();
         if self.finished {
             for arm in &live {
-                let passes = live.iter().all(|rival| {
-                    rival == arm || self.table.evidence(*rival, *arm, self.threshold).1 >= self.threshold
-                });
+                let passes = live
+                    .iter()
+                    .all(|rival| rival == arm || self.table.passes(*rival, *arm, self.threshold).1);
                 if passes {
                     certified.push(*arm);
                 }

@@ -1,7 +1,7 @@
 //! Scores in [0, 1] by trial index; a pair keeps the capital of each bet.
 
 use super::Table;
-use super::bet::{BETS, bets, log_mean_near};
+use super::bet::{BETS, ROUNDING, bets, log_mean_below, log_mean_near};
 use crate::base::math;
 use std::collections::BTreeMap;
 
@@ -50,8 +50,9 @@ impl Scores {
                     *product *= 1.0 + bet * excess;
                 }
             }
+            let rounding = ROUNDING * (end - start) as f64;
             for (log, product) in logs.iter_mut().zip(products) {
-                *log += math::ln(product);
+                *log += math::ln(product) - rounding;
             }
             start = end;
         }
@@ -106,11 +107,16 @@ impl Table for Scores {
         (log_mean_near(&pair.logs[0], threshold), log_mean_near(&pair.logs[1], threshold))
     }
 
-    fn first_beyond(&mut self, rivals: &[usize], leader: usize, gap: f64, threshold: f64) -> Option<usize> {
-        rivals.iter().position(|rival| {
+    fn passes(&mut self, rival: usize, leader: usize, threshold: f64) -> (bool, bool) {
+        let (worse, close) = self.evidence(rival, leader, threshold);
+        (worse >= threshold, close >= threshold)
+    }
+
+    fn least_evidence(&mut self, rivals: &[usize], leader: usize, gap: f64) -> f64 {
+        rivals.iter().fold(f64::INFINITY, |least, rival| {
             let mut logs = [0.0; BETS];
             self.add(&mut logs, *rival, leader, gap, (0, self.common(*rival, leader)));
-            log_mean_near(&logs, threshold) < threshold
+            log_mean_below(&logs, least)
         })
     }
 }

@@ -45,8 +45,9 @@ Right:\n\
         code: "E0604",
         title: "wrong arguments of a procedure",
         text: "\
-An argument is unknown, missing, given twice or outside its range. Probabilities of error, widths and confidences lie\n\
-strictly between 0 and 1, numbers of trials are whole and positive.\n\
+An argument is unknown, missing, given twice or outside its range. Probabilities of error lie between 0 and 0.5 and\n\
+confidences between 50 % and 100 %: who errs as often as not says nothing. The half width of an interval is at most half of\n\
+what the measure ranges over, numbers of trials are whole and positive.\n\
 \n\
 Wrong:\n\
 \x20   estimate P(safe) within 0.01 confidence 95\n\
@@ -119,7 +120,8 @@ Right:\n\
         code: "W0601",
         title: "this query leaves its family",
         text: "\
-With `family confidence` all queries of a file hold jointly, each with an equal share of the error. A query that states\n\
+With `family confidence` all queries of a file hold jointly, at all points of a sweep, each with an equal share of the\n\
+error. A query that states\n\
 errors of its own is held to those, and the joint statement is about the others only.\n\
 \n\
 Probably wrong:\n\

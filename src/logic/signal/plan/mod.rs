@@ -14,7 +14,7 @@ use crate::base::decimal::Decimal;
 use crate::base::tick::Tick;
 use crate::logic::formula::{Node, Tree, Window};
 use crate::logic::invalid::Invalid;
-use crate::logic::reach::{Ask, Part, below, children_first};
+use crate::logic::reach::{Part, asked, children_first};
 use std::collections::BTreeMap;
 
 /// Most cells.
@@ -34,7 +34,7 @@ pub(super) fn plan(
     if quantum.is_negative() || quantum.numerator() == 0 {
         return Err(Invalid::NoSteps);
     }
-    let asked = asked(tree, &order, horizon)?;
+    let asked = asked(tree, root, Some(horizon), true)?;
     let needed = asked.last;
     if needed > horizon.0 {
         return Err(Invalid::BeyondHorizon { needed, horizon: horizon.0 });
@@ -59,7 +59,7 @@ pub(super) fn plan(
     for part in order {
         builder.note(part);
         if let Some(slot) = builder.antecedent(part) {
-            let last = asked.parts.get(&key(part)).copied().unwrap_or(needed);
+            let last = asked.of(part).unwrap_or(needed);
             watched.push(Watched { slot, last: scale.time(Tick(last)) });
         }
     }
@@ -72,54 +72,6 @@ pub(super) fn plan(
     };
     let cells = Cells::new(builder.truths, builder.numbers, builder.order, root);
     Ok((builder.present, Way::Cells(Box::new(cells)), scale, watched))
-}
-
-/// The last ticks at which parts are asked about.
-struct Asked {
-    /// Of each part.
-    parts: BTreeMap<(bool, u32), u64>,
-    /// Of all, or what is reached from below by what is asked at every instant before it.
-    last: u64,
-}
-
-fn key(part: Part) -> (bool, u32) {
-    match part {
-        Part::Node(id) => (false, id.0),
-        Part::Term(id) => (true, id.0),
-    }
-}
-
-fn asked(tree: &Tree, order: &[Part], horizon: Tick) -> Result<Asked, Invalid> {
-    let mut asked: BTreeMap<(bool, u32), u64> = BTreeMap::new();
-    if let Some(root) = order.last() {
-        asked.insert(key(*root), 0);
-    }
-    let mut last = 0;
-    for part in order.iter().rev() {
-        let Some(&at) = asked.get(&key(*part)) else { continue };
-        last = last.max(at);
-        for (child, ask) in below(tree, *part)? {
-            let latest = match ask {
-                Ask::Here => at,
-                Ask::Within(Window { from, to: Some(to) }) => {
-                    if to < from {
-                        return Err(Invalid::EmptyWindow { from: from.0, to: to.0 });
-                    }
-                    at.saturating_add(to.0)
-                }
-                Ask::Within(Window { from, to: None }) => {
-                    last = last.max(at.saturating_add(from.0));
-                    horizon.0.max(at)
-                }
-                Ask::Before(Some(Tick(0))) => continue,
-                Ask::Until(Some(to)) | Ask::Before(Some(to)) => at.saturating_add(to.0),
-                Ask::Until(None) | Ask::Before(None) | Ask::AtEnd => horizon.0.max(at),
-            };
-            let known = asked.entry(key(child)).or_insert(latest);
-            *known = latest.max(*known);
-        }
-    }
-    Ok(Asked { parts: asked, last })
 }
 
 /// The first and the last moment at which something is asked about.

@@ -1,0 +1,72 @@
+//! What errors and widths of procedures may be: as far as a result with them says anything, and as far as the
+//! procedures go.
+
+use super::dimension::Dimension;
+use super::elaborator::{Elaborator, Lowered};
+use super::study::MeasureKind;
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+
+/// Who errs as often as not says nothing. Two errors below it sum to less than 1, without which a sequential
+/// test has no region to sample in.
+const COIN: f64 = 0.5;
+
+/// Least half width of an interval, as a part of what the measure ranges over.
+const NARROWEST: f64 = 1e-5;
+
+/// Largest half width of an interval of one measure, in the same parts: that is all there is.
+pub(super) const WIDEST: f64 = 0.5;
+
+impl Elaborator<'_> {
+    /// A probability of error, below one half.
+    pub(super) fn error_of(&mut self, value: Option<(f64, Span)>, default: f64, name: &str) -> Lowered<f64> {
+        match value {
+            None => Ok(default),
+            Some((value, _)) if value > 0.0 && value < COIN => Ok(value),
+            Some((value, span)) => {
+                let error = Diagnostic::error(
+                    "E0604",
+                    span,
+                    format!("`{name}` is {value}, but lies between 0 and 0.5"),
+                );
+                let hint = if value >= COIN {
+                    "who errs as often as not says nothing; 0.01 and 0.05 are usual"
+                } else {
+                    "no number of trials excludes every error; 0.01 and 0.05 are usual"
+                };
+                self.report(error.hint(hint))
+            }
+        }
+    }
+
+    /// A half width, in the unit of the measure, must be a legal part of what the measure ranges over.
+    pub(super) fn width(
+        &mut self,
+        (epsilon, at): (f64, Span),
+        kind: &MeasureKind,
+        widest: f64,
+    ) -> Lowered<f64> {
+        let (range, dimension) = match kind {
+            MeasureKind::Probability => (1.0, Dimension::NONE),
+            MeasureKind::Expectation { range, dimension } => (range.1 - range.0, *dimension),
+            MeasureKind::Quantile { .. } => return Ok(epsilon),
+        };
+        let part = epsilon / range;
+        if (NARROWEST..=widest).contains(&part) {
+            return Ok(epsilon);
+        }
+        if epsilon <= 0.0 {
+            return self.report(Diagnostic::error("E0604", at, "a width must be positive"));
+        }
+        let unit = if dimension.is_none() { String::new() } else { format!(" {dimension}") };
+        let (word, end, hint) = if part < NARROWEST {
+            let hint = "so narrow an interval takes more trials than there is time for";
+            ("below", NARROWEST * range, hint)
+        } else {
+            ("above", widest * range, "every number would do: ask for a width that says something")
+        };
+        let error =
+            Diagnostic::error("E0604", at, format!("a width of {epsilon}{unit} is {word} {end}{unit}"));
+        self.report(error.hint(hint))
+    }
+}

@@ -1,0 +1,171 @@
+//! Why a trial is unresolved: it is run again up to there, and what stopped it is said, with what helps.
+
+use super::cell::{Item, Reading};
+use super::subject::Subject;
+use super::words;
+use crate::base::lanes::Mask;
+use crate::base::random::TrialKey;
+use crate::base::tick::Tick;
+use crate::kernel::process::Sight;
+use crate::kernel::{Code, Readings, Scratch, State, dynamics, start};
+use crate::logic;
+use crate::model::{Scenario, TOP_SPEED};
+
+/// Most jumps that are made again to see why a trial is unresolved.
+const JUMPS_AGAIN: u64 = 1 << 20;
+
+/// What stopped a trial before a column was decided, and what helps against it; empty where nothing did.
+pub(super) fn unresolved(subject: &Subject, column: usize, item: Item, seed: u64) -> String {
+    let program = &subject.program;
+    let scenario = &program.scenario;
+    let (mut state, mut scratch) = (State::new(program.layout, scenario.agents.len()), Scratch::new());
+    let key = TrialKey { seed, index: item.index, branch: 0 };
+    if let Err(fault) = start::load(program, &mut state, 0, key, item.advice) {
+        return format!("it cannot start: {}", no_start(scenario, fault));
+    }
+    if scenario.clock.is_jumps() {
+        return in_continuous_time(subject, column, &mut state, &mut scratch);
+    }
+    let lane = Mask::lane(0);
+    dynamics::refresh(program, &mut state, &mut scratch, lane);
+    let code = subject.code(&[column]);
+    let Ok(mut observer) = subject.observer(column) else { return String::new() };
+    let mut readings = Readings::default();
+    observer.start(0);
+    loop {
+        let time = moment(scenario, state.ticks[0]);
+        if let Some(reason) = state.queues.overrun(&scenario.sources, 0) {
+            return format!("{reason} (at {time})");
+        }
+        if !state.diverged.is_empty() {
+            return format!("it diverged at {time}: {}; a smaller step may help", runaway(scenario, &state));
+        }
+        code.run(program, &state, &mut readings);
+        if readings.unresolved.has(0) {
+            return nobody(subject, column, &state, &time);
+        }
+        observer.observe(lane, &readings);
+        if observer.decided().has(0) {
+            return match observer.reading(0) {
+                Reading::Unresolved => {
+                    format!("the metric is not a number at {time}; look for 0 / 0 or ∞ - ∞ in it")
+                }
+                _ => String::new(),
+            };
+        }
+        if state.ticks[0] >= subject.horizon.0 {
+            return String::new();
+        }
+        dynamics::step(program, &mut state, &mut scratch);
+    }
+}
+
+/// Who left every human speed, with the speed.
+pub fn runaway(scenario: &Scenario, state: &State) -> String {
+    let speed = |agent: usize| {
+        let slot = state.slot(agent, 0);
+        let (vx, vy) = (state.vx[slot.block].0[slot.lane], state.vy[slot.block].0[slot.lane]);
+        state.present[slot.block].has(slot.lane).then(|| (vx * vx + vy * vy).sqrt())
+    };
+    let beyond = |speed: f64| speed.is_nan() || speed > TOP_SPEED;
+    let found = scenario.agents.iter().enumerate().find_map(|(agent, declared)| {
+        speed(agent).filter(|speed| beyond(*speed)).map(|speed| (declared.name.as_str(), speed))
+    });
+    let most = words::quantity(TOP_SPEED, "m/s");
+    match found {
+        Some((name, speed)) if speed.is_finite() => {
+            format!("{name} went at {}, and nobody goes beyond {most}", words::brief(speed, "m/s"))
+        }
+        Some((name, _)) => format!("{name} left every human speed ({most})"),
+        None => format!("somebody left every human speed ({most})"),
+    }
+}
+
+fn moment(scenario: &Scenario, tick: u64) -> String {
+    match scenario.clock {
+        crate::base::tick::Clock::Steps => format!("step {tick}"),
+        clock => words::quantity(clock.seconds(Tick(tick)), "s"),
+    }
+}
+
+/// Why a trial cannot start, and what helps.
+pub fn no_start(scenario: &Scenario, fault: start::Fault) -> String {
+    let name = |agent: crate::model::AgentId| {
+        scenario.agents.get(agent.0 as usize).map_or("somebody", |agent| agent.name.as_str())
+    };
+    match fault {
+        start::Fault::Parameter { agent, name: parameter, value } => format!(
+            "`{parameter}` of {} is drawn as {}, with which nobody can move; a range keeps it legal: `normal(…) in low .. high`",
+            name(agent),
+            words::brief(value, "")
+        ),
+        start::Fault::Nowhere { agent } => {
+            format!("{} finds no place; give more room to start in", name(agent))
+        }
+        start::Fault::Inside { agent } => format!(
+            "{} finds no place but in an obstacle or on a wall; give more room to start in",
+            name(agent)
+        ),
+        start::Fault::Together { agents: (one, other) } => format!(
+            "{} and {} find no place but the same point; give more room to start in",
+            name(one),
+            name(other)
+        ),
+        start::Fault::Order { agent } => {
+            format!("{} starts near somebody who is placed later", name(agent))
+        }
+        start::Fault::Advice { .. } => String::new(),
+    }
+}
+
+/// A mean or a middle of nobody: in which condition or number.
+fn nobody(subject: &Subject, column: usize, state: &State, time: &str) -> String {
+    let scenario = &subject.program.scenario;
+    let lost = |code: &Code| {
+        let mut readings = Readings::default();
+        code.run(&subject.program, state, &mut readings);
+        readings.unresolved.has(0)
+    };
+    let atoms = subject.atoms_of(column).into_iter().find_map(|k| {
+        let code = Code::compile(scenario, std::slice::from_ref(&subject.atoms()[k]), &[]);
+        lost(&code).then(|| subject.texts.atoms.get(k).cloned())?
+    });
+    let text = atoms.or_else(|| {
+        (0..subject.signals().len()).find_map(|k| {
+            let code = Code::compile(scenario, &[], std::slice::from_ref(&subject.signals()[k]));
+            lost(&code).then(|| subject.texts.signals.get(k).map(|(text, _)| text.clone()))?
+        })
+    });
+    let of = text.map_or(String::new(), |text| format!(" in `{text}`"));
+    format!(
+        "a mean or a middle{of} is over nobody at {time}; ask for it only where somebody is there: `count(a in …) > 0 & …`"
+    )
+}
+
+/// In continuous time only what has to be remembered, and the number of jumps, can leave a trial unresolved.
+fn in_continuous_time(subject: &Subject, column: usize, state: &mut State, scratch: &mut Scratch) -> String {
+    let view = subject.view(&[column]);
+    let Ok(mut monitor) = subject.signal_monitor(column) else { return String::new() };
+    let mut sight = Sight::default();
+    for _ in 0..JUMPS_AGAIN {
+        view.look(state, &mut sight);
+        let (atoms, signals) = view.of(state, &mut sight, 0);
+        let now = state.clocks.now[0];
+        let time = words::quantity(now, "s");
+        let reading = match monitor.jump(now, atoms, signals) {
+            Some(reading) => reading,
+            None if !dynamics::jump(&subject.program, state, scratch).is_empty() => continue,
+            None => monitor.finish(),
+        };
+        return match reading {
+            logic::Reading::Unresolved => format!(
+                "the formula has to remember more changes at {time} than there is room for; shorter bounds help"
+            ),
+            logic::Reading::Value(value) if value.is_nan() => {
+                format!("the metric is not a number at {time}; look for 0 / 0 or ∞ - ∞ in it")
+            }
+            _ => String::new(),
+        };
+    }
+    "it jumps more often than can be followed; a shorter horizon or lower rates help".to_owned()
+}

@@ -1,0 +1,252 @@
+//! What is printed where something is wrong: the inputs, the model in some trial, or nothing could be sampled.
+
+use crate::formats::validated;
+use crate::program::{Place, SMALL, Said, timeless};
+
+const WRONG: &str = "property p = F<=1 s contact(user)\ncheck P(q) >= 0.5\ncheck P(p) >= 2\n";
+
+fn wrong(format: &str, words: &[&str]) -> Said {
+    let place = Place::new(&[("a.scn", SMALL), ("a.bltl", WRONG)]);
+    place.call(&[&["check", "a.scn", "a.bltl", "-q", "--format", format], words].concat())
+}
+
+#[test]
+fn errors_of_the_inputs_are_in_the_json() {
+    let said = wrong("json", &[]);
+    assert_eq!(said.code, Some(2));
+    assert!(said.err.contains("error[E0201]"), "people read it all the same: {}", said.err);
+    let json = said.json();
+    validated(&json);
+    assert_eq!(json["results"], serde_json::json!([]));
+    assert_eq!(json["error"]["bug"], false);
+    assert!(json["error"]["message"].as_str().unwrap().contains("and 1 more error"), "{json:#}");
+    let found = json["diagnostics"].as_array().unwrap();
+    assert_eq!(found.len(), 2);
+    let (name, threshold) = (&found[0], &found[1]);
+    assert_eq!((&name["code"], &name["severity"]), (&"E0201".into(), &"error".into()));
+    assert_eq!((&name["file"], &name["line"], &name["column"]), (&"a.bltl".into(), &2.into(), &9.into()));
+    assert_eq!(name["end"], serde_json::json!({ "line": 2, "column": 10 }));
+    assert_eq!((&threshold["code"], &threshold["line"]), (&"E0601".into(), &3.into()));
+    assert!(threshold["hint"].as_str().unwrap().contains("2 %"), "{threshold}");
+}
+
+#[test]
+fn errors_of_the_inputs_are_red_test_cases_and_annotations() {
+    let said = wrong("junit", &[]);
+    assert_eq!(said.code, Some(2));
+    assert!(said.out.starts_with("<?xml") && said.out.contains("errors=\"2\""), "{}", said.out);
+    assert!(said.out.contains("type=\"E0601\"") && said.out.contains("a.bltl:2:9"), "{}", said.out);
+    let said = wrong("github", &[]);
+    assert!(
+        said.out.contains("::error file=a.bltl,line=2,col=9,endColumn=10,title=E0201::unknown name `q`"),
+        "{}",
+        said.out
+    );
+    assert_eq!(said.out.matches("::error ").count(), 2, "{}", said.out);
+}
+
+#[test]
+fn errors_without_a_place_and_of_the_call_are_reported_too() {
+    let place = Place::new(&[("a.bltl", "check P(1 < 2) >= 0.5\n")]);
+    let said = place.call(&["check", "none.scn", "a.bltl", "-q", "--format", "json"]);
+    let json = said.json();
+    validated(&json);
+    assert_eq!(json["diagnostics"][0]["code"], "E0701");
+    assert!(json["diagnostics"][0]["line"].is_null());
+    let place = Place::new(&[("a.scn", SMALL), ("a.bltl", "check P(F<=1 s contact(user)) >= 0.5\n")]);
+    let call = |format: &str, words: &[&str]| {
+        place.call(&[&["check", "a.scn", "a.bltl", "-q", "--format", format], words].concat())
+    };
+    let said = call("json", &["--only", "nobody"]);
+    validated(&said.json());
+    assert_eq!(
+        (said.code, &said.json()["error"]["message"]),
+        (Some(2), &"no query is about `nobody`".into())
+    );
+    let said = call("github", &["--set", "densty=0.2"]);
+    assert!(said.out.starts_with("::error title=E0210::--set densty: unknown parameter"), "{}", said.out);
+    let said = call("json", &["--set", "density=1 /m^2"]);
+    assert!(said.json()["error"].is_null() && said.code != Some(2), "{}", said.err);
+    let crowded = SMALL.replace("round(density * area(hall))", "900");
+    let place = Place::new(&[("a.scn", &crowded), ("a.bltl", "check P(F<=1 s contact(user)) >= 0.5\n")]);
+    let said = place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "json"]);
+    assert_eq!((said.code, &said.json()["diagnostics"][0]["code"]), (Some(2), &"E0801".into()));
+}
+
+#[test]
+fn warnings_stand_beside_the_results() {
+    let query = "family confidence 95 %\nestimate P(F<=1 s contact(user)) within 0.3 confidence 90 %\n";
+    let place = Place::new(&[("a.scn", SMALL), ("a.bltl", query)]);
+    let call = |format: &str| place.call(&["check", "a.scn", "a.bltl", "-q", "--format", format]);
+    let json = call("json").json();
+    validated(&json);
+    assert_eq!(json["diagnostics"][0]["code"], "W0601");
+    assert_eq!(json["diagnostics"][0]["severity"], "warning");
+    assert!(json["error"].is_null() && json["results"].as_array().unwrap().len() == 1);
+    let out = call("github").out;
+    assert!(out.contains("::warning file=a.bltl,line=2,"), "{out}");
+}
+
+/// Some trial leaves the range of a variable, which is known only when it comes.
+const LEAVES: &str = "horizon = 40 steps
+process walk {
+  var wear = 0
+  var n: 0 .. 28 = 0
+  when true -> 1/2: { n = n + 1; wear = wear + 0.5 } | 1/2: { wear = wear + 0.25 }
+}
+";
+
+#[test]
+fn what_was_decided_before_an_error_of_the_model_is_printed() {
+    let properties = "check P(F<=4 steps (walk.n >= 1)) >= 0.5 by sprt(indifference = 0.2)\n\
+                      estimate P(F<=40 steps (walk.wear > 100)) by okamoto(epsilon = 0.001, delta = 0.05)\n";
+    let place = Place::new(&[("a.scn", LEAVES), ("a.bltl", properties)]);
+    let call = |format: &str| place.call(&["check", "a.scn", "a.bltl", "-q", "--format", format]);
+    let said = call("json");
+    let json = said.json();
+    validated(&json);
+    assert_eq!(said.code, Some(2), "{json:#}");
+    assert!(json["error"]["message"].as_str().unwrap().starts_with("trial "), "{json:#}");
+    let results = json["results"].as_array().unwrap();
+    assert_eq!((results.len(), &results[0]["verdict"]), (1, &"satisfied".into()), "{json:#}");
+    let out = call("github").out;
+    assert!(out.contains("::error title=smc::trial "), "{out}");
+    let out = call("junit").out;
+    assert!(out.contains("type=\"input\""), "{out}");
+}
+
+#[test]
+fn without_a_trial_nothing_is_claimed_and_the_replay_line_says_so() {
+    let properties = "\
+check P(F<=3 s contact(user)) >= 0.3
+estimate P(F<=3 s contact(user)) within 0.01
+estimate E(max<=2 s (speed(user))) in 0 m/s .. 3 m/s
+estimate Q(0.5, time_until(contact(user)))
+compare P(F<=3 s contact(user)) under density = 0.2 /m^2 with density = 0.8 /m^2
+rank moves of user by P(F<=3 s contact(user)) within 0.02
+";
+    let place = Place::new(&[("a.scn", SMALL), ("a.bltl", properties)]);
+    let call = |words: &[&str]| place.call(&[&["check", "a.scn", "a.bltl", "-q"], words].concat());
+    let said = call(&["--format", "json", "--max-trials", "0"]);
+    assert_eq!(said.code, Some(3));
+    let json = said.json();
+    validated(&json);
+    let results = json["results"].as_array().unwrap();
+    assert_eq!(results.len(), 6);
+    for result in results {
+        assert_eq!((&result["trials"], &result["certifies"]), (&0.into(), &"".into()), "{result:#}");
+        assert!(result["estimate"].is_null(), "{result:#}");
+    }
+    let ends = |at: usize| (results[at]["low"].as_f64(), results[at]["high"].as_f64());
+    assert_eq!((ends(0), ends(1)), ((Some(0.0), Some(1.0)), (Some(0.0), Some(1.0))));
+    assert_eq!((ends(2), ends(3)), ((Some(0.0), Some(3.0)), (None, None)));
+    assert_eq!((ends(4), ends(5)), ((Some(-1.0), Some(1.0)), (Some(0.0), Some(1.0))));
+    assert!(results[5]["choice"].is_null() && results[5]["gap"].is_null());
+    let text = call(&["--max-trials", "0"]).out;
+    assert!(text.contains("no choice: nothing was sampled"), "{text}");
+    assert!(!text.contains("certified") && !text.contains('∞') && !text.contains('?'), "{text}");
+    assert_eq!(text.matches("nothing was sampled").count(), 6, "{text}");
+    // A deadline that leaves no time is replayed by a call that takes no trial either.
+    let json = call(&["--format", "json", "--timeout", "1ms"]).json();
+    let last = &json["results"][5];
+    assert_eq!(last["trials"], 0, "{last:#}");
+    let replay = last["replay"].as_str().unwrap();
+    assert!(replay.ends_with("--total-trials 0"), "{replay}");
+    let words: Vec<&str> = replay.split(' ').skip(1).chain(["--format", "json"]).collect();
+    let mut again = place.call(&words).json()["results"][0].clone();
+    let mut last = last.clone();
+    for result in [&mut again, &mut last] {
+        timeless(result);
+        result["stopped_by"] = "".into();
+    }
+    assert_eq!(again, last);
+}
+
+#[test]
+fn a_ranking_with_few_trials_takes_those_there_are() {
+    let place = Place::new(&[
+        ("a.scn", SMALL),
+        ("a.bltl", "rank moves of user by P(F<=3 s !contact(user)) within 0.02\n"),
+    ]);
+    let words = ["check", "a.scn", "a.bltl", "-q", "--format", "json", "--max-trials", "5"];
+    let result = place.call(&words).json()["results"][0].clone();
+    assert_eq!(result["trials"], 20, "five of each of four options");
+    assert!(result["choice"].is_string(), "{result:#}");
+}
+
+/// Everybody leaves every human speed at once.
+const DIVERGES: &str = "horizon = 4 s
+step = 0.02 s
+kind adult: sfm preset helbing2000 { noise = 0.05 m/s }
+agent wild: adult { at = (2, 2)  speed = 1e9 m/s  route = (60, 2) }
+moves wild for 1 s { heading from -30 deg to 30 deg by 30 deg }
+";
+
+#[test]
+fn where_no_trial_is_resolved_the_cause_is_named() {
+    let properties = "\
+property onward = F<=4 s (travelled(wild) > 2 m)
+check P(onward) >= 0.9
+estimate P(onward) within 0.05
+rank moves of wild by P(onward) within 0.1
+";
+    let place = Place::new(&[("a.scn", DIVERGES), ("a.bltl", properties)]);
+    let words = ["check", "a.scn", "a.bltl", "-q", "--max-trials", "200"];
+    let json = place.call(&[&words[..], &["--format", "json"]].concat()).json();
+    validated(&json);
+    for result in json["results"].as_array().unwrap() {
+        assert_eq!(result["certifies"], "", "{result:#}");
+        assert!(result["estimate"].is_null());
+        let warning = result["warnings"][0].as_str().unwrap();
+        for part in ["all ", "trial 0: it diverged at 0.02 s: wild went at ", "a smaller step may help"] {
+            assert!(warning.contains(part), "{part}: {warning}");
+        }
+    }
+    assert_eq!(json["results"][0]["stopped_by"], "unresolved");
+    assert_eq!(json["results"][1]["stopped_by"], "unresolved");
+    assert!(json["results"][2]["choice"].is_null());
+    let text = place.call(&words).out;
+    assert!(!text.contains("narrow enough") && !text.contains("boundary"), "{text}");
+    // The command of the warning shows the trial.
+    let warning = json["results"][2]["warnings"][0].as_str().unwrap();
+    assert!(warning.ends_with("--move 'heading -30 deg'"), "{warning}");
+}
+
+#[test]
+fn the_hint_fits_the_cause() {
+    let door = "horizon = 20 s
+step = 0.05 s
+scene { region hall: rect (0, 0) .. (5, 5) }
+kind adult: sfm preset helbing2000
+agent me: adult { at = (9, 2)  route = (20, 2) }
+source door: adult { at = uniform in hall  every = exponential(10 s)  route = (20, 2)  limit = 3 }
+";
+    let properties = "check P(F<=20 s (travelled(me) > 20 m)) >= 0.5\n\
+                      check P(F<=5 s (mean(speed(a) for a in door) > 2 m/s)) >= 0.5\n";
+    let place = Place::new(&[("a.scn", door), ("a.bltl", properties)]);
+    let json = place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "json"]).json();
+    let warning = |at: usize| json["results"][at]["warnings"][0].as_str().unwrap().to_owned();
+    assert!(warning(0).contains("more than 3 people came by `door`; a larger `limit`"), "{}", warning(0));
+    assert!(warning(1).contains("is over nobody at 0 s") && !warning(1).contains("step"), "{}", warning(1));
+}
+
+#[test]
+fn levels_are_never_rounded_up() {
+    let mut properties = "family confidence 95 %\n".to_owned();
+    for _ in 0..3 {
+        properties += "estimate P(F<=1 s contact(user)) within 0.3\n";
+    }
+    let place = Place::new(&[("a.scn", SMALL), ("a.bltl", &properties)]);
+    let said = place.call(&["check", "a.scn", "a.bltl", "-q"]);
+    assert!(said.out.contains("98.33 %") && said.out.contains("error at most 0.0167\n"), "{}", said.out);
+    assert!(!said.out.contains("333"), "{}", said.out);
+}
+
+#[test]
+fn a_stream_of_outcomes_that_is_none_is_an_object_too() {
+    let place = Place::new(&[("a.csv", "maybe\n")]);
+    let words = ["drift", "a.csv", "--before", "0.9", "--after", "0.8", "--format", "json"];
+    let said = place.call(&words);
+    assert_eq!(said.code, Some(2));
+    assert!(said.json()["error"]["message"].as_str().unwrap().contains("a.csv"), "{}", said.out);
+}
