@@ -11,6 +11,7 @@ use crate::data::table::{
     Held, Row, StateRow, write_csv, write_json, write_json_lines, write_states_csv, write_states_json,
     write_states_json_lines,
 };
+use crate::engine::{no_start, placeable};
 use crate::kernel::{Program, Scratch, Slot, State, dynamics, start};
 use crate::model::{AgentId, Domain, Scenario};
 use crate::report::ExitCode as Exit;
@@ -82,7 +83,8 @@ impl<'p> Walk<'p> {
                         return true;
                     }
                     Err(fault) => {
-                        self.notes.push(format!("trial {} cannot start: {fault}", self.trial));
+                        let why = no_start(&self.program.scenario, fault);
+                        self.notes.push(format!("trial {} cannot start: {why}", self.trial));
                         self.trial += 1;
                         continue;
                     }
@@ -95,7 +97,7 @@ impl<'p> Walk<'p> {
                 let end = clock.seconds(Tick(self.last));
                 if !jumped.is_empty() && self.state.faulty.is_empty() && self.state.clocks.now[0] <= end {
                     self.jumps += 1;
-                    if self.jumps.is_multiple_of(self.arguments.every.max(1)) {
+                    if self.jumps.is_multiple_of(self.arguments.every) {
                         return true;
                     }
                 } else if self.state.faulty.is_empty() {
@@ -132,7 +134,7 @@ impl<'p> Walk<'p> {
                 continue;
             }
             dynamics::step(self.program, &mut self.state, &mut self.scratch);
-            if self.state.ticks[0].is_multiple_of(self.arguments.every.max(1)) {
+            if self.state.ticks[0].is_multiple_of(self.arguments.every) {
                 return true;
             }
         }
@@ -228,6 +230,11 @@ fn option(scenario: &Scenario, name: &str) -> Result<(usize, usize), String> {
 /// Runs the command.
 #[allow(clippy::disallowed_methods, reason = "files are opened by the command line")]
 pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
+    if arguments.every == 0 || arguments.trials == 0 {
+        let option = if arguments.every == 0 { "--every" } else { "--trials" };
+        say(&format!("error: `{option} 0` writes nothing; it takes a number from 1\n"));
+        return Exit::Wrong;
+    }
     let inputs = inputs::load(&arguments.model, &[]);
     super::diagnose(&inputs, colors);
     let Some(study) = &inputs.study else { return Exit::Wrong };
@@ -245,14 +252,23 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
         Some(Ok(advice)) => Some(advice),
         None => None,
     };
-    if let Err(reason) = super::placeable(&scenario) {
-        say(&render(&[super::crowded(reason)], &[], colors.err));
+    if let Err(fault) = placeable(world) {
+        match super::refusal(&fault) {
+            Some(error) => say(&render(&[error], &inputs.sources, colors.err)),
+            None => say(&format!("error: {fault}\n")),
+        }
         return Exit::Wrong;
     }
     let mut last = scenario.horizon.0;
     if let Some(until) = arguments.until {
         if until.is_nan() || until < 0.0 {
             say("error: `--until` takes a time in seconds\n");
+            return Exit::Wrong;
+        }
+        let end = scenario.clock.seconds(scenario.horizon);
+        if until > end * (1.0 + 1e-12) {
+            let unit = if scenario.clock == Clock::Steps { "steps" } else { "s" };
+            say(&format!("error: `--until {until}` lies beyond the horizon of {end} {unit}\n"));
             return Exit::Wrong;
         }
         // The longest time that is a whole number of ticks, in continuous time of very short ones.

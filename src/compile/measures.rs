@@ -191,9 +191,9 @@ impl Elaborator<'_> {
                     return self.report(error);
                 };
                 let locals = Locals::of(scope);
-                let ends =
-                    (self.number_of(low, dimension, &locals), self.number_of(high, dimension, &locals));
-                let range = (ends.0?.value, ends.1?.value);
+                // One after the other: what is wrong with both ends is said once.
+                let least = self.number_of(low, dimension, &locals)?.value;
+                let range = (least, self.number_of(high, dimension, &locals)?.value);
                 if range.0 >= range.1 {
                     return self.report(Diagnostic::error(
                         "E0605",

@@ -7,7 +7,7 @@
 
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered};
-use super::laws::value_span;
+use super::laws::{truncate, value_span};
 use super::people::People;
 use super::symbols::Meaning;
 use crate::base::math;
@@ -52,6 +52,8 @@ impl<'a> Elaborator<'a> {
         let members = self.members(&decl.name, places, true, first, people, |_| {
             (body.clone(), start.clone(), route.clone())
         });
+        people.written(&members, &rest, decl.name.span);
+        people.coming.extend(&members);
         for member in &members {
             self.may_be_absent(*member);
         }
@@ -59,7 +61,7 @@ impl<'a> Elaborator<'a> {
         self.attach(with, &members);
         let entity = people.entities(&format!("{}.every", decl.name.name), 1);
         self.scopes[0]
-            .define(&decl.name.name, Meaning::Agents { members: members.clone().into(), particle: false });
+            .define(&decl.name, Meaning::Agents { members: members.clone().into(), particle: false });
         Some(Source { name: decl.name.name.clone(), entity, every, members, most: range })
     }
 
@@ -94,9 +96,8 @@ impl<'a> Elaborator<'a> {
         let law = self.law(&field.value, Dimension::TIME, &Locals::default())?;
         let span = value_span(&field.value);
         if law.bounds().0 < 0.0 {
-            let error = Diagnostic::error("E0405", span, "a time between arrivals cannot be negative")
-                .hint("truncate the distribution: `… in 0 s .. 20 s`");
-            return self.report(error);
+            let error = Diagnostic::error("E0405", span, "a time between arrivals cannot be negative");
+            return self.report(truncate(error, &law));
         }
         if law.mean() > 0.0 {
             Ok(law)

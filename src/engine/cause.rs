@@ -9,7 +9,7 @@ use crate::base::random::TrialKey;
 use crate::base::tick::Tick;
 use crate::kernel::process::Sight;
 use crate::kernel::{Code, Readings, Scratch, State, dynamics, start};
-use crate::model::Scenario;
+use crate::model::{Scenario, TOP_SPEED};
 
 /// Most jumps that are made again to see why a trial is unresolved.
 const JUMPS_AGAIN: u64 = 1 << 20;
@@ -21,7 +21,7 @@ pub(super) fn unresolved(subject: &Subject, column: usize, item: Item, seed: u64
     let (mut state, mut scratch) = (State::new(program.layout, scenario.agents.len()), Scratch::new());
     let key = TrialKey { seed, index: item.index, branch: 0 };
     if let Err(fault) = start::load(program, &mut state, 0, key, item.advice) {
-        return cannot_start(scenario, fault);
+        return format!("it cannot start: {}", no_start(scenario, fault));
     }
     if scenario.clock.is_jumps() {
         return in_continuous_time(subject, column, &mut state, &mut scratch);
@@ -72,14 +72,14 @@ pub fn runaway(scenario: &Scenario, state: &State) -> String {
         let (vx, vy) = (state.vx[slot.block].0[slot.lane], state.vy[slot.block].0[slot.lane]);
         state.present[slot.block].has(slot.lane).then(|| (vx * vx + vy * vy).sqrt())
     };
-    let beyond = |speed: f64| speed.is_nan() || speed > dynamics::TOP_SPEED;
+    let beyond = |speed: f64| speed.is_nan() || speed > TOP_SPEED;
     let found = scenario.agents.iter().enumerate().find_map(|(agent, declared)| {
         let speed = speed(agent).filter(|speed| beyond(*speed))?;
         let id = crate::model::AgentId(agent as u32);
         let arrival = state.queues.arrival(&scenario.sources, id, 0);
         Some((arrival.unwrap_or_else(|| declared.name.clone()), speed))
     });
-    let most = words::quantity(dynamics::TOP_SPEED, "m/s");
+    let most = words::quantity(TOP_SPEED, "m/s");
     match found {
         Some((name, speed)) if speed.is_finite() => {
             format!("{name} went at {}, and nobody goes beyond {most}", words::brief(speed, "m/s"))
@@ -96,21 +96,31 @@ fn moment(scenario: &Scenario, tick: u64) -> String {
     }
 }
 
-fn cannot_start(scenario: &Scenario, fault: start::Fault) -> String {
+/// Why a trial cannot start, and what helps.
+pub fn no_start(scenario: &Scenario, fault: start::Fault) -> String {
     let name = |agent: crate::model::AgentId| {
         scenario.agents.get(agent.0 as usize).map_or("somebody", |agent| agent.name.as_str())
     };
     match fault {
         start::Fault::Parameter { agent, name: parameter, value } => format!(
-            "it cannot start: `{parameter}` of {} is drawn as {}, with which nobody can move; a range keeps it legal: `normal(…) in low .. high`",
+            "`{parameter}` of {} is drawn as {}, with which nobody can move; a range keeps it legal: `normal(…) in low .. high`",
             name(agent),
             words::brief(value, "")
         ),
         start::Fault::Nowhere { agent } => {
-            format!("it cannot start: {} finds no place; give more room to start in", name(agent))
+            format!("{} finds no place; give more room to start in", name(agent))
         }
+        start::Fault::Inside { agent } => format!(
+            "{} finds no place but in an obstacle or on a wall; give more room to start in",
+            name(agent)
+        ),
+        start::Fault::Together { agents: (one, other) } => format!(
+            "{} and {} find no place but the same point; give more room to start in",
+            name(one),
+            name(other)
+        ),
         start::Fault::Order { agent } => {
-            format!("it cannot start: {} starts near somebody who is placed later", name(agent))
+            format!("{} starts near somebody who is placed later", name(agent))
         }
         start::Fault::Advice { .. } => String::new(),
     }

@@ -35,10 +35,10 @@ mod words;
 mod worker;
 
 pub use budget::Budget;
-pub use cause::runaway;
+pub use cause::{no_start, runaway};
 pub use executor::{Executor, Threads};
 pub use fault::Fault;
-pub use session::{Call, crowded, forecast, run};
+pub use session::{Call, forecast, placeable, run};
 pub use subject::Subject;
 pub use watch::{Forecast, Nobody, Outlook, Watch};
 pub use words::at_most;

@@ -35,8 +35,7 @@ use crate::base::random::TrialKey;
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
 
-/// No human reaches this speed: a trial that does has diverged, m/s.
-pub const TOP_SPEED: f64 = 15.0;
+use crate::model::TOP_SPEED;
 
 /// Room to work, and what can be kept from one step to the next. It holds no part of the state: any
 /// scratch does for any batch, and changes no bit.

@@ -5,13 +5,16 @@ use super::super::symbols::{Meaning, ScopeId, unknown};
 use super::super::typed::Typed;
 use crate::model::{Set, Who};
 use crate::syntax::ast::{Expr, LetDecl};
-use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::diagnostic::{Diagnostic, Label};
 use crate::syntax::source::Span;
 
 use super::super::dimension::Dimension;
 
 /// Names that stand for something unless they are declared.
 const BUILT_IN: [&str; 3] = ["time", "everyone", "pi"];
+
+/// Most calls that are shown of an error inside functions that call each other.
+const MOST_CALLS: usize = 4;
 
 impl<'a> Elaborator<'a> {
     /// Finds a name: in the file's own table, then in the scenario's.
@@ -76,11 +79,15 @@ impl<'a> Elaborator<'a> {
                     return self.report(error);
                 }
                 let inner = Locals { running: locals.running, ..Locals::of(scope) };
-                self.expand(scope, name, span, |this| this.lower(&decl.body, &inner))
+                self.expand_once(scope, name, span, |this| this.lower(&decl.body, &inner))
             }
             Meaning::Property(formula) => {
                 let inner = Locals { running: locals.running, ..Locals::of(scope) };
-                self.expand(scope, name, span, |this| this.lower(formula, &inner))
+                self.expand_once(scope, name, span, |this| match this.lower(formula, &inner)? {
+                    typed @ (Typed::Truth(_) | Typed::Formula(_)) => Ok(typed),
+                    // Said where it is declared, however often it is used.
+                    found => this.mismatch(formula.span, "a condition", &found),
+                })
             }
             Meaning::Region(id, _) => Ok(Typed::Region(id)),
             Meaning::Barrier(id) => Ok(Typed::Barrier(id)),
@@ -155,6 +162,9 @@ impl<'a> Elaborator<'a> {
         span: Span,
         compute: impl FnOnce(&mut Self) -> Lowered<Typed>,
     ) -> Lowered<Typed> {
+        if self.broken.contains(&(scope, name.to_owned())) {
+            return Err(Reported);
+        }
         if self.expanding.iter().any(|(s, n)| *s == scope && n == name) {
             if self.circles.iter().any(|n| n == name) {
                 return Err(Reported);
@@ -174,6 +184,21 @@ impl<'a> Elaborator<'a> {
         self.expanding.push((scope, name.to_owned()));
         let value = compute(self);
         self.expanding.pop();
+        value
+    }
+
+    /// As `expand`, for what means the same at each use: what failed once is not looked at again.
+    fn expand_once(
+        &mut self,
+        scope: ScopeId,
+        name: &str,
+        span: Span,
+        compute: impl FnOnce(&mut Self) -> Lowered<Typed>,
+    ) -> Lowered<Typed> {
+        let value = self.expand(scope, name, span, compute);
+        if value.is_err() {
+            self.broken.insert((scope, name.to_owned()));
+        }
         value
     }
 
@@ -213,7 +238,31 @@ impl<'a> Elaborator<'a> {
             let value = self.lower(argument, locals)?;
             inner.names.push((name.name.clone(), value));
         }
-        self.expand(inner.scope, &path, span, |this| this.lower(&decl.body, &inner))
+        let before = self.diagnostics.len();
+        let value = self.expand(inner.scope, &path, span, |this| this.lower(&decl.body, &inner));
+        if value.is_err() && !inner.names.is_empty() {
+            self.called(before, decl, span, &inner);
+        }
+        value
+    }
+
+    /// Adds to the errors inside a function, which were found since `before`, where and with what it was called.
+    fn called(&mut self, before: usize, decl: &LetDecl, span: Span, inner: &Locals) {
+        let with: Vec<String> =
+            inner.names.iter().map(|(name, value)| format!("`{name}` is {}", value.noun())).collect();
+        let body = decl.body.span;
+        let inside =
+            |place: Span| place.source == body.source && place.start >= body.start && place.end <= body.end;
+        for diagnostic in &mut self.diagnostics[before..] {
+            // Names that are unknown, or lead in circles, are so with any arguments.
+            if diagnostic.code.starts_with("E02") {
+                continue;
+            }
+            let from = diagnostic.related.last().or(diagnostic.place.as_ref());
+            if from.is_some_and(|label| inside(label.span)) && diagnostic.related.len() < MOST_CALLS {
+                diagnostic.related.push(Label { span, text: format!("in this call, {}", with.join(", ")) });
+            }
+        }
     }
 
     /// `crowd[3]`; members count from 1.

@@ -61,6 +61,18 @@ pub enum Fault {
         /// Whose start it is.
         agent: AgentId,
     },
+    /// By chance somebody is placed in an obstacle or on a wall, out of which nothing could push them.
+    #[error("agent {} is placed in an obstacle or on a wall", agent.0)]
+    Inside {
+        /// Whom.
+        agent: AgentId,
+    },
+    /// Two are placed at one point.
+    #[error("agents {} and {} are placed at one point", agents.0.0, agents.1.0)]
+    Together {
+        /// Whom.
+        agents: (AgentId, AgentId),
+    },
     /// There is no such option.
     #[error("there is no option {option} in declaration {declaration} of moves")]
     Advice {
