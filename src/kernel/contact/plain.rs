@@ -95,6 +95,9 @@ fn candidates(program: &Program, state: &State) -> Contacts {
     contacts
 }
 
+/// Two bodies or one at a wall, the sum of their inverse masses, the normal, the gap, k1 and k2.
+type Overlap = ((u32, Option<u32>, f64), Vec2, f64, (f64, f64));
+
 /// The same as `Contacts::advance`. Gives how many bodies moved, and how many candidates stayed cold.
 fn plainly(contacts: &Contacts, program: &Program, state: &mut State, moved: &mut [Mask]) -> (usize, usize) {
     let (mut many, mut cold) = (0, 0);
@@ -134,7 +137,7 @@ fn plainly(contacts: &Contacts, program: &Program, state: &mut State, moved: &mu
         drift(&mut x, &v, 0.5 * t);
         for k in 0..count {
             // Who overlaps whom (or a wall): normal, share of the slip taken away, impulse of compression.
-            let mut overlaps = Vec::new();
+            let mut overlaps: Vec<Overlap> = Vec::new();
             for &(i, j) in &pairs {
                 let d = x[i as usize] - x[j as usize];
                 let distance = (d.dot(&d) + 1e-300).sqrt();
@@ -158,7 +161,7 @@ fn plainly(contacts: &Contacts, program: &Program, state: &mut State, moved: &mu
                     v[j as usize] -= impulse * inverse(j);
                 }
             };
-            let rub = |v: &mut [Vec2], o: &((u32, Option<u32>, f64), Vec2, f64, (f64, f64))| {
+            let rub = |v: &mut [Vec2], o: &Overlap| {
                 let ((i, j, both), normal, gap, (_, k2)) = *o;
                 let tangent = Vec2::new(-normal.y, normal.x);
                 let other = j.map_or(Vec2::zeros(), |j| v[j as usize]);
@@ -166,11 +169,15 @@ fn plainly(contacts: &Contacts, program: &Program, state: &mut State, moved: &mu
                 let share = 1.0 - math::exp(-k2 * gap * both * (0.5 * t));
                 exchange(v, i, j, tangent * (-slip * share / both));
             };
-            overlaps.iter().for_each(|o| rub(&mut v, o));
+            for overlap in &overlaps {
+                rub(&mut v, overlap);
+            }
             for &((i, j, _), normal, gap, (k1, _)) in &overlaps {
                 exchange(&mut v, i, j, normal * (k1 * gap * t));
             }
-            overlaps.iter().rev().for_each(|o| rub(&mut v, o));
+            for overlap in overlaps.iter().rev() {
+                rub(&mut v, overlap);
+            }
             drift(&mut x, &v, if k + 1 < count { t } else { 0.5 * t });
         }
         let bodies = contacts.candidates[lane].pairs.iter().flat_map(|&(i, j)| [i, j]);
