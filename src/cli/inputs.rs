@@ -202,6 +202,13 @@ pub(super) fn load(model: &Model, properties: &[String]) -> Inputs {
             }
         }
     }
+    for directory in model.data.iter().filter(|directory| !directory.is_dir()) {
+        let what = if directory.exists() { "no directory" } else { "not there" };
+        let error = Diagnostic::placeless("E0701", format!("`--data {}` is {what}", directory.display()));
+        reader
+            .diagnostics
+            .push(error.hint("it names a folder in which recordings and imports are looked for"));
+    }
     let settings: Vec<Setting> = model.set.iter().filter_map(|text| reader.setting(text)).collect();
     let mut files = Files::default();
     for request in requests(&scenario) {
@@ -237,7 +244,9 @@ pub(super) fn load(model: &Model, properties: &[String]) -> Inputs {
             .filter(|d| {
                 let names =
                     matches!(d.code, "E0201" | "E0203" | "E0205" | "E0208" | "E0209" | "E0505" | "E0606");
-                !(names && (scenario_broken || broken(d.place.as_ref().map(|p| p.span))))
+                // A process that could not be read may have had rates, and time would be another.
+                let times = scenario_broken && matches!(d.code, "E0503" | "E0507" | "E0508");
+                !(times || names && (scenario_broken || broken(d.place.as_ref().map(|p| p.span))))
             })
             .collect();
         diagnostics.extend(found);

@@ -56,6 +56,15 @@ impl Elaborator<'_> {
                 failed = true;
                 continue;
             };
+            if let Some(first) = method.arguments.iter().find(|a| a.name.name == argument.name.name)
+                && first.name.span != argument.name.span
+            {
+                let text = format!("`{}` is given twice", argument.name.name);
+                let error = Diagnostic::error("E0604", argument.name.span, text);
+                self.note(error.related(first.name.span, "first given here"));
+                failed = true;
+                continue;
+            }
             let dimension = if names[at] == "epsilon" { dimension } else { Dimension::NONE };
             match self.number_of(&argument.value, dimension, locals) {
                 Ok(number) => values[at] = Some((number.value, argument.value.span)),

@@ -22,6 +22,7 @@ mod moments;
 pub mod nearest;
 mod number;
 mod people;
+mod places;
 pub mod presets;
 mod process;
 mod queries;

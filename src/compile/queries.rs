@@ -219,8 +219,14 @@ impl<'a> Compiler<'a> {
     ) {
         let locals = Locals::of(scope);
         let mut family: Option<f64> = None;
+        let mut stated: Option<Span> = None;
         for item in &file.items {
             if let PropertyItem::Family { confidence, .. } = item {
+                if let Some(first) = stated.replace(confidence.span) {
+                    let error = Diagnostic::error("E0202", confidence.span, "a file is one family")
+                        .related(first, "its confidence is said here");
+                    self.sites[base].elaborator.note(error);
+                }
                 family = self.sites[base].elaborator.confidence(confidence, &locals).ok();
             }
         }
@@ -272,6 +278,15 @@ impl<'a> Compiler<'a> {
         let mut failed = false;
         for binding in bindings {
             let elaborator = &mut self.sites[base].elaborator;
+            if let Some(first) = bindings.iter().find(|b| b.name.name == binding.name.name)
+                && first.name.span != binding.name.span
+            {
+                let text = format!("`{}` is set twice", binding.name.name);
+                let error = Diagnostic::error("E0210", binding.name.span, text);
+                elaborator.note(error.related(first.name.span, "first set here"));
+                failed = true;
+                continue;
+            }
             if elaborator.param(&binding.name.name, binding.name.span).is_err() {
                 failed = true;
                 continue;
@@ -472,6 +487,7 @@ impl<'a> Compiler<'a> {
                 signals: elaborator.signals,
                 tree: elaborator.tree,
                 columns: site.columns,
+                places: elaborator.places,
             });
         }
         (Some(Study { title, worlds, base: self.base, queries: self.queries }), diagnostics)

@@ -3,7 +3,7 @@
 use super::dimension::Dimension;
 use super::written::Written;
 use crate::logic::{NodeId, Relation, TermId, Tree};
-use crate::model::{Bool, Num, Scenario};
+use crate::model::{AgentId, Bool, Num, Scenario};
 use crate::syntax::source::Span;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -40,6 +40,15 @@ pub struct World {
     pub tree: Tree,
     /// What is asked of each trace.
     pub columns: Vec<Column>,
+    /// Where the starts of the people of each declaration are written, by the first of them; ascending.
+    pub places: Vec<(AgentId, Span)>,
+}
+
+impl World {
+    /// The place where the start of somebody is written.
+    pub fn place_of(&self, agent: AgentId) -> Option<Span> {
+        super::places::written(&self.places, agent)
+    }
 }
 
 /// How what is observed was written.

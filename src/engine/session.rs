@@ -14,8 +14,9 @@ use super::subject::Subject;
 use super::survey::{Inquiry, Survey};
 use super::tally::Tally;
 use super::watch::{Outlook, Watch};
-use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Query, Study};
+use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Query, Study, World};
 use crate::kernel::start;
+use crate::model::Scenario;
 use crate::stats::Defaults;
 
 /// What the command line adds to a study.
@@ -122,11 +123,8 @@ fn subjects(study: &Study, asked: &[&Query]) -> Result<Vec<Option<Subject>>, Fau
     for query in asked {
         for world in worlds(&query.ask) {
             if subjects[world].is_none() {
+                placeable(&study.worlds[world])?;
                 let subject = Subject::new(&study.worlds[world]);
-                let crowding = start::check_area(&subject.program.scenario);
-                if let Some(first) = crowding.first() {
-                    return Err(Fault::Placement(crowded(&subject.program.scenario, first)));
-                }
                 subjects[world] = Some(subject);
             }
         }
@@ -176,8 +174,16 @@ enum Sampling<'q> {
     Split(Question<'q>),
 }
 
+/// Whether everybody can be placed, as far as areas tell.
+pub fn placeable(world: &World) -> Result<(), Fault> {
+    let crowding = start::check_area(&world.scenario);
+    let Some(first) = crowding.first() else { return Ok(()) };
+    let place = first.agents.first().and_then(|agent| world.place_of(*agent));
+    Err(Fault::Placement { reason: crowded(&world.scenario, first), place })
+}
+
 /// More people than fit, in words.
-pub fn crowded(scenario: &crate::model::Scenario, crowding: &start::Crowding) -> String {
+fn crowded(scenario: &Scenario, crowding: &start::Crowding) -> String {
     let names: Vec<&str> = crowding
         .agents
         .iter()
@@ -209,6 +215,15 @@ fn surveyed(ask: &Ask) -> Option<usize> {
         Ask::Estimate { estimator: Estimator::Splitting(_), .. } => None,
         Ask::Check { measure, .. } | Ask::Estimate { measure, .. } => Some(measure.target.world),
         Ask::Compare { .. } | Ask::Rank { .. } => None,
+    }
+}
+
+/// Gives what a procedure refuses the place of its query.
+fn refused(query: &Query) -> impl Fn(Fault) -> Fault {
+    let place = query.span;
+    move |fault| match fault {
+        Fault::Statistics(reason) => Fault::Procedure { place, reason },
+        other => other,
     }
 }
 
@@ -271,12 +286,14 @@ impl<'a> Session<'a> {
                     }
                     let inquiries = together
                         .iter()
-                        .map(|&k| self.inquiry(asked[k], &mut defaults))
+                        .map(|&k| self.inquiry(asked[k], &mut defaults).map_err(refused(asked[k])))
                         .collect::<Result<_, _>>()?;
                     (together, Sampling::Survey(Survey::new(self.subject(world)?, inquiries, self.call.seed)))
                 }
-                Ask::Compare { .. } => (vec![at], Sampling::Contrast(self.contrast(query)?)),
-                Ask::Rank { .. } => (vec![at], Sampling::Race(self.contest(query)?)),
+                Ask::Compare { .. } => {
+                    (vec![at], Sampling::Contrast(self.contrast(query).map_err(refused(query))?))
+                }
+                Ask::Rank { .. } => (vec![at], Sampling::Race(self.contest(query).map_err(refused(query))?)),
             };
             groups.push(Group { places, sampling });
         }

@@ -25,11 +25,11 @@ pub fn object(run: &Run) -> Value {
         "scenario": run.scenario,
         "seed": run.seed,
         "version": run.version,
-        "generator": { "name": random::GENERATOR, "layout": random::LAYOUT },
-        "inputs": inputs,
         "results": run.results.iter().map(result).collect::<Vec<_>>(),
         "diagnostics": run.diagnostics.iter().map(finding).collect::<Vec<_>>(),
         "warnings": run.warnings,
+        "generator": { "name": random::GENERATOR, "layout": random::LAYOUT },
+        "inputs": inputs,
         "interrupted": run.interrupted,
         "error": Value::Null,
         "replay": run.replay,
@@ -183,6 +183,7 @@ fn rare(found: &Rare) -> Value {
         "plain_low": found.plain_low,
         "plain_high": found.plain_high,
         "plain_bound": found.plain_bound,
+        "floor": found.floor,
         "agrees": found.agrees,
     })
 }

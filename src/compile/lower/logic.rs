@@ -1,11 +1,11 @@
 //! Connectives, comparisons, membership.
 
 use super::super::dimension::Dimension;
-use super::super::elaborator::{Elaborator, Locals, Lowered};
+use super::super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::super::typed::Typed;
 use crate::logic::{Node, NodeId, Relation, Term, TermId};
 use crate::model::{Bool, Comparison, Num, Place};
-use crate::syntax::ast::{BinaryOp, Expr};
+use crate::syntax::ast::{BinaryOp, Expr, ExprKind};
 use crate::syntax::source::Span;
 
 impl Elaborator<'_> {
@@ -98,7 +98,12 @@ impl Elaborator<'_> {
         {
             return compared;
         }
-        let sides = self.inside_a_number(|this| (this.lower(left, locals), this.lower(right, locals)));
+        let sides = self.inside_a_number(|this| {
+            let a = this.lower(left, locals);
+            // `a.phone == looking` without such a behaviour: the state is unknown with it.
+            let state = matches!((&left.kind, &right.kind), (ExprKind::Member(..), ExprKind::Name(_)));
+            if a.is_err() && state { (a, Err(Reported)) } else { (a, this.lower(right, locals)) }
+        });
         let (a, b) = (sides.0?, sides.1?);
         let margin = !matches!(op, BinaryOp::Equal | BinaryOp::Unequal);
         let whole = left.span.to(right.span);

@@ -15,6 +15,8 @@
 
 mod flow;
 mod overlap;
+#[cfg(test)]
+mod plain;
 mod throng;
 
 use super::program::Program;

@@ -18,6 +18,9 @@ pub(super) const ATTEMPTS: u32 = 96;
 /// A radius shrunk to touch is this much smaller, so that rounding leaves no overlap.
 const TOUCH: f64 = 1.0 - 8.0 * f64::EPSILON;
 
+/// Nearer than this two points are one, m: far above rounding, far below what anyone sees.
+const ONE_POINT: f64 = 1e-6;
+
 /// The barriers that have pieces: which they are, their bounds, and which may be near.
 #[derive(Clone, Debug, Default)]
 struct Barriers {
@@ -211,12 +214,13 @@ pub(super) fn place(
     if counts.pushed > 0 {
         relaxation::relax(&mut crowd, &rooms, ground);
     }
-    shrink(&mut crowd, ground, &done, &mut counts);
+    shrink(&mut crowd, ground, &done, &mut counts)?;
     Ok(Placed { positions: crowd.positions, radii: crowd.radii, counts })
 }
 
-/// Shrinks the radii of bodies that overlap a neighbour or a barrier until they touch.
-fn shrink(crowd: &mut Crowd, ground: Ground<'_>, placed: &[bool], counts: &mut Loaded) {
+/// Shrinks the radii of bodies that overlap a neighbour or a barrier until they touch. Nothing helps two at one
+/// point, or somebody whose middle is in an obstacle or on a wall.
+fn shrink(crowd: &mut Crowd, ground: Ground<'_>, placed: &[bool], counts: &mut Loaded) -> Result<(), Fault> {
     let mut near: Vec<u32> = Vec::new();
     for body in (0..crowd.positions.len()).filter(|&body| placed[body]) {
         let p = crowd.positions[body];
@@ -226,6 +230,9 @@ fn shrink(crowd: &mut Crowd, ground: Ground<'_>, placed: &[bool], counts: &mut L
         for other in near.iter().map(|&other| other as usize).filter(|&other| other > body) {
             let (distance, sum) =
                 ((p - crowd.positions[other]).norm(), crowd.radii[body] + crowd.radii[other]);
+            if distance <= ONE_POINT {
+                return Err(Fault::Together { agents: (AgentId(body as u32), AgentId(other as u32)) });
+            }
             if distance < sum {
                 let factor = distance / sum * TOUCH;
                 crowd.radii[body] *= factor;
@@ -235,12 +242,15 @@ fn shrink(crowd: &mut Crowd, ground: Ground<'_>, placed: &[bool], counts: &mut L
         }
         let radius = crowd.radii[body];
         let room = ground.gap(p, radius) + radius;
-        // Whoever starts inside a solid does not touch it from outside: nothing helps there.
-        if room < radius && room > 0.0 {
+        if room <= ONE_POINT {
+            return Err(Fault::Inside { agent: AgentId(body as u32) });
+        }
+        if room < radius {
             crowd.radii[body] = room * TOUCH;
             counts.shrunk_at_barriers += 1;
         }
     }
+    Ok(())
 }
 
 #[cfg(test)]
