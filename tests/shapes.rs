@@ -26,7 +26,7 @@ fn walk(horizon: u32) -> String {
 }
 
 /// The call ends well before this many seconds: a hundred times what it takes.
-const LIMIT: &str = "20";
+const LIMIT: &str = "20s";
 
 fn asked(scenario: &str, properties: &str, words: &[&str]) -> Said {
     let place = Place::new(&[("a.scn", scenario), ("a.bltl", properties)]);
@@ -115,7 +115,7 @@ fn explaining_nested_windows_takes_the_states_once() {
     assert_eq!((&found[0]["successes"], &found[1]["successes"]), (&2.into(), &2.into()));
     assert_eq!(found[2]["successes"], 0);
     let fails = found[2]["witnesses"][0]["what"].as_str().unwrap();
-    assert!(fails.starts_with("`c.x < 2` fails"), "{fails}");
+    assert!(fails.starts_with("`c.x < 2` is false"), "{fails}");
 }
 
 #[test]
@@ -198,7 +198,7 @@ fn a_time_that_is_always_soon_enough_needs_no_state() {
     assert_eq!((&found[0]["successes"], &found[1]["successes"]), (&4.into(), &0.into()));
     let what = |k: usize| found[k]["witnesses"][0]["what"].as_str().unwrap().to_owned();
     assert_eq!(what(0), "it does not depend on what happens");
-    assert_eq!(what(1), "`c.x == 3` fails");
+    assert_eq!(what(1), "`c.x == 3` is false");
 }
 
 #[test]

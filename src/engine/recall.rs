@@ -144,10 +144,11 @@ impl Past {
             .map(|(k, holds, since)| {
                 let text = subject.texts.atoms.get(*k).map_or("", String::as_str);
                 match (since, holds) {
-                    (Some(since), true) => format!("`{text}` holds since {} s", words::brief(*since, "")),
-                    (Some(since), false) => format!("`{text}` fails since {} s", words::brief(*since, "")),
-                    (None, true) => format!("`{text}` always held"),
-                    (None, false) => format!("`{text}` never held"),
+                    (Some(since), _) => {
+                        format!("`{text}` {} since {} s", words::truth(*holds), words::brief(*since, ""))
+                    }
+                    (None, true) => format!("`{text}` was true throughout"),
+                    (None, false) => format!("`{text}` was never true"),
                 }
             })
             .collect();
