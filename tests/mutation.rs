@@ -103,8 +103,8 @@ fn the_first_error_lies_where_the_text_was_changed() {
                 let at_end = source.text[place..].trim().is_empty()
                     || source.text[place..].trim_start().starts_with("//");
                 // A brace too many or too few is noticed where the outer block ends: later, and with a brace that
-                // closes a block early the rest of the block fails too.
-                let closes_early = replacement == "}" || &text[token.clone()] == "}";
+                // closes a block early the rest of the block fails too; so does one that has lost its partner.
+                let closes_early = replacement == "}" || matches!(&text[token.clone()], "{" | "}");
                 let errors = said.iter().filter(|diagnostic| diagnostic.severity == Severity::Error).count();
                 let in_place = (first..=last).contains(&found) || found >= first && closes_early || at_end;
                 // No cascade: one change is at most two errors.

@@ -63,7 +63,7 @@ fn checks_of_quantiles_are_right_at_the_values_of_a_metric() {
         let verdict = if *holds { "satisfied" } else { "violated" };
         assert_eq!(result["verdict"], verdict, "{query}: {result}");
         // What is certified is about the trials that were counted, and true.
-        let claim = result["certifies"].as_str().unwrap();
+        let claim = result["certifies"].as_str().unwrap().split_once(", since ").unwrap().1;
         let (strict, rest) = match claim.strip_prefix("P(c.x at end <= ") {
             Some(rest) => (false, rest),
             None => (true, claim.strip_prefix("P(c.x at end < ").unwrap()),

@@ -25,7 +25,7 @@ fn a_source_goes_on_for_an_hour_with_few_places() {
         &text,
         "estimate P(G (count(a in doors) <= 12)), P(F[59 min, 60 min] (count(a in doors) >= 1)), \
          P(F<=1 h (doors[3] in near)), P(F<=2 s (count(a in doors: F<=1 s (a in near)) >= 1)), \
-         P(F<=1 h (count(a in doors: F<=1 s (a in west)) >= 1)) by fixed(trials = 3)",
+         P(F<=59 min (count(a in doors: F<=1 s (a in west)) >= 1)) by fixed(trials = 3)",
     );
     let run = answered(&study, 0, 1, 1_000);
     let counts: Vec<_> = run.results.iter().map(|result| result.counts).collect();

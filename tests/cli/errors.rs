@@ -174,11 +174,12 @@ fn a_ranking_with_few_trials_takes_those_there_are() {
     assert!(result["choice"].is_string(), "{result:#}");
 }
 
-/// Everybody leaves every human speed at once.
+/// Two push each other beyond every human speed at once.
 const DIVERGES: &str = "horizon = 4 s
 step = 0.02 s
-kind adult: sfm preset helbing2000 { noise = 0.05 m/s }
-agent wild: adult { at = (2, 2)  speed = 1e9 m/s  route = (60, 2) }
+kind adult: sfm preset helbing2000 { noise = 0.05 m/s  A = 1e9 N }
+agent wild: adult { at = (2, 2)  route = (60, 2) }
+agent other: adult { at = (3, 2) }
 moves wild for 1 s { heading from -30 deg to 30 deg by 30 deg }
 ";
 

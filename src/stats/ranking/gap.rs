@@ -102,7 +102,7 @@ mod tests {
                         bisected(most, |gap| shape(gap, root)).to_bits(),
                         "{k} {root}"
                     );
-                    assert!(calls <= if k < 2 { 9 } else { 62 }, "{calls} calls of {k} for {root} of {most}");
+                    assert!(calls <= if k < 2 { STEPS / 2 } else { 62 }, "{calls} calls of {k} for {root} of {most}");
                 }
             }
         }
