@@ -68,7 +68,7 @@ fn the_check_of_an_expectation_takes_no_more_trials_than_its_sequence_needs() {
     let properties = "check E(time_until(p.over)) in 0 s .. 20 s >= 9 s\n";
     let result = &run(UNIFORM, properties, &[])[0];
     // 1060 by Hoeffding's inequality at a fixed size; 275 for a sequence of values spread evenly.
-    assert_eq!((&result["verdict"], &result["trials"]), (&"satisfied".into(), &272.into()), "{result:#}");
+    assert_eq!((&result["verdict"], &result["trials"]), (&"satisfied".into(), &276.into()), "{result:#}");
     let early = &run(UNIFORM, properties, &["--max-trials", "200"])[0];
     assert!(number(early, "high") - number(early, "low") < 3.0, "{early:#}");
     assert!(early["interval"].as_str().unwrap().starts_with("time-uniform"), "{early:#}");
@@ -110,14 +110,23 @@ fn lost_paths_of_splitting_are_in_neither_reading() {
 #[test]
 fn splitting_is_refused_where_it_is_above_the_bound_beside_it() {
     let properties =
-        "estimate P(F (gambler.wealth >= 6)) by splitting(replicas = 100, runs = 10, plain = 500)\n";
-    let result = &run(GAMBLER, properties, &["--seed", "59"])[0];
-    let splitting = &result["splitting"];
-    assert!(number(splitting, "plain_bound") < number(splitting, "estimate"), "{result:#}");
-    assert!(number(splitting, "estimate") < number(splitting, "plain_high"), "{result:#}");
-    assert_eq!(splitting["agrees"], false);
-    assert!(number(result, "estimate") <= number(splitting, "plain_bound"), "{result:#}");
-    assert!(result["warnings"].to_string().contains("exclude at 95 %"), "{result:#}");
+        "estimate P(F (gambler.wealth >= 6)) by splitting(replicas = 20, runs = 4, plain = 300)\n";
+    let place = Place::new(&[("a.scn", GAMBLER), ("a.bltl", properties)]);
+    let mut between = 0;
+    for seed in 0..60 {
+        let words = ["check", "a.scn", "a.bltl", "-q", "--format", "json", "--seed", &seed.to_string()];
+        let result = &place.call(&words).json()["results"][0];
+        let splitting = &result["splitting"];
+        let bound = number(splitting, "plain_bound");
+        assert!(number(result, "estimate") <= bound, "{result:#}");
+        // Above the bound of one side, at 95 %, and within the interval of both, at 99 %.
+        if (bound..number(splitting, "plain_high")).contains(&number(splitting, "estimate")) {
+            between += 1;
+            assert_eq!(splitting["agrees"], false);
+            assert!(result["warnings"].to_string().contains("exclude at 95 %"), "{result:#}");
+        }
+    }
+    assert!(between > 0, "no seed shows it");
 }
 
 #[test]
@@ -189,7 +198,7 @@ fn checks_of_quantiles_say_what_their_figures_are_of() {
     let text = place.call(&["check", "a.scn", "a.bltl", "-q"]).out;
     assert!(text.contains("P(time_until(p.over) < 7 s): 0."), "{text}");
     assert!(
-        text.contains("(8 with it, 43 without)") && text.contains("without it in trial 0, decided"),
+        text.contains("(10 with it, 46 without)") && text.contains("without it in trial 0, decided"),
         "{text}"
     );
     // A trial below the threshold speaks against the claim.

@@ -13,7 +13,7 @@ use crate::data::table::{
 };
 use crate::engine::{no_start, placeable};
 use crate::kernel::{Program, Scratch, Slot, State, dynamics, start};
-use crate::model::{Domain, Scenario};
+use crate::model::{AgentId, Domain, Scenario};
 use crate::report::ExitCode as Exit;
 use crate::syntax::render::render;
 use std::io::{BufWriter, Write};
@@ -24,6 +24,8 @@ struct Record<'s> {
     time: f64,
     trial: u64,
     agent: usize,
+    /// The name, where it is that of a later person on the place of a source.
+    arrival: Option<String>,
     position: Vec2,
     velocity: Vec2,
     /// States of behaviours, in the order of their declaration; empty in who has none.
@@ -180,6 +182,7 @@ impl<'p> Iterator for Walk<'p> {
             time: self.time(),
             trial: self.trial,
             agent: self.agent,
+            arrival: self.state.queues.arrival(&self.program.scenario.sources, AgentId(self.agent as u32), 0),
             position: Vec2::new(at(&self.state.x), at(&self.state.y)),
             velocity: Vec2::new(at(&self.state.vx), at(&self.state.vy)),
             modes: modes(self.program, &self.state, slot),
@@ -317,7 +320,10 @@ fn write(
     let rows = walk.map(|record| Row {
         time: record.time,
         trial: record.trial,
-        agent: &scenario.agents[record.agent].name,
+        agent: match record.arrival {
+            Some(name) => name.into(),
+            None => scenario.agents[record.agent].name.as_str().into(),
+        },
         position: record.position,
         velocity: record.velocity,
         present: true,

@@ -47,6 +47,8 @@ pub(super) struct Locals {
     pub(super) running: u32,
     /// The process, and which of its copies, whose names come next.
     pub(super) process: Option<(u32, u32)>,
+    /// The behaviour whose names come next, and how many of the bound names they see.
+    pub(super) behaviour: Option<(u32, usize)>,
 }
 
 impl Locals {

@@ -7,7 +7,8 @@
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Lowered};
 use super::lower::relation;
-use crate::logic::{Invalid, Node, NodeId, Relation, Robustness, Term, TermId};
+use crate::base::tick::Clock;
+use crate::logic::{Invalid, Node, NodeId, Relation, Robustness, SignalRobustness, Term, TermId};
 use crate::model::{Arithmetic, Bool, Comparison, Field, Fold, Function, Num, Place, Set, Who};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -80,17 +81,15 @@ impl Elaborator<'_> {
             terms: BTreeMap::new(),
         }
         .node(node);
-        match Robustness::new(&self.tree, node, self.horizon, self.clock) {
-            Err(Invalid::NoMargin) => {
+        let made = match self.clock {
+            Clock::Jumps(tick) => SignalRobustness::new(&self.tree, node, self.horizon, tick).err(),
+            clock => Robustness::new(&self.tree, node, self.horizon, clock).err(),
+        };
+        match made {
+            Some(Invalid::NoMargin | Invalid::MovingNumber) => {
                 let error = Diagnostic::error("E0610", span, "a condition in this formula has no margin")
                     .label("it compares a number of several states")
                     .hint("compare state by state, or smallest and largest values: `min<=5 s (x) > c`");
-                self.report(error)
-            }
-            Err(Invalid::NoSteps) => {
-                let error =
-                    Diagnostic::error("E0610", span, "in continuous time formulas have no robustness yet")
-                        .hint("give the scenario a step");
                 self.report(error)
             }
             // A bound beyond the horizon is said by whoever asks how far the formula looks.

@@ -6,7 +6,9 @@ use super::study::{Column, MeasureKind, Root, Sought};
 use super::symbols::{Meaning, ScopeId};
 use super::typed::Typed;
 use crate::base::tick::Clock;
-use crate::logic::{Invalid, Node, NodeId, Part, Relation, SignalMonitor, Term, TermId, leaves, reach};
+use crate::logic::{
+    Invalid, Node, NodeId, Part, Relation, SignalMonitor, SignalRobustness, Term, TermId, leaves, reach,
+};
 use crate::syntax::ast::{self, BinaryOp, Expr, ExprKind, Moment};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -117,11 +119,6 @@ impl Elaborator<'_> {
 
     /// A formula with its margins.
     fn robustness_of(&mut self, formula: &Expr, scope: ScopeId) -> Lowered<(NodeId, Dimension, bool)> {
-        if self.clock.is_jumps() {
-            let error = Diagnostic::error("E0508", formula.span, "there is no robustness in continuous time")
-                .hint("splitting needs it too; give the scenario a `step`, and jumps are seen at the steps");
-            return self.report(error);
-        }
         let (node, dimension) = self.robustness(formula.span, |this| {
             this.temporal = true;
             let typed = this.lower(formula, &Locals::of(scope));
@@ -129,6 +126,7 @@ impl Elaborator<'_> {
             this.as_formula(typed?, formula.span)
         })?;
         let unbounded = self.within_horizon(Part::Node(node), formula.span)?;
+        self.watchable(Root::Robustness(node, Sought::Value), formula.span)?;
         Ok((node, dimension, unbounded))
     }
 
@@ -264,16 +262,16 @@ impl Elaborator<'_> {
         // Bounds between ticks are not right yet.
         let (Clock::Jumps(tick), true) = (self.clock, self.between.is_empty()) else { return Ok(()) };
         let made = match root {
-            Root::Formula(node) => SignalMonitor::formula(&self.tree, node, self.horizon, tick),
-            Root::Metric(term) => SignalMonitor::metric(&self.tree, term, self.horizon, tick),
-            Root::Robustness(..) => return Ok(()),
+            Root::Formula(node) => SignalMonitor::formula(&self.tree, node, self.horizon, tick).err(),
+            Root::Metric(term) => SignalMonitor::metric(&self.tree, term, self.horizon, tick).err(),
+            Root::Robustness(node, _) => SignalRobustness::new(&self.tree, node, self.horizon, tick).err(),
         };
         match made {
-            Ok(_) => Ok(()),
-            Err(reason @ Invalid::BeyondHorizon { .. }) => {
+            None => Ok(()),
+            Some(reason @ Invalid::BeyondHorizon { .. }) => {
                 self.report(Diagnostic::error("E0502", span, reason.to_string()))
             }
-            Err(reason) => self.report(Diagnostic::error("E0508", span, reason.to_string())),
+            Some(reason) => self.report(Diagnostic::error("E0508", span, reason.to_string())),
         }
     }
 

@@ -1,6 +1,6 @@
 //! Sources: who comes in, how often, and how many places are kept for them.
 //!
-//! Without a `limit` so many places are kept that a trial needs more with a probability below 1e-9: the smallest n
+//! Without a `limit` so many places are kept that a trial has more arrivals with a probability below 1e-9: the smallest n
 //! with e^(th) E[e^(-tX)]^n below it for some t, h the horizon and X the time between arrivals (the bound of
 //! Chernoff 1952 on the sum of n of them). The expectation is known, or bounded from above by that of times that are
 //! a little shorter.
@@ -19,6 +19,8 @@ use std::sync::Arc;
 
 /// Most places that are kept without a `limit`.
 const MOST_PLACES: usize = 20_000;
+/// Most people that may come in a trial.
+const MOST_PEOPLE: usize = 1 << 20;
 /// Logarithm of one over the probability that places do not suffice.
 const RARE: f64 = 20.723_265_836_946_41;
 
@@ -26,7 +28,7 @@ impl<'a> Elaborator<'a> {
     /// `source doors: adult with phone { … }`
     pub(super) fn source(&mut self, decl: &'a SourceDecl, people: &mut People) -> Option<Source> {
         let mut kind = self.kind(&decl.kind);
-        let with = self.with(&decl.name, &decl.with);
+        let mut with = self.with(&decl.name, &decl.with);
         let rest = self.parameters(&decl.body, kind.as_mut().ok(), &Locals::default());
         let start = self.start(&decl.name, &rest, people, true);
         let route = self.way_out(decl, &rest);
@@ -38,14 +40,13 @@ impl<'a> Elaborator<'a> {
             (Ok(every), Ok(limit)) => self.places(decl, &rest, every, *limit),
             (Err(reported), _) | (_, Err(reported)) => Err(*reported),
         };
-        let (Ok(body), Ok(start), Ok(route), Ok(every), Ok(places)) = (body, start, route, every, places)
+        let (Ok(body), Ok(start), Ok(route), Ok(every), Ok((places, range))) =
+            (body, start, route, every, places)
         else {
             self.define_empty(&decl.name, true, with);
             return None;
         };
         let body = Arc::new(body);
-        // The range of numbers does not depend on how many places are kept: another horizon, the same people.
-        let range = places.next_power_of_two().max(1024) as u32;
         let first = people.entities(&decl.name.name, range);
         self.coming = true;
         let members = self.members(&decl.name, places, true, first, people, |_| {
@@ -56,11 +57,12 @@ impl<'a> Elaborator<'a> {
         for member in &members {
             self.may_be_absent(*member);
         }
+        with.most = range;
         self.attach(with, &members);
         let entity = people.entities(&format!("{}.every", decl.name.name), 1);
         self.scopes[0]
             .define(&decl.name, Meaning::Agents { members: members.clone().into(), particle: false });
-        Some(Source { name: decl.name.name.clone(), entity, every, members })
+        Some(Source { name: decl.name.name.clone(), entity, every, members, most: range })
     }
 
     /// Who comes in leaves at the last goal.
@@ -116,41 +118,37 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    /// How many places are kept.
+    /// How many places are kept, and how many numbers of people. These do not depend on how many places there are: another
+    /// horizon, the same people.
     fn places(
         &mut self,
         decl: &'a SourceDecl,
         fields: &[&'a Field],
         every: &Law,
         limit: Option<usize>,
-    ) -> Lowered<usize> {
+    ) -> Lowered<(usize, u32)> {
         let horizon = self.clock.seconds(self.horizon);
         let expected = horizon / every.mean();
         let span =
             fields.iter().find(|field| field.name.name == "limit").map(|field| value_span(&field.value));
-        match (limit, span) {
-            (Some(limit), Some(span)) if (limit as f64) < expected => {
-                let error = Diagnostic::error(
-                    "E0913",
-                    span,
-                    format!("about {expected:.0} people are expected up to the horizon, more than this"),
-                )
-                .hint("a trial in which more come than `limit` is unresolved");
-                self.report(error)
+        let enough = enough(every, horizon);
+        let range = |people: usize| people.next_power_of_two().max(1024) as u32;
+        match (limit, enough) {
+            // Places are used again: numbers are kept for all who may come.
+            (Some(limit), Some(people)) if (limit as f64) < expected && people <= MOST_PEOPLE => {
+                Ok((limit, range(people)))
             }
-            (Some(limit), _) => Ok(limit),
-            (None, _) => match enough(every, horizon) {
-                Some(places) if places <= MOST_PLACES => Ok(places),
-                _ => {
-                    let error = Diagnostic::error(
-                        "E0913",
-                        decl.name.span,
-                        format!("about {expected:.0} people would come by `{}`", decl.name.name),
-                    )
-                    .hint("say how many may come at most with `limit`, or shorten the horizon");
-                    self.report(error)
-                }
-            },
+            (Some(limit), _) if (limit as f64) >= expected => Ok((limit, range(limit))),
+            (None, Some(places)) if places <= MOST_PLACES => Ok((places, range(places))),
+            (limit, _) => {
+                let text = format!("about {expected:.0} people would come by `{}`", decl.name.name);
+                let error = Diagnostic::error("E0913", span.unwrap_or(decl.name.span), text);
+                self.report(error.hint(if limit.is_none() {
+                    "say how many may be there at once with `limit`, or shorten the horizon"
+                } else {
+                    "shorten the horizon, or let fewer come"
+                }))
+            }
         }
     }
 }

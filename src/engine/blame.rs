@@ -138,7 +138,8 @@ pub(super) fn margin(
                 }
             }
             search.found.truncate(NAMED);
-            said.push_str(&names(subject, &search.found));
+            let found = search.found;
+            said.push_str(&names(subject, &found, Some(&state)));
         }
         (Some(found.at), said)
     })
@@ -161,7 +162,8 @@ fn origin(
     if let Some(state) = state_at(*at) {
         let mut search = Search { subject, state: &state, found: Vec::new() };
         search.extremum(&subject.signals()[signal.0 as usize]);
-        said.push_str(&names(subject, &search.found));
+        let found = search.found;
+        said.push_str(&names(subject, &found, Some(&state)));
     }
     said
 }
@@ -173,11 +175,15 @@ fn moment(subject: &Subject, at: Tick) -> String {
     }
 }
 
-/// `: crowd[3], user`, or nothing.
-fn names(subject: &Subject, who: &[AgentId]) -> String {
-    let agents = &subject.program.scenario.agents;
-    let names: Vec<&str> =
-        who.iter().filter_map(|id| agents.get(id.0 as usize)).map(|agent| agent.name.as_str()).collect();
+/// `: crowd[3], user`, or nothing; people of sources by the number of their arrival, as in the state.
+fn names(subject: &Subject, who: &[AgentId], state: Option<&State>) -> String {
+    let scenario: &Scenario = &subject.program.scenario;
+    let name = |id: &AgentId| {
+        let agent = scenario.agents.get(id.0 as usize)?;
+        let arrival = state.and_then(|state| state.queues.arrival(&scenario.sources, *id, 0));
+        Some(arrival.unwrap_or_else(|| agent.name.clone()))
+    };
+    let names: Vec<String> = who.iter().filter_map(name).collect();
     if names.is_empty() { String::new() } else { format!(": {}", names.join(", ")) }
 }
 
@@ -196,9 +202,11 @@ fn closing(
         }
         Node::Atom(atom) => {
             let Some(text) = subject.texts.atoms.get(atom.0 as usize) else { return String::new() };
-            let blamed = |state| blamed(subject, &subject.atoms()[atom.0 as usize], reason.value, &state);
-            let who = state_at(reason.to).map_or_else(Vec::new, blamed);
-            format!("`{text}` {word}{}", names(subject, &who))
+            let blamed =
+                |state: &State| blamed(subject, &subject.atoms()[atom.0 as usize], reason.value, state);
+            let state = state_at(reason.to);
+            let who = state.as_ref().map_or_else(Vec::new, blamed);
+            format!("`{text}` {word}{}", names(subject, &who, state.as_ref()))
         }
         Node::Compare(..) => {
             let Some((text, _)) = subject.texts.comparisons.get(&reason.leaf.0) else { return String::new() };

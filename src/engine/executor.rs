@@ -65,6 +65,16 @@ impl Cells {
         (*self.finished.get(place)?).then(|| &self.list[place * self.width..][..self.width])
     }
 
+    /// How many trials in a row are finished, from the first on.
+    pub fn ready(&self) -> usize {
+        self.finished.iter().position(|finished| !finished).unwrap_or(self.finished.len())
+    }
+
+    /// The cells of one column, trial by trial, finished or not.
+    pub fn column(&self, place: usize) -> impl Iterator<Item = &Cell> + Clone {
+        self.list.iter().skip(place).step_by(self.width.max(1))
+    }
+
     /// The rows in order.
     pub fn rows(&self) -> impl Iterator<Item = Option<&[Cell]>> {
         (0..self.finished.len()).map(|place| self.row(place))

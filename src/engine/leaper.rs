@@ -6,7 +6,6 @@
 
 use super::budget::Budget;
 use super::cell::{Block, Cell, Reading};
-use super::jumper::MOST_JUMPS;
 use super::subject::Subject;
 use crate::base::lanes::Lanes;
 use crate::kernel::State;
@@ -100,7 +99,7 @@ impl Leaper {
             }
             self.rounds += 1;
             let before = leaps.jumps();
-            let exhausted = before + 1 >= MOST_JUMPS;
+            let exhausted = before + 1 >= subject.most_jumps;
             let mut kept = 0;
             let (open, stirs, sorts, glances) =
                 (&mut self.open[..], &self.stirs[..], &self.sorts[..], &self.glances[..]);

@@ -14,6 +14,7 @@ mod jumper;
 mod leaper;
 mod method;
 mod observer;
+mod onlooker;
 pub mod outcome;
 mod procedure;
 mod race;

@@ -463,6 +463,8 @@ pub struct Rare {
     pub plain_high: f64,
     /// Upper bound of the probability, certified by the plain trials alone.
     pub plain_bound: f64,
+    /// Lower bound of the probability, certified by the runs.
+    pub floor: f64,
     /// Whether the mean of the runs lies in the interval of the plain trials; if not, it is refused.
     pub agrees: bool,
 }

@@ -7,10 +7,14 @@ use crate::compile::study::{Root, Texts, World};
 use crate::kernel::process::View;
 use crate::kernel::{Code, Program, Readings};
 use crate::logic::{
-    AtomId, Invalid, Monitor, Needs, Node, NodeId, Part, Robustness, SignalId, SignalMonitor, Tree, leaves,
+    AtomId, Invalid, Monitor, Needs, Node, NodeId, Part, Robustness, SignalId, SignalMonitor,
+    SignalRobustness, Tree, leaves,
 };
 use crate::model::{Bool, Num};
 use std::collections::BTreeSet;
+
+/// Most jumps of a trial.
+const MOST_JUMPS: u64 = 1 << 26;
 
 /// A world made ready to run.
 pub struct Subject {
@@ -24,6 +28,8 @@ pub struct Subject {
     pub horizon: Tick,
     /// How atoms, signals and comparisons were written.
     pub texts: Texts,
+    /// Most jumps of a trial in continuous time; one that needs more is unresolved.
+    pub most_jumps: u64,
     atoms: Vec<Bool>,
     signals: Vec<Num>,
 }
@@ -37,6 +43,8 @@ pub(super) struct Sheet {
     pub(super) places: Vec<usize>,
     /// One a column.
     pub(super) observers: Vec<Observer>,
+    /// Whether each column follows single people of a source.
+    pub(super) follows: Vec<bool>,
     /// When they look at what.
     needs: Needs,
 }
@@ -76,6 +84,7 @@ impl Subject {
             tree: world.tree.clone(),
             columns: world.columns.iter().map(|c| c.root).collect(),
             texts: world.texts.clone(),
+            most_jumps: MOST_JUMPS,
             atoms: world.atoms.clone(),
             signals: world.signals.clone(),
         }
@@ -131,7 +140,12 @@ impl Subject {
     /// those who are there, so that nobody wrote it.
     pub(super) fn implications(&self, column: usize) -> Result<Vec<bool>, Invalid> {
         if self.program.scenario.clock.is_jumps() {
-            return Ok(vec![false; self.signal_monitor(column)?.implications()]);
+            return Ok(match self.columns[column] {
+                Root::Robustness(..) => Vec::new(),
+                Root::Formula(_) | Root::Metric(_) => {
+                    vec![false; self.signal_monitor(column)?.implications()]
+                }
+            });
         }
         let of_presence = |implication: NodeId| {
             let Node::Or(parts) = &self.tree.nodes[implication.0 as usize] else { return false };
@@ -154,6 +168,15 @@ impl Subject {
         }
     }
 
+    /// The robustness of a column in continuous time, if it is one.
+    pub fn signal_robustness(&self, column: usize) -> Result<SignalRobustness, Invalid> {
+        let Clock::Jumps(tick) = self.program.scenario.clock else { return Err(Invalid::NoSteps) };
+        match self.columns[column] {
+            Root::Robustness(node, _) => SignalRobustness::new(&self.tree, node, self.horizon, tick),
+            Root::Formula(_) | Root::Metric(_) => Err(Invalid::NoMargin),
+        }
+    }
+
     /// A look at what some columns use in continuous time; what they do not use reads as a constant.
     pub fn view(&self, columns: &[usize]) -> View {
         let (atoms, signals) = self.observed(columns);
@@ -171,6 +194,12 @@ impl Subject {
         let (atoms, signals) = self.observed(columns);
         let mut read = BTreeSet::new();
         atoms.iter().all(|atom| atom.reads(&mut read)) && signals.iter().all(|s| s.reads(&mut read))
+    }
+
+    /// Whether a column follows single people of a source: it knows no more once a place is given to a second person.
+    pub(super) fn follows(&self, column: usize) -> bool {
+        let (atoms, signals) = self.observed(&[column]);
+        self.program.arrivals.are_named(&atoms, &signals)
     }
 
     /// The numbers of the atoms that a column uses.
@@ -230,7 +259,9 @@ impl Subject {
             .map(|places| {
                 let chosen: Vec<usize> = places.iter().map(|&p| columns[p]).collect();
                 let observers = chosen.iter().map(|&c| self.observer(c)).collect::<Result<Vec<_>, _>>()?;
-                Ok(Sheet { code: self.code(&chosen), places, observers, needs: self.needs(&chosen)? })
+                let follows = chosen.iter().map(|&column| self.follows(column)).collect();
+                let (code, needs) = (self.code(&chosen), self.needs(&chosen)?);
+                Ok(Sheet { code, places, observers, follows, needs })
             })
             .collect()
     }

@@ -138,37 +138,62 @@ impl<'q> Survey<'q> {
         Ok(())
     }
 
-    /// Shows a round to the inquiries, trial by trial; false where time ended it.
+    /// Shows a round to the inquiries; false where time ended it. None of them depends on what another one finds, so
+    /// each reads in one go, trial by trial, up to where it stops.
     fn read(&mut self, items: &[Item], cells: &Cells, started: f64, budget: &Budget) -> Result<bool, Fault> {
-        // Who still reads, and which cell of a row.
-        let mut readers = Vec::new();
+        // What follows an unfinished trial is not looked at: outcomes count in index order.
+        let ready = &items[..cells.ready().min(items.len())];
+        let mut faulty: Option<usize> = None;
         for inquiry in self.inquiries.iter_mut().filter(|i| i.stop.is_none()) {
             if let Some(place) = self.job.columns.iter().position(|c| *c == inquiry.column) {
-                readers.push((inquiry, place));
-            }
-        }
-        for (item, row) in items.iter().zip(cells.rows()) {
-            // What follows an unfinished trial is not looked at: outcomes count in index order.
-            let Some(row) = row else { return Ok(false) };
-            for (inquiry, place) in readers.iter_mut().filter(|(i, _)| i.stop.is_none()) {
-                let cell = &row[*place];
-                if cell.reading == Reading::Faulty {
-                    return Err(super::trial::fault(self.job.subject, *item, self.job.seed));
+                match inquiry.read(ready, cells.column(place), budget.max_trials) {
+                    Ok(stop) => inquiry.stop = stop,
+                    Err(at) => faulty = Some(faulty.map_or(at, |first| first.min(at))),
                 }
-                inquiry.read(item.index, cell);
-                let finished = inquiry.procedure.observe(cell);
-                if finished || inquiry.tally.counts.trials >= budget.max_trials {
-                    inquiry.stop = Some(if finished { inquiry.reason() } else { Stop::Cap });
+                if inquiry.stop.is_some() {
                     inquiry.seconds = budget.elapsed() - started;
                 }
             }
         }
-        Ok(true)
+        if let Some(at) = faulty {
+            return Err(super::trial::fault(self.job.subject, items[at], self.job.seed));
+        }
+        // Nobody needs what was not finished, if all have stopped before it.
+        Ok(ready.len() == items.len() || self.inquiries.iter().all(|i| i.stop.is_some()))
     }
 }
 
 impl Inquiry<'_> {
-    fn read(&mut self, index: u64, cell: &Cell) {
+    /// Reads the trials of a round up to where it stops; the place of the trial in which the model is wrong, if it
+    /// comes to it.
+    fn read<'c>(
+        &mut self,
+        items: &[Item],
+        cells: impl Iterator<Item = &'c Cell> + Clone,
+        most: u64,
+    ) -> Result<Option<Stop>, usize> {
+        let (mut consumed, mut finished) = (0, false);
+        // At least one is read, whatever the limit.
+        let room = most.saturating_sub(self.tally.counts.trials).max(1);
+        for cell in cells.clone().take(items.len()) {
+            if cell.reading == Reading::Faulty {
+                return Err(consumed);
+            }
+            consumed += 1;
+            finished = self.procedure.observe(cell);
+            if finished || consumed as u64 == room {
+                break;
+            }
+        }
+        for (item, cell) in items[..consumed].iter().zip(cells) {
+            self.count(item.index, cell);
+        }
+        let capped = self.tally.counts.trials >= most;
+        Ok(if finished { Some(self.reason()) } else { capped.then_some(Stop::Cap) })
+    }
+
+    #[inline(always)]
+    fn count(&mut self, index: u64, cell: &Cell) {
         self.tally.add(index, cell, self.range);
         if let (Ask::Check { threshold, at_least, or_equal, .. }, Reading::Value(value)) =
             (&self.query.ask, cell.reading)

@@ -170,15 +170,16 @@ impl Walker {
                 (0, _) => STOP | GOAL,
                 _ => ANY,
             };
+            let (flats, sorts, open) = (&self.flats[..], &self.sorts[..], &mut self.open[..]);
+            let width = flats.len();
             for k in 0..walk.sift(&self.classes, watch) {
                 let (slot, state) = walk.sifted(k);
                 let place = slot as usize;
-                let row = &mut block.cells[place * self.flats.len()..][..self.flats.len()];
-                let (left, skipped) =
-                    present.settle(&self.flats, self.sorts[state as usize], self.open[place], row);
+                let row = &mut block.cells[place * width..][..width];
+                let (left, skipped) = present.settle(flats, sorts[state as usize], open[place], row);
                 self.steps += skipped;
                 if left > STILL {
-                    self.open[place] = left;
+                    open[place] = left;
                     walk.put_back((slot, state), block.items[place].index);
                 } else {
                     block.finished[place] = true;

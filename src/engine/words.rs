@@ -57,6 +57,15 @@ pub(super) fn rounded(value: f64, upward: bool, unit: &str) -> String {
 
 /// A bound, rounded upward to three digits.
 pub fn at_most(value: f64) -> f64 {
+    three_digits(value, f64::ceil)
+}
+
+/// A bound, rounded downward to three digits.
+pub(super) fn at_least(value: f64) -> f64 {
+    three_digits(value, f64::floor)
+}
+
+fn three_digits(value: f64, round: impl Fn(f64) -> f64) -> f64 {
     if !(value.is_finite() && value > 0.0) {
         return value;
     }
@@ -66,7 +75,7 @@ pub fn at_most(value: f64) -> f64 {
     }
     // A number that has so few digits already stays as it is.
     let scaled = value * scale;
-    if (scaled - scaled.round()).abs() < 1e-9 { value } else { scaled.ceil() / scale }
+    if (scaled - scaled.round()).abs() < 1e-9 { value } else { round(scaled) / scale }
 }
 
 /// The measure of a query as one would say it: `P(safe)`. The check of a quantile is decided as one of a

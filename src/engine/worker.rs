@@ -160,9 +160,11 @@ impl Worker {
             sheet.code.run(&subject.program, &self.state, readings);
             // Without a value where one is needed, nothing more can be said.
             let lost = sheet.lost(readings, &self.state.ticks) & watched;
-            let lanes = watched & !lost;
-            for (observer, &place) in sheet.observers.iter_mut().zip(&sheet.places) {
-                let open = lanes & !self.settled[place];
+            for (k, observer) in sheet.observers.iter_mut().enumerate() {
+                let place = sheet.places[k];
+                let gone = if sheet.follows[k] { self.state.queues.reused & watched } else { Mask::NONE };
+                let lost = lost | gone;
+                let open = watched & !lost & !self.settled[place];
                 if !open.is_empty() {
                     observer.observe(open, readings);
                 }

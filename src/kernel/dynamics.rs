@@ -23,7 +23,7 @@ use super::cells::Cells;
 use super::contact::Contacts;
 use super::drive;
 use super::lanewise::Lanewise;
-use super::noise::Draws;
+use super::noise::{Draws, word_of};
 use super::process;
 use super::program::Program;
 use super::social::Sum;
@@ -31,6 +31,7 @@ use super::state::{Layout, Slot, State};
 use super::vector::{Doubles, Part, Words, parts};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::math;
+use crate::base::random::TrialKey;
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
 
@@ -139,7 +140,26 @@ pub fn step(program: &Program, state: &mut State, scratch: &mut Scratch) {
 /// Continuous time: every occupied lane goes to its next jump, if that comes up to and with the horizon. Returns
 /// the lanes that did; the times are in `state.clocks`. In others nothing more happens.
 pub fn jump(program: &Program, state: &mut State, scratch: &mut Scratch) -> Mask {
-    program.processes.jump(program.layout, state, &mut scratch.processes)
+    jump_until(program, state, scratch, &[f64::INFINITY; LANES])
+}
+
+/// The same up to and with a time of each lane, s, or the horizon if that comes first.
+pub fn jump_until(program: &Program, state: &mut State, scratch: &mut Scratch, until: &[f64; LANES]) -> Mask {
+    let last = program.processes.last();
+    let until = until.map(|time| if time < last { time } else { last });
+    program.processes.jump(program.layout, state, &mut scratch.processes, &until)
+}
+
+/// Continuous time: the trial of a lane, in which all has happened that comes up to and with a time, s, goes on from
+/// there under another key. Exponential waits begin anew, delays keep what is left of them.
+pub fn renew(
+    program: &Program,
+    state: &mut State,
+    scratch: &mut Scratch,
+    lane: usize,
+    from: (f64, TrialKey),
+) {
+    program.processes.renew(program.layout, state, &mut scratch.processes, lane, from);
 }
 
 /// The slots of a block that belong to some lanes.
@@ -234,6 +254,9 @@ impl Mover<'_> {
     #[inline(always)]
     fn words(&self, state: &State, block: usize) -> [u64; LANES] {
         let words = &self.program.forces.noise_words;
+        if !state.queues.reused.is_empty() {
+            return self.words_of_later(state, block);
+        }
         match state.layout {
             Layout::Trials => [u64::from(words[block]); LANES],
             Layout::Agents => {
@@ -245,6 +268,20 @@ impl Mover<'_> {
                 out
             }
         }
+    }
+
+    /// The same where some places of sources are used by later people.
+    #[cold]
+    fn words_of_later(&self, state: &State, block: usize) -> [u64; LANES] {
+        let agents = &self.program.scenario.agents;
+        std::array::from_fn(|k| {
+            let (agent, lane) = match state.layout {
+                Layout::Trials => (block, k),
+                Layout::Agents => (block * LANES + k, 0),
+            };
+            let entity = agents.get(agent).map_or(0, |known| known.entity + state.queues.later(agent, lane));
+            u64::from(word_of(entity))
+        })
     }
 
     /// Driving and noise over the whole step.

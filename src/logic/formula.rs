@@ -92,6 +92,19 @@ impl Relation {
         }
     }
 
+    /// The margin of `x r y`: how far the sides may move before the comparison changes; none (NaN) if a side is none.
+    #[inline]
+    pub fn margin(self, x: f64, y: f64) -> f64 {
+        // Two equal infinities are no distance apart.
+        let less = |x: f64, y: f64| if x == y { 0.0 } else { x - y };
+        match self {
+            Self::Less | Self::AtMost => less(y, x),
+            Self::Greater | Self::AtLeast => less(x, y),
+            Self::Equal => -less(x, y).abs(),
+            Self::Unequal => less(x, y).abs(),
+        }
+    }
+
     /// The relation with its sides exchanged.
     pub fn flipped(self) -> Self {
         match self {

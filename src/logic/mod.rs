@@ -26,5 +26,6 @@ pub use monitor::{Antecedent, Monitor};
 pub use need::Needs;
 pub use offline::Recording;
 pub use reach::{Part, Reach, leaves, reach};
+pub use signal::robustness::{Bounds, SignalRobustness};
 pub use signal::{Glance, Reading, SignalMonitor};
 pub use source::{Source, sides, sources};

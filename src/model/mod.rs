@@ -7,6 +7,7 @@ mod evaluation;
 pub mod expression;
 mod lacking;
 pub mod law;
+pub mod mention;
 pub mod moves;
 pub mod process;
 pub mod scenario;

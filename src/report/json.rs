@@ -183,6 +183,7 @@ fn rare(found: &Rare) -> Value {
         "plain_low": found.plain_low,
         "plain_high": found.plain_high,
         "plain_bound": found.plain_bound,
+        "floor": found.floor,
         "agrees": found.agrees,
     })
 }

@@ -33,6 +33,9 @@ impl<'a> Elaborator<'a> {
         {
             return inside;
         }
+        if let Some(inside) = self.lower_inside_behaviour(name, span, locals) {
+            return inside;
+        }
         let Some((scope, meaning)) = self.find(name, locals.scope) else {
             return match name {
                 "time" if self.clock.is_jumps() => {
@@ -207,6 +210,23 @@ impl<'a> Elaborator<'a> {
         arguments: &[Expr],
         locals: &Locals,
     ) -> Lowered<Typed> {
+        let mut inner = Locals { running: locals.running, ..Locals::of(scope) };
+        if self.function_inside(&decl.name.name, locals).is_some() {
+            inner.process = locals.process;
+        }
+        let path = decl.name.name.clone();
+        self.lower_function(decl, (inner, path), span, arguments, locals)
+    }
+
+    /// A call of a function that sees some names and is known by its path.
+    pub(in crate::compile) fn lower_function(
+        &mut self,
+        decl: &LetDecl,
+        (mut inner, path): (Locals, String),
+        span: Span,
+        arguments: &[Expr],
+        locals: &Locals,
+    ) -> Lowered<Typed> {
         if arguments.len() != decl.arguments.len() {
             let wanted = match decl.arguments.len() {
                 1 => "1 argument".to_owned(),
@@ -214,16 +234,12 @@ impl<'a> Elaborator<'a> {
             };
             return self.arity(&decl.name, span, &wanted, arguments.len());
         }
-        let mut inner = Locals { running: locals.running, ..Locals::of(scope) };
-        if self.function_inside(&decl.name.name, locals).is_some() {
-            inner.process = locals.process;
-        }
         for (name, argument) in decl.arguments.iter().zip(arguments) {
             let value = self.lower(argument, locals)?;
             inner.names.push((name.name.clone(), value));
         }
         let before = self.diagnostics.len();
-        let value = self.expand(scope, &decl.name.name, span, |this| this.lower(&decl.body, &inner));
+        let value = self.expand(inner.scope, &path, span, |this| this.lower(&decl.body, &inner));
         if value.is_err() && !inner.names.is_empty() {
             self.called(before, decl, span, &inner);
         }

@@ -86,8 +86,10 @@ proptest! {
         formulas in prop::collection::vec(formula(), 1..4),
         from in prop_oneof![Just(0u64), Just((1 << 32) - 5)],
         seed in any::<u64>(),
+        most in prop_oneof![Just(6u64), Just(1 << 20)],
     ) {
-        let subject = subject(&process(&commands), &formulas);
+        let mut subject = subject(&process(&commands), &formulas);
+        subject.most_jumps = most;
         let all: Vec<usize> = (0..subject.columns.len()).collect();
         let fits = |column: &usize| Leaper::of(&subject, &[*column]).is_some();
         let columns: Vec<usize> = all.into_iter().filter(fits).collect();

@@ -36,7 +36,7 @@ impl Answers<'_> {
         Self::tell(&mut result, subject, &found.plain, column);
         self.lament_one(&mut result, subject, &found.plain, column);
         let name = words::measured(&query.text, 'P');
-        // The only statement that holds without a condition is that of the plain trials.
+        // From above the only statement that holds without a condition is that of the plain trials.
         result.certifies = format!(
             "{name} <= {}, error at most {} (from the plain trials alone)",
             words::number(words::at_most(found.bound)),
@@ -44,6 +44,16 @@ impl Answers<'_> {
         );
         if counts.trials == 0 {
             result.certifies = String::new();
+        }
+        if let Some(spread) =
+            found.spreads.map(|[low, _]| low).filter(|s| 0.0 < s.floor && s.floor <= found.bound)
+        {
+            result.certifies = format!(
+                "{}; {name} >= {}, error at most {} (from the runs, which are unbiased)",
+                result.certifies,
+                words::number(words::at_least(spread.floor)),
+                words::error(rule.delta)
+            );
         }
         state(&mut result, &found, rule.delta);
         let picks = witness::sides(&found.plain);
@@ -82,6 +92,7 @@ fn state(result: &mut QueryResult, found: &Found, delta: f64) {
         plain_low: if sampled { plain.low } else { 0.0 },
         plain_high: if sampled { plain.high } else { 1.0 },
         plain_bound: if sampled { found.bound } else { 1.0 },
+        floor: spread.map_or(0.0, |s| s.floor),
         agrees,
     });
     match spread {

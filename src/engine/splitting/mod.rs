@@ -3,6 +3,7 @@
 
 mod answer;
 mod flock;
+mod hopper;
 mod path;
 
 use super::budget::Budget;

@@ -30,6 +30,8 @@ struct Machine {
     agent: u32,
     behaviour: u32,
     entity: u32,
+    /// That of later people on the place of its agent is so much more than how much later they are.
+    later: u32,
     conduct: u32,
     /// The atom of its first condition, and how many it has.
     guards: (u32, u32),
@@ -91,6 +93,16 @@ fn trial_of(layout: Layout, lane: usize) -> usize {
     }
 }
 
+impl Machine {
+    /// The stable number of the one whose behaviour it is.
+    fn number(&self, state: &State, trial: usize) -> u32 {
+        match state.queues.later(self.agent as usize, trial) {
+            0 => self.entity,
+            later => self.later + later,
+        }
+    }
+}
+
 impl Behaviours {
     /// Prepares the behaviours of a scenario; the routes of their states are added to those of `drive`.
     pub fn new(scenario: &Scenario, drive: &mut drive::Drive) -> Self {
@@ -113,6 +125,7 @@ impl Behaviours {
                 agent: one.agent.0,
                 behaviour: one.behaviour.0,
                 entity: one.entity,
+                later: one.later,
                 conduct: conduct as u32,
                 guards: (atoms.len() as u32, one.guards.len() as u32),
             });
@@ -265,7 +278,7 @@ impl Behaviours {
         let exits = self.conducts[machine.conduct as usize].modes.get(mode).map(|mode| &mode.exits);
         let Some(exit) = exits.and_then(|exits| exits.get(exit as usize)) else { return };
         let variables: Vec<f64> = state.variables.iter().map(|lanes| lanes.0[trial]).collect();
-        let stream = Stream::of(state.keys[trial], machine.entity, Purpose::Process);
+        let stream = Stream::of(state.keys[trial], machine.number(state, trial), Purpose::Process);
         match pick(&exit.targets, &variables, || stream.uniform(state.ticks[trial] as u32)) {
             Some(mode) => {
                 scratch.turns.push(Turn { machine: at as u32, lane, mode });
@@ -301,7 +314,7 @@ impl Behaviours {
         let machine = &self.machines[at];
         let conduct = &self.conducts[machine.conduct as usize];
         let trial = trial_of(state.layout, slot.lane);
-        let stream = Stream::of(state.keys[trial], machine.entity, Purpose::Delay);
+        let stream = Stream::of(state.keys[trial], machine.number(state, trial), Purpose::Delay);
         let now = state.ticks[trial] as f64;
         let (behaviour, block, lane) = (machine.behaviour as usize, slot.block, slot.lane);
         let standing = &mut state.behaviours;
@@ -329,7 +342,8 @@ impl Behaviours {
         let slot = state.slot(agent, trial);
         // Replicas of a trial go on under other keys: what was drawn stays.
         let key = state.behaviours.own_keys[slot.block][slot.lane];
-        let Some(own) = start::own_parameters(program, key, AgentId(agent as u32)) else { return false };
+        let who = (AgentId(agent as u32), state.queues.later(agent, trial));
+        let Some(own) = start::own_parameters(program, key, who) else { return false };
         let mut values = own;
         let mut known: Vec<f64> = state.variables.iter().map(|lanes| lanes.0[trial]).collect();
         known.extend(own);
@@ -346,7 +360,8 @@ impl Behaviours {
                     Amount::Drawn(law) => {
                         let key = state.behaviours.keys[machine.behaviour as usize][slot.block][slot.lane];
                         let draw = (name_hash(parameter.name()) as u32).wrapping_add(entered);
-                        law.draw(Stream::of(key, machine.entity, Purpose::Parameter).uniform(draw))
+                        let entity = machine.number(state, trial);
+                        law.draw(Stream::of(key, entity, Purpose::Parameter).uniform(draw))
                     }
                 };
                 if !parameter.allows(value) {

@@ -155,7 +155,8 @@ impl<'a> Person<'a> {
         self.way.origin = self.at();
         let stage = &self.program.drive.stages[stage as usize];
         if let Target::Pause(law) = &stage.target {
-            let entity = self.program.scenario.agents[self.agent].entity;
+            let later = self.state.queues.later(self.agent, trial_of(self.state.layout, self.lane));
+            let entity = self.program.scenario.agents[self.agent].entity + later;
             let stream = Stream::of(self.key(), entity, Purpose::Pause);
             let uniform = stream.uniform(stage.leg.wrapping_add(self.way.round.wrapping_mul(ROUND)));
             // A negative time or NaN is no pause; one that never ends is cut at the end of all ticks.

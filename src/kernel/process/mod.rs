@@ -177,17 +177,54 @@ impl Processes {
         }
     }
 
-    /// Continuous time: the next jump of every occupied lane, if it comes up to and with the horizon. These
-    /// lanes; the time of the jump is in `state.clocks`.
-    pub(super) fn jump(&self, layout: Layout, state: &mut State, scratch: &mut Scratch) -> Mask {
+    /// Continuous time: the next jump of every occupied lane, if it comes up to and with `until`, s, which is at most
+    /// the horizon. These lanes; the time of the jump is in `state.clocks`.
+    pub(super) fn jump(
+        &self,
+        layout: Layout,
+        state: &mut State,
+        scratch: &mut Scratch,
+        until: &[f64; LANES],
+    ) -> Mask {
         let Some(timed) = &self.timed else { return Mask::NONE };
+        self.set_clocks(timed, layout, state, scratch);
+        let lanes = state.occupied & !state.faulty;
+        timed.ring(layout, state, &mut scratch.timed, lanes, until)
+    }
+
+    /// Sets the clocks of trials that have just begun.
+    fn set_clocks(&self, timed: &Timed, layout: Layout, state: &mut State, scratch: &mut Scratch) {
         let fresh = state.clocks.fresh & state.occupied;
         if !fresh.is_empty() {
             timed.look(layout, state, &mut scratch.timed, fresh);
         }
-        let lanes = state.occupied & !state.faulty;
-        let until = [self.clock.seconds(self.horizon); LANES];
-        timed.ring(layout, state, &mut scratch.timed, lanes, &until)
+    }
+
+    /// Continuous time: from `at` on, s, before which nothing more happens under the old one, the trial of a lane
+    /// goes on under another key.
+    pub(super) fn renew(
+        &self,
+        layout: Layout,
+        state: &mut State,
+        scratch: &mut Scratch,
+        lane: usize,
+        (at, key): (f64, TrialKey),
+    ) {
+        if let Some(timed) = &self.timed {
+            self.set_clocks(timed, layout, state, scratch);
+            state.keys[lane] = key;
+            timed.renew(state, lane, at);
+        }
+    }
+
+    /// The time of the last instant of a trial, s.
+    pub(super) fn last(&self) -> f64 {
+        self.clock.seconds(self.horizon)
+    }
+
+    /// The process with rates or delays that has waited most often in the trial of a lane, and its present rate, 1/s.
+    pub fn busiest(&self, state: &State, lane: usize) -> Option<(u32, f64)> {
+        self.timed.as_ref()?.busiest(state, lane)
     }
 
     /// With a step: lets what is due at once happen in trials that have just been loaded. The first state is the one

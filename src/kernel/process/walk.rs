@@ -139,7 +139,12 @@ fn advance<S: Simd>(simd: S, chain: &Chain, walk: &mut Walk) {
         if old.as_flattened()[..*len].iter().any(|&state| steps.open[state as usize]) {
             let draw = Draw { number: *tick, word: steps.word, keys };
             if let Some(ends) = &steps.common {
-                draw.branch(simd, trials, ends, branches);
+                // Compiled for a coin and for a choice of four.
+                match **ends {
+                    [half] => draw.branch(simd, trials, &[half], branches),
+                    [a, b, c] => draw.branch(simd, trials, &[a, b, c], branches),
+                    ref ends => draw.branch(simd, trials, ends, branches),
+                }
                 steps.take(old, next, branches);
             } else {
                 draw.uniform(simd, trials, numbers);

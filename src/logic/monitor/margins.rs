@@ -6,7 +6,6 @@
 use super::cell::{Cell, Context, Machine, Ref};
 use super::track::select;
 use crate::base::lanes::{LANES, Lanes, Mask};
-use crate::logic::formula::Relation;
 
 /// What is known of a margin in eight lanes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,18 +55,6 @@ impl Bounds {
             self.lower.0[lane].to_bits() == other.lower.0[lane].to_bits()
                 && self.upper.0[lane].to_bits() == other.upper.0[lane].to_bits()
         })
-    }
-}
-
-/// The margin of `x r y`: how far the sides may move before the comparison changes.
-fn margin(relation: Relation, x: Lanes, y: Lanes) -> Lanes {
-    // Two equal infinities are no distance apart.
-    let less = |x: f64, y: f64| if x == y { 0.0 } else { x - y };
-    match relation {
-        Relation::Less | Relation::AtMost => y.zip(x, less),
-        Relation::Greater | Relation::AtLeast => x.zip(y, less),
-        Relation::Equal => x.zip(y, |x, y| -less(x, y).abs()),
-        Relation::Unequal => x.zip(y, |x, y| less(x, y).abs()),
     }
 }
 
@@ -172,7 +159,7 @@ pub(super) fn step(
             own.now = Bounds::known(atoms.get(*atom).copied().unwrap_or(Lanes::splat(f64::NAN)));
         }
         Machine::CompareNow(relation, x, y) => {
-            own.now = Bounds::known(margin(*relation, before[*x].value, before[*y].value));
+            own.now = Bounds::known(before[*x].value.zip(before[*y].value, |x, y| relation.margin(x, y)));
         }
         Machine::AnyNow(children) | Machine::AnyHeld(children) => {
             own.now = children.iter().fold(Bounds::FALSE, |all, child| all.or(present(below, *child)));

@@ -13,6 +13,7 @@ mod moment;
 mod number;
 mod plan;
 mod present;
+pub mod robustness;
 mod stream;
 mod track;
 mod truth;

@@ -12,9 +12,9 @@ use super::truth::{Machine, Ref, Truth};
 use super::{Watched, Way};
 use crate::base::decimal::Decimal;
 use crate::base::tick::Tick;
-use crate::logic::formula::{Node, Tree, Window};
+use crate::logic::formula::{Node, NodeId, Tree, Window};
 use crate::logic::invalid::Invalid;
-use crate::logic::reach::{Part, asked, children_first};
+use crate::logic::reach::{Asked, Part, asked, children_first};
 use std::collections::BTreeMap;
 
 /// Most cells.
@@ -27,6 +27,49 @@ pub(super) fn plan(
     horizon: Tick,
     quantum: Decimal,
 ) -> Result<(Present, Way, Scale, Vec<Watched>), Invalid> {
+    let (mut builder, order, asked) = prepare(tree, root, horizon, quantum)?;
+    let scale = builder.scale;
+    let mut watched = Vec::new();
+    for part in order {
+        builder.note(part);
+        if let Some(slot) = builder.antecedent(part) {
+            let last = asked.of(part).unwrap_or(asked.last);
+            watched.push(Watched { slot, last: scale.time(Tick(last)) });
+        }
+    }
+    if let Some(direct) = builder.direct(root) {
+        return Ok((builder.present, Way::Direct(direct), scale, watched));
+    }
+    let root = match root {
+        Part::Node(id) => Root::Truth(builder.truth(id, (0, 0))?),
+        Part::Term(id) => Root::Number(builder.number(id, (0, 0))?),
+    };
+    let cells = Cells::new(builder.truths, builder.numbers, builder.order, root);
+    Ok((builder.present, Way::Cells(Box::new(cells)), scale, watched))
+}
+
+/// The code of present states and the truths of a formula, operands first, and which of them it is.
+pub(super) fn plan_cells(
+    tree: &Tree,
+    root: NodeId,
+    horizon: Tick,
+    quantum: Decimal,
+) -> Result<(Present, Vec<Truth>, Ref, Scale), Invalid> {
+    let (mut builder, order, _) = prepare(tree, Part::Node(root), horizon, quantum)?;
+    for part in order {
+        builder.note(part);
+    }
+    let root = builder.truth(root, (0, 0))?;
+    Ok((builder.present, builder.truths, root, builder.scale))
+}
+
+/// What builds cells, the parts in order, and the last ticks at which they are asked about.
+fn prepare(
+    tree: &Tree,
+    root: Part,
+    horizon: Tick,
+    quantum: Decimal,
+) -> Result<(Builder<'_>, Vec<Part>, Asked), Invalid> {
     let order = children_first(tree, root)?;
     if horizon.0 > LONGEST_HORIZON {
         return Err(Invalid::TooLong { horizon: horizon.0, limit: LONGEST_HORIZON });
@@ -40,7 +83,7 @@ pub(super) fn plan(
         return Err(Invalid::BeyondHorizon { needed, horizon: horizon.0 });
     }
     let scale = Scale::new(horizon, quantum);
-    let mut builder = Builder {
+    let builder = Builder {
         tree,
         scale,
         present: Present::default(),
@@ -55,23 +98,7 @@ pub(super) fn plan(
         known_numbers: BTreeMap::new(),
         known_comparisons: BTreeMap::new(),
     };
-    let mut watched = Vec::new();
-    for part in order {
-        builder.note(part);
-        if let Some(slot) = builder.antecedent(part) {
-            let last = asked.of(part).unwrap_or(needed);
-            watched.push(Watched { slot, last: scale.time(Tick(last)) });
-        }
-    }
-    if let Some(direct) = builder.direct(root) {
-        return Ok((builder.present, Way::Direct(direct), scale, watched));
-    }
-    let root = match root {
-        Part::Node(id) => Root::Truth(builder.truth(id, (0, 0))?),
-        Part::Term(id) => Root::Number(builder.number(id, (0, 0))?),
-    };
-    let cells = Cells::new(builder.truths, builder.numbers, builder.order, root);
-    Ok((builder.present, Way::Cells(Box::new(cells)), scale, watched))
+    Ok((builder, order, asked))
 }
 
 /// The first and the last moment at which something is asked about.
