@@ -19,7 +19,7 @@ macro_rules! pair {
 }
 
 /// Pairs of scenario and properties; the recording of the hotel is not read, so that its names stay unknown.
-const PAIRS: [(&str, &str); 12] = [
+const PAIRS: [(&str, &str); 13] = [
     pair!("corridor"),
     pair!("crowds"),
     pair!("die"),
@@ -27,6 +27,7 @@ const PAIRS: [(&str, &str); 12] = [
     pair!("epidemic"),
     pair!("hotel"),
     pair!("leader"),
+    pair!("overflow"),
     pair!("queue"),
     pair!("robot"),
     pair!("sensors"),
