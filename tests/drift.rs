@@ -93,3 +93,23 @@ fn a_stream_is_answered_at_once() {
     assert!(output.any(|line| line.unwrap().contains("certified: while P is 0.95")));
     assert_eq!(child.wait().unwrap().code(), Some(1));
 }
+
+#[test]
+fn input_of_another_kind_is_named() {
+    let place = Place::new(&[("words", "hello world\nfoo\n"), ("empty", ""), ("comments", "# only\n\n")]);
+    place.write("binary", &[0x7f, b'E', b'L', b'F', 0xff, 0, 1, b'\n']);
+    place.write("late", b"1\n0\n\xff\n");
+    place.write("long", format!("{}\n", "x".repeat(10_000)).as_bytes());
+    for (file, said) in [
+        ("words", "words: line 1: `hello world` is no outcome"),
+        ("empty", "empty: there is no outcome in it"),
+        ("comments", "comments: there is no outcome in it"),
+        ("binary", "binary: line 1: this is not text in UTF-8"),
+        ("late", "late: line 3: this is not text in UTF-8"),
+        ("long", "x…` is no outcome"),
+    ] {
+        let found = place.call(&["drift", file, "--before", "95%", "--after", "0.85"]);
+        assert_eq!((found.code, found.out.as_str()), (Some(2), ""), "{file}");
+        assert!(found.err.contains(said) && found.err.len() < 200, "{}", found.err);
+    }
+}

@@ -2,6 +2,9 @@
 //!
 //! Needs `qemu-x86_64` and takes minutes, so it runs only when asked for:
 //! `cargo test --release --test machines -- --ignored --nocapture`.
+//!
+//! `SMC_ELSEWHERE` may name a call of the program as it was built for another machine, such as
+//! `qemu-aarch64 -L /usr/aarch64-linux-gnu target/aarch64-unknown-linux-gnu/release/smc`; it is held against this one.
 
 #![allow(clippy::disallowed_methods, reason = "tests read files and call programs")]
 #![allow(dead_code, reason = "the program is called from other tests too")]
@@ -52,6 +55,25 @@ fn results(mut command: Command, name: &str, data: Option<&Path>) -> Value {
     json["results"].take()
 }
 
+/// Holds the results of all models here against those of other calls of the program, each with its name.
+fn compare(elsewhere: &[(String, Vec<String>)]) {
+    let data = recordings();
+    for name in models() {
+        if name == "hotel" && data.is_none() {
+            eprintln!("skipped: {name} needs recordings");
+            continue;
+        }
+        let here = results(Command::new(env!("CARGO_BIN_EXE_smc")), &name, data.as_deref());
+        for (machine, call) in elsewhere {
+            let mut command = Command::new(&call[0]);
+            command.args(&call[1..]);
+            let there = results(command, &name, data.as_deref());
+            assert_eq!(here.to_string(), there.to_string(), "{name} on {machine}");
+            eprintln!("{name}: the same on {machine}");
+        }
+    }
+}
+
 #[test]
 #[ignore = "needs an emulator, and minutes"]
 fn every_model_yields_the_same_bytes_on_every_processor() {
@@ -59,20 +81,20 @@ fn every_model_yields_the_same_bytes_on_every_processor() {
         eprintln!("skipped: there is no qemu-x86_64");
         return;
     }
-    let data = recordings();
-    let program = env!("CARGO_BIN_EXE_smc");
-    for name in models() {
-        if name == "hotel" && data.is_none() {
-            eprintln!("skipped: {name} needs recordings");
-            continue;
-        }
-        let here = results(Command::new(program), &name, data.as_deref());
-        for processor in PROCESSORS {
-            let mut command = Command::new("qemu-x86_64");
-            command.args(["-cpu", processor, program]);
-            let there = results(command, &name, data.as_deref());
-            assert_eq!(here.to_string(), there.to_string(), "{name} on {processor}");
-            eprintln!("{name}: the same on {processor}");
-        }
+    let call = |processor: &str| {
+        ["qemu-x86_64", "-cpu", processor, env!("CARGO_BIN_EXE_smc")].map(str::to_owned).to_vec()
+    };
+    compare(&PROCESSORS.map(|processor| (processor.to_owned(), call(processor))));
+}
+
+#[test]
+#[ignore = "needs a build for another machine, and minutes"]
+fn every_model_yields_the_same_bytes_in_a_build_for_another_machine() {
+    let call = std::env::var("SMC_ELSEWHERE").unwrap_or_default();
+    let call: Vec<String> = call.split_whitespace().map(str::to_owned).collect();
+    if call.is_empty() {
+        eprintln!("skipped: SMC_ELSEWHERE names no call");
+        return;
     }
+    compare(&[(call.join(" "), call)]);
 }

@@ -9,10 +9,28 @@ use smc::syntax::parse::{parse_properties, parse_scenario};
 use smc::syntax::render::render;
 use smc::syntax::source::{Source, SourceId};
 
+macro_rules! pair {
+    ($name:literal) => {
+        (
+            include_str!(concat!("../models/", $name, ".scn")),
+            include_str!(concat!("../properties/", $name, ".bltl")),
+        )
+    };
+}
+
 /// Pairs of scenario and properties; the recording of the hotel is not read, so that its names stay unknown.
-const PAIRS: [(&str, &str); 3] = [
-    (include_str!("../models/corridor.scn"), include_str!("../properties/corridor.bltl")),
-    (include_str!("../models/hotel.scn"), include_str!("../properties/hotel.bltl")),
+const PAIRS: [(&str, &str); 12] = [
+    pair!("corridor"),
+    pair!("crowds"),
+    pair!("die"),
+    pair!("distracted"),
+    pair!("epidemic"),
+    pair!("hotel"),
+    pair!("leader"),
+    pair!("queue"),
+    pair!("robot"),
+    pair!("sensors"),
+    pair!("tandem"),
     (include_str!("refused/base.scn"), include_str!("../properties/corridor.bltl")),
 ];
 
@@ -149,6 +167,13 @@ proptest! {
             front_end(scenario, &mutated(properties, &changes))?;
         }
     }
+}
+
+#[test]
+fn every_model_has_its_mutants() {
+    let models = std::fs::read_dir("models").unwrap().map(|entry| entry.unwrap().path());
+    let count = models.filter(|path| path.extension().is_some_and(|end| end == "scn")).count();
+    assert_eq!(PAIRS.len(), count + 1);
 }
 
 #[test]

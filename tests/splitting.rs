@@ -55,6 +55,9 @@ fn a_gambler_is_lucky_as_often_as_the_formula_says() {
         // Only the plain trials certify anything: none of 2000.
         let certified = result["certifies"].as_str().unwrap();
         assert!(certified.contains("<= 0.0015, error at most 0.05"), "{certified}");
+        // From below the runs do.
+        assert!(certified.contains("; P(F (gambler.wealth >= 14)) >= 0.0000"), "{certified}");
+        assert!(number("floor") <= exact && number("floor") > 0.3 * exact, "{result}");
         assert!(result["replay"].as_str().unwrap().contains("--only 0 --seed 0"));
     }
 }

@@ -4,6 +4,7 @@
 //! streams, exact decimals, ticks of the clock, lane vectors and recorded traces.
 
 pub mod decimal;
+pub mod fingerprint;
 pub mod geometry;
 pub mod lanes;
 #[allow(clippy::excessive_precision, reason = "coefficients stand as published")]

@@ -9,6 +9,12 @@
 use super::math;
 use std::convert::Infallible;
 
+/// Name of the generator, for reports.
+pub const GENERATOR: &str = "philox4x32-10";
+/// Version of the addresses of draws: which counter belongs to which draw. It changes when a seed stops giving the same
+/// numbers.
+pub const LAYOUT: u32 = 1;
+
 const MULTIPLIER: [u32; 2] = [0xD251_1F53, 0xCD9E_8D57];
 const WEYL: [u32; 2] = [0x9E37_79B9, 0xBB67_AE85];
 const ROUNDS: usize = 10;

@@ -46,7 +46,7 @@ impl Clock {
         match ticks.as_whole() {
             Some(whole) => u64::try_from(whole).map(Tick).map_err(|_| (Tick(0), Tick(u64::MAX))),
             None => {
-                let below = u64::try_from(ticks.floor()).unwrap_or(u64::MAX - 1);
+                let below = u64::try_from(ticks.floor()).unwrap_or(u64::MAX).min(u64::MAX - 1);
                 Err((Tick(below), Tick(below + 1)))
             }
         }
@@ -64,9 +64,24 @@ impl Clock {
     }
 }
 
+/// The number of steps of `dt` seconds after which a time (s) is over: whole numbers are met in spite of rounding.
+/// Infinite or NaN as the time is.
+pub fn steps_over(time: f64, dt: f64) -> f64 {
+    let exact = time / dt;
+    let nearest = exact.round();
+    if (exact - nearest).abs() <= 1e-9 * nearest.abs() { nearest } else { exact.ceil() }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn whole_numbers_of_steps_are_met() {
+        assert_eq!([steps_over(2.0, 0.02), steps_over(0.7, 0.1), steps_over(1.1, 0.1)], [100.0, 7.0, 11.0]);
+        assert_eq!([steps_over(0.0, 0.1), steps_over(0.01, 0.1), steps_over(0.1001, 0.1)], [0.0, 1.0, 2.0]);
+        assert_eq!(steps_over(f64::INFINITY, 0.1), f64::INFINITY);
+    }
 
     #[test]
     fn a_bound_is_a_whole_number_of_ticks_or_names_its_neighbours() {

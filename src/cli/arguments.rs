@@ -101,7 +101,8 @@ pub(super) struct Check {
     /// Also write a self-contained HTML page with charts.
     #[arg(long, value_name = "FILE.html")]
     pub(super) report: Option<PathBuf>,
-    /// Ask only this query: the name of its property, or its number. May be given several times.
+    /// Ask only this query: the name of its property, or its number, which counts from 0 in the order of writing (each
+    /// measure of a list by itself). May be given several times.
     #[arg(long, value_name = "NAME")]
     pub(super) only: Vec<String>,
     /// Only forecast how many trials and how much time each query is likely to take; runs the first few trials.
@@ -148,7 +149,7 @@ pub(super) struct Simulate {
     #[arg(long, default_value_t = 1, value_name = "N")]
     pub(super) every: u64,
     /// Stop at this time in seconds instead of the horizon.
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub(super) until: Option<f64>,
     /// Format of the table.
     #[arg(long, value_enum, default_value_t = TableFormat::Csv)]
@@ -184,7 +185,7 @@ pub(super) struct Drift {
     #[arg(long, value_name = "N", conflicts_with = "threshold", value_parser = parse_quiet)]
     pub(super) false_alarm: Option<f64>,
     /// Threshold of the sum: the logarithm of the number of outcomes to a false alarm.
-    #[arg(long, value_name = "H")]
+    #[arg(long, value_name = "H", allow_negative_numbers = true)]
     pub(super) threshold: Option<f64>,
     /// Column of a table: its head, or its number from 1.
     #[arg(long, value_name = "COLUMN")]
@@ -225,9 +226,9 @@ pub(super) struct Format {
     /// Change nothing; exit with 1 if a file is not formatted.
     #[arg(long)]
     pub(super) check: bool,
-    /// What standard input holds.
-    #[arg(long, value_enum, default_value_t = Language::Scn)]
-    pub(super) language: Language,
+    /// What standard input holds; found out by itself where it is left out.
+    #[arg(long, value_enum)]
+    pub(super) language: Option<Language>,
 }
 
 /// Languages.

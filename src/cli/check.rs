@@ -4,6 +4,7 @@ use super::arguments::{Check, OutputFormat};
 use super::inputs;
 use super::progress::Progress;
 use super::terminal::{Colors, print, say};
+use crate::base::fingerprint::Fingerprint;
 use crate::compile::Study;
 use crate::compile::nearest::nearest;
 use crate::engine::budget::DEFAULT_TRIALS;
@@ -18,7 +19,13 @@ use std::sync::Arc;
 pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     let inputs = inputs::load(&arguments.model, &arguments.properties);
     super::diagnose(&inputs, colors);
-    let desk = Desk { arguments, colors, findings: inputs::findings(&inputs.diagnostics, &inputs.sources) };
+    let desk = Desk {
+        arguments,
+        colors,
+        sources: &inputs.sources,
+        findings: inputs::findings(&inputs.diagnostics, &inputs.sources),
+        prints: inputs.prints.clone(),
+    };
     let Some(study) = &inputs.study else { return desk.refused() };
     let only = match chosen(study, &arguments.only) {
         Ok(only) => only,
@@ -27,7 +34,13 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     if arguments.threads == Some(0) {
         return desk.refuse("`--threads 0` runs nothing");
     }
-    let threads = match Threads::new(arguments.threads) {
+    let most = most_threads();
+    if arguments.threads.is_some_and(|threads| threads > most) {
+        say(&format!(
+            "warning: {most} threads are as many as help here; results are the same with any number\n"
+        ));
+    }
+    let threads = match Threads::new(arguments.threads.map(|threads| threads.min(most))) {
         Ok(threads) => threads,
         Err(error) => return desk.refuse(format!("no threads can be started: {error}")),
     };
@@ -54,21 +67,29 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     if arguments.forecast {
         return match forecast(study, &call, &threads, &budget) {
             Ok(outlook) => desk.tell(&outlook),
-            Err(fault) => desk.fault(fault),
+            Err(fault) => desk.fault(&fault),
         };
     }
     let progress = Progress::new(arguments.quiet);
     match run_study(study, &call, &threads, &budget, &progress) {
         Ok(run) => desk.finish(run),
-        Err(fault) => desk.fault(fault),
+        Err(fault) => desk.fault(&fault),
     }
+}
+
+/// So many threads are run at most: each has trials of its own to begin and to throw away.
+fn most_threads() -> usize {
+    let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    (2 * cores).max(16)
 }
 
 /// Where what a call has to say is handed out, in the format that was asked for.
 struct Desk<'a> {
     arguments: &'a Check,
     colors: Colors,
+    sources: &'a [Source],
     findings: Vec<Finding>,
+    prints: Vec<(String, Fingerprint)>,
 }
 
 impl Desk<'_> {
@@ -104,15 +125,14 @@ impl Desk<'_> {
     }
 
     /// Nothing could be run.
-    fn fault(mut self, fault: Fault) -> Exit {
-        match fault {
-            Fault::Placement(reason) => {
-                let error = super::crowded(reason);
-                say(&render(std::slice::from_ref(&error), &[], self.colors.err));
-                self.findings.extend(inputs::findings(&[error], &[]));
+    fn fault(mut self, fault: &Fault) -> Exit {
+        match super::refusal(fault) {
+            Some(error) => {
+                say(&render(std::slice::from_ref(&error), self.sources, self.colors.err));
+                self.findings.extend(inputs::findings(&[error], self.sources));
                 self.refused()
             }
-            fault => self.refuse(fault.to_string()),
+            None => self.refuse(fault.to_string()),
         }
     }
 
@@ -122,6 +142,7 @@ impl Desk<'_> {
             scenario: self.arguments.model.scenario.clone(),
             seed: self.arguments.seed,
             version: env!("CARGO_PKG_VERSION").to_owned(),
+            inputs: self.prints,
             diagnostics: self.findings,
             failure: Some(Failure::Input(reason)),
             replay: format!("{} --seed {}", command("check", self.arguments, true), self.arguments.seed),
@@ -138,7 +159,7 @@ impl Desk<'_> {
 
     /// Prints the results of a run.
     fn finish(self, run: Run) -> Exit {
-        let run = Run { diagnostics: self.findings, ..run };
+        let run = Run { inputs: self.prints, diagnostics: self.findings, ..run };
         let palette = if self.colors.out { Palette::ANSI } else { Palette::PLAIN };
         let mut exit = report::exit_code(&run);
         if let Err(reason) = print(&report::render(&run, format(self.arguments.format), palette)) {
@@ -202,7 +223,13 @@ fn chosen(study: &Study, only: &[String]) -> Result<Vec<usize>, String> {
             let names = study.queries.iter().filter_map(|q| q.name.as_deref());
             let hint =
                 nearest(wanted, names).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
-            return Err(format!("no query is about `{wanted}`{hint}"));
+            let last = study.queries.iter().map(|q| q.index).max();
+            return Err(match (number, last) {
+                (Some(number), Some(last)) => {
+                    format!("there is no query {number}: they are numbered from 0 to {last}")
+                }
+                _ => format!("no query is about `{wanted}`{hint}"),
+            });
         }
         chosen.extend(found);
     }

@@ -47,9 +47,13 @@ fn watch(arguments: &Drift) -> Result<bool, String> {
     let mut outcomes = Outcomes::new(column);
     let mut alarms: Vec<u64> = Vec::new();
     let mut successes = 0u64;
+    let name = super::inputs::shown(&arguments.file);
     for line in lines(&arguments.file)? {
-        let line = line.map_err(|error| format!("`{}` cannot be read: {error}", arguments.file))?;
-        let Some(success) = outcomes.read(&line).map_err(|e| format!("{}: {e}", arguments.file))? else {
+        let line = line.map_err(|error| format!("`{name}` cannot be read: {error}"))?;
+        let Ok(line) = std::str::from_utf8(&line) else {
+            return Err(format!("{name}: line {}: this is not text in UTF-8", outcomes.lines() + 1));
+        };
+        let Some(success) = outcomes.read(line).map_err(|e| format!("{name}: {e}"))? else {
             continue;
         };
         successes += u64::from(success);
@@ -69,17 +73,20 @@ fn watch(arguments: &Drift) -> Result<bool, String> {
             }
         }
     }
+    if cusum.read() == 0 {
+        return Err(format!("{name}: there is no outcome in it"));
+    }
     print(&summary(arguments, &cusum, successes, &alarms))?;
     Ok(!alarms.is_empty())
 }
 
 #[allow(clippy::disallowed_methods, reason = "the command line opens files")]
-fn lines(name: &str) -> Result<Box<dyn Iterator<Item = std::io::Result<String>>>, String> {
+fn lines(name: &str) -> Result<Box<dyn Iterator<Item = std::io::Result<Vec<u8>>>>, String> {
     if name == "-" {
-        return Ok(Box::new(std::io::stdin().lines()));
+        return Ok(Box::new(std::io::stdin().lock().split(b'\n')));
     }
     let file = File::open(name).map_err(|error| format!("`{name}` cannot be opened: {error}"))?;
-    Ok(Box::new(BufReader::new(file).lines()))
+    Ok(Box::new(BufReader::new(file).split(b'\n')))
 }
 
 fn summary(arguments: &Drift, cusum: &Cusum, successes: u64, alarms: &[u64]) -> String {
@@ -106,7 +113,7 @@ fn summary(arguments: &Drift, cusum: &Cusum, successes: u64, alarms: &[u64]) -> 
         }
         DriftFormat::Text => {
             let read = cusum.read();
-            let share = if read == 0 { 0.0 } else { 100.0 * successes as f64 / read as f64 };
+            let share = 100.0 * successes as f64 / read as f64;
             let said = match alarms {
                 [] => format!("no alarm; the sum stands at {:.2}", cusum.sum()),
                 [one] => format!("1 alarm, after outcome {one}"),

@@ -17,8 +17,8 @@ pub(super) fn run(arguments: &Format, colors: Colors) -> Exit {
     for name in &arguments.files {
         let language = match name.rsplit_once('.').map(|(_, ending)| ending) {
             _ if name == "-" => arguments.language,
-            Some("scn") => Language::Scn,
-            Some("bltl") => Language::Bltl,
+            Some("scn") => Some(Language::Scn),
+            Some("bltl") => Some(Language::Bltl),
             _ => {
                 say(&format!("error: `{name}` is neither a scenario (.scn) nor a property file (.bltl)\n"));
                 exit = Exit::Wrong;
@@ -48,8 +48,9 @@ pub(super) fn run(arguments: &Format, colors: Colors) -> Exit {
             }
         };
         let formatted = match language {
-            Language::Scn => format_scenario(&source),
-            Language::Bltl => format_properties(&source),
+            Some(Language::Scn) => format_scenario(&source),
+            Some(Language::Bltl) => format_properties(&source),
+            None => either(&source),
         };
         let text = match formatted {
             Ok(text) => text,
@@ -77,4 +78,13 @@ pub(super) fn run(arguments: &Format, colors: Colors) -> Exit {
         }
     }
     exit
+}
+
+/// As whichever language the text is; where it is neither, the errors are those of the one with fewer.
+fn either(source: &Source) -> Result<String, Vec<Diagnostic>> {
+    match (format_scenario(source), format_properties(source)) {
+        (Ok(text), _) | (Err(_), Ok(text)) => Ok(text),
+        (Err(scenario), Err(properties)) if properties.len() < scenario.len() => Err(properties),
+        (Err(scenario), Err(_)) => Err(scenario),
+    }
 }

@@ -1,6 +1,7 @@
 //! Files of a call: read, decoded, parsed, compiled.
 
 use super::arguments::Model;
+use crate::base::fingerprint::Fingerprint;
 use crate::compile::{Files, Input, Setting, SettingValue, Study, compile, requests};
 use crate::engine::outcome::{Finding, Spot};
 use crate::syntax::ast::ScenarioFile;
@@ -16,6 +17,8 @@ pub(super) struct Inputs {
     pub(super) sources: Vec<Source>,
     /// Errors and warnings.
     pub(super) diagnostics: Vec<Diagnostic>,
+    /// Each file and the fingerprint of its bytes.
+    pub(super) prints: Vec<(String, Fingerprint)>,
     /// What compilation yields, if nothing is wrong.
     pub(super) study: Option<Study>,
 }
@@ -65,6 +68,7 @@ pub(super) fn shown(name: &str) -> &str {
 
 struct Reader {
     sources: Vec<Source>,
+    prints: Vec<(String, Fingerprint)>,
     diagnostics: Vec<Diagnostic>,
 }
 
@@ -78,6 +82,7 @@ impl Reader {
                 return None;
             }
         };
+        self.prints.push((shown(name).to_owned(), Fingerprint::of(&bytes)));
         match decode(id, shown(name), &bytes) {
             Ok(source) => {
                 self.sources.push(source.clone());
@@ -169,7 +174,7 @@ fn find(path: &str, scenario: &str, data: &[PathBuf]) -> Result<PathBuf, String>
 /// Reads, parses and compiles what a call names.
 #[allow(clippy::disallowed_methods, reason = "files are opened by the command line")]
 pub(super) fn load(model: &Model, properties: &[String]) -> Inputs {
-    let mut reader = Reader { sources: Vec::new(), diagnostics: Vec::new() };
+    let mut reader = Reader { sources: Vec::new(), prints: Vec::new(), diagnostics: Vec::new() };
     let twice = std::iter::once(&model.scenario).chain(properties).filter(|name| *name == "-").count() > 1;
     if twice {
         reader.diagnostics.push(Diagnostic::placeless("E0701", "standard input can be read once only"));
@@ -197,15 +202,25 @@ pub(super) fn load(model: &Model, properties: &[String]) -> Inputs {
             }
         }
     }
+    for directory in model.data.iter().filter(|directory| !directory.is_dir()) {
+        let what = if directory.exists() { "no directory" } else { "not there" };
+        let error = Diagnostic::placeless("E0701", format!("`--data {}` is {what}", directory.display()));
+        reader
+            .diagnostics
+            .push(error.hint("it names a folder in which recordings and imports are looked for"));
+    }
     let settings: Vec<Setting> = model.set.iter().filter_map(|text| reader.setting(text)).collect();
     let mut files = Files::default();
     for request in requests(&scenario) {
         let contents = find(&request.path, &model.scenario, &model.data).and_then(|path| {
             std::fs::read(&path).map_err(|e| format!("`{}` cannot be read: {e}", request.path))
         });
+        if let Ok(bytes) = &contents {
+            reader.prints.push((request.path.clone(), Fingerprint::of(bytes)));
+        }
         files.insert(request.path, contents);
     }
-    let Reader { sources, mut diagnostics } = reader;
+    let Reader { sources, prints, mut diagnostics } = reader;
     let mut study = None;
     if complete {
         let input = Input {
@@ -229,7 +244,9 @@ pub(super) fn load(model: &Model, properties: &[String]) -> Inputs {
             .filter(|d| {
                 let names =
                     matches!(d.code, "E0201" | "E0203" | "E0205" | "E0208" | "E0209" | "E0505" | "E0606");
-                !(names && (scenario_broken || broken(d.place.as_ref().map(|p| p.span))))
+                // A process that could not be read may have had rates, and time would be another.
+                let times = scenario_broken && matches!(d.code, "E0503" | "E0507" | "E0508");
+                !(times || names && (scenario_broken || broken(d.place.as_ref().map(|p| p.span))))
             })
             .collect();
         diagnostics.extend(found);
@@ -238,5 +255,5 @@ pub(super) fn load(model: &Model, properties: &[String]) -> Inputs {
     if diagnostics.iter().any(|d| d.severity == Severity::Error) {
         study = None;
     }
-    Inputs { sources, diagnostics, study }
+    Inputs { sources, diagnostics, prints, study }
 }

@@ -12,7 +12,7 @@ mod show;
 mod simulate;
 mod terminal;
 
-use crate::model::Scenario;
+use crate::engine::Fault;
 use crate::report::ExitCode as Exit;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::render::render;
@@ -78,16 +78,17 @@ fn diagnose(inputs: &inputs::Inputs, colors: Colors) {
     }
 }
 
-/// What is said of a scenario whose people cannot be placed.
-fn crowded(reason: String) -> Diagnostic {
-    Diagnostic::placeless("E0801", reason)
-        .hint("fewer people, a larger shape to start from, or smaller radii")
-}
-
-/// Whether everybody can be placed, as far as areas tell.
-fn placeable(scenario: &Scenario) -> Result<(), String> {
-    match crate::kernel::start::check_area(scenario).first() {
-        Some(crowding) => Err(crate::engine::crowded(scenario, crowding)),
-        None => Ok(()),
+/// What the engine refuses, where it has a code.
+fn refusal(fault: &Fault) -> Option<Diagnostic> {
+    match fault {
+        Fault::Placement { reason, place } => {
+            let error = match place {
+                Some(span) => Diagnostic::error("E0801", *span, reason.as_str()),
+                None => Diagnostic::placeless("E0801", reason.as_str()),
+            };
+            Some(error.hint("fewer people, a larger shape to start from, or smaller radii"))
+        }
+        Fault::Procedure { place, reason } => Some(Diagnostic::error("E0604", *place, reason.to_string())),
+        _ => None,
     }
 }

@@ -11,8 +11,9 @@ use crate::data::table::{
     Held, Row, StateRow, write_csv, write_json, write_json_lines, write_states_csv, write_states_json,
     write_states_json_lines,
 };
+use crate::engine::{no_start, placeable};
 use crate::kernel::{Program, Scratch, Slot, State, dynamics, start};
-use crate::model::{Domain, Scenario};
+use crate::model::{AgentId, Domain, Scenario};
 use crate::report::ExitCode as Exit;
 use crate::syntax::render::render;
 use std::io::{BufWriter, Write};
@@ -23,6 +24,8 @@ struct Record<'s> {
     time: f64,
     trial: u64,
     agent: usize,
+    /// The name, where it is that of a later person on the place of a source.
+    arrival: Option<String>,
     position: Vec2,
     velocity: Vec2,
     /// States of behaviours, in the order of their declaration; empty in who has none.
@@ -80,7 +83,8 @@ impl<'p> Walk<'p> {
                         return true;
                     }
                     Err(fault) => {
-                        self.notes.push(format!("trial {} cannot start: {fault}", self.trial));
+                        let why = no_start(&self.program.scenario, fault);
+                        self.notes.push(format!("trial {} cannot start: {why}", self.trial));
                         self.trial += 1;
                         continue;
                     }
@@ -93,7 +97,7 @@ impl<'p> Walk<'p> {
                 let end = clock.seconds(Tick(self.last));
                 if !jumped.is_empty() && self.state.faulty.is_empty() && self.state.clocks.now[0] <= end {
                     self.jumps += 1;
-                    if self.jumps.is_multiple_of(self.arguments.every.max(1)) {
+                    if self.jumps.is_multiple_of(self.arguments.every) {
                         return true;
                     }
                 } else if self.state.faulty.is_empty() {
@@ -130,7 +134,7 @@ impl<'p> Walk<'p> {
                 continue;
             }
             dynamics::step(self.program, &mut self.state, &mut self.scratch);
-            if self.state.ticks[0].is_multiple_of(self.arguments.every.max(1)) {
+            if self.state.ticks[0].is_multiple_of(self.arguments.every) {
                 return true;
             }
         }
@@ -178,6 +182,7 @@ impl<'p> Iterator for Walk<'p> {
             time: self.time(),
             trial: self.trial,
             agent: self.agent,
+            arrival: self.state.queues.arrival(&self.program.scenario.sources, AgentId(self.agent as u32), 0),
             position: Vec2::new(at(&self.state.x), at(&self.state.y)),
             velocity: Vec2::new(at(&self.state.vx), at(&self.state.vy)),
             modes: modes(self.program, &self.state, slot),
@@ -225,6 +230,11 @@ fn option(scenario: &Scenario, name: &str) -> Result<(usize, usize), String> {
 /// Runs the command.
 #[allow(clippy::disallowed_methods, reason = "files are opened by the command line")]
 pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
+    if arguments.every == 0 || arguments.trials == 0 {
+        let option = if arguments.every == 0 { "--every" } else { "--trials" };
+        say(&format!("error: `{option} 0` writes nothing; it takes a number from 1\n"));
+        return Exit::Wrong;
+    }
     let inputs = inputs::load(&arguments.model, &[]);
     super::diagnose(&inputs, colors);
     let Some(study) = &inputs.study else { return Exit::Wrong };
@@ -242,14 +252,23 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
         Some(Ok(advice)) => Some(advice),
         None => None,
     };
-    if let Err(reason) = super::placeable(&scenario) {
-        say(&render(&[super::crowded(reason)], &[], colors.err));
+    if let Err(fault) = placeable(world) {
+        match super::refusal(&fault) {
+            Some(error) => say(&render(&[error], &inputs.sources, colors.err)),
+            None => say(&format!("error: {fault}\n")),
+        }
         return Exit::Wrong;
     }
     let mut last = scenario.horizon.0;
     if let Some(until) = arguments.until {
         if until.is_nan() || until < 0.0 {
             say("error: `--until` takes a time in seconds\n");
+            return Exit::Wrong;
+        }
+        let end = scenario.clock.seconds(scenario.horizon);
+        if until > end * (1.0 + 1e-12) {
+            let unit = if scenario.clock == Clock::Steps { "steps" } else { "s" };
+            say(&format!("error: `--until {until}` lies beyond the horizon of {end} {unit}\n"));
             return Exit::Wrong;
         }
         // The longest time that is a whole number of ticks, in continuous time of very short ones.
@@ -301,7 +320,10 @@ fn write(
     let rows = walk.map(|record| Row {
         time: record.time,
         trial: record.trial,
-        agent: &scenario.agents[record.agent].name,
+        agent: match record.arrival {
+            Some(name) => name.into(),
+            None => scenario.agents[record.agent].name.as_str().into(),
+        },
         position: record.position,
         velocity: record.velocity,
         present: true,

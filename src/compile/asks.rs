@@ -2,13 +2,17 @@
 
 use super::dimension::Dimension;
 use super::elaborator::{Locals, Lowered, Reported};
+use super::families::Allowance;
 use super::measures::Observed;
-use super::queries::{Compiler, family_clauses};
+use super::queries::Compiler;
 use super::study::{Ask, Measure, MeasureKind, Ranking, Target};
 use super::symbols::ScopeId;
 use crate::model::Who;
 use crate::syntax::ast::{self, BinaryOp, Clauses, Expr};
 use crate::syntax::diagnostic::Diagnostic;
+
+/// Most options of a ranking.
+const MOST_OPTIONS: usize = 4096;
 
 impl Compiler<'_> {
     /// A check: its claim, threshold and test.
@@ -34,10 +38,7 @@ impl Compiler<'_> {
         };
         let elaborator = &mut self.sites[site].elaborator;
         let bound = elaborator.number_of(threshold, dimension, &locals)?;
-        let share = match family {
-            Some(delta) if family_clauses(clauses) => delta / super::methods::DEFAULT_ALPHA,
-            _ => 1.0,
-        };
+        let allowance = Allowance { family, claims: 1 };
         if matches!(measure.kind, ast::MeasureKind::Probability) && (bound.value <= 0.0 || bound.value >= 1.0)
         {
             let theta = bound.value;
@@ -54,15 +55,18 @@ impl Compiler<'_> {
             );
             return elaborator.report(error.hint(hint));
         }
+        // Where a confidence is stated, or comes from a family, it is also that of the interval.
+        let beside = allowance.error(elaborator.delta(clauses, &locals)?, super::methods::DEFAULT_DELTA);
         let mut at_least = matches!(relation, BinaryOp::AtLeast | BinaryOp::Greater);
-        let mut or_equal = matches!(relation, BinaryOp::AtLeast | BinaryOp::AtMost);
+        let or_equal = matches!(relation, BinaryOp::AtLeast | BinaryOp::AtMost);
         let Observed { column, kind, unbounded } = observed?;
         let (column, kind, theta) = match kind {
-            // A quantile is at most x exactly if P(metric <= x) is at least its level.
+            // A quantile is at most x exactly if P(metric <= x) is at least its level. It is below x if
+            // P(metric < x) is above its level, and not if that is below. So strictness goes with the side:
+            // `<= x` and `> x` are settled by P(metric <= x), `< x` and `>= x` by P(metric < x).
             MeasureKind::Quantile { level, .. } => {
-                let below = elaborator.below(&column, !at_least, bound.value, bound.dimension);
+                let below = elaborator.below(&column, at_least != or_equal, bound.value, bound.dimension);
                 at_least = !at_least;
-                or_equal = true;
                 (below, MeasureKind::Probability, level)
             }
             kind => (column, kind, bound.value),
@@ -85,15 +89,14 @@ impl Compiler<'_> {
                     );
                     return elaborator.report(error);
                 }
-                let delta =
-                    elaborator.delta(clauses, &locals)?.unwrap_or(super::methods::DEFAULT_ALPHA) * share;
-                super::study::Test::Interval { delta, trials: super::methods::DEFAULT_TRIALS }
+                let stated = elaborator.delta(clauses, &locals)?;
+                super::study::Test::Interval { delta: allowance.error(stated, super::methods::DEFAULT_ALPHA) }
             }
-            _ => elaborator.test(clauses, theta, threshold.span, share, &locals)?,
+            _ => elaborator.test(clauses, theta, threshold.span, allowance, &locals)?,
         };
         let column = self.column(site, column);
         let measure = Measure { target: Target { world: site, column }, kind };
-        Ok((Ask::Check { measure, at_least, or_equal, threshold: theta, test }, unbounded))
+        Ok((Ask::Check { measure, at_least, or_equal, threshold: theta, test, beside }, unbounded))
     }
 
     /// A ranking: whose moves, by which score.
@@ -126,9 +129,9 @@ impl Compiler<'_> {
                 return elaborator.report(error);
             }
         };
-        let share = family.map_or(1.0, |delta| delta / super::methods::DEFAULT_DELTA);
+        let allowance = Allowance { family, claims: 1 };
         let (epsilon, delta, ranking) =
-            elaborator.ranking(clauses, &measured.kind, dimension, share, &locals)?;
+            elaborator.ranking(clauses, (&measured.kind, measure.span), dimension, allowance, &locals)?;
         if let (Ranking::Okamoto, MeasureKind::Expectation { .. }, Some(method)) =
             (ranking, &measured.kind, &clauses.by)
         {
@@ -149,6 +152,11 @@ impl Compiler<'_> {
             ));
             return self.sites[site].elaborator.report(error);
         };
+        let options = scenario.moves[moves].options.len();
+        if options > MOST_OPTIONS {
+            let said = format!("a ranking is of at most {MOST_OPTIONS} options, and these are {options}");
+            return self.sites[site].elaborator.report(Diagnostic::error("E0606", agent.span, said));
+        }
         Ok((Ask::Rank { moves, measure: measured, epsilon, delta, ranking }, unbounded))
     }
 }

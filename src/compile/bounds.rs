@@ -52,8 +52,7 @@ impl Elaborator<'_> {
             MeasureKind::Quantile { .. } => return Ok(epsilon),
         };
         let part = epsilon / range;
-        // The range itself may be off by a rounding.
-        if part >= NARROWEST * (1.0 - 1e-9) && part <= widest * (1.0 + 1e-9) {
+        if (NARROWEST..=widest).contains(&part) {
             return Ok(epsilon);
         }
         if epsilon <= 0.0 {

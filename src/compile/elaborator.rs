@@ -2,8 +2,11 @@
 
 use super::behaviour::With;
 use super::dimension::{Dimension, describe};
+use super::interned::Interned;
+use super::kinds::Kind;
 use super::margin::Margins;
 use super::number::Number;
+use super::places::Written;
 use super::process::Declared;
 use super::study::Texts;
 use super::symbols::{Scope, ScopeId};
@@ -44,6 +47,8 @@ pub(super) struct Locals {
     pub(super) running: u32,
     /// The process, and which of its copies, whose names come next.
     pub(super) process: Option<(u32, u32)>,
+    /// The behaviour whose names come next, and how many of the bound names they see.
+    pub(super) behaviour: Option<(u32, usize)>,
 }
 
 impl Locals {
@@ -67,8 +72,12 @@ pub(super) struct Elaborator<'a> {
     pub(super) expanding: Vec<(ScopeId, String)>,
     /// Recordings read so far.
     pub(super) recordings: Vec<Option<Recording>>,
+    /// Who of which recording is among the people, and where that is written.
+    pub(super) recorded: BTreeMap<(usize, u32), Span>,
     /// Shapes of regions known so far.
     pub(super) shapes: Vec<Option<Lowered<Shape>>>,
+    /// Kinds known so far.
+    pub(super) kinds: BTreeMap<String, Lowered<Kind>>,
     /// The scene.
     pub(super) scene: Scene,
     /// Processes so far.
@@ -79,6 +88,8 @@ pub(super) struct Elaborator<'a> {
     pub(super) withs: Vec<With<'a>>,
     /// Names of the agents so far.
     pub(super) agent_names: Vec<String>,
+    /// Where the starts of people are written.
+    pub(super) places: Written,
     /// Whether somebody may come in during a trial.
     pub(super) coming: bool,
     /// Agents who come or leave during a trial.
@@ -99,6 +110,8 @@ pub(super) struct Elaborator<'a> {
     pub(super) atoms: Vec<Bool>,
     /// Numbers observed.
     pub(super) signals: Vec<Num>,
+    /// Where nodes, terms, atoms and signals are.
+    known: [Interned; 4],
     /// How atoms, signals and comparisons were written.
     pub(super) texts: Texts,
     /// Names in circles that were reported.
@@ -109,6 +122,12 @@ pub(super) struct Elaborator<'a> {
     pub(super) margins: Option<Margins>,
     /// Present depth of lowering.
     pub(super) depth: u32,
+    /// Where the outermost expression that is being lowered stands.
+    outermost: Span,
+    /// Names that were expanded in vain: what is wrong with them was said.
+    pub(super) broken: BTreeSet<(ScopeId, String)>,
+    /// Whether the scenario has no clock that can be told; then errors of times say nothing.
+    pub(super) timeless: bool,
     /// Nodes lowered so far.
     pub(super) nodes: u64,
 }
@@ -123,12 +142,15 @@ impl<'a> Elaborator<'a> {
             constants: BTreeMap::new(),
             expanding: Vec::new(),
             recordings: Vec::new(),
+            recorded: BTreeMap::new(),
             shapes: Vec::new(),
+            kinds: BTreeMap::new(),
             scene: Scene::default(),
             processes: Vec::new(),
             behaviours: Vec::new(),
             withs: Vec::new(),
             agent_names: Vec::new(),
+            places: Vec::new(),
             coming: false,
             passing: BTreeSet::new(),
             clock: Clock::Steps,
@@ -139,11 +161,15 @@ impl<'a> Elaborator<'a> {
             tree: Tree::default(),
             atoms: Vec::new(),
             signals: Vec::new(),
+            known: Default::default(),
             texts: Texts::default(),
             circles: Vec::new(),
             diagnostics: Vec::new(),
             margins: None,
             depth: 0,
+            outermost: Span::default(),
+            broken: BTreeSet::new(),
+            timeless: false,
             nodes: 0,
         }
     }
@@ -156,6 +182,10 @@ impl<'a> Elaborator<'a> {
 
     /// Notes an error or warning, each place once.
     pub(super) fn note(&mut self, diagnostic: Diagnostic) {
+        // Without a clock no bound can be judged.
+        if self.timeless && matches!(diagnostic.code, "E0501" | "E0502" | "E0503" | "E0507" | "E0508") {
+            return;
+        }
         if !self.diagnostics.contains(&diagnostic) {
             self.diagnostics.push(diagnostic);
         }
@@ -198,22 +228,54 @@ impl<'a> Elaborator<'a> {
 
     /// Counts one more level; an error where expressions nest or grow beyond reason.
     pub(super) fn descend(&mut self, span: Span) -> Lowered<()> {
-        self.depth += 1;
+        if self.depth == 0 {
+            self.outermost = span;
+        }
         self.nodes += 1;
-        if self.depth > DEEPEST {
-            let error = Diagnostic::error(
+        // Said once: what is too long is so wherever one looks at it.
+        if (self.depth >= DEEPEST || self.nodes > MOST_NODES) && self.endless() {
+            return Err(Reported);
+        }
+        if self.depth >= DEEPEST {
+            let mut error = Diagnostic::error(
                 "E0211",
-                span,
+                self.outermost,
                 format!("this nests deeper than {DEEPEST} once names are expanded"),
             );
+            if let Some((_, name)) = self.expanding.first() {
+                error = error.hint(format!("`{name}` leads through {} names", self.expanding.len()));
+            }
+            if span != self.outermost {
+                error = error.related(span, "too deep here");
+            }
             return self.report(error);
         }
+        self.depth += 1;
         if self.nodes > MOST_NODES {
+            self.depth -= 1;
             let error = Diagnostic::error("E0211", span, "this grows beyond reason once names are expanded")
                 .hint("quantifiers over formulas are written out for every agent; quantify over states where you can");
             return self.report(error);
         }
         Ok(())
+    }
+
+    /// Whether it was said that something nests or grows beyond reason.
+    fn endless(&self) -> bool {
+        self.diagnostics.iter().any(|d| d.code == "E0211")
+    }
+
+    /// An error where names lead through too many others.
+    pub(super) fn expand_further(&mut self, span: Span) -> Lowered<()> {
+        if self.expanding.len() < DEEPEST as usize {
+            return Ok(());
+        }
+        if self.endless() {
+            return Err(Reported);
+        }
+        let first = self.expanding.first().map_or("", |(_, name)| name.as_str());
+        let text = format!("`{first}` leads through more than {DEEPEST} names");
+        self.report(Diagnostic::error("E0211", span, text))
     }
 
     /// A number known at compile time, of a given dimension.
@@ -258,18 +320,12 @@ impl<'a> Elaborator<'a> {
 
     /// A formula node, shared with equal ones.
     pub(super) fn node(&mut self, node: Node) -> NodeId {
-        match self.tree.nodes.iter().position(|n| *n == node) {
-            Some(at) => NodeId(at as u32),
-            None => self.tree.node(node),
-        }
+        NodeId(self.known[0].place(&mut self.tree.nodes, node).0 as u32)
     }
 
     /// A numeric node, shared with equal ones.
     pub(super) fn term(&mut self, term: Term) -> TermId {
-        match self.tree.terms.iter().position(|t| *t == term) {
-            Some(at) => TermId(at as u32),
-            None => self.tree.term(term),
-        }
+        TermId(self.known[1].place(&mut self.tree.terms, term).0 as u32)
     }
 
     /// The formula that reads a truth value of the present state.
@@ -289,12 +345,11 @@ impl<'a> Elaborator<'a> {
             }
             return self.node(Node::Constant(false));
         }
-        let at = self.atoms.iter().position(|a| *a == truth).unwrap_or_else(|| {
-            self.atoms.push(truth);
+        let (at, new) = self.known[2].place(&mut self.atoms, truth);
+        if new {
             let text = bare(&self.text(span)).to_owned();
             self.texts.atoms.push(text);
-            self.atoms.len() - 1
-        });
+        }
         self.node(Node::Atom(crate::logic::AtomId(at as u32)))
     }
 
@@ -328,12 +383,11 @@ impl<'a> Elaborator<'a> {
         if let Num::Constant(value) = num {
             return self.term(Term::Constant(value));
         }
-        let at = self.signals.iter().position(|s| *s == num).unwrap_or_else(|| {
-            self.signals.push(num);
+        let (at, new) = self.known[3].place(&mut self.signals, num);
+        if new {
             let text = bare(&self.text(span)).to_owned();
             self.texts.signals.push((text, dimension));
-            self.signals.len() - 1
-        });
+        }
         self.term(Term::Signal(SignalId(at as u32)))
     }
 

@@ -1,6 +1,6 @@
 //! Filters of imports: comparisons of a feature's properties, joined by `&`, `|`, `!`.
 
-use crate::data::geometry::{Feature, PropertyValue};
+use crate::data::geometry::PropertyValue;
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, UnaryOp};
 use crate::syntax::diagnostic::Diagnostic;
 
@@ -14,8 +14,11 @@ enum Side {
     Absent,
 }
 
+/// A name and properties.
+pub(super) type Described<'f> = (&'f str, &'f [(String, PropertyValue)]);
+
 /// Whether the filter selects the feature. A property that a feature lacks equals nothing.
-pub(super) fn selects(filter: &Expr, feature: &Feature) -> Result<bool, Diagnostic> {
+pub(super) fn selects(filter: &Expr, feature: Described<'_>) -> Result<bool, Diagnostic> {
     match &filter.kind {
         ExprKind::Bool(value) => Ok(*value),
         ExprKind::Unary(UnaryOp::Not, inner) => Ok(!selects(inner, feature)?),
@@ -43,7 +46,7 @@ pub(super) fn selects(filter: &Expr, feature: &Feature) -> Result<bool, Diagnost
     }
 }
 
-fn side(expr: &Expr, feature: &Feature) -> Result<Side, Diagnostic> {
+fn side(expr: &Expr, feature: Described<'_>) -> Result<Side, Diagnostic> {
     match &expr.kind {
         ExprKind::Text(text) => Ok(Side::Text(text.clone())),
         ExprKind::Bool(value) => Ok(Side::Bool(*value)),
@@ -52,15 +55,13 @@ fn side(expr: &Expr, feature: &Feature) -> Result<Side, Diagnostic> {
             Side::Number(value) => Ok(Side::Number(-value)),
             _ => Err(wrong(expr)),
         },
-        ExprKind::Name(name) if name == "name" => Ok(Side::Text(feature.name.clone())),
-        ExprKind::Name(name) => {
-            Ok(match feature.properties.iter().find(|(n, _)| n == name).map(|(_, v)| v) {
-                Some(PropertyValue::Text(text)) => Side::Text(text.clone()),
-                Some(PropertyValue::Number(value)) => Side::Number(*value),
-                Some(PropertyValue::Bool(value)) => Side::Bool(*value),
-                Some(PropertyValue::Null | PropertyValue::Other(_)) | None => Side::Absent,
-            })
-        }
+        ExprKind::Name(name) if name == "name" => Ok(Side::Text(feature.0.to_owned())),
+        ExprKind::Name(name) => Ok(match feature.1.iter().find(|(n, _)| n == name).map(|(_, v)| v) {
+            Some(PropertyValue::Text(text)) => Side::Text(text.clone()),
+            Some(PropertyValue::Number(value)) => Side::Number(*value),
+            Some(PropertyValue::Bool(value)) => Side::Bool(*value),
+            Some(PropertyValue::Null | PropertyValue::Other(_)) | None => Side::Absent,
+        }),
         _ => Err(wrong(expr)),
     }
 }

@@ -4,8 +4,8 @@ use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::laws::value_span;
 use super::presets::{PARAMETERS, PRESETS, law};
 use super::symbols::{Meaning, unknown};
-use crate::model::{Body, Law};
-use crate::syntax::ast::{Field, Ident};
+use crate::model::{Body, Law, TOP_SPEED};
+use crate::syntax::ast::{Field, Ident, KindDecl};
 use crate::syntax::diagnostic::Diagnostic;
 
 /// The parameters of a kind as far as they are known.
@@ -69,9 +69,20 @@ impl Elaborator<'_> {
                 format!("the kind `{}` starts from itself", name.name),
             ));
         }
+        if let Some(known) = self.kinds.get(&name.name) {
+            return known.clone();
+        }
+        self.expand_further(name.span)?;
         self.expanding.push((0, name.name.clone()));
-        let mut kind = self.kind(&decl.base);
+        let kind = self.own_kind(decl);
         self.expanding.pop();
+        self.kinds.insert(name.name.clone(), kind.clone());
+        kind
+    }
+
+    /// The parameters of a kind as it is declared.
+    fn own_kind(&mut self, decl: &KindDecl) -> Lowered<Kind> {
+        let mut kind = self.kind(&decl.base);
         if let Some(preset) = &decl.preset {
             if PRESETS.iter().any(|p| p.name == preset.name) {
                 if let Ok(kind) = &mut kind {
@@ -191,6 +202,11 @@ pub(super) fn out_of_range(name: &str, law: &Law) -> Option<String> {
     }
     if !positive && low < 0.0 {
         return Some(format!("`{name}` cannot be negative{truncate}"));
+    }
+    if matches!(name, "speed" | "noise") && low > TOP_SPEED {
+        return Some(format!(
+            "a `{name}` of more than {TOP_SPEED} m/s is nobody's: every trial would diverge"
+        ));
     }
     if share && high > 1.0 {
         return Some(format!("`{name}` lies between 0 and 1{truncate}"));

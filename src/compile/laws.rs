@@ -39,6 +39,14 @@ pub(super) fn shape_span(shape: &crate::syntax::ast::ShapeExpr) -> Span {
     }
 }
 
+/// How a time that must not be negative is mended.
+pub(super) fn truncate(error: Diagnostic, law: &Law) -> Diagnostic {
+    match law.constant() {
+        Some(_) => error,
+        None => error.hint("truncate the distribution: `… in 0 s .. 20 s`"),
+    }
+}
+
 impl Elaborator<'_> {
     /// The law of a parameter of a given dimension.
     pub(super) fn law(&mut self, value: &Value, dimension: Dimension, locals: &Locals) -> Lowered<Law> {

@@ -6,7 +6,9 @@
 
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Lowered};
-use crate::logic::{Invalid, Node, NodeId, Relation, Robustness, Term, TermId};
+use super::lower::relation;
+use crate::base::tick::Clock;
+use crate::logic::{Invalid, Node, NodeId, Relation, Robustness, SignalRobustness, Term, TermId};
 use crate::model::{Arithmetic, Bool, Comparison, Field, Fold, Function, Num, Place, Set, Who};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -79,17 +81,15 @@ impl Elaborator<'_> {
             terms: BTreeMap::new(),
         }
         .node(node);
-        match Robustness::new(&self.tree, node, self.horizon, self.clock) {
-            Err(Invalid::NoMargin) => {
+        let made = match self.clock {
+            Clock::Jumps(tick) => SignalRobustness::new(&self.tree, node, self.horizon, tick).err(),
+            clock => Robustness::new(&self.tree, node, self.horizon, clock).err(),
+        };
+        match made {
+            Some(Invalid::NoMargin | Invalid::MovingNumber) => {
                 let error = Diagnostic::error("E0610", span, "a condition in this formula has no margin")
                     .label("it compares a number of several states")
                     .hint("compare state by state, or smallest and largest values: `min<=5 s (x) > c`");
-                self.report(error)
-            }
-            Err(Invalid::NoSteps) => {
-                let error =
-                    Diagnostic::error("E0610", span, "in continuous time formulas have no robustness yet")
-                        .hint("give the scenario a step");
                 self.report(error)
             }
             // A bound beyond the horizon is said by whoever asks how far the formula looks.
@@ -225,6 +225,10 @@ impl Rewriting<'_, '_> {
                 let list = list.iter().map(|one| self.condition(one)).collect();
                 self.elaborator.node(Node::Or(list))
             }
+            Bool::Iff(a, b) => {
+                let (a, b) = (self.condition(a), self.condition(b));
+                self.elaborator.iff(a, b)
+            }
             // Who has not come in yet has no numbers: then the truth decides.
             _ if self.elaborator.coming => {
                 let margin = margin(truth);
@@ -247,17 +251,6 @@ impl Rewriting<'_, '_> {
                 self.comparison(Relation::Greater, margin, zero)
             }
         }
-    }
-}
-
-fn relation(comparison: Comparison) -> Relation {
-    match comparison {
-        Comparison::Less => Relation::Less,
-        Comparison::AtMost => Relation::AtMost,
-        Comparison::Greater => Relation::Greater,
-        Comparison::AtLeast => Relation::AtLeast,
-        Comparison::Equal => Relation::Equal,
-        Comparison::Unequal => Relation::Unequal,
     }
 }
 
@@ -287,6 +280,7 @@ pub fn margin(truth: &Bool) -> Num {
         Bool::Not(inner) => negated(margin(inner)),
         Bool::And(list) => joined(Arithmetic::Min, f64::INFINITY, list),
         Bool::Or(list) => joined(Arithmetic::Max, f64::NEG_INFINITY, list),
+        Bool::Iff(a, b) => combine(Arithmetic::Agree, margin(a), margin(b)),
         Bool::Compare(comparison, a, b) => match comparison {
             Comparison::Equal | Comparison::Unequal => infinite(truth),
             Comparison::Less | Comparison::AtMost => difference(truth, b, a),
@@ -405,6 +399,7 @@ fn may_be_none(num: &Num) -> bool {
                     | Arithmetic::Min
                     | Arithmetic::Max
                     | Arithmetic::Atan2
+                    | Arithmetic::Agree
             ) || may_be_none(a)
                 || may_be_none(b)
         }

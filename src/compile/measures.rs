@@ -2,12 +2,13 @@
 
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered};
-use super::reach::{Reach, Reaches};
 use super::study::{Column, MeasureKind, Root, Sought};
 use super::symbols::{Meaning, ScopeId};
 use super::typed::Typed;
 use crate::base::tick::Clock;
-use crate::logic::{Invalid, Node, NodeId, Relation, SignalMonitor, Term, TermId};
+use crate::logic::{
+    Invalid, Node, NodeId, Part, Relation, SignalMonitor, SignalRobustness, Term, TermId, leaves, reach,
+};
 use crate::syntax::ast::{self, BinaryOp, Expr, ExprKind, Moment};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -29,7 +30,6 @@ impl Elaborator<'_> {
         let typed = self.lower(body, &Locals::of(scope));
         self.temporal = false;
         let node = self.as_formula(typed?, body.span)?;
-        let reach = Reaches::new(&self.tree, self.horizon).node(node);
         // What is wrong with a whole property is said where it is declared, however often it is asked about.
         let place = match &body.kind {
             ExprKind::Name(name) => match self.find(name, scope) {
@@ -38,9 +38,9 @@ impl Elaborator<'_> {
             },
             _ => body.span,
         };
-        self.within_horizon(reach, place)?;
+        let unbounded = self.within_horizon(Part::Node(node), place)?;
         self.watchable(Root::Formula(node), place)?;
-        if !matches!(self.tree.nodes[node.0 as usize], Node::Constant(_)) && !self.depends_on_states(node) {
+        if !matches!(self.tree.nodes[node.0 as usize], Node::Constant(_)) && !self.reads_states(node) {
             let warning = Diagnostic::warning("W0501", place, "this is always the same")
                 .hint("it does not depend on what happens in a trial");
             self.note(warning);
@@ -51,36 +51,13 @@ impl Elaborator<'_> {
             self.note(warning);
         }
         let text = self.text(body.span);
-        Ok((Column { root: Root::Formula(node), text }, reach.unbounded))
+        Ok((Column { root: Root::Formula(node), text }, unbounded))
     }
 
-    /// Whether a formula reads any state.
-    fn depends_on_states(&self, node: NodeId) -> bool {
-        // Children stand before their parents: one pass over both lists settles all.
-        let mut nodes: Vec<bool> = Vec::with_capacity(self.tree.nodes.len());
-        let term = |id: TermId| self.reads_state(id);
-        for made in &self.tree.nodes[..=node.0 as usize] {
-            let of = |id: &NodeId| nodes.get(id.0 as usize).copied().unwrap_or(true);
-            let reads = match made {
-                Node::Constant(_) => false,
-                Node::Atom(_) => true,
-                Node::Compare(_, a, b) => term(*a) || term(*b),
-                Node::Not(a) | Node::Finally(_, a) | Node::Globally(_, a) => of(a),
-                Node::And(list) | Node::Or(list) => list.iter().any(of),
-                Node::Until(_, a, b) | Node::WeakUntil(_, a, b) | Node::Release(_, a, b) => of(a) || of(b),
-            };
-            nodes.push(reads);
-        }
-        nodes.last().copied().unwrap_or(true)
-    }
-
-    fn reads_state(&self, id: TermId) -> bool {
-        match &self.tree.terms[id.0 as usize] {
-            Term::Constant(_) => false,
-            Term::Signal(_) | Term::TimeUntil(_) => true,
-            Term::Combine(_, a, b) => self.reads_state(*a) || self.reads_state(*b),
-            Term::Abs(a) | Term::Window(_, _, a) | Term::Later(_, a) | Term::AtEnd(a) => self.reads_state(*a),
-        }
+    /// Whether a formula reads any state. One that is refused for its shape counts as if it did.
+    fn reads_states(&self, node: NodeId) -> bool {
+        leaves(&self.tree, &[Part::Node(node)])
+            .map_or(true, |(atoms, signals)| !(atoms.is_empty() && signals.is_empty()))
     }
 
     /// A metric read at the start of a trace.
@@ -110,10 +87,9 @@ impl Elaborator<'_> {
             }
             (None, _) => {}
         }
-        let reach = Reaches::new(&self.tree, self.horizon).term(term);
-        self.within_horizon(reach, body.span)?;
+        let unbounded = self.within_horizon(Part::Term(term), body.span)?;
         self.watchable(Root::Metric(term), body.span)?;
-        Ok((term, dimension, reach.unbounded))
+        Ok((term, dimension, unbounded))
     }
 
     /// The formula inside `robustness(…)`, if that is what an expression is.
@@ -143,20 +119,15 @@ impl Elaborator<'_> {
 
     /// A formula with its margins.
     fn robustness_of(&mut self, formula: &Expr, scope: ScopeId) -> Lowered<(NodeId, Dimension, bool)> {
-        if self.clock.is_jumps() {
-            let error = Diagnostic::error("E0508", formula.span, "there is no robustness in continuous time")
-                .hint("splitting needs it too; give the scenario a `step`, and jumps are seen at the steps");
-            return self.report(error);
-        }
         let (node, dimension) = self.robustness(formula.span, |this| {
             this.temporal = true;
             let typed = this.lower(formula, &Locals::of(scope));
             this.temporal = false;
             this.as_formula(typed?, formula.span)
         })?;
-        let reach = Reaches::new(&self.tree, self.horizon).node(node);
-        self.within_horizon(reach, formula.span)?;
-        Ok((node, dimension, reach.unbounded))
+        let unbounded = self.within_horizon(Part::Node(node), formula.span)?;
+        self.watchable(Root::Robustness(node, Sought::Value), formula.span)?;
+        Ok((node, dimension, unbounded))
     }
 
     /// The robustness of the formula of a probability, as a level for splitting.
@@ -220,9 +191,9 @@ impl Elaborator<'_> {
                     return self.report(error);
                 };
                 let locals = Locals::of(scope);
-                let ends =
-                    (self.number_of(low, dimension, &locals), self.number_of(high, dimension, &locals));
-                let range = (ends.0?.value, ends.1?.value);
+                // One after the other: what is wrong with both ends is said once.
+                let least = self.number_of(low, dimension, &locals)?.value;
+                let range = (least, self.number_of(high, dimension, &locals)?.value);
                 if range.0 >= range.1 {
                     return self.report(Diagnostic::error(
                         "E0605",
@@ -291,22 +262,27 @@ impl Elaborator<'_> {
         // Bounds between ticks are not right yet.
         let (Clock::Jumps(tick), true) = (self.clock, self.between.is_empty()) else { return Ok(()) };
         let made = match root {
-            Root::Formula(node) => SignalMonitor::formula(&self.tree, node, self.horizon, tick),
-            Root::Metric(term) => SignalMonitor::metric(&self.tree, term, self.horizon, tick),
-            Root::Robustness(..) => return Ok(()),
+            Root::Formula(node) => SignalMonitor::formula(&self.tree, node, self.horizon, tick).err(),
+            Root::Metric(term) => SignalMonitor::metric(&self.tree, term, self.horizon, tick).err(),
+            Root::Robustness(node, _) => SignalRobustness::new(&self.tree, node, self.horizon, tick).err(),
         };
         match made {
-            Ok(_) => Ok(()),
-            Err(reason @ Invalid::BeyondHorizon { .. }) => {
+            None => Ok(()),
+            Some(reason @ Invalid::BeyondHorizon { .. }) => {
                 self.report(Diagnostic::error("E0502", span, reason.to_string()))
             }
-            Err(reason) => self.report(Diagnostic::error("E0508", span, reason.to_string())),
+            Some(reason) => self.report(Diagnostic::error("E0508", span, reason.to_string())),
         }
     }
 
-    fn within_horizon(&mut self, reach: Reach, span: Span) -> Lowered<()> {
+    /// Whether a part ranges up to the horizon; an error where it looks beyond.
+    fn within_horizon(&mut self, part: Part, span: Span) -> Lowered<bool> {
+        let reach = match reach(&self.tree, part, self.horizon, self.clock) {
+            Ok(reach) => reach,
+            Err(reason) => return self.report(Diagnostic::error("E0504", span, reason.to_string())),
+        };
         if reach.ticks <= self.horizon.0 {
-            return Ok(());
+            return Ok(reach.unbounded);
         }
         let (needed, horizon) = (self.duration(reach.ticks), self.duration(self.horizon.0));
         let mut error = Diagnostic::error(

@@ -3,6 +3,7 @@
 use super::bounds::WIDEST;
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered};
+use super::families::Allowance;
 use super::nearest::nearest;
 use super::study::{Estimator, MeasureKind, Ranking, Splitting, Test};
 use crate::syntax::ast::{Clauses, Expr, Method};
@@ -18,7 +19,7 @@ pub const DEFAULT_EPSILON: f64 = 0.01;
 /// Loss that does not matter to a ranking, unless it says otherwise.
 pub const DEFAULT_LOSS: f64 = 0.02;
 /// Trials of an expectation, a quantile or a comparison that names no half width.
-pub const DEFAULT_TRIALS: u64 = 1000;
+pub const PLANNED_TRIALS: u64 = 1000;
 
 /// Named numbers of a method, in order of their names here.
 struct Arguments<'m, const N: usize> {
@@ -27,10 +28,12 @@ struct Arguments<'m, const N: usize> {
 }
 
 impl Elaborator<'_> {
+    /// The arguments of a method; all are pure numbers but `epsilon`, which is in the dimension of the measure.
     fn arguments<'m, const N: usize>(
         &mut self,
         method: &'m Method,
         names: [&str; N],
+        dimension: Dimension,
         locals: &Locals,
     ) -> Lowered<Arguments<'m, N>> {
         let mut values = [None; N];
@@ -53,7 +56,17 @@ impl Elaborator<'_> {
                 failed = true;
                 continue;
             };
-            match self.number_of(&argument.value, Dimension::NONE, locals) {
+            if let Some(first) = method.arguments.iter().find(|a| a.name.name == argument.name.name)
+                && first.name.span != argument.name.span
+            {
+                let text = format!("`{}` is given twice", argument.name.name);
+                let error = Diagnostic::error("E0604", argument.name.span, text);
+                self.note(error.related(first.name.span, "first given here"));
+                failed = true;
+                continue;
+            }
+            let dimension = if names[at] == "epsilon" { dimension } else { Dimension::NONE };
+            match self.number_of(&argument.value, dimension, locals) {
                 Ok(number) => values[at] = Some((number.value, argument.value.span)),
                 Err(_) => failed = true,
             }
@@ -107,13 +120,6 @@ impl Elaborator<'_> {
         if number.value <= 0.0 {
             return self.report(Diagnostic::error("E0604", expr.span, "`within` must be positive"));
         }
-        if dimension.is_none() && number.value >= 1.0 {
-            return self.report(Diagnostic::error(
-                "E0604",
-                expr.span,
-                "a probability lies between 0 and 1, so that `within` must be less than 1",
-            ));
-        }
         Ok(Some(number.value))
     }
 
@@ -132,7 +138,7 @@ impl Elaborator<'_> {
         clauses: &Clauses,
         threshold: f64,
         at: Span,
-        share: f64,
+        allowance: Allowance,
         locals: &Locals,
     ) -> Lowered<Test> {
         if let Some(within) = &clauses.within {
@@ -140,12 +146,13 @@ impl Elaborator<'_> {
                 .hint("for an indifference region write `by sprt(indifference = 0.01)`");
             return self.report(error);
         }
-        let error = self.delta(clauses, locals)?.unwrap_or(DEFAULT_ALPHA) * share;
+        let error = allowance.error(self.delta(clauses, locals)?, DEFAULT_ALPHA);
         let Some(method) = &clauses.by else { return Ok(Test::EProcess { alpha: error, beta: error }) };
         let name = method.name.name.as_str();
         match name {
             "sprt" | "sprt2" | "plan" => {
-                let arguments = self.arguments(method, ["alpha", "beta", "indifference"], locals)?;
+                let arguments =
+                    self.arguments(method, ["alpha", "beta", "indifference"], Dimension::NONE, locals)?;
                 let alpha = self.error_of(arguments.values[0], error, "alpha");
                 let beta = self.error_of(arguments.values[1], error, "beta");
                 let (indifference, span) = self.required(&arguments, 2, "indifference")?;
@@ -169,13 +176,13 @@ impl Elaborator<'_> {
                 })
             }
             "eprocess" => {
-                let arguments = self.arguments(method, ["alpha", "beta"], locals)?;
+                let arguments = self.arguments(method, ["alpha", "beta"], Dimension::NONE, locals)?;
                 let alpha = self.error_of(arguments.values[0], error, "alpha")?;
                 let beta = self.error_of(arguments.values[1], error, "beta")?;
                 Ok(Test::EProcess { alpha, beta })
             }
             "three_way" => {
-                let arguments = self.arguments(method, ["alpha", "indifference"], locals)?;
+                let arguments = self.arguments(method, ["alpha", "indifference"], Dimension::NONE, locals)?;
                 let alpha = self.error_of(arguments.values[0], error, "alpha")?;
                 let (indifference, span) = self.required(&arguments, 1, "indifference")?;
                 self.region(threshold, indifference, at, span)?;
@@ -188,7 +195,7 @@ impl Elaborator<'_> {
     /// The indifference region must lie inside (0, 1).
     fn region(&mut self, theta: f64, indifference: f64, at: Span, span: Span) -> Lowered<()> {
         let (low, high) = (theta - indifference, theta + indifference);
-        if indifference > 0.0 && low > 0.0 && high < 1.0 {
+        if indifference > 0.0 && low > 0.0 && high < 1.0 && low < theta && theta < high {
             return Ok(());
         }
         let round = |x: f64| (x * 1e12).round() / 1e12;
@@ -202,12 +209,12 @@ impl Elaborator<'_> {
         self.report(error)
     }
 
-    /// The estimator of a measure; `share` is this query's part of the joint error.
+    /// The estimator of a measure.
     pub(super) fn estimator(
         &mut self,
         clauses: &Clauses,
         kind: &MeasureKind,
-        share: f64,
+        allowance: Allowance,
         locals: &Locals,
     ) -> Lowered<Estimator> {
         let dimension = match kind {
@@ -217,7 +224,7 @@ impl Elaborator<'_> {
             }
         };
         let within = self.within(clauses, dimension, locals)?;
-        let delta = self.delta(clauses, locals)?.unwrap_or(DEFAULT_DELTA) * share;
+        let delta = allowance.error(self.delta(clauses, locals)?, DEFAULT_DELTA);
         let quantile = matches!(kind, MeasureKind::Quantile { .. });
         if let (true, Some(expr)) = (quantile, &clauses.within) {
             let error =
@@ -228,22 +235,21 @@ impl Elaborator<'_> {
             return self.report(error);
         }
         let probability = matches!(kind, MeasureKind::Probability);
-        let within = match (&clauses.within, within) {
-            (Some(expr), Some(epsilon)) => Some(self.width((epsilon, expr.span), kind, WIDEST)?),
-            _ => None,
-        };
         let Some(method) = &clauses.by else {
+            if let (Some(expr), Some(epsilon)) = (&clauses.within, within) {
+                self.width((epsilon, expr.span), kind, WIDEST)?;
+            }
             return Ok(match (within, probability) {
                 (Some(epsilon), _) => Estimator::Default { epsilon, delta },
                 (None, true) => Estimator::Default { epsilon: DEFAULT_EPSILON, delta },
-                (None, false) => Estimator::Fixed { trials: DEFAULT_TRIALS, delta },
+                (None, false) => Estimator::Fixed { trials: PLANNED_TRIALS, delta },
             });
         };
         let name = method.name.name.as_str();
         if name == "fixed" || name == "clopper_pearson" || (quantile && name == "dkw") {
-            let arguments = self.arguments(method, ["trials", "delta"], locals)?;
+            let arguments = self.arguments(method, ["trials", "delta"], Dimension::NONE, locals)?;
             let (trials, span) = self.required(&arguments, 0, "trials")?;
-            let delta = self.error_of(arguments.values[1], delta, "delta")?;
+            let delta = self.claimed(arguments.values[1], delta, allowance)?;
             // The values of a quantile are kept.
             let most = if quantile { 1e9 } else { 1e12 };
             if trials < 1.0 || trials.fract() != 0.0 || trials > most {
@@ -260,7 +266,7 @@ impl Elaborator<'_> {
             });
         }
         if probability && (name == "splitting" || name == "fixed_effort") {
-            return self.splitting(clauses, method, delta, locals);
+            return self.splitting(clauses, method, (delta, allowance), locals);
         }
         let known: &[&str] = if probability {
             &[
@@ -281,33 +287,22 @@ impl Elaborator<'_> {
         if !known.contains(&name) {
             return self.unknown_method(method, known);
         }
-        let arguments = self.arguments(method, ["epsilon", "delta"], locals)?;
-        let delta = self.error_of(arguments.values[1], delta, "delta")?;
-        let epsilon = match (arguments.values[0], within) {
-            (Some((epsilon, span)), None) => {
-                // A relative error has no scale.
-                if name == "gbas" && !(1e-4..=0.999).contains(&epsilon) {
-                    let said = format!("`epsilon` is {epsilon}, but lies between 0.0001 and 0.999");
-                    return self.report(Diagnostic::error("E0604", span, said));
-                }
-                if name != "gbas" {
-                    self.width((epsilon, span), kind, WIDEST)?;
-                }
-                epsilon
-            }
-            (None, Some(epsilon)) => epsilon,
-            (Some((_, span)), Some(_)) => {
-                return self.report(Diagnostic::error(
-                    "E0604",
-                    span,
-                    "the width is given twice: by `within` and by `epsilon`",
-                ));
-            }
-            (None, None) => {
-                let error = Diagnostic::error("E0604", method.span, format!("`{name}` needs `epsilon`"));
-                return self.report(error);
-            }
+        let arguments = self.arguments(method, ["epsilon", "delta"], dimension, locals)?;
+        let delta = self.claimed(arguments.values[1], delta, allowance)?;
+        let width = self.width_of(clauses, within, &arguments)?;
+        let Some((epsilon, span)) = width else {
+            let error = Diagnostic::error("E0604", method.span, format!("`{name}` needs `epsilon`"));
+            return self.report(error);
         };
+        if name == "gbas" {
+            // A relative error has no scale.
+            if !(1e-4..=0.999).contains(&epsilon) {
+                let said = format!("a relative error of {epsilon} is not between 0.0001 and 0.999");
+                return self.report(Diagnostic::error("E0604", span, said));
+            }
+        } else {
+            self.width((epsilon, span), kind, WIDEST)?;
+        }
         Ok(match name {
             "okamoto" => Estimator::Okamoto { epsilon, delta },
             "massart" => Estimator::Massart { epsilon, delta },
@@ -321,7 +316,7 @@ impl Elaborator<'_> {
         &mut self,
         clauses: &Clauses,
         method: &Method,
-        delta: f64,
+        (delta, allowance): (f64, Allowance),
         locals: &Locals,
     ) -> Lowered<Estimator> {
         if let Some(within) = &clauses.within {
@@ -331,11 +326,12 @@ impl Elaborator<'_> {
             return self.report(error);
         }
         let adaptive = method.name.name == "splitting";
-        let arguments = self.arguments(method, ["replicas", "runs", "plain", "delta", "kill"], locals)?;
+        let arguments =
+            self.arguments(method, ["replicas", "runs", "plain", "delta", "kill"], Dimension::NONE, locals)?;
         let replicas = self.whole_in(arguments.values[0], "replicas", (10, 1_000_000), 1000)?;
         let runs = self.whole_in(arguments.values[1], "runs", (2, 1000), 20)?;
         let plain = self.whole_in(arguments.values[2], "plain", (100, 1_000_000_000), replicas * runs / 2)?;
-        let delta = self.error_of(arguments.values[3], delta, "delta")?;
+        let delta = self.claimed(arguments.values[3], delta, allowance)?;
         let kill = self.whole_in(arguments.values[4], "kill", (1, replicas - 1), (replicas / 10).max(1))?;
         Ok(Estimator::Splitting(Splitting { adaptive, replicas, runs, kill, plain, delta, level: 0 }))
     }
@@ -367,7 +363,7 @@ impl Elaborator<'_> {
         clauses: &Clauses,
         kind: &MeasureKind,
         dimension: Dimension,
-        share: f64,
+        allowance: Allowance,
         locals: &Locals,
     ) -> Lowered<(Option<f64>, f64)> {
         if let Some(method) = &clauses.by {
@@ -382,39 +378,69 @@ impl Elaborator<'_> {
             // The difference ranges over twice as much.
             self.width((epsilon, expr.span), kind, 2.0 * WIDEST)?;
         }
-        let delta = self.delta(clauses, locals)?.unwrap_or(DEFAULT_DELTA) * share;
+        let delta = allowance.error(self.delta(clauses, locals)?, DEFAULT_DELTA);
         Ok((within, delta))
     }
 
-    /// Loss, error and procedure of a ranking.
+    /// Loss, error and procedure of a ranking by a measure.
     pub(super) fn ranking(
         &mut self,
         clauses: &Clauses,
-        kind: &MeasureKind,
+        (kind, measured): (&MeasureKind, Span),
         dimension: Dimension,
-        share: f64,
+        allowance: Allowance,
         locals: &Locals,
     ) -> Lowered<(f64, f64, Ranking)> {
         let within = self.within(clauses, dimension, locals)?;
-        if let (Some(expr), Some(loss)) = (&clauses.within, within) {
-            self.width((loss, expr.span), kind, 2.0 * WIDEST)?;
+        let delta = allowance.error(self.delta(clauses, locals)?, DEFAULT_DELTA);
+        let mut width = clauses.within.as_ref().zip(within).map(|(expr, loss)| (loss, expr.span));
+        let mut procedure = (Ranking::Betting, delta);
+        if let Some(method) = &clauses.by {
+            let ranking = match method.name.name.as_str() {
+                "okamoto" => Ranking::Okamoto,
+                "betting" => Ranking::Betting,
+                "one_challenger" => Ranking::OneChallenger,
+                _ => return self.unknown_method(method, &["betting", "one_challenger", "okamoto"]),
+            };
+            let arguments = self.arguments(method, ["epsilon", "delta"], dimension, locals)?;
+            procedure = (ranking, self.claimed(arguments.values[1], delta, allowance)?);
+            width = self.width_of(clauses, within, &arguments)?;
         }
-        let delta = self.delta(clauses, locals)?.unwrap_or(DEFAULT_DELTA) * share;
-        let Some(method) = &clauses.by else {
-            return Ok((within.unwrap_or(DEFAULT_LOSS), delta, Ranking::Betting));
+        let (epsilon, at) = match width {
+            Some(found) => found,
+            // What does not matter in metres nobody knows but who asks.
+            None if !dimension.is_none() => {
+                let error = Diagnostic::error("E0604", measured, "how much worse may a choice be?");
+                return self
+                    .report(error.hint(format!("say what does not matter, in {dimension}: `within …`")));
+            }
+            None => (DEFAULT_LOSS, measured),
         };
-        let ranking = match method.name.name.as_str() {
-            "okamoto" => Ranking::Okamoto,
-            "betting" => Ranking::Betting,
-            "one_challenger" => Ranking::OneChallenger,
-            _ => return self.unknown_method(method, &["betting", "one_challenger", "okamoto"]),
-        };
-        let arguments = self.arguments(method, ["epsilon", "delta"], locals)?;
-        let delta = self.error_of(arguments.values[1], delta, "delta")?;
-        let epsilon = match arguments.values[0] {
-            Some(found) => self.width(found, kind, 2.0 * WIDEST)?,
-            None => within.unwrap_or(DEFAULT_LOSS),
-        };
-        Ok((epsilon, delta, ranking))
+        let epsilon = self.width((epsilon, at), kind, 2.0 * WIDEST)?;
+        Ok((epsilon, procedure.1, procedure.0))
+    }
+
+    /// The error that a procedure states, as far as it is for one claim.
+    fn claimed(&mut self, value: Option<(f64, Span)>, default: f64, allowance: Allowance) -> Lowered<f64> {
+        let stated = self.error_of(value, default, "delta")?;
+        Ok(if value.is_some() { allowance.of(stated) } else { stated })
+    }
+
+    /// The width that a query names, by `within` or by `epsilon` and not by both, and where.
+    fn width_of<const N: usize>(
+        &mut self,
+        clauses: &Clauses,
+        within: Option<f64>,
+        arguments: &Arguments<'_, N>,
+    ) -> Lowered<Option<(f64, Span)>> {
+        match (arguments.values[0], clauses.within.as_ref().zip(within)) {
+            (Some((_, span)), Some(_)) => self.report(Diagnostic::error(
+                "E0604",
+                span,
+                "the width is given twice: by `within` and by `epsilon`",
+            )),
+            (Some(found), None) => Ok(Some(found)),
+            (None, within) => Ok(within.map(|(expr, epsilon)| (epsilon, expr.span))),
+        }
     }
 }

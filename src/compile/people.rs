@@ -1,16 +1,19 @@
 //! Agents and groups: declared one by one, in numbers, or from a recording.
 
 use super::behaviour::With;
-use super::dimension::Dimension;
+use super::dimension::{Dimension, describe};
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::kinds::Kind;
 use super::laws::value_span;
+use super::places::Written;
 use super::symbols::{Meaning, unknown};
 use crate::base::geometry::Vec2;
 use crate::base::random::name_hash;
-use crate::model::{Agent, AgentId, Body, Group, Law, Particle, Position, Route, Start, Who};
+use crate::model::{Agent, AgentId, Body, Group, Law, Particle, Position, Route, Start, TOP_SPEED, Who};
 use crate::syntax::ast::{AgentsDecl, Expr, ExprKind, Field, GroupDecl, Ident, Value};
 use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::typed::Typed;
@@ -19,6 +22,8 @@ use super::typed::Typed;
 const STANDS: f64 = 0.05;
 /// Most agents of a scenario.
 const MOST_AGENTS: usize = 1_000_000;
+/// Most stable numbers of a declaration.
+const MOST_ENTITIES: u64 = 1 << 20;
 /// Friction where two particles overlap, kg/(m s), unless the group sets its own: two couples that pass
 /// through each other with an overlap of a metre lose half of their relative speed in about a second.
 const PARTICLE_FRICTION: f64 = 40.0;
@@ -32,15 +37,28 @@ pub(super) struct People {
     pub(super) agents: Vec<Agent>,
     /// Groups.
     pub(super) groups: Vec<Group>,
+    /// Where the starts are written.
+    pub(super) places: Written,
+    /// Who comes in by a source.
+    pub(super) coming: BTreeSet<AgentId>,
     /// First numbers and sizes of the ranges of entities in use.
     ranges: Vec<(u32, u32)>,
 }
 
 impl People {
-    /// A range of `size` stable numbers for a declaration; where hashes collide, the next free range.
+    /// Remembers where the start of some people is written: their field `at`, or else `other`.
+    pub(super) fn written(&mut self, members: &[AgentId], fields: &[&Field], other: Span) {
+        let at = fields.iter().find(|field| field.name.name == "at").map(|field| value_span(&field.value));
+        if let Some(first) = members.first() {
+            self.places.push((*first, at.unwrap_or(other)));
+        }
+    }
+
+    /// A range of `size` stable numbers for a declaration; where ranges collide, the next free one. It begins where
+    /// the name says, whatever the size: who is there already keeps its numbers when more are declared.
     pub(super) fn entities(&mut self, path: &str, size: u32) -> u32 {
         const ALL: u64 = 1 << 24;
-        let mut first = name_hash(path) % (ALL - u64::from(size).min(ALL - 1));
+        let mut first = name_hash(path) % (ALL - MOST_ENTITIES);
         while let Some((start, length)) = self.ranges.iter().find(|(start, length)| {
             first < u64::from(start + length) && u64::from(*start) < first + u64::from(size)
         }) {
@@ -59,6 +77,11 @@ impl<'a> Elaborator<'a> {
     pub(super) fn agents(&mut self, decl: &'a AgentsDecl, people: &mut People) {
         let kind = self.kind(&decl.kind);
         let count = match (&decl.count, &decl.recorded) {
+            (Some(count), None) if !decl.plural => {
+                let error = Diagnostic::error("E0402", count.span, "`agent` declares one")
+                    .hint(format!("write `agents {}[…]: …` for several", decl.name.name));
+                self.report(error)
+            }
             (Some(count), None) => self.count(count),
             (Some(count), Some(_)) => {
                 let error = Diagnostic::error("E0402", count.span, "a recording decides how many there are")
@@ -94,12 +117,13 @@ impl<'a> Elaborator<'a> {
         let members = self.people(&decl.name, count, decl.plural, people, |_| {
             (Arc::new(body.clone()), start.clone(), route.clone())
         });
+        people.written(&members, &rest, decl.name.span);
         self.attach(with, &members);
         let meaning = match members.as_slice() {
             [one] if !decl.plural => Meaning::Agent(*one),
             _ => Meaning::Agents { members: members.into(), particle: false },
         };
-        self.scopes[0].define(&decl.name.name, meaning);
+        self.scopes[0].define(&decl.name, meaning);
     }
 
     /// `group friends[2]: companion as particle { … }`
@@ -161,21 +185,22 @@ impl<'a> Elaborator<'a> {
                 (Arc::new(body.clone()), start.clone(), route.clone())
             });
             people.agents[members[0].0 as usize].particle = Some(particle);
+            people.written(&members, &rest, decl.name.span);
             self.attach(with, &members);
-            self.scopes[0]
-                .define(&decl.name.name, Meaning::Agents { members: members.into(), particle: true });
+            self.scopes[0].define(&decl.name, Meaning::Agents { members: members.into(), particle: true });
             return;
         }
         let members = self.people(&decl.name, count, true, people, |_| {
             (Arc::new(body.clone()), start.clone(), route.clone())
         });
+        people.written(&members, &rest, decl.name.span);
         self.attach(with, &members);
         let index = people.groups.len() as u32;
         for member in &members {
             people.agents[member.0 as usize].group = Some(index);
         }
         people.groups.push(Group { name: decl.name.name.clone(), members: members.clone(), attraction });
-        self.scopes[0].define(&decl.name.name, Meaning::Agents { members: members.into(), particle: false });
+        self.scopes[0].define(&decl.name, Meaning::Agents { members: members.into(), particle: false });
     }
 
     pub(super) fn define_empty(&mut self, name: &Ident, plural: bool, with: With<'a>) {
@@ -188,7 +213,7 @@ impl<'a> Elaborator<'a> {
         } else {
             Meaning::Agent(id)
         };
-        self.scopes[0].define(&name.name, meaning);
+        self.scopes[0].define(name, meaning);
     }
 
     /// Adds `count` people of one declaration.
@@ -291,7 +316,7 @@ impl<'a> Elaborator<'a> {
             None => Err(Reported),
         };
         let velocity = match fields.iter().find(|f| f.name.name == "velocity").map(|f| &f.value) {
-            Some(Value::Plain(expr)) => self.point_of(expr, Dimension::SPEED, &Locals::default()),
+            Some(Value::Plain(expr)) => self.velocity_of(expr),
             Some(other) => self.report(Diagnostic::error(
                 "E0305",
                 value_span(other),
@@ -300,6 +325,28 @@ impl<'a> Elaborator<'a> {
             None => Ok(Vec2::zeros()),
         };
         Ok(Start { position: position?, velocity: velocity? })
+    }
+
+    fn velocity_of(&mut self, expr: &Expr) -> Lowered<Vec2> {
+        let velocity = match self.lower(expr, &Locals::default())? {
+            Typed::Point(x, y) if x.dimension == Dimension::SPEED => Vec2::new(x.value, y.value),
+            Typed::Point(x, _) => {
+                let found = describe(x.dimension);
+                let error =
+                    Diagnostic::error("E0303", expr.span, format!("expected a velocity, found {found}"))
+                        .hint("the unit follows the parentheses: `(1, 0) m/s`");
+                return self.report(error);
+            }
+            found => return self.mismatch(expr.span, "a velocity such as `(1, 0) m/s`", &found),
+        };
+        if velocity.norm() > TOP_SPEED {
+            let speed = (velocity.norm() * 1e3).round() / 1e3;
+            let text = format!("nobody starts with {speed} m/s");
+            let error = Diagnostic::error("E0405", expr.span, text)
+                .hint(format!("a trial in which somebody is faster than {TOP_SPEED} m/s has diverged"));
+            return self.report(error);
+        }
+        Ok(velocity)
     }
 
     fn position(&mut self, value: &Value, people: &People) -> Lowered<Position> {
@@ -399,11 +446,12 @@ impl<'a> Elaborator<'a> {
             }
             (Arc::new(body), Start { position: Position::Point(found[k].position), velocity }, route.clone())
         });
+        people.written(&members, &[], recorded.span);
         self.attach(with, &members);
         let meaning = match members.as_slice() {
             [one] if !decl.plural => Meaning::Agent(*one),
             _ => Meaning::Agents { members: members.into(), particle: false },
         };
-        self.scopes[0].define(&decl.name.name, meaning);
+        self.scopes[0].define(&decl.name, meaning);
     }
 }

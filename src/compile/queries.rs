@@ -2,15 +2,16 @@
 
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
+use super::families::{self, Allowance};
 use super::files::Files;
 use super::measures::Observed;
 use super::number::Number;
-use super::settings::Setting;
+use super::settings::{MOST_POINTS, Setting};
 use super::study::{Ask, Column, Estimator, Measure, MeasureKind, Query, Study, Target, World};
 use super::symbols::ScopeId;
 use crate::base::decimal::Decimal;
 use crate::model::Scenario;
-use crate::syntax::ast::{self, Binding, Clauses, Expr, PropertyFile, PropertyItem, QueryKind, ScenarioFile};
+use crate::syntax::ast::{self, Binding, Expr, PropertyFile, PropertyItem, QueryKind, ScenarioFile};
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::source::{Source, Span};
 use std::collections::BTreeMap;
@@ -41,8 +42,12 @@ pub(super) struct Site<'a> {
 pub(super) struct Compiler<'a> {
     input: &'a Input<'a>,
     pub(super) sites: Vec<Site<'a>>,
+    /// Sites by the names and bits of their settings; numbers of the same bits may differ in what is exact.
+    known: BTreeMap<Vec<(String, u64)>, Vec<usize>>,
     queries: Vec<Query>,
     next_index: usize,
+    /// Claims that share the error of a family.
+    members: usize,
     /// The world of the values of `--set`, of a sweep the first.
     base: usize,
     /// Times that ticks of continuous time must measure.
@@ -56,8 +61,10 @@ pub fn compile(input: &Input<'_>) -> (Option<Study>, Vec<Diagnostic>) {
         let mut compiler = Compiler {
             input,
             sites: Vec::new(),
+            known: BTreeMap::new(),
             queries: Vec::new(),
             next_index: 0,
+            members: 0,
             base: 0,
             measured: measured.clone(),
         };
@@ -87,6 +94,20 @@ impl<'a> Compiler<'a> {
             }
             seen.push(setting);
             let Ok(values) = self.sites[plain].elaborator.points(setting) else { continue };
+            let combinations = points.len().saturating_mul(values.len());
+            if combinations > MOST_POINTS {
+                let error = Diagnostic::error(
+                    "E0405",
+                    setting.span,
+                    format!(
+                        "with this there are {combinations} combinations of values, more than {MOST_POINTS}"
+                    ),
+                );
+                self.sites[plain]
+                    .elaborator
+                    .note(error.hint("sweep fewer parameters at once, or by larger steps"));
+                continue;
+            }
             points = points
                 .iter()
                 .flat_map(|point| {
@@ -112,6 +133,7 @@ impl<'a> Compiler<'a> {
             self.sites[plain].columns.clear();
         }
         self.check_properties(plain);
+        self.members = families::members(self.input.properties, points.len());
         for (number, point) in points.iter().enumerate() {
             self.next_index = 0;
             let base = self.site(point.clone());
@@ -126,9 +148,14 @@ impl<'a> Compiler<'a> {
 
     /// The world of a combination of parameter values.
     fn site(&mut self, settings: BTreeMap<String, Number>) -> usize {
-        if let Some(at) = self.sites.iter().position(|site| site.settings == settings) {
-            return at;
+        // Both zeros are one.
+        let key =
+            settings.iter().map(|(name, number)| (name.clone(), (number.value + 0.0).to_bits())).collect();
+        let alike = self.known.entry(key).or_default();
+        if let Some(at) = alike.iter().find(|at| self.sites[**at].settings == settings) {
+            return *at;
         }
+        alike.push(self.sites.len());
         let (elaborator, scenario) = Elaborator::elaborate(
             self.input.sources,
             self.input.scenario,
@@ -192,25 +219,23 @@ impl<'a> Compiler<'a> {
     ) {
         let locals = Locals::of(scope);
         let mut family: Option<f64> = None;
-        let mut members = 0usize;
+        let mut stated: Option<Span> = None;
         for item in &file.items {
-            match item {
-                PropertyItem::Family { confidence, .. } => {
-                    family = self.sites[base].elaborator.confidence(confidence, &locals).ok();
+            if let PropertyItem::Family { confidence, .. } = item {
+                if let Some(first) = stated.replace(confidence.span) {
+                    let error = Diagnostic::error("E0202", confidence.span, "a file is one family")
+                        .related(first, "its confidence is said here");
+                    self.sites[base].elaborator.note(error);
                 }
-                PropertyItem::Query(query) => {
-                    members +=
-                        if let QueryKind::Estimate(measures) = &query.kind { measures.len() } else { 1 };
-                }
-                _ => {}
+                family = self.sites[base].elaborator.confidence(confidence, &locals).ok();
             }
         }
+        // The claims of a family share its error.
+        let family = family.map(|delta| delta / self.members.max(1) as f64);
         for item in &file.items {
             if let PropertyItem::Query(query) = item {
                 let settings = self.described(base, point, swept);
-                // Bonferroni: the claims of a family share its error.
-                let family = family.map(|delta| delta / members.max(1) as f64);
-                if let (Some(_), Some(span)) = (family, own_errors(&query.clauses)) {
+                if let (Some(_), Some(span)) = (family, families::own_errors(&query.clauses)) {
                     let warning = Diagnostic::warning("W0601", span, "this query leaves the family")
                         .hint("its own error counts instead of its share; leave it out to hold jointly with the others");
                     self.sites[base].elaborator.note(warning);
@@ -253,6 +278,15 @@ impl<'a> Compiler<'a> {
         let mut failed = false;
         for binding in bindings {
             let elaborator = &mut self.sites[base].elaborator;
+            if let Some(first) = bindings.iter().find(|b| b.name.name == binding.name.name)
+                && first.name.span != binding.name.span
+            {
+                let text = format!("`{}` is set twice", binding.name.name);
+                let error = Diagnostic::error("E0210", binding.name.span, text);
+                elaborator.note(error.related(first.name.span, "first set here"));
+                failed = true;
+                continue;
+            }
             if elaborator.param(&binding.name.name, binding.name.span).is_err() {
                 failed = true;
                 continue;
@@ -314,10 +348,7 @@ impl<'a> Compiler<'a> {
                 self.push(query.span, text, settings, property_name(measure), ask, unbounded, site);
             }
             QueryKind::Estimate(measures) => {
-                // A band holds all quantiles of a metric at once.
-                let band = clauses.by.as_ref().is_some_and(|method| method.name.name == "dkw");
-                let claims = if band { metrics(measures) } else { measures.len() };
-                let share = 1.0 / claims.max(1) as f64;
+                let allowance = Allowance { family, claims: families::claims(measures, clauses) };
                 let mut failed = false;
                 for measure in measures {
                     let Ok((measured, unbounded)) = self.measured(site, measure, scope) else {
@@ -325,13 +356,7 @@ impl<'a> Compiler<'a> {
                         continue;
                     };
                     let elaborator = &mut self.sites[site].elaborator;
-                    let with_family = family_clauses(clauses);
-                    let share = if let (Some(delta), true) = (family, with_family) {
-                        delta / super::methods::DEFAULT_DELTA
-                    } else {
-                        share
-                    };
-                    let Ok(mut estimator) = elaborator.estimator(clauses, &measured.kind, share, &locals)
+                    let Ok(mut estimator) = elaborator.estimator(clauses, &measured.kind, allowance, &locals)
                     else {
                         failed = true;
                         continue;
@@ -384,10 +409,10 @@ impl<'a> Compiler<'a> {
                         return self.sites[base].elaborator.report(error);
                     }
                 };
-                let share = family.map_or(1.0, |delta| delta / super::methods::DEFAULT_DELTA);
+                let allowance = Allowance { family, claims: 1 };
                 let (within, delta) = self.sites[base]
                     .elaborator
-                    .comparison_clauses(clauses, &a.kind, dimension, share, &locals)?;
+                    .comparison_clauses(clauses, &a.kind, dimension, allowance, &locals)?;
                 let ask = Ask::Compare {
                     first: a,
                     second: b,
@@ -462,30 +487,11 @@ impl<'a> Compiler<'a> {
                 signals: elaborator.signals,
                 tree: elaborator.tree,
                 columns: site.columns,
+                places: elaborator.places,
             });
         }
         (Some(Study { title, worlds, base: self.base, queries: self.queries }), diagnostics)
     }
-}
-
-/// How many different metrics are asked about.
-fn metrics(measures: &[ast::Measure]) -> usize {
-    let mut spans: Vec<Span> = measures.iter().map(|measure| measure.body.span).collect();
-    spans.sort_unstable();
-    spans.dedup();
-    spans.len()
-}
-
-/// Whether the error of a query comes from its family rather than from its own clause.
-pub(super) fn family_clauses(clauses: &Clauses) -> bool {
-    clauses.confidence.is_none()
-}
-
-/// Where a query states errors of its own.
-fn own_errors(clauses: &Clauses) -> Option<Span> {
-    let named = |name: &str| matches!(name, "alpha" | "beta" | "delta");
-    let argument = clauses.by.iter().flat_map(|method| &method.arguments).find(|a| named(&a.name.name));
-    clauses.confidence.as_ref().map(|c| c.span).or(argument.map(|a| a.name.span))
 }
 
 /// The name of the property that is asked about, if it is one name.

@@ -8,6 +8,7 @@ use super::symbols::{Meaning, unknown};
 use crate::data::tracks::{Observation, Recording, read_eth_biwi};
 use crate::syntax::ast::{Expr, Ident, Recorded, Text};
 use crate::syntax::diagnostic::Diagnostic;
+use std::collections::btree_map::Entry;
 
 /// How many bad lines of a file are shown.
 const SHOWN_LINES: usize = 10;
@@ -118,6 +119,15 @@ impl<'a> Elaborator<'a> {
                 return self.report(error);
             }
         }
+        let asked = recorded.only.iter().zip(&only).chain(recorded.except.iter().zip(&except));
+        let mut named: Vec<u32> = Vec::new();
+        for (expr, id) in asked {
+            if named.contains(id) {
+                let text = format!("person {id} is named twice");
+                return self.report(Diagnostic::error("E0703", expr.span, text));
+            }
+            named.push(*id);
+        }
         let chosen: Vec<Observation> = found
             .into_iter()
             .filter(|o| (only.is_empty() || only.contains(&o.id)) && !except.contains(&o.id))
@@ -130,6 +140,20 @@ impl<'a> Elaborator<'a> {
             )
             .hint("choose one by `id`, or declare `agents`");
             return self.report(error);
+        }
+        for person in &chosen {
+            match self.recorded.entry((index, person.id)) {
+                Entry::Vacant(free) => {
+                    free.insert(recorded.span);
+                }
+                Entry::Occupied(first) => {
+                    let text = format!("person {} of `{}` is there already", person.id, name.name);
+                    let error = Diagnostic::error("E0703", recorded.span, text)
+                        .related(*first.get(), "taken here")
+                        .hint(format!("leave this one out: `except {}`", person.id));
+                    return self.report(error);
+                }
+            }
         }
         Ok(chosen)
     }

@@ -6,7 +6,7 @@ use super::files::Files;
 use super::filter;
 use super::symbols::Meaning;
 use crate::base::geometry::{Polygon, Segment, Shape, Vec2};
-use crate::data::geometry::{Feature, Geometry, read_geojson, read_wkt};
+use crate::data::geometry::{Feature, Geometry, PropertyValue, Select, read_wkt, select_geojson};
 use crate::model::{Barrier, BarrierId, Obstacle, Region, RegionId};
 use crate::syntax::ast::{Expr, Ident, SceneItem, ShapeExpr, Text};
 use crate::syntax::diagnostic::Diagnostic;
@@ -95,6 +95,7 @@ impl<'a> Elaborator<'a> {
         if self.expanding.iter().any(|(_, n)| *n == name) {
             return self.report(Diagnostic::error("E0205", span, format!("`{name}` is defined by itself")));
         }
+        self.expand_further(span)?;
         self.expanding.push((0, name));
         let shape = self.shape(written, &Locals::default());
         self.expanding.pop();
@@ -159,8 +160,25 @@ impl<'a> Elaborator<'a> {
                         "a polygon needs at least three corners",
                     ));
                 }
+                let twice = std::iter::once(&polygon.outline).chain(&polygon.holes).find_map(|ring| {
+                    (0..ring.len()).map(|k| (ring[k], ring[(k + 1) % ring.len()])).find(|(a, b)| a == b)
+                });
+                if let Some((corner, _)) = twice {
+                    let error = Diagnostic::error(
+                        "E0401",
+                        *span,
+                        format!("the corner ({}, {}) is there twice in a row", corner.x, corner.y),
+                    )
+                    .hint("polygons close by themselves: the last corner is not the first again");
+                    return self.report(error);
+                }
                 if !polygon.is_simple() {
                     return self.report(Diagnostic::error("E0401", *span, "the edges of this polygon cross"));
+                }
+                if let Some(fault) = polygon.hole_fault() {
+                    let error = Diagnostic::error("E0401", *span, fault.to_string())
+                        .hint("holes lie inside the outline and apart from each other");
+                    return self.report(error);
                 }
                 if polygon.area() <= 0.0 {
                     return self.report(Diagnostic::error("E0401", *span, "this polygon has no area"));
@@ -191,15 +209,26 @@ impl<'a> Elaborator<'a> {
     }
 
     fn import(&mut self, path: &Text, filter: Option<&Expr>, files: &Files) {
-        let Ok(features) = self.features(path, files) else { return };
-        let total = features.len();
-        let mut taken = 0;
+        let (mut total, mut taken, mut wrong) = (0, 0, None);
+        let mut select = |name: &str, properties: &[(String, PropertyValue)]| {
+            total += 1;
+            let selected = match filter.map(|f| filter::selects(f, (name, properties))) {
+                Some(Err(error)) => {
+                    wrong = Some(error);
+                    false
+                }
+                Some(Ok(selected)) => selected,
+                None => true,
+            };
+            taken += usize::from(selected);
+            selected
+        };
+        let features = self.features(path, files, &mut select);
+        if let Some(error) = wrong {
+            return self.note(error);
+        }
+        let Ok(features) = features else { return };
         for feature in features {
-            match filter.map(|f| filter::selects(f, &feature)) {
-                Some(Err(error)) => return self.note(error),
-                Some(Ok(false)) => continue,
-                Some(Ok(true)) | None => taken += 1,
-            }
             let obstacle = match feature.shape {
                 Geometry::Polygon(polygon) => Obstacle::Solid(Shape::Polygon(polygon)),
                 Geometry::Line(points) => {
@@ -220,7 +249,8 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn features(&mut self, path: &Text, files: &Files) -> Lowered<Vec<Feature>> {
+    /// The features of a file that are selected. Filters come first: what is wrong with the others does not matter.
+    fn features(&mut self, path: &Text, files: &Files, select: &mut Select<'_>) -> Lowered<Vec<Feature>> {
         let bytes = match files.get(&path.value) {
             Ok(bytes) => bytes,
             Err(reason) => return self.report(missing(path.span, &reason)),
@@ -229,7 +259,14 @@ impl<'a> Elaborator<'a> {
             return self.report(Diagnostic::error("E0704", path.span, "this file is not text in UTF-8"));
         };
         let wkt = path.value.to_ascii_lowercase().ends_with(".wkt");
-        let read = if wkt { read_wkt(text) } else { read_geojson(text) };
+        // Well-known text has no properties, so that a filter takes all of it or nothing.
+        let read = if !wkt {
+            select_geojson(text, select)
+        } else if select("", &[]) {
+            read_wkt(text)
+        } else {
+            Ok(Vec::new())
+        };
         match read {
             Ok(features) => Ok(features),
             Err(errors) => {

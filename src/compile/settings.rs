@@ -30,8 +30,8 @@ pub enum SettingValue {
     Sweep(Expr, Expr, Expr),
 }
 
-/// Most points of a sweep.
-const MOST_POINTS: usize = 10_000;
+/// Most points of a sweep, and most combinations of several.
+pub(super) const MOST_POINTS: usize = 10_000;
 
 impl<'a> Elaborator<'a> {
     /// The unit in which the default of a parameter is written.

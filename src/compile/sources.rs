@@ -1,16 +1,17 @@
 //! Sources: who comes in, how often, and how many places are kept for them.
 //!
-//! Without a `limit` so many places are kept that a trial needs more with a probability below 1e-9: the smallest n
+//! Without a `limit` so many places are kept that a trial has more arrivals with a probability below 1e-9: the smallest n
 //! with e^(th) E[e^(-tX)]^n below it for some t, h the horizon and X the time between arrivals (the bound of
-//! Chernoff 1952 on the sum of n of them).
+//! Chernoff 1952 on the sum of n of them). The expectation is known, or bounded from above by that of times that are
+//! a little shorter.
 
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered};
-use super::laws::value_span;
+use super::laws::{truncate, value_span};
 use super::people::People;
 use super::symbols::Meaning;
 use crate::base::math;
-use crate::model::{Law, Route, Source};
+use crate::model::{Family, Law, Route, Source};
 use crate::syntax::ast::process::SourceDecl;
 use crate::syntax::ast::{Field, Value};
 use crate::syntax::diagnostic::Diagnostic;
@@ -18,6 +19,8 @@ use std::sync::Arc;
 
 /// Most places that are kept without a `limit`.
 const MOST_PLACES: usize = 20_000;
+/// Most people that may come in a trial.
+const MOST_PEOPLE: usize = 1 << 20;
 /// Logarithm of one over the probability that places do not suffice.
 const RARE: f64 = 20.723_265_836_946_41;
 
@@ -25,7 +28,7 @@ impl<'a> Elaborator<'a> {
     /// `source doors: adult with phone { … }`
     pub(super) fn source(&mut self, decl: &'a SourceDecl, people: &mut People) -> Option<Source> {
         let mut kind = self.kind(&decl.kind);
-        let with = self.with(&decl.name, &decl.with);
+        let mut with = self.with(&decl.name, &decl.with);
         let rest = self.parameters(&decl.body, kind.as_mut().ok(), &Locals::default());
         let start = self.start(&decl.name, &rest, people, true);
         let route = self.way_out(decl, &rest);
@@ -37,27 +40,29 @@ impl<'a> Elaborator<'a> {
             (Ok(every), Ok(limit)) => self.places(decl, &rest, every, *limit),
             (Err(reported), _) | (_, Err(reported)) => Err(*reported),
         };
-        let (Ok(body), Ok(start), Ok(route), Ok(every), Ok(places)) = (body, start, route, every, places)
+        let (Ok(body), Ok(start), Ok(route), Ok(every), Ok((places, range))) =
+            (body, start, route, every, places)
         else {
             self.define_empty(&decl.name, true, with);
             return None;
         };
         let body = Arc::new(body);
-        // The range of numbers does not depend on how many places are kept: another horizon, the same people.
-        let range = places.next_power_of_two().max(1024) as u32;
         let first = people.entities(&decl.name.name, range);
         self.coming = true;
         let members = self.members(&decl.name, places, true, first, people, |_| {
             (body.clone(), start.clone(), route.clone())
         });
+        people.written(&members, &rest, decl.name.span);
+        people.coming.extend(&members);
         for member in &members {
             self.may_be_absent(*member);
         }
+        with.most = range;
         self.attach(with, &members);
         let entity = people.entities(&format!("{}.every", decl.name.name), 1);
         self.scopes[0]
-            .define(&decl.name.name, Meaning::Agents { members: members.clone().into(), particle: false });
-        Some(Source { name: decl.name.name.clone(), entity, every, members })
+            .define(&decl.name, Meaning::Agents { members: members.clone().into(), particle: false });
+        Some(Source { name: decl.name.name.clone(), entity, every, members, most: range })
     }
 
     /// Who comes in leaves at the last goal.
@@ -91,9 +96,8 @@ impl<'a> Elaborator<'a> {
         let law = self.law(&field.value, Dimension::TIME, &Locals::default())?;
         let span = value_span(&field.value);
         if law.bounds().0 < 0.0 {
-            let error = Diagnostic::error("E0405", span, "a time between arrivals cannot be negative")
-                .hint("truncate the distribution: `… in 0 s .. 20 s`");
-            return self.report(error);
+            let error = Diagnostic::error("E0405", span, "a time between arrivals cannot be negative");
+            return self.report(truncate(error, &law));
         }
         if law.mean() > 0.0 {
             Ok(law)
@@ -114,56 +118,49 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    /// How many places are kept.
+    /// How many places are kept, and how many numbers of people. These do not depend on how many places there are: another
+    /// horizon, the same people.
     fn places(
         &mut self,
         decl: &'a SourceDecl,
         fields: &[&'a Field],
         every: &Law,
         limit: Option<usize>,
-    ) -> Lowered<usize> {
+    ) -> Lowered<(usize, u32)> {
         let horizon = self.clock.seconds(self.horizon);
         let expected = horizon / every.mean();
         let span =
             fields.iter().find(|field| field.name.name == "limit").map(|field| value_span(&field.value));
-        match (limit, span) {
-            (Some(limit), Some(span)) if (limit as f64) < expected => {
-                let error = Diagnostic::error(
-                    "E0913",
-                    span,
-                    format!("about {expected:.0} people are expected up to the horizon, more than this"),
-                )
-                .hint("a trial in which more come than `limit` is unresolved");
-                self.report(error)
+        let enough = enough(every, horizon);
+        let range = |people: usize| people.next_power_of_two().max(1024) as u32;
+        match (limit, enough) {
+            // Places are used again: numbers are kept for all who may come.
+            (Some(limit), Some(people)) if (limit as f64) < expected && people <= MOST_PEOPLE => {
+                Ok((limit, range(people)))
             }
-            (Some(limit), _) => Ok(limit),
-            (None, _) => match enough(every, horizon) {
-                Some(places) if places <= MOST_PLACES => Ok(places),
-                _ => {
-                    let error = Diagnostic::error(
-                        "E0913",
-                        decl.name.span,
-                        format!("about {expected:.0} people would come by `{}`", decl.name.name),
-                    )
-                    .hint("say how many may come at most with `limit`, or shorten the horizon");
-                    self.report(error)
-                }
-            },
+            (Some(limit), _) if (limit as f64) >= expected => Ok((limit, range(limit))),
+            (None, Some(places)) if places <= MOST_PLACES => Ok((places, range(places))),
+            (limit, _) => {
+                let text = format!("about {expected:.0} people would come by `{}`", decl.name.name);
+                let error = Diagnostic::error("E0913", span.unwrap_or(decl.name.span), text);
+                self.report(error.hint(if limit.is_none() {
+                    "say how many may be there at once with `limit`, or shorten the horizon"
+                } else {
+                    "shorten the horizon, or let fewer come"
+                }))
+            }
         }
     }
 }
 
 /// So many arrivals within a time that more are rarer than one in a thousand million.
 fn enough(every: &Law, horizon: f64) -> Option<usize> {
-    const POINTS: u32 = 512;
-    let law = every.ready();
-    let times: Vec<f64> = (0..POINTS).map(|k| law.draw((f64::from(k) + 0.5) / f64::from(POINTS))).collect();
+    let times = Times::of(every);
     let mut best = f64::INFINITY;
     for k in 0..=120 {
         // From a hundredth to ten thousand of one over the mean.
         let t = math::exp((f64::from(k) / 20.0 - 2.0) * std::f64::consts::LN_10) / every.mean();
-        let transform = times.iter().map(|time| math::exp(-t * time)).sum::<f64>() / f64::from(POINTS);
-        let count = (RARE + t * horizon) / -math::ln(transform);
+        let count = (RARE + t * horizon) / -math::ln(times.transform(t));
         if count > 0.0 && count < best {
             best = count;
         }
@@ -171,10 +168,53 @@ fn enough(every: &Law, horizon: f64) -> Option<usize> {
     best.is_finite().then(|| best.ceil() as usize)
 }
 
+/// Times between arrivals, or times that are a little shorter.
+enum Times {
+    /// Exponential ones of a mean.
+    Exponential(f64),
+    /// Some times with their probabilities, which sum to 1.
+    Listed(Vec<(f64, f64)>),
+}
+
+impl Times {
+    fn of(law: &Law) -> Self {
+        const POINTS: u32 = 1024;
+        // What rounding can do to a time that is drawn.
+        const ROUNDING: f64 = 1e-9;
+        match law {
+            Law::Random { family: Family::Exponential { mean }, low, high }
+                if *low <= 0.0 && *high == f64::INFINITY =>
+            {
+                return Self::Exponential(*mean);
+            }
+            // These are not drawn in the order of their size.
+            Law::Random { family: Family::Choice(options), low, high } => {
+                let kept = options.iter().filter(|(value, _)| low <= value && value <= high);
+                let mass: f64 = kept.clone().map(|(_, weight)| weight).sum();
+                return Self::Listed(kept.map(|(value, weight)| (*value, weight / mass)).collect());
+            }
+            _ => {}
+        }
+        // What is drawn rises with the uniform number: on each part of its range the least is that at its start.
+        let ready = law.ready();
+        let part = 1.0 / f64::from(POINTS);
+        let least = |k: u32| if k == 0 { law.bounds().0 } else { ready.draw(f64::from(k) * part) };
+        Self::Listed((0..POINTS).map(|k| (least(k) * (1.0 - ROUNDING), part)).collect())
+    }
+
+    /// At least E[e^(-tX)].
+    fn transform(&self, t: f64) -> f64 {
+        match self {
+            Self::Exponential(mean) => 1.0 / (1.0 + t * mean),
+            Self::Listed(times) => times.iter().map(|(time, weight)| weight * math::exp(-t * time)).sum(),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::Family;
+    use crate::base::special::ln_gamma;
 
     fn law(family: Family) -> Law {
         Law::Random { family, low: f64::NEG_INFINITY, high: f64::INFINITY }
@@ -188,5 +228,50 @@ mod tests {
         // With constant times nothing is left to chance.
         assert_eq!(enough(&Law::Constant(4.0), 30.0), Some(8));
         assert_eq!(enough(&law(Family::Choice(vec![(0.0, 1.0)])), 30.0), None);
+    }
+
+    #[test]
+    fn no_transform_is_too_small() {
+        let uniform =
+            |low: f64, high: f64, t: f64| (math::exp(-t * low) - math::exp(-t * high)) / (t * (high - low));
+        for t in [0.01, 0.3, 1.0, 4.0, 30.0, 1000.0] {
+            let cut = Law::Random { family: Family::Exponential { mean: 1.0 }, low: 0.0, high: 20.0 };
+            let rest = math::exp(-20.0);
+            let whole = (1.0 - rest * math::exp(-20.0 * t)) / ((1.0 + t) * (1.0 - rest));
+            for (law, exact) in [
+                (law(Family::Exponential { mean: 2.0 }), 1.0 / (1.0 + 2.0 * t)),
+                (cut, whole),
+                (law(Family::Uniform { low: 0.0, high: 2.0 }), uniform(0.0, 2.0, t)),
+                (law(Family::Uniform { low: 1.0, high: 2.0 }), uniform(1.0, 2.0, t)),
+                (
+                    law(Family::Choice(vec![(2.0, 0.25), (1.0, 0.75)])),
+                    0.25 * math::exp(-2.0 * t) + 0.75 * math::exp(-t),
+                ),
+                (Law::Constant(3.0), math::exp(-3.0 * t)),
+            ] {
+                let bound = Times::of(&law).transform(t);
+                assert!(bound >= exact * (1.0 - 1e-12), "{law:?} {t}: {bound} {exact}");
+                assert!(bound <= exact + 1.001 / 1024.0, "{law:?} {t}: {bound} {exact}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_bound_holds_for_poisson_arrivals() {
+        // More than n arrivals with probability above 1e-9: some trial has too few places.
+        for mean in [1e-3, 0.02, 0.5, 3.0, 40.0, 1000.0] {
+            let places = enough(&law(Family::Exponential { mean: 1.0 }), mean).unwrap();
+            let cut = Law::Random { family: Family::Exponential { mean: 1.0 }, low: 0.0, high: 60.0 };
+            assert!(enough(&cut, mean).unwrap() >= places, "{mean}");
+            let exactly = |n: usize| math::exp(n as f64 * math::ln(mean) - mean - ln_gamma(n as f64 + 1.0));
+            let more: f64 = (places + 1..places + 200).map(exactly).sum();
+            assert!(more < 1e-9, "{mean}: {places} places, {more}");
+        }
+        // Twice as many places as arrivals would be too careful.
+        assert!(enough(&law(Family::Uniform { low: 0.0, high: 2.0 }), 1000.0).unwrap() < 1150);
+        for (gap, horizon, most) in [(1.0, 100.0, 100), (4.0, 28.0, 7), (0.5, 0.4, 0)] {
+            let places = enough(&Law::Constant(gap), horizon).unwrap();
+            assert!(places >= most && places <= most + 1, "{gap} {horizon}: {places}");
+        }
     }
 }

@@ -3,7 +3,7 @@
 use super::dimension::Dimension;
 use super::written::Written;
 use crate::logic::{NodeId, Relation, TermId, Tree};
-use crate::model::{Bool, Num, Scenario};
+use crate::model::{AgentId, Bool, Num, Scenario};
 use crate::syntax::source::Span;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -40,6 +40,15 @@ pub struct World {
     pub tree: Tree,
     /// What is asked of each trace.
     pub columns: Vec<Column>,
+    /// Where the starts of the people of each declaration are written, by the first of them; ascending.
+    pub places: Vec<(AgentId, Span)>,
+}
+
+impl World {
+    /// The place where the start of somebody is written.
+    pub fn place_of(&self, agent: AgentId) -> Option<Span> {
+        super::places::written(&self.places, agent)
+    }
 }
 
 /// How what is observed was written.
@@ -129,6 +138,8 @@ pub enum Ask {
         threshold: f64,
         /// The procedure.
         test: Test,
+        /// Error of the interval beside the verdict.
+        beside: f64,
     },
     /// What is the value of a measure?
     Estimate {
@@ -239,12 +250,10 @@ pub enum Test {
         /// Half width of the region.
         indifference: f64,
     },
-    /// Decide by an interval of the estimate: expectations and quantiles.
+    /// Decide by the interval of an expectation, which holds at all numbers of trials at once.
     Interval {
         /// Error.
         delta: f64,
-        /// Fixed number of trials, for quantiles.
-        trials: u64,
     },
 }
 

@@ -2,7 +2,7 @@
 
 use super::nearest::nearest;
 use crate::model::{AgentId, BarrierId, BehaviourId, RegionId};
-use crate::syntax::ast::{Expr, KindDecl, LetDecl, ShapeExpr};
+use crate::syntax::ast::{Expr, Ident, KindDecl, LetDecl, ShapeExpr};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::collections::BTreeMap;
@@ -103,9 +103,11 @@ impl<'a> Scope<'a> {
         Ok(())
     }
 
-    /// Replaces the meaning of a declared name.
-    pub(super) fn define(&mut self, name: &str, meaning: Meaning<'a>) {
-        if let Some(entry) = self.entries.get_mut(name) {
+    /// Replaces the meaning of a name where it was declared; who took a name that was taken changes nothing.
+    pub(super) fn define(&mut self, name: &Ident, meaning: Meaning<'a>) {
+        if let Some(entry) = self.entries.get_mut(&name.name)
+            && entry.span == name.span
+        {
             entry.meaning = meaning;
         }
     }

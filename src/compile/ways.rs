@@ -2,13 +2,15 @@
 
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered};
-use super::laws::value_span;
+use super::laws::{truncate, value_span};
 use super::people::People;
 use super::typed::Typed;
 use crate::base::geometry::Vec2;
+use crate::base::tick::Tick;
 use crate::model::{Goal, Leg, Move, Moves, Route, Who};
 use crate::syntax::ast::{self, Expr, MoveOption, MovesDecl, Value};
 use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
 
 /// Most options of a `moves` declaration.
 const MOST_OPTIONS: usize = 1000;
@@ -34,9 +36,8 @@ impl<'a> Elaborator<'a> {
                                         "E0405",
                                         value_span(value),
                                         "a time to wait cannot be negative",
-                                    )
-                                    .hint("truncate the distribution: `… in 0 s .. 20 s`");
-                                    self.report(error)
+                                    );
+                                    self.report(truncate(error, &law))
                                 }
                                 law => law.map(Leg::Wait),
                             }
@@ -96,6 +97,11 @@ impl<'a> Elaborator<'a> {
                 "a move holds for a finite time",
             ));
         };
+        if duration == Tick(0) {
+            let error =
+                Diagnostic::error("E0406", decl.duration.span, "a move that holds for no time is none");
+            return self.report(error);
+        }
         if failed {
             return Err(super::elaborator::Reported);
         }
@@ -122,8 +128,7 @@ impl<'a> Elaborator<'a> {
             }
             MoveOption::Heading(angle) => {
                 let number = self.number_of(angle, Dimension::ANGLE, &Locals::default())?;
-                options.push((heading_label(number.value), Move::Heading(number.value)));
-                Ok(())
+                self.heading(number.value, angle.span, options)
             }
             MoveOption::Headings { from, to, by, span } => {
                 let ends = (
@@ -152,11 +157,33 @@ impl<'a> Elaborator<'a> {
                     let angle = from + by * k as f64;
                     // What is zero but for rounding is the direct way.
                     let angle = if angle.abs() < 1e-12 { 0.0 } else { angle };
-                    options.push((heading_label(angle), Move::Heading(angle)));
+                    self.heading(angle, *span, options)?;
                 }
                 Ok(())
             }
         }
+    }
+
+    /// One heading more; full turns do not make it another.
+    fn heading(&mut self, angle: f64, span: Span, options: &mut Vec<(String, Move)>) -> Lowered<()> {
+        let label = heading_label(angle);
+        let same = |other: &Move| match other {
+            Move::Heading(known) => {
+                let turns = (angle - known) / std::f64::consts::TAU;
+                (turns - turns.round()).abs() < 1e-9
+            }
+            Move::Stop => false,
+        };
+        if let Some((known, _)) = options.iter().find(|(_, option)| same(option)) {
+            let text = if *known == label {
+                format!("`{label}` is there already")
+            } else {
+                format!("`{label}` is there already, as `{known}`")
+            };
+            return self.report(Diagnostic::error("E0406", span, text));
+        }
+        options.push((label, Move::Heading(angle)));
+        Ok(())
     }
 }
 

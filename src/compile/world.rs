@@ -62,6 +62,14 @@ impl<'a> Elaborator<'a> {
                 }
                 Item::Source(decl) => (&decl.name, Meaning::Declared),
             };
+            let reserved = match (&meaning, name.name.as_str()) {
+                (Meaning::Kind(_), "sfm") => Some("`sfm` is the social force model, from which kinds start"),
+                (_, "self") => Some("`self` is whoever has a behaviour"),
+                _ => None,
+            };
+            if let Some(text) = reserved {
+                self.note(Diagnostic::error("E0202", name.span, text).hint("choose another name"));
+            }
             if let Err(error) = self.scopes[0].declare(&name.name, name.span, meaning) {
                 self.note(error);
             }
@@ -86,6 +94,9 @@ impl<'a> Elaborator<'a> {
                     )
                     .related(first.span, "declared here");
                     self.note(error);
+                    // What it means in this file is anybody's guess: no further error comes of its uses.
+                    self.broken.insert((self.scopes.len(), name.name.clone()));
+                    let _ = scope.declare(&name.name, name.span, meaning);
                 } else if let Err(error) = scope.declare(&name.name, name.span, meaning) {
                     self.note(error);
                 }
@@ -96,6 +107,7 @@ impl<'a> Elaborator<'a> {
 
     fn build(&mut self, file: &'a ScenarioFile, files: &Files) -> Lowered<Scenario> {
         let clock = self.settle_clock(file);
+        self.timeless = clock.is_err();
         let variables = self.settle_variables();
         for item in &file.items {
             if let Item::Tracks { name, format, path } = item {
@@ -149,6 +161,7 @@ impl<'a> Elaborator<'a> {
             }
         }
         self.check_unused(file);
+        self.check_places(&people);
         clock?;
         if self.failed() {
             return Err(Reported);
@@ -157,6 +170,7 @@ impl<'a> Elaborator<'a> {
             .items
             .iter()
             .find_map(|item| if let Item::Title(text) = item { Some(text.value.clone()) } else { None });
+        self.places = people.places;
         Ok(Scenario {
             title: title.unwrap_or_default(),
             clock: self.clock,
@@ -182,17 +196,17 @@ impl<'a> Elaborator<'a> {
                 Item::Param { name, value, range } => {
                     let declared = self.lower_declared(&name.name, value.span);
                     if let (Some((low, high)), Ok(super::typed::Typed::Number(number))) = (range, declared)
-                        && let (Ok(low), Ok(high)) = (
-                            self.number_of(low, number.dimension, &locals),
-                            self.number_of(high, number.dimension, &locals),
-                        )
+                        && let range_span = low.span.to(high.span)
+                        && let Ok(low) = self.number_of(low, number.dimension, &locals)
+                        && let Ok(high) = self.number_of(high, number.dimension, &locals)
                         && (number.value < low.value || number.value > high.value)
                     {
-                        self.note(Diagnostic::error(
-                            "E0405",
-                            value.span,
-                            format!("the default of `{}` lies outside its range", name.name),
-                        ));
+                        self.note(if low.value > high.value {
+                            Diagnostic::error("E0405", range_span, "this range is empty")
+                        } else {
+                            let text = format!("the default of `{}` lies outside its range", name.name);
+                            Diagnostic::error("E0405", value.span, text)
+                        });
                     }
                 }
                 Item::Kind(decl)
@@ -268,6 +282,10 @@ impl<'a> Elaborator<'a> {
         });
         // Processes alone need no step: they have their own, or rates.
         let free = step.is_none() && !self.processes.is_empty() && !bodies;
+        if !free {
+            // Should the step or the horizon be wrong: bounds in seconds still make sense.
+            self.clock = Clock::Stepped(Decimal::ONE);
+        }
         if step.is_none() && !free {
             missing(self, "step", "0.02 s");
         }

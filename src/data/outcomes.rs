@@ -67,8 +67,8 @@ impl Outcomes {
         match cells.get(place).map(|cell| outcome(cell)) {
             Some(Some(outcome)) => Ok(Some(outcome)),
             Some(None) if heads && matches!(self.column, Column::Number(_)) => Ok(None),
-            Some(None) => fail(format!("`{}` is no outcome: 0, 1, false or true", cells[place])),
-            None => fail(format!("there are only {} columns", cells.len())),
+            Some(None) => fail(format!("`{}` is no outcome: 0, 1, false or true", brief(cells[place]))),
+            None => fail(format!("no column {}, there are only {}", place + 1, cells.len())),
         }
     }
 
@@ -76,6 +76,13 @@ impl Outcomes {
     pub const fn lines(&self) -> u64 {
         self.lines
     }
+}
+
+/// The beginning of what stands in a cell, fit to be printed.
+fn brief(cell: &str) -> String {
+    const MOST: usize = 40;
+    let start: String = cell.chars().take(MOST).flat_map(char::escape_debug).collect();
+    if cell.chars().nth(MOST).is_some() { start + "…" } else { start }
 }
 
 fn outcome(cell: &str) -> Option<bool> {

@@ -6,8 +6,8 @@ use super::cell::Item;
 use super::contrast::Contrast;
 use super::executor::Executor;
 use super::fault::Fault;
+use super::method;
 use super::outcome::{Counts, Kind, QueryResult, Shows, Stop, Verdict, Witness};
-use super::procedure;
 use super::race::Contest;
 use super::session::Call;
 use super::standing;
@@ -88,14 +88,17 @@ impl Answers<'_> {
         };
         let mut result = self.blank(query, kind);
         let stop = inquiry.stop.unwrap_or(Stop::Cap);
-        result.method = procedure::method(&query.ask, Some(&inquiry.procedure));
+        result.method = method::of(&query.ask, Some(&inquiry.procedure));
         result.unit = unit(measure);
         result.stopped_by = stop;
         result.replay = self.replay(query, "--max-trials", counts.trials);
         result.elapsed_s = inquiry.seconds;
-        let subject_words = measured_words(query, measure);
-        let mut beside = procedure::BESIDE;
-        if let Some((interval, coverage, error)) = inquiry.procedure.interval(counts) {
+        let subject_words = measured_words(query, measure, inquiry.tally.clipped);
+        let mut beside = match query.ask {
+            Ask::Check { beside, .. } => beside,
+            _ => 0.0,
+        };
+        if let Some((interval, coverage, error)) = inquiry.procedure.interval(counts, beside) {
             beside = error;
             // Where no trial is resolved the middle of what is legal is no estimate.
             result.estimate = (counts.unresolved < counts.trials).then_some(interval.estimate);
@@ -137,7 +140,9 @@ impl Answers<'_> {
                 }
             }
         }
-        if let Ask::Check { at_least, .. } = &query.ask {
+        if let Ask::Check { at_least, threshold, .. } = &query.ask {
+            result.of = words::asked(&query.text).map(|event| format!("P({event})"));
+            result.against = result.of.is_some() && !*at_least;
             let decision = inquiry.procedure.decision();
             result.verdict = Some(match decision {
                 Some(Decision::Above) if *at_least => Verdict::Satisfied,
@@ -146,7 +151,8 @@ impl Answers<'_> {
                 Some(Decision::Within) | None => Verdict::Undecided,
             });
             result.certifies = match inquiry.procedure.statement() {
-                Some(statement) => words::statement(&subject_words, &statement, &result.unit),
+                Some(statement) => words::quantile(&query.text, *threshold, &statement)
+                    .unwrap_or_else(|| words::statement(&subject_words, &statement, &result.unit)),
                 None if !says_something(&query.ask, result.low, result.high) => String::new(),
                 None => format!(
                     "{subject_words} in {}, error at most {}",
@@ -181,7 +187,15 @@ impl Answers<'_> {
         advice: Option<(usize, usize)>,
         picks: &[(Shows, u64)],
     ) -> Vec<Witness> {
-        witness::find(subject, column, advice, picks, self.call, &result.settings, &result.unit)
+        witness::find(
+            subject,
+            column,
+            advice,
+            picks,
+            (self.call, self.budget),
+            &result.settings,
+            &result.unit,
+        )
     }
 
     /// Counts, and what they warn of.
@@ -281,7 +295,7 @@ impl Answers<'_> {
         let gap = contrast.run(executor, self.budget, watch)?;
         let mut result = self.blank(query, Kind::Compare);
         let unit = unit(first);
-        result.method = procedure::method(&query.ask, None);
+        result.method = method::of(&query.ask, None);
         if gap.pairs > 0 {
             result.estimate = (gap.unresolved < gap.pairs).then_some(gap.estimate);
             result.low = gap.interval.low;
@@ -303,7 +317,7 @@ impl Answers<'_> {
             settings.iter().map(|(name, value)| format!("{name} = {value}")).collect::<Vec<_>>().join(", ")
         };
         let labels = [label(&settings[0]), label(&settings[1])];
-        let name = measured_words(query, first);
+        let name = measured_words(query, first, joined.clipped);
         if says_something(&query.ask, result.low, result.high) {
             result.certifies = format!(
                 "{name} under {} less that under {} in {}, error at most {}",
@@ -336,7 +350,7 @@ impl Answers<'_> {
         let subject = field.subject;
         let declared = &subject.program.scenario.moves[*moves];
         let mut result = self.blank(query, Kind::Rank);
-        result.method = procedure::method(&query.ask, None);
+        result.method = method::of(&query.ask, None);
         result.unit = unit(measure);
         result.stopped_by = podium.stop;
         let joined = total(&podium.tallies);
@@ -349,7 +363,7 @@ impl Answers<'_> {
         self.lament(&mut result, joined.counts.unresolved, lost.as_ref());
         let labels: Vec<&str> = declared.options.iter().map(|(label, _)| label.as_str()).collect();
         let ranked = standing::ranked(&podium, &labels);
-        let score = measured_words(query, measure);
+        let score = measured_words(query, measure, joined.clipped);
         if let Some(choice) = &ranked.choice {
             if ranked.gap < podium.scale {
                 result.certifies = format!(
@@ -399,16 +413,17 @@ fn says_something(ask: &Ask, low: f64, high: f64) -> bool {
     low > least || high < most
 }
 
-/// The measure as one would say it: `P(safe)`.
-fn measured_words(query: &Query, measure: &Measure) -> String {
-    words::measured(
-        &query.text,
-        match measure.kind {
-            MeasureKind::Probability => 'P',
-            MeasureKind::Expectation { .. } => 'E',
-            MeasureKind::Quantile { .. } => 'Q',
-        },
-    )
+/// The measure as one would say it: `P(safe)`. Where trials left the declared range, what is known of the expectation
+/// is known of the clipped metric alone, and is said of that.
+fn measured_words(query: &Query, measure: &Measure, clipped: u64) -> String {
+    match &measure.kind {
+        MeasureKind::Probability => words::measured(&query.text, 'P'),
+        MeasureKind::Quantile { .. } => words::measured(&query.text, 'Q'),
+        MeasureKind::Expectation { range, dimension } => {
+            let said = words::measured(&query.text, 'E');
+            if clipped == 0 { said } else { words::clipped(&said, *range, &dimension.to_string()) }
+        }
+    }
 }
 
 fn total(tallies: &[Tally]) -> Tally {

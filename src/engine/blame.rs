@@ -1,5 +1,6 @@
 //! What decided a trial: the atom, comparison or number, and the agents in it.
 
+use super::budget::Budget;
 use super::subject::Subject;
 use super::words;
 use crate::base::tick::{Clock, Tick};
@@ -30,7 +31,7 @@ const NAMED: usize = 3;
 
 impl Record {
     /// Calls `look` with the record in the form that `logic` reads.
-    fn read<T>(&self, subject: &Subject, look: impl FnOnce(&Recording<'_>) -> T) -> T {
+    fn read<T>(&self, subject: &Subject, budget: &Budget, look: impl FnOnce(&Recording<'_>) -> T) -> T {
         let atoms =
             |atom: AtomId, at: u64| self.atoms.get(at as usize).is_some_and(|row| row[atom.0 as usize]);
         let signals = |signal: SignalId, at: u64| {
@@ -42,6 +43,7 @@ impl Record {
             seen: self.atoms.len() as u64,
             horizon: subject.horizon,
             clock: subject.program.scenario.clock,
+            stop: &|| budget.is_late(),
         })
     }
 }
@@ -50,10 +52,10 @@ impl Record {
 pub(super) fn truth(
     subject: &Subject,
     root: NodeId,
-    record: &Record,
+    (record, budget): (&Record, &Budget),
     state_at: impl Fn(Tick) -> Option<State>,
 ) -> String {
-    record.read(subject, |recording| {
+    record.read(subject, budget, |recording| {
         let Ok(explanation) = explain(&subject.tree, root, recording) else { return String::new() };
         // Of those who are not there nothing is to be said, unless there is nobody else.
         let absent = |reason: &&Reason| {
@@ -80,10 +82,10 @@ pub(super) fn number(
     subject: &Subject,
     root: TermId,
     (value, unit): (f64, &str),
-    record: &Record,
+    (record, budget): (&Record, &Budget),
     state_at: impl Fn(Tick) -> Option<State>,
 ) -> (Option<Tick>, String) {
-    record.read(subject, |recording| {
+    record.read(subject, budget, |recording| {
         let (_, found) = sources(&subject.tree, root, Tick(0), recording);
         let never =
             value == f64::INFINITY && matches!(subject.tree.terms[root.0 as usize], Term::TimeUntil(_));
@@ -112,10 +114,10 @@ pub(super) fn margin(
     subject: &Subject,
     root: NodeId,
     (value, unit): (Option<f64>, &str),
-    record: &Record,
+    (record, budget): (&Record, &Budget),
     state_at: impl Fn(Tick) -> Option<State>,
 ) -> (Option<Tick>, String) {
-    record.read(subject, |recording| {
+    record.read(subject, budget, |recording| {
         let Some(found) = critical(&subject.tree, root, recording) else {
             return (None, value.map_or(String::new(), |value| words::brief(value, unit)));
         };
@@ -136,7 +138,8 @@ pub(super) fn margin(
                 }
             }
             search.found.truncate(NAMED);
-            said.push_str(&names(subject, &search.found));
+            let found = search.found;
+            said.push_str(&names(subject, &found, Some(&state)));
         }
         (Some(found.at), said)
     })
@@ -159,7 +162,8 @@ fn origin(
     if let Some(state) = state_at(*at) {
         let mut search = Search { subject, state: &state, found: Vec::new() };
         search.extremum(&subject.signals()[signal.0 as usize]);
-        said.push_str(&names(subject, &search.found));
+        let found = search.found;
+        said.push_str(&names(subject, &found, Some(&state)));
     }
     said
 }
@@ -171,11 +175,15 @@ fn moment(subject: &Subject, at: Tick) -> String {
     }
 }
 
-/// `: crowd[3], user`, or nothing.
-fn names(subject: &Subject, who: &[AgentId]) -> String {
-    let agents = &subject.program.scenario.agents;
-    let names: Vec<&str> =
-        who.iter().filter_map(|id| agents.get(id.0 as usize)).map(|agent| agent.name.as_str()).collect();
+/// `: crowd[3], user`, or nothing; people of sources by the number of their arrival, as in the state.
+fn names(subject: &Subject, who: &[AgentId], state: Option<&State>) -> String {
+    let scenario: &Scenario = &subject.program.scenario;
+    let name = |id: &AgentId| {
+        let agent = scenario.agents.get(id.0 as usize)?;
+        let arrival = state.and_then(|state| state.queues.arrival(&scenario.sources, *id, 0));
+        Some(arrival.unwrap_or_else(|| agent.name.clone()))
+    };
+    let names: Vec<String> = who.iter().filter_map(name).collect();
     if names.is_empty() { String::new() } else { format!(": {}", names.join(", ")) }
 }
 
@@ -194,9 +202,11 @@ fn closing(
         }
         Node::Atom(atom) => {
             let Some(text) = subject.texts.atoms.get(atom.0 as usize) else { return String::new() };
-            let blamed = |state| blamed(subject, &subject.atoms()[atom.0 as usize], reason.value, &state);
-            let who = state_at(reason.to).map_or_else(Vec::new, blamed);
-            format!("`{text}` {word}{}", names(subject, &who))
+            let blamed =
+                |state: &State| blamed(subject, &subject.atoms()[atom.0 as usize], reason.value, state);
+            let state = state_at(reason.to);
+            let who = state.as_ref().map_or_else(Vec::new, blamed);
+            format!("`{text}` {word}{}", names(subject, &who, state.as_ref()))
         }
         Node::Compare(..) => {
             let Some((text, _)) = subject.texts.comparisons.get(&reason.leaf.0) else { return String::new() };
@@ -267,6 +277,11 @@ impl Search<'_> {
                         }
                     }
                 }
+            }
+            Bool::Iff(a, b) => {
+                let first = self.holds(a);
+                self.walk(a, first);
+                self.walk(b, first == truth);
             }
             Bool::Forall(set, body) | Bool::Exists(set, body) => {
                 if matches!(atom, Bool::Forall(..)) == truth {
@@ -394,6 +409,7 @@ fn instantiate_bool(truth: &Bool, depth: u32, id: AgentId) -> Bool {
         Bool::Not(inner) => Bool::Not(Box::new(b(inner))),
         Bool::And(list) => Bool::And(list.iter().map(b).collect()),
         Bool::Or(list) => Bool::Or(list.iter().map(b).collect()),
+        Bool::Iff(x, y) => Bool::Iff(Box::new(b(x)), Box::new(b(y))),
         Bool::In(w, region) => Bool::In(who(*w, depth, id), *region),
         Bool::Present(w) => Bool::Present(who(*w, depth, id)),
         Bool::Contact(w) => Bool::Contact(who(*w, depth, id)),

@@ -3,6 +3,7 @@
 //! The clock never decides what a trial yields, only how many trials are consumed; with a deadline a result
 //! is a function of input, seed and the number of trials.
 
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -19,7 +20,12 @@ pub struct Budget {
     deadline: Option<Instant>,
     started: Instant,
     interrupted: AtomicBool,
+    /// Since when it is known that no more should be started.
+    stopped: OnceLock<Instant>,
 }
+
+/// Seconds after the end that explanations may still take.
+const GRACE: f64 = 1.0;
 
 impl Budget {
     /// A budget that starts now; `timeout` is for the whole call.
@@ -32,6 +38,7 @@ impl Budget {
             deadline: timeout.and_then(|t| started.checked_add(t)),
             started,
             interrupted: AtomicBool::new(false),
+            stopped: OnceLock::new(),
         }
     }
 
@@ -44,6 +51,7 @@ impl Budget {
             deadline: Instant::now().checked_add(Duration::from_secs_f64(seconds)),
             started: self.started,
             interrupted: AtomicBool::new(self.is_interrupted()),
+            stopped: OnceLock::new(),
         }
     }
 
@@ -82,5 +90,11 @@ impl Budget {
     /// Whether no more should be started, for either reason.
     pub fn must_stop(&self) -> bool {
         self.is_interrupted() || self.is_over()
+    }
+
+    /// Whether what was begun should be left too: some time has passed since no more should be started.
+    #[allow(clippy::disallowed_methods, reason = "the engine keeps deadlines; trials never see the clock")]
+    pub fn is_late(&self) -> bool {
+        self.must_stop() && self.stopped.get_or_init(Instant::now).elapsed().as_secs_f64() > GRACE
     }
 }

@@ -1,6 +1,7 @@
 //! Why a trial is unresolved: it is run again up to there, and what stopped it is said, with what helps.
 
 use super::cell::{Item, Reading};
+use super::onlooker::Onlooker;
 use super::subject::Subject;
 use super::words;
 use crate::base::lanes::Mask;
@@ -8,8 +9,7 @@ use crate::base::random::TrialKey;
 use crate::base::tick::Tick;
 use crate::kernel::process::Sight;
 use crate::kernel::{Code, Readings, Scratch, State, dynamics, start};
-use crate::logic;
-use crate::model::Scenario;
+use crate::model::{Scenario, TOP_SPEED};
 
 /// Most jumps that are made again to see why a trial is unresolved.
 const JUMPS_AGAIN: u64 = 1 << 20;
@@ -21,7 +21,7 @@ pub(super) fn unresolved(subject: &Subject, column: usize, item: Item, seed: u64
     let (mut state, mut scratch) = (State::new(program.layout, scenario.agents.len()), Scratch::new());
     let key = TrialKey { seed, index: item.index, branch: 0 };
     if let Err(fault) = start::load(program, &mut state, 0, key, item.advice) {
-        return cannot_start(scenario, fault);
+        return format!("it cannot start: {}", no_start(scenario, fault));
     }
     if scenario.clock.is_jumps() {
         return in_continuous_time(subject, column, &mut state, &mut scratch);
@@ -35,6 +35,11 @@ pub(super) fn unresolved(subject: &Subject, column: usize, item: Item, seed: u64
     loop {
         let time = moment(scenario, state.ticks[0]);
         if let Some(reason) = state.queues.overrun(&scenario.sources, 0) {
+            return format!("{reason} (at {time})");
+        }
+        if subject.follows(column)
+            && let Some(reason) = state.queues.lost_sight(&scenario.sources, 0)
+        {
             return format!("{reason} (at {time})");
         }
         if !state.diverged.is_empty() {
@@ -67,11 +72,14 @@ pub fn runaway(scenario: &Scenario, state: &State) -> String {
         let (vx, vy) = (state.vx[slot.block].0[slot.lane], state.vy[slot.block].0[slot.lane]);
         state.present[slot.block].has(slot.lane).then(|| (vx * vx + vy * vy).sqrt())
     };
-    let beyond = |speed: f64| speed.is_nan() || speed > dynamics::TOP_SPEED;
+    let beyond = |speed: f64| speed.is_nan() || speed > TOP_SPEED;
     let found = scenario.agents.iter().enumerate().find_map(|(agent, declared)| {
-        speed(agent).filter(|speed| beyond(*speed)).map(|speed| (declared.name.as_str(), speed))
+        let speed = speed(agent).filter(|speed| beyond(*speed))?;
+        let id = crate::model::AgentId(agent as u32);
+        let arrival = state.queues.arrival(&scenario.sources, id, 0);
+        Some((arrival.unwrap_or_else(|| declared.name.clone()), speed))
     });
-    let most = words::quantity(dynamics::TOP_SPEED, "m/s");
+    let most = words::quantity(TOP_SPEED, "m/s");
     match found {
         Some((name, speed)) if speed.is_finite() => {
             format!("{name} went at {}, and nobody goes beyond {most}", words::brief(speed, "m/s"))
@@ -88,21 +96,31 @@ fn moment(scenario: &Scenario, tick: u64) -> String {
     }
 }
 
-fn cannot_start(scenario: &Scenario, fault: start::Fault) -> String {
+/// Why a trial cannot start, and what helps.
+pub fn no_start(scenario: &Scenario, fault: start::Fault) -> String {
     let name = |agent: crate::model::AgentId| {
         scenario.agents.get(agent.0 as usize).map_or("somebody", |agent| agent.name.as_str())
     };
     match fault {
         start::Fault::Parameter { agent, name: parameter, value } => format!(
-            "it cannot start: `{parameter}` of {} is drawn as {}, with which nobody can move; a range keeps it legal: `normal(…) in low .. high`",
+            "`{parameter}` of {} is drawn as {}, with which nobody can move; a range keeps it legal: `normal(…) in low .. high`",
             name(agent),
             words::brief(value, "")
         ),
         start::Fault::Nowhere { agent } => {
-            format!("it cannot start: {} finds no place; give more room to start in", name(agent))
+            format!("{} finds no place; give more room to start in", name(agent))
         }
+        start::Fault::Inside { agent } => format!(
+            "{} finds no place but in an obstacle or on a wall; give more room to start in",
+            name(agent)
+        ),
+        start::Fault::Together { agents: (one, other) } => format!(
+            "{} and {} find no place but the same point; give more room to start in",
+            name(one),
+            name(other)
+        ),
         start::Fault::Order { agent } => {
-            format!("it cannot start: {} starts near somebody who is placed later", name(agent))
+            format!("{} starts near somebody who is placed later", name(agent))
         }
         start::Fault::Advice { .. } => String::new(),
     }
@@ -135,9 +153,10 @@ fn nobody(subject: &Subject, column: usize, state: &State, time: &str) -> String
 /// In continuous time only what has to be remembered, and the number of jumps, can leave a trial unresolved.
 fn in_continuous_time(subject: &Subject, column: usize, state: &mut State, scratch: &mut Scratch) -> String {
     let view = subject.view(&[column]);
-    let Ok(mut monitor) = subject.signal_monitor(column) else { return String::new() };
+    let Ok(mut monitor) = Onlooker::of(subject, column) else { return String::new() };
     let mut sight = Sight::default();
-    for _ in 0..JUMPS_AGAIN {
+    let enough = subject.most_jumps.min(JUMPS_AGAIN);
+    while state.clocks.jumps[0] < enough {
         view.look(state, &mut sight);
         let (atoms, signals) = view.of(state, &mut sight, 0);
         let now = state.clocks.now[0];
@@ -148,14 +167,26 @@ fn in_continuous_time(subject: &Subject, column: usize, state: &mut State, scrat
             None => monitor.finish(),
         };
         return match reading {
-            logic::Reading::Unresolved => format!(
-                "the formula has to remember more changes at {time} than there is room for; shorter bounds help"
-            ),
-            logic::Reading::Value(value) if value.is_nan() => {
+            Reading::Unresolved if monitor.is_no_number() => {
                 format!("the metric is not a number at {time}; look for 0 / 0 or ∞ - ∞ in it")
             }
+            Reading::Unresolved => format!(
+                "the formula has to remember more changes at {time} than there is room for; shorter bounds help"
+            ),
             _ => String::new(),
         };
     }
-    "it jumps more often than can be followed; a shorter horizon or lower rates help".to_owned()
+    let time = words::quantity(state.clocks.now[0], "s");
+    let busiest = subject.program.processes.busiest(state, 0).and_then(|(process, rate)| {
+        let name = &subject.program.scenario.processes.list.get(process as usize)?.name;
+        let rate = if rate > 0.0 { format!(", now at a rate of {rate} /s") } else { String::new() };
+        Some(format!(", most of them of `{name}`{rate}"))
+    });
+    format!(
+        "it jumps more often than can be followed: {enough} times by {time}{}; a shorter horizon or lower rates help",
+        busiest.unwrap_or_default()
+    )
 }
+
+#[cfg(test)]
+mod tests;

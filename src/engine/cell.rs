@@ -44,6 +44,22 @@ pub struct Item {
 impl Item {
     /// Trials in a row, nobody advised.
     pub(super) fn run(from: u64, count: u64) -> Vec<Self> {
-        (from..from + count).map(|index| Self { advice: None, index }).collect()
+        Self::row(from, count).collect()
     }
+
+    /// The same, one by one.
+    pub(super) fn row(from: u64, count: u64) -> impl Iterator<Item = Self> {
+        (from..from + count).map(|index| Self { advice: None, index })
+    }
+}
+
+/// Trials in a row of a round, and where their cells go.
+#[derive(Debug)]
+pub(super) struct Block<'c> {
+    /// The trials.
+    pub(super) items: &'c [Item],
+    /// Their cells, trial by trial.
+    pub(super) cells: &'c mut [Cell],
+    /// Which of them are finished.
+    pub(super) finished: &'c mut [bool],
 }

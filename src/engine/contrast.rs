@@ -81,7 +81,7 @@ impl<'s> Contrast<'s> {
                 let width = high - low;
                 Procedure::Expectation(match within {
                     Some(within) => Mean::within(-width, width, within, delta)?,
-                    None => Mean::fixed(-width, width, methods::DEFAULT_TRIALS, delta)?,
+                    None => Mean::fixed(-width, width, methods::PLANNED_TRIALS, delta)?,
                 })
             }
         };
@@ -100,17 +100,18 @@ impl<'s> Contrast<'s> {
     }
 
     fn planned(&self, budget: &Budget) -> u64 {
-        if self.within.is_none() { methods::DEFAULT_TRIALS } else { budget.max_trials }
+        if self.within.is_none() { methods::PLANNED_TRIALS } else { budget.max_trials }
     }
 
     /// Runs the first pairs, and forecasts from them what the comparison is likely to take.
     pub(super) fn rehearse(&mut self, executor: &dyn Executor, budget: &Budget) -> Result<Forecast, Fault> {
-        let size = (executor.width(&self.jobs[0]) as u64).min(self.planned(budget)).min(budget.max_trials);
+        let size = Rehearsal::size(executor.width(&self.jobs[0]) as u64)
+            .min(self.planned(budget))
+            .min(budget.max_trials);
         let one = |job: &Job<'_>| Rehearsal::run(job, Item::run(0, size), executor, budget);
         let sides = [one(&self.jobs[0])?, one(&self.jobs[1])?];
         let mut glimpse = Glimpse::default();
-        for (a, b) in sides[0].cells.rows().zip(sides[1].cells.rows()) {
-            let (Some(a), Some(b)) = (a, b) else { continue };
+        for (a, b) in sides[0].seen().zip(sides[1].seen()) {
             if let (Some(a), Some(b)) = (self.score(&a[0]), self.score(&b[0])) {
                 glimpse.add(a - b);
             }
@@ -120,7 +121,7 @@ impl<'s> Contrast<'s> {
         let width = self.range.map_or(1.0, |(low, high)| high - low);
         let pairs = match self.within {
             Some(within) => forecast::contrast(&glimpse, width, within, self.delta),
-            None => methods::DEFAULT_TRIALS,
+            None => methods::PLANNED_TRIALS,
         }
         .min(budget.max_trials);
         self.ahead = sides.iter().all(Rehearsal::is_complete).then_some(sides);
@@ -155,7 +156,10 @@ impl<'s> Contrast<'s> {
         let mut tallies = [Tally::default(), Tally::default()];
         let mut means: Vec<Mean> = match (self.range, &self.query.ask) {
             (Some((low, high)), Ask::Compare { delta, .. }) => (0..2)
-                .map(|_| Mean::fixed(low, high, super::budget::DEFAULT_TRIALS, *delta))
+                .map(|_| match self.within {
+                    Some(_) => Mean::running(low, high, *delta),
+                    None => Mean::fixed(low, high, planned, *delta),
+                })
                 .collect::<Result<_, _>>()?,
             _ => Vec::new(),
         };

@@ -4,13 +4,17 @@
 //! items before anybody looks at them.
 
 use super::budget::Budget;
-use super::cell::{Cell, Item};
+use super::cell::{Block, Cell, Item};
 use super::runner::Runner;
 use super::subject::Subject;
 use super::worker::Finished;
+use crate::base::lanes::LANES;
 use crate::logic::Invalid;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+
+/// Most trials of a block: enough that a few long ones among them cost little, few enough to stay near the core.
+const LARGEST_BLOCK: usize = 1024;
 
 /// Cells of a round, by place of the item.
 #[derive(Clone, Debug, Default)]
@@ -25,7 +29,25 @@ pub struct Cells {
 impl Cells {
     /// Room for a round.
     pub fn new(items: usize, width: usize) -> Self {
-        Self { width, list: vec![Cell::BLANK; items * width], finished: vec![false; items] }
+        let mut cells = Self::default();
+        cells.clear(items, width);
+        cells
+    }
+
+    /// The same room for another round.
+    fn clear(&mut self, items: usize, width: usize) {
+        self.width = width;
+        // Rows that are not finished are not shown, so what they hold may stay.
+        self.list.resize(items * width, Cell::BLANK);
+        self.finished.clear();
+        self.finished.resize(items, false);
+    }
+
+    /// The rows of a round in blocks, for those who fill them.
+    fn blocks<'c>(&'c mut self, items: &'c [Item], size: usize) -> impl Iterator<Item = Block<'c>> {
+        let cells = self.list.chunks_mut(size * self.width.max(1));
+        let blocks = items.chunks(size).zip(cells).zip(self.finished.chunks_mut(size));
+        blocks.map(|((items, cells), finished)| Block { items, cells, finished })
     }
 
     /// The trial at a place is finished. A place beyond the round, or a row of another width, is ignored.
@@ -41,6 +63,16 @@ impl Cells {
     /// The cells of a trial, one a column; `None` if it was not finished in time.
     pub fn row(&self, place: usize) -> Option<&[Cell]> {
         (*self.finished.get(place)?).then(|| &self.list[place * self.width..][..self.width])
+    }
+
+    /// How many trials in a row are finished, from the first on.
+    pub fn ready(&self) -> usize {
+        self.finished.iter().position(|finished| !finished).unwrap_or(self.finished.len())
+    }
+
+    /// The cells of one column, trial by trial, finished or not.
+    pub fn column(&self, place: usize) -> impl Iterator<Item = &Cell> + Clone {
+        self.list.iter().skip(place).step_by(self.width.max(1))
     }
 
     /// The rows in order.
@@ -70,6 +102,8 @@ pub struct Job<'s> {
     /// Seed of all random numbers.
     pub seed: u64,
     workers: Mutex<Vec<Runner>>,
+    /// Room of rounds that were read.
+    room: Mutex<Vec<Cells>>,
     /// Steps made so far, of all trials, consumed or not.
     pub steps: AtomicU64,
 }
@@ -77,7 +111,8 @@ pub struct Job<'s> {
 impl<'s> Job<'s> {
     /// A job without workers yet.
     pub fn new(subject: &'s Subject, columns: Vec<usize>, seed: u64) -> Self {
-        Self { subject, columns, seed, workers: Mutex::new(Vec::new()), steps: AtomicU64::new(0) }
+        let (workers, room) = (Mutex::default(), Mutex::default());
+        Self { subject, columns, seed, workers, room, steps: AtomicU64::new(0) }
     }
 
     /// Goes on with fewer columns.
@@ -86,6 +121,20 @@ impl<'s> Job<'s> {
             self.columns = columns;
             self.workers = Mutex::new(Vec::new());
         }
+    }
+
+    /// Takes the room of a round that was read: it serves for the next one, and the system need not find memory anew.
+    pub fn reuse(&self, cells: Cells) {
+        if let Ok(mut room) = self.room.lock() {
+            room.push(cells);
+        }
+    }
+
+    /// Room for a round.
+    fn cells(&self, items: usize) -> Cells {
+        let mut cells = self.room.lock().ok().and_then(|mut room| room.pop()).unwrap_or_default();
+        cells.clear(items, self.columns.len());
+        cells
     }
 
     fn worker(&self) -> Result<Runner, Invalid> {
@@ -131,7 +180,7 @@ impl Executor for Threads {
 
     fn width(&self, job: &Job<'_>) -> usize {
         let lanes = match job.subject.program.layout {
-            crate::kernel::Layout::Trials => crate::base::lanes::LANES,
+            crate::kernel::Layout::Trials => LANES,
             crate::kernel::Layout::Agents => 1,
         };
         self.pool.current_num_threads() * lanes
@@ -139,12 +188,19 @@ impl Executor for Threads {
 
     fn run(&self, job: &Job<'_>, items: &[Item], budget: &Budget) -> Result<Cells, Invalid> {
         let next = AtomicUsize::new(0);
+        let mut cells = job.cells(items.len());
         let threads = self.pool.current_num_threads();
         let lanes = (self.width(job) / threads).max(1);
         // No more workers than there is work for.
         let workers = threads.min(items.len().div_ceil(lanes)).max(1);
+        let size = items.len().div_ceil(workers).next_multiple_of(LANES).clamp(LANES, LARGEST_BLOCK);
+        let blocks = Mutex::new(cells.blocks(items, size));
         let work = || -> Result<Finished, Invalid> {
             let mut worker = job.worker()?;
+            while worker.takes_blocks() {
+                let Some(mut block) = blocks.lock().ok().and_then(|mut blocks| blocks.next()) else { break };
+                worker.run_block(job.subject, job.seed, &mut block, budget);
+            }
             let mut take = || {
                 let place = next.fetch_add(1, Ordering::Relaxed);
                 items.get(place).map(|item| (place, *item))
@@ -160,7 +216,7 @@ impl Executor for Threads {
                 .broadcast(|context| if context.index() < workers { work() } else { Ok(Finished::default()) })
         };
         let width = job.columns.len();
-        let mut cells = Cells::new(items.len(), width);
+        drop(blocks);
         for result in results {
             let finished = result?;
             for (k, place) in finished.places.iter().enumerate() {

@@ -1,5 +1,6 @@
 //! What can go wrong in the engine.
 
+use crate::syntax::source::Span;
 use thiserror::Error;
 
 /// Why a query cannot be run.
@@ -8,6 +9,14 @@ pub enum Fault {
     /// A procedure refuses its parameters.
     #[error(transparent)]
     Statistics(#[from] crate::stats::Invalid),
+    /// A procedure refuses the parameters of a query.
+    #[error("{reason}")]
+    Procedure {
+        /// The query.
+        place: Span,
+        /// Why.
+        reason: crate::stats::Invalid,
+    },
     /// A monitor cannot be built.
     #[error(transparent)]
     Logic(#[from] crate::logic::Invalid),
@@ -15,8 +24,13 @@ pub enum Fault {
     #[error("this procedure does not fit what is measured")]
     Unsuitable,
     /// People that cannot be placed.
-    #[error("{0}")]
-    Placement(String),
+    #[error("{reason}")]
+    Placement {
+        /// In words.
+        reason: String,
+        /// Where the start of the first of them is written.
+        place: Option<Span>,
+    },
     /// A trial in which the model is wrong.
     #[error("{0}")]
     Model(String),

@@ -19,6 +19,9 @@ pub(super) struct Glimpse {
     sum: f64,
     /// Sum of their squares.
     squares: f64,
+    /// Truth values read, and how many of them were true; they read as 0 and 1.
+    truths: u64,
+    held: u64,
 }
 
 impl Glimpse {
@@ -31,10 +34,21 @@ impl Glimpse {
         }
     }
 
+    fn trials(&self) -> f64 {
+        self.trials + self.truths as f64
+    }
+
+    fn sum(&self) -> f64 {
+        self.sum + self.held as f64
+    }
+
     /// Adds what a cell reads, clipped to a range.
     pub(super) fn read(&mut self, cell: &Cell, (low, high): (f64, f64)) {
         match cell.reading {
-            Reading::Truth(held) => self.add(f64::from(u8::from(held))),
+            Reading::Truth(held) => {
+                self.truths += 1;
+                self.held += u64::from(held);
+            }
             Reading::Value(value) => self.add(value.clamp(low, high)),
             Reading::Unresolved | Reading::Faulty => {}
         }
@@ -42,24 +56,24 @@ impl Glimpse {
 
     /// Share of successes by Laplace's rule, which keeps away from 0 and 1.
     fn share(&self) -> f64 {
-        (self.sum + 1.0) / (self.trials + 2.0)
+        (self.sum() + 1.0) / (self.trials() + 2.0)
     }
 
     /// The only number, if there is one.
     pub(super) fn only(&self) -> Option<f64> {
-        (self.trials > 0.0).then(|| self.mean())
+        (self.trials() > 0.0).then(|| self.mean())
     }
 
     /// The mean, 0 of no numbers.
     pub(super) fn mean(&self) -> f64 {
-        if self.trials > 0.0 { self.sum / self.trials } else { 0.0 }
+        if self.trials() > 0.0 { self.sum() / self.trials() } else { 0.0 }
     }
 
     /// Variance; with few trials never far below that of one more reading at distance `least`.
     fn variance(&self, least: f64) -> f64 {
-        let n = self.trials.max(1.0);
+        let n = self.trials().max(1.0);
         let mean = self.mean();
-        let spread = (self.squares / n - mean * mean).max(0.0);
+        let spread = ((self.squares + self.held as f64) / n - mean * mean).max(0.0);
         spread + least * least / (n + 1.0)
     }
 }
@@ -93,7 +107,7 @@ pub(super) fn inquiry(ask: &Ask, procedure: &Procedure, glimpse: &Glimpse) -> Op
             let one = |theta: f64| wald(p, theta, 0.5 * indifference, *alpha, *alpha);
             one(threshold - 0.5 * indifference).max(one(threshold + 0.5 * indifference))
         }
-        Ask::Check { threshold, test: Test::Interval { delta, .. }, measure, .. } => {
+        Ask::Check { threshold, test: Test::Interval { delta }, measure, .. } => {
             let MeasureKind::Expectation { range: (low, high), .. } = measure.kind else { return limit };
             let range = high - low;
             let gap = (glimpse.mean() - threshold).abs().max(1e-6 * range);

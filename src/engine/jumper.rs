@@ -5,19 +5,17 @@
 
 use super::budget::Budget;
 use super::cell::{Cell, Item, Reading};
+use super::onlooker::Onlooker;
 use super::subject::Subject;
 use super::worker::Finished;
 use crate::base::lanes::{LANES, Mask};
 use crate::base::random::TrialKey;
 use crate::kernel::process::{Sight, View};
 use crate::kernel::{Scratch, State, dynamics, start};
-use crate::logic::{self, Invalid, SignalMonitor};
+use crate::logic::Invalid;
 
 /// Rounds between two looks at the clock.
 const CLOCK_EVERY: u32 = 256;
-
-/// Most jumps of a trial; one that needs more is unresolved.
-const MOST_JUMPS: u64 = 1 << 26;
 
 /// A batch of lanes with the monitors of some columns.
 pub(super) struct Jumper {
@@ -27,11 +25,13 @@ pub(super) struct Jumper {
     view: View,
     sight: Sight,
     /// Lane by lane, one a column.
-    monitors: Vec<SignalMonitor>,
+    monitors: Vec<Onlooker>,
     /// The place of the item that each lane is busy with.
     busy: [Option<usize>; LANES],
     /// Columns that are not decided in each lane.
     open: [usize; LANES],
+    /// Most jumps of a trial.
+    most: u64,
     /// Jumps made, of all lanes.
     pub(super) steps: u64,
 }
@@ -41,7 +41,7 @@ impl Jumper {
     pub(super) fn new(subject: &Subject, columns: &[usize]) -> Result<Self, Invalid> {
         let mut one = Vec::with_capacity(columns.len());
         for &column in columns {
-            one.push(subject.signal_monitor(column)?);
+            one.push(Onlooker::of(subject, column)?);
         }
         Ok(Self {
             columns: columns.to_vec(),
@@ -52,6 +52,7 @@ impl Jumper {
             monitors: (0..LANES).flat_map(|_| one.iter().cloned()).collect(),
             busy: [None; LANES],
             open: [0; LANES],
+            most: subject.most_jumps,
             steps: 0,
         })
     }
@@ -144,13 +145,13 @@ impl Jumper {
             }
             let found = match (jumped || faulty, faulty) {
                 (true, false) => match monitor.jump(now, atoms, signals) {
-                    None if jumps < MOST_JUMPS => continue,
+                    None if jumps < self.most => continue,
                     None => Reading::Unresolved,
-                    Some(reading) => reading_of(reading),
+                    Some(reading) => reading,
                 },
                 // What was decided before the error stays decided.
-                (_, true) => monitor.jump(now, atoms, signals).map_or(Reading::Faulty, reading_of),
-                (false, false) => reading_of(monitor.finish()),
+                (_, true) => monitor.jump(now, atoms, signals).unwrap_or(Reading::Faulty),
+                (false, false) => monitor.finish(),
             };
             *cell = Cell { reading: found, steps: jumps, triggered: monitor.triggered(), shrunk: false };
             self.open[lane] -= 1;
@@ -160,11 +161,3 @@ impl Jumper {
 
 /// Steps of a cell that is not decided yet.
 const OPEN: u64 = u64::MAX;
-
-fn reading_of(reading: logic::Reading) -> Reading {
-    match reading {
-        logic::Reading::Truth(truth) => Reading::Truth(truth),
-        logic::Reading::Value(value) if !value.is_nan() => Reading::Value(value),
-        logic::Reading::Value(_) | logic::Reading::Unresolved => Reading::Unresolved,
-    }
-}

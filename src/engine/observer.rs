@@ -78,10 +78,13 @@ impl Observer {
     }
 }
 
-/// What is wanted of a robustness, where the bounds of its value force it.
 fn found(robustness: &Robustness, sought: Sought, lane: usize) -> Option<Reading> {
     let (lower, upper): (Lanes, Lanes) = (robustness.lower(), robustness.upper());
-    let (lower, upper) = (lower.0[lane], upper.0[lane]);
+    wanted((lower.0[lane], upper.0[lane]), sought)
+}
+
+/// What is wanted of a robustness, where the bounds of its value force it.
+pub(super) fn wanted((lower, upper): (f64, f64), sought: Sought) -> Option<Reading> {
     if let Sought::Compared(relation, bound) = sought {
         let (sure, never) = match relation {
             Relation::Greater => (lower > bound, upper <= bound),

@@ -3,6 +3,7 @@
 //! Everything but the times is a function of input, seed and version. Counts are those of consumed trials.
 
 pub use super::finding::{Finding, Spot};
+use crate::base::fingerprint::Fingerprint;
 
 /// Everything one call has computed.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -13,6 +14,8 @@ pub struct Run {
     pub seed: u64,
     /// Version of the program.
     pub version: String,
+    /// Each file that was read and its fingerprint: scenario, properties, then what the scenario names.
+    pub inputs: Vec<(String, Fingerprint)>,
     /// Results in the order of the queries; a swept query has one per setting.
     pub results: Vec<QueryResult>,
     /// What the front end says of the inputs: warnings, and where nothing could run, errors.
@@ -68,6 +71,11 @@ pub struct QueryResult {
     pub low: f64,
     /// Upper end of the interval, or of what is legal; may be infinite.
     pub high: f64,
+    /// Of which probability the figures are, where the query names something else: the check of a quantile is decided
+    /// as one of `P(metric <= threshold)`.
+    pub of: Option<String>,
+    /// Whether the claim is that this probability is small, so that a trial with the event speaks against it.
+    pub against: bool,
     /// Unit of the three numbers before; empty for probabilities.
     pub unit: String,
     /// Kind and level of the interval: `time-uniform, 95 %`.
@@ -121,6 +129,8 @@ impl QueryResult {
             estimate: None,
             low: f64::NEG_INFINITY,
             high: f64::INFINITY,
+            of: None,
+            against: false,
             unit: String::new(),
             interval: String::new(),
             method: Method::default(),
@@ -389,8 +399,9 @@ pub struct Distribution {
     pub quantiles: Vec<Quantile>,
     /// The empirical distribution function, at a hundred shares at most.
     pub empirical: Vec<Step>,
-    /// Where the number of trials was fixed beforehand: the true function is nowhere farther than this from
-    /// the empirical one, with the error of the result (Dvoretzky, Kiefer, Wolfowitz; Massart).
+    /// The true function is nowhere farther than this from the empirical one, with the error of the result (Dvoretzky,
+    /// Kiefer, Wolfowitz; Massart), however unresolved trials are read. `None` where the number of trials depends on
+    /// the values.
     pub band: Option<f64>,
 }
 
@@ -452,6 +463,8 @@ pub struct Rare {
     pub plain_high: f64,
     /// Upper bound of the probability, certified by the plain trials alone.
     pub plain_bound: f64,
+    /// Lower bound of the probability, certified by the runs.
+    pub floor: f64,
     /// Whether the mean of the runs lies in the interval of the plain trials; if not, it is refused.
     pub agrees: bool,
 }

@@ -3,13 +3,13 @@
 use super::budget::DEFAULT_TRIALS;
 use super::cell::{Cell, Reading};
 use super::fault::Fault;
-use super::outcome::{Distribution, Histogram, Interval, Method, Quantile, Step};
+use super::outcome::{Distribution, Histogram, Interval, Quantile, Step};
 use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Test};
 use crate::stats::quantile::Sample;
 use crate::stats::test::Verdict as TestVerdict;
 use crate::stats::{
-    self, AnyEstimator, AnyTest, Coverage, Decision, EstimatorReadings, Evidence, FixedSize, Gbas, Massart,
-    Mean, Okamoto, Outcome, Plan, Spending, Sprt, Statement, TestReadings, ThreeWay, TwoSprt,
+    self, AnyEstimator, AnyTest, Coverage, Decision, Defaults, EstimatorReadings, Evidence, FixedSize, Gbas,
+    Massart, Mean, Okamoto, Outcome, Plan, Spending, Sprt, Statement, TestReadings, ThreeWay, TwoSprt,
 };
 use stats::Estimator as _;
 use stats::Test as _;
@@ -18,9 +18,6 @@ use stats::Test as _;
 const BINS: usize = 40;
 /// Most steps of an empirical distribution function.
 const STEPS: usize = 100;
-/// Error of the interval beside the verdict of a test.
-pub(super) const BESIDE: f64 = 0.05;
-
 /// A procedure of one query.
 pub(super) enum Procedure {
     /// Is a probability above a threshold?
@@ -67,10 +64,10 @@ pub(super) fn value(cell: &Cell) -> Option<f64> {
 
 impl Procedure {
     /// The procedure of a check or an estimate. `seed` addresses what a procedure draws for itself.
-    pub(super) fn new(ask: &Ask, seed: u64) -> Result<Self, Fault> {
+    pub(super) fn new(ask: &Ask, seed: u64, defaults: &mut Defaults) -> Result<Self, Fault> {
         match ask {
             Ask::Check { measure, threshold, test, .. } => Self::test(measure, *threshold, test),
-            Ask::Estimate { measure, estimator } => Self::estimate(measure, estimator, seed),
+            Ask::Estimate { measure, estimator } => Self::estimate(measure, estimator, seed, defaults),
             Ask::Compare { .. } | Ask::Rank { .. } => Err(Fault::Unsuitable),
         }
     }
@@ -90,22 +87,27 @@ impl Procedure {
             Test::ThreeWay { alpha, indifference } => {
                 AnyTest::ThreeWay(ThreeWay::new(theta, indifference, alpha)?)
             }
-            Test::Interval { delta, .. } => {
+            Test::Interval { delta } => {
                 let MeasureKind::Expectation { range: (low, high), .. } = measure.kind else {
                     return Err(Fault::Unsuitable);
                 };
-                let mean = Box::new(Mean::fixed(low, high, DEFAULT_TRIALS, delta)?);
+                let mean = Box::new(Mean::running(low, high, delta)?);
                 return Ok(Self::Mean { mean, threshold: Some(theta), values: Vec::new() });
             }
         };
         Ok(Self::Test(Box::new(TestReadings::new(test))))
     }
 
-    fn estimate(measure: &Measure, estimator: &Estimator, seed: u64) -> Result<Self, Fault> {
+    fn estimate(
+        measure: &Measure,
+        estimator: &Estimator,
+        seed: u64,
+        defaults: &mut Defaults,
+    ) -> Result<Self, Fault> {
         match (&measure.kind, *estimator) {
             (MeasureKind::Probability, estimator) => {
                 let estimator = match estimator {
-                    Estimator::Default { epsilon, delta } => AnyEstimator::within(epsilon, delta)?,
+                    Estimator::Default { epsilon, delta } => defaults.within(epsilon, delta)?,
                     Estimator::Okamoto { epsilon, delta } => {
                         AnyEstimator::Okamoto(Okamoto::new(epsilon, delta)?)
                     }
@@ -201,7 +203,6 @@ impl Procedure {
     /// Whether it is over without having come to what was asked: at its own largest number of trials.
     pub(super) fn is_capped(&self) -> bool {
         match self {
-            Self::Mean { threshold: Some(_), .. } => self.decision().is_none(),
             Self::Probability(estimator) => match estimator.readings().0 {
                 AnyEstimator::Gbas(gbas) => gbas.counts().successes < gbas.needed(),
                 _ => false,
@@ -269,8 +270,12 @@ impl Procedure {
         }
     }
 
-    /// Estimate and interval, and the kind of the interval.
-    pub(super) fn interval(&mut self, counts: super::outcome::Counts) -> Option<(Interval, Coverage, f64)> {
+    /// Estimate and interval, and the kind of the interval. `beside` is the error of that beside the verdict of a test.
+    pub(super) fn interval(
+        &mut self,
+        counts: super::outcome::Counts,
+        beside: f64,
+    ) -> Option<(Interval, Coverage, f64)> {
         if counts.trials == 0 {
             return None;
         }
@@ -279,10 +284,10 @@ impl Procedure {
                 // An interval beside a test holds at its stopping time: that of the confidence sequence.
                 let reading = |successes| {
                     let read = stats::Counts { successes, failures: counts.trials - successes };
-                    stats::sequence::interval(read, BESIDE)
+                    stats::sequence::interval(read, beside)
                 };
                 let hull = reading(counts.successes).hull(reading(counts.successes + counts.unresolved));
-                Some((around(share(counts), hull), Coverage::TimeUniform, BESIDE))
+                Some((around(share(counts), hull), Coverage::TimeUniform, beside))
             }
             Self::Probability(estimator) => {
                 let interval = estimator.interval();
@@ -301,7 +306,9 @@ impl Procedure {
                 Some((around(0.5 * (low + high), interval), coverage, interval.error))
             }
             Self::Quantile { sample, level, delta, band } => {
-                Some((quantile(sample, *level, *delta, *band)?, Coverage::FixedSize, *delta))
+                // Where somebody or the clock ended it before its number of trials, it holds at all times.
+                let coverage = if sample.finished() { Coverage::FixedSize } else { Coverage::TimeUniform };
+                Some((quantile(sample, *level, *delta, *band)?, coverage, *delta))
             }
         }
     }
@@ -312,13 +319,17 @@ impl Procedure {
             Self::Mean { mean, values, threshold } => {
                 // Only a number of trials that was fixed beforehand has a band.
                 let fixed = threshold.is_none() && mean.is_fixed() && mean.finished();
-                let band = fixed.then(|| stats::quantile::band(mean.read().0, mean.interval().error));
+                let (trials, unresolved, _) = mean.read();
+                let lost = unresolved as f64 / trials as f64;
+                // Each reading of the unresolved trials moves the function by their share at most.
+                let band =
+                    fixed.then(|| (stats::quantile::band(trials, mean.interval().error) + lost).min(1.0));
                 (values.clone(), Vec::new(), band)
             }
             Self::Quantile { sample, level, delta, band } => {
                 let found = quantile(sample, *level, *delta, *band);
                 let quantiles = found.map(|value| Quantile { level: *level, value });
-                let reach = sample.finished().then(|| stats::quantile::band(sample.trials(), *delta));
+                let reach = (sample.trials() > 0).then(|| sample.reach(*delta));
                 (sample.sorted().to_vec(), quantiles.into_iter().collect(), reach)
             }
             _ => return None,
@@ -367,7 +378,7 @@ fn empirical(values: &[f64]) -> Vec<Step> {
 }
 
 /// Share of the error that the sequential Massart bound spends on its auxiliary interval.
-const MASSART_SHARE: f64 = 0.02;
+pub(super) const MASSART_SHARE: f64 = 0.02;
 
 fn around(estimate: f64, interval: stats::Interval) -> Interval {
     Interval { estimate, low: interval.low, high: interval.high }
@@ -376,127 +387,4 @@ fn around(estimate: f64, interval: stats::Interval) -> Interval {
 /// Share of successes; unresolved trials count half. Of no trials it is not a number.
 pub(super) fn share(counts: super::outcome::Counts) -> f64 {
     (counts.successes as f64 + 0.5 * counts.unresolved as f64) / counts.trials as f64
-}
-
-/// The name and numbers of a procedure, for reports.
-pub(super) fn method(ask: &Ask, procedure: Option<&Procedure>) -> Method {
-    let named = |name: &str, numbers: &[(&str, f64)]| Method {
-        name: name.to_owned(),
-        numbers: numbers.iter().map(|(n, v)| ((*n).to_owned(), *v)).collect(),
-    };
-    match ask {
-        Ask::Check { threshold, test, .. } => {
-            let theta = ("theta", *threshold);
-            match *test {
-                Test::Sprt { alpha, beta, indifference } => {
-                    named("sprt", &[("alpha", alpha), ("beta", beta), theta, ("indifference", indifference)])
-                }
-                Test::Sprt2 { alpha, beta, indifference } => {
-                    named("sprt2", &[("alpha", alpha), ("beta", beta), theta, ("indifference", indifference)])
-                }
-                Test::Plan { alpha, beta, indifference } => {
-                    let mut numbers =
-                        vec![("alpha", alpha), ("beta", beta), theta, ("indifference", indifference)];
-                    if let Some(Procedure::Test(test)) = procedure
-                        && let AnyTest::Plan(plan) = test.readings().0
-                    {
-                        let (trials, accept) = plan.size();
-                        numbers.extend([("trials", trials as f64), ("accept", accept as f64)]);
-                    }
-                    named("plan", &numbers)
-                }
-                Test::EProcess { alpha, beta } => {
-                    let weight = ("weight", stats::eprocess::weight(*threshold));
-                    named("eprocess", &[("alpha", alpha), ("beta", beta), theta, weight])
-                }
-                Test::ThreeWay { alpha, indifference } => {
-                    named("three_way", &[("alpha", alpha), theta, ("indifference", indifference)])
-                }
-                Test::Interval { delta, .. } => named("empirical_bernstein", &[("delta", delta), theta]),
-            }
-        }
-        Ask::Estimate { estimator, measure } => match (*estimator, &measure.kind) {
-            (Estimator::Default { epsilon, delta }, MeasureKind::Probability) => {
-                let name = match procedure {
-                    Some(Procedure::Probability(p)) => match p.readings().0 {
-                        AnyEstimator::Calibrated(c) => {
-                            return named(
-                                "calibrated",
-                                &[("epsilon", epsilon), ("delta", delta), ("gamma", c.gamma())],
-                            );
-                        }
-                        AnyEstimator::Spending(_) => "spending",
-                        _ => "okamoto",
-                    },
-                    _ => "calibrated",
-                };
-                named(name, &[("epsilon", epsilon), ("delta", delta)])
-            }
-            (Estimator::Default { epsilon, delta }, _) => {
-                named("empirical_bernstein", &[("epsilon", epsilon), ("delta", delta)])
-            }
-            (Estimator::Okamoto { epsilon, delta }, _) => {
-                let trials = procedure.and_then(Procedure::limit).map(|n| ("trials", n as f64));
-                let numbers: Vec<_> =
-                    [("epsilon", epsilon), ("delta", delta)].into_iter().chain(trials).collect();
-                named("okamoto", &numbers)
-            }
-            (Estimator::Massart { epsilon, delta }, _) => {
-                let auxiliary = ("auxiliary", MASSART_SHARE * delta);
-                named("massart", &[("epsilon", epsilon), ("delta", delta), auxiliary])
-            }
-            (Estimator::Spending { epsilon, delta }, _) => {
-                let looks = match procedure {
-                    Some(Procedure::Probability(p)) => match p.readings().0 {
-                        AnyEstimator::Spending(spending) => Some(("looks", spending.looks().len() as f64)),
-                        _ => None,
-                    },
-                    _ => None,
-                };
-                let numbers: Vec<_> =
-                    [("epsilon", epsilon), ("delta", delta)].into_iter().chain(looks).collect();
-                named("spending", &numbers)
-            }
-            (Estimator::Relative { epsilon, delta }, _) => {
-                let mut numbers = vec![("epsilon", epsilon), ("delta", delta)];
-                if let Some(Procedure::Probability(p)) = procedure
-                    && let AnyEstimator::Gbas(gbas) = p.readings().0
-                {
-                    numbers.extend([("successes", gbas.needed() as f64), ("cap", DEFAULT_TRIALS as f64)]);
-                }
-                named("gbas", &numbers)
-            }
-            (Estimator::Band { trials, delta }, _) => {
-                named("dkw", &[("trials", trials as f64), ("delta", delta)])
-            }
-            (Estimator::Splitting(rule), _) => {
-                let name = if rule.adaptive { "splitting" } else { "fixed_effort" };
-                let mut numbers = vec![("replicas", rule.replicas as f64), ("runs", rule.runs as f64)];
-                numbers.extend(rule.adaptive.then_some(("kill", rule.kill as f64)));
-                numbers.extend([("plain", rule.plain as f64), ("delta", rule.delta)]);
-                named(name, &numbers)
-            }
-            (Estimator::Fixed { trials, delta }, kind) => {
-                let name = match kind {
-                    MeasureKind::Probability => "clopper_pearson",
-                    MeasureKind::Expectation { .. } => "empirical_bernstein",
-                    MeasureKind::Quantile { .. } => "order_statistics",
-                };
-                named(name, &[("trials", trials as f64), ("delta", delta)])
-            }
-        },
-        Ask::Compare { within, delta, .. } => {
-            let mut numbers = vec![("delta", *delta)];
-            numbers.extend(within.map(|w| ("epsilon", w)));
-            named("paired_betting", &numbers)
-        }
-        Ask::Rank { epsilon, delta, ranking, .. } => {
-            let name = match ranking {
-                crate::compile::study::Ranking::Betting => "betting",
-                crate::compile::study::Ranking::OneChallenger => "one_challenger",
-                crate::compile::study::Ranking::Okamoto => "okamoto",
-            };
-            named(name, &[("epsilon", *epsilon), ("delta", *delta)])
-        }
-    }
 }

@@ -19,7 +19,7 @@ use crate::stats::ranking::{Allocation, Booleans, Choice, Each, Race, Scores, Sh
 use crate::stats::{self, Mean, Outcome};
 
 /// Trials an option gets in a round: traces of crowds are slow.
-const WORD: u64 = 32;
+pub(super) const WORD: u64 = 32;
 
 /// The procedure of a ranking.
 #[allow(clippy::large_enum_variant, reason = "there is one at a time")]
@@ -135,11 +135,12 @@ pub(super) struct Contest<'s> {
     ahead: Option<Rehearsal>,
 }
 
-/// What a round runs: the items, and for each share of it their places.
+/// What a round runs: the items, and for each share of it their places; and whether the budget cut any share.
 struct Round {
     shares: Vec<Share>,
     items: Vec<Item>,
     places: Vec<Vec<usize>>,
+    cut: bool,
 }
 
 impl<'s> Contest<'s> {
@@ -169,30 +170,29 @@ impl<'s> Contest<'s> {
     }
 
     /// The next round. All options advance side by side, so that a deadline finds every one of them as far as
-    /// the others.
-    fn round(&self) -> Round {
+    /// the others. No option gets more than `budget` trials in all.
+    fn round(&self, budget: u64) -> Round {
         let shares = self.procedure.next_round();
+        let cut = shares.iter().any(|share| share.to > budget);
         let most = shares.iter().map(|share| share.to - share.from).max().unwrap_or(0);
         let mut items: Vec<Item> = Vec::new();
         let mut places: Vec<Vec<usize>> = vec![Vec::new(); shares.len()];
         for step in 0..most {
             for (share, places) in shares.iter().zip(&mut places) {
-                if share.from + step < share.to {
+                if share.from + step < share.to.min(budget) {
                     places.push(items.len());
                     items
                         .push(Item { advice: Some((self.field.moves, share.arm)), index: share.from + step });
                 }
             }
         }
-        Round { shares, items, places }
+        Round { shares, items, places, cut }
     }
 
     /// Runs the first round, and forecasts from it what the ranking is likely to take.
     pub(super) fn rehearse(&mut self, executor: &dyn Executor, budget: &Budget) -> Result<Forecast, Fault> {
-        let round = self.round();
-        let affordable = round.shares.iter().all(|share| share.to <= budget.max_trials);
-        let items = if affordable { round.items } else { Vec::new() };
-        let rehearsal = Rehearsal::run(&self.job, items, executor, budget)?;
+        let round = self.round(budget.max_trials);
+        let rehearsal = Rehearsal::run(&self.job, round.items, executor, budget)?;
         let arms = self.field.deviations.len();
         let range = self.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
         let mut glimpses = vec![Glimpse::default(); arms];
@@ -221,7 +221,7 @@ impl<'s> Contest<'s> {
         let trials = forecast::race(&glimpses, &differences, self.scale(), self.field.rule);
         let trials = trials.max(rehearsal.items.len() as u64).min(most);
         let seconds = rehearsal.seconds_per_trial(self.job.subject.most_steps());
-        self.ahead = (affordable && rehearsal.is_complete()).then_some(rehearsal);
+        self.ahead = rehearsal.is_complete().then_some(rehearsal);
         Ok(Forecast {
             query: self.query.text.clone(),
             settings: self.query.settings.clone(),
@@ -241,14 +241,14 @@ impl<'s> Contest<'s> {
         // Each option's interval is one of as many that hold jointly.
         let delta = self.field.rule.1 / arms as f64;
         let mut means: Vec<Mean> = match self.range {
-            Some((low, high)) => (0..arms)
-                .map(|_| Mean::fixed(low, high, super::budget::DEFAULT_TRIALS, delta))
-                .collect::<Result<_, _>>()?,
+            Some((low, high)) => {
+                (0..arms).map(|_| Mean::running(low, high, delta)).collect::<Result<_, _>>()?
+            }
             None => Vec::new(),
         };
         let mut tallies = vec![Tally::default(); arms];
         let stop = loop {
-            let round = self.round();
+            let round = self.round(budget.max_trials);
             if round.shares.is_empty() || self.procedure.finished() {
                 break if matches!(self.procedure, Procedure::Each(_)) { Stop::Plan } else { Stop::Width };
             }
@@ -256,20 +256,12 @@ impl<'s> Contest<'s> {
             if budget.must_stop() {
                 break halt();
             }
-            let mut wanted = round.items.len();
-            if round.shares.iter().any(|share| share.to > budget.max_trials) {
-                if budget.max_trials == 0 || round.shares.iter().any(|share| share.from > 0) {
-                    break Stop::Cap;
-                }
-                // Few trials are better than none: the first of the first round, of all options alike.
-                wanted = round.items.iter().take_while(|item| item.index < budget.max_trials).count();
-            }
             let consumed: u64 = tallies.iter().map(|t| t.counts.trials).sum();
             let left = budget.max_total.map_or(u64::MAX, |total| total.saturating_sub(consumed));
-            if left == 0 {
+            if left == 0 || round.items.is_empty() {
                 break Stop::Cap;
             }
-            wanted = wanted.min(usize::try_from(left).unwrap_or(usize::MAX));
+            let wanted = round.items.len().min(usize::try_from(left).unwrap_or(usize::MAX));
             let rows = match self.ahead.take() {
                 Some(ahead) => ahead.cells,
                 None => executor.run(&self.job, &round.items[..wanted], budget)?,
@@ -278,6 +270,9 @@ impl<'s> Contest<'s> {
             let prefix = (0..wanted).take_while(|place| rows.row(*place).is_some()).count();
             if !self.read(&round, &rows, prefix, &mut tallies, &mut means)? {
                 break if prefix == wanted { Stop::Cap } else { halt() };
+            }
+            if round.cut {
+                break Stop::Cap;
             }
             watch.consumed(&self.query.text, tallies.iter().map(|t| t.counts.trials).sum(), None);
         };

@@ -1,5 +1,9 @@
-//! What decided a trial in continuous time: it is run again, and the atoms that changed at the decision are named.
+//! What decided a trial in continuous time: it is run again, first to see when it was decided, then to see what
+//! changed there, or how long it had been as it was.
+//!
+//! A monitor knows only later that an earlier moment decided, so one run would have to keep all that happened in between.
 
+use super::budget::Budget;
 use super::subject::Subject;
 use super::words;
 use crate::base::random::TrialKey;
@@ -9,57 +13,40 @@ use crate::logic::Reading;
 
 /// Most atoms that are named.
 const NAMED: usize = 3;
+/// Jumps between two looks at the clock.
+const CLOCK_EVERY: u32 = 1 << 12;
 
 /// When a trial was decided, s, the value of a metric, SI, and what decided it; in words, empty where it was time
-/// alone. `unit` is that of a metric.
+/// alone. `unit` is that of a metric. None where the time is over.
 pub(super) fn decision(
     subject: &Subject,
     column: usize,
-    trial: u64,
-    seed: u64,
+    trial: (u64, u64),
     unit: &str,
+    budget: &Budget,
 ) -> Option<(f64, Option<f64>, String)> {
-    let program = &subject.program;
-    let view = subject.view(&[column]);
     let mut monitor = subject.signal_monitor(column).ok()?;
-    let (mut state, mut scratch) = (State::new(program.layout, 0), Scratch::new());
-    let mut sight = Sight::default();
-    start::load(program, &mut state, 0, TrialKey { seed, index: trial, branch: 0 }, None).ok()?;
-    // Every state in which an atom changed, and the time from which on it held.
-    let mut states: Vec<(f64, Vec<bool>)> = Vec::new();
-    loop {
-        view.look(&state, &mut sight);
-        let (atoms, signals) = view.of(&state, &mut sight, 0);
-        let now = state.clocks.now[0];
-        if states.last().is_none_or(|last| last.1 != atoms) {
-            states.push((now, atoms.to_vec()));
-        }
-        if monitor.jump(now, atoms, signals).is_some() || !state.faulty.is_empty() {
-            break;
-        }
-        if dynamics::jump(program, &mut state, &mut scratch).is_empty() {
-            monitor.finish();
-            break;
-        }
+    let more = |now: f64, atoms: &[bool], signals: &[f64]| monitor.jump(now, atoms, signals).is_none();
+    if run(subject, column, trial, budget, more)? {
+        monitor.finish();
     }
     let at = monitor.decided_at();
-    let horizon = program.scenario.clock.seconds(subject.horizon);
+    let horizon = subject.program.scenario.clock.seconds(subject.horizon);
     // Monitors round times of jumps by less than this.
     let slack = 1e-12 * horizon;
-    let present = states.partition_point(|(time, _)| *time <= at + slack).checked_sub(1)?;
-    let (since, now) = &states[present];
-    let before = present.checked_sub(1).map(|k| &states[k].1);
+    let mut past = Past { at: at + slack, atoms: Vec::new(), signals: Vec::new() };
+    run(subject, column, trial, budget, |now, atoms, signals| past.see(now, atoms, signals))?;
     let used = subject.atoms_of(column);
-    let changed = |k: &usize| before.is_some_and(|before| before[*k] != now[*k]) && at - since <= slack;
-    let mut named: Vec<usize> = used.iter().copied().filter(changed).collect();
-    if named.is_empty() && used.len() == 1 {
-        named = used;
-    }
-    let word = |k: &usize| {
-        let text = subject.texts.atoms.get(*k).map_or("", String::as_str);
-        format!("`{text}` {}", words::truth(now[*k]))
+    // What changed then closed the case; else it was that nothing changed any more.
+    let changed =
+        |k: &usize| past.atoms.get(*k).is_some_and(|(_, since)| since.is_some_and(|s| at - s <= slack));
+    let closing: Vec<usize> = used.iter().copied().filter(changed).collect();
+    let what = match (closing.as_slice(), monitor.reading()) {
+        ([], Some(Reading::Truth(_))) => past.lasting(subject, column, &used),
+        ([], _) if used.len() != 1 => String::new(),
+        ([], _) => past.named(subject, &used),
+        (closing, _) => past.named(subject, closing),
     };
-    let what = named.iter().take(NAMED).map(word).collect::<Vec<_>>().join(", ");
     match monitor.reading() {
         Some(Reading::Value(value)) if value == f64::INFINITY => {
             Some((at, Some(value), "not within the horizon".to_owned()))
@@ -71,5 +58,107 @@ pub(super) fn decision(
         }
         _ if what.is_empty() => Some((at, None, "its time was over".to_owned())),
         _ => Some((at, None, what)),
+    }
+}
+
+/// Runs a trial of this number and seed and shows each state, while `more` of it is wanted; whether it has come to its
+/// end. None where it cannot start, or where the time is over.
+fn run(
+    subject: &Subject,
+    column: usize,
+    (index, seed): (u64, u64),
+    budget: &Budget,
+    mut more: impl FnMut(f64, &[bool], &[f64]) -> bool,
+) -> Option<bool> {
+    let program = &subject.program;
+    let view = subject.view(&[column]);
+    let (mut state, mut scratch) = (State::new(program.layout, 0), Scratch::new());
+    let mut sight = Sight::default();
+    start::load(program, &mut state, 0, TrialKey { seed, index, branch: 0 }, None).ok()?;
+    let mut jumps = 0u32;
+    loop {
+        view.look(&state, &mut sight);
+        let (atoms, signals) = view.of(&state, &mut sight, 0);
+        if !more(state.clocks.now[0], atoms, signals) || !state.faulty.is_empty() {
+            return Some(false);
+        }
+        jumps = jumps.wrapping_add(1);
+        if jumps.is_multiple_of(CLOCK_EVERY) && budget.is_late() {
+            return None;
+        }
+        if dynamics::jump(program, &mut state, &mut scratch).is_empty() {
+            return Some(true);
+        }
+    }
+}
+
+/// What was known at a moment.
+struct Past {
+    /// The moment, s.
+    at: f64,
+    /// The truth of each atom, and since when, if it was ever another.
+    atoms: Vec<(bool, Option<f64>)>,
+    /// The value of each signal.
+    signals: Vec<f64>,
+}
+
+impl Past {
+    /// From `now` on these values hold. False once that is later than the moment.
+    fn see(&mut self, now: f64, atoms: &[bool], signals: &[f64]) -> bool {
+        if now > self.at {
+            return false;
+        }
+        if self.atoms.is_empty() {
+            self.atoms = atoms.iter().map(|truth| (*truth, None)).collect();
+        }
+        for (known, truth) in self.atoms.iter_mut().zip(atoms) {
+            if known.0 != *truth {
+                *known = (*truth, Some(now));
+            }
+        }
+        self.signals.clear();
+        self.signals.extend_from_slice(signals);
+        true
+    }
+
+    /// Atoms and their truth.
+    fn named(&self, subject: &Subject, atoms: &[usize]) -> String {
+        let word = |k: &usize| {
+            let text = subject.texts.atoms.get(*k).map_or("", String::as_str);
+            let holds = self.atoms.get(*k).is_some_and(|(holds, _)| *holds);
+            format!("`{text}` {}", words::truth(holds))
+        };
+        atoms.iter().take(NAMED).map(word).collect::<Vec<_>>().join(", ")
+    }
+
+    /// How long the atoms have been as they are, those that changed last first; where there are none, the signals.
+    fn lasting(&self, subject: &Subject, column: usize, atoms: &[usize]) -> String {
+        let mut known: Vec<(usize, bool, Option<f64>)> = atoms
+            .iter()
+            .filter_map(|&k| self.atoms.get(k).map(|&(holds, since)| (k, holds, since)))
+            .collect();
+        let time = |since: Option<f64>| since.unwrap_or(-1.0);
+        known.sort_by(|a, b| time(b.2).total_cmp(&time(a.2)));
+        let mut said: Vec<String> = known
+            .iter()
+            .map(|(k, holds, since)| {
+                let text = subject.texts.atoms.get(*k).map_or("", String::as_str);
+                match (since, holds) {
+                    (Some(since), true) => format!("`{text}` holds since {} s", words::brief(*since, "")),
+                    (Some(since), false) => format!("`{text}` fails since {} s", words::brief(*since, "")),
+                    (None, true) => format!("`{text}` always held"),
+                    (None, false) => format!("`{text}` never held"),
+                }
+            })
+            .collect();
+        if said.is_empty() {
+            let value = |k: usize| {
+                let (text, dimension) = subject.texts.signals.get(k)?;
+                Some(format!("`{text}` is {}", words::brief(*self.signals.get(k)?, &dimension.to_string())))
+            };
+            said = subject.signals_of(column).into_iter().filter_map(value).collect();
+        }
+        said.truncate(NAMED);
+        said.join(", ")
     }
 }

@@ -8,6 +8,8 @@ use super::executor::{Cells, Executor, Job};
 use super::fault::Fault;
 use std::sync::atomic::Ordering;
 
+/// Trials that a forecast looks at: as many on every machine, so that it is the same on every machine.
+const SEEN: usize = 16;
 /// Longest rehearsal of one job, s.
 const LONGEST: f64 = 0.5;
 
@@ -24,6 +26,11 @@ pub(super) struct Rehearsal {
 }
 
 impl Rehearsal {
+    /// How many trials a rehearsal has, where so many run side by side.
+    pub(super) const fn size(width: u64) -> u64 {
+        if width < SEEN as u64 { SEEN as u64 } else { width }
+    }
+
     /// Runs the items, for half a second at most.
     pub(super) fn run(
         job: &Job<'_>,
@@ -43,8 +50,21 @@ impl Rehearsal {
         self.cells.rows().all(|row| row.is_some())
     }
 
+    /// The rows that a forecast is made from: the first 16 trials, or where these did not finish in time, the first 8, 4, 2
+    /// or 1. What the clock lets through beyond these leaves no trace in the number of trials.
+    pub(super) fn seen(&self) -> impl Iterator<Item = &[Cell]> {
+        let whole = self.cells.rows().take_while(|row| row.is_some()).count();
+        let whole = whole.min(self.items.len());
+        let seen = if whole == self.items.len() || whole >= SEEN {
+            whole.min(SEEN)
+        } else {
+            whole.checked_ilog2().map_or(0, |power| 1 << power)
+        };
+        self.cells.rows().take(seen).flatten()
+    }
+
     /// The finished rows.
-    pub(super) fn rows(&self) -> impl Iterator<Item = &[Cell]> {
+    fn rows(&self) -> impl Iterator<Item = &[Cell]> {
         self.cells.rows().flatten()
     }
 

@@ -14,8 +14,10 @@ use super::subject::Subject;
 use super::survey::{Inquiry, Survey};
 use super::tally::Tally;
 use super::watch::{Outlook, Watch};
-use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Query, Study};
+use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Query, Study, World};
 use crate::kernel::start;
+use crate::model::Scenario;
+use crate::stats::Defaults;
 
 /// What the command line adds to a study.
 pub struct Call<'c> {
@@ -67,6 +69,7 @@ pub fn run(
         scenario: if study.title.is_empty() { call.file.clone() } else { study.title.clone() },
         seed: call.seed,
         version: env!("CARGO_PKG_VERSION").to_owned(),
+        inputs: Vec::new(),
         diagnostics: Vec::new(),
         warnings: Vec::new(),
         interrupted: budget.is_interrupted(),
@@ -120,11 +123,8 @@ fn subjects(study: &Study, asked: &[&Query]) -> Result<Vec<Option<Subject>>, Fau
     for query in asked {
         for world in worlds(&query.ask) {
             if subjects[world].is_none() {
+                placeable(&study.worlds[world])?;
                 let subject = Subject::new(&study.worlds[world]);
-                let crowding = start::check_area(&subject.program.scenario);
-                if let Some(first) = crowding.first() {
-                    return Err(Fault::Placement(crowded(&subject.program.scenario, first)));
-                }
                 subjects[world] = Some(subject);
             }
         }
@@ -174,8 +174,16 @@ enum Sampling<'q> {
     Split(Question<'q>),
 }
 
+/// Whether everybody can be placed, as far as areas tell.
+pub fn placeable(world: &World) -> Result<(), Fault> {
+    let crowding = start::check_area(&world.scenario);
+    let Some(first) = crowding.first() else { return Ok(()) };
+    let place = first.agents.first().and_then(|agent| world.place_of(*agent));
+    Err(Fault::Placement { reason: crowded(&world.scenario, first), place })
+}
+
 /// More people than fit, in words.
-pub fn crowded(scenario: &crate::model::Scenario, crowding: &start::Crowding) -> String {
+fn crowded(scenario: &Scenario, crowding: &start::Crowding) -> String {
     let names: Vec<&str> = crowding
         .agents
         .iter()
@@ -207,6 +215,15 @@ fn surveyed(ask: &Ask) -> Option<usize> {
         Ask::Estimate { estimator: Estimator::Splitting(_), .. } => None,
         Ask::Check { measure, .. } | Ask::Estimate { measure, .. } => Some(measure.target.world),
         Ask::Compare { .. } | Ask::Rank { .. } => None,
+    }
+}
+
+/// Gives what a procedure refuses the place of its query.
+fn refused(query: &Query) -> impl Fn(Fault) -> Fault {
+    let place = query.span;
+    move |fault| match fault {
+        Fault::Statistics(reason) => Fault::Procedure { place, reason },
+        other => other,
     }
 }
 
@@ -247,6 +264,7 @@ impl<'a> Session<'a> {
     {
         let mut groups = Vec::new();
         let mut taken = vec![false; asked.len()];
+        let mut defaults = Defaults::default();
         for (at, &query) in asked.iter().enumerate() {
             if taken[at] {
                 continue;
@@ -266,19 +284,23 @@ impl<'a> Session<'a> {
                     for &k in &together {
                         taken[k] = true;
                     }
-                    let inquiries =
-                        together.iter().map(|&k| self.inquiry(asked[k])).collect::<Result<_, _>>()?;
+                    let inquiries = together
+                        .iter()
+                        .map(|&k| self.inquiry(asked[k], &mut defaults).map_err(refused(asked[k])))
+                        .collect::<Result<_, _>>()?;
                     (together, Sampling::Survey(Survey::new(self.subject(world)?, inquiries, self.call.seed)))
                 }
-                Ask::Compare { .. } => (vec![at], Sampling::Contrast(self.contrast(query)?)),
-                Ask::Rank { .. } => (vec![at], Sampling::Race(self.contest(query)?)),
+                Ask::Compare { .. } => {
+                    (vec![at], Sampling::Contrast(self.contrast(query).map_err(refused(query))?))
+                }
+                Ask::Rank { .. } => (vec![at], Sampling::Race(self.contest(query).map_err(refused(query))?)),
             };
             groups.push(Group { places, sampling });
         }
         Ok(groups)
     }
 
-    fn inquiry<'q>(&self, query: &'q Query) -> Result<Inquiry<'q>, Fault> {
+    fn inquiry<'q>(&self, query: &'q Query, defaults: &mut Defaults) -> Result<Inquiry<'q>, Fault> {
         let (Ask::Check { measure, .. } | Ask::Estimate { measure, .. }) = &query.ask else {
             return Err(Fault::Unsuitable);
         };
@@ -286,7 +308,7 @@ impl<'a> Session<'a> {
             query,
             column: measure.target.column,
             range: range(measure),
-            procedure: Procedure::new(&query.ask, self.call.seed)?,
+            procedure: Procedure::new(&query.ask, self.call.seed, defaults)?,
             tally: Tally::default(),
             glimpse: Glimpse::default(),
             stop: None,

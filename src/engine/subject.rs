@@ -1,13 +1,20 @@
 //! A world made ready to run: a program of the kernel and what is observed in it.
 
 use super::observer::Observer;
+use crate::base::lanes::{LANES, Mask};
 use crate::base::tick::{Clock, Tick};
 use crate::compile::study::{Root, Texts, World};
 use crate::kernel::process::View;
-use crate::kernel::{Code, Program};
-use crate::logic::{Invalid, Monitor, Node, NodeId, Robustness, SignalMonitor, Term, TermId, Tree};
+use crate::kernel::{Code, Program, Readings};
+use crate::logic::{
+    AtomId, Invalid, Monitor, Needs, Node, NodeId, Part, Robustness, SignalId, SignalMonitor,
+    SignalRobustness, Tree, leaves,
+};
 use crate::model::{Bool, Num};
 use std::collections::BTreeSet;
+
+/// Most jumps of a trial.
+const MOST_JUMPS: u64 = 1 << 26;
 
 /// A world made ready to run.
 pub struct Subject {
@@ -21,6 +28,8 @@ pub struct Subject {
     pub horizon: Tick,
     /// How atoms, signals and comparisons were written.
     pub texts: Texts,
+    /// Most jumps of a trial in continuous time; one that needs more is unresolved.
+    pub most_jumps: u64,
     atoms: Vec<Bool>,
     signals: Vec<Num>,
 }
@@ -34,6 +43,35 @@ pub(super) struct Sheet {
     pub(super) places: Vec<usize>,
     /// One a column.
     pub(super) observers: Vec<Observer>,
+    /// Whether each column follows single people of a source.
+    pub(super) follows: Vec<bool>,
+    /// When they look at what.
+    needs: Needs,
+}
+
+impl Sheet {
+    /// The lanes in which something is looked at in the present state that has no value there.
+    pub(super) fn lost(&self, readings: &Readings, ticks: &[u64; LANES]) -> Mask {
+        lost(&self.needs, readings, ticks)
+    }
+}
+
+/// The lanes in which something is needed at their ticks that has no value.
+pub(super) fn lost(needs: &Needs, readings: &Readings, ticks: &[u64; LANES]) -> Mask {
+    let mut lost = Mask::NONE;
+    let (atoms, signals) = &readings.missing;
+    for (place, lanes) in atoms.iter().enumerate() {
+        lost |= lanes.iter().filter(|&lane| needs.atom(place, ticks[lane])).map(Mask::lane).fold(lost, join);
+    }
+    for (place, lanes) in signals.iter().enumerate() {
+        lost |=
+            lanes.iter().filter(|&lane| needs.signal(place, ticks[lane])).map(Mask::lane).fold(lost, join);
+    }
+    lost & readings.unresolved
+}
+
+fn join(a: Mask, b: Mask) -> Mask {
+    a | b
 }
 
 impl Subject {
@@ -46,6 +84,7 @@ impl Subject {
             tree: world.tree.clone(),
             columns: world.columns.iter().map(|c| c.root).collect(),
             texts: world.texts.clone(),
+            most_jumps: MOST_JUMPS,
             atoms: world.atoms.clone(),
             signals: world.signals.clone(),
         }
@@ -101,7 +140,12 @@ impl Subject {
     /// those who are there, so that nobody wrote it.
     pub(super) fn implications(&self, column: usize) -> Result<Vec<bool>, Invalid> {
         if self.program.scenario.clock.is_jumps() {
-            return Ok(vec![false; self.signal_monitor(column)?.implications()]);
+            return Ok(match self.columns[column] {
+                Root::Robustness(..) => Vec::new(),
+                Root::Formula(_) | Root::Metric(_) => {
+                    vec![false; self.signal_monitor(column)?.implications()]
+                }
+            });
         }
         let of_presence = |implication: NodeId| {
             let Node::Or(parts) = &self.tree.nodes[implication.0 as usize] else { return false };
@@ -124,6 +168,15 @@ impl Subject {
         }
     }
 
+    /// The robustness of a column in continuous time, if it is one.
+    pub fn signal_robustness(&self, column: usize) -> Result<SignalRobustness, Invalid> {
+        let Clock::Jumps(tick) = self.program.scenario.clock else { return Err(Invalid::NoSteps) };
+        match self.columns[column] {
+            Root::Robustness(node, _) => SignalRobustness::new(&self.tree, node, self.horizon, tick),
+            Root::Formula(_) | Root::Metric(_) => Err(Invalid::NoMargin),
+        }
+    }
+
     /// A look at what some columns use in continuous time; what they do not use reads as a constant.
     pub fn view(&self, columns: &[usize]) -> View {
         let (atoms, signals) = self.observed(columns);
@@ -143,43 +196,54 @@ impl Subject {
         atoms.iter().all(|atom| atom.reads(&mut read)) && signals.iter().all(|s| s.reads(&mut read))
     }
 
+    /// Whether a column follows single people of a source: it knows no more once a place is given to a second person.
+    pub(super) fn follows(&self, column: usize) -> bool {
+        let (atoms, signals) = self.observed(&[column]);
+        self.program.arrivals.are_named(&atoms, &signals)
+    }
+
     /// The numbers of the atoms that a column uses.
     pub(super) fn atoms_of(&self, column: usize) -> Vec<usize> {
-        let used = self.used(&[column]);
-        (0..self.atoms.len()).filter(|&k| used.atoms[k]).collect()
+        self.leaves(&[column]).0.into_iter().map(|atom| atom.0 as usize).collect()
+    }
+
+    /// The numbers of the signals that a column uses.
+    pub(super) fn signals_of(&self, column: usize) -> Vec<usize> {
+        self.leaves(&[column]).1.into_iter().map(|signal| signal.0 as usize).collect()
     }
 
     /// The atoms and signals that some columns use, others as constants.
     fn observed(&self, columns: &[usize]) -> (Vec<Bool>, Vec<Num>) {
-        let used = self.used(columns);
-        let atoms: Vec<Bool> = self
-            .atoms
-            .iter()
-            .zip(&used.atoms)
-            .map(|(atom, used)| if *used { atom.clone() } else { Bool::Constant(false) })
-            .collect();
-        let signals: Vec<Num> = self
-            .signals
-            .iter()
-            .zip(&used.signals)
-            .map(|(signal, used)| if *used { signal.clone() } else { Num::Constant(0.0) })
-            .collect();
+        let (used_atoms, used_signals) = self.leaves(columns);
+        let mut atoms = vec![Bool::Constant(false); self.atoms.len()];
+        for atom in used_atoms {
+            atoms[atom.0 as usize] = self.atoms[atom.0 as usize].clone();
+        }
+        let mut signals = vec![Num::Constant(0.0); self.signals.len()];
+        for signal in used_signals {
+            signals[signal.0 as usize] = self.signals[signal.0 as usize].clone();
+        }
         (atoms, signals)
     }
 
-    fn used(&self, columns: &[usize]) -> Used<'_> {
-        let mut used = Used {
-            tree: &self.tree,
-            atoms: vec![false; self.atoms.len()],
-            signals: vec![false; self.signals.len()],
-        };
+    /// The atoms and signals that some columns use. A tree that no monitor accepts uses none.
+    fn leaves(&self, columns: &[usize]) -> (BTreeSet<AtomId>, BTreeSet<SignalId>) {
+        let roots: Vec<Part> = columns.iter().map(|&column| part(self.columns[column])).collect();
+        leaves(&self.tree, &roots).unwrap_or_default()
+    }
+
+    /// When some columns look at what.
+    pub(super) fn needs(&self, columns: &[usize]) -> Result<Needs, Invalid> {
+        let mut needs = Needs::default();
         for &column in columns {
             match self.columns[column] {
-                Root::Formula(node) | Root::Robustness(node, _) => used.node(node),
-                Root::Metric(term) => used.term(term),
+                Root::Formula(node) | Root::Robustness(node, _) => {
+                    needs.add_formula(&self.tree, node, self.horizon)?;
+                }
+                Root::Metric(term) => needs.add_metric(&self.tree, term, self.horizon)?,
             }
         }
-        used
+        Ok(needs)
     }
 
     /// Sheets for some columns.
@@ -195,47 +259,18 @@ impl Subject {
             .map(|places| {
                 let chosen: Vec<usize> = places.iter().map(|&p| columns[p]).collect();
                 let observers = chosen.iter().map(|&c| self.observer(c)).collect::<Result<Vec<_>, _>>()?;
-                Ok(Sheet { code: self.code(&chosen), places, observers })
+                let follows = chosen.iter().map(|&column| self.follows(column)).collect();
+                let (code, needs) = (self.code(&chosen), self.needs(&chosen)?);
+                Ok(Sheet { code, places, observers, follows, needs })
             })
             .collect()
     }
 }
 
-/// Marks the atoms and signals below a root.
-struct Used<'t> {
-    tree: &'t Tree,
-    atoms: Vec<bool>,
-    signals: Vec<bool>,
-}
-
-impl Used<'_> {
-    fn node(&mut self, id: NodeId) {
-        match &self.tree.nodes[id.0 as usize] {
-            Node::Constant(_) => {}
-            Node::Atom(atom) => self.atoms[atom.0 as usize] = true,
-            Node::Compare(_, a, b) => {
-                self.term(*a);
-                self.term(*b);
-            }
-            Node::Not(a) | Node::Finally(_, a) | Node::Globally(_, a) => self.node(*a),
-            Node::And(list) | Node::Or(list) => list.iter().for_each(|id| self.node(*id)),
-            Node::Until(_, a, b) | Node::WeakUntil(_, a, b) | Node::Release(_, a, b) => {
-                self.node(*a);
-                self.node(*b);
-            }
-        }
-    }
-
-    fn term(&mut self, id: TermId) {
-        match &self.tree.terms[id.0 as usize] {
-            Term::Constant(_) => {}
-            Term::Signal(signal) => self.signals[signal.0 as usize] = true,
-            Term::Combine(_, a, b) => {
-                self.term(*a);
-                self.term(*b);
-            }
-            Term::Abs(a) | Term::Window(_, _, a) | Term::Later(_, a) | Term::AtEnd(a) => self.term(*a),
-            Term::TimeUntil(node) => self.node(*node),
-        }
+/// The part of the tree that a column is.
+fn part(root: Root) -> Part {
+    match root {
+        Root::Formula(node) | Root::Robustness(node, _) => Part::Node(node),
+        Root::Metric(term) => Part::Term(term),
     }
 }

@@ -65,14 +65,15 @@ impl<'q> Survey<'q> {
         budget: &Budget,
     ) -> Result<Vec<Forecast>, Fault> {
         let width = executor.width(&self.job) as u64;
-        let size = width.min(round(&self.inquiries, 0, width, budget)).min(budget.max_trials);
+        let size =
+            Rehearsal::size(width).min(round(&self.inquiries, 0, width, budget)).min(budget.max_trials);
         let rehearsal = Rehearsal::run(&self.job, Item::run(0, size), executor, budget)?;
         let seconds = rehearsal.seconds_per_trial(self.job.subject.most_steps());
         let forecast = |inquiry: &Inquiry<'_>| {
             let mut glimpse = Glimpse::default();
             let range = inquiry.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
             if let Some(place) = self.job.columns.iter().position(|c| *c == inquiry.column) {
-                rehearsal.rows().for_each(|row| glimpse.read(&row[place], range));
+                rehearsal.seen().for_each(|row| glimpse.read(&row[place], range));
             }
             let expected = forecast::inquiry(&inquiry.query.ask, &inquiry.procedure, &glimpse);
             let trials = expected.unwrap_or(u64::MAX).min(budget.max_trials);
@@ -97,6 +98,7 @@ impl<'q> Survey<'q> {
     ) -> Result<(), Fault> {
         let started = budget.elapsed();
         let mut next = 0u64;
+        let mut items = Vec::new();
         if budget.max_trials == 0 {
             self.inquiries.iter_mut().for_each(|inquiry| inquiry.stop = Some(Stop::Cap));
         }
@@ -105,14 +107,17 @@ impl<'q> Survey<'q> {
                 close(&mut self.inquiries, budget);
                 break;
             }
-            let (items, cells) = match self.ahead.take() {
-                Some(ahead) => (ahead.items, ahead.cells),
+            let cells = match self.ahead.take() {
+                Some(ahead) => {
+                    items = ahead.items;
+                    ahead.cells
+                }
                 None => {
                     self.job.narrow(columns(&self.inquiries));
                     let width = executor.width(&self.job) as u64;
-                    let items = Item::run(next, round(&self.inquiries, next, width, budget));
-                    let cells = executor.run(&self.job, &items, budget)?;
-                    (items, cells)
+                    items.clear();
+                    items.extend(Item::row(next, round(&self.inquiries, next, width, budget)));
+                    executor.run(&self.job, &items, budget)?
                 }
             };
             next += items.len() as u64;
@@ -120,6 +125,7 @@ impl<'q> Survey<'q> {
                 close(&mut self.inquiries, budget);
                 break;
             }
+            self.job.reuse(cells);
             if let Some(inquiry) = self.inquiries.iter().find(|i| i.stop.is_none()) {
                 let expected = forecast::inquiry(&inquiry.query.ask, &inquiry.procedure, &inquiry.glimpse);
                 watch.consumed(&inquiry.query.text, next, expected.map(|n| n.max(next)));
@@ -132,33 +138,62 @@ impl<'q> Survey<'q> {
         Ok(())
     }
 
-    /// Shows a round to the inquiries, trial by trial; false where time ended it.
+    /// Shows a round to the inquiries; false where time ended it. None of them depends on what another one finds, so
+    /// each reads in one go, trial by trial, up to where it stops.
     fn read(&mut self, items: &[Item], cells: &Cells, started: f64, budget: &Budget) -> Result<bool, Fault> {
-        for (item, row) in items.iter().zip(cells.rows()) {
-            // What follows an unfinished trial is not looked at: outcomes count in index order.
-            let Some(row) = row else { return Ok(false) };
-            for inquiry in self.inquiries.iter_mut().filter(|i| i.stop.is_none()) {
-                let Some(place) = self.job.columns.iter().position(|c| *c == inquiry.column) else {
-                    continue;
-                };
-                let cell = &row[place];
-                if cell.reading == Reading::Faulty {
-                    return Err(super::trial::fault(self.job.subject, *item, self.job.seed));
+        // What follows an unfinished trial is not looked at: outcomes count in index order.
+        let ready = &items[..cells.ready().min(items.len())];
+        let mut faulty: Option<usize> = None;
+        for inquiry in self.inquiries.iter_mut().filter(|i| i.stop.is_none()) {
+            if let Some(place) = self.job.columns.iter().position(|c| *c == inquiry.column) {
+                match inquiry.read(ready, cells.column(place), budget.max_trials) {
+                    Ok(stop) => inquiry.stop = stop,
+                    Err(at) => faulty = Some(faulty.map_or(at, |first| first.min(at))),
                 }
-                inquiry.read(item.index, cell);
-                let finished = inquiry.procedure.observe(cell);
-                if finished || inquiry.tally.counts.trials >= budget.max_trials {
-                    inquiry.stop = Some(if finished { inquiry.reason() } else { Stop::Cap });
+                if inquiry.stop.is_some() {
                     inquiry.seconds = budget.elapsed() - started;
                 }
             }
         }
-        Ok(true)
+        if let Some(at) = faulty {
+            return Err(super::trial::fault(self.job.subject, items[at], self.job.seed));
+        }
+        // Nobody needs what was not finished, if all have stopped before it.
+        Ok(ready.len() == items.len() || self.inquiries.iter().all(|i| i.stop.is_some()))
     }
 }
 
 impl Inquiry<'_> {
-    fn read(&mut self, index: u64, cell: &Cell) {
+    /// Reads the trials of a round up to where it stops; the place of the trial in which the model is wrong, if it
+    /// comes to it.
+    fn read<'c>(
+        &mut self,
+        items: &[Item],
+        cells: impl Iterator<Item = &'c Cell> + Clone,
+        most: u64,
+    ) -> Result<Option<Stop>, usize> {
+        let (mut consumed, mut finished) = (0, false);
+        // At least one is read, whatever the limit.
+        let room = most.saturating_sub(self.tally.counts.trials).max(1);
+        for cell in cells.clone().take(items.len()) {
+            if cell.reading == Reading::Faulty {
+                return Err(consumed);
+            }
+            consumed += 1;
+            finished = self.procedure.observe(cell);
+            if finished || consumed as u64 == room {
+                break;
+            }
+        }
+        for (item, cell) in items[..consumed].iter().zip(cells) {
+            self.count(item.index, cell);
+        }
+        let capped = self.tally.counts.trials >= most;
+        Ok(if finished { Some(self.reason()) } else { capped.then_some(Stop::Cap) })
+    }
+
+    #[inline(always)]
+    fn count(&mut self, index: u64, cell: &Cell) {
         self.tally.add(index, cell, self.range);
         if let (Ask::Check { threshold, at_least, or_equal, .. }, Reading::Value(value)) =
             (&self.query.ask, cell.reading)

@@ -29,6 +29,7 @@ impl Tally {
     }
 
     /// Counts a trial; `range` is that of an expectation.
+    #[inline]
     pub(super) fn add(&mut self, index: u64, cell: &Cell, range: Option<(f64, f64)>) {
         self.counts.trials += 1;
         self.steps += cell.steps;

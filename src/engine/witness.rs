@@ -2,6 +2,7 @@
 //! value of a metric; when that was decided, and by what.
 
 use super::blame;
+use super::budget::Budget;
 use super::cell::Reading;
 use super::observer::Observer;
 use super::outcome::{Shows, Witness};
@@ -34,11 +35,11 @@ pub(super) fn find(
     column: usize,
     advice: Option<(usize, usize)>,
     picks: &[(Shows, u64)],
-    call: &Call<'_>,
+    (call, budget): (&Call<'_>, &Budget),
     settings: &[(String, String)],
     unit: &str,
 ) -> Vec<Witness> {
-    let one = |pick: &(Shows, u64)| witness(subject, column, advice, *pick, call, settings, unit);
+    let one = |pick: &(Shows, u64)| witness(subject, column, advice, *pick, (call, budget), settings, unit);
     picks.iter().filter_map(one).collect()
 }
 
@@ -49,13 +50,13 @@ pub(super) fn label(subject: &Subject, advice: Option<(usize, usize)>) -> Option
     moves.options.get(option).map(|(label, _)| label.as_str())
 }
 
-/// Runs one trial again and says what decided it; `dimension` is the unit of a metric.
+/// Runs one trial again and says what decided it; `dimension` is the unit of a metric. None where the time is over.
 fn witness(
     subject: &Subject,
     column: usize,
     advice: Option<(usize, usize)>,
     (shows, trial): (Shows, u64),
-    call: &Call<'_>,
+    (call, budget): (&Call<'_>, &Budget),
     settings: &[(String, String)],
     dimension: &str,
 ) -> Option<Witness> {
@@ -70,7 +71,7 @@ fn witness(
         command.push_str(&format!(" --move '{label}'"));
     }
     if program.scenario.clock.is_jumps() {
-        let (time, value, what) = recall::decision(subject, column, trial, call.seed, dimension)?;
+        let (time, value, what) = recall::decision(subject, column, (trial, call.seed), dimension, budget)?;
         return Some(Witness { shows, trial, value, time, unit, what, command });
     }
     let code = subject.code(&[column]);
@@ -96,6 +97,9 @@ fn witness(
         if observer.decided().has(0) || state.ticks[0] >= subject.horizon.0 || !state.diverged.is_empty() {
             break;
         }
+        if budget.is_late() {
+            return None;
+        }
         dynamics::step(program, &mut state, &mut scratch);
     }
     let state_at = |tick: Tick| {
@@ -105,20 +109,20 @@ fn witness(
     let now = Tick(state.ticks[0]);
     let (value, at, what) = match (subject.columns[column], &observer) {
         (Root::Formula(root), Observer::Formula(monitor)) => {
-            (None, Tick(monitor.decided_at()[0]), blame::truth(subject, root, &record, state_at))
+            (None, Tick(monitor.decided_at()[0]), blame::truth(subject, root, (&record, budget), state_at))
         }
         (Root::Robustness(root, _), _) => {
             let value = match observer.reading(0) {
                 Reading::Value(value) => Some(value),
                 _ => None,
             };
-            let (at, what) = blame::margin(subject, root, (value, dimension), &record, state_at);
+            let (at, what) = blame::margin(subject, root, (value, dimension), (&record, budget), state_at);
             (value, at.unwrap_or(now), what)
         }
         (Root::Metric(root), Observer::Metric(monitor)) => {
             // The monitor may know the value before the last state of a window.
             let value = monitor.value().0[0];
-            let (at, what) = blame::number(subject, root, (value, dimension), &record, state_at);
+            let (at, what) = blame::number(subject, root, (value, dimension), (&record, budget), state_at);
             (Some(value), at.unwrap_or(Tick(monitor.decided_at()[0])), what)
         }
         _ => return None,

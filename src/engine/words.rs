@@ -57,6 +57,15 @@ pub(super) fn rounded(value: f64, upward: bool, unit: &str) -> String {
 
 /// A bound, rounded upward to three digits.
 pub fn at_most(value: f64) -> f64 {
+    three_digits(value, f64::ceil)
+}
+
+/// A bound, rounded downward to three digits.
+pub(super) fn at_least(value: f64) -> f64 {
+    three_digits(value, f64::floor)
+}
+
+fn three_digits(value: f64, round: impl Fn(f64) -> f64) -> f64 {
     if !(value.is_finite() && value > 0.0) {
         return value;
     }
@@ -66,7 +75,7 @@ pub fn at_most(value: f64) -> f64 {
     }
     // A number that has so few digits already stays as it is.
     let scaled = value * scale;
-    if (scaled - scaled.round()).abs() < 1e-9 { value } else { scaled.ceil() / scale }
+    if (scaled - scaled.round()).abs() < 1e-9 { value } else { round(scaled) / scale }
 }
 
 /// The measure of a query as one would say it: `P(safe)`. The check of a quantile is decided as one of a
@@ -83,11 +92,51 @@ pub(super) fn measured(query: &str, letter: char) -> String {
     let metric =
         measure.split_once(',').map_or(measure, |(_, rest)| rest.strip_suffix(')').unwrap_or(rest)).trim();
     let rest = text[end..].trim_start();
-    let relation = if rest.starts_with('>') || rest.starts_with('≥') { "<" } else { "<=" };
+    // `Q <= x` and `Q > x` are about P(metric <= x), `Q < x` and `Q >= x` about P(metric < x).
+    let greater = rest.starts_with(['>', '≥']);
+    let or_equal = rest.starts_with(['≤', '≥']) || rest.get(1..).is_some_and(|rest| rest.starts_with('='));
+    let relation = if greater == or_equal { "<" } else { "<=" };
     let bound = rest.trim_start_matches(['<', '>', '=', '≤', '≥']).trim_start();
     let stop =
         [" by ", " under ", " confidence ", " within "].iter().filter_map(|word| bound.find(word)).min();
     format!("P({metric} {relation} {})", bound[..stop.unwrap_or(bound.len())].trim())
+}
+
+/// The event that the check of a quantile is decided by, `m < 3 m` for `check Q(0.5, m) >= 3 m`; `None` of other checks.
+pub(super) fn asked(query: &str) -> Option<String> {
+    let rest = query.trim_start().strip_prefix("check")?;
+    if !rest.trim_start().starts_with('Q') {
+        return None;
+    }
+    Some(measured(query, 'P').strip_prefix("P(")?.strip_suffix(')')?.to_owned())
+}
+
+/// What the decided check of a quantile certifies, if that is about the level it asks for: the claim about the
+/// quantile, and the probability that it follows from.
+pub(super) fn quantile(query: &str, level: f64, said: &Statement) -> Option<String> {
+    let event = asked(query)?;
+    let (at, sign) =
+        event.rfind(" <= ").map(|at| (at, " <= ")).or_else(|| Some((event.rfind(" < ")?, " < ")))?;
+    let bound = &event[at + sign.len()..];
+    // P(m <= x) > q makes the q-quantile at most x, and P(m < x) < q makes it at least x.
+    let (relation, beyond) = match (said.claim, sign) {
+        (Claim::Above(theta), _) if theta == level => (sign.trim(), ">"),
+        (Claim::Below(theta), " <= ") if theta == level => (">", "<"),
+        (Claim::Below(theta), _) if theta == level => (">=", "<"),
+        _ => return None,
+    };
+    Some(format!(
+        "{} {relation} {bound}, since P({event}) {beyond} {}, error at most {}",
+        measured(query, 'Q'),
+        number(level),
+        error(said.error)
+    ))
+}
+
+/// An expectation of a metric that was clipped to its range: `E(m, clipped to 0 s .. 20 s)`.
+pub(super) fn clipped(said: &str, (low, high): (f64, f64), unit: &str) -> String {
+    let inner = said.strip_suffix(')').unwrap_or(said);
+    format!("{inner}, clipped to {} .. {})", quantity(low, unit), quantity(high, unit))
 }
 
 /// One past the parenthesis that closes the first one.
@@ -160,7 +209,42 @@ mod tests {
         assert_eq!(measured("check P(a & (b)) >= 0.5", 'P'), "P(a & (b))");
         assert_eq!(measured("check Q(0.9, f(a)) <= 15 s confidence 95 %", 'P'), "P(f(a) <= 15 s)");
         assert_eq!(measured("check Q(0.9, f(a)) >= 15 s", 'P'), "P(f(a) < 15 s)");
+        assert_eq!(measured("check Q(0.9, f(a)) ≥ 15 s", 'P'), "P(f(a) < 15 s)");
+        assert_eq!(measured("check Q(0.9, f(a)) ≤ 15 s", 'P'), "P(f(a) <= 15 s)");
+        assert_eq!(measured("check Q(0.9, f(a)) < 15 s", 'P'), "P(f(a) < 15 s)");
+        assert_eq!(measured("check Q(0.9, f(a)) > 15 s", 'P'), "P(f(a) <= 15 s)");
         assert_eq!(measured("estimate Q(0.9, f(a))", 'Q'), "Q(0.9, f(a))");
+    }
+
+    #[test]
+    fn checks_of_quantiles_certify_quantiles() {
+        let said = |query: &str, claim| quantile(query, 0.9, &Statement { claim, error: 0.01 });
+        let (above, below) = (Claim::Above(0.9), Claim::Below(0.9));
+        assert_eq!(
+            said("check Q(0.9, f(a)) >= 3 m", below).unwrap(),
+            "Q(0.9, f(a)) >= 3 m, since P(f(a) < 3 m) < 0.9, error at most 0.01"
+        );
+        assert_eq!(
+            said("check Q(0.9, f(a)) >= 3 m", above).unwrap(),
+            "Q(0.9, f(a)) < 3 m, since P(f(a) < 3 m) > 0.9, error at most 0.01"
+        );
+        assert_eq!(
+            said("check Q(0.9, f(a)) <= 3 m", above).unwrap(),
+            "Q(0.9, f(a)) <= 3 m, since P(f(a) <= 3 m) > 0.9, error at most 0.01"
+        );
+        assert_eq!(
+            said("check Q(0.9, f(a)) <= 3 m confidence 99 %", below).unwrap(),
+            "Q(0.9, f(a)) > 3 m, since P(f(a) <= 3 m) < 0.9, error at most 0.01"
+        );
+        // An indifference region certifies another level.
+        assert_eq!(said("check Q(0.9, f(a)) <= 3 m", Claim::Above(0.88)), None);
+        assert_eq!(said("check P(F f(a)) <= 0.9", below), None);
+        assert_eq!(asked("check P(a) >= 0.5"), None);
+    }
+
+    #[test]
+    fn clipped_metrics_are_said_to_be() {
+        assert_eq!(clipped("E(time_until(a))", (0.0, 20.0), "s"), "E(time_until(a), clipped to 0 s .. 20 s)");
     }
 
     #[test]

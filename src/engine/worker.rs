@@ -102,7 +102,7 @@ impl Worker {
                         };
                         let key = TrialKey { seed, index: item.index, branch: 0 };
                         let shrunk = match start::load(program, &mut self.state, lane, key, item.advice) {
-                            Ok(start) => start.shrunk_pairs > 0,
+                            Ok(start) => start.shrunk_pairs > 0 || start.shrunk_at_barriers > 0,
                             Err(_) => {
                                 // A trial that cannot start is unresolved in every column.
                                 finished.places.push(place);
@@ -158,10 +158,13 @@ impl Worker {
         let mut touched = diverged;
         for (sheet, readings) in self.sheets.iter_mut().zip(&mut self.readings) {
             sheet.code.run(&subject.program, &self.state, readings);
-            let lost = readings.unresolved & watched;
-            let lanes = watched & !lost;
-            for (observer, &place) in sheet.observers.iter_mut().zip(&sheet.places) {
-                let open = lanes & !self.settled[place];
+            // Without a value where one is needed, nothing more can be said.
+            let lost = sheet.lost(readings, &self.state.ticks) & watched;
+            for (k, observer) in sheet.observers.iter_mut().enumerate() {
+                let place = sheet.places[k];
+                let gone = if sheet.follows[k] { self.state.queues.reused & watched } else { Mask::NONE };
+                let lost = lost | gone;
+                let open = watched & !lost & !self.settled[place];
                 if !open.is_empty() {
                     observer.observe(open, readings);
                 }

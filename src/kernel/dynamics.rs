@@ -22,19 +22,20 @@ use super::behaviour;
 use super::cells::Cells;
 use super::contact::Contacts;
 use super::drive;
-use super::lanewise::{Lanewise, Sum};
-use super::noise::Draws;
+use super::lanewise::Lanewise;
+use super::noise::{Draws, word_of};
 use super::process;
 use super::program::Program;
+use super::social::Sum;
 use super::state::{Layout, Slot, State};
 use super::vector::{Doubles, Part, Words, parts};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::math;
+use crate::base::random::TrialKey;
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
 
-/// No human reaches this speed: a trial that does has diverged, m/s.
-pub const TOP_SPEED: f64 = 15.0;
+use crate::model::TOP_SPEED;
 
 /// Room to work, and what can be kept from one step to the next. It holds no part of the state: any
 /// scratch does for any batch, and changes no bit.
@@ -89,6 +90,7 @@ impl Scratch {
 /// Makes freshly loaded lanes ready for their first step: what follows from their parameters, and the
 /// forces at their present positions. Other lanes keep their bytes.
 pub fn refresh(program: &Program, state: &mut State, scratch: &mut Scratch, lanes: Mask) {
+    program.processes.begin(program.layout, state, &mut scratch.processes, lanes);
     if state.agents == 0 {
         return;
     }
@@ -138,7 +140,26 @@ pub fn step(program: &Program, state: &mut State, scratch: &mut Scratch) {
 /// Continuous time: every occupied lane goes to its next jump, if that comes up to and with the horizon. Returns
 /// the lanes that did; the times are in `state.clocks`. In others nothing more happens.
 pub fn jump(program: &Program, state: &mut State, scratch: &mut Scratch) -> Mask {
-    program.processes.jump(program.layout, state, &mut scratch.processes)
+    jump_until(program, state, scratch, &[f64::INFINITY; LANES])
+}
+
+/// The same up to and with a time of each lane, s, or the horizon if that comes first.
+pub fn jump_until(program: &Program, state: &mut State, scratch: &mut Scratch, until: &[f64; LANES]) -> Mask {
+    let last = program.processes.last();
+    let until = until.map(|time| if time < last { time } else { last });
+    program.processes.jump(program.layout, state, &mut scratch.processes, &until)
+}
+
+/// Continuous time: the trial of a lane, in which all has happened that comes up to and with a time, s, goes on from
+/// there under another key. Exponential waits begin anew, delays keep what is left of them.
+pub fn renew(
+    program: &Program,
+    state: &mut State,
+    scratch: &mut Scratch,
+    lane: usize,
+    from: (f64, TrialKey),
+) {
+    program.processes.renew(program.layout, state, &mut scratch.processes, lane, from);
 }
 
 /// The slots of a block that belong to some lanes.
@@ -204,14 +225,14 @@ fn move_on<S: Simd>(simd: S, program: &Program, state: &mut State, scratch: &mut
             kick(part, state, block, moving);
         }
     }
-    mover.contact(state, scratch);
+    mover.contact(simd, state, scratch);
     for (block, &moving) in scratch.moving.iter().enumerate() {
         let words = mover.words(state, block);
         for part in parts(simd) {
             mover.drift_and_drive(part, state, block, (moving, scratch.moved[block]), &words);
         }
     }
-    mover.contact(state, scratch);
+    mover.contact(simd, state, scratch);
     for (block, &moving) in scratch.moving.iter().enumerate() {
         let start = (&scratch.seen_x[block], &scratch.seen_y[block]);
         for part in parts(simd) {
@@ -233,6 +254,9 @@ impl Mover<'_> {
     #[inline(always)]
     fn words(&self, state: &State, block: usize) -> [u64; LANES] {
         let words = &self.program.forces.noise_words;
+        if !state.queues.reused.is_empty() {
+            return self.words_of_later(state, block);
+        }
         match state.layout {
             Layout::Trials => [u64::from(words[block]); LANES],
             Layout::Agents => {
@@ -244,6 +268,20 @@ impl Mover<'_> {
                 out
             }
         }
+    }
+
+    /// The same where some places of sources are used by later people.
+    #[cold]
+    fn words_of_later(&self, state: &State, block: usize) -> [u64; LANES] {
+        let agents = &self.program.scenario.agents;
+        std::array::from_fn(|k| {
+            let (agent, lane) = match state.layout {
+                Layout::Trials => (block, k),
+                Layout::Agents => (block * LANES + k, 0),
+            };
+            let entity = agents.get(agent).map_or(0, |known| known.entity + state.queues.later(agent, lane));
+            u64::from(word_of(entity))
+        })
     }
 
     /// Driving and noise over the whole step.
@@ -291,10 +329,15 @@ impl Mover<'_> {
         part.store_in(here, vy, &mut state.vy[block]);
     }
 
-    fn contact(&self, state: &mut State, scratch: &mut Scratch) {
-        scratch.moved.clear();
-        scratch.moved.resize(state.x.len(), Mask::NONE);
-        scratch.contacts.advance(self.program, state, &mut scratch.moved, self.half);
+    #[inline(always)]
+    fn contact<S: Simd>(&self, simd: S, state: &mut State, scratch: &mut Scratch) {
+        let Scratch { contacts, moved, .. } = scratch;
+        moved.clear();
+        moved.resize(state.x.len(), Mask::NONE);
+        simd.vectorize(
+            #[inline(always)]
+            || contacts.advance(simd, self.program, state, moved, self.half),
+        );
     }
 
     #[inline(always)]

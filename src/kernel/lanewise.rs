@@ -7,9 +7,11 @@
 
 use super::contact::Contacts;
 use super::forces::{Forces, REACH};
+use super::nearby::amply_around;
 use super::program::Program;
+use super::social::{Sum, Term, cohesion, decay, repel};
 use super::state::State;
-use super::vector::{Doubles, Part, exp2, larger, parts};
+use super::vector::{Doubles, Part, larger, parts};
 use crate::base::geometry::{Bounds, Vec2};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::math::at_least;
@@ -21,9 +23,6 @@ use std::f64::consts::LOG2_E;
 /// Way that an agent may go before the list is made anew, m; twice that is added to the reach.
 const SLACK: f64 = 0.12;
 
-/// Largest exponent of two of a social force: what goes beyond has diverged anyway, and stays finite.
-pub(super) const LARGEST_POWER: f64 = 480.0;
-
 /// An agent as the forces see it.
 #[derive(Clone, Copy, Debug, Default)]
 struct Walker {
@@ -31,48 +30,50 @@ struct Walker {
     y: Lanes,
     /// Radius; minus infinity where the agent is absent, so that it is beyond the reach of everybody.
     r: Lanes,
-    term: Term,
+    term: Kept,
 }
 
-/// One exponential term: A Lambda = `even` - n . (`ex`, `ey`).
+/// A `Term` of an agent.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Term {
-    /// A (1 + lambda)/2
-    pub(super) even: Lanes,
-    /// A (1 - lambda)/2 times the desired direction
-    pub(super) ex: Lanes,
-    pub(super) ey: Lanes,
-    /// log2(e)/B
-    pub(super) rate: Lanes,
+struct Kept {
+    even: Lanes,
+    ex: Lanes,
+    ey: Lanes,
+    /// Means nothing where all share B.
+    rate: Lanes,
 }
 
-impl Term {
+impl Kept {
     /// From A and lambda, B where it is needed, and the desired direction.
     #[inline(always)]
-    pub(super) fn fill<S: Simd>(
+    fn fill<S: Simd>(
         &mut self,
         part: Part<S>,
         (a, lambda): (&Lanes, &Lanes),
         b: Option<&Lanes>,
         (ex, ey): (&Lanes, &Lanes),
     ) {
-        let (a, lambda) = (part.load(a), part.load(lambda));
-        let (half, one) = (part.c(0.5), part.c(1.0));
-        let odd = a * (half * (one - lambda));
-        part.store(a * (half * (one + lambda)), &mut self.even);
-        part.store(odd * part.load(ex), &mut self.ex);
-        part.store(odd * part.load(ey), &mut self.ey);
-        if let Some(b) = b {
-            part.store(part.c(LOG2_E) / part.load(b), &mut self.rate);
+        let b = b.map(|b| part.load(b));
+        let e = (part.load(ex), part.load(ey));
+        let term = Term::new(part, (part.load(a), part.load(lambda)), b, e);
+        part.store(term.even, &mut self.even);
+        part.store(term.ex, &mut self.ex);
+        part.store(term.ey, &mut self.ey);
+        if b.is_some() {
+            part.store(term.rate, &mut self.rate);
         }
     }
-}
 
-/// A force, N.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Sum {
-    pub(super) x: Lanes,
-    pub(super) y: Lanes,
+    /// Into registers; `rate` is that of all where they share one.
+    #[inline(always)]
+    fn load<S: Simd>(&self, part: Part<S>, rate: Option<Doubles<S>>) -> Term<S> {
+        Term {
+            even: part.load(&self.even),
+            ex: part.load(&self.ex),
+            ey: part.load(&self.ey),
+            rate: rate.unwrap_or_else(|| part.load(&self.rate)),
+        }
+    }
 }
 
 /// Who can reach whom, at the positions where it was made.
@@ -93,7 +94,7 @@ struct Neighbours {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Lanewise {
     walkers: Vec<Walker>,
-    seconds: Vec<Term>,
+    seconds: Vec<Kept>,
     neighbours: Neighbours,
     /// How far beyond touching each body is felt or may be touched, with the skin, m.
     reaches: Vec<Lanes>,
@@ -127,7 +128,7 @@ impl Lanewise {
         }
         sums.clear();
         sums.resize(state.agents, Sum::default());
-        contacts.clear(state.agents);
+        contacts.clear();
         let all = forces.shared.unwrap_or((1.0, 1.0));
         // A function each: four loops in one would share its registers badly.
         match (forces.shared.is_some(), forces.second) {
@@ -159,7 +160,7 @@ impl Lanewise {
     fn prepare<S: Simd>(&mut self, simd: S, forces: &Forces, state: &State) {
         self.walkers.resize(state.agents, Walker::default());
         if forces.second {
-            self.seconds.resize(state.agents, Term::default());
+            self.seconds.resize(state.agents, Kept::default());
         }
         for (i, walker) in self.walkers.iter_mut().enumerate() {
             walker.x = state.x[i];
@@ -282,13 +283,14 @@ impl Lanewise {
         let sums = &mut sums[..n];
         let first = &self.neighbours.first[..=n];
         for part in parts(simd) {
-            let (rate, rate2) = (part.c(LOG2_E / shared.0), part.c(LOG2_E / shared.1));
+            let rate = SHARED.then(|| part.c(LOG2_E / shared.0));
+            let rate2 = SHARED.then(|| part.c(LOG2_E / shared.1));
             let minus_margin = part.c(-forces.margin);
             for i in 0..n {
                 let w = &walkers[i];
                 let (x, y, r) = (part.load(&w.x), part.load(&w.y), part.load(&w.r));
-                let own = Loaded::of(part, &w.term);
-                let own2 = if SECOND { Loaded::of(part, &seconds[i]) } else { own };
+                let own = w.term.load(part, rate);
+                let own2 = if SECOND { seconds[i].load(part, rate2) } else { own };
                 let (mut fx, mut fy) = (part.load(&sums[i].x), part.load(&sums[i].y));
                 for &j in &self.neighbours.others[first[i] as usize..first[i + 1] as usize] {
                     let o = &walkers[j as usize];
@@ -301,28 +303,16 @@ impl Lanewise {
                     if touching.any_true() {
                         contacts.push_pair(i as u32, j, part.bits(touching));
                     }
-                    let theirs = Loaded::of(part, &o.term);
-                    let (mut on_i, mut on_j);
-                    if SHARED {
-                        let e = decay(part, gap * rate) * q;
-                        on_i = e * own.towards(dx, dy, q);
-                        on_j = e * theirs.away(dx, dy, q);
-                    } else {
-                        let factor = q * part.c(forces.factor(i, j as usize));
-                        on_i = decay(part, gap * own.rate) * factor * own.towards(dx, dy, q);
-                        on_j = decay(part, gap * theirs.rate) * factor * theirs.away(dx, dy, q);
-                    }
+                    let theirs = o.term.load(part, rate);
+                    // Without a shared B: bodies of several persons may be among them.
+                    let factor = if SHARED { q } else { q * part.c(forces.factor(i, j as usize)) };
+                    let (way, over) = ((dx, dy), (q, factor));
+                    let (mut on_i, mut on_j) = repel::<S, SHARED>(part, gap, way, over, (&own, &theirs));
                     if SECOND {
-                        let theirs2 = Loaded::of(part, &seconds[j as usize]);
-                        if SHARED {
-                            let e = decay(part, gap * rate2) * q;
-                            on_i += e * own2.towards(dx, dy, q);
-                            on_j += e * theirs2.away(dx, dy, q);
-                        } else {
-                            let factor = q * part.c(forces.factor(i, j as usize));
-                            on_i += decay(part, gap * own2.rate) * factor * own2.towards(dx, dy, q);
-                            on_j += decay(part, gap * theirs2.rate) * factor * theirs2.away(dx, dy, q);
-                        }
+                        let theirs = seconds[j as usize].load(part, rate2);
+                        let more = repel::<S, SHARED>(part, gap, way, over, (&own2, &theirs));
+                        on_i += more.0;
+                        on_j += more.1;
                     }
                     fx += on_i * dx;
                     fy += on_i * dy;
@@ -384,82 +374,10 @@ fn around(one: &Walker, reach: &Lanes) -> Bounds {
     for lane in 0..LANES {
         let at = Vec2::new(one.x.0[lane], one.y.0[lane]);
         let reach = at_least(one.r.0[lane] + reach.0[lane], 0.0);
-        let reach = Vec2::repeat(reach + 1e-9 * (reach + at.x.abs() + at.y.abs()));
+        let here = amply_around(at, reach);
         // Where something is no number, nothing is in reach.
-        low = low.inf(&(at - reach));
-        high = high.sup(&(at + reach));
+        low = low.inf(&here.low);
+        high = high.sup(&here.high);
     }
     Bounds { low, high }
-}
-
-/// A term in registers.
-#[derive(Clone, Copy)]
-struct Loaded<S: Simd> {
-    even: Doubles<S>,
-    ex: Doubles<S>,
-    ey: Doubles<S>,
-    rate: Doubles<S>,
-}
-
-impl<S: Simd> Loaded<S> {
-    #[inline(always)]
-    fn of(part: Part<S>, term: &Term) -> Self {
-        Self {
-            even: part.load(&term.even),
-            ex: part.load(&term.ex),
-            ey: part.load(&term.ey),
-            rate: part.load(&term.rate),
-        }
-    }
-
-    /// A Lambda in a body that the vector (dx, dy) = n/q points to.
-    #[inline(always)]
-    fn towards(&self, dx: Doubles<S>, dy: Doubles<S>, q: Doubles<S>) -> Doubles<S> {
-        self.even - (dx * self.ex + dy * self.ey) * q
-    }
-
-    /// A Lambda in a body that it points away from.
-    #[inline(always)]
-    fn away(&self, dx: Doubles<S>, dy: Doubles<S>, q: Doubles<S>) -> Doubles<S> {
-        self.even + (dx * self.ex + dy * self.ey) * q
-    }
-}
-
-/// 2^power, zero beyond the reach (and where an agent is absent: there the gap is minus infinity).
-#[inline(always)]
-pub(super) fn decay<S: Simd>(part: Part<S>, power: Doubles<S>) -> Doubles<S> {
-    let in_reach = power.simd_gt(part.c(-REACH * LOG2_E));
-    // What `min` makes of NaN does not matter: it is not in reach.
-    in_reach.select(exp2(part, power.min(part.c(LARGEST_POWER))), part.c(0.0))
-}
-
-/// Attraction within groups (Moussaid, Perozo, Garnier, Helbing, Theraulaz 2010): a constant force towards
-/// the centroid of the n members present, on those farther than (n - 1)/2 m from it. Scalar: groups are
-/// few, and this is the same for both layouts.
-pub(super) fn cohesion(forces: &Forces, state: &State, sums: &mut [Sum]) {
-    for group in &forces.groups {
-        for lane in state.occupied.iter() {
-            let place = |member: u32| {
-                let slot = state.slot(member as usize, lane);
-                let here = state.present[slot.block].has(slot.lane);
-                here.then(|| {
-                    (slot, Vec2::new(state.x[slot.block].0[slot.lane], state.y[slot.block].0[slot.lane]))
-                })
-            };
-            let (mut n, mut sum) = (0.0, Vec2::zeros());
-            for (_, at) in group.members.iter().filter_map(|&member| place(member)) {
-                n += 1.0;
-                sum += at;
-            }
-            for (slot, at) in group.members.iter().filter_map(|&member| place(member)) {
-                let way = sum / n - at;
-                let distance = way.dot(&way).sqrt();
-                if distance > 0.0 && distance > 0.5 * (n - 1.0) {
-                    let pull = way * (group.attraction / distance);
-                    sums[slot.block].x.0[slot.lane] += pull.x;
-                    sums[slot.block].y.0[slot.lane] += pull.y;
-                }
-            }
-        }
-    }
 }

@@ -17,6 +17,7 @@ mod nearby;
 mod noise;
 pub mod process;
 pub mod program;
+mod social;
 pub mod start;
 pub mod state;
 mod vector;

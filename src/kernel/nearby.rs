@@ -5,6 +5,7 @@
 //! closely at each. So it changes no bit whether a surface was found here or in a look at all of them.
 
 use crate::base::geometry::{Bounds, Vec2};
+use std::borrow::Cow;
 
 /// Up to so many surfaces, a look at each is as fast.
 const FEW: usize = 16;
@@ -23,6 +24,7 @@ pub(super) struct Nearby {
 #[derive(Clone, Debug)]
 struct Squares {
     low: Vec2,
+    high: Vec2,
     per_side: f64,
     columns: usize,
     rows: usize,
@@ -38,10 +40,30 @@ impl Nearby {
         Self { all: (0..bounds.len() as u32).collect(), squares }
     }
 
-    /// Whether all surfaces are always near.
-    #[cfg(test)]
-    fn is_plain(&self) -> bool {
-        self.squares.is_none()
+    /// Side of a square, m; `None` where all surfaces are always near.
+    pub(super) fn side(&self) -> Option<f64> {
+        self.squares.as_ref().map(|squares| 1.0 / squares.per_side)
+    }
+
+    /// Whether a rectangle holds all surfaces.
+    pub(super) fn is_within(&self, around: &Bounds) -> bool {
+        self.squares.as_ref().is_none_or(|squares| {
+            let (low, high) = (squares.low, squares.high);
+            around.low.x <= low.x
+                && around.low.y <= low.y
+                && around.high.x >= high.x
+                && around.high.y >= high.y
+        })
+    }
+
+    /// The surfaces that may be nearer than `reach` to a place, ascending; amply, whatever rounding does.
+    pub(super) fn within(&self, p: Vec2, reach: f64) -> Cow<'_, [u32]> {
+        let mut room = Vec::new();
+        if self.squares.is_some() {
+            self.find(&amply_around(p, reach), &mut room);
+            return Cow::Owned(room);
+        }
+        Cow::Borrowed(&self.all)
     }
 
     /// The surfaces that may meet a rectangle, ascending. `room` is overwritten.
@@ -63,6 +85,12 @@ impl Nearby {
     }
 }
 
+/// A square of twice `reach` around a place, and more than rounding can do.
+pub(super) fn amply_around(p: Vec2, reach: f64) -> Bounds {
+    let reach = Vec2::repeat(reach + 1e-9 * (reach + p.x.abs() + p.y.abs()));
+    Bounds { low: p - reach, high: p + reach }
+}
+
 impl Squares {
     /// `None` where coordinates are infinite or no numbers.
     fn new(bounds: &[Bounds]) -> Option<Self> {
@@ -79,6 +107,7 @@ impl Squares {
         loop {
             let mut squares = Self {
                 low: all.low,
+                high: all.high,
                 per_side: 1.0 / side,
                 columns: (size.x / side) as usize + 1,
                 rows: (size.y / side) as usize + 1,
@@ -154,7 +183,7 @@ mod tests {
             let mut bounds: Vec<Bounds> = (0..count as u32).map(piece).collect();
             bounds[0] = Bounds { low: Vec2::new(-30.0, -5.0), high: Vec2::new(100.0, 90.0) };
             let nearby = Nearby::new(&bounds);
-            assert_eq!(nearby.is_plain(), count <= FEW);
+            assert_eq!(nearby.side().is_none(), count <= FEW);
             let mut room = Vec::new();
             let mut looked_at = 0;
             for ask in 0..200 {
@@ -182,7 +211,7 @@ mod tests {
         for odd in [point, endless] {
             let nearby = Nearby::new(&[odd; 2 * FEW]);
             let mut room = Vec::new();
-            assert!(nearby.is_plain());
+            assert!(nearby.side().is_none());
             assert_eq!(nearby.find(&point, &mut room).len(), 2 * FEW);
         }
     }

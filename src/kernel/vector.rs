@@ -3,13 +3,13 @@
 //! A block has eight logical lanes at every level; a machine whose vectors are narrower takes it in parts
 //! (`Part` names one), lane by lane the same operations. Only `+ - * /`, `sqrt`, comparison, selection and
 //! bit patterns are used, never a fused multiply-add or an estimate. So every lane has the same bits at
-//! every level. `ln` and `sin_cos_turn` follow `base::math` operation by operation; a test holds them equal
+//! every level. `exp`, `ln` and `sin_cos_turn` follow `base::math` operation by operation; a test holds them equal
 //! to the last bit.
 
 use crate::base::lanes::{LANES, Lanes, Mask};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
-use std::f64::consts::{FRAC_PI_2, LN_2};
+use std::f64::consts::{FRAC_PI_2, LN_2, LOG2_E};
 
 /// Doubles, as many as a vector of the machine holds.
 pub(super) type Doubles<S> = <S as Simd>::f64s;
@@ -82,6 +82,12 @@ impl<S: Simd> Part<S> {
     #[inline(always)]
     pub(super) fn store(self, value: Doubles<S>, lanes: &mut Lanes) {
         value.store_slice(&mut lanes.0[self.at..self.at + Doubles::<S>::LEN]);
+    }
+
+    /// Stores into its lanes of eight words.
+    #[inline(always)]
+    pub(super) fn put_words(self, value: Words<S>, eight: &mut [u64; LANES]) {
+        value.store_slice(&mut eight[self.at..self.at + Doubles::<S>::LEN]);
     }
 
     /// Stores into its lanes of eight consecutive numbers.
@@ -161,6 +167,34 @@ pub(super) fn exp2<S: Simd>(part: Part<S>, x: Doubles<S>) -> Doubles<S> {
     power * Doubles::<S>::from_bits(t.to_bits() << 52)
 }
 
+/// `base::math::exp`.
+#[inline(always)]
+pub(super) fn exp<S: Simd>(part: Part<S>, x: Doubles<S>) -> Doubles<S> {
+    let c = |value: f64| part.c(value);
+    let (least, most) = (x.simd_lt(c(-708.0)), x.simd_gt(c(709.0)));
+    let clamped = most.select(c(709.0), least.select(c(-708.0), x));
+    let t = clamped * c(LOG2_E) + c(ROUND);
+    let n = t - c(ROUND);
+    let r = clamped - n * c(LN2_HIGH) - n * c(LN2_LOW);
+    let r2 = r * r;
+    let r4 = r2 * r2;
+    let r8 = r4 * r4;
+    let p23 = c(1.0 / 2.0) + r * c(1.0 / 6.0);
+    let p45 = c(1.0 / 24.0) + r * c(1.0 / 120.0);
+    let p67 = c(1.0 / 720.0) + r * c(1.0 / 5_040.0);
+    let p89 = c(1.0 / 40_320.0) + r * c(1.0 / 362_880.0);
+    let pab = c(1.0 / 3_628_800.0) + r * c(1.0 / 39_916_800.0);
+    let pcd = c(1.0 / 479_001_600.0) + r * c(1.0 / 6_227_020_800.0);
+    let low = r + r2 * p23;
+    let middle = p45 + r2 * p67;
+    let high = (p89 + r2 * pab) + r4 * pcd;
+    let p = c(1.0) + (low + (r4 * middle + r8 * high));
+    let scale = Doubles::<S>::from_bits((t.to_bits() << 52) + part.word(1023 << 52));
+    let scaled = least.select(c(0.0), p * scale);
+    let scaled = most.select(c(f64::INFINITY), scaled);
+    x.simd_eq(x).select(scaled, x)
+}
+
 /// `base::math::ln` for positive normal numbers.
 #[inline(always)]
 pub(super) fn ln<S: Simd>(part: Part<S>, x: Doubles<S>) -> Doubles<S> {
@@ -229,8 +263,8 @@ mod tests {
     use fearless_simd::{Level, dispatch};
 
     #[inline(always)]
-    fn four<S: Simd>(simd: S, x: [f64; 8]) -> [[f64; 8]; 4] {
-        let mut out = [Lanes::ZERO; 4];
+    fn five<S: Simd>(simd: S, x: [f64; 8]) -> [[f64; 8]; 5] {
+        let mut out = [Lanes::ZERO; 5];
         for part in parts(simd) {
             let x = part.slice(&x);
             let (sin, cos) = sin_cos_turn(part, x);
@@ -238,6 +272,7 @@ mod tests {
             part.store(ln(part, x), &mut out[1]);
             part.store(sin, &mut out[2]);
             part.store(cos, &mut out[3]);
+            part.store(exp(part, x), &mut out[4]);
         }
         out.map(|lanes| lanes.0)
     }
@@ -246,7 +281,7 @@ mod tests {
     fn logarithm_and_angles_equal_the_scalar_ones_to_the_last_bit() {
         for k in 0..5_000 {
             let x: [f64; 8] = std::array::from_fn(|lane| (f64::from(8 * k) + lane as f64 + 0.37) / 40_000.0);
-            let [_, logs, sins, coss] = dispatch!(Level::new(), simd => four(simd, x));
+            let [_, logs, sins, coss, _] = dispatch!(Level::new(), simd => five(simd, x));
             for lane in 0..8 {
                 assert_eq!(logs[lane].to_bits(), math::ln(x[lane]).to_bits());
                 let (sin, cos) = math::sin_cos_turn(x[lane]);
@@ -256,10 +291,21 @@ mod tests {
     }
 
     #[test]
+    fn exponentials_equal_the_scalar_ones_to_the_last_bit() {
+        let odd = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -0.0, -708.0, -708.5, 709.0, 709.5];
+        let many =
+            (0..5_000).map(|k| std::array::from_fn(|l| (f64::from(8 * k) + l as f64 - 20_000.0) / 27.3));
+        for x in many.chain([odd]) {
+            let found = dispatch!(Level::new(), simd => five(simd, x))[4];
+            assert_eq!(found.map(f64::to_bits), x.map(|x| math::exp(x).to_bits()));
+        }
+    }
+
+    #[test]
     fn powers_of_two_are_right_to_four_units_in_the_last_place() {
         for k in -3_000..3_000 {
             let x: [f64; 8] = std::array::from_fn(|lane| (f64::from(k) + lane as f64 / 8.0) * 0.0321);
-            let powers = dispatch!(Level::new(), simd => four(simd, x))[0];
+            let powers = dispatch!(Level::new(), simd => five(simd, x))[0];
             for lane in 0..8 {
                 let exact = x[lane].exp2();
                 assert!(
@@ -270,7 +316,7 @@ mod tests {
                 );
             }
         }
-        let ones = dispatch!(Level::new(), simd => four(simd, [0.0; 8]))[0];
+        let ones = dispatch!(Level::new(), simd => five(simd, [0.0; 8]))[0];
         assert_eq!(ones, [1.0; 8]);
     }
 }

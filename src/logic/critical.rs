@@ -1,13 +1,16 @@
 //! Where the robustness of a formula comes from: the comparison and the state whose margin it is.
 //!
-//! The definition of Fainekos and Pappas (2009), unfolded over a recorded trial: "and" and "always" take the
-//! smallest margin, "or" and "finally" the largest, "not" turns the sign. What was not seen has no margin here; the
-//! monitor has ended the trial where it no longer mattered.
+//! The definition of Fainekos and Pappas (2009) over a recorded trial: "and" and "always" take the smallest margin, "or"
+//! and "finally" the largest, "not" turns the sign. What was not seen has no margin here; the monitor has ended the
+//! trial where it no longer mattered. Margins are found from the last state to the first, each once (the smallest and
+//! largest of windows with a queue as Lemire's, 2006; an until with a bound is one without and a finally with it, as
+//! Donzé, Ferrère and Maler, 2013, have it); then the way down from the root follows the margin that it has.
 
-use super::formula::{Node, NodeId, Relation, Tree};
-use super::offline::{Offline, Recording};
+use super::formula::{NodeId, Relation, Tree};
+use super::offline::{Offline, Recording, Slot};
+use super::reach::Part;
 use crate::base::tick::Tick;
-use std::collections::BTreeMap;
+use std::collections::VecDeque;
 
 /// A margin and whose it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,101 +25,167 @@ pub struct Critical {
 
 /// The comparison and the state that the robustness of `root` at state 0 comes from; the first of several.
 pub fn critical(tree: &Tree, root: NodeId, recording: &Recording) -> Option<Critical> {
-    let offline = Offline::new(tree, recording);
-    let mut search = Search { offline: &offline, known: BTreeMap::new() };
-    let found = search.at(root, 0)?;
-    // Below an odd number of "not" the sign is turned; the comparison itself keeps its own.
-    let own = search.leaf(found.leaf, found.at.0)?;
-    Some(Critical { margin: own.margin, ..found })
-}
-
-struct Search<'a> {
-    offline: &'a Offline<'a>,
-    known: BTreeMap<(u32, u64), Option<Critical>>,
-}
-
-/// The smaller of two margins, or the larger; the first of equals.
-fn pick(a: Option<Critical>, b: Option<Critical>, smallest: bool) -> Option<Critical> {
-    match (a, b) {
-        (Some(a), Some(b)) => {
-            let better = if smallest { b.margin < a.margin } else { b.margin > a.margin };
-            Some(if better { b } else { a })
-        }
-        (a, b) => a.or(b),
-    }
-}
-
-fn turned(found: Option<Critical>) -> Option<Critical> {
-    found.map(|found| Critical { margin: -found.margin, ..found })
-}
-
-impl Search<'_> {
-    fn leaf(&self, id: NodeId, at: u64) -> Option<Critical> {
-        let Node::Compare(relation, x, y) = &self.offline.tree.nodes[id.0 as usize] else { return None };
-        let (x, y) = (self.offline.number(*x, at)?, self.offline.number(*y, at)?);
-        let margin = match relation {
-            Relation::Greater | Relation::AtLeast => x - y,
-            Relation::Less | Relation::AtMost => y - x,
-            Relation::Equal | Relation::Unequal => return None,
-        };
-        (!margin.is_nan()).then_some(Critical { margin, leaf: id, at: Tick(at) })
-    }
-
-    fn at(&mut self, id: NodeId, at: u64) -> Option<Critical> {
-        if at >= self.offline.recording.seen {
+    let offline = Offline::new(tree, Part::Node(root), 0, recording).ok()?;
+    let root = offline.slot(root)?;
+    let mut margins = Margins { offline: &offline, of: Vec::with_capacity(root + 1) };
+    for slot in 0..=root {
+        if (recording.stop)() {
             return None;
         }
-        if let Some(known) = self.known.get(&(id.0, at)) {
-            return *known;
-        }
-        let found = match self.offline.tree.nodes[id.0 as usize].clone() {
-            Node::Constant(_) | Node::Atom(_) => None,
-            Node::Compare(..) => self.leaf(id, at),
-            Node::Not(x) => turned(self.at(x, at)),
-            Node::And(list) => self.among(list.into_iter().map(|x| (x, at)), true),
-            Node::Or(list) => self.among(list.into_iter().map(|x| (x, at)), false),
-            Node::Finally(w, x) => self.among(self.offline.states(w, at).map(|k| (x, k)), false),
-            Node::Globally(w, x) => self.among(self.offline.states(w, at).map(|k| (x, k)), true),
-            Node::Until(w, p, q) => self.until(self.offline.states(w, at), (p, q), at, false),
-            Node::Release(w, p, q) => turned(self.until(self.offline.states(w, at), (p, q), at, true)),
-            Node::WeakUntil(w, p, q) => {
-                let states = self.offline.states(w, at);
-                let all = self.among((at..=*states.end()).map(|k| (p, k)), true);
-                let reached = self.until(states, (p, q), at, false);
-                pick(reached, all, false)
-            }
-        };
-        self.known.insert((id.0, at), found);
-        found
+        let made = margins.all(slot);
+        margins.of.push(made);
+    }
+    margins.follow(root, 0)
+}
+
+/// The margins of all slots at the states seen at which they are asked about; what is no number is none.
+struct Margins<'a> {
+    offline: &'a Offline<'a>,
+    of: Vec<Vec<f64>>,
+}
+
+/// The smaller of two margins, or the larger; the first of equals, and the other where one is none.
+fn pick(a: f64, b: f64, smallest: bool) -> f64 {
+    if a.is_nan() || (if smallest { b < a } else { b > a }) { b } else { a }
+}
+
+/// A margin, or that of the opposite.
+fn turned(margin: f64, as_it_is: bool) -> f64 {
+    if as_it_is { margin } else { -margin }
+}
+
+impl Margins<'_> {
+    fn at(&self, slot: usize, at: u64) -> f64 {
+        let (from, _) = self.offline.range(slot);
+        at.checked_sub(from).and_then(|k| self.of[slot].get(k as usize)).copied().unwrap_or(f64::NAN)
     }
 
-    fn among(&mut self, parts: impl Iterator<Item = (NodeId, u64)>, smallest: bool) -> Option<Critical> {
-        let seen = self.offline.recording.seen;
-        let parts = parts.filter(|(_, at)| *at < seen);
-        parts.fold(None, |best, (part, at)| pick(best, self.at(part, at), smallest))
+    fn leaf(&self, (relation, x, y): (Relation, usize, usize), at: u64) -> f64 {
+        let Some((x, y)) = self.offline.value(x, at).zip(self.offline.value(y, at)) else { return f64::NAN };
+        match relation {
+            Relation::Greater | Relation::AtLeast => x - y,
+            Relation::Less | Relation::AtMost => y - x,
+            Relation::Equal | Relation::Unequal => f64::NAN,
+        }
     }
 
-    /// The second at a state of the window and the first before it; `inverted`: of the opposites of both.
-    fn until(
-        &mut self,
-        states: std::ops::RangeInclusive<u64>,
-        (first, second): (NodeId, NodeId),
-        at: u64,
-        inverted: bool,
-    ) -> Option<Critical> {
-        let sign = |found| if inverted { turned(found) } else { found };
-        let (mut best, mut before) = (None, None);
-        for k in at..=*states.end() {
-            if k >= self.offline.recording.seen {
-                break;
+    /// The margins of a slot; those below it are known.
+    fn all(&self, slot: usize) -> Vec<f64> {
+        let (from, count) = self.offline.range(slot);
+        let states = from..from + count as u64;
+        match &self.offline.slots()[slot] {
+            Slot::Fixed(truth) => states.map(|_| turned(f64::INFINITY, *truth)).collect(),
+            Slot::Compare(relation, x, y) => states.map(|k| self.leaf((*relation, *x, *y), k)).collect(),
+            Slot::Not(x) => states.map(|k| -self.at(*x, k)).collect(),
+            Slot::Join { parts, any } => states
+                .map(|k| parts.iter().fold(f64::NAN, |best, part| pick(best, self.at(*part, k), !any)))
+                .collect(),
+            Slot::Window { from, to, of, any } => {
+                let mut queue = Slide::new(self.offline.seen(), !any);
+                backward(states, |at| {
+                    let window = (at.saturating_add(*from), self.offline.end(at, *to));
+                    queue.of(window, |k| self.at(*of, k))
+                })
             }
-            if k >= *states.start() {
-                let reached = sign(self.at(second, k));
-                best = pick(best, pick(before, reached, true), false);
+            Slot::Until { from, to, first, second, weak, value } => {
+                let hold = |k| turned(self.at(first.0, k), first.1);
+                let goal = |k| turned(self.at(second.0, k), second.1);
+                let seen = self.offline.seen();
+                let mut least = Slide::new(seen, true);
+                let mut all = Slide::new(seen, true);
+                let mut most = Slide::new(seen, false);
+                // Without a bound, from the state `reached` on.
+                let (mut until, mut reached) = (f64::NEG_INFINITY, seen);
+                backward(states, |at| {
+                    let (begin, last) = (at.saturating_add(*from), self.offline.end(at, *to));
+                    while reached > begin {
+                        reached -= 1;
+                        until = pick(goal(reached), pick(hold(reached), until, true), false);
+                    }
+                    let before = match begin.checked_sub(1).filter(|end| *end >= at) {
+                        Some(end) => least.of((at, end), hold),
+                        None => f64::NAN,
+                    };
+                    let mut best = pick(pick(before, most.of((begin, last), goal), true), until, true);
+                    if *weak {
+                        best = pick(best, all.of((at, last), hold), false);
+                    }
+                    turned(best, *value)
+                })
             }
-            before = pick(before, sign(self.at(first, k)), true);
+            // Truths without a margin, and numbers.
+            _ => Vec::new(),
         }
-        best
+    }
+
+    /// Down to the comparison that has the margin of a slot at a state.
+    fn follow(&self, mut slot: usize, mut at: u64) -> Option<Critical> {
+        loop {
+            let margin = self.at(slot, at);
+            let has = |part: usize, k: u64, sought: f64| self.at(part, k) == sought;
+            match &self.offline.slots()[slot] {
+                Slot::Compare(..) => {
+                    let leaf = self.offline.leaf(slot)?;
+                    return (!margin.is_nan()).then_some(Critical { margin, leaf, at: Tick(at) });
+                }
+                Slot::Not(x) => slot = *x,
+                Slot::Join { parts, .. } => slot = *parts.iter().find(|part| has(**part, at, margin))?,
+                Slot::Window { from, to, of, .. } => {
+                    let last = self.offline.end(at, *to).min(self.offline.seen());
+                    at = (at.saturating_add(*from)..=last).find(|k| has(*of, *k, margin))?;
+                    slot = *of;
+                }
+                Slot::Until { to, first, second, value, .. } => {
+                    let last = self.offline.end(at, *to).min(self.offline.seen());
+                    // The margin is one of those of both sides at the states up to the end.
+                    let sides = [first, second];
+                    let sought = |side: &(usize, bool)| turned(turned(margin, *value), side.1);
+                    let found = (at..=last).find_map(|k| {
+                        sides.into_iter().find(|side| has(side.0, k, sought(side))).map(|side| (side.0, k))
+                    });
+                    (slot, at) = found?;
+                }
+                _ => return None,
+            }
+        }
+    }
+}
+
+/// Values from the last state to the first, in order of states.
+fn backward(states: std::ops::Range<u64>, of: impl FnMut(u64) -> f64) -> Vec<f64> {
+    let mut values: Vec<f64> = states.rev().map(of).collect();
+    values.reverse();
+    values
+}
+
+/// The smallest or largest margin of a window that moves back.
+struct Slide {
+    queue: VecDeque<(u64, f64)>,
+    reached: u64,
+    smallest: bool,
+}
+
+impl Slide {
+    fn new(seen: u64, smallest: bool) -> Self {
+        Self { queue: VecDeque::new(), reached: seen, smallest }
+    }
+
+    fn of(&mut self, (first, last): (u64, u64), margin: impl Fn(u64) -> f64) -> f64 {
+        while self.reached > first {
+            self.reached -= 1;
+            let next = margin(self.reached);
+            if next.is_nan() {
+                continue;
+            }
+            while self.queue.front().is_some_and(|&(_, later)| pick(next, later, self.smallest) == next) {
+                self.queue.pop_front();
+            }
+            self.queue.push_front((self.reached, next));
+        }
+        while self.queue.back().is_some_and(|&(k, _)| k > last) {
+            self.queue.pop_back();
+        }
+        self.queue.back().map_or(f64::NAN, |&(_, margin)| margin)
     }
 }
 
@@ -124,7 +193,7 @@ impl Search<'_> {
 mod tests {
     use super::*;
     use crate::base::tick::Clock;
-    use crate::logic::formula::{AtomId, SignalId, Term, Window};
+    use crate::logic::formula::{AtomId, Node, SignalId, Term, Window};
 
     #[test]
     fn the_smallest_margin_of_always_and_the_largest_of_finally() {
@@ -139,8 +208,14 @@ mod tests {
         let until = tree.node(Node::Until(window, above, above));
         let atoms = |_: AtomId, _: u64| false;
         let signals = |_: SignalId, k: u64| [1.0, 0.75, 2.0, 0.75][k as usize];
-        let recording =
-            Recording { atoms: &atoms, signals: &signals, seen: 4, horizon: Tick(3), clock: Clock::Steps };
+        let recording = Recording {
+            atoms: &atoms,
+            signals: &signals,
+            seen: 4,
+            horizon: Tick(3),
+            clock: Clock::Steps,
+            stop: &|| false,
+        };
         let found = |root| critical(&tree, root, &recording);
         let of = |margin, at| Some(Critical { margin, leaf: above, at: Tick(at) });
         assert_eq!(found(always), of(0.25, 1));

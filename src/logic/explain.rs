@@ -1,12 +1,11 @@
 //! Why a trial satisfies or violates a formula: the atoms and comparisons, each with the states at which
 //! it had a value, that together force the verdict whatever the rest of the trial is.
 
-use super::formula::{Node, NodeId, Relation, TermId, Tree, Window};
+use super::formula::{NodeId, Tree};
 use super::invalid::Invalid;
-use super::offline::{Offline, Recording, States};
+use super::offline::{FALSE, OPEN, Offline, Recording, Slot, TRUE, turned};
 use super::reach::{Part, last_state};
 use crate::base::tick::Tick;
-use std::collections::{BTreeMap, BTreeSet};
 
 /// An atom or comparison had this value at all states `from ..= to`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,7 +40,7 @@ pub fn explain(tree: &Tree, root: NodeId, recording: &Recording) -> Result<Expla
     if needed > recording.horizon {
         return Err(Invalid::BeyondHorizon { needed: needed.0, horizon: recording.horizon.0 });
     }
-    let offline = Offline::new(tree, recording);
+    let offline = Offline::new(tree, Part::Node(root), 0, recording)?;
     let verdict = offline.truth(root, 0);
     let reasons = if verdict.is_some() { explain_at(&offline, root, 0) } else { Vec::new() };
     Ok(Explanation { verdict, reasons })
@@ -49,130 +48,130 @@ pub fn explain(tree: &Tree, root: NodeId, recording: &Recording) -> Result<Expla
 
 /// What forces the truth of a formula, which is known, at a state.
 pub(super) fn explain_at(offline: &Offline<'_>, root: NodeId, at: u64) -> Vec<Reason> {
-    let mut witness = Witness { offline, seen: BTreeSet::new(), leaves: BTreeMap::new() };
-    witness.formula(root, at);
+    let Some(root) = offline.slot(root) else { return Vec::new() };
+    let mut demand = Demand { offline, changes: vec![Vec::new(); root + 1] };
+    let mut leaves: Vec<(NodeId, Vec<(u64, bool)>)> = Vec::new();
+    demand.ask(root, at, at);
+    // Parents stand behind their children.
+    for slot in (0..=root).rev() {
+        let states = demand.states(slot);
+        if states.is_empty() {
+            continue;
+        }
+        if let Some(leaf) = offline.leaf(slot) {
+            let values = states.iter().map(|&at| (at, offline.look(slot, at) == TRUE));
+            leaves.push((leaf, values.collect()));
+        } else {
+            demand.pass_on(slot, &states);
+        }
+    }
+    leaves.sort_by_key(|(leaf, _)| leaf.0);
     let mut reasons: Vec<Reason> = Vec::new();
-    for ((leaf, at), value) in witness.leaves {
-        match reasons.last_mut() {
-            Some(last) if last.leaf.0 == leaf && last.value == value && last.to.0 + 1 == at => {
-                last.to = Tick(at);
+    for (leaf, values) in leaves {
+        for (at, value) in values {
+            match reasons.last_mut() {
+                Some(last) if last.leaf == leaf && last.value == value && last.to.0 + 1 == at => {
+                    last.to = Tick(at);
+                }
+                _ => reasons.push(Reason { leaf, value, from: Tick(at), to: Tick(at) }),
             }
-            _ => reasons.push(Reason { leaf: NodeId(leaf), value, from: Tick(at), to: Tick(at) }),
         }
     }
     reasons
 }
 
-struct Witness<'a> {
+/// The states at which the truth of each slot is needed. Of stretches only their ends are noted, so that wide windows
+/// cost no more than narrow ones.
+struct Demand<'a> {
     offline: &'a Offline<'a>,
-    seen: BTreeSet<(u32, u64)>,
-    leaves: BTreeMap<(u32, u64), bool>,
+    /// How many more stretches there are than at the state before.
+    changes: Vec<Vec<i64>>,
 }
 
-impl Witness<'_> {
-    /// Adds what forces the truth of a formula, which is known.
-    fn formula(&mut self, id: NodeId, at: u64) {
-        if !self.seen.insert((id.0, at)) {
+impl Demand<'_> {
+    /// The truth of a slot is needed at the states `from ..= to` that were seen.
+    fn ask(&mut self, slot: usize, from: u64, to: u64) {
+        let (lo, count) = self.offline.range(slot);
+        let (from, to) = (from.max(lo) - lo, to.saturating_add(1).saturating_sub(lo).min(count as u64));
+        if from >= to {
             return;
         }
-        let Some(value) = self.offline.truth(id, at) else { return };
-        match &self.offline.tree.nodes[id.0 as usize] {
-            Node::Constant(_) => {}
-            Node::Atom(_) => {
-                self.leaves.insert((id.0, at), value);
-            }
-            Node::Compare(relation, x, y) => self.comparison(id, (*relation, *x, *y), at, value),
-            Node::Not(x) => self.formula(*x, at),
-            Node::Or(parts) => self.parts(parts.iter().map(|x| (*x, at)), value, value),
-            Node::And(parts) => self.parts(parts.iter().map(|x| (*x, at)), value, !value),
-            Node::Finally(w, x) => {
-                self.parts(self.offline.states(*w, at).map(|k| (*x, k)), value, value);
-            }
-            Node::Globally(w, x) => {
-                self.parts(self.offline.states(*w, at).map(|k| (*x, k)), value, !value);
-            }
-            Node::Until(w, p, q) => self.until(*w, (*p, true), (*q, true), at, value),
-            Node::Release(w, p, q) => self.until(*w, (*p, false), (*q, false), at, !value),
-            Node::WeakUntil(w, p, q) => {
-                let mut states = at..=*self.offline.states(*w, at).end();
-                if value && states.all(|k| self.offline.truth(*p, k) == Some(true)) {
-                    self.parts((at..=*states.end()).map(|k| (*p, k)), true, false);
-                } else {
-                    self.until(*w, (*p, true), (*q, true), at, value);
-                }
-            }
-        }
+        let changes = &mut self.changes[slot];
+        changes.resize(count + 1, 0);
+        changes[from as usize] += 1;
+        changes[to as usize] -= 1;
     }
 
-    /// One part of that value is enough (the first), or all are needed.
-    fn parts(&mut self, parts: impl Iterator<Item = (NodeId, u64)>, value: bool, one: bool) {
-        for (part, at) in parts {
-            if !one || self.offline.truth(part, at) == Some(value) {
-                self.formula(part, at);
-                if one {
-                    return;
-                }
-            }
-        }
+    /// The states at which a slot is needed and known, ascending.
+    fn states(&mut self, slot: usize) -> Vec<u64> {
+        let changes = std::mem::take(&mut self.changes[slot]);
+        let lo = self.offline.range(slot).0;
+        let mut stretches = 0;
+        let needed = changes.iter().enumerate().filter_map(|(k, change)| {
+            stretches += change;
+            (stretches > 0).then_some(lo + k as u64)
+        });
+        needed.filter(|&at| self.offline.look(slot, at) != OPEN).collect()
     }
 
-    fn until(&mut self, w: Window, first: (NodeId, bool), second: (NodeId, bool), at: u64, value: bool) {
-        let states = self.offline.states(w, at);
-        let (from, end) = (*states.start(), *states.end());
-        let is = |(id, asked): (NodeId, bool), k, value| self.offline.truth(id, k) == Some(asked == value);
-        if value {
-            // The second at some state, the first at all before it.
-            let Some(reached) = (from..=end).find(|&k| is(second, k, true)) else { return };
-            self.formula(second.0, reached);
-            for k in at..reached {
-                self.formula(first.0, k);
-            }
-        } else {
-            // The first fails, and the second at every state of the window until then.
-            let failed = (at..=end).find(|&k| is(first, k, false));
-            if let Some(failed) = failed {
-                self.formula(first.0, failed);
-            }
-            for k in from..=failed.unwrap_or(end) {
-                self.formula(second.0, k);
-            }
-        }
-    }
-
-    fn comparison(&mut self, id: NodeId, (relation, x, y): (Relation, TermId, TermId), at: u64, value: bool) {
-        match (self.offline.constant(x), self.offline.constant(y)) {
-            (Some(_), Some(_)) => {}
-            (None, Some(c)) => self.against(id, relation, (x, c), at, value),
-            (Some(c), None) => self.against(id, relation.flipped(), (y, c), at, value),
-            (None, None) => {
-                self.leaves.insert((id.0, at), value);
-            }
-        }
-    }
-
-    /// A comparison of an extreme of a window or of a time is explained by the states that decided it.
-    fn against(&mut self, id: NodeId, relation: Relation, (x, c): (TermId, f64), at: u64, value: bool) {
+    /// What forces a slot at these states is needed of its parts: of several possible ones the earliest.
+    fn pass_on(&mut self, slot: usize, states: &[u64]) {
         let offline = self.offline;
-        let (states, x, one) = match offline.looks_at(relation, x, c, at) {
-            States::Any(states, x) => (states, x, value),
-            States::All(states, x) => (states, x, !value),
-            States::Within(states, goal, positive) => {
-                let reached = value == positive;
-                self.parts(states.map(|k| (goal, k)), reached, reached);
-                return;
-            }
-            States::Number => {
-                self.leaves.insert((id.0, at), value);
-                return;
-            }
-        };
-        for k in states {
-            if !one || offline.against(relation, x, c, k) == Some(value) {
-                self.against(id, relation, (x, c), k, value);
-                if one {
-                    return;
+        let back = states.iter().rev().map(|&at| (at, offline.look(slot, at)));
+        match &offline.slots()[slot] {
+            Slot::Not(x) => back.for_each(|(at, _)| self.ask(*x, at, at)),
+            Slot::Join { parts, any } => {
+                for (at, value) in back {
+                    // One part is enough, or all are needed.
+                    if (value == TRUE) == *any {
+                        let part = parts.iter().find(|part| offline.look(**part, at) == value);
+                        part.into_iter().for_each(|part| self.ask(*part, at, at));
+                    } else {
+                        parts.iter().for_each(|part| self.ask(*part, at, at));
+                    }
                 }
             }
+            Slot::Window { from, to, of, any } => {
+                let mut next = offline.next(*of);
+                for (at, value) in back {
+                    let (first, last) = (at.saturating_add(*from), offline.end(at, *to));
+                    next.move_to(first, |k| offline.look(*of, k));
+                    if (value == TRUE) == *any {
+                        let one = next.first(first, value);
+                        self.ask(*of, one, one.min(last));
+                    } else {
+                        self.ask(*of, first, last);
+                    }
+                }
+            }
+            Slot::Until { from, to, first, second, weak, value } => {
+                let (mut hold, mut goal) = (offline.next(first.0), offline.next(second.0));
+                let truth = |asked: bool, so: bool| if asked == so { TRUE } else { FALSE };
+                for (at, found) in back {
+                    let (begin, last) = (at.saturating_add(*from), offline.end(at, *to));
+                    hold.move_to(at, |k| offline.look(first.0, k));
+                    goal.move_to(begin, |k| offline.look(second.0, k));
+                    let fails = hold.first(at, truth(first.1, false));
+                    let holds = fails.min(hold.first(at, OPEN)) > last;
+                    match turned(found, *value) == TRUE {
+                        true if *weak && holds => self.ask(first.0, at, last),
+                        true => {
+                            // The second at some state, the first at all before it.
+                            let reached = goal.first(begin, truth(second.1, true));
+                            self.ask(second.0, reached, reached.min(last));
+                            if reached > at && reached <= last {
+                                self.ask(first.0, at, reached - 1);
+                            }
+                        }
+                        false => {
+                            // The first fails, and the second at every state of the window until then.
+                            self.ask(first.0, fails, fails.min(last));
+                            self.ask(second.0, begin, fails.min(last));
+                        }
+                    }
+                }
+            }
+            _ => {}
         }
     }
 }
@@ -181,7 +180,7 @@ impl Witness<'_> {
 mod tests {
     use super::*;
     use crate::base::tick::Clock;
-    use crate::logic::formula::{Aggregation, AtomId, SignalId, Term};
+    use crate::logic::formula::{Aggregation, AtomId, Node, Relation, SignalId, Term, Window};
 
     fn window(from: u64, to: u64) -> Window {
         Window { from: Tick(from), to: Some(Tick(to)) }
@@ -192,7 +191,7 @@ mod tests {
         signals: &'a dyn Fn(SignalId, u64) -> f64,
         seen: u64,
     ) -> Recording<'a> {
-        Recording { atoms, signals, seen, horizon: Tick(20), clock: Clock::Steps }
+        Recording { atoms, signals, seen, horizon: Tick(20), clock: Clock::Steps, stop: &|| false }
     }
 
     #[test]

@@ -5,16 +5,18 @@
 //! beforehand, and a verdict is a look at two bits and the number of the state. It falls at the same state as
 //! that of the general monitor (a test holds it).
 
-use super::formula::{Node, NodeId, Term, TermId, Tree, Window};
+use super::formula::{Node, NodeId, Term, TermId, Tree};
 use super::monitor::Monitor;
+use super::reach::{Part, children_first};
 use crate::base::tick::{Clock, Tick};
 
 /// A flat formula.
 #[derive(Clone, Debug)]
 pub struct Flat {
-    /// What must be so up to the goal; anything for `None`.
-    hold: Option<NodeId>,
-    goal: NodeId,
+    /// Parts of what must be so up to the goal, children first; anything for `None`.
+    hold: Option<Vec<Part>>,
+    /// Parts of the goal, children first.
+    goal: Vec<Part>,
     /// The goal counts negated: `G a` is not (true U not a).
     inverted: bool,
     negated: bool,
@@ -52,30 +54,60 @@ impl Flat {
             Node::Not(inner) => (&tree.nodes[inner.0 as usize], true),
             node => (node, false),
         };
-        let flat = |window: &Window, hold, goal, inverted| Self {
+        let (window, hold, goal, inverted) = match node {
+            Node::Finally(window, goal) => (window, None, *goal, false),
+            Node::Globally(window, goal) => (window, None, *goal, true),
+            Node::Until(window, hold, goal) => (window, Some(*hold), *goal, false),
+            _ => return None,
+        };
+        let parts = |node| {
+            let parts = present_parts(tree, node)?;
+            monitor(node).is_some_and(|m| m.constant().is_none()).then_some(parts)
+        };
+        let hold = match hold {
+            Some(hold) => Some(parts(hold)?),
+            None => None,
+        };
+        Some(Self {
             hold,
-            goal,
+            goal: parts(goal)?,
             inverted,
             negated: negated ^ inverted,
             from: window.from.0,
             to: window.to.unwrap_or(horizon).0,
-        };
-        let flat = match node {
-            Node::Finally(window, goal) => flat(window, None, *goal, false),
-            Node::Globally(window, goal) => flat(window, None, *goal, true),
-            Node::Until(window, hold, goal) => flat(window, Some(*hold), *goal, false),
-            _ => return None,
-        };
-        let parts = flat.hold.into_iter().chain([flat.goal]);
-        let varies = |node| is_present(tree, node) && monitor(node).is_some_and(|m| m.constant().is_none());
-        parts.into_iter().all(varies).then_some(flat)
+        })
     }
 
     /// What a state is for it.
     pub fn sort(&self, tree: &Tree, state: &impl Present) -> Sort {
+        let known = &mut Known::default();
         Sort {
-            hold: self.hold.is_none_or(|node| truth(tree, node, state)),
-            goal: truth(tree, self.goal, state) ^ self.inverted,
+            hold: self.hold.as_ref().is_none_or(|parts| truth(tree, parts, state, known)),
+            goal: truth(tree, &self.goal, state, known) ^ self.inverted,
+        }
+    }
+
+    /// Whether to reach the goal makes it false.
+    pub fn is_negated(&self) -> bool {
+        self.negated
+    }
+
+    /// Whether the goal counts at the state with this number.
+    pub fn has_begun(&self, at: u64) -> bool {
+        at >= self.from
+    }
+
+    /// Whether nothing counts after the state with this number.
+    pub fn is_over(&self, at: u64) -> bool {
+        at >= self.to
+    }
+
+    /// Where the verdict falls if from the state with this number on all are of this sort.
+    pub fn settled(&self, sort: Sort, at: u64) -> u64 {
+        match sort {
+            Sort { hold: false, .. } => at,
+            Sort { goal: true, .. } => at.max(self.from).min(self.to),
+            Sort { .. } => at.max(self.to),
         }
     }
 
@@ -87,46 +119,95 @@ impl Flat {
     }
 }
 
-/// Whether the present state alone decides a formula.
-fn is_present(tree: &Tree, node: NodeId) -> bool {
-    match &tree.nodes[node.0 as usize] {
-        Node::Constant(_) | Node::Atom(_) => true,
-        Node::Compare(_, a, b) => [a, b].iter().all(|term| is_present_term(tree, **term)),
-        Node::Not(a) => is_present(tree, *a),
-        Node::And(list) | Node::Or(list) => list.iter().all(|&part| is_present(tree, part)),
-        _ => false,
-    }
+/// The parts of a formula of the present state, children first; none where another state is asked about.
+fn present_parts(tree: &Tree, node: NodeId) -> Option<Vec<Part>> {
+    let parts = children_first(tree, Part::Node(node)).ok()?;
+    let is_present = |part: &Part| match part {
+        Part::Node(id) => matches!(
+            tree.nodes[id.0 as usize],
+            Node::Constant(_) | Node::Atom(_) | Node::Compare(..) | Node::Not(_) | Node::And(_) | Node::Or(_)
+        ),
+        Part::Term(id) => matches!(
+            tree.terms[id.0 as usize],
+            Term::Constant(_) | Term::Signal(_) | Term::Combine(..) | Term::Abs(_)
+        ),
+    };
+    parts.iter().all(is_present).then_some(parts)
 }
 
-fn is_present_term(tree: &Tree, term: TermId) -> bool {
-    match &tree.terms[term.0 as usize] {
-        Term::Constant(_) | Term::Signal(_) => true,
-        Term::Combine(_, a, b) => is_present_term(tree, *a) && is_present_term(tree, *b),
-        Term::Abs(a) => is_present_term(tree, *a),
-        _ => false,
+/// The truth of a formula of the present state, from its parts; each is looked at once, however often it is shared.
+fn truth(tree: &Tree, parts: &[Part], state: &impl Present, known: &mut Known) -> bool {
+    known.truths.resize(tree.nodes.len(), false);
+    known.numbers.resize(tree.terms.len(), f64::NAN);
+    let mut last = false;
+    for part in parts {
+        match part {
+            Part::Node(id) => {
+                let of = |id: &NodeId| known.truths[id.0 as usize];
+                let number = |id: &TermId| known.numbers[id.0 as usize];
+                last = match &tree.nodes[id.0 as usize] {
+                    Node::Constant(constant) => *constant,
+                    Node::Atom(atom) => state.atom(atom.0 as usize),
+                    Node::Compare(relation, a, b) => relation.holds(number(a), number(b)),
+                    Node::Not(a) => !of(a),
+                    Node::And(list) => list.iter().all(of),
+                    Node::Or(list) => list.iter().any(of),
+                    _ => false,
+                };
+                known.truths[id.0 as usize] = last;
+            }
+            Part::Term(id) => {
+                let of = |id: &TermId| known.numbers[id.0 as usize];
+                known.numbers[id.0 as usize] = match &tree.terms[id.0 as usize] {
+                    Term::Constant(value) => *value,
+                    Term::Signal(signal) => state.signal(signal.0 as usize),
+                    Term::Combine(operation, a, b) => operation.apply(of(a), of(b)),
+                    Term::Abs(a) => of(a).abs(),
+                    _ => f64::NAN,
+                };
+            }
+        }
     }
+    last
 }
 
-/// The truth of a formula of the present state; false for others.
-fn truth(tree: &Tree, node: NodeId, state: &impl Present) -> bool {
-    match &tree.nodes[node.0 as usize] {
-        Node::Constant(constant) => *constant,
-        Node::Atom(atom) => state.atom(atom.0 as usize),
-        Node::Compare(relation, a, b) => relation.holds(number(tree, *a, state), number(tree, *b, state)),
-        Node::Not(a) => !truth(tree, *a, state),
-        Node::And(list) => list.iter().all(|&part| truth(tree, part, state)),
-        Node::Or(list) => list.iter().any(|&part| truth(tree, part, state)),
-        _ => false,
-    }
+/// What is known of one state, by the numbers of the parts.
+#[derive(Default)]
+struct Known {
+    truths: Vec<bool>,
+    numbers: Vec<f64>,
 }
 
-/// The value of a number of the present state; none for others.
-fn number(tree: &Tree, term: TermId, state: &impl Present) -> f64 {
-    match &tree.terms[term.0 as usize] {
-        Term::Constant(value) => *value,
-        Term::Signal(signal) => state.signal(signal.0 as usize),
-        Term::Combine(operation, a, b) => operation.apply(number(tree, *a, state), number(tree, *b, state)),
-        Term::Abs(a) => number(tree, *a, state).abs(),
-        _ => f64::NAN,
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::logic::formula::{AtomId, Window};
+
+    struct Only(bool);
+
+    impl Present for Only {
+        fn atom(&self, _: usize) -> bool {
+            self.0
+        }
+        fn signal(&self, _: usize) -> f64 {
+            0.0
+        }
+    }
+
+    #[test]
+    fn shared_parts_do_not_cost_exponential_time() {
+        let mut tree = Tree::default();
+        let mut x = tree.node(Node::Atom(AtomId(0)));
+        for _ in 0..200 {
+            let not = tree.node(Node::Not(x));
+            let (both, neither) = (tree.node(Node::And(vec![x, x])), tree.node(Node::And(vec![not, not])));
+            x = tree.node(Node::Or(vec![both, neither]));
+        }
+        let always = tree.node(Node::Globally(Window { from: Tick(0), to: Some(Tick(9)) }, x));
+        // x <=> x is always so, which nobody looks for: it is a goal like any other.
+        let flat = Flat::of(&tree, always, Tick(9), Clock::Steps).unwrap();
+        for atom in [false, true] {
+            assert_eq!(flat.sort(&tree, &Only(atom)), Sort { hold: true, goal: false });
+        }
     }
 }

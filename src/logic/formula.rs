@@ -4,13 +4,14 @@
 //! A tree holds both kinds of nodes; children stand before their parents.
 
 use crate::base::tick::Tick;
+use std::hash::{Hash, Hasher};
 
 /// Index of a truth value that the observer supplies for each state.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct AtomId(pub u32);
 
 /// Index of a number that the observer supplies for each state.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SignalId(pub u32);
 
 /// Index of a formula node.
@@ -23,7 +24,7 @@ pub struct TermId(pub u32);
 
 /// The states `from ..= to` after the present one, both ends included. `to: None` ranges over the
 /// states up to the horizon.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Window {
     /// First state.
     pub from: Tick,
@@ -32,7 +33,7 @@ pub struct Window {
 }
 
 /// A formula over the states from the present one on.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Node {
     /// The same everywhere.
     Constant(bool),
@@ -61,7 +62,7 @@ pub enum Node {
 }
 
 /// Relations of a comparison.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Relation {
     /// `<`
     Less,
@@ -91,6 +92,19 @@ impl Relation {
         }
     }
 
+    /// The margin of `x r y`: how far the sides may move before the comparison changes; none (NaN) if a side is none.
+    #[inline]
+    pub fn margin(self, x: f64, y: f64) -> f64 {
+        // Two equal infinities are no distance apart.
+        let less = |x: f64, y: f64| if x == y { 0.0 } else { x - y };
+        match self {
+            Self::Less | Self::AtMost => less(y, x),
+            Self::Greater | Self::AtLeast => less(x, y),
+            Self::Equal => -less(x, y).abs(),
+            Self::Unequal => less(x, y).abs(),
+        }
+    }
+
     /// The relation with its sides exchanged.
     pub fn flipped(self) -> Self {
         match self {
@@ -104,7 +118,7 @@ impl Relation {
 }
 
 /// Aggregates over a window.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Aggregation {
     /// Smallest.
     Min,
@@ -117,7 +131,7 @@ pub enum Aggregation {
 }
 
 /// Arithmetic of two numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Operation {
     /// Sum.
     Add,
@@ -175,11 +189,27 @@ pub enum Term {
     Window(Aggregation, Window, TermId),
     /// The number at the state so many ticks later.
     Later(Tick, TermId),
-    /// The number at the last state before the horizon (the state at the horizon).
+    /// The number at the last state, which is the one at the horizon.
     AtEnd(TermId),
     /// Seconds until the formula first holds, counted from the present state; infinite if it never does
     /// up to the horizon.
     TimeUntil(NodeId),
+}
+
+impl Hash for Term {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        std::mem::discriminant(self).hash(state);
+        match self {
+            // The two zeros are equal.
+            Self::Constant(value) => (value + 0.0).to_bits().hash(state),
+            Self::Signal(signal) => signal.hash(state),
+            Self::Combine(operation, x, y) => (operation, x, y).hash(state),
+            Self::Abs(x) | Self::AtEnd(x) => x.hash(state),
+            Self::Window(aggregation, window, x) => (aggregation, window, x).hash(state),
+            Self::Later(by, x) => (by, x).hash(state),
+            Self::TimeUntil(goal) => goal.hash(state),
+        }
+    }
 }
 
 /// A formula or metric with all its parts.

@@ -8,6 +8,7 @@ pub mod flat;
 pub mod formula;
 pub mod invalid;
 pub mod monitor;
+mod need;
 pub mod offline;
 mod reach;
 pub mod signal;
@@ -22,6 +23,9 @@ pub use formula::{
 pub use invalid::Invalid;
 pub use monitor::robustness::Robustness;
 pub use monitor::{Antecedent, Monitor};
+pub use need::Needs;
 pub use offline::Recording;
-pub use signal::{Reading, SignalMonitor};
+pub use reach::{Part, Reach, leaves, reach};
+pub use signal::robustness::{Bounds, SignalRobustness};
+pub use signal::{Glance, Reading, SignalMonitor};
 pub use source::{Source, sides, sources};

@@ -1,16 +1,17 @@
 //! How far into a trial a formula looks: the order of its parts, and the last state that each of them is
 //! asked about.
 
-use super::formula::{Node, NodeId, Term, TermId, Tree, Window};
+use super::formula::{AtomId, Node, NodeId, SignalId, Term, TermId, Tree, Window};
 use super::invalid::Invalid;
-use crate::base::tick::Tick;
+use crate::base::tick::{Clock, Tick};
+use std::collections::BTreeSet;
 
 /// Most levels of a formula: 256 levels of the language and what they are lowered to.
 pub(super) const DEEPEST: u64 = 1024;
 
 /// A part of a tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Part {
+pub enum Part {
     /// A formula.
     Node(NodeId),
     /// A number.
@@ -97,21 +98,43 @@ pub(super) fn children_first(tree: &Tree, root: Part) -> Result<Vec<Part>, Inval
     Ok(order)
 }
 
-/// The last state that `root`, asked about at state 0, looks at through bounds alone, and whether some
-/// part ranges up to the horizon. With a horizon, parts below such a part are asked about at the horizon
-/// too, so that a bound there looks beyond it.
-pub(super) fn last_state(tree: &Tree, root: Part, horizon: Option<Tick>) -> Result<(Tick, bool), Invalid> {
+/// Where parts are asked about at last, in ticks.
+pub(super) struct Asked {
+    /// Of each formula, then of each number; `None` where nothing asks.
+    parts: Vec<Option<u64>>,
+    /// Number of formulas.
+    nodes: usize,
+    /// The last tick that is looked at through bounds alone.
+    pub(super) last: u64,
+    /// Whether some part ranges up to the horizon.
+    pub(super) to_horizon: bool,
+}
+
+impl Asked {
+    /// The last tick at which a part is asked about.
+    pub(super) fn of(&self, part: Part) -> Option<u64> {
+        match part {
+            Part::Node(id) => self.parts[id.0 as usize],
+            Part::Term(id) => self.parts[self.nodes + id.0 as usize],
+        }
+    }
+}
+
+/// Where the parts below `root`, asked about at tick 0, are asked about. With a horizon, parts below one that ranges up to
+/// it are asked about there too, so that a bound looks beyond it. In `dense` time the left operand of an until is asked
+/// about up to just before the end of its window, which is a tick further than the last state before it.
+pub(super) fn asked(tree: &Tree, root: Part, horizon: Option<Tick>, dense: bool) -> Result<Asked, Invalid> {
     let order = children_first(tree, root)?;
     let slot = |part: Part| match part {
         Part::Node(id) => id.0 as usize,
         Part::Term(id) => tree.nodes.len() + id.0 as usize,
     };
-    let end = |at: u64| horizon.map_or(at, |horizon| horizon.0);
-    let mut asked: Vec<Option<u64>> = vec![None; tree.nodes.len() + tree.terms.len()];
-    asked[slot(root)] = Some(0);
+    let end = |at: u64| horizon.map_or(at, |horizon| horizon.0.max(at));
+    let mut parts: Vec<Option<u64>> = vec![None; tree.nodes.len() + tree.terms.len()];
+    parts[slot(root)] = Some(0);
     let (mut last, mut to_horizon) = (0, false);
     for part in order.into_iter().rev() {
-        let Some(at) = asked[slot(part)] else { continue };
+        let Some(at) = parts[slot(part)] else { continue };
         last = last.max(at);
         for (child, ask) in below(tree, part)? {
             let latest = match ask {
@@ -124,24 +147,74 @@ pub(super) fn last_state(tree: &Tree, root: Part, horizon: Option<Tick>) -> Resu
                 }
                 Ask::Within(Window { from, to: None }) => {
                     last = last.max(at.saturating_add(from.0));
-                    Some(end(at.saturating_add(from.0)))
+                    Some(end(at))
                 }
                 Ask::Until(Some(to)) => Some(at.saturating_add(to.0)),
+                Ask::Before(Some(to)) if dense => (to.0 > 0).then(|| at.saturating_add(to.0)),
                 Ask::Before(Some(to)) => (to.0 > 0).then(|| at.saturating_add(to.0 - 1)),
-                Ask::Until(None) | Ask::AtEnd => Some(end(at)),
-                Ask::Before(None) => Some(horizon.map_or(at, |h| h.0.saturating_sub(1).max(at))),
+                Ask::Before(None) if !dense => Some(horizon.map_or(at, |h| h.0.saturating_sub(1).max(at))),
+                Ask::Until(None) | Ask::Before(None) | Ask::AtEnd => Some(end(at)),
             };
             to_horizon |= matches!(
                 ask,
                 Ask::Within(Window { to: None, .. }) | Ask::Until(None) | Ask::Before(None) | Ask::AtEnd
             );
             if let Some(latest) = latest {
-                let known = &mut asked[slot(child)];
+                let known = &mut parts[slot(child)];
                 *known = Some(known.map_or(latest, |k| k.max(latest)));
             }
         }
     }
-    Ok((Tick(last), to_horizon))
+    Ok(Asked { parts, nodes: tree.nodes.len(), last, to_horizon })
+}
+
+/// The last state that `root`, asked about at state 0, looks at through bounds alone, and whether some
+/// part ranges up to the horizon.
+pub(super) fn last_state(tree: &Tree, root: Part, horizon: Option<Tick>) -> Result<(Tick, bool), Invalid> {
+    asked(tree, root, horizon, false).map(|asked| (Tick(asked.last), asked.to_horizon))
+}
+
+/// How far a formula or metric looks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reach {
+    /// The last tick that it needs, whatever the horizon: nothing can be decided where that is beyond the horizon.
+    pub ticks: u64,
+    /// Whether a part of it ranges up to the horizon.
+    pub unbounded: bool,
+}
+
+/// How far a part, asked about at the start of a trial, looks.
+///
+/// # Errors
+/// When a window is empty, or the tree is malformed or too deep.
+pub fn reach(tree: &Tree, root: Part, horizon: Tick, clock: Clock) -> Result<Reach, Invalid> {
+    let asked = asked(tree, root, Some(horizon), clock.is_jumps())?;
+    Ok(Reach { ticks: asked.last, unbounded: asked.to_horizon })
+}
+
+/// The atoms and signals that some parts of a tree read.
+///
+/// # Errors
+/// When the tree is malformed or too deep.
+pub fn leaves(tree: &Tree, roots: &[Part]) -> Result<(BTreeSet<AtomId>, BTreeSet<SignalId>), Invalid> {
+    let (mut atoms, mut signals) = (BTreeSet::new(), BTreeSet::new());
+    for &root in roots {
+        for part in children_first(tree, root)? {
+            match part {
+                Part::Node(id) => {
+                    if let Node::Atom(atom) = &tree.nodes[id.0 as usize] {
+                        atoms.insert(*atom);
+                    }
+                }
+                Part::Term(id) => {
+                    if let Term::Signal(signal) = &tree.terms[id.0 as usize] {
+                        signals.insert(*signal);
+                    }
+                }
+            }
+        }
+    }
+    Ok((atoms, signals))
 }
 
 #[cfg(test)]
@@ -166,6 +239,32 @@ mod tests {
             Ok((Tick(6), false)),
             "nothing depends on the left operand of an until in its last state"
         );
+    }
+
+    #[test]
+    fn the_left_operand_of_an_until_is_not_needed_in_its_last_state() {
+        let mut tree = Tree::default();
+        let q = tree.node(Node::Atom(AtomId(0)));
+        let next = tree.node(Node::Finally(window(1, Some(1)), q));
+        let endless = tree.node(Node::Until(window(0, None), next, q));
+        let states = reach(&tree, Part::Node(endless), Tick(9), Clock::Steps);
+        assert_eq!(states, Ok(Reach { ticks: 9, unbounded: true }));
+        let dense = asked(&tree, Part::Node(endless), Some(Tick(9)), true).unwrap();
+        assert_eq!(dense.last, 10, "it is asked about up to the very end of continuous time");
+        let weak = tree.node(Node::WeakUntil(window(0, None), next, q));
+        let states = reach(&tree, Part::Node(weak), Tick(9), Clock::Steps);
+        assert_eq!(states, Ok(Reach { ticks: 10, unbounded: true }));
+    }
+
+    #[test]
+    fn leaves_of_shared_parts_are_met_once() {
+        let mut tree = Tree::default();
+        let mut x = tree.node(Node::Atom(AtomId(3)));
+        for _ in 0..400 {
+            x = tree.node(Node::And(vec![x, x]));
+        }
+        let (atoms, signals) = leaves(&tree, &[Part::Node(x)]).unwrap();
+        assert_eq!((atoms, signals), (BTreeSet::from([AtomId(3)]), BTreeSet::new()));
     }
 
     #[test]

@@ -4,6 +4,9 @@ use super::law::Law;
 use super::scene::RegionId;
 use crate::base::geometry::{Shape, Vec2};
 
+/// No human reaches this speed: a trial in which somebody does has diverged, m/s.
+pub const TOP_SPEED: f64 = 15.0;
+
 /// Index of an agent of the scenario.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct AgentId(pub u32);

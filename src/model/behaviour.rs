@@ -40,6 +40,8 @@ pub struct Attached {
     pub behaviour: BehaviourId,
     /// Stable number of 24 bits from agent and behaviour; addresses its random numbers.
     pub entity: u32,
+    /// Where the agent is a place of a source: the number for the n-th later person on it is n more than this one.
+    pub later: u32,
     /// What it does, shared by the members of a declaration.
     pub conduct: Arc<Conduct>,
     /// The conditions of its transitions, about this agent.

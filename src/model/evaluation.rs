@@ -54,6 +54,7 @@ impl Arithmetic {
             }
             Self::Atan2 => math::atan2(a, b),
             Self::Modulo => modulo(a, b),
+            Self::Agree => Self::Max.of(Self::Min.of(a, b), Self::Min.of(-a, -b)),
         }
     }
 }
@@ -122,6 +123,7 @@ impl Bool {
             Self::Constant(_) => true,
             Self::Compare(_, a, b) => a.reads(into) & b.reads(into),
             Self::Not(a) => a.reads(into),
+            Self::Iff(a, b) => a.reads(into) & b.reads(into),
             Self::And(all) | Self::Or(all) => all.iter().fold(true, |so_far, one| so_far & one.reads(into)),
             _ => false,
         }
@@ -135,6 +137,7 @@ impl Bool {
                 Some(comparison.of(a.evaluate(variables)?, b.evaluate(variables)?))
             }
             Self::Not(a) => a.evaluate(variables).map(|a| !a),
+            Self::Iff(a, b) => Some(a.evaluate(variables)? == b.evaluate(variables)?),
             Self::And(all) => {
                 all.iter().try_fold(true, |so_far, one| Some(so_far & one.evaluate(variables)?))
             }
@@ -157,6 +160,15 @@ mod tests {
         assert_eq!(Arithmetic::Modulo.of(1.0, -3.0), -2.0);
         assert_eq!(Arithmetic::Modulo.of(6.0, 3.0), 0.0);
         assert!(Arithmetic::Modulo.of(1.0, 0.0).is_nan());
+    }
+
+    #[test]
+    fn margins_agree_where_their_signs_do() {
+        let agree = |a, b| Arithmetic::Agree.of(a, b);
+        assert_eq!((agree(3.0, 2.0), agree(-1.0, -4.0)), (2.0, 1.0));
+        assert_eq!((agree(-1.0, 4.0), agree(4.0, -5.0)), (-1.0, -4.0));
+        assert_eq!(agree(f64::INFINITY, -2.0), -2.0);
+        assert!(agree(f64::NAN, 1.0).is_nan() && agree(1.0, f64::NAN).is_nan());
     }
 
     #[test]

@@ -108,6 +108,9 @@ pub enum Arithmetic {
     Atan2,
     /// Remainder with the sign of the divisor.
     Modulo,
+    /// How far two margins are from differing in sign: the magnitude of the smaller, negative if the signs differ. The
+    /// margin of "both or neither".
+    Agree,
 }
 
 /// Functions of one number.
@@ -203,6 +206,8 @@ pub enum Bool {
     And(Vec<Bool>),
     /// Any of them.
     Or(Vec<Bool>),
+    /// Both or neither.
+    Iff(Box<Bool>, Box<Bool>),
     /// Whether an agent is in the scene.
     Present(Who),
     /// Whether the centre of an agent's body is in a region.

@@ -2,16 +2,19 @@
 
 pub mod agent;
 pub mod behaviour;
-pub mod evaluation;
+mod digest;
+mod evaluation;
 pub mod expression;
+mod lacking;
 pub mod law;
+pub mod mention;
 pub mod moves;
 pub mod process;
 pub mod scenario;
 pub mod scene;
 pub mod source;
 
-pub use agent::{Agent, AgentId, Body, Goal, Group, Leg, Particle, Position, Route, Start};
+pub use agent::{Agent, AgentId, Body, Goal, Group, Leg, Particle, Position, Route, Start, TOP_SPEED};
 pub use behaviour::{
     Amount, Attached, Behaviour, BehaviourId, Behaviours, Conduct, Mode, Parameter, Transition, Trigger,
 };

@@ -113,6 +113,18 @@ pub struct Processes {
 /// How far the probabilities of a command may be from 1 together: what rounding can do.
 pub const WEIGHT_SLACK: f64 = 1e-9;
 
+/// What is wrong with numbers as probabilities of all branches, if anything is.
+pub fn wrong_weights(weights: &[f64]) -> Option<String> {
+    if are_weights(weights.iter().copied()) {
+        return None;
+    }
+    Some(if weights.iter().any(|w| *w < 0.0) {
+        "a probability is negative".to_owned()
+    } else {
+        format!("these probabilities sum to {}, not to 1", weights.iter().sum::<f64>())
+    })
+}
+
 /// Whether numbers are probabilities of all branches of a command.
 pub fn are_weights(weights: impl IntoIterator<Item = f64>) -> bool {
     let mut sum = 0.0;

@@ -12,6 +12,9 @@ pub struct Source {
     pub entity: u32,
     /// Times between arrivals, s; the first one comes after the first of them.
     pub every: Law,
-    /// Those who may come: the n-th is the n-th arrival. With one more the trial is unresolved.
+    /// Places for those who come, in the order of arrival; when all are taken, the first of those who have left is given
+    /// to the next one. Where nobody has left, one more makes the trial unresolved.
     pub members: Vec<AgentId>,
+    /// So many may come in a trial: stable numbers of people are kept for them. One more makes it unresolved.
+    pub most: u32,
 }

@@ -98,7 +98,7 @@ fn expression(scenario: &Scenario, num: &Num) -> String {
                 Arithmetic::Power => "^",
                 Arithmetic::Min => return format!("min({}, {})", inner(a), inner(b)),
                 Arithmetic::Max => return format!("max({}, {})", inner(a), inner(b)),
-                Arithmetic::Atan2 | Arithmetic::Modulo => return "…".to_owned(),
+                Arithmetic::Atan2 | Arithmetic::Modulo | Arithmetic::Agree => return "…".to_owned(),
             };
             let side = |num: &Num| match num {
                 Num::Combine(..) => format!("({})", inner(num)),

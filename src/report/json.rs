@@ -4,6 +4,7 @@
 //! lies beyond the horizon, in whole or by an end of its interval, says so by `"censored": true`. Everything
 //! but `elapsed_s` is a function of input, seed and version.
 
+use crate::base::random;
 use crate::engine::outcome::{
     Comparison, Counts, Distribution, Failure, Finding, Interval, Method, QueryResult, Ranking, Rare, Run,
     Shows, Side, Witness,
@@ -17,6 +18,8 @@ pub fn render(run: &Run) -> String {
 
 /// The report of a run as a JSON value.
 pub fn object(run: &Run) -> Value {
+    let inputs: Vec<Value> =
+        run.inputs.iter().map(|(file, print)| json!({ "file": file, "hash": print.to_string() })).collect();
     let mut object = json!({
         "schema": 1,
         "scenario": run.scenario,
@@ -25,6 +28,8 @@ pub fn object(run: &Run) -> Value {
         "results": run.results.iter().map(result).collect::<Vec<_>>(),
         "diagnostics": run.diagnostics.iter().map(finding).collect::<Vec<_>>(),
         "warnings": run.warnings,
+        "generator": { "name": random::GENERATOR, "layout": random::LAYOUT },
+        "inputs": inputs,
         "interrupted": run.interrupted,
         "error": Value::Null,
         "replay": run.replay,
@@ -74,6 +79,7 @@ fn result(result: &QueryResult) -> Value {
     put("low", json!(result.low));
     put("high", json!(result.high));
     put("censored", json!(result.censored.is_some()));
+    put("of", json!(result.of));
     put("unit", json!(result.unit));
     put("interval", json!(result.interval));
     put("method", method(&result.method));
@@ -107,7 +113,7 @@ fn result(result: &QueryResult) -> Value {
         put("splitting", rare(found));
     }
     put("warnings", json!(result.warnings));
-    put("witnesses", result.witnesses.iter().map(witness).collect());
+    put("witnesses", result.witnesses.iter().map(|one| witness(one, result.against)).collect());
     put("replay", json!(result.replay));
     put("elapsed_s", json!(result.elapsed_s));
     Value::Object(object)
@@ -147,12 +153,12 @@ fn side(side: &Side) -> Value {
     Value::Object(numbered("settings", &side.label, &side.value, &side.counts))
 }
 
-fn witness(witness: &Witness) -> Value {
+fn witness(witness: &Witness, against: bool) -> Value {
     json!({
         "shows": witness.shows.name(),
         "passing": match witness.shows {
-            Shows::Fails => Some(false),
-            Shows::Holds => Some(true),
+            Shows::Fails => Some(against),
+            Shows::Holds => Some(!against),
             Shows::Lowest | Shows::Highest => None,
         },
         "trial": witness.trial,
@@ -177,6 +183,7 @@ fn rare(found: &Rare) -> Value {
         "plain_low": found.plain_low,
         "plain_high": found.plain_high,
         "plain_bound": found.plain_bound,
+        "floor": found.floor,
         "agrees": found.agrees,
     })
 }

@@ -122,7 +122,7 @@ fn people(out: &mut String, world: &World) {
         match scenario.sources.iter().find(|source| source.name == stem) {
             Some(source) => {
                 let (count, every) = (source.members.len(), law(&source.every, "s"));
-                let _ = writeln!(out, "  source {stem}: one every {every}, at most {count}");
+                let _ = writeln!(out, "  source {stem}: one every {every}, at most {count} at once");
             }
             None => {
                 let _ = writeln!(out, "  {name}");
@@ -317,7 +317,7 @@ fn procedure(ask: &Ask) -> String {
                 Test::ThreeWay { alpha, indifference } => {
                     format!("three-way e-process, error {alpha}, indifference {indifference}")
                 }
-                Test::Interval { delta, .. } => {
+                Test::Interval { delta } => {
                     format!("time-uniform interval of the mean, error {}", at_most(*delta))
                 }
             };

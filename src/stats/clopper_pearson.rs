@@ -90,13 +90,6 @@ impl FixedSize {
         probability("delta", delta)?;
         Ok(Self { size, delta, counts: Counts::default() })
     }
-
-    /// As many trials as bound the half-width by `epsilon` whatever the outcomes.
-    pub fn within(epsilon: f64, delta: f64) -> Result<Self, Invalid> {
-        range("epsilon", epsilon, 1e-5, 0.5)?;
-        probability("delta", delta)?;
-        Self::new(size(epsilon, delta), delta)
-    }
 }
 
 impl Estimator for FixedSize {

@@ -1,7 +1,8 @@
 //! What estimators of a probability have in common, the default choice, and unresolved trials.
 
 use super::calibration::{self, Table};
-use super::{Calibrated, Counts, FixedSize, Gbas, Invalid, Massart, Okamoto, Outcome, Sequence, Spending};
+use super::{Calibrated, Counts, FixedSize, Gbas, Invalid, Massart, Okamoto, Outcome, Spending};
+use std::collections::BTreeMap;
 
 /// In which sense an interval holds what it should.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -91,8 +92,6 @@ pub enum AnyEstimator {
     Massart(Massart),
     /// Clopper-Pearson at a fixed size.
     FixedSize(FixedSize),
-    /// The Krichevsky-Trofimov confidence sequence.
-    Sequence(Sequence),
     /// Relative error.
     Gbas(Gbas),
 }
@@ -120,7 +119,6 @@ impl AnyEstimator {
             Self::Okamoto(e) => e,
             Self::Massart(e) => e,
             Self::FixedSize(e) => e,
-            Self::Sequence(e) => e,
             Self::Gbas(e) => e,
         }
     }
@@ -135,13 +133,21 @@ impl Estimator for AnyEstimator {
             Self::Okamoto(e) => e.observe(success),
             Self::Massart(e) => e.observe(success),
             Self::FixedSize(e) => e.observe(success),
-            Self::Sequence(e) => e.observe(success),
             Self::Gbas(e) => e.observe(success),
         }
     }
 
+    // Asked at each trial: no way through a table of functions.
+    #[inline]
     fn finished(&self) -> bool {
-        self.inner().finished()
+        match self {
+            Self::Calibrated(e) => e.finished(),
+            Self::Spending(e) => e.finished(),
+            Self::Okamoto(e) => e.finished(),
+            Self::Massart(e) => e.finished(),
+            Self::FixedSize(e) => e.finished(),
+            Self::Gbas(e) => e.finished(),
+        }
     }
 
     fn counts(&self) -> Counts {
@@ -158,6 +164,24 @@ impl Estimator for AnyEstimator {
 
     fn limit(&self) -> Option<u64> {
         self.inner().limit()
+    }
+}
+
+/// Defaults that were made before, by half-width and error: the proof of a level takes seconds, and the points of a
+/// sweep ask for the same one.
+#[derive(Clone, Debug, Default)]
+pub struct Defaults(BTreeMap<(u64, u64), AnyEstimator>);
+
+impl Defaults {
+    /// The default for half-width `epsilon` and error `delta`, fresh.
+    pub fn within(&mut self, epsilon: f64, delta: f64) -> Result<AnyEstimator, Invalid> {
+        let key = (epsilon.to_bits(), delta.to_bits());
+        if let Some(known) = self.0.get(&key) {
+            return Ok(known.clone());
+        }
+        let made = AnyEstimator::within(epsilon, delta)?;
+        self.0.insert(key, made.clone());
+        Ok(made)
     }
 }
 

@@ -1,6 +1,7 @@
 //! The mean of a bounded metric: the predictable plug-in empirical Bernstein confidence sequence of
 //! Waudby-Smith and Ramdas, "Estimating means of bounded random variables by betting", JRSS B 86 (2024),
-//! at 0.8 of the error, capped by Hoeffding's bound at the other 0.2.
+//! at 0.8 of the error, capped by Hoeffding's bound at the other 0.2; or at the whole of the error, where there
+//! is no cap.
 
 use super::invalid::{Invalid, probability, range};
 use super::{Coverage, Interval};
@@ -79,6 +80,8 @@ pub struct Mean {
     high: f64,
     epsilon: Option<f64>,
     delta: f64,
+    /// The part of the error that is for the cap.
+    cap: f64,
     limit: u64,
     lower: Sequence,
     /// The reading with unresolved trials at the upper end, once there are any.
@@ -91,22 +94,30 @@ pub struct Mean {
 impl Mean {
     /// Values in [low, high], half-width `epsilon` in the same unit, error `delta`.
     pub fn within(low: f64, high: f64, epsilon: f64, delta: f64) -> Result<Self, Invalid> {
-        let mut mean = Self::new(low, high, delta, None)?;
+        let mut mean = Self::new(low, high, delta, (1.0 - SEQUENCE_SHARE) * delta, None)?;
         let part = range("epsilon over the range", epsilon / (high - low), 1e-6, 0.5)?;
         mean.epsilon = Some(part);
-        mean.limit = super::okamoto::size(part, (1.0 - SEQUENCE_SHARE) * delta);
+        mean.limit = super::okamoto::size(part, mean.cap);
         Ok(mean)
     }
 
     /// Values in [low, high], a fixed number of trials, error `delta`.
     pub fn fixed(low: f64, high: f64, trials: u64, delta: f64) -> Result<Self, Invalid> {
         range("trials", trials as f64, 1.0, 1e15)?;
-        let mut mean = Self::new(low, high, delta, Some(trials))?;
+        let mut mean = Self::new(low, high, delta, (1.0 - SEQUENCE_SHARE) * delta, Some(trials))?;
         mean.limit = trials;
         Ok(mean)
     }
 
-    fn new(low: f64, high: f64, delta: f64, aim: Option<u64>) -> Result<Self, Invalid> {
+    /// Values in [low, high], error `delta`, as many trials as somebody shows it: the bets are for all times alike, so
+    /// that the interval may be looked at after each trial and is narrow at small numbers of them too.
+    pub fn running(low: f64, high: f64, delta: f64) -> Result<Self, Invalid> {
+        let mut mean = Self::new(low, high, delta, 0.0, None)?;
+        mean.limit = u64::MAX;
+        Ok(mean)
+    }
+
+    fn new(low: f64, high: f64, delta: f64, cap: f64, aim: Option<u64>) -> Result<Self, Invalid> {
         probability("delta", delta)?;
         if !(low < high && (high - low).is_finite()) {
             return Err(Invalid::Order { low_name: "low", low, high_name: "high", high });
@@ -116,8 +127,9 @@ impl Mean {
             high,
             epsilon: None,
             delta,
+            cap,
             limit: 0,
-            lower: Sequence::new(SEQUENCE_SHARE * delta, aim),
+            lower: Sequence::new(delta - cap, aim),
             upper: None,
             read: 0,
             unresolved: 0,
@@ -166,7 +178,7 @@ impl Mean {
 
     /// Whether the number of trials is fixed beforehand.
     pub const fn is_fixed(&self) -> bool {
-        self.epsilon.is_none()
+        self.epsilon.is_none() && self.limit < u64::MAX
     }
 
     /// The number of trials after which it has surely stopped.
@@ -197,7 +209,7 @@ impl Mean {
                 // At the number of trials fixed in advance Hoeffding's interval holds too.
                 let n = sequence.n as f64;
                 let mean = sequence.sum / n;
-                let reach = (math::ln(2.0 / ((1.0 - SEQUENCE_SHARE) * self.delta)) / (2.0 * n)).sqrt();
+                let reach = (math::ln(2.0 / self.cap) / (2.0 * n)).sqrt();
                 low = math::at_least(low, mean - reach);
                 high = math::at_most(high, mean + reach);
             }
@@ -245,6 +257,27 @@ mod tests {
         assert_eq!(mean.read(), (1000, 100, 100));
         let interval = mean.interval();
         assert!(interval.low < 0.5 && interval.high > 0.6);
+    }
+
+    /// Uniform values on 5 .. 15 in 0 .. 20, error 0.01: the mean lies above 9 after 275 trials or so, where Hoeffding's
+    /// inequality takes 1060 at a size fixed beforehand; bets that aim at a million trials take thousands.
+    #[test]
+    fn a_threshold_is_passed_about_as_soon_as_it_can_be() {
+        let passed = |mut mean: Mean| {
+            let mut n = 0u64;
+            while mean.interval().low <= 9.0 {
+                // The golden ratio's multiples fill the interval evenly.
+                let u = (n as f64 * 0.618_033_988_749_894_9).fract();
+                mean.observe(Some(5.0 + 10.0 * u));
+                n += 1;
+            }
+            n
+        };
+        let sequential = passed(Mean::running(0.0, 20.0, 0.01).unwrap());
+        assert!((230..320).contains(&sequential), "{sequential}");
+        assert!(passed(Mean::fixed(0.0, 20.0, 1_000_000, 0.01).unwrap()) > 4_000);
+        let endless = Mean::running(0.0, 20.0, 0.01).unwrap();
+        assert!(!endless.is_fixed() && !endless.finished());
     }
 
     #[test]

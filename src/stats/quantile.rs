@@ -1,8 +1,10 @@
 //! Quantiles by order statistics, and the band of Dvoretzky, Kiefer and Wolfowitz (Massart 1990) around the
-//! whole distribution function; both for a number of trials fixed in advance.
+//! whole distribution function; both for a number of trials fixed in advance. Where sampling ended before that, at
+//! a time nobody chose beforehand, the ranks come from the confidence sequences of the two events "at most the
+//! quantile" and "below the quantile", and the band from a union bound over all numbers of trials.
 
 use super::invalid::{Invalid, probability, range};
-use super::{Coverage, Interval};
+use super::{Counts, Coverage, Interval, sequence};
 use crate::base::math;
 use crate::base::special::beta_tails;
 
@@ -11,26 +13,54 @@ fn at_most(n: u64, k: u64, q: f64) -> f64 {
     if k >= n { 1.0 } else { beta_tails(k as f64 + 1.0, (n - k) as f64, q, 1.0 - q).upper() }
 }
 
+/// The smallest k in 0..n for which something holds that holds from some k on; n where it does for none.
+fn first(n: u64, holds: &dyn Fn(u64) -> bool) -> u64 {
+    let (mut low, mut high) = (0, n);
+    while low < high {
+        let middle = low + (high - low) / 2;
+        if holds(middle) {
+            high = middle;
+        } else {
+            low = middle + 1;
+        }
+    }
+    low
+}
+
+/// The same at all numbers of trials at once, and so at any that the values or the clock have chosen. With P(X <= Q)
+/// at least q and P(X < Q) at most q at the quantile Q, the confidence sequences of these two, at half of the error
+/// each, leave the Q at which the first reaches up to q and the second down to it.
+pub fn ranks_at_all_times(n: u64, q: f64, delta: f64) -> (Option<u64>, Option<u64>) {
+    let inside = |k: u64| sequence::holds(Counts { successes: k, failures: n - k }, 0.5 * delta, q);
+    let share = |k: u64| k as f64 / n as f64;
+    // So many values at most Q there are at least, so many below Q at most.
+    let least = first(n, &|k| share(k) >= q || inside(k));
+    let most = first(n, &|k| share(k + 1) > q && !inside(k + 1));
+    ((least >= 1).then_some(least), (most < n).then_some(most + 1))
+}
+
+/// Half-width of the band at all numbers of trials at once: each n has delta / (n (n + 1)) of the error.
+pub fn band_at_all_times(n: u64, delta: f64) -> f64 {
+    let n = n as f64;
+    band(n as u64, delta / (n * (n + 1.0)))
+}
+
 /// The ranks, from 1, of the order statistics that hold the `q`-quantile with error at most `delta`, half
 /// of it on either side; None where no rank is far enough out.
 pub fn ranks(n: u64, q: f64, delta: f64) -> (Option<u64>, Option<u64>) {
-    // The number of k in 0..n with P(Bin(n, q) <= k) below a bound, by bisection.
-    let count = |holds: &dyn Fn(f64) -> bool| {
-        let (mut low, mut high) = (0, n);
-        while low < high {
-            let middle = low + (high - low) / 2;
-            if holds(at_most(n, middle, q)) {
-                low = middle + 1;
-            } else {
-                high = middle;
-            }
-        }
-        low
-    };
     // The largest l with P(Bin <= l - 1) <= delta / 2, the smallest u with P(Bin <= u - 1) >= 1 - delta / 2.
-    let lower = count(&|mass| mass <= 0.5 * delta);
-    let upper = count(&|mass| mass < 1.0 - 0.5 * delta) + 1;
+    let lower = first(n, &|k| at_most(n, k, q) > 0.5 * delta);
+    let upper = first(n, &|k| at_most(n, k, q) >= 1.0 - 0.5 * delta) + 1;
     ((lower >= 1).then_some(lower), (upper <= n).then_some(upper))
+}
+
+/// The rank, from 1, of the empirical `q`-quantile of `n` values: the least one that is not below `q n`. A level such as
+/// 0.07 is a rounded one, and so is its product; what is within that of a whole number is that number.
+fn rank(n: u64, q: f64) -> u64 {
+    let product = q * n as f64;
+    let whole = product.round();
+    let near = (product - whole).abs() <= math::at_least(1e-9, 4.0 * f64::EPSILON * product);
+    math::at_least(if near { whole } else { product.ceil() }, 1.0) as u64
 }
 
 /// Half-width of the band: sqrt(ln(2 / delta) / (2 n)).
@@ -112,6 +142,14 @@ impl Sample {
         &self.values
     }
 
+    /// Half-width of the band around the distribution function of the resolved values that holds both readings of
+    /// the unresolved ones: each of these moves that function by no more than their share.
+    pub fn reach(&self, delta: f64) -> f64 {
+        let n = self.trials();
+        let reach = if self.finished() { band(n, delta) } else { band_at_all_times(n, delta) };
+        math::at_most(reach + self.unresolved as f64 / n as f64, 1.0)
+    }
+
     /// The value of rank `rank`, from 1, with `below` unresolved trials before the values.
     fn at(&self, rank: Option<u64>, below: u64, missing: f64) -> f64 {
         let Some(rank) = rank else { return missing };
@@ -122,11 +160,12 @@ impl Sample {
     }
 
     /// The quantile `q` by the band around the distribution function: with error at most `delta`, all quantiles
-    /// lie in such intervals at once. Meant for the finished sample. `None` without trials.
+    /// lie in such intervals at once. Before the end it is the band that holds at all times. `None` without trials.
     pub fn banded(&mut self, q: f64, delta: f64) -> Result<Option<Quantile>, Invalid> {
         probability("delta", delta)?;
         let alone = self.quantiles(&[q], delta)?;
-        let (n, reach) = (self.trials(), band(self.trials(), delta));
+        let n = self.trials();
+        let reach = if self.finished() { band(n, delta) } else { band_at_all_times(n, delta) };
         // Outward by a part of a rank, so that rounding never narrows.
         let lower = ((q - reach) * n as f64).floor();
         let upper = ((q + reach) * n as f64).ceil();
@@ -142,8 +181,9 @@ impl Sample {
         }))
     }
 
-    /// The quantiles with error at most `delta` for all of them together (Bonferroni). Meant for the
-    /// finished sample: the number of trials must not depend on their values. Empty without trials.
+    /// The quantiles with error at most `delta` for all of them together (Bonferroni). Before the
+    /// end the intervals are those that hold at all times: the number of trials may depend on their values then.
+    /// Empty without trials.
     pub fn quantiles(&mut self, qs: &[f64], delta: f64) -> Result<Vec<Quantile>, Invalid> {
         probability("delta", delta)?;
         for q in qs {
@@ -155,9 +195,11 @@ impl Sample {
         }
         self.sorted();
         let each = delta / qs.len() as f64;
+        let finished = self.finished();
+        let coverage = if finished { Coverage::FixedSize } else { Coverage::TimeUniform };
         let of = |q: f64| {
-            let (lower, upper) = ranks(n, q, each);
-            let middle = Some(math::at_least((q * n as f64).ceil(), 1.0) as u64);
+            let (lower, upper) = if finished { ranks(n, q, each) } else { ranks_at_all_times(n, q, each) };
+            let middle = Some(rank(n, q));
             Quantile {
                 q,
                 low_estimate: self.at(middle, self.unresolved, f64::NEG_INFINITY),
@@ -166,7 +208,7 @@ impl Sample {
                     low: self.at(lower, self.unresolved, f64::NEG_INFINITY),
                     high: self.at(upper, 0, f64::INFINITY),
                     error: delta,
-                    coverage: Coverage::FixedSize,
+                    coverage,
                 },
             }
         };
@@ -188,6 +230,23 @@ mod tests {
     }
 
     #[test]
+    fn ranks_of_rounded_levels_are_exact() {
+        for n in [1, 7, 100, 1000, 4096, 1_000_000_000] {
+            for percent in 1..100_u64 {
+                let exact = (percent * n).div_ceil(100).max(1);
+                assert_eq!(rank(n, percent as f64 / 100.0), exact, "{percent} % of {n}");
+            }
+        }
+        let mut sample = Sample::new(100).unwrap();
+        (1..=100).for_each(|k| {
+            sample.observe(Some(f64::from(k)));
+        });
+        let found = sample.quantiles(&[0.07, 0.14, 0.28, 0.55, 0.56], 0.05).unwrap();
+        let estimates: Vec<f64> = found.iter().map(|quantile| quantile.high_estimate).collect();
+        assert_eq!(estimates, [7.0, 14.0, 28.0, 55.0, 56.0]);
+    }
+
+    #[test]
     fn coverage_by_enumeration_is_kept() {
         for n in [20, 300, 1000] {
             for q in [0.05, 0.5, 0.9] {
@@ -197,6 +256,55 @@ mod tests {
                 assert!(miss_low <= 0.025 && miss_high <= 0.025 + 1e-12, "{n} {q}");
             }
         }
+    }
+
+    #[test]
+    fn ranks_at_all_times_are_those_of_the_confidence_sequence() {
+        for (n, q) in [(1, 0.5), (37, 0.5), (400, 0.95), (1000, 0.5), (1000, 0.02)] {
+            let (lower, upper) = ranks_at_all_times(n, q, 0.05);
+            let of = |k: u64| sequence::interval(Counts { successes: k, failures: n - k }, 0.025);
+            // By definition: from `lower` values on the upper end reaches q, up to `upper` - 1 the lower end does.
+            let least = (0..=n).find(|k| of(*k).high >= q).unwrap();
+            let most = (0..=n).rev().find(|k| of(*k).low <= q).unwrap();
+            assert_eq!(lower.unwrap_or(0), least, "{n} {q}");
+            assert_eq!(upper.unwrap_or(n + 1), most + 1, "{n} {q}");
+            let (inner_lower, inner_upper) = ranks(n, q, 0.05);
+            assert!(lower <= inner_lower && upper.unwrap_or(n + 1) >= inner_upper.unwrap_or(n + 1));
+        }
+        assert!(ranks_at_all_times(1000, 0.5, 0.05).0.is_some_and(|lower| lower > 430));
+    }
+
+    /// Somebody who stops as soon as the interval misses the median finds it missing in 5 % of sequences at most.
+    #[test]
+    fn a_sample_that_is_cut_short_is_honest() {
+        let mut missed = 0;
+        for run in 0..200u64 {
+            let mut sample = Sample::new(10_000).unwrap();
+            let key = crate::base::random::TrialKey { seed: 77, index: run, branch: 0 };
+            let stream = crate::base::random::Stream::of(key, 1, crate::base::random::Purpose::Procedure);
+            let mut ever = false;
+            for n in 1..400u32 {
+                sample.observe(Some(stream.uniform(n)));
+                let interval = sample.quantiles(&[0.5], 0.05).unwrap()[0].interval;
+                assert_eq!(interval.coverage, Coverage::TimeUniform);
+                ever |= !interval.holds(0.5);
+            }
+            missed += u32::from(ever);
+        }
+        assert!(missed <= 10 + 9, "{missed} of 200");
+    }
+
+    #[test]
+    fn the_band_holds_both_readings_of_unresolved_values() {
+        let mut sample = Sample::new(1000).unwrap();
+        for k in 0..1000 {
+            sample.observe((k % 5 != 0).then_some(f64::from(k)));
+        }
+        assert!((sample.reach(0.05) - (band(1000, 0.05) + 0.2)).abs() < 1e-12);
+        let mut short = Sample::new(1000).unwrap();
+        short.observe(Some(1.0));
+        assert_eq!(short.reach(0.05), 1.0);
+        assert!(band_at_all_times(1000, 0.05) < 2.3 * band(1000, 0.05));
     }
 
     #[test]

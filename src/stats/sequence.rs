@@ -16,18 +16,24 @@ fn times_ln(k: u64, ln_x: f64) -> f64 {
     if k == 0 { 0.0 } else { k as f64 * ln_x }
 }
 
+/// Whether the evidence against `m`, in (0, 1), is below one over `delta`, or may be but for rounding: logarithms of
+/// the size of the numbers of trials are off by some parts in 1e16 of themselves.
+fn inside(counts: Counts, ln_mixture: f64, ln_delta: f64, m: f64) -> bool {
+    let (successes, failures) =
+        (times_ln(counts.successes, math::ln(m)), times_ln(counts.failures, math::ln_1p(-m)));
+    let slack = math::at_least(1e-12, -2e-15 * (ln_mixture + successes + failures));
+    ln_mixture - successes - failures < slack - ln_delta
+}
+
 /// Whether `m`, in (0, 1), lies in the interval: the same as the interval's ends say, without finding them.
 pub fn holds(counts: Counts, delta: f64, m: f64) -> bool {
-    ln_mixture(counts) - times_ln(counts.successes, math::ln(m)) - times_ln(counts.failures, math::ln_1p(-m))
-        < -math::ln(delta) + 1e-12
+    inside(counts, ln_mixture(counts), math::ln(delta), m)
 }
 
 /// The interval at all times that misses with probability at most `delta`.
 pub fn interval(counts: Counts, delta: f64) -> Interval {
-    let limit = -math::ln(delta) - ln_mixture(counts) + 1e-12;
-    let inside = |m: f64| {
-        -times_ln(counts.successes, math::ln(m)) - times_ln(counts.failures, math::ln_1p(-m)) < limit
-    };
+    let (ln_mixture, ln_delta) = (ln_mixture(counts), math::ln(delta));
+    let inside = |m: f64| inside(counts, ln_mixture, ln_delta, m);
     let share = counts.share();
     // Bisection outward of the share of successes, towards either end.
     let bound = |end: f64| {
@@ -132,6 +138,30 @@ mod tests {
             (interval(Counts::default(), 0.05).low, interval(Counts::default(), 0.05).high),
             (0.0, 1.0)
         );
+    }
+
+    /// The logarithms of the mixture, computed with 60 digits: rounding stays below the slack at the ends, where it is
+    /// that of the numbers of trials.
+    #[test]
+    fn the_slack_covers_rounding_at_any_size() {
+        for (successes, failures, exact) in [
+            (1_000_000, 1_000_000, -1_386_301.841_240_237_5),
+            (300_000_000, 700_000_000, -610_864_312.642_317_73),
+            (999_999_999, 1, -32.350_410_878_529_26),
+            (100_000, 10_000_000_000_000, -1_942_083.267_490_115_3),
+            (1_000_000_000_000, 1_000_000_000_000, -1_386_294_361_134.278_5),
+        ] {
+            let counts = Counts { successes, failures };
+            let error = (ln_mixture(counts) - exact).abs();
+            assert!(error <= -1e-15 * exact, "{counts:?}: {error}");
+            // At the end itself the evidence is one over delta but for that slack, and never less.
+            let found = interval(counts, 0.05);
+            assert!(found.low < counts.share() && counts.share() < found.high, "{counts:?}: {found:?}");
+            assert!(
+                !holds(counts, 0.05, found.low) && !holds(counts, 0.05, found.high),
+                "{counts:?}: {found:?}"
+            );
+        }
     }
 
     #[test]

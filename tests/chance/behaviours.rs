@@ -217,6 +217,23 @@ fn branches_of_transitions_have_their_probabilities() {
 }
 
 #[test]
+fn of_times_that_end_within_one_step_the_shortest_wins() {
+    let first = |a: &str, b: &str| {
+        let text = format!(
+            "horizon = 2 s\nstep = 0.1 s\nkind adult: sfm preset helbing2000 {{ }}\n\
+             behaviour race {{ state a {{ after {a} -> b  after {b} -> c }} state b {{ }} state c {{ }} }}\n\
+             agent me: adult with race {{ at = (0, 0) }}\n"
+        );
+        let study = compiled(&text, "estimate P(F me.race == b) by fixed(trials = 4000)\n");
+        answered(&study, 3, 1, 10_000).results[0].estimate.unwrap()
+    };
+    let n = 4000.0;
+    assert!(near(first("exponential(0.1 s)", "exponential(0.1 s)"), 0.5, 0.5, n));
+    // P(X < Y) of uniform laws on 1 .. 9 and 1 .. 3 is 1/8.
+    assert!(near(first("uniform(0.01 s, 0.09 s)", "uniform(0.01 s, 0.03 s)"), 0.125, 0.331, n));
+}
+
+#[test]
 fn a_state_can_send_elsewhere_and_back() {
     let text = format!(
         "{HEAD}behaviour errand {{ state going {{ after 4 s -> away }}\n\
@@ -326,4 +343,39 @@ fn threads_and_batches_change_no_byte() {
     assert_eq!(runs[0], runs[2]);
     let user = agent(&study.worlds[0].scenario, "user");
     assert_eq!(user, 0);
+}
+
+#[test]
+fn names_and_functions_of_a_behaviour_see_one_another_and_the_own_parameters() {
+    let body = |lets: &str, slow: &str, near: &str| {
+        format!(
+            "{HEAD}behaviour wary(gap) {{ {lets} state walking {{ when {near} -> waiting }}\n\
+             state waiting {{ speed = {slow}  when !({near}) -> walking }} }}\n\
+             agent post: adult {{ at = (3, 2) }}\n\
+             agents crowd[4]: adult with wary(1.5 m) {{ at = uniform in rect (0, 0) .. (2, 4)  route = west }}"
+        )
+    };
+    let plain = body(
+        "",
+        "0.25 * speed",
+        "(exists a in others(self): distance(self, a) < 1.5 m & (distance(self, post) < 3 m | distance(self, a) < 1 m))",
+    );
+    // Used before they are declared; `a` inside is the argument, outside the running one.
+    let named = body(
+        "let slow = part * speed  let part = 1 / 4\n\
+         let close = exists a in others(self): near(a) & (of_post(2 * gap) | distance(self, a) < 1 m)\n\
+         let near(a) = distance(self, a) < gap  let of_post(d) = distance(self, post) < d",
+        "slow",
+        "close",
+    );
+    let (mut a, mut b) =
+        (Batch::new(&scenario(&plain), Layout::Trials, 0), Batch::new(&scenario(&named), Layout::Trials, 0));
+    let mut waiting = 0;
+    for _ in 0..500 {
+        a.step();
+        b.step();
+        waiting += (1..5).filter(|&k| a.mode(0, k, 0) == 1.0).count();
+        assert_eq!(a.state.x, b.state.x);
+    }
+    assert!((100..1_900).contains(&waiting), "{waiting}");
 }

@@ -59,6 +59,18 @@ fn another_behaviour_leaves_the_first_as_it_is() {
 }
 
 #[test]
+fn the_pauses_of_a_detour_do_not_depend_on_the_routes_of_others() {
+    let stray = "behaviour stray { state a { after 0.2 s -> b }\n\
+                 state b { route = wait uniform(0.2 s, 2 s) -> (3, 30) } }\n";
+    let with = format!("{stray}{}", CROWD.replace(": adult {", ": adult with stray {"));
+    let other = "agent other: adult { at = (-200, 0)  route = (-250, 0) -> wait 1 s -> west }\n";
+    let plain = trace(&with, Layout::Trials);
+    assert!(plain == trace(&format!("{with}{other}"), Layout::Trials));
+    assert!(plain == trace(&format!("{other}{with}"), Layout::Trials));
+    assert!(plain != trace(&with.replace("uniform(0.2 s, 2 s)", "uniform(0.2 s, 1 s)"), Layout::Trials));
+}
+
+#[test]
 fn who_comes_is_the_same_whoever_else_is_there_and_however_long_it_lasts() {
     let arrivals = |text: &str| {
         let scenario = scenario(text);

@@ -6,6 +6,7 @@ mod arrivals;
 mod behaviours;
 mod draws;
 mod presence;
+mod reuse;
 #[path = "../processes/texts.rs"]
 mod texts;
 

@@ -103,3 +103,29 @@ fn formulas_over_time_ask_who_is_there_when_they_are_asked() {
     );
     assert_eq!(share(&leaver, "F<=15 s (forall a in two: G<=1 s (a in west))"), 1.0, "once both have left");
 }
+
+#[test]
+fn a_mean_of_nobody_matters_only_where_it_is_looked_at() {
+    // Nobody is there before 5 s, somebody from 5 s to 7.6 s.
+    let text = doors();
+    for formula in [
+        "F[5 s, 6 s] (mean(speed(a) for a in doors) > 0.1 m/s)",
+        "G<=12 s ((count(a in doors) > 0) => mean(speed(a) for a in doors) >= 0 m/s)",
+        "G<=12 s ((count(a in doors) == 0) | mean(speed(a) for a in doors) >= 0 m/s)",
+        "(count(a in doors) < 1) U<=5 s (count(a in doors) > 0 & spread(doors) >= 0 m)",
+        "max[5 s, 6 s] (mean(speed(a) for a in doors)) > 0.1 m/s",
+    ] {
+        assert_eq!(share(&text, formula), 1.0, "{formula}");
+    }
+    for formula in [
+        "F<=6 s (mean(speed(a) for a in doors) > 0.1 m/s)",
+        "G<=12 s (mean(speed(a) for a in doors) >= 0 m/s)",
+        "F[4 s, 6 s] (spread(doors) >= 0 m)",
+    ] {
+        let study = compiled(&text, &format!("estimate P({formula}) by fixed(trials = 8)"));
+        assert_eq!(answered(&study, 1, 1, 1_000).results[0].counts.unresolved, 8, "{formula}");
+    }
+    let query = "estimate E(mean(speed(a) for a in doors) at 5.5 s) in 0 m/s .. 3 m/s by fixed(trials = 8)";
+    let run = answered(&compiled(&text, query), 1, 1, 1_000);
+    assert_eq!(run.results[0].counts.unresolved, 0);
+}

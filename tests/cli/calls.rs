@@ -162,3 +162,61 @@ fn warnings_point_at_families_that_are_left_and_formulas_that_never_change() {
     assert_eq!(said.err.matches("warning[W0601]: this query leaves the family").count(), 2, "{}", said.err);
     assert_eq!(said.err.matches("warning[W0501]: this is always the same").count(), 1, "{}", said.err);
 }
+
+#[test]
+fn calls_that_would_do_nothing_are_refused() {
+    let place = small("check P(F<=3 s contact(user)) >= 0.5\nestimate P(F<=3 s contact(user)) within 0.1\n");
+    for (words, said) in [
+        (&["simulate", "a.scn", "--every", "0"][..], "`--every 0` writes nothing"),
+        (&["simulate", "a.scn", "--trials", "0"], "`--trials 0` writes nothing"),
+        (&["simulate", "a.scn", "--until", "4.5"], "`--until 4.5` lies beyond the horizon of 4 s"),
+        (&["simulate", "a.scn", "--until", "-1"], "`--until` takes a time"),
+        (&["simulate", "a.scn", "--until", "nan"], "`--until` takes a time"),
+        (&["simulate", "a.scn", "--data", "nowhere"], "`--data nowhere` is not there"),
+        (&["check", "a.scn", "a.bltl", "--data", "a.bltl"], "`--data a.bltl` is no directory"),
+        (&["check", "a.scn", "a.bltl", "--only", "2"], "no query 2: they are numbered from 0 to 1"),
+    ] {
+        let found = place.call(words);
+        assert_eq!((found.code, found.out.as_str()), (Some(2), ""), "{words:?}");
+        assert!(found.err.contains(said), "{words:?}\n{}", found.err);
+    }
+    assert_eq!(place.call(&["simulate", "a.scn", "--until", "4"]).code, Some(0));
+}
+
+#[test]
+fn more_threads_than_help_are_not_started() {
+    let place = small("check P(F<=3 s contact(user)) >= 0.5\n");
+    let call = |threads: &str| {
+        place.call(&[
+            "check",
+            "a.scn",
+            "a.bltl",
+            "-q",
+            "--format",
+            "json",
+            "--max-trials",
+            "40",
+            "-j",
+            threads,
+        ])
+    };
+    let (few, many) = (call("1"), call("100000"));
+    assert_eq!(few.err, "");
+    assert!(many.err.contains("threads are as many as help here"), "{}", many.err);
+    for field in ["trials", "successes", "verdict"] {
+        assert_eq!(few.json()["results"][0][field], many.json()["results"][0][field]);
+    }
+}
+
+#[test]
+fn what_a_procedure_refuses_has_a_code_and_a_place() {
+    for query in [
+        "estimate P(F<=3 s contact(user)) within 0.6",
+        "estimate P(F<=3 s contact(user)) by okamoto(epsilon = 0.6, delta = 0.05)",
+        "estimate E(speed(user) at 1 s) in 0 m/s .. 3 m/s within 4 m/s",
+    ] {
+        let said = checked(&format!("let a = 1\n{query}\n"), &[]);
+        assert_eq!(said.code, Some(2), "{query}");
+        assert!(said.err.starts_with("error[E0604]: ") && said.err.contains("a.bltl:2:"), "{}", said.err);
+    }
+}

@@ -99,3 +99,101 @@ estimate P(F<=1 s (mean(speed(a) for a in crowd) > 0 m/s)) by fixed(trials = 7)
     // The mean of nobody has no value.
     assert_eq!(json["results"][3]["unresolved"], 7);
 }
+
+#[test]
+fn long_chains_of_names_are_one_error_and_long_lists_are_none() {
+    let list = |each: &dyn Fn(usize) -> String| (0..5000).map(each).collect::<String>();
+    let chain = list(&|k| format!("let a{} = a{k} + 1\n", k + 1)) + "let a0 = 1\n";
+    let back = list(&|k| format!("let a{k} = a{} + 1\n", k + 1)) + "let a5000 = 1\n";
+    let constants = back.replace("let", "const");
+    let kinds = list(&|k| format!("kind a{k}: a{} {{ }}\n", k + 1)) + "kind a5000: adult { }\n";
+    let independent = list(&|k| format!("let a{k} = {k} + 1\n"));
+    let place = Place::new(&[]);
+    for (text, errors) in [(chain, 1), (back, 1), (constants, 1), (kinds, 1), (independent, 0)] {
+        place.write("a.scn", format!("{text}{SMALL}").as_bytes());
+        let said = place.call(&["show", "a.scn"]);
+        assert_eq!(said.err.matches("error").count(), errors, "{}", said.err);
+        assert_eq!(said.err.matches("error[E0211]").count(), errors, "{}", said.err);
+    }
+}
+
+#[test]
+fn filters_of_imports_come_before_what_is_wrong_with_shapes() {
+    let shapes = r#"{"type": "FeatureCollection", "features": [
+        {"type": "Feature", "properties": {"kind": "broken"},
+         "geometry": {"type": "Polygon", "coordinates": [[[0,90],[2,92],[2,90],[0,92],[0,90]]]}},
+        {"type": "Feature", "properties": {"kind": "pierced"},
+         "geometry": {"type": "Polygon", "coordinates": [[[0,90],[2,90],[2,92],[0,92]], [[3,90],[4,90],[4,91]]]}},
+        {"type": "Feature", "properties": {"kind": "wall"},
+         "geometry": {"type": "LineString", "coordinates": [[0,90],[2,90]]}}]}"#;
+    let place = Place::new(&[("a.json", shapes)]);
+    let import = |filter: &str| {
+        place.write("a.scn", format!("scene {{ import \"a.json\" {filter} }}\n{SMALL}").as_bytes());
+        place.call(&["show", "a.scn"])
+    };
+    let said = import("where kind == \"wall\"");
+    assert_eq!((said.code, said.err.as_str()), (Some(0), ""));
+    let said = import("where kind != \"broken\"");
+    assert!(said.code == Some(2) && said.err.contains("hole 1 lies outside the outline"), "{}", said.err);
+    let said = import("");
+    assert!(said.err.contains("E0704") && said.err.contains("meets itself"), "{}", said.err);
+}
+
+#[test]
+fn what_the_draw_makes_impossible_is_unresolved() {
+    let scenario = "horizon = 0.1 s  step = 0.02 s\n\
+        scene { obstacle rect (1, -1) .. (6, 1.1)  region strip: rect (0, 0) .. (6, 0.1) }\n\
+        kind adult: sfm preset helbing2000 { noise = 0.05 m/s  radius = uniform(0.15 m, 0.45 m) }\n\
+        agents crowd[3]: adult { at = uniform in strip }\n";
+    let query = "estimate P(F<=0.1 s contact(crowd[1])) by fixed(trials = 60)\n";
+    let place = Place::new(&[("a.scn", scenario), ("a.bltl", query)]);
+    let said = place.call(&["check", "a.scn", "a.bltl", "-q"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    assert!(said.out.contains(": it cannot start: crowd["), "{}", said.out);
+    assert!(
+        said.out.contains("finds no place but in an obstacle or on a wall; give more room"),
+        "{}",
+        said.out
+    );
+    assert!(!said.out.contains("smaller step"), "{}", said.out);
+    let said = place.call(&["simulate", "a.scn", "--trials", "60"]);
+    assert!(said.err.contains("cannot start: crowd["), "{}", said.err);
+}
+
+#[test]
+fn nobody_comes_twice_from_a_recording() {
+    let tracks =
+        "0 1 1.0 0 2.0 1.0 0 0\n0 2 3.0 0 2.0 1.0 0 0\n10 1 1.4 0 2.0 1.0 0 0\n10 2 3.4 0 2.0 1.0 0 0\n";
+    let place = Place::new(&[("t.txt", tracks)]);
+    let show = |people: &str| {
+        let scenario = format!(
+            "horizon = 1 s  step = 0.02 s\ntracks t = eth_biwi \"t.txt\"\n\
+             kind adult: sfm preset helbing2000 {{ noise = 0.05 m/s }}\n{people}\n"
+        );
+        place.write("a.scn", scenario.as_bytes());
+        place.call(&["show", "a.scn"])
+    };
+    let user = "agent user: adult from t at 0 s id 1\n";
+    assert_eq!(show(&format!("{user}agents rest: adult from t at 0 s except 1")).code, Some(0));
+    for (people, said) in [
+        (format!("{user}agents rest: adult from t at 0.2 s"), "person 1 of `t` is there already"),
+        (format!("{user}agent other: adult from t at 0.2 s id 1"), "person 1 of `t` is there already"),
+        ("agents rest: adult from t at 0 s except 1, 1".to_owned(), "person 1 is named twice"),
+    ] {
+        let found = show(&people);
+        assert_eq!(found.code, Some(2), "{people}");
+        assert!(found.err.starts_with("error[E0703]") && found.err.contains(said), "{}", found.err);
+        assert_eq!(found.err.matches("error").count(), 1, "{}", found.err);
+    }
+}
+
+#[test]
+fn what_comes_from_standard_input_is_formatted_as_what_it_is() {
+    let place = Place::new(&[]);
+    let said = place.fed(&["fmt", "-"], "estimate   P(true) within 0.1");
+    assert_eq!((said.code, said.out.as_str()), (Some(0), "estimate P(true) within 0.1\n"), "{}", said.err);
+    let said = place.fed(&["fmt", "-"], "horizon   = 3 s");
+    assert_eq!((said.code, said.out.as_str()), (Some(0), "horizon = 3 s\n"), "{}", said.err);
+    let said = place.fed(&["fmt", "-", "--language", "scn"], "estimate   P(true) within 0.1");
+    assert_eq!((said.code, said.out.as_str()), (Some(2), ""));
+}

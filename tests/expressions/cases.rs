@@ -106,6 +106,7 @@ pub(crate) fn number(depth: u32, size: u32) -> BoxedStrategy<Num> {
         Arithmetic::Max,
         Arithmetic::Atan2,
         Arithmetic::Modulo,
+        Arithmetic::Agree,
     ]);
     let folds = prop::sample::select(vec![Fold::Min, Fold::Max, Fold::Sum, Fold::Mean]);
     let smaller = size - 1;
@@ -175,6 +176,8 @@ pub(crate) fn truth(depth: u32, size: u32) -> BoxedStrategy<Bool> {
         1 => truth(depth, smaller).prop_map(|a| Bool::Not(Box::new(a))),
         1 => all().prop_map(Bool::And),
         1 => all().prop_map(Bool::Or),
+        1 => (truth(depth, smaller), truth(depth, smaller))
+            .prop_map(|(a, b)| Bool::Iff(Box::new(a), Box::new(b))),
         2 => (set(depth), truth(depth + 1, smaller)).prop_map(|(s, b)| Bool::Forall(s, Box::new(b))),
         2 => (set(depth), truth(depth + 1, smaller)).prop_map(|(s, b)| Bool::Exists(s, Box::new(b))),
         3 => far,

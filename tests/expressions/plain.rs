@@ -230,6 +230,7 @@ impl Plain<'_> {
                     Arithmetic::Min => least(a, b),
                     Arithmetic::Max => -least(-a, -b),
                     Arithmetic::Atan2 => math::atan2(a, b),
+                    Arithmetic::Agree => -least(-least(a, b), -least(-a, -b)),
                     Arithmetic::Modulo => {
                         let r = a % b;
                         if r != 0.0 && (r < 0.0) != (b < 0.0) { r + b } else { r }
@@ -332,6 +333,10 @@ impl Plain<'_> {
                 return Self::join(all.iter().map(|a| self.truth(a)).collect::<Vec<_>>(), false);
             }
             Bool::Or(all) => return Self::join(all.iter().map(|a| self.truth(a)).collect::<Vec<_>>(), true),
+            Bool::Iff(a, b) => {
+                let (a, b) = (self.truth(a), self.truth(b));
+                a?.0 == b?.0
+            }
             Bool::Present(who) => self.here(self.who(*who)),
             Bool::In(who, region) => self.region(*region, self.at(self.who(*who))).0,
             Bool::Contact(who) => {

@@ -7,6 +7,8 @@ mod chain;
 mod errors;
 mod exact;
 mod random;
+mod rare;
+mod robust;
 mod rows;
 #[path = "../processes/texts.rs"]
 mod texts;
@@ -35,5 +37,5 @@ pub(crate) fn count(scenario: &str, formula: &str, trials: u64) -> u64 {
 /// Whether a share of trials fits a probability: five standard deviations and a bit.
 pub(crate) fn fits(successes: u64, trials: u64, p: f64) -> bool {
     let n = trials as f64;
-    (successes as f64 - n * p).abs() <= 5.0 * (n * p * (1.0 - p)).sqrt() + 1e-9 * n
+    (successes as f64 - n * p).abs() <= 5.0 * (n * p * (1.0 - p)).max(0.0).sqrt() + 1e-9 * n
 }

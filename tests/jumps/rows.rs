@@ -202,6 +202,18 @@ fn with_a_step_the_same_process_is_seen_at_the_steps() {
                  when s == 1 after 0.5 s -> s = 2 }";
     exactly(brief, &[("F (p.s == 1)", false), ("X<=#2 (p.s == 2)", true), ("X (p.s == 0)", true)]);
     assert_eq!(value(brief, "time_until(p.s == 2)"), 2.0);
+    // What is due at once belongs to the first state.
+    let soon = brief.replace("after 1.2 s", "after 0 s");
+    exactly(&soon, &[("F<=0 s (p.s == 1)", true), ("X (p.s == 2)", true)]);
+}
+
+#[test]
+fn a_process_that_jumps_too_often_between_two_steps_ends_its_trial() {
+    let text =
+        "horizon = 4 s\nstep = 1 s\nprocess p { var s: 0 .. 1 = 0\n when true at 3000000 /s -> s = 1 - s }";
+    let study = compiled(text, "estimate P(F[3 s, 3 s] (p.s == 0)) by fixed(trials = 3)").unwrap();
+    let counts = crate::answered(&study, 0, 1).results[0].counts;
+    assert_eq!((counts.trials, counts.unresolved), (3, 3));
 }
 
 #[test]

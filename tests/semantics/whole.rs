@@ -139,6 +139,7 @@ proptest! {
             seen: monitor.decided_at()[0] + 1,
             horizon: Tick(horizon),
             clock: Clock::Steps,
+            stop: &|| false,
         };
         let found = explain(&tree, root, &recording).unwrap();
         prop_assert_eq!(found.verdict, Some(monitor.truth().has(0)));

@@ -2,4 +2,5 @@
 
 mod random;
 mod reference;
+mod robust;
 mod rows;

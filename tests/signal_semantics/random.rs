@@ -11,7 +11,7 @@ use smc::logic::{
 };
 
 /// Jumps and bounds are multiples of so many ticks, so that averages cross whole numbers at whole ticks.
-const GRID: u64 = 6;
+pub(crate) const GRID: u64 = 6;
 
 const RELATIONS: [Relation; 6] = [
     Relation::Less,
@@ -23,10 +23,10 @@ const RELATIONS: [Relation; 6] = [
 ];
 
 /// Draws trees and signals; one seed gives the whole case.
-struct Draw(u64);
+pub(crate) struct Draw(pub(crate) u64);
 
 impl Draw {
-    fn below(&mut self, n: u64) -> u64 {
+    pub(crate) fn below(&mut self, n: u64) -> u64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 33) % n
     }
@@ -75,6 +75,44 @@ impl Draw {
         tree.node(node)
     }
 
+    /// A formula of comparisons, as a robustness has.
+    pub(crate) fn margins(&mut self, tree: &mut Tree, depth: u32, endless: bool) -> NodeId {
+        let kind = if depth == 0 { self.below(2) } else { self.below(12) };
+        let node = match kind {
+            0 | 1 if self.below(20) == 0 => Node::Constant(self.below(2) == 0),
+            0..=2 => {
+                let x = match self.below(4) {
+                    0 if depth > 0 => self.term(tree, depth - 1, endless),
+                    _ => tree.term(Term::Signal(SignalId(self.below(2) as u32))),
+                };
+                let y = match self.below(5) {
+                    0 => tree.term(Term::Signal(SignalId(1))),
+                    _ => tree.term(Term::Constant(self.below(8) as f64 / 2.0)),
+                };
+                let relation = RELATIONS[self.below(6) as usize];
+                if self.below(2) == 0 { Node::Compare(relation, x, y) } else { Node::Compare(relation, y, x) }
+            }
+            3 => Node::Not(self.margins(tree, depth - 1, endless)),
+            4 | 5 => {
+                let parts = (0..=self.below(3)).map(|_| self.margins(tree, depth - 1, endless));
+                let parts: Vec<NodeId> = parts.collect();
+                if kind == 4 { Node::And(parts) } else { Node::Or(parts) }
+            }
+            _ => {
+                let w = self.window(endless);
+                let x = self.margins(tree, depth - 1, endless);
+                match kind {
+                    6 => Node::Finally(w, x),
+                    7 => Node::Globally(w, x),
+                    8 | 9 => Node::Until(w, x, self.margins(tree, depth - 1, endless)),
+                    10 => Node::WeakUntil(w, x, self.margins(tree, depth - 1, endless)),
+                    _ => Node::Release(w, x, self.margins(tree, depth - 1, endless)),
+                }
+            }
+        };
+        tree.node(node)
+    }
+
     fn term(&mut self, tree: &mut Tree, depth: u32, endless: bool) -> TermId {
         let kind = if depth == 0 { self.below(5) } else { self.below(15) };
         let term = match kind {
@@ -101,7 +139,7 @@ impl Draw {
     }
 
     /// Jumps at multiples of the grid, several at one time, states that last no time among them.
-    fn jumps(&mut self, from: u64, horizon: u64) -> Vec<Jump> {
+    pub(crate) fn jumps(&mut self, from: u64, horizon: u64) -> Vec<Jump> {
         let mut jumps = Vec::new();
         let (mut at, seldom) = (from, 1 + self.below(3));
         while at <= horizon {

@@ -248,6 +248,37 @@ fn hidden_route(repetitions: u16) {
     );
 }
 
+/// The lower bound of runs keeps its error whatever their law; what supposes a normal mean does not.
+fn floors(repetitions: u32) {
+    use super::tally::uniform;
+    use smc::stats::splitting::floor;
+    // Laws of mean 1: nearly always the same, sometimes nothing; seldom much; a product of many factors.
+    let laws: [fn(&dyn Fn(u32) -> f64) -> f64; 3] = [
+        |u| if u(0) < 0.95 { 1.0 / 0.95 } else { 0.0 },
+        |u| if u(0) < 0.02 { 50.0 } else { 0.0 },
+        |u| (0..12).map(|k| if u(k) < 0.5 { 1.5 } else { 0.5 }).product(),
+    ];
+    let allowed = f64::from(repetitions) * 0.05 + 3.0 * (f64::from(repetitions) * 0.05 * 0.95).sqrt();
+    let mut normal = 0;
+    for (at, law) in laws.iter().enumerate() {
+        let mut missed = 0;
+        for k in 0..repetitions {
+            let draws: Vec<f64> =
+                (0..20).map(|run| law(&|n| uniform(80 + at as u64, k, run, u64::from(n)))).collect();
+            missed += u32::from(floor(&draws, 0.05) > 1.0);
+            normal += u32::from(at == 0 && Spread::of(&draws, 0.05).unwrap().low > 1.0);
+        }
+        assert!(f64::from(missed) <= allowed, "law {at}: {missed} of {repetitions}");
+    }
+    // 20 equal runs, with probability 0.95^20 = 0.36, leave no doubt to the normal law.
+    assert!(f64::from(normal) > 0.3 * f64::from(repetitions), "{normal}");
+}
+
+#[test]
+fn the_floor_keeps_its_error() {
+    floors(400);
+}
+
 #[test]
 fn t24_adaptive_splitting_is_unbiased() {
     autoregression(150);
@@ -272,4 +303,5 @@ fn full_splitting() {
     autoregression(1_000);
     gambler(4_000);
     hidden_route(50);
+    floors(4_000);
 }

@@ -4,7 +4,7 @@ pub mod polygon;
 pub mod segment;
 pub mod shape;
 
-pub use polygon::Polygon;
+pub use polygon::{HoleFault, Polygon};
 pub use segment::Segment;
 pub use shape::{Bounds, Shape};
 

@@ -1,6 +1,6 @@
 //! A polygon with holes.
 
-use super::{Segment, Vec2, cross};
+use super::{Segment, Shape, Vec2, cross};
 
 /// A simple outline and the holes in it. Rings are closed implicitly; their sense does not matter.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,6 +9,20 @@ pub struct Polygon {
     pub outline: Vec<Vec2>,
     /// Corners of each hole.
     pub holes: Vec<Vec<Vec2>>,
+}
+
+/// What is wrong with the holes of a polygon; holes count from 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum HoleFault {
+    /// It has no part inside the outline.
+    #[error("hole {0} lies outside the outline")]
+    Outside(usize),
+    /// It lies inside the outline in part only.
+    #[error("hole {0} crosses the outline")]
+    Crosses(usize),
+    /// They share more than their rims.
+    #[error("holes {0} and {1} overlap")]
+    Overlap(usize, usize),
 }
 
 fn ring_area(ring: &[Vec2]) -> f64 {
@@ -35,6 +49,28 @@ fn ring_contains(ring: &[Vec2], p: Vec2) -> bool {
         }
     }
     inside
+}
+
+/// Whether two edges cross at a point inside both.
+fn crosses(a: &Segment, b: &Segment) -> bool {
+    let side = |s: &Segment, p: Vec2| cross(s.b - s.a, p - s.a);
+    let apart = |p: f64, q: f64| (p > 0.0 && q < 0.0) || (p < 0.0 && q > 0.0);
+    apart(side(a, b.a), side(a, b.b)) && apart(side(b, a.a), side(b, a.b))
+}
+
+fn rings_cross(first: &[Vec2], second: &[Vec2]) -> bool {
+    ring_segments(first).any(|a| ring_segments(second).any(|b| crosses(&a, &b)))
+}
+
+/// Corners, middles of the edges and a point inside: where they lie tells how two rings that do not cross lie.
+fn marks(ring: &[Vec2]) -> impl Iterator<Item = Vec2> + '_ {
+    let inner = Shape::Polygon(Polygon::new(ring.to_vec())).inner_point();
+    ring_segments(ring).flat_map(|s| [s.a, 0.5 * (s.a + s.b)]).chain([inner])
+}
+
+/// Whether a point lies in a ring and not on its rim.
+fn strictly_inside(ring: &[Vec2], p: Vec2) -> bool {
+    ring_contains(ring, p) && ring_segments(ring).all(|s| s.distance(p) > 0.0)
 }
 
 impl Polygon {
@@ -79,6 +115,30 @@ impl Polygon {
         best.1
     }
 
+    /// What is wrong with the holes, where each ring by itself is simple: they lie inside the outline and apart from
+    /// each other; rims may touch.
+    pub fn hole_fault(&self) -> Option<HoleFault> {
+        let outline = Self::new(self.outline.clone());
+        for (k, hole) in self.holes.iter().enumerate() {
+            let outside = marks(hole).filter(|p| !outline.contains(*p)).count();
+            if outside > 0 || rings_cross(hole, &self.outline) {
+                let apart = !rings_cross(hole, &self.outline)
+                    && !marks(hole).any(|p| strictly_inside(&self.outline, p))
+                    && !marks(&self.outline).any(|p| strictly_inside(hole, p));
+                return Some(if apart { HoleFault::Outside(k + 1) } else { HoleFault::Crosses(k + 1) });
+            }
+            for (j, other) in self.holes[..k].iter().enumerate() {
+                let overlap = rings_cross(hole, other)
+                    || marks(hole).any(|p| strictly_inside(other, p))
+                    || marks(other).any(|p| strictly_inside(hole, p));
+                if overlap {
+                    return Some(HoleFault::Overlap(j + 1, k + 1));
+                }
+            }
+        }
+        None
+    }
+
     /// Whether no two edges of one ring cross. Neighbours share a corner and do not count.
     pub fn is_simple(&self) -> bool {
         std::iter::once(&self.outline).chain(&self.holes).all(|ring| {
@@ -107,6 +167,26 @@ mod tests {
         assert!(ring().contains(Vec2::new(1.0, 2.0)), "the rim of a hole belongs to the polygon");
         assert!(ring().contains(Vec2::new(4.0, 4.0)));
         assert!(!ring().contains(Vec2::new(4.1, 4.0)));
+    }
+
+    #[test]
+    fn holes_lie_inside_and_apart() {
+        let p = |x: f64, y: f64| Vec2::new(x, y);
+        let with = |holes: &[(f64, f64, f64, f64)]| {
+            let mut polygon = Polygon::rectangle(p(0., 0.), p(4., 4.));
+            let ring = |&(a, b, c, d)| Polygon::rectangle(p(a, b), p(c, d)).outline;
+            polygon.holes = holes.iter().map(ring).collect();
+            polygon.hole_fault()
+        };
+        assert_eq!(with(&[(1., 1., 3., 3.)]), None);
+        assert_eq!(with(&[(0., 1., 2., 2.), (2., 1., 3., 2.)]), None, "rims may touch");
+        assert_eq!(with(&[(5., 1., 6., 2.)]), Some(HoleFault::Outside(1)));
+        assert_eq!(with(&[(4., 1., 6., 2.)]), Some(HoleFault::Outside(1)), "touching from outside");
+        assert_eq!(with(&[(3., 1., 6., 2.)]), Some(HoleFault::Crosses(1)));
+        assert_eq!(with(&[(-1., -1., 6., 6.)]), Some(HoleFault::Crosses(1)));
+        assert_eq!(with(&[(1., 1., 2., 2.), (1., 1., 2., 2.)]), Some(HoleFault::Overlap(1, 2)));
+        assert_eq!(with(&[(1., 1., 3., 3.), (1.5, 1.5, 2., 2.)]), Some(HoleFault::Overlap(1, 2)));
+        assert_eq!(with(&[(1., 1., 3., 3.), (2., 2., 3.5, 3.5)]), Some(HoleFault::Overlap(1, 2)));
     }
 
     #[test]

@@ -1,13 +1,13 @@
 //! States of behaviours: what they change, and how they end.
 
-use super::states;
+use super::{lets, states};
 use crate::compile::dimension::Dimension;
 use crate::compile::elaborator::{Elaborator, Locals, Lowered};
 use crate::compile::kinds;
 use crate::compile::laws::{distribution, value_span};
 use crate::compile::presets::PARAMETERS;
 use crate::compile::typed::Typed;
-use crate::model::process::are_weights;
+use crate::model::process::wrong_weights;
 use crate::model::{Amount, Bool, Conduct, Law, Mode, Num, Parameter, Transition, Trigger, VariableId};
 use crate::syntax::ast::process::{BehaviourDecl, BehaviourItem, Choice, StateDecl};
 use crate::syntax::ast::{Field, Value};
@@ -23,19 +23,19 @@ impl<'a> Elaborator<'a> {
         locals: &Locals,
         variables: usize,
     ) -> Lowered<Conduct> {
-        let locals = self.with_lets(decl, locals)?;
+        self.check_lets(decl, locals, variables)?;
         let mut out = Conduct::default();
         let mut guards = 0;
         let mut failed = None;
         for state in states(decl) {
-            match self.mode(decl, state, &locals, variables, &mut guards) {
+            match self.mode(decl, state, locals, variables, &mut guards) {
                 Ok(mode) => out.states.push(mode),
                 Err(reported) => failed = Some(reported),
             }
         }
         for item in &decl.items {
             if let BehaviourItem::On(on) = item {
-                let choices = self.choices(&on.choices, on.span, &locals, |name| name == "follow")?;
+                let choices = self.choices(&on.choices, on.span, locals, |name| name == "follow")?;
                 out.advice = choices;
             }
         }
@@ -49,26 +49,24 @@ impl<'a> Elaborator<'a> {
         if written.is_empty() {
             return Ok(Vec::new());
         }
-        let locals = self.with_lets(decl, locals)?;
         written
             .into_iter()
             .map(|guard| {
-                let typed = self.lower(guard, &locals)?;
+                let typed = self.lower(guard, locals)?;
                 self.as_truth(typed, guard.span)
             })
             .collect()
     }
 
-    /// Adds the names that the behaviour declares; each sees those before it.
-    fn with_lets(&mut self, decl: &'a BehaviourDecl, locals: &Locals) -> Lowered<Locals> {
-        let mut locals = locals.clone();
-        for item in &decl.items {
-            if let BehaviourItem::Let(decl) = item {
-                let value = self.lower(&decl.body, &locals)?;
-                locals.names.push((decl.name.name.clone(), value));
+    /// Checks the names that the behaviour declares, as far as they have no arguments.
+    fn check_lets(&mut self, decl: &'a BehaviourDecl, locals: &Locals, variables: usize) -> Lowered<()> {
+        let locals = with_own(locals, variables);
+        for found in lets(decl).filter(|found| found.arguments.is_empty()) {
+            if let Some(lowered) = self.lower_inside_behaviour(&found.name.name, found.name.span, &locals) {
+                lowered?;
             }
         }
-        Ok(locals)
+        Ok(())
     }
 
     fn mode(
@@ -130,13 +128,7 @@ impl<'a> Elaborator<'a> {
                 };
             }
         };
-        // Arguments and names of the behaviour hide the agent's own parameters.
-        let own = Parameter::ALL.into_iter().enumerate().map(|(k, own)| {
-            let value = Num::Variable(VariableId((variables + k) as u32));
-            (own.name().to_owned(), Typed::Num(value, dimension_of(own)))
-        });
-        let names = own.chain(locals.names.iter().cloned()).collect();
-        let typed = self.lower(expr, &Locals { names, ..locals.clone() })?;
+        let typed = self.lower(expr, &with_own(locals, variables))?;
         let (value, found) = self.as_num(typed, span)?;
         if found != dimension {
             return self.wrong_dimension(span, dimension, found);
@@ -195,19 +187,22 @@ impl<'a> Elaborator<'a> {
         }
         let known: Option<Vec<f64>> =
             out.iter().map(|(w, _)| if let Num::Constant(w) = w { Some(*w) } else { None }).collect();
-        if let Some(known) = known
-            && !are_weights(known.iter().copied())
-        {
-            let sum: f64 = known.iter().sum();
-            let text = if known.iter().any(|w| *w < 0.0) {
-                "a probability is negative".to_owned()
-            } else {
-                format!("these probabilities sum to {sum}, not to 1")
-            };
-            return self.report(Diagnostic::error("E0902", span, text));
+        if let Some(wrong) = known.and_then(|known| wrong_weights(&known)) {
+            return self.report(Diagnostic::error("E0902", span, wrong));
         }
         Ok(out)
     }
+}
+
+/// The agent's own parameters, which the arguments and names of the behaviour hide, and names that see them.
+fn with_own(locals: &Locals, variables: usize) -> Locals {
+    let own = Parameter::ALL.into_iter().enumerate().map(|(k, own)| {
+        let value = Num::Variable(VariableId((variables + k) as u32));
+        (own.name().to_owned(), Typed::Num(value, dimension_of(own)))
+    });
+    let names: Vec<_> = own.chain(locals.names.iter().cloned()).collect();
+    let behaviour = locals.behaviour.map(|(at, _)| (at, names.len()));
+    Locals { names, behaviour, ..locals.clone() }
 }
 
 /// The dimension of a parameter.

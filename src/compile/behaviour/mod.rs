@@ -12,7 +12,7 @@ use super::symbols::{Meaning, unknown};
 use super::typed::Typed;
 use crate::model::{AgentId, Attached, Behaviour, BehaviourId, Behaviours, Mode, Parameter, Route, Who};
 use crate::syntax::ast::process::{BehaviourDecl, BehaviourItem, StateDecl};
-use crate::syntax::ast::{Expr, ExprKind, Ident};
+use crate::syntax::ast::{Expr, ExprKind, Ident, LetDecl};
 use crate::syntax::diagnostic::Diagnostic;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -29,12 +29,18 @@ pub(super) struct With<'a> {
     /// Name of the declaration.
     name: String,
     members: Vec<AgentId>,
+    /// Of a source: how many may come.
+    pub(super) most: u32,
 }
 
 fn states(decl: &BehaviourDecl) -> impl Iterator<Item = &StateDecl> {
     decl.items
         .iter()
         .filter_map(|item| if let BehaviourItem::State(state) = item { Some(state) } else { None })
+}
+
+fn lets(decl: &BehaviourDecl) -> impl Iterator<Item = &LetDecl> {
+    decl.items.iter().filter_map(|item| if let BehaviourItem::Let(decl) = item { Some(decl) } else { None })
 }
 
 impl<'a> Elaborator<'a> {
@@ -49,19 +55,12 @@ impl<'a> Elaborator<'a> {
                     self.check_state(state, &names);
                     &state.name
                 }
-                BehaviourItem::Let(decl) => {
-                    if let Some(argument) = decl.arguments.first() {
-                        let error = Diagnostic::error("E0305", argument.span, "a name here has no arguments")
-                            .hint("declare the function outside of the behaviour");
-                        self.note(error);
-                    }
-                    &decl.name
-                }
+                BehaviourItem::Let(decl) => &decl.name,
                 BehaviourItem::On(on) => {
                     if !EVENTS.contains(&on.event.name.as_str()) {
                         let known = EVENTS.into_iter();
                         let error = unknown("event", &on.event.name, on.event.span, "E0201", known)
-                            .hint("the only event is `advice`: a move is suggested to the agent");
+                            .hint("the only event is `advice`: a move is suggested to the agent; what happens around it is a condition of a state, as in `when self in exit -> …`, `when contact(self) -> …`");
                         self.note(error);
                     }
                     self.check_targets(on.choices.iter().map(|choice| &choice.target), &OUTCOMES, "reaction");
@@ -157,7 +156,7 @@ impl<'a> Elaborator<'a> {
             }
             behaviours.push((id, arguments, expr));
         }
-        With { behaviours, name: name.name.clone(), members: Vec::new() }
+        With { behaviours, name: name.name.clone(), members: Vec::new(), most: 0 }
     }
 
     /// Gives behaviours to the members of a declaration.
@@ -239,14 +238,20 @@ impl<'a> Elaborator<'a> {
             let value = self.lower(argument, &Locals::of(0))?;
             locals.names.push((name.name.clone(), value));
         }
+        locals.behaviour = Some((id.0, locals.names.len() + 1));
         let first = with.members.first().copied().unwrap_or(AgentId(0));
         let conduct = Arc::new(self.conduct(decl, &of(&locals, first), variables)?);
         let entity = people.entities(&format!("{}.{}", with.name, decl.name.name), with.members.len() as u32);
+        // Later people on the places of a source have numbers of their own.
+        let later = match with.most {
+            0 => 0,
+            most => people.entities(&format!("{}.{}.later", with.name, decl.name.name), most),
+        };
         let mut out = Vec::with_capacity(with.members.len());
         for (k, &agent) in with.members.iter().enumerate() {
             let guards = self.conditions(decl, &of(&locals, agent))?;
-            let entity = entity + k as u32;
-            out.push(Attached { agent, behaviour: id, entity, conduct: conduct.clone(), guards });
+            let (entity, later) = (entity + k as u32, later + k as u32);
+            out.push(Attached { agent, behaviour: id, entity, later, conduct: conduct.clone(), guards });
         }
         Ok(out)
     }
@@ -257,7 +262,8 @@ impl<'a> Elaborator<'a> {
             let id = BehaviourId(k as u32);
             let used = self.withs.iter().any(|with| with.behaviours.iter().any(|(known, ..)| *known == id));
             if !used && decl.arguments.is_empty() && !self.agent_names.is_empty() {
-                let locals = of(&Locals::of(0), AgentId(0));
+                let locals = Locals { behaviour: Some((id.0, 1)), ..Locals::of(0) };
+                let locals = of(&locals, AgentId(0));
                 let _: Result<_, Reported> = self.conduct(decl, &locals, variables);
                 let _: Result<_, Reported> = self.conditions(decl, &locals);
             }

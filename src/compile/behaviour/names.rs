@@ -1,15 +1,55 @@
 //! States of behaviours in expressions: `user.phone == looking`.
 
-use super::states;
+use super::{lets, states};
 use crate::compile::elaborator::{Elaborator, Locals, Lowered};
 use crate::compile::symbols::unknown;
 use crate::compile::typed::Typed;
 use crate::model::{BehaviourId, Bool, Comparison, Field, Num, Who};
-use crate::syntax::ast::{Expr, ExprKind, Ident};
+use crate::syntax::ast::process::BehaviourDecl;
+use crate::syntax::ast::{Expr, ExprKind, Ident, LetDecl};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
-impl Elaborator<'_> {
+impl<'a> Elaborator<'a> {
+    /// A name or function that the behaviour around the present place declares, what it sees, and its path.
+    fn inside_behaviour(&self, name: &str, locals: &Locals) -> Option<(&'a LetDecl, Locals, String)> {
+        let (at, seen) = locals.behaviour?;
+        let decl: &'a BehaviourDecl = self.behaviours.get(at as usize)?;
+        let found = lets(decl).find(|found| found.name.name == name)?;
+        let names = locals.names.get(..seen)?.to_vec();
+        let inner = Locals { names, running: locals.running, behaviour: locals.behaviour, ..Locals::of(0) };
+        Some((found, inner, format!("{}.{name}", decl.name.name)))
+    }
+
+    /// A name inside a behaviour, if it has it.
+    pub(in crate::compile) fn lower_inside_behaviour(
+        &mut self,
+        name: &str,
+        span: Span,
+        locals: &Locals,
+    ) -> Option<Lowered<Typed>> {
+        let (decl, inner, path) = self.inside_behaviour(name, locals)?;
+        if !decl.arguments.is_empty() {
+            let text = format!("`{name}` is a function of {} arguments", decl.arguments.len());
+            let error = Diagnostic::error("E0204", span, text).hint(format!("call it: `{name}(…)`"));
+            return Some(self.report(error));
+        }
+        Some(self.expand(0, &path, span, |this| this.lower(&decl.body, &inner)))
+    }
+
+    /// A call of a function inside a behaviour, if it has it.
+    pub(in crate::compile) fn call_inside_behaviour(
+        &mut self,
+        function: &Ident,
+        span: Span,
+        arguments: &[Expr],
+        locals: &Locals,
+    ) -> Option<Lowered<Typed>> {
+        let (decl, inner, path) = self.inside_behaviour(&function.name, locals)?;
+        (!decl.arguments.is_empty())
+            .then(|| self.lower_function(decl, (inner, path), span, arguments, locals))
+    }
+
     /// `user.phone`: to be compared with a state.
     pub(in crate::compile) fn lower_mode(&mut self, who: Who, base: Span, member: &Ident) -> Lowered<Typed> {
         let Some(at) = self.behaviours.iter().position(|decl| decl.name.name == member.name) else {

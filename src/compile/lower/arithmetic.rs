@@ -162,6 +162,12 @@ impl Elaborator<'_> {
         match base {
             Typed::Number(base) => {
                 let dimension = power(self, base.dimension)?;
+                if base.value == 0.0 && exponent.value < 0.0 {
+                    return self.report(
+                        Diagnostic::error("E0405", left.span, "division by zero")
+                            .hint("zero has no negative powers"),
+                    );
+                }
                 if let Some(n) = whole {
                     let one = Some(Number::whole(1));
                     let product = (0..n.abs())
@@ -170,7 +176,11 @@ impl Elaborator<'_> {
                         return Ok(Typed::Number(product));
                     }
                 }
-                Ok(Typed::Number(Number::rounded(math::pow(base.value, exponent.value), dimension)))
+                let value = math::pow(base.value, exponent.value);
+                if !value.is_finite() {
+                    return self.report(Diagnostic::error("E0405", span, "this is not a finite number"));
+                }
+                Ok(Typed::Number(Number::rounded(value, dimension)))
             }
             other => {
                 let (num, dimension) = self.as_num(other, left.span)?;

@@ -24,6 +24,9 @@ impl Elaborator<'_> {
         if let Some(decl) = self.function_inside(&function.name, locals) {
             return self.lower_let((0, decl), expr.span, arguments, locals);
         }
+        if let Some(called) = self.call_inside_behaviour(function, expr.span, arguments, locals) {
+            return called;
+        }
         if let Some((scope, meaning)) = self.find(&function.name, locals.scope)
             && let Meaning::Let(decl) = meaning
             && !decl.arguments.is_empty()

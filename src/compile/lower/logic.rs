@@ -1,11 +1,11 @@
 //! Connectives, comparisons, membership.
 
 use super::super::dimension::Dimension;
-use super::super::elaborator::{Elaborator, Locals, Lowered};
+use super::super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::super::typed::Typed;
-use crate::logic::{Node, Relation, Term, TermId};
+use crate::logic::{Node, NodeId, Relation, Term, TermId};
 use crate::model::{Bool, Comparison, Num, Place};
-use crate::syntax::ast::{BinaryOp, Expr};
+use crate::syntax::ast::{BinaryOp, Expr, ExprKind};
 use crate::syntax::source::Span;
 
 impl Elaborator<'_> {
@@ -42,7 +42,7 @@ impl Elaborator<'_> {
         &mut self,
         op: BinaryOp,
         a: (Typed, Span),
-        b: (Typed, Span),
+        mut b: (Typed, Span),
         locals: &Locals,
     ) -> Lowered<Typed> {
         // An implication of a formula stays visible to the monitor, which counts how often it was triggered.
@@ -54,25 +54,33 @@ impl Elaborator<'_> {
                 BinaryOp::And => all(a, b),
                 BinaryOp::Or => any(a, b),
                 BinaryOp::Implies => any(negated(a), b),
-                _ => any(all(a.clone(), b.clone()), all(negated(a), negated(b))),
+                _ => iff(a, b),
             }));
         }
+        if let (Typed::Truth(when), Typed::Truth(then)) = (&a.0, &b.0)
+            && then.may_lack_value()
+        {
+            // `a => b` is `a => (!a | b)`: where the guard is false, nobody misses what the rest lacks.
+            b.0 = Typed::Truth(any(negated(when.clone()), then.clone()));
+        }
         let (a, b) = (self.as_formula(a.0, a.1)?, self.as_formula(b.0, b.1)?);
-        let node = match op {
-            BinaryOp::And => Node::And(vec![a, b]),
-            BinaryOp::Or => Node::Or(vec![a, b]),
+        Ok(Typed::Formula(match op {
+            BinaryOp::And => self.node(Node::And(vec![a, b])),
+            BinaryOp::Or => self.node(Node::Or(vec![a, b])),
             BinaryOp::Implies => {
                 let not = self.node(Node::Not(a));
-                Node::Or(vec![not, b])
+                self.node(Node::Or(vec![not, b]))
             }
-            _ => {
-                let (not_a, not_b) = (self.node(Node::Not(a)), self.node(Node::Not(b)));
-                let both = self.node(Node::And(vec![a, b]));
-                let neither = self.node(Node::And(vec![not_a, not_b]));
-                Node::Or(vec![both, neither])
-            }
-        };
-        Ok(Typed::Formula(self.node(node)))
+            _ => self.iff(a, b),
+        }))
+    }
+
+    /// Both formulas or neither.
+    pub(in super::super) fn iff(&mut self, a: NodeId, b: NodeId) -> NodeId {
+        let (not_a, not_b) = (self.node(Node::Not(a)), self.node(Node::Not(b)));
+        let both = self.node(Node::And(vec![a, b]));
+        let neither = self.node(Node::And(vec![not_a, not_b]));
+        self.node(Node::Or(vec![both, neither]))
     }
 
     fn lower_comparison(
@@ -90,7 +98,12 @@ impl Elaborator<'_> {
         {
             return compared;
         }
-        let sides = self.inside_a_number(|this| (this.lower(left, locals), this.lower(right, locals)));
+        let sides = self.inside_a_number(|this| {
+            let a = this.lower(left, locals);
+            // `a.phone == looking` without such a behaviour: the state is unknown with it.
+            let state = matches!((&left.kind, &right.kind), (ExprKind::Member(..), ExprKind::Name(_)));
+            if a.is_err() && state { (a, Err(Reported)) } else { (a, this.lower(right, locals)) }
+        });
         let (a, b) = (sides.0?, sides.1?);
         let margin = !matches!(op, BinaryOp::Equal | BinaryOp::Unequal);
         let whole = left.span.to(right.span);
@@ -99,12 +112,17 @@ impl Elaborator<'_> {
         let span = Span { end: right.span.end, ..left.span };
         match (&a, &b) {
             (Typed::Tally(formulas), Typed::Number(bound)) if bound.dimension.is_none() => {
-                return Ok(Typed::Formula(self.tally(formulas, relation(op), bound.value, span)?));
+                return Ok(Typed::Formula(self.tally(
+                    formulas,
+                    relation(comparison(op)),
+                    bound.value,
+                    span,
+                )?));
             }
             (Typed::Number(bound), Typed::Tally(formulas)) if bound.dimension.is_none() => {
                 return Ok(Typed::Formula(self.tally(
                     formulas,
-                    relation(op).flipped(),
+                    relation(comparison(op)).flipped(),
                     bound.value,
                     span,
                 )?));
@@ -123,7 +141,7 @@ impl Elaborator<'_> {
                 self.note_margin(da, whole);
             }
             let text = self.text(span);
-            return Ok(Typed::Formula(self.comparison((relation(op), a, b), text, da)));
+            return Ok(Typed::Formula(self.comparison((relation(comparison(op)), a, b), text, da)));
         }
         let (a, da) = self.as_num(a, left.span)?;
         let (b, db) = self.as_num(b, right.span)?;
@@ -131,7 +149,7 @@ impl Elaborator<'_> {
             return self.wrong_dimension(right.span, da, db);
         }
         if let (Num::Constant(a), Num::Constant(b)) = (&a, &b) {
-            return Ok(Typed::Truth(Bool::Constant(holds(op, *a, *b))));
+            return Ok(Typed::Truth(Bool::Constant(comparison(op).of(*a, *b))));
         }
         if margin {
             self.note_margin(da, whole);
@@ -223,6 +241,15 @@ pub(super) fn any(a: Bool, b: Bool) -> Bool {
     }
 }
 
+/// Both or neither.
+fn iff(a: Bool, b: Bool) -> Bool {
+    match (a, b) {
+        (Bool::Constant(true), other) | (other, Bool::Constant(true)) => other,
+        (Bool::Constant(false), other) | (other, Bool::Constant(false)) => negated(other),
+        (a, b) => Bool::Iff(Box::new(a), Box::new(b)),
+    }
+}
+
 fn comparison(op: BinaryOp) -> Comparison {
     match op {
         BinaryOp::Less => Comparison::Less,
@@ -234,24 +261,14 @@ fn comparison(op: BinaryOp) -> Comparison {
     }
 }
 
-fn relation(op: BinaryOp) -> Relation {
-    match op {
-        BinaryOp::Less => Relation::Less,
-        BinaryOp::AtMost => Relation::AtMost,
-        BinaryOp::Greater => Relation::Greater,
-        BinaryOp::AtLeast => Relation::AtLeast,
-        BinaryOp::Equal => Relation::Equal,
-        _ => Relation::Unequal,
-    }
-}
-
-fn holds(op: BinaryOp, a: f64, b: f64) -> bool {
-    match op {
-        BinaryOp::Less => a < b,
-        BinaryOp::AtMost => a <= b,
-        BinaryOp::Greater => a > b,
-        BinaryOp::AtLeast => a >= b,
-        BinaryOp::Equal => a == b,
-        _ => a != b,
+/// The relation of formulas that a comparison of a state is.
+pub(in super::super) fn relation(comparison: Comparison) -> Relation {
+    match comparison {
+        Comparison::Less => Relation::Less,
+        Comparison::AtMost => Relation::AtMost,
+        Comparison::Greater => Relation::Greater,
+        Comparison::AtLeast => Relation::AtLeast,
+        Comparison::Equal => Relation::Equal,
+        Comparison::Unequal => Relation::Unequal,
     }
 }

@@ -4,12 +4,14 @@ mod arithmetic;
 mod builtin;
 mod call;
 mod logic;
+mod mention;
 mod name;
 mod quantifier;
 mod tally;
 mod temporal;
 
 pub(super) use builtin::DISTRIBUTIONS;
+pub(super) use logic::relation;
 
 use super::dimension::{self, Dimension};
 use super::elaborator::{Elaborator, Locals, Lowered};

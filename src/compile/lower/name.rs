@@ -5,13 +5,16 @@ use super::super::symbols::{Meaning, ScopeId, unknown};
 use super::super::typed::Typed;
 use crate::model::{Set, Who};
 use crate::syntax::ast::{Expr, LetDecl};
-use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::diagnostic::{Diagnostic, Label};
 use crate::syntax::source::Span;
 
 use super::super::dimension::Dimension;
 
 /// Names that stand for something unless they are declared.
 const BUILT_IN: [&str; 3] = ["time", "everyone", "pi"];
+
+/// Most calls that are shown of an error inside functions that call each other.
+const MOST_CALLS: usize = 4;
 
 impl<'a> Elaborator<'a> {
     /// Finds a name: in the file's own table, then in the scenario's.
@@ -28,6 +31,9 @@ impl<'a> Elaborator<'a> {
         if let Some(process) = locals.process
             && let Some(inside) = self.lower_inside(process, name, span)
         {
+            return inside;
+        }
+        if let Some(inside) = self.lower_inside_behaviour(name, span, locals) {
             return inside;
         }
         let Some((scope, meaning)) = self.find(name, locals.scope) else {
@@ -73,11 +79,15 @@ impl<'a> Elaborator<'a> {
                     return self.report(error);
                 }
                 let inner = Locals { running: locals.running, ..Locals::of(scope) };
-                self.expand(scope, name, span, |this| this.lower(&decl.body, &inner))
+                self.expand_once(scope, name, span, |this| this.lower(&decl.body, &inner))
             }
             Meaning::Property(formula) => {
                 let inner = Locals { running: locals.running, ..Locals::of(scope) };
-                self.expand(scope, name, span, |this| this.lower(formula, &inner))
+                self.expand_once(scope, name, span, |this| match this.lower(formula, &inner)? {
+                    typed @ (Typed::Truth(_) | Typed::Formula(_)) => Ok(typed),
+                    // Said where it is declared, however often it is used.
+                    found => this.mismatch(formula.span, "a condition", &found),
+                })
             }
             Meaning::Region(id, _) => Ok(Typed::Region(id)),
             Meaning::Barrier(id) => Ok(Typed::Barrier(id)),
@@ -152,6 +162,9 @@ impl<'a> Elaborator<'a> {
         span: Span,
         compute: impl FnOnce(&mut Self) -> Lowered<Typed>,
     ) -> Lowered<Typed> {
+        if self.broken.contains(&(scope, name.to_owned())) {
+            return Err(Reported);
+        }
         if self.expanding.iter().any(|(s, n)| *s == scope && n == name) {
             if self.circles.iter().any(|n| n == name) {
                 return Err(Reported);
@@ -174,10 +187,42 @@ impl<'a> Elaborator<'a> {
         value
     }
 
+    /// As `expand`, for what means the same at each use: what failed once is not looked at again.
+    fn expand_once(
+        &mut self,
+        scope: ScopeId,
+        name: &str,
+        span: Span,
+        compute: impl FnOnce(&mut Self) -> Lowered<Typed>,
+    ) -> Lowered<Typed> {
+        let value = self.expand(scope, name, span, compute);
+        if value.is_err() {
+            self.broken.insert((scope, name.to_owned()));
+        }
+        value
+    }
+
     /// A call of a function declared with `let`.
     pub(super) fn lower_let(
         &mut self,
         (scope, decl): (ScopeId, &LetDecl),
+        span: Span,
+        arguments: &[Expr],
+        locals: &Locals,
+    ) -> Lowered<Typed> {
+        let mut inner = Locals { running: locals.running, ..Locals::of(scope) };
+        if self.function_inside(&decl.name.name, locals).is_some() {
+            inner.process = locals.process;
+        }
+        let path = decl.name.name.clone();
+        self.lower_function(decl, (inner, path), span, arguments, locals)
+    }
+
+    /// A call of a function that sees some names and is known by its path.
+    pub(in crate::compile) fn lower_function(
+        &mut self,
+        decl: &LetDecl,
+        (mut inner, path): (Locals, String),
         span: Span,
         arguments: &[Expr],
         locals: &Locals,
@@ -189,15 +234,35 @@ impl<'a> Elaborator<'a> {
             };
             return self.arity(&decl.name, span, &wanted, arguments.len());
         }
-        let mut inner = Locals { running: locals.running, ..Locals::of(scope) };
-        if self.function_inside(&decl.name.name, locals).is_some() {
-            inner.process = locals.process;
-        }
         for (name, argument) in decl.arguments.iter().zip(arguments) {
             let value = self.lower(argument, locals)?;
             inner.names.push((name.name.clone(), value));
         }
-        self.expand(scope, &decl.name.name, span, |this| this.lower(&decl.body, &inner))
+        let before = self.diagnostics.len();
+        let value = self.expand(inner.scope, &path, span, |this| this.lower(&decl.body, &inner));
+        if value.is_err() && !inner.names.is_empty() {
+            self.called(before, decl, span, &inner);
+        }
+        value
+    }
+
+    /// Adds to the errors inside a function, which were found since `before`, where and with what it was called.
+    fn called(&mut self, before: usize, decl: &LetDecl, span: Span, inner: &Locals) {
+        let with: Vec<String> =
+            inner.names.iter().map(|(name, value)| format!("`{name}` is {}", value.noun())).collect();
+        let body = decl.body.span;
+        let inside =
+            |place: Span| place.source == body.source && place.start >= body.start && place.end <= body.end;
+        for diagnostic in &mut self.diagnostics[before..] {
+            // Names that are unknown, or lead in circles, are so with any arguments.
+            if diagnostic.code.starts_with("E02") {
+                continue;
+            }
+            let from = diagnostic.related.last().or(diagnostic.place.as_ref());
+            if from.is_some_and(|label| inside(label.span)) && diagnostic.related.len() < MOST_CALLS {
+                diagnostic.related.push(Label { span, text: format!("in this call, {}", with.join(", ")) });
+            }
+        }
     }
 
     /// `crowd[3]`; members count from 1.

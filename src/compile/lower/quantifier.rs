@@ -4,11 +4,10 @@
 //! member, because each member's formula is monitored on its own.
 
 use super::super::elaborator::{Elaborator, Locals, Lowered};
-use super::super::symbols::Meaning;
 use super::super::typed::Typed;
 use crate::logic::{Node, NodeId, Operation, Term, TermId};
 use crate::model::{AgentId, Arithmetic, Bool, Fold, Num, Set, Who};
-use crate::syntax::ast::{Aggregate, Expr, ExprKind, Ident, Quantifier};
+use crate::syntax::ast::{Aggregate, Expr, Ident, Quantifier};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
@@ -29,7 +28,7 @@ impl Elaborator<'_> {
             return self.lower_over_processes(quantifier, variable, process, body, locals);
         }
         let set = self.as_set(members, set.span)?;
-        if self.temporal && self.mentions_time(body, locals, 0) {
+        if self.temporal && self.mentions_time(body, locals, variable) {
             return self.write_out(span, quantifier, variable, &set, body, locals);
         }
         let mut inner = locals.clone();
@@ -64,7 +63,7 @@ impl Elaborator<'_> {
         locals: &Locals,
     ) -> Lowered<Typed> {
         let formulas =
-            quantifier == Quantifier::Count && self.temporal && self.mentions_time(body, locals, 0);
+            quantifier == Quantifier::Count && self.temporal && self.mentions_time(body, locals, variable);
         let mut each = Vec::new();
         for copy in self.copies(process) {
             let mut inner = locals.clone();
@@ -264,46 +263,6 @@ impl Elaborator<'_> {
             return Ok(Typed::Term(self.term(Term::Combine(Operation::Divide, joined, count)), dimension));
         }
         Ok(Typed::Term(joined, dimension))
-    }
-
-    /// Whether an expression looks at more than one state. Names are followed to what they stand for.
-    fn mentions_time(&self, expr: &Expr, locals: &Locals, depth: u32) -> bool {
-        if depth > 200 {
-            return false;
-        }
-        let inside = |e: &Expr| self.mentions_time(e, locals, depth + 1);
-        match &expr.kind {
-            ExprKind::Temporal(..) | ExprKind::TemporalPair(..) | ExprKind::Window(..) | ExprKind::At(..) => {
-                true
-            }
-            ExprKind::Quantity(_) | ExprKind::Infinity | ExprKind::Bool(_) | ExprKind::Text(_) => false,
-            ExprKind::Name(name) => match locals.names.iter().rev().find(|(bound, _)| bound == name) {
-                Some((_, typed)) => matches!(typed, Typed::Formula(_) | Typed::Term(..)),
-                None => match self.find(name, locals.scope) {
-                    Some((scope, Meaning::Let(decl))) => {
-                        self.mentions_time(&decl.body, &Locals::of(scope), depth + 8)
-                    }
-                    Some((scope, Meaning::Property(body))) => {
-                        self.mentions_time(body, &Locals::of(scope), depth + 8)
-                    }
-                    _ => false,
-                },
-            },
-            ExprKind::Call { function, arguments } => {
-                function.name == "time_until"
-                    || arguments.iter().any(inside)
-                    || match self.find(&function.name, locals.scope) {
-                        Some((scope, Meaning::Let(decl))) => {
-                            self.mentions_time(&decl.body, &Locals::of(scope), depth + 8)
-                        }
-                        _ => false,
-                    }
-            }
-            ExprKind::Member(a, _) | ExprKind::Unary(_, a) => inside(a),
-            ExprKind::Index(a, b) | ExprKind::Binary(_, a, b) => inside(a) || inside(b),
-            ExprKind::Point { x, y, .. } => inside(x) || inside(y),
-            ExprKind::Quantified { set, body, .. } => inside(set) || inside(body),
-        }
     }
 }
 

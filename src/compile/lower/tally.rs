@@ -57,6 +57,9 @@ impl Elaborator<'_> {
             return Ok(self.node(Node::Constant(false)));
         }
         let k = bound as usize;
+        if k == 1 {
+            return Ok(self.node(Node::Or(formulas.to_vec())));
+        }
         if n.saturating_mul(k.min(n - k + 1)) > LARGEST {
             let error =
                 Diagnostic::error("E0504", span, format!("{n} formulas over time are too many to count"))
@@ -80,11 +83,11 @@ impl Elaborator<'_> {
             for j in (1..=k).rev() {
                 let with = match row[j - 1] {
                     Some(_) if j == 1 => Some(formula),
-                    Some(rest) => Some(self.tree.node(Node::And(vec![formula, rest]))),
+                    Some(rest) => Some(self.node(Node::And(vec![formula, rest]))),
                     None => None,
                 };
                 row[j] = match (with, row[j]) {
-                    (Some(with), Some(without)) => Some(self.tree.node(Node::Or(vec![with, without]))),
+                    (Some(with), Some(without)) => Some(self.node(Node::Or(vec![with, without]))),
                     (with, without) => with.or(without),
                 };
             }

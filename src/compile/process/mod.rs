@@ -13,7 +13,7 @@ use super::number::Number;
 use super::people::People;
 use super::symbols::unknown;
 use super::typed::Typed;
-use crate::model::process::are_weights;
+use crate::model::process::wrong_weights;
 use crate::model::{Bool, Branch, Command, Domain, Num, Process, Processes, Timing, Variable, VariableId};
 use crate::syntax::ast::process::{self as ast, Domain as Written, ProcessDecl, ProcessItem};
 use crate::syntax::ast::{Expr, Item, LetDecl, ScenarioFile};
@@ -323,20 +323,8 @@ impl<'a> Elaborator<'a> {
             .iter()
             .map(|b| if let Num::Constant(weight) = b.weight { Some(weight) } else { None })
             .collect();
-        if let Some(known) = known
-            && !are_weights(known.iter().copied())
-        {
-            let sum: f64 = known.iter().sum();
-            let error = Diagnostic::error(
-                "E0902",
-                command.span,
-                if known.iter().any(|w| *w < 0.0) {
-                    "a probability is negative".to_owned()
-                } else {
-                    format!("these probabilities sum to {sum}, not to 1")
-                },
-            );
-            return self.report(error);
+        if let Some(wrong) = known.and_then(|known| wrong_weights(&known)) {
+            return self.report(Diagnostic::error("E0902", command.span, wrong));
         }
         Ok(Command { guard, timing, branches })
     }

@@ -5,7 +5,7 @@
 //! errors show while running.
 
 use super::super::elaborator::Elaborator;
-use crate::model::process::are_weights;
+use crate::model::process::wrong_weights;
 use crate::model::{Command, Domain, Process, Processes, Timing, Variable};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -210,18 +210,8 @@ fn branches(
 ) -> Result<(), End> {
     let weights: Option<Vec<f64>> = command.branches.iter().map(|b| b.weight.evaluate(values)).collect();
     let weights = weights.ok_or(End::Unknown)?;
-    if !are_weights(weights.iter().copied()) {
-        let sum: f64 = weights.iter().sum();
-        return Err(End::Wrong(Wrong {
-            code: "E0902",
-            span,
-            what: if weights.iter().any(|w| *w < 0.0) {
-                "a probability is negative".to_owned()
-            } else {
-                format!("these probabilities sum to {sum}, not to 1")
-            },
-            hint: None,
-        }));
+    if let Some(what) = wrong_weights(&weights) {
+        return Err(End::Wrong(Wrong { code: "E0902", span, what, hint: None }));
     }
     for (branch, weight) in command.branches.iter().zip(weights) {
         if weight == 0.0 {

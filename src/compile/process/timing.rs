@@ -49,6 +49,9 @@ impl Elaborator<'_> {
         let (least, _) = law.bounds();
         if least < 0.0 {
             let span = laws::value_span(delay);
+            if law.constant().is_some() {
+                return self.report(Diagnostic::error("E0906", span, "a delay cannot be negative"));
+            }
             let error = Diagnostic::error("E0906", span, "this delay can be negative").hint(format!(
                 "cut it off, as in `{} in 0 s .. 60 s`",
                 self.text(span).split(" in ").next().unwrap_or_default()

@@ -21,6 +21,9 @@ impl Feature {
     }
 }
 
+/// Whether a feature of a name and properties is taken.
+pub type Select<'s> = dyn FnMut(&str, &[(String, PropertyValue)]) -> bool + 's;
+
 /// The value of a property.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PropertyValue {
@@ -101,12 +104,11 @@ pub(super) fn polygon(rings: Vec<Vec<Vec2>>) -> Result<Geometry, String> {
     }
     let mut good = good.into_iter();
     let Some(outline) = good.next() else { return Err("a polygon needs an outline".into()) };
-    let outline = Polygon::new(outline);
-    let holes: Vec<_> = good.collect();
-    if let Some(k) = holes.iter().position(|hole| !hole.iter().all(|&corner| outline.contains(corner))) {
-        return Err(format!("hole {} lies outside the outline", k + 1));
+    let polygon = Polygon { outline, holes: good.collect() };
+    match polygon.hole_fault() {
+        Some(fault) => Err(fault.to_string()),
+        None => Ok(Geometry::Polygon(polygon)),
     }
-    Ok(Geometry::Polygon(Polygon { holes, ..outline }))
 }
 
 fn finite(points: &[Vec2]) -> Result<(), String> {

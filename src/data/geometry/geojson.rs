@@ -1,6 +1,6 @@
 //! Reader of `GeoJSON` (RFC 7946): a feature collection, one feature, or one geometry.
 
-use super::feature::{self, Feature, Geometry, GeometryError, PropertyValue};
+use super::feature::{self, Feature, Geometry, GeometryError, PropertyValue, Select};
 use crate::base::geometry::Vec2;
 use geojson::feature::Id;
 use geojson::{GeoJson, GeometryValue, JsonValue, Position};
@@ -11,6 +11,15 @@ use geojson::{GeoJson, GeometryValue, JsonValue, Position};
 /// Text that is no `GeoJSON` (one error, with its place where the parser knows it); else every feature with
 /// a point that is not finite, a line in one place, or a ring that is degenerate or meets itself.
 pub fn read_geojson(text: &str) -> Result<Vec<Feature>, Vec<GeometryError>> {
+    select_geojson(text, &mut |_, _| true)
+}
+
+/// As [`read_geojson`], of the features only whose name and properties are selected; what is wrong with the shapes of
+/// others does not matter.
+///
+/// # Errors
+/// As [`read_geojson`].
+pub fn select_geojson(text: &str, select: &mut Select<'_>) -> Result<Vec<Feature>, Vec<GeometryError>> {
     let features = match text.parse::<GeoJson>() {
         Ok(GeoJson::FeatureCollection(collection)) => collection.features,
         Ok(GeoJson::Feature(one)) => vec![one],
@@ -35,6 +44,9 @@ pub fn read_geojson(text: &str) -> Result<Vec<Feature>, Vec<GeometryError>> {
             })
             .unwrap_or_default();
         let Some(geometry) = one.geometry else { continue };
+        if !select(&name, &properties) {
+            continue;
+        }
         flatten(geometry.value, &mut |shape| match shape {
             Ok(shape) => {
                 found.push(Feature { name: name.clone(), properties: properties.clone(), shape });

@@ -8,6 +8,6 @@ pub mod geojson;
 pub mod ring;
 pub mod wkt;
 
-pub use feature::{Feature, Geometry, GeometryError, PropertyValue};
-pub use geojson::read_geojson;
+pub use feature::{Feature, Geometry, GeometryError, PropertyValue, Select};
+pub use geojson::{read_geojson, select_geojson};
 pub use wkt::read_wkt;

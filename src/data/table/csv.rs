@@ -32,7 +32,7 @@ fn write<'a>(
         row.checked(signals)?;
         table.write_field(cell(Some(row.time)))?;
         table.write_field(row.trial.to_string())?;
-        table.write_field(row.agent)?;
+        table.write_field(row.agent.as_bytes())?;
         for value in row.motion() {
             table.write_field(cell(value))?;
         }

@@ -55,7 +55,7 @@ pub fn write_json<'a>(
 }
 
 fn cells(row: &Row<'_>) -> io::Result<Vec<String>> {
-    let mut cells = vec![number(Some(row.time)), row.trial.to_string(), serde_json::to_string(row.agent)?];
+    let mut cells = vec![number(Some(row.time)), row.trial.to_string(), serde_json::to_string(&row.agent)?];
     cells.extend(row.motion().map(number));
     cells.push(row.present.to_string());
     cells.extend(row.signals.iter().map(|&value| number(Some(value))));

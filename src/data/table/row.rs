@@ -1,6 +1,7 @@
 //! One row of a table of traces.
 
 use crate::base::geometry::Vec2;
+use std::borrow::Cow;
 use std::io;
 
 /// The names of the columns before those of the signals.
@@ -14,7 +15,7 @@ pub struct Row<'a> {
     /// Index of the trial.
     pub trial: u64,
     /// Name of the agent.
-    pub agent: &'a str,
+    pub agent: Cow<'a, str>,
     /// Position, m.
     pub position: Vec2,
     /// Velocity, m/s.
@@ -55,7 +56,7 @@ pub(super) mod samples {
             Row {
                 time: 0.02,
                 trial: 3,
-                agent: "oncoming[2]",
+                agent: "oncoming[2]".into(),
                 position: Vec2::new(1.5, -0.25),
                 velocity: Vec2::new(0.3, 0.4),
                 present: true,
@@ -65,7 +66,7 @@ pub(super) mod samples {
             Row {
                 time: 0.04,
                 trial: 3,
-                agent: "a, \"b\"",
+                agent: "a, \"b\"".into(),
                 position: Vec2::new(9.0, 9.0),
                 velocity: Vec2::zeros(),
                 present: false,

@@ -1,15 +1,18 @@
 //! What splitting found, in words: the estimate is labelled for what it is, the sound bound stands beside it,
 //! and where plain trials contradict it there is no estimate.
 
-use super::{Found, Question, run};
+use super::{DISAGREEMENT, Found, Question, run};
+use crate::base::math;
 use crate::engine::answer::Answers;
 use crate::engine::executor::Executor;
 use crate::engine::fault::Fault;
+use crate::engine::method;
 use crate::engine::outcome::{Kind, QueryResult, Rare, Stop};
 use crate::engine::procedure;
 use crate::engine::watch::Watch;
 use crate::engine::witness;
 use crate::engine::words;
+use crate::stats::splitting::Spread;
 
 /// Code of a disagreement, for `smc explain`.
 const DISAGREES: &str = "E0802";
@@ -26,14 +29,14 @@ impl Answers<'_> {
         let Question { query, subject, column, rule, .. } = *question;
         let found = run(question, executor, self.budget, watch)?;
         let mut result = self.blank(query, Kind::Estimate);
-        result.method = procedure::method(&query.ask, None);
+        result.method = method::of(&query.ask, None);
         result.stopped_by = found.stop;
         let counts = found.plain.counts;
         result.replay = self.replay(query, "--max-trials", counts.trials + found.paths);
         Self::tell(&mut result, subject, &found.plain, column);
         self.lament_one(&mut result, subject, &found.plain, column);
         let name = words::measured(&query.text, 'P');
-        // The only statement that holds without a condition is that of the plain trials.
+        // From above the only statement that holds without a condition is that of the plain trials.
         result.certifies = format!(
             "{name} <= {}, error at most {} (from the plain trials alone)",
             words::number(words::at_most(found.bound)),
@@ -41,6 +44,16 @@ impl Answers<'_> {
         );
         if counts.trials == 0 {
             result.certifies = String::new();
+        }
+        if let Some(spread) =
+            found.spreads.map(|[low, _]| low).filter(|s| 0.0 < s.floor && s.floor <= found.bound)
+        {
+            result.certifies = format!(
+                "{}; {name} >= {}, error at most {} (from the runs, which are unbiased)",
+                result.certifies,
+                words::number(words::at_least(spread.floor)),
+                words::error(rule.delta)
+            );
         }
         state(&mut result, &found, rule.delta);
         let picks = witness::sides(&found.plain);
@@ -53,24 +66,36 @@ impl Answers<'_> {
 /// Estimate, interval and warnings.
 fn state(result: &mut QueryResult, found: &Found, delta: f64) {
     let plain = found.interval;
-    let agrees = found.spread.is_none_or(|s| plain.low <= s.mean && s.mean <= plain.high);
+    // Both readings of lost paths, each with its own interval.
+    let spread = found.spreads.map(|[low, high]| Spread {
+        mean: 0.5 * (low.mean + high.mean),
+        low: math::at_most(low.low, high.low),
+        high: math::at_least(low.high, high.high),
+        deviation: math::at_least(low.deviation, high.deviation),
+        ..low
+    });
+    // An estimate above the bound that is certified beside it would be a contradiction, so that it is refused too.
+    let above = |s: &Spread| s.mean > found.bound || s.mean > plain.high;
+    let over = found.spreads.is_some_and(|both| both.iter().any(above));
+    let agrees = !over && found.spreads.is_none_or(|both| both.iter().all(|s| plain.low <= s.mean));
     let sampled = found.plain.counts.trials > 0;
     result.rare = Some(Rare {
-        runs: found.spread.map_or(0, |s| s.runs),
-        extinct: found.spread.map_or(0, |s| s.extinct),
-        deviation: found.spread.map_or(0.0, |s| s.deviation),
+        runs: spread.map_or(0, |s| s.runs),
+        extinct: spread.map_or(0, |s| s.extinct),
+        deviation: spread.map_or(0.0, |s| s.deviation),
         levels: found.levels,
         paths: found.paths,
         steps: found.steps,
-        estimate: found.spread.map(|s| s.mean),
-        low: found.spread.map_or(0.0, |s| s.low),
-        high: found.spread.map_or(1.0, |s| s.high),
+        estimate: spread.map(|s| s.mean),
+        low: spread.map_or(0.0, |s| s.low),
+        high: spread.map_or(1.0, |s| s.high),
         plain_low: if sampled { plain.low } else { 0.0 },
         plain_high: if sampled { plain.high } else { 1.0 },
         plain_bound: if sampled { found.bound } else { 1.0 },
+        floor: spread.map_or(0.0, |s| s.floor),
         agrees,
     });
-    match found.spread {
+    match spread {
         Some(spread) if agrees && spread.mean > 0.0 => {
             result.estimate = Some(spread.mean);
             result.low = spread.low;
@@ -93,12 +118,20 @@ fn state(result: &mut QueryResult, found: &Found, delta: f64) {
             result.estimate = (counts.trials > 0).then(|| procedure::share(counts));
             result.low = if sampled { plain.low } else { 0.0 };
             result.high = if sampled { plain.high } else { 1.0 };
-            "fixed size, 99 %, of the plain trials".clone_into(&mut result.interval);
+            result.interval =
+                format!("{}, of the plain trials", words::interval(plain.coverage, DISAGREEMENT));
             let stopped = matches!(found.stop, Stop::Cap | Stop::Deadline | Stop::Interrupt);
-            result.warnings.push(match found.spread {
+            result.warnings.push(match spread {
+                // The bound is that of one side, at the error that was asked for.
+                Some(spread) if over && spread.mean <= plain.high => format!(
+                    "{DISAGREES}: splitting says {}, which the plain trials exclude at {}: refused; more of them (`plain`) tell whether that is chance",
+                    words::number(spread.mean),
+                    words::level(delta)
+                ),
                 Some(spread) if !agrees => format!(
-                    "{DISAGREES}: splitting says {}, which the plain trials exclude at 99 %: refused; the robustness does not see the way on which the event comes",
-                    words::number(spread.mean)
+                    "{DISAGREES}: splitting says {}, which the plain trials exclude at {}: refused; the robustness does not see the way on which the event comes",
+                    words::number(spread.mean),
+                    words::level(DISAGREEMENT)
                 ),
                 Some(_) if found.blind => format!(
                     "{DISAGREES}: no run reached the event, and the robustness rose in none of them before it; ask for the opposite, or for an event that comes by and by"
@@ -112,6 +145,6 @@ fn state(result: &mut QueryResult, found: &Found, delta: f64) {
     if found.lost > 0 {
         result
             .warnings
-            .push(format!("{} paths of splitting diverged and count as not reaching the event", found.lost));
+            .push(format!("{} paths of splitting diverged: read as reaching the event and as not, and the interval holds both", found.lost));
     }
 }

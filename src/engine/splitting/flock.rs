@@ -1,5 +1,6 @@
 //! Paths in lanes: each with the monitor of its formula and the robustness that is its level.
 
+use super::hopper::Hopper;
 use super::path::Path;
 use crate::base::lanes::{LANES, Mask};
 use crate::engine::budget::Budget;
@@ -23,12 +24,25 @@ pub(super) struct Flown {
     pub(super) flight: Flight,
     /// Steps of the model, those up to where it branched off included.
     pub(super) steps: u64,
+    /// When it ended.
+    pub(super) ended: u64,
     /// Whether it diverged, or its formula had no truth.
     pub(super) lost: bool,
 }
 
+impl Flown {
+    /// What it came to, where a lost path is read as reaching the event, or as not.
+    pub(super) fn read(self, lost_reaches: bool) -> Flight {
+        let mut flight = self.flight;
+        if self.lost && lost_reaches {
+            flight.rise(self.ended, f64::INFINITY);
+        }
+        flight
+    }
+}
+
 /// Paths that came to an end, by their places.
-type Landed = Vec<(usize, Flown)>;
+pub(super) type Landed = Vec<(usize, Flown)>;
 
 /// What a lane is busy with.
 struct Busy {
@@ -45,7 +59,30 @@ struct Bird {
     formula: (Code, Observer),
     level: (Code, Robustness),
     readings: [Readings; 2],
+    /// Whether the formula follows single people of a source.
+    follows: bool,
     busy: [Option<Busy>; LANES],
+}
+
+/// A batch, as the clock needs it.
+enum Batch {
+    Steps(Box<Bird>),
+    Jumps(Box<Hopper>),
+}
+
+impl Batch {
+    fn run<'p>(
+        &mut self,
+        subject: &Subject,
+        paths: &[Path],
+        take: &mut dyn FnMut() -> Option<(usize, &'p Path)>,
+        budget: &Budget,
+    ) -> (Landed, Option<(usize, Fault)>) {
+        match self {
+            Self::Steps(bird) => bird.run(subject, paths, take, budget),
+            Self::Jumps(hopper) => hopper.run(subject, paths, take, budget),
+        }
+    }
 }
 
 /// Batches that are warm, for one formula of a subject.
@@ -53,28 +90,32 @@ pub(super) struct Flock<'s> {
     subject: &'s Subject,
     /// Column of the formula, and of the robustness that is its level.
     columns: [usize; 2],
-    birds: Mutex<Vec<Bird>>,
+    batches: Mutex<Vec<Batch>>,
 }
 
 impl<'s> Flock<'s> {
     pub(super) const fn new(subject: &'s Subject, columns: [usize; 2]) -> Self {
-        Self { subject, columns, birds: Mutex::new(Vec::new()) }
+        Self { subject, columns, batches: Mutex::new(Vec::new()) }
     }
 
-    fn bird(&self) -> Result<Bird, Fault> {
-        if let Some(warm) = self.birds.lock().ok().and_then(|mut list| list.pop()) {
+    fn batch(&self) -> Result<Batch, Fault> {
+        if let Some(warm) = self.batches.lock().ok().and_then(|mut list| list.pop()) {
             return Ok(warm);
         }
         let (subject, [formula, level]) = (self.subject, self.columns);
         let program = &subject.program;
-        Ok(Bird {
+        if program.scenario.clock.is_jumps() {
+            return Ok(Batch::Jumps(Box::new(Hopper::new(subject, self.columns)?)));
+        }
+        Ok(Batch::Steps(Box::new(Bird {
             state: State::new(program.layout, program.scenario.agents.len()),
             scratch: Scratch::new(),
             formula: (subject.code(&[formula]), subject.observer(formula)?),
             level: (subject.code(&[level]), subject.robustness(level)?),
             readings: [Readings::default(), Readings::default()],
+            follows: subject.follows(formula),
             busy: [const { None }; LANES],
-        })
+        })))
     }
 
     /// Runs all paths; `None` where somebody or the clock said stop first. Which thread and which lane runs a path leaves
@@ -100,17 +141,17 @@ impl<'s> Flock<'s> {
                 let place = next.fetch_add(1, Ordering::Relaxed);
                 paths.get(place).map(|path| (place, path))
             };
-            match self.bird() {
-                Ok(mut bird) => {
-                    let (flown, fault) = bird.run(self.subject, paths, &mut take, budget);
+            match self.batch() {
+                Ok(mut batch) => {
+                    let (flown, fault) = batch.run(self.subject, paths, &mut take, budget);
                     if let Ok(mut list) = done.lock() {
                         list.extend(flown);
                     }
                     if let Some((place, fault)) = fault {
                         fail(place, fault);
                     }
-                    if let Ok(mut list) = self.birds.lock() {
-                        list.push(bird);
+                    if let Ok(mut list) = self.batches.lock() {
+                        list.push(batch);
                     }
                 }
                 Err(fault) => fail(0, fault),
@@ -205,7 +246,10 @@ impl Bird {
         self.level.0.run(&subject.program, &self.state, of_level);
         let occupied = self.state.occupied;
         // A level without a value is none yet; a formula without one is lost.
-        let ended = self.state.diverged | self.state.queues.full;
+        let mut ended = self.state.diverged | self.state.queues.full;
+        if self.follows {
+            ended |= self.state.queues.reused;
+        }
         let lost = (ended | of_formula.unresolved | of_level.unresolved) & occupied;
         let watched = occupied & !lost;
         self.formula.1.observe(watched, of_formula);
@@ -228,7 +272,7 @@ impl Bird {
                     busy.flown.flight.rise(time, f64::INFINITY);
                 }
             }
-            busy.flown.steps = time;
+            (busy.flown.steps, busy.flown.ended) = (time, time);
             if let Some(busy) = self.busy[lane].take() {
                 done.push((busy.place, busy.flown));
             }

@@ -3,6 +3,7 @@
 
 mod answer;
 mod flock;
+mod hopper;
 mod path;
 
 use super::budget::Budget;
@@ -17,7 +18,7 @@ use super::watch::{Forecast, Watch};
 use crate::base::random::TrialKey;
 use crate::compile::study::{Query, Splitting as Rule};
 use crate::stats::splitting::{Adaptive, AnyScheme, Effort, Scheme, Spread, Start};
-use crate::stats::{self, Counts, clopper_pearson};
+use crate::stats::{self, Counts, clopper_pearson, sequence};
 use flock::Flock;
 use path::Path;
 
@@ -37,15 +38,15 @@ pub(super) struct Found {
     bound: f64,
     /// Two-sided interval of them, wide enough for the comparison.
     interval: stats::Interval,
-    /// The runs, if all are finished.
-    spread: Option<Spread>,
+    /// The runs with lost paths read as not reaching the event, and with them read as reaching it; if all are finished.
+    spreads: Option<[Spread; 2]>,
     /// Levels of the runs, on average.
     levels: f64,
     /// Paths of all runs.
     paths: u64,
     /// Steps of all paths.
     steps: u64,
-    /// Paths that diverged.
+    /// Paths that diverged, in the reading in which they do not reach the event.
     lost: u64,
     /// Whether any level below the event was ever found.
     blind: bool,
@@ -133,14 +134,18 @@ fn run(
     let counts = plain.counts;
     let read = |successes| Counts { successes, failures: counts.trials - successes };
     let (least, most) = (read(counts.successes), read(counts.successes + counts.unresolved));
-    let interval =
-        clopper_pearson::interval(least, DISAGREEMENT).hull(clopper_pearson::interval(most, DISAGREEMENT));
-    let bound = clopper_pearson::upper(most, rule.delta);
+    // Where the clock chose their number, only what holds at all times holds.
+    let of = if counts.trials < rule.plain { sequence::interval } else { clopper_pearson::interval };
+    let interval = of(least, DISAGREEMENT).hull(of(most, DISAGREEMENT));
+    let bound = match counts.trials < rule.plain {
+        true => sequence::interval(most, rule.delta).high,
+        false => clopper_pearson::upper(most, rule.delta),
+    };
     let mut found = Found {
         plain,
         bound,
         interval,
-        spread: None,
+        spreads: None,
         levels: 0.0,
         paths: 0,
         steps: 0,
@@ -152,9 +157,26 @@ fn run(
         return Ok(found);
     }
     let flock = Flock::new(question.subject, [question.column, rule.level]);
-    let fly = |runs: &mut [Running], found: &mut Found| -> Result<bool, Fault> {
-        fly(&flock, runs, question, found, executor, budget, watch)
+    let reading = |lost_reaches: bool, found: &mut Found| -> Result<Option<Spread>, Fault> {
+        runs(question, found, &mut |runs, found| {
+            fly(&flock, runs, lost_reaches, question, found, executor, budget, watch)
+        })
     };
+    if let Some(low) = reading(false, &mut found)? {
+        // Paths that are lost are in neither reading: where there are any, all runs are made in both.
+        let high = if found.lost == 0 { Some(low) } else { reading(true, &mut found)? };
+        found.spreads = high.map(|high| [low, high]);
+    }
+    Ok(found)
+}
+
+/// All runs under one reading of lost paths; `None` where they did not come to an end. `fly` finishes some of them.
+fn runs(
+    question: &Question<'_>,
+    found: &mut Found,
+    fly: &mut dyn FnMut(&mut [Running], &mut Found) -> Result<bool, Fault>,
+) -> Result<Option<Spread>, Fault> {
+    let rule = question.rule;
     let (replicas, seed) = (rule.replicas as usize, question.seed);
     let mut levels = Vec::new();
     if !rule.adaptive {
@@ -162,8 +184,8 @@ fn run(
         let branch = 1 + rule.runs as u16;
         let pilot = Adaptive::new(replicas, (3 * replicas / 4).max(1), seed, branch)?;
         let mut runs = [Running::new(AnyScheme::Adaptive(pilot), branch)];
-        if !fly(&mut runs, &mut found)? {
-            return Ok(found);
+        if !fly(&mut runs, found)? {
+            return Ok(None);
         }
         levels.extend(runs[0].scheme.levels().iter().copied().filter(|level| level.is_finite()));
     }
@@ -177,14 +199,14 @@ fn run(
         };
         runs.push(Running::new(scheme, branch));
     }
-    if fly(&mut runs, &mut found)? {
-        let estimates: Vec<f64> = runs.iter().map(|run| run.scheme.estimate()).collect();
-        found.spread = Some(Spread::of(&estimates, rule.delta)?);
-        let sum: usize = runs.iter().map(|run| run.scheme.levels().len()).sum();
-        found.levels = sum as f64 / runs.len() as f64;
-        found.blind = runs.iter().all(|run| run.scheme.levels().iter().all(|level| !level.is_finite()));
+    if !fly(&mut runs, found)? {
+        return Ok(None);
     }
-    Ok(found)
+    let estimates: Vec<f64> = runs.iter().map(|run| run.scheme.estimate()).collect();
+    let sum: usize = runs.iter().map(|run| run.scheme.levels().len()).sum();
+    found.levels = sum as f64 / runs.len() as f64;
+    found.blind &= runs.iter().all(|run| run.scheme.levels().iter().all(|level| !level.is_finite()));
+    Ok(Some(Spread::of(&estimates, rule.delta)?))
 }
 
 /// The plain trials; why they ended early, if they did.
@@ -225,6 +247,7 @@ fn halted(budget: &Budget) -> Option<Stop> {
 fn fly(
     flock: &Flock<'_>,
     runs: &mut [Running],
+    lost_reaches: bool,
     question: &Question<'_>,
     found: &mut Found,
     executor: &dyn Executor,
@@ -252,11 +275,14 @@ fn fly(
         };
         found.paths += flown.len() as u64;
         found.steps += flown.iter().map(|one| one.steps).sum::<u64>();
-        found.lost += flown.iter().filter(|one| one.lost).count() as u64;
+        if !lost_reaches {
+            found.lost += flown.iter().filter(|one| one.lost).count() as u64;
+        }
         let mut flown = flown.into_iter();
         for (run, wanted) in runs.iter_mut().zip(&paths) {
             if !wanted.is_empty() {
-                run.scheme.feed(flown.by_ref().take(wanted.len()).map(|one| one.flight).collect());
+                run.scheme
+                    .feed(flown.by_ref().take(wanted.len()).map(|one| one.read(lost_reaches)).collect());
             }
         }
         watch.consumed(&question.query.text, found.plain.counts.trials + found.paths, None);

@@ -1,4 +1,5 @@
-//! The address of a path: under which key its random numbers are drawn, from which tick on.
+//! The address of a path: under which key its random numbers are drawn, from which time on: a tick, or in continuous
+//! time the bits of a number of seconds, which are never negative and so order alike.
 //!
 //! A trial is a pure function of its key, so that a path is continued from any of its states by running it
 //! again up to there and changing the key: nothing has to be kept, and the state is the same to the last bit.
@@ -10,7 +11,7 @@ use crate::base::random::TrialKey;
 pub(super) struct Path {
     /// The key of its start.
     pub(super) first: TrialKey,
-    /// Ticks and the keys in force from there on, ascending.
+    /// Times and the keys in force after them, ascending.
     pub(super) changes: Vec<(u64, TrialKey)>,
 }
 

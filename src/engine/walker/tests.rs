@@ -1,5 +1,6 @@
 //! Random small chains and formulas: the cells are those of the general worker.
 
+use super::super::cell::Item;
 use super::super::worker::Worker;
 use super::*;
 use crate::compile::{Files, Input, compile};
@@ -8,7 +9,7 @@ use crate::syntax::source::{Source, SourceId};
 use proptest::prelude::*;
 
 /// The subject of a scenario with one question for each formula, and the columns of the questions.
-fn subject(scenario: &str, formulas: &[String]) -> Subject {
+pub(in crate::engine) fn subject(scenario: &str, formulas: &[String]) -> Subject {
     let questions: Vec<String> = formulas.iter().map(|f| format!("estimate P({f}) within 0.1\n")).collect();
     let sources =
         [Source::new(SourceId(0), "m.scn", scenario), Source::new(SourceId(1), "p.bltl", questions.concat())];
@@ -25,33 +26,35 @@ fn subject(scenario: &str, formulas: &[String]) -> Subject {
     Subject::new(&study.unwrap_or_else(|| panic!("{faults:?}")).worlds[0])
 }
 
-/// The cells of the trials, in order: how is 0 for the general worker, else the number of walkers.
-fn cells(subject: &Subject, columns: &[usize], from: u64, count: u64, walkers: u64) -> (Vec<Cell>, u64) {
+/// The cells of the trials, in order, and the steps made: by the general worker, or by a walker in blocks of so many
+/// trials.
+fn cells(
+    subject: &Subject,
+    columns: &[usize],
+    from: u64,
+    count: u64,
+    size: Option<usize>,
+) -> (Vec<Cell>, u64) {
     let budget = Budget::new(u64::MAX, None);
     let items = Item::run(from, count);
-    let mut out = vec![Cell::BLANK; items.len() * columns.len()];
-    let mut steps = 0;
-    for part in 0..walkers.max(1) {
-        let mine = |place: &usize| *place as u64 % walkers.max(1) == part;
-        let mut list = (0..items.len()).filter(mine).map(|place| (place, items[place]));
-        let mut next = || list.next();
-        let finished = if walkers == 0 {
-            let mut worker = Worker::new(subject, columns).unwrap();
-            let finished = worker.run(subject, 7, &mut next, &budget);
-            steps += worker.steps;
-            finished
-        } else {
-            let mut walker = Walker::of(subject, columns).unwrap();
-            let finished = walker.run(subject, 7, &mut next, &budget);
-            steps += walker.steps;
-            finished
-        };
-        for (k, place) in finished.places.iter().enumerate() {
-            let width = columns.len();
-            out[place * width..][..width].copy_from_slice(&finished.cells[k * width..][..width]);
+    let width = columns.len();
+    let mut out = vec![Cell::BLANK; items.len() * width];
+    if let Some(size) = size {
+        let mut walker = Walker::of(subject, columns).unwrap();
+        for (items, cells) in items.chunks(size).zip(out.chunks_mut(size * width)) {
+            let mut finished = vec![false; items.len()];
+            walker.run(subject, 7, &mut Block { items, cells, finished: &mut finished }, &budget);
+            assert!(finished.iter().all(|finished| *finished));
         }
+        return (out, walker.steps);
     }
-    (out, steps)
+    let mut list = items.iter().copied().enumerate();
+    let mut worker = Worker::new(subject, columns).unwrap();
+    let finished = worker.run(subject, 7, &mut || list.next(), &budget);
+    for (k, place) in finished.places.iter().enumerate() {
+        out[place * width..][..width].copy_from_slice(&finished.cells[k * width..][..width]);
+    }
+    (out, worker.steps)
 }
 
 /// A process `name` of three states whose commands may look at the other one's state.
@@ -113,9 +116,9 @@ proptest! {
         let fits = |column: &usize| Walker::of(&subject, &[*column]).is_some();
         let columns: Vec<usize> = all.into_iter().filter(fits).collect();
         prop_assume!(!columns.is_empty());
-        let (general, steps) = cells(&subject, &columns, from, 21, 0);
-        for walkers in [1, 3] {
-            prop_assert_eq!(&cells(&subject, &columns, from, 21, walkers), &(general.clone(), steps));
+        let general = cells(&subject, &columns, from, 21, None);
+        for size in [21, 8, 3] {
+            prop_assert_eq!(&cells(&subject, &columns, from, 21, Some(size)), &general);
         }
     }
 }
@@ -142,15 +145,40 @@ fn common_shapes_take_the_chain_and_others_do_not() {
 }
 
 #[test]
+fn a_state_that_is_never_left_decides_at_its_tick() {
+    // After two heads nothing happens any more; windows end before and after that.
+    let formulas = ["F[#3, #7] c.s == 2", "F c.s == 3", "G<=#6 (c.s < 3)", "(c.s < 3) U[#8, #9] (c.s == 2)"];
+    let scenario = COIN.replace("0 .. 2", "0 .. 3");
+    let subject = subject(&scenario, &formulas.map(str::to_owned));
+    let columns: Vec<usize> = (0..formulas.len()).collect();
+    let general = cells(&subject, &columns, 0, 300, None);
+    assert_eq!(cells(&subject, &columns, 0, 300, Some(300)), general);
+    let ticks = |column: usize| general.0.iter().skip(column).step_by(4).map(|cell| cell.steps).max();
+    assert_eq!([0, 1, 2, 3].map(ticks), [Some(7), Some(9), Some(6), Some(9)]);
+    let mut plain = subject;
+    plain.program.processes = plain.program.processes.clone().at_baseline();
+    assert_eq!(cells(&plain, &columns, 0, 300, Some(300)), general);
+}
+
+#[test]
 fn a_walk_stops_when_told() {
     let subject = subject(COIN, &["F c.s == 2".to_owned()]);
     let mut walker = Walker::of(&subject, &[0]).unwrap();
-    let budget = Budget::new(u64::MAX, Some(std::time::Duration::ZERO));
-    let mut index = 0;
-    let mut endless = || {
-        index += 1;
-        Some((0, Item { advice: None, index }))
+    let items = Item::run(0, 100);
+    let (mut cells, mut finished) = (vec![Cell::BLANK; 100], vec![false; 100]);
+    let mut run = |budget: &Budget| {
+        finished.fill(false);
+        walker.run(
+            &subject,
+            7,
+            &mut Block { items: &items, cells: &mut cells, finished: &mut finished },
+            budget,
+        );
+        finished.iter().filter(|finished| **finished).count()
     };
-    walker.run(&subject, 7, &mut endless, &budget);
-    assert!(walker.steps <= u64::from(CLOCK_EVERY) * LANES as u64);
+    assert_eq!(run(&Budget::new(u64::MAX, Some(std::time::Duration::ZERO))), 0);
+    assert_eq!(run(&Budget::new(u64::MAX, None)), 100);
+    let interrupted = Budget::new(u64::MAX, None);
+    interrupted.interrupt();
+    assert_eq!(run(&interrupted), 0);
 }

@@ -49,13 +49,19 @@ pub(super) enum Trigger {
 }
 
 impl Conduct {
-    /// Makes a conduct ready; its routes are added to those of `drive`.
-    pub(super) fn new(scenario: &Scenario, conduct: &model::Conduct, drive: &mut Drive) -> Self {
+    /// Makes what a declared behaviour does ready; its routes are added to those of `drive`.
+    pub(super) fn new(
+        scenario: &Scenario,
+        declared: &model::Behaviour,
+        conduct: &model::Conduct,
+        drive: &mut Drive,
+    ) -> Self {
         let mut delays = 0;
         let modes = conduct
             .states
             .iter()
-            .map(|mode| {
+            .zip(&declared.states)
+            .map(|(mode, name)| {
                 let mut number = 0;
                 let exits = mode
                     .transitions
@@ -81,7 +87,10 @@ impl Conduct {
                 });
                 Mode {
                     changes: changes.collect(),
-                    route: mode.route.as_ref().map(|route| drive.detour(scenario, route)),
+                    route: mode
+                        .route
+                        .as_ref()
+                        .map(|route| drive.detour(scenario, route, &format!("{}.{name}", declared.name))),
                     exits,
                 }
             })
@@ -95,13 +104,6 @@ impl Mode {
     pub(super) fn changes_something(&self) -> bool {
         !self.changes.is_empty() || self.route.is_some()
     }
-}
-
-/// The number of steps after which a time is over: whole numbers are met in spite of rounding.
-pub(super) fn steps(time: f64, dt: f64) -> f64 {
-    let exact = time / dt;
-    let nearest = exact.round();
-    if (exact - nearest).abs() <= 1e-9 * nearest.abs() { nearest } else { exact.ceil() }
 }
 
 /// One of several by their weights, over the values of variables; `None` where these are no probabilities. A number
@@ -135,13 +137,6 @@ pub(super) fn pick<T: Copy>(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn whole_numbers_of_steps_are_met() {
-        assert_eq!([steps(2.0, 0.02), steps(0.7, 0.1), steps(1.1, 0.1)], [100.0, 7.0, 11.0]);
-        assert_eq!([steps(0.0, 0.1), steps(0.01, 0.1), steps(0.1001, 0.1)], [0.0, 1.0, 2.0]);
-        assert_eq!(steps(f64::INFINITY, 0.1), f64::INFINITY);
-    }
 
     #[test]
     fn a_choice_follows_its_weights() {

@@ -17,6 +17,7 @@ use super::start;
 use super::state::{Layout, Slot, State};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::random::{Purpose, Stream, TrialKey, name_hash};
+use crate::base::tick::steps_over;
 use crate::model::{AgentId, Parameter, Scenario};
 use conduct::{Amount, Conduct, Trigger, pick};
 
@@ -29,6 +30,8 @@ struct Machine {
     agent: u32,
     behaviour: u32,
     entity: u32,
+    /// That of later people on the place of its agent is so much more than how much later they are.
+    later: u32,
     conduct: u32,
     /// The atom of its first condition, and how many it has.
     guards: (u32, u32),
@@ -78,6 +81,8 @@ struct Turn {
 pub(super) struct Scratch {
     readings: Readings,
     turns: Vec<Turn>,
+    /// The lanes of each machine that turn.
+    turning: Vec<Mask>,
 }
 
 /// The lane of keys and ticks of a slot.
@@ -85,6 +90,16 @@ fn trial_of(layout: Layout, lane: usize) -> usize {
     match layout {
         Layout::Trials => lane,
         Layout::Agents => 0,
+    }
+}
+
+impl Machine {
+    /// The stable number of the one whose behaviour it is.
+    fn number(&self, state: &State, trial: usize) -> u32 {
+        match state.queues.later(self.agent as usize, trial) {
+            0 => self.entity,
+            later => self.later + later,
+        }
     }
 }
 
@@ -102,13 +117,15 @@ impl Behaviours {
             let at = known.iter().rposition(|conduct| std::sync::Arc::ptr_eq(conduct, &one.conduct));
             let conduct = at.unwrap_or_else(|| {
                 known.push(&one.conduct);
-                out.conducts.push(Conduct::new(scenario, &one.conduct, drive));
+                let declared = &all.declared[one.behaviour.0 as usize];
+                out.conducts.push(Conduct::new(scenario, declared, &one.conduct, drive));
                 known.len() - 1
             });
             out.machines.push(Machine {
                 agent: one.agent.0,
                 behaviour: one.behaviour.0,
                 entity: one.entity,
+                later: one.later,
                 conduct: conduct as u32,
                 guards: (atoms.len() as u32, one.guards.len() as u32),
             });
@@ -183,10 +200,13 @@ impl Behaviours {
 
     /// Looks at the state before a step and notes which states end with it.
     pub(super) fn watch(&self, layout: Layout, state: &mut State, scratch: &mut Scratch) {
-        scratch.turns.clear();
+        for turn in scratch.turns.drain(..) {
+            scratch.turning[turn.machine as usize] = Mask::NONE;
+        }
         if self.is_empty() || state.occupied.is_empty() {
             return;
         }
+        scratch.turning.resize(self.machines.len(), Mask::NONE);
         if let Some(code) = &self.code {
             code.read(layout, state, &mut scratch.readings);
             for at in 0..self.machines.len() {
@@ -215,7 +235,7 @@ impl Behaviours {
                         continue;
                     };
                     // A condition that held before the time had come goes first.
-                    if !scratch.turns.iter().any(|turn| turn.machine as usize == at && turn.lane == lane) {
+                    if !scratch.turning[at].has(lane) {
                         let exit = state.behaviours.exit[behaviour][block][lane];
                         self.decide(at, state, lane, exit, scratch);
                     }
@@ -258,9 +278,12 @@ impl Behaviours {
         let exits = self.conducts[machine.conduct as usize].modes.get(mode).map(|mode| &mode.exits);
         let Some(exit) = exits.and_then(|exits| exits.get(exit as usize)) else { return };
         let variables: Vec<f64> = state.variables.iter().map(|lanes| lanes.0[trial]).collect();
-        let stream = Stream::of(state.keys[trial], machine.entity, Purpose::Process);
+        let stream = Stream::of(state.keys[trial], machine.number(state, trial), Purpose::Process);
         match pick(&exit.targets, &variables, || stream.uniform(state.ticks[trial] as u32)) {
-            Some(mode) => scratch.turns.push(Turn { machine: at as u32, lane, mode }),
+            Some(mode) => {
+                scratch.turns.push(Turn { machine: at as u32, lane, mode });
+                scratch.turning[at] |= Mask::lane(lane);
+            }
             None => fail(state, trial, Fault::Branches { attached: at as u32 }),
         }
     }
@@ -291,7 +314,7 @@ impl Behaviours {
         let machine = &self.machines[at];
         let conduct = &self.conducts[machine.conduct as usize];
         let trial = trial_of(state.layout, slot.lane);
-        let stream = Stream::of(state.keys[trial], machine.entity, Purpose::Delay);
+        let stream = Stream::of(state.keys[trial], machine.number(state, trial), Purpose::Delay);
         let now = state.ticks[trial] as f64;
         let (behaviour, block, lane) = (machine.behaviour as usize, slot.block, slot.lane);
         let standing = &mut state.behaviours;
@@ -300,17 +323,17 @@ impl Behaviours {
         *entered = entered.wrapping_add(1);
         standing.modes[behaviour][block].0[lane] = f64::from(mode);
         standing.keys[behaviour][block][lane] = state.keys[trial];
-        let (mut due, mut chosen) = (f64::INFINITY, 0);
+        // The shortest time wins, also among those that end with the same step.
+        let (mut shortest, mut chosen) = (f64::INFINITY, 0);
         for (number, exit) in conduct.modes[mode as usize].exits.iter().enumerate() {
             if let Trigger::After { law, number: draw } = &exit.trigger {
                 let after = law.draw(stream.uniform(first.wrapping_add(*draw)));
-                let end = now + conduct::steps(after, program.dt);
-                if end < due {
-                    (due, chosen) = (end, number as u32);
+                if after < shortest {
+                    (shortest, chosen) = (after, number as u32);
                 }
             }
         }
-        standing.due[behaviour][block].0[lane] = due;
+        standing.due[behaviour][block].0[lane] = now + steps_over(shortest, program.dt);
         standing.exit[behaviour][block][lane] = chosen;
     }
 
@@ -319,7 +342,8 @@ impl Behaviours {
         let slot = state.slot(agent, trial);
         // Replicas of a trial go on under other keys: what was drawn stays.
         let key = state.behaviours.own_keys[slot.block][slot.lane];
-        let Some(own) = start::own_parameters(program, key, AgentId(agent as u32)) else { return false };
+        let who = (AgentId(agent as u32), state.queues.later(agent, trial));
+        let Some(own) = start::own_parameters(program, key, who) else { return false };
         let mut values = own;
         let mut known: Vec<f64> = state.variables.iter().map(|lanes| lanes.0[trial]).collect();
         known.extend(own);
@@ -336,7 +360,8 @@ impl Behaviours {
                     Amount::Drawn(law) => {
                         let key = state.behaviours.keys[machine.behaviour as usize][slot.block][slot.lane];
                         let draw = (name_hash(parameter.name()) as u32).wrapping_add(entered);
-                        law.draw(Stream::of(key, machine.entity, Purpose::Parameter).uniform(draw))
+                        let entity = machine.number(state, trial);
+                        law.draw(Stream::of(key, entity, Purpose::Parameter).uniform(draw))
                     }
                 };
                 if !parameter.allows(value) {

@@ -15,8 +15,8 @@ mod sort;
 mod walls;
 
 use super::contact::Contacts;
-use super::lanewise::{Sum, cohesion};
 use super::program::Program;
+use super::social::{Sum, cohesion};
 use super::state::State;
 use crate::base::lanes::LANES;
 use fearless_simd::Simd;
@@ -24,7 +24,7 @@ use grid::{Grid, survey};
 use pairs::{Task, Touch};
 use std::ops::Range;
 
-/// One exponential term of the sorted agents, as in `lanewise::Term`.
+/// One exponential term of the sorted agents, as in `social::Term`.
 #[derive(Clone, Debug, Default)]
 struct Terms {
     even: Vec<f64>,
@@ -77,7 +77,7 @@ impl Cells {
         let forces = &program.forces;
         sums.clear();
         sums.resize(state.x.len(), Sum::default());
-        contacts.clear(state.agents);
+        contacts.clear();
         if !state.occupied.has(0) {
             return;
         }

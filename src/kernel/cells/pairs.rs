@@ -10,8 +10,8 @@ use super::{Cells, Terms};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::kernel::contact::Contacts;
 use crate::kernel::forces::Forces;
-use crate::kernel::lanewise::{Sum, decay};
-use crate::kernel::vector::{Doubles, Part, first_part, parts, width};
+use crate::kernel::social::{Sum, Term, repel};
+use crate::kernel::vector::{Part, first_part, parts, width};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use std::f64::consts::LOG2_E;
@@ -140,11 +140,11 @@ impl Cells {
             let lanes = part.bits(gap.simd_gt(margin));
             self.touches[found] = Touch { one: i as u32, others: j as u32, lanes };
             found += usize::from(!lanes.is_empty());
-            let both = (term.one(part, i, rates.0), term.eight(part, j, rates.0));
-            let (mut on_i, mut on_j) = repel::<S, SHARED>(part, gap, (dx, dy), q, &both);
+            let both = (&term.one(part, i, rates.0), &term.eight(part, j, rates.0));
+            let (mut on_i, mut on_j) = repel::<S, SHARED>(part, gap, (dx, dy), (q, q), both);
             if SECOND {
-                let both = (second.one(part, i, rates.1), second.eight(part, j, rates.1));
-                let more = repel::<S, SHARED>(part, gap, (dx, dy), q, &both);
+                let both = (&second.one(part, i, rates.1), &second.eight(part, j, rates.1));
+                let more = repel::<S, SHARED>(part, gap, (dx, dy), (q, q), both);
                 on_i += more.0;
                 on_j += more.1;
             }
@@ -187,8 +187,8 @@ impl<'a> Slices<'a> {
 
     /// Of one agent, in every lane.
     #[inline(always)]
-    fn one<S: Simd>(&self, part: Part<S>, i: usize, rate: Option<f64>) -> Loaded<S> {
-        Loaded {
+    fn one<S: Simd>(&self, part: Part<S>, i: usize, rate: Option<f64>) -> Term<S> {
+        Term {
             even: part.c(self.even[i]),
             ex: part.c(self.ex[i]),
             ey: part.c(self.ey[i]),
@@ -198,42 +198,15 @@ impl<'a> Slices<'a> {
 
     /// Of eight agents.
     #[inline(always)]
-    fn eight<S: Simd>(&self, part: Part<S>, j: usize, rate: Option<f64>) -> Loaded<S> {
+    fn eight<S: Simd>(&self, part: Part<S>, j: usize, rate: Option<f64>) -> Term<S> {
         let eight = j..j + LANES;
-        Loaded {
+        Term {
             even: part.slice(&self.even[eight.clone()]),
             ex: part.slice(&self.ex[eight.clone()]),
             ey: part.slice(&self.ey[eight.clone()]),
             rate: rate.map_or_else(|| part.slice(&self.rate[eight]), |rate| part.c(rate)),
         }
     }
-}
-
-/// A term in registers.
-#[derive(Clone, Copy)]
-struct Loaded<S: Simd> {
-    even: Doubles<S>,
-    ex: Doubles<S>,
-    ey: Doubles<S>,
-    rate: Doubles<S>,
-}
-
-/// Force on the first and on the second of a pair over their distance 1/q; `gap` is their overlap, (dx, dy) =
-/// n/q points from the second to the first.
-#[inline(always)]
-fn repel<S: Simd, const SHARED: bool>(
-    part: Part<S>,
-    gap: Doubles<S>,
-    (dx, dy): (Doubles<S>, Doubles<S>),
-    q: Doubles<S>,
-    (one, other): &(Loaded<S>, Loaded<S>),
-) -> (Doubles<S>, Doubles<S>) {
-    let e = decay(part, gap * one.rate) * q;
-    let e2 = if SHARED { e } else { decay(part, gap * other.rate) * q };
-    (
-        e * (one.even - (dx * one.ex + dy * one.ey) * q),
-        e2 * (other.even + (dx * other.ex + dy * other.ey) * q),
-    )
 }
 
 /// Sum of eight lanes, always in the same order.

@@ -4,10 +4,10 @@ use super::grid::Grid;
 use super::{Cells, Terms};
 use crate::base::lanes::{LANES, Lanes};
 use crate::kernel::forces::Forces;
+use crate::kernel::social::Term;
 use crate::kernel::state::State;
 use crate::kernel::vector::{Part, parts};
 use fearless_simd::Simd;
-use std::f64::consts::LOG2_E;
 use std::ops::Range;
 
 impl Terms {
@@ -33,20 +33,19 @@ impl Terms {
         self.rate[at] = b;
     }
 
-    /// Makes the terms of eight agents of what `put` took over, as `lanewise::Term::fill` does.
+    /// Makes the terms of eight agents of what `put` took over.
     #[inline(always)]
     fn finish<S: Simd>(&mut self, part: Part<S>, k: usize, a: &[f64], with_rate: bool) {
         let eight = k..k + LANES;
-        let (a, lambda) = (part.slice(&a[eight.clone()]), part.slice(&self.even[eight.clone()]));
-        let (half, one) = (part.c(0.5), part.c(1.0));
-        let odd = a * (half * (one - lambda));
-        part.put(a * (half * (one + lambda)), &mut self.even[eight.clone()]);
-        let (ex, ey) = (part.slice(&self.ex[eight.clone()]), part.slice(&self.ey[eight.clone()]));
-        part.put(odd * ex, &mut self.ex[eight.clone()]);
-        part.put(odd * ey, &mut self.ey[eight.clone()]);
+        let force = (part.slice(&a[eight.clone()]), part.slice(&self.even[eight.clone()]));
+        let e = (part.slice(&self.ex[eight.clone()]), part.slice(&self.ey[eight.clone()]));
+        let b = with_rate.then(|| part.slice(&self.rate[eight.clone()]));
+        let term = Term::new(part, force, b, e);
+        part.put(term.even, &mut self.even[eight.clone()]);
+        part.put(term.ex, &mut self.ex[eight.clone()]);
+        part.put(term.ey, &mut self.ey[eight.clone()]);
         if with_rate {
-            let b = part.slice(&self.rate[eight.clone()]);
-            part.put(part.c(LOG2_E) / b, &mut self.rate[eight]);
+            part.put(term.rate, &mut self.rate[eight]);
         }
     }
 }

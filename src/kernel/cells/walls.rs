@@ -5,7 +5,7 @@ use super::grid::Grid;
 use crate::base::lanes::{LANES, Mask};
 use crate::kernel::contact::Contacts;
 use crate::kernel::forces::Forces;
-use crate::kernel::lanewise::decay;
+use crate::kernel::social::decay;
 use crate::kernel::vector::{Part, parts};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;

@@ -6,7 +6,7 @@
 use super::lanes::{Truth, Vector, lesser, narrow};
 use crate::base::geometry::{Bounds, Polygon, Segment, Shape, Vec2};
 use crate::base::lanes::Mask;
-use crate::model::{Obstacle, Scene};
+use crate::model::Obstacle;
 use fearless_simd::{Simd, prelude::*};
 
 /// An edge with what is the same for every point.
@@ -125,9 +125,9 @@ impl Ground {
         }
     }
 
-    /// All barriers of a scene.
-    pub(super) fn barriers(scene: &Scene) -> Vec<Self> {
-        scene.barriers.iter().map(|barrier| Self::barrier(&barrier.obstacle)).collect()
+    /// The rectangle around it; `None` for a wall without pieces.
+    pub(super) const fn bounds(&self) -> Option<&Bounds> {
+        self.bounds.as_ref()
     }
 
     /// The lanes whose point is inside or on the rim.

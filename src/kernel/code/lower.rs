@@ -4,6 +4,7 @@
 //! own, in the strong three-valued logic of Kleene: `false & unresolved` is false, and an `if` asks only
 //! the branch it takes. So a guard as in `count(..) > 0 & mean(..) > 1` does what it says.
 
+use super::lists::Lists;
 use super::node::{Crowd, Graph, Id, Join, Measure, Node, Reading};
 use super::span;
 use crate::model::{
@@ -22,7 +23,7 @@ pub(super) struct Lowering<'a> {
     scenario: &'a Scenario,
     pub(super) graph: Graph,
     /// The lists of members that crowds refer to.
-    pub(super) lists: Vec<Vec<u32>>,
+    pub(super) lists: Lists,
     /// How many loops are around the present place.
     depth: u32,
 }
@@ -33,7 +34,7 @@ const fn resolved(id: Id) -> Value {
 
 impl<'a> Lowering<'a> {
     pub(super) fn new(scenario: &'a Scenario) -> Self {
-        Self { scenario, graph: Graph::default(), lists: Vec::new(), depth: 0 }
+        Self { scenario, graph: Graph::default(), lists: Lists::default(), depth: 0 }
     }
 
     /// A second lowering of the same expressions, which knows from the start what was found in the first: so
@@ -46,22 +47,8 @@ impl<'a> Lowering<'a> {
         second
     }
 
-    fn list(&mut self, members: Vec<u32>) -> u32 {
-        let known = self.lists.iter().position(|list| *list == members);
-        known.unwrap_or_else(|| {
-            self.lists.push(members);
-            self.lists.len() - 1
-        }) as u32
-    }
-
     fn crowd(&mut self, set: &Set) -> Crowd {
-        let members = set.members.iter().map(|id| id.0);
-        match set.except {
-            Some(Who::Agent(AgentId(out))) => {
-                Crowd { list: self.list(members.filter(|&id| id != out).collect()), except: None }
-            }
-            except => Crowd { list: self.list(members.collect()), except },
-        }
+        self.lists.crowd(set)
     }
 
     /// Everybody else.
@@ -352,6 +339,13 @@ impl<'a> Lowering<'a> {
             }
             Bool::And(all) => self.junction(all, true),
             Bool::Or(all) => self.junction(all, false),
+            Bool::Iff(a, b) => {
+                let (a, b) = (self.truth(a), self.truth(b));
+                let (not_a, not_b) = (self.not(a.id), self.not(b.id));
+                let (both, neither) = (self.both(a.id, b.id), self.both(not_a, not_b));
+                let id = self.graph.enter(Node::Or(vec![both, neither]));
+                Value { id, open: self.either([a.open, b.open]) }
+            }
             Bool::Present(who) => resolved(self.graph.enter(Node::Present(*who))),
             Bool::In(who, region) => {
                 let inside = self.graph.enter(Node::Inside(*who, region.0));

@@ -223,16 +223,9 @@ impl<S: Simd, const ONE: bool> Machine<'_, S, ONE> {
                 -self.code.regions[region as usize].signed_distance(self.number(x), self.number(y))
             }
             Node::ToBarrier(x, y, barrier) => {
-                self.code.barriers[barrier as usize].signed_distance(self.number(x), self.number(y))
+                self.code.barriers.at(barrier).signed_distance(self.number(x), self.number(y))
             }
-            Node::ToScene(x, y) => {
-                let (x, y) = (self.number(x), self.number(y));
-                let mut best = view.splat(f64::INFINITY);
-                for barrier in &self.code.barriers {
-                    best = barrier.nearer(best, x, y);
-                }
-                best
-            }
+            Node::ToScene(x, y) => self.code.barriers.distance(self.number(x), self.number(y)),
             Node::TimeToCollision(a, b) => crowd::time_to_collision(&view, self.who(a), self.who(b)),
             Node::Mean(reading, crowd) => crowd::mean_reading(&view, self.members(crowd), reading),
             Node::Spread(crowd, x, y) => {
@@ -364,4 +357,11 @@ pub(super) fn collect(code: &Code, state: &State, readings: &mut Readings) {
     readings.signals.extend(code.signals.iter().map(|&id| readings.numbers[id as usize]));
     let open = code.unresolved.map_or(Mask::NONE, |id| readings.truths[id as usize]);
     readings.unresolved = open & state.occupied;
+    let (atoms, signals) = &mut readings.missing;
+    for (missing, ids) in [(atoms, &code.open.0), (signals, &code.open.1)] {
+        missing.clear();
+        if !readings.unresolved.is_empty() {
+            missing.extend(ids.iter().map(|id| id.map_or(Mask::NONE, |id| readings.truths[id as usize])));
+        }
+    }
 }

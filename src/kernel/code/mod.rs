@@ -9,9 +9,11 @@
 //! `max` of something that is no number are no number; comparisons with it are false.
 
 mod arithmetic;
+mod barriers;
 mod crowd;
 pub(crate) mod ground;
 pub(crate) mod lanes;
+mod lists;
 mod lower;
 mod machine;
 mod node;
@@ -23,6 +25,7 @@ use super::state::{Layout, State};
 use crate::base::lanes::{Lanes, Mask};
 use crate::base::tick::Clock;
 use crate::model::{Bool, Num, Scenario};
+use barriers::Barriers;
 use fearless_simd::{Level, dispatch};
 use ground::Ground;
 use machine::Frame;
@@ -38,10 +41,12 @@ pub struct Code {
     registers: Arc<Vec<Lanes>>,
     lists: Vec<Vec<u32>>,
     regions: Vec<Ground>,
-    barriers: Vec<Ground>,
+    barriers: Barriers,
     atoms: Vec<Id>,
     signals: Vec<Id>,
     unresolved: Option<Id>,
+    /// Where each atom and each signal has no value, if they can lack one.
+    open: (Vec<Option<Id>>, Vec<Option<Id>>),
     /// Numerator and denominator of the step in seconds.
     step: (f64, f64),
     level: Level,
@@ -56,6 +61,8 @@ pub struct Readings {
     pub signals: Vec<Lanes>,
     /// Occupied lanes in which some atom or signal has no value: a mean or centroid of nobody.
     pub unresolved: Mask,
+    /// The lanes in which each atom, and each signal, has none. Empty where there is no such lane.
+    pub missing: (Vec<Mask>, Vec<Mask>),
     /// The code whose constants are in the registers.
     loaded: Option<Arc<Vec<Lanes>>>,
     numbers: Vec<Lanes>,
@@ -76,23 +83,25 @@ impl Code {
         let mut open: Vec<Id> = atoms.iter().chain(&signals).filter_map(|value| value.open).collect();
         open.sort_unstable();
         open.dedup();
-        let unresolved = (!open.is_empty()).then(|| lowering.graph.enter(Node::Or(open)));
+        let unresolved = (!open.is_empty()).then(|| lowering.graph.enter(Node::Or(open.clone())));
         let mut roots: Vec<Id> = atoms.iter().chain(&signals).map(|value| value.id).collect();
-        roots.extend(unresolved);
+        roots.extend(unresolved.into_iter().chain(open));
         let schedule = schedule::schedule(&lowering.graph, &roots);
         let mut registers = vec![Lanes::ZERO; schedule.numbers as usize];
         for &(register, value) in &schedule.constants {
             registers[register as usize] = Lanes::splat(value);
         }
         let register = |value: &lower::Value| schedule.registers[value.id as usize];
+        let missing = |value: &lower::Value| value.open.map(|id| schedule.registers[id as usize]);
         Self {
             atoms: atoms.iter().map(register).collect(),
             signals: signals.iter().map(register).collect(),
             unresolved: unresolved.map(|id| schedule.registers[id as usize]),
+            open: (atoms.iter().map(missing).collect(), signals.iter().map(missing).collect()),
             registers: Arc::new(registers),
-            lists: lowering.lists,
+            lists: lowering.lists.all,
             regions: scenario.scene.regions.iter().map(|region| Ground::region(&region.shape)).collect(),
-            barriers: Ground::barriers(&scenario.scene),
+            barriers: Barriers::new(&scenario.scene),
             schedule,
             step: match scenario.clock {
                 Clock::Stepped(step) => (step.numerator() as f64, step.denominator() as f64),

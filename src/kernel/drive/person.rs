@@ -5,6 +5,7 @@ use super::route::Way;
 use super::stage::{Stage, Target};
 use crate::base::geometry::{Vec2, rotated};
 use crate::base::random::{Purpose, Stream, TrialKey};
+use crate::base::tick::steps_over;
 use crate::kernel::code::ground::Ground;
 use crate::kernel::code::lanes::Vector;
 use crate::kernel::program::Program;
@@ -154,11 +155,12 @@ impl<'a> Person<'a> {
         self.way.origin = self.at();
         let stage = &self.program.drive.stages[stage as usize];
         if let Target::Pause(law) = &stage.target {
-            let entity = self.program.scenario.agents[self.agent].entity;
+            let later = self.state.queues.later(self.agent, trial_of(self.state.layout, self.lane));
+            let entity = self.program.scenario.agents[self.agent].entity + later;
             let stream = Stream::of(self.key(), entity, Purpose::Pause);
             let uniform = stream.uniform(stage.leg.wrapping_add(self.way.round.wrapping_mul(ROUND)));
             // A negative time or NaN is no pause; one that never ends is cut at the end of all ticks.
-            let ticks = (law.draw(uniform) / self.program.dt).ceil() as u64;
+            let ticks = steps_over(law.draw(uniform), self.program.dt) as u64;
             self.way.until = self.tick().saturating_add(ticks);
         }
     }

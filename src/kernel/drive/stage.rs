@@ -1,6 +1,7 @@
 //! Routes as tables of stages: what every trial needs to know of them, worked out once.
 
 use crate::base::geometry::{Bounds, Shape, Vec2};
+use crate::base::random::name_hash;
 use crate::kernel::code::ground::{Ground, upright};
 use crate::model::{Goal, Law, Leg, Route, Scenario};
 
@@ -112,10 +113,11 @@ impl Drive {
         out
     }
 
-    /// Adds a route that a state of a behaviour demands; its first stage. Its legs have numbers of their own.
-    pub(in crate::kernel) fn detour(&mut self, scenario: &Scenario, route: &Route) -> u32 {
+    /// Adds a route that a state of a behaviour demands; its first stage. Its legs have numbers of their own: they
+    /// follow from the name of the state, so that nothing declared elsewhere moves them.
+    pub(in crate::kernel) fn detour(&mut self, scenario: &Scenario, route: &Route, name: &str) -> u32 {
         let first = self.stages.len() as u32;
-        self.stages.extend(stages(scenario, route, (first + 1) << 16));
+        self.stages.extend(stages(scenario, route, name_hash(name) as u32));
         first
     }
 }

@@ -5,13 +5,11 @@
 //! processes look at the old state and write variables of their own, so their moves add up. Numbers come from the
 //! same addresses as elsewhere, and pass the same ends: a walk visits the states that the general path visits.
 
-use super::draws::{RoundKeys, blocks, round_keys, trial_words};
 use super::keys::Keys;
 use super::{Form, Machine};
 use crate::base::lanes::{LANES, Lanes};
-use crate::base::random::TrialKey;
 use crate::model::{Domain, VariableId};
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::Level;
 use std::collections::BTreeSet;
 
 /// Most states, reachable or not.
@@ -23,39 +21,29 @@ const NEVER: f64 = 2.0;
 
 /// What a process does in each state.
 #[derive(Clone, Debug)]
-struct Steps {
+pub(super) struct Steps {
     /// The part of the counter that names the process.
-    word: u64,
+    pub(super) word: u64,
     /// Most branches in a state; each state has so many places.
-    most: usize,
+    pub(super) most: usize,
     /// Whether chance decides, by state.
-    open: Vec<bool>,
+    pub(super) open: Vec<bool>,
     /// Where each branch ends in (0, 1], state by state.
     ends: Vec<f64>,
-    /// What each branch adds to the number of the state.
-    moves: Vec<i32>,
+    /// The same ends but the last, where all states in which chance decides have them in common.
+    pub(super) common: Option<Vec<f64>>,
+    /// What each branch adds to the number of the state; without chance all do the same.
+    pub(super) moves: Vec<i32>,
 }
 
 /// Processes as one chain.
 #[derive(Clone, Debug)]
 pub struct Chain {
     keys: Keys,
-    steps: Vec<Steps>,
-    initial: u32,
+    pub(super) steps: Vec<Steps>,
+    pub(super) initial: u32,
     reachable: Vec<u32>,
-    level: Level,
-}
-
-/// Eight trials of a chain. A lane without a trial walks on somewhere.
-#[derive(Clone, Debug)]
-pub struct Walk {
-    /// The state of each lane.
-    pub states: [u32; LANES],
-    /// Steps made by each lane.
-    pub ticks: [u64; LANES],
-    /// The two parts of the counter that name the trials.
-    trials: [[u64; LANES]; 2],
-    keys: RoundKeys,
+    pub(super) level: Level,
 }
 
 impl Chain {
@@ -142,28 +130,10 @@ impl Chain {
         self.keys.put(u64::from(state), variables, lane);
     }
 
-    /// Eight lanes without a trial.
-    pub fn walk(&self, seed: u64) -> Walk {
-        Walk {
-            states: [self.initial; LANES],
-            ticks: [0; LANES],
-            trials: [[0; LANES]; 2],
-            keys: round_keys(seed),
-        }
-    }
-
-    /// Begins a trial; its seed must be that of the walk.
-    #[inline]
-    pub fn load(&self, walk: &mut Walk, lane: usize, trial: TrialKey) {
-        walk.states[lane] = self.initial;
-        walk.ticks[lane] = 0;
-        [walk.trials[0][lane], walk.trials[1][lane]] = trial_words(trial);
-    }
-
-    /// One step of all lanes.
-    #[inline]
-    pub fn step(&self, walk: &mut Walk) {
-        dispatch!(self.level, simd => advance(simd, self, walk));
+    /// Whether a trial never leaves a state, and nothing is left to chance in it.
+    pub fn is_still(&self, state: u32) -> bool {
+        let state = state as usize;
+        self.steps.iter().all(|steps| !steps.open[state] && steps.moves[state * steps.most] == 0)
     }
 }
 
@@ -173,6 +143,9 @@ impl Steps {
         let mut ends = vec![NEVER; found.len() * most];
         let mut moves = vec![0; found.len() * most];
         for (state, branches) in found.iter().enumerate() {
+            if let [(_, by)] = branches[..] {
+                moves[state * most..][..most].fill(by);
+            }
             for (k, &(end, by)) in branches.iter().enumerate() {
                 moves[state * most + k] = by;
                 // The last branch takes all that is left.
@@ -181,31 +154,41 @@ impl Steps {
                 }
             }
         }
-        let open = found.iter().map(|branches| branches.len() > 1).collect();
-        Self { word: u64::from(word), most, open, ends, moves }
+        let open: Vec<bool> = found.iter().map(|branches| branches.len() > 1).collect();
+        let mut chances = ends.chunks(most).zip(&open).filter(|(_, open)| **open).map(|(ends, _)| ends);
+        let first = chances.next().unwrap_or(&[NEVER]);
+        let common = chances.all(|ends| ends == first).then(|| first[..first.len() - 1].to_vec());
+        Self { word: u64::from(word), most, open, common, ends, moves }
     }
-}
 
-#[inline(always)]
-fn advance<S: Simd>(simd: S, chain: &Chain, walk: &mut Walk) {
-    let old = walk.states;
-    let counter = [walk.ticks.map(|tick| tick & 0xffff_ffff), walk.trials[0], walk.trials[1]];
-    for steps in &chain.steps {
-        let mut places = old.map(|state| state as usize * steps.most);
-        // Where no lane needs a number, none is drawn: numbers have addresses, none is used up.
-        if steps.most > 1 && old.iter().any(|&state| steps.open[state as usize]) {
-            let [numbers, _] = blocks::<_, false>(simd, &counter, &[steps.word; LANES], &walk.keys);
-            // Ends ascend, so the branch is the number of ends passed: no jump depends on chance.
-            for (place, number) in places.iter_mut().zip(numbers) {
-                let ends = &steps.ends[*place..*place + steps.most - 1];
-                *place += ends.iter().map(|&end| usize::from(number >= end)).sum::<usize>();
+    /// Adds the moves of these branches.
+    #[inline(always)]
+    pub(super) fn take(&self, old: &[[u32; LANES]], next: &mut [[u32; LANES]], branches: &[[u64; LANES]]) {
+        for ((old, next), branches) in old.iter().zip(next).zip(branches) {
+            for lane in 0..LANES {
+                let place = old[lane] as usize * self.most + branches[lane] as usize;
+                next[lane] = next[lane].wrapping_add_signed(self.moves[place]);
             }
         }
-        for (state, place) in walk.states.iter_mut().zip(places) {
-            *state = state.wrapping_add_signed(steps.moves[place]);
-        }
     }
-    for tick in &mut walk.ticks {
-        *tick += 1;
+
+    /// Adds the moves that the numbers choose.
+    #[inline(always)]
+    pub(super) fn apply(
+        &self,
+        most: usize,
+        old: &[[u32; LANES]],
+        next: &mut [[u32; LANES]],
+        numbers: &[Lanes],
+    ) {
+        for ((old, next), numbers) in old.iter().zip(next).zip(numbers) {
+            for lane in 0..LANES {
+                let first = old[lane] as usize * most;
+                // Ends ascend, so the branch is the number of ends passed: no jump depends on chance.
+                let ends = self.ends[first..first + most - 1].iter();
+                let branch: usize = ends.map(|&end| usize::from(numbers.0[lane] >= end)).sum();
+                next[lane] = next[lane].wrapping_add_signed(self.moves[first + branch]);
+            }
+        }
     }
 }

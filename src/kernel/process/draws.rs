@@ -8,7 +8,8 @@ use crate::base::math;
 use crate::base::random::{self, Purpose, Stream, TrialKey, philox};
 use crate::kernel::noise::unit_open;
 use crate::kernel::state::State;
-use crate::kernel::vector::{ln, parts};
+use crate::kernel::vector::{Doubles, Part, Words, ln, parts};
+use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
 
 const MULTIPLIER: [u64; 2] = [0xD251_1F53, 0xCD9E_8D57];
@@ -115,14 +116,14 @@ pub(super) fn round_keys(seed: u64) -> RoundKeys {
 }
 
 /// The two parts of the counter that name a trial.
-pub(super) fn trial_words(key: TrialKey) -> [u64; 2] {
+fn trial_words(key: TrialKey) -> [u64; 2] {
     [key.index & LOW, (key.index >> 32 & 0xffff) | u64::from(key.branch) << 16]
 }
 
 /// The two numbers of each lane. Of the counter: the draw, and the two parts of the trial; `words` name the
 /// processes.
 #[inline(always)]
-pub(super) fn blocks<S: Simd, const WAIT: bool>(
+fn blocks<S: Simd, const WAIT: bool>(
     simd: S,
     counter: &[[u64; LANES]; 3],
     words: &[u64; LANES],
@@ -130,20 +131,96 @@ pub(super) fn blocks<S: Simd, const WAIT: bool>(
 ) -> [[f64; LANES]; 2] {
     let mut out = [Lanes::ZERO; 2];
     for part in parts(simd) {
-        let low = part.word(LOW);
-        let mut c =
+        let counter =
             [part.words(&counter[0]), part.words(words), part.words(&counter[1]), part.words(&counter[2])];
-        // Above its low half a counter word may hold anything between rounds.
-        for round in keys {
-            let a = (c[0] & low) * part.word(MULTIPLIER[0]);
-            let b = (c[2] & low) * part.word(MULTIPLIER[1]);
-            c = [(b >> 32) ^ (c[1] ^ part.word(round[0])), b, (a >> 32) ^ (c[3] ^ part.word(round[1])), a];
-        }
-        let first = unit_open(part, (c[0] & low) | (c[1] << 32));
+        let [first, second] = block(part, counter, keys);
         part.store(if WAIT { part.c(0.0) - ln(part, first) } else { first }, &mut out[0]);
-        part.store(unit_open(part, (c[2] & low) | (c[3] << 32)), &mut out[1]);
+        part.store(second, &mut out[1]);
     }
     out.map(|lanes| lanes.0)
+}
+
+/// The two numbers of one block of the generator in each lane.
+#[inline(always)]
+fn block<S: Simd>(part: Part<S>, counter: [Words<S>; 4], keys: &RoundKeys) -> [Doubles<S>; 2] {
+    let low = part.word(LOW);
+    let mut c = counter;
+    // Above its low half a counter word may hold anything between rounds.
+    for round in keys {
+        let a = (c[0] & low) * part.word(MULTIPLIER[0]);
+        let b = (c[2] & low) * part.word(MULTIPLIER[1]);
+        c = [(b >> 32) ^ (c[1] ^ part.word(round[0])), b, (a >> 32) ^ (c[3] ^ part.word(round[1])), a];
+    }
+    [unit_open(part, (c[0] & low) | (c[1] << 32)), unit_open(part, (c[2] & low) | (c[3] << 32))]
+}
+
+/// One draw of one process in many trials: its number in the process, the word of the process, the seed.
+pub(super) struct Draw<'k> {
+    pub(super) number: u64,
+    pub(super) word: u64,
+    pub(super) keys: &'k RoundKeys,
+}
+
+impl Draw<'_> {
+    /// The counter of the trials with these indices and branch 0.
+    #[inline(always)]
+    fn counter<S: Simd>(&self, part: Part<S>, trials: &[u64; LANES]) -> [Words<S>; 4] {
+        let trials = part.words(trials);
+        let high = (trials >> 32) & part.word(0xffff);
+        [part.word(self.number & LOW), part.word(self.word), trials & part.word(LOW), high]
+    }
+
+    /// The first number of each trial. Blocks of trials do not wait for one another, so the machine works at many at
+    /// once.
+    #[inline(always)]
+    pub(super) fn uniform<S: Simd>(&self, simd: S, trials: &[[u64; LANES]], out: &mut [Lanes]) {
+        for (trials, out) in trials.iter().zip(out) {
+            for part in parts(simd) {
+                part.store(block(part, self.counter(part, trials), self.keys)[0], out);
+            }
+        }
+    }
+
+    /// How many of these ends, which ascend, the first number of each trial passes.
+    #[inline(always)]
+    pub(super) fn branch<S: Simd>(
+        &self,
+        simd: S,
+        trials: &[[u64; LANES]],
+        ends: &[f64],
+        out: &mut [[u64; LANES]],
+    ) {
+        for (trials, out) in trials.iter().zip(out) {
+            for part in parts(simd) {
+                let number = block(part, self.counter(part, trials), self.keys)[0];
+                let mut branch = part.word(0);
+                for &end in ends {
+                    // The bits of the smallest double are those of 1; nothing is computed with it.
+                    let passed = number.simd_ge(part.c(end)).select(part.c(f64::from_bits(1)), part.c(0.0));
+                    branch = branch + passed.to_bits();
+                }
+                part.put_words(branch, out);
+            }
+        }
+    }
+
+    /// A unit exponential number of each trial and a uniform one.
+    #[inline(always)]
+    pub(super) fn exponential<S: Simd>(
+        &self,
+        simd: S,
+        trials: &[[u64; LANES]],
+        waits: &mut [Lanes],
+        picks: &mut [Lanes],
+    ) {
+        for ((trials, wait), pick) in trials.iter().zip(waits).zip(picks) {
+            for part in parts(simd) {
+                let [first, second] = block(part, self.counter(part, trials), self.keys);
+                part.store(part.c(0.0) - ln(part, first), wait);
+                part.store(second, pick);
+            }
+        }
+    }
 }
 
 #[cfg(test)]

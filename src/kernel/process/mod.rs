@@ -10,6 +10,7 @@ mod clocks;
 mod commands;
 mod delay;
 mod draws;
+mod embedded;
 mod fault;
 mod keys;
 mod race;
@@ -17,12 +18,15 @@ mod rates;
 mod table;
 mod timed;
 mod view;
+mod walk;
 
-pub use chain::{Chain, Walk};
+pub use chain::Chain;
 pub use clocks::Clocks;
+pub use embedded::{Embedded, Leaps, Stay};
 pub use fault::Fault;
 use fault::Faults;
 pub use view::{Sight, View};
+pub use walk::Walk;
 
 use super::code::{Code, Readings};
 use super::state::{Layout, State};
@@ -35,6 +39,9 @@ use draws::Draws;
 use fearless_simd::Level;
 use table::Table;
 use timed::{Timed, is_timed};
+
+/// Most jumps between two steps; a trial that needs more is unresolved.
+const MOST_BETWEEN: u32 = 1 << 20;
 
 /// One process.
 #[derive(Clone, Debug)]
@@ -66,6 +73,8 @@ pub struct Processes {
     level: Level,
     /// All of them as one chain, where they are few and small.
     chain: Option<Chain>,
+    /// The one that there is as the chain of its jumps, in continuous time.
+    embedded: Option<Embedded>,
 }
 
 /// Room to work. It holds no part of the state.
@@ -106,9 +115,14 @@ impl Processes {
             .collect();
         let timed = Timed::of(scenario, &domains, rows, Level::new());
         // Agents are no part of a chain.
-        let alone = scenario.agents.is_empty() && scenario.sources.is_empty() && timed.is_none();
+        let alone = scenario.agents.is_empty() && scenario.sources.is_empty();
         let initial: Vec<f64> = processes.variables.iter().map(|v| v.initial).collect();
-        let chain = if alone { Chain::of(&machines, &initial, &domains) } else { None };
+        let chain = if alone && timed.is_none() { Chain::of(&machines, &initial, &domains) } else { None };
+        let single = timed.as_ref().filter(|_| alone && machines.is_empty() && scenario.clock.is_jumps());
+        let until = scenario.clock.seconds(scenario.horizon);
+        let embedded = single
+            .and_then(Timed::alone)
+            .and_then(|process| Embedded::of(process, &initial, &domains, until));
         let coded = machines.iter().any(|machine| matches!(machine.form, Form::Code(_)));
         Self {
             initial,
@@ -119,6 +133,7 @@ impl Processes {
             code: coded.then(|| Code::compile(scenario, &atoms, &signals)),
             level: Level::new(),
             chain,
+            embedded,
         }
     }
 
@@ -126,6 +141,12 @@ impl Processes {
     /// nobody else, and no reachable state has an error.
     pub fn chain(&self) -> Option<&Chain> {
         self.chain.as_ref()
+    }
+
+    /// The chain of its jumps, if there is one process with rates and few states, nobody else, and no reachable state
+    /// has an error.
+    pub fn embedded(&self) -> Option<&Embedded> {
+        self.embedded.as_ref()
     }
 
     /// Whether there is anything to do.
@@ -139,6 +160,7 @@ impl Processes {
         self.code = self.code.map(Code::at_baseline);
         self.timed = self.timed.map(Timed::at_baseline);
         self.chain = self.chain.map(Chain::at_baseline);
+        self.embedded = self.embedded.map(Embedded::at_baseline);
         self
     }
 
@@ -155,28 +177,64 @@ impl Processes {
         }
     }
 
-    /// Continuous time: the next jump of every occupied lane, if it comes up to and with the horizon. These
-    /// lanes; the time of the jump is in `state.clocks`.
-    pub(super) fn jump(&self, layout: Layout, state: &mut State, scratch: &mut Scratch) -> Mask {
+    /// Continuous time: the next jump of every occupied lane, if it comes up to and with `until`, s, which is at most
+    /// the horizon. These lanes; the time of the jump is in `state.clocks`.
+    pub(super) fn jump(
+        &self,
+        layout: Layout,
+        state: &mut State,
+        scratch: &mut Scratch,
+        until: &[f64; LANES],
+    ) -> Mask {
         let Some(timed) = &self.timed else { return Mask::NONE };
+        self.set_clocks(timed, layout, state, scratch);
+        let lanes = state.occupied & !state.faulty;
+        timed.ring(layout, state, &mut scratch.timed, lanes, until)
+    }
+
+    /// Sets the clocks of trials that have just begun.
+    fn set_clocks(&self, timed: &Timed, layout: Layout, state: &mut State, scratch: &mut Scratch) {
         let fresh = state.clocks.fresh & state.occupied;
         if !fresh.is_empty() {
             timed.look(layout, state, &mut scratch.timed, fresh);
         }
-        let lanes = state.occupied & !state.faulty;
-        let until = [self.clock.seconds(self.horizon); LANES];
-        timed.ring(layout, state, &mut scratch.timed, lanes, &until)
     }
 
-    /// Lets processes with rates and delays jump up to and with the next step. What they read of others is what
-    /// was there at the last step.
-    fn between(&self, timed: &Timed, layout: Layout, state: &mut State, readings: &mut Readings) {
-        let until = state.ticks.map(|tick| self.clock.seconds(Tick(tick + 1)));
-        loop {
-            let lanes = state.occupied & !state.faulty;
-            if timed.ring(layout, state, readings, lanes, &until).is_empty() {
-                return;
-            }
+    /// Continuous time: from `at` on, s, before which nothing more happens under the old one, the trial of a lane
+    /// goes on under another key.
+    pub(super) fn renew(
+        &self,
+        layout: Layout,
+        state: &mut State,
+        scratch: &mut Scratch,
+        lane: usize,
+        (at, key): (f64, TrialKey),
+    ) {
+        if let Some(timed) = &self.timed {
+            self.set_clocks(timed, layout, state, scratch);
+            state.keys[lane] = key;
+            timed.renew(state, lane, at);
+        }
+    }
+
+    /// The time of the last instant of a trial, s.
+    pub(super) fn last(&self) -> f64 {
+        self.clock.seconds(self.horizon)
+    }
+
+    /// The process with rates or delays that has waited most often in the trial of a lane, and its present rate, 1/s.
+    pub fn busiest(&self, state: &State, lane: usize) -> Option<(u32, f64)> {
+        self.timed.as_ref()?.busiest(state, lane)
+    }
+
+    /// With a step: lets what is due at once happen in trials that have just been loaded. The first state is the one
+    /// that holds at time 0.
+    pub(super) fn begin(&self, layout: Layout, state: &mut State, scratch: &mut Scratch, lanes: Mask) {
+        let Some(timed) = self.timed.as_ref().filter(|_| !self.clock.is_jumps()) else { return };
+        let lanes = lanes & state.occupied & state.clocks.fresh;
+        if !lanes.is_empty() {
+            timed.look(layout, state, &mut scratch.timed, lanes);
+            ring(timed, layout, state, &mut scratch.timed, lanes, &[0.0; LANES]);
         }
     }
 
@@ -207,7 +265,9 @@ impl Processes {
             }
         }
         if let Some(timed) = &self.timed {
-            self.between(timed, layout, state, timed_readings);
+            // What they read of others is what was there at the last step.
+            let until = state.ticks.map(|tick| self.clock.seconds(Tick(tick + 1)));
+            ring(timed, layout, state, timed_readings, lanes, &until);
             for &variable in &timed.written {
                 next[variable as usize] = state.variables[variable as usize];
             }
@@ -229,4 +289,22 @@ impl Processes {
             }
         }
     }
+}
+
+/// Lets processes with rates and delays jump up to and with these times.
+fn ring(
+    timed: &Timed,
+    layout: Layout,
+    state: &mut State,
+    readings: &mut Readings,
+    mut lanes: Mask,
+    until: &[f64; LANES],
+) {
+    for _ in 0..MOST_BETWEEN {
+        lanes = timed.ring(layout, state, readings, lanes & !state.faulty, until);
+        if lanes.is_empty() {
+            return;
+        }
+    }
+    state.diverged |= lanes;
 }

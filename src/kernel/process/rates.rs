@@ -183,6 +183,27 @@ impl Rates {
         found.map_or(Fault::Rate { process: 0, command: 0, value: f64::NAN }, |(_, fault)| *fault)
     }
 
+    /// Whether there are commands with delays.
+    pub(super) fn has_delays(&self) -> bool {
+        self.clocks > 1
+    }
+
+    /// The ways of the race in a row: where the share of each ends in (0, 1], and the new values; `None` if there
+    /// is an error among them.
+    pub(super) fn outcomes(&self, row: usize) -> Option<Vec<(f64, Vec<(u32, f64)>)>> {
+        let ways = self.ways.get(row * self.clocks)?;
+        let blocks = &self.ends[ways.block as usize..(ways.block + ways.blocks) as usize];
+        let last = self.ways.get(row * self.clocks + 1).map_or(self.faults.len(), |next| next.first as usize);
+        let width = self.written.len();
+        let way = |(entry, &end): (usize, &f64)| {
+            let changes = self.written.iter().zip(&self.values[entry * width..][..width]);
+            let new = changes.filter(|(_, change)| change.stay == 0);
+            let new = new.map(|(&variable, change)| (variable, f64::from_bits(change.set))).collect();
+            self.faults[entry].is_none().then_some((end, new))
+        };
+        (ways.first as usize..last).zip(blocks.as_flattened()).map(way).collect()
+    }
+
     /// Whether a clock runs in a row.
     #[inline(always)]
     pub(super) fn runs(&self, row: usize, clock: usize) -> bool {

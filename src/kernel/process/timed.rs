@@ -130,6 +130,14 @@ impl Timed {
         Self { level: Level::baseline(), code: self.code.map(Code::at_baseline), ..self }
     }
 
+    /// The one process that there is, where it is a table and has no delays, and the word that names it.
+    pub(super) fn alone(&self) -> Option<(u64, &Rates)> {
+        match self.racers.as_slice() {
+            [Racer { word, form: Form::Table(table), .. }] if !table.has_delays() => Some((*word, table)),
+            _ => None,
+        }
+    }
+
     /// Begins a trial.
     pub(super) fn load(&self, state: &mut State, lane: usize) {
         state.clocks.load(self.owners.len(), self.racers.len(), lane);
@@ -207,6 +215,37 @@ impl Timed {
             }
         }
         rang
+    }
+
+    /// What waits for an exponential time waits anew from `at` on, with the numbers of the key that the lane has now: for
+    /// exponential times that is the same law. What waits for a delay keeps what is left of it; only what happens at
+    /// its end is drawn again.
+    pub(super) fn renew(&self, state: &mut State, lane: usize, at: f64) {
+        for (k, racer) in self.racers.iter().enumerate() {
+            self.draw(state, Mask::lane(lane), &[racer.word; LANES], &[k; LANES]);
+            let key = state.keys[lane];
+            let clocks = &mut state.clocks;
+            let race = racer.first;
+            let (rate, fuel) = (clocks.rate[race].0[lane], clocks.fuel[race].0[lane]);
+            clocks.due[race].0[lane] = if rate > 0.0 { at + fuel / rate } else { f64::INFINITY };
+            for (j, (_, law)) in racer.delayed.iter().enumerate() {
+                let clock = race + 1 + j;
+                if clocks.due[clock].0[lane] < f64::INFINITY {
+                    let number = &mut clocks.delays[k][lane];
+                    (_, clocks.pick[clock].0[lane]) = delay(key, racer.entity, *number, law);
+                    *number += 1;
+                }
+            }
+        }
+    }
+
+    /// The process that has waited most often in a lane, and its present rate, 1/s.
+    pub(super) fn busiest(&self, state: &State, lane: usize) -> Option<(u32, f64)> {
+        let clocks = &state.clocks;
+        let waits = |k: usize| u64::from(clocks.races[k][lane]) + u64::from(clocks.delays[k][lane]);
+        let most = (0..self.racers.len()).max_by_key(|&k| (waits(k), std::cmp::Reverse(k)))?;
+        let racer = &self.racers[most];
+        Some((racer.process, clocks.rate[racer.first].0[lane]))
     }
 
     fn read(&self, layout: Layout, state: &State, readings: &mut Readings) {

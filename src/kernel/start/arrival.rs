@@ -1,10 +1,12 @@
 //! Sources: people who come in while a trial runs.
 //!
-//! The n-th arrival of a source is its n-th member, whose place among the agents is kept for it: so its random
-//! numbers, and what formulas say of it, are those of one person. The times between arrivals are draws 0, 1, … of
-//! the source's own stream. Someone has arrived at the first state at or after their time; they are placed where
+//! The n-th arrival of a source is one person, with the n-th of its stable numbers. It takes the n-th place of the source,
+//! and once all places are taken the first one whose person has left; without such a one the trial is unresolved.
+//! What follows a place as if it were a person (a formula over time about somebody) knows no more from then
+//! on; where the scenario itself does so, places are used once. The times between arrivals are draws 0, 1, … of the
+//! source's own stream. Someone has arrived at the first state at or after their time; they are placed where
 //! they touch nobody who is present and no barrier. Without a free place they wait, those behind them too, and try
-//! again at each state. One arrival more than there are members leaves the trial unresolved.
+//! again at each state.
 
 use super::placement::{ATTEMPTS, Ground};
 use super::sampler::Sampler;
@@ -15,7 +17,7 @@ use crate::base::random::{Purpose, Stream, TrialKey};
 use crate::kernel::program::Program;
 use crate::kernel::state::{Layout, State};
 use crate::model::law::Ready;
-use crate::model::{AgentId, Position, Scenario, Source};
+use crate::model::{AgentId, Bool, Num, Position, Scenario, Source, Timing};
 
 /// The share of a step within which a time after a state still counts as at it: rounding of sums.
 const SLACK: f64 = 1e-6;
@@ -26,6 +28,8 @@ struct Door {
     entity: u32,
     every: Ready,
     members: Vec<AgentId>,
+    /// Most arrivals.
+    most: u32,
 }
 
 /// The sources of a scenario.
@@ -34,6 +38,8 @@ pub struct Arrivals {
     doors: Vec<Door>,
     /// Per agent, whether it comes from a source; empty without sources.
     comes: Vec<bool>,
+    /// Whether places are used once, because the scenario speaks of single ones.
+    once: bool,
 }
 
 /// How far the sources of a batch are; lanes are trials in both layouts.
@@ -47,7 +53,11 @@ pub struct Queues {
     pub entered: Vec<[u32; LANES]>,
     /// How often the next one has tried to come in.
     tries: Vec<[u32; LANES]>,
-    /// Lanes in which more have arrived than may come: the trial is unresolved.
+    /// Per agent: how many numbers its person is behind the first one on its place. Empty without sources.
+    later: Vec<[u32; LANES]>,
+    /// Lanes in which a place was given to a second person.
+    pub reused: Mask,
+    /// Lanes in which more have arrived than there is room for: the trial is unresolved.
     pub full: Mask,
     /// Which source that was.
     which: [u32; LANES],
@@ -67,7 +77,31 @@ impl Queues {
     pub fn overrun(&self, sources: &[Source], lane: usize) -> Option<String> {
         let source = sources.get(self.which[lane] as usize).filter(|_| self.full.has(lane))?;
         let (count, name) = (source.members.len(), &source.name);
-        Some(format!("more than {count} people came by `{name}`; a larger `limit` in it keeps room for them"))
+        let words = if self.reused.has(lane) { "are there at once from" } else { "came by" };
+        Some(format!("more than {count} people {words} `{name}`; a larger `limit` in it keeps room for them"))
+    }
+
+    /// Why a question that follows single people has no answer in the trial of a lane, if that is the reason.
+    pub fn lost_sight(&self, sources: &[Source], lane: usize) -> Option<String> {
+        let source = sources.get(self.which[lane] as usize).filter(|_| self.reused.has(lane))?;
+        let (count, name) = (source.members.len(), &source.name);
+        Some(format!(
+            "more than {count} people came by `{name}`, and this follows single ones of them; a larger `limit` keeps a place for each"
+        ))
+    }
+
+    /// The name of the person on a place of a source, if it is not the first one there: `doors[57]`.
+    pub fn arrival(&self, sources: &[Source], agent: AgentId, lane: usize) -> Option<String> {
+        let later = self.later(agent.0 as usize, lane);
+        let source = sources.iter().find(|source| later > 0 && source.members.contains(&agent))?;
+        let place = source.members.iter().position(|member| *member == agent)?;
+        Some(format!("{}[{}]", source.name, place as u32 + later + 1))
+    }
+
+    /// How many numbers the person on an agent's place is behind the first one there; 0 but for places of sources.
+    #[inline]
+    pub fn later(&self, agent: usize, lane: usize) -> u32 {
+        self.later.get(agent).map_or(0, |later| later[lane])
     }
 }
 
@@ -83,9 +117,51 @@ impl Arrivals {
                 }
             }
             let (entity, every) = (source.entity, source.every.ready());
-            out.doors.push(Door { entity, every, members: source.members.clone() });
+            out.doors.push(Door { entity, every, members: source.members.clone(), most: source.most });
         }
+        out.once = out.speaks_of_single_ones(scenario);
         out
+    }
+
+    /// Whether behaviours, processes or starts of a scenario name single places of sources other than their own.
+    fn speaks_of_single_ones(&self, scenario: &Scenario) -> bool {
+        if self.doors.is_empty() {
+            return false;
+        }
+        let mut found = false;
+        for one in &scenario.behaviours.attached {
+            let own = one.agent;
+            let mut tell = |id: AgentId| found |= id != own && self.comes(id.0 as usize);
+            one.guards.iter().for_each(|guard| guard.mentions(&mut tell));
+        }
+        let mut tell = |id: AgentId| found |= self.comes(id.0 as usize);
+        for command in scenario.processes.list.iter().flat_map(|process| &process.commands) {
+            command.guard.mentions(&mut tell);
+            if let Timing::Rate(rate) = &command.timing {
+                rate.mentions(&mut tell);
+            }
+            for branch in &command.branches {
+                branch.weight.mentions(&mut tell);
+                branch.updates.iter().for_each(|(_, value)| value.mentions(&mut tell));
+            }
+        }
+        for agent in &scenario.agents {
+            if let Position::Near { agent, .. } = &agent.start.position {
+                tell(*agent);
+            }
+        }
+        found
+    }
+
+    /// Whether a truth value or a number names somebody from a source.
+    pub fn are_named(&self, atoms: &[Bool], signals: &[Num]) -> bool {
+        let mut found = false;
+        if !self.doors.is_empty() {
+            let mut tell = |id: AgentId| found |= self.comes(id.0 as usize);
+            atoms.iter().for_each(|atom| atom.mentions(&mut tell));
+            signals.iter().for_each(|signal| signal.mentions(&mut tell));
+        }
+        found
     }
 
     /// Whether an agent comes from a source, and so is not there at the start.
@@ -96,6 +172,7 @@ impl Arrivals {
     /// Begins a trial.
     pub(super) fn load(&self, state: &mut State, lane: usize, key: TrialKey) {
         state.queues.full &= !Mask::lane(lane);
+        state.queues.reused &= !Mask::lane(lane);
         if self.doors.is_empty() {
             return;
         }
@@ -107,6 +184,8 @@ impl Arrivals {
                 source[lane] = 0;
             }
         }
+        queues.later.resize(self.comes.len(), [0; LANES]);
+        queues.later.iter_mut().for_each(|later| later[lane] = 0);
         for (next, door) in queues.next.iter_mut().zip(&self.doors) {
             next.0[lane] = door.interval(key, 0);
         }
@@ -135,7 +214,8 @@ impl Arrivals {
         let key = state.keys[lane];
         while state.queues.next[source].0[lane] <= now {
             let arrived = &mut state.queues.arrived[source][lane];
-            if *arrived as usize >= door.members.len() {
+            let most = if self.once { door.members.len() as u32 } else { door.most };
+            if *arrived >= most {
                 state.queues.full |= Mask::lane(lane);
                 state.queues.which[lane] = source as u32;
                 return;
@@ -144,24 +224,34 @@ impl Arrivals {
             state.queues.next[source].0[lane] += door.interval(key, *arrived);
         }
         while state.queues.entered[source][lane] < state.queues.arrived[source][lane] {
-            let member = door.members[state.queues.entered[source][lane] as usize];
-            let Ok(body) = Parameters::draw(
-                member,
-                &program.scenario.agents[member.0 as usize],
-                program.starts.laws(member.0 as usize),
-                key,
-            ) else {
+            let number = state.queues.entered[source][lane];
+            let Some(place) = door.place(state, lane, number) else {
+                state.queues.full |= Mask::lane(lane);
+                state.queues.which[lane] = source as u32;
+                return;
+            };
+            let (member, later) = (door.members[place], number - place as u32);
+            let agent = &program.scenario.agents[member.0 as usize];
+            let entity = agent.entity + later;
+            let Ok(body) =
+                Parameters::draw(member, agent, entity, program.starts.laws(member.0 as usize), key)
+            else {
                 // Nobody can move like that; such laws are refused when they are compiled.
                 state.diverged |= Mask::lane(lane);
                 return;
             };
             let tries = state.queues.tries[source][lane];
-            let Some(at) = free_place(program, state, lane, member, body.radius, tries) else {
+            let Some(at) = free_place(program, state, lane, (member, entity), body.radius, tries) else {
                 state.queues.tries[source][lane] += 1;
                 return;
             };
             state.queues.tries[source][lane] = 0;
             state.queues.entered[source][lane] += 1;
+            state.queues.later[member.0 as usize][lane] = later;
+            if later > 0 && !state.queues.reused.has(lane) {
+                state.queues.reused |= Mask::lane(lane);
+                state.queues.which[lane] = source as u32;
+            }
             enter(program, state, member.0 as usize, lane, &body, at, None);
             let slot = state.slot(member.0 as usize, lane);
             crate::kernel::dynamics::prepare(state, program.dt, slot);
@@ -170,6 +260,18 @@ impl Arrivals {
 }
 
 impl Door {
+    /// The place for arrival `number`, counted from 0: its own, or once all have been taken the first that is free.
+    fn place(&self, state: &State, lane: usize, number: u32) -> Option<usize> {
+        let number = number as usize;
+        if number < self.members.len() {
+            return Some(number);
+        }
+        self.members.iter().position(|member| {
+            let slot = state.slot(member.0 as usize, lane);
+            !state.present[slot.block].has(slot.lane)
+        })
+    }
+
     /// Time between arrival `number` and the one before it, s.
     fn interval(&self, key: TrialKey, number: u32) -> f64 {
         self.every.draw(Stream::of(key, self.entity, Purpose::Arrival).uniform(number))
@@ -204,12 +306,13 @@ fn leave_empty(state: &mut State, agent: usize, lane: usize) {
     state.present[slot.block] &= !Mask::lane(slot.lane);
 }
 
-/// A place for an agent that touches nobody, in the `tries`-th attempt to come in.
+/// A place for an agent that touches nobody, in the `tries`-th attempt to come in. Near somebody who is not there
+/// is no place yet.
 fn free_place(
     program: &Program,
     state: &State,
     lane: usize,
-    member: AgentId,
+    (member, entity): (AgentId, u32),
     radius: f64,
     tries: u32,
 ) -> Option<Vec2> {
@@ -223,12 +326,15 @@ fn free_place(
         Position::Within(_) => program.starts.sampler(member.0 as usize)?,
         Position::Near { agent, within } => {
             let slot = state.slot(agent.0 as usize, lane);
+            if !state.present[slot.block].has(slot.lane) {
+                return None;
+            }
             let centre = Vec2::new(state.x[slot.block].0[slot.lane], state.y[slot.block].0[slot.lane]);
             around = Sampler::Disc { centre, radius: *within };
             &around
         }
     };
-    let stream = Stream::of(state.keys[lane], agent.entity, Purpose::Placement);
+    let stream = Stream::of(state.keys[lane], entity, Purpose::Placement);
     let others = all_present(state, lane);
     for attempt in 0..ATTEMPTS {
         let draw = tries.wrapping_mul(ATTEMPTS).wrapping_add(attempt);

@@ -91,10 +91,16 @@ impl Laws {
 }
 
 impl Parameters {
-    /// Draws them for one agent of one trial. A particle has the mass of its persons, their common force
+    /// Draws them for one agent of one trial, whose stable number is `entity`. A particle has the mass of its persons, their common force
     /// and the smaller noise of their mean.
-    pub(super) fn draw(id: AgentId, agent: &Agent, body: &Laws, key: TrialKey) -> Result<Self, Fault> {
-        let stream = Stream::of(key, agent.entity, Purpose::Parameter);
+    pub(super) fn draw(
+        id: AgentId,
+        agent: &Agent,
+        entity: u32,
+        body: &Laws,
+        key: TrialKey,
+    ) -> Result<Self, Fault> {
+        let stream = Stream::of(key, entity, Purpose::Parameter);
         let mut from = Drawing { stream, agent: id, fault: None };
         let persons = agent.particle.map_or(1, |particle| particle.persons.max(1));
         let mut mass = 0.0;

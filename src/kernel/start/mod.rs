@@ -61,6 +61,18 @@ pub enum Fault {
         /// Whose start it is.
         agent: AgentId,
     },
+    /// By chance somebody is placed in an obstacle or on a wall, out of which nothing could push them.
+    #[error("agent {} is placed in an obstacle or on a wall", agent.0)]
+    Inside {
+        /// Whom.
+        agent: AgentId,
+    },
+    /// Two are placed at one point.
+    #[error("agents {} and {} are placed at one point", agents.0.0, agents.1.0)]
+    Together {
+        /// Whom.
+        agents: (AgentId, AgentId),
+    },
     /// There is no such option.
     #[error("there is no option {option} in declaration {declaration} of moves")]
     Advice {
@@ -98,7 +110,7 @@ pub fn load(
     let mut bodies = Vec::with_capacity(scenario.agents.len());
     for (k, agent) in scenario.agents.iter().enumerate() {
         let here = !program.arrivals.comes(k);
-        let draw = || Parameters::draw(AgentId(k as u32), agent, program.starts.laws(k), key);
+        let draw = || Parameters::draw(AgentId(k as u32), agent, agent.entity, program.starts.laws(k), key);
         bodies.push(here.then(draw).transpose()?);
     }
     let radii = bodies.iter().map(|body| body.as_ref().map_or(0.0, |body| body.radius)).collect();
@@ -151,14 +163,15 @@ fn begin(program: &Program, state: &mut State, lane: usize, key: TrialKey) {
     program.arrivals.load(state, lane, key);
 }
 
-/// The parameters of an agent as drawn, in the order of [`Parameter::ALL`]; none if nobody can move with them.
+/// The parameters of an agent, or of the person so many numbers later on its place, as drawn, in the order of [`Parameter::ALL`]; none if nobody can move with them.
 pub(super) fn own_parameters(
     program: &Program,
     key: TrialKey,
-    id: AgentId,
+    (id, later): (AgentId, u32),
 ) -> Option<[f64; Parameter::ALL.len()]> {
     let agent = program.scenario.agents.get(id.0 as usize)?;
-    let body = Parameters::draw(id, agent, program.starts.laws(id.0 as usize), key).ok()?;
+    let laws = program.starts.laws(id.0 as usize);
+    let body = Parameters::draw(id, agent, agent.entity + later, laws, key).ok()?;
     // Who goes on as recorded has the recorded speed as driving speed.
     let recorded = agent.start.velocity.norm();
     let speed = if agent.route == Route::Onward && recorded > 0.0 { recorded } else { body.speed };

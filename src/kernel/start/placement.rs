@@ -8,7 +8,8 @@ use super::sampler::Sampler;
 use super::{Fault, Loaded};
 use crate::base::geometry::{Bounds, Shape, Vec2};
 use crate::base::random::{Purpose, Stream, TrialKey};
-use crate::model::{AgentId, Body, Obstacle, Position, Scenario, Scene};
+use crate::kernel::nearby::Nearby;
+use crate::model::{AgentId, Barrier, Body, Obstacle, Position, Scenario, Scene};
 use std::sync::Arc;
 
 /// How often a free place is sought by chance.
@@ -16,6 +17,25 @@ pub(super) const ATTEMPTS: u32 = 96;
 
 /// A radius shrunk to touch is this much smaller, so that rounding leaves no overlap.
 const TOUCH: f64 = 1.0 - 8.0 * f64::EPSILON;
+
+/// Nearer than this two points are one, m: far above rounding, far below what anyone sees.
+const ONE_POINT: f64 = 1e-6;
+
+/// The barriers that have pieces: which they are, their bounds, and which may be near.
+#[derive(Clone, Debug, Default)]
+struct Barriers {
+    list: Vec<(u32, Bounds)>,
+    nearby: Nearby,
+}
+
+impl Barriers {
+    fn new(scene: &Scene) -> Self {
+        let with_pieces = |(k, barrier): (usize, &Barrier)| Some((k as u32, bounds(&barrier.obstacle)?));
+        let list: Vec<(u32, Bounds)> = scene.barriers.iter().enumerate().filter_map(with_pieces).collect();
+        let bounds: Vec<Bounds> = list.iter().map(|(_, bounds)| *bounds).collect();
+        Self { list, nearby: Nearby::new(&bounds) }
+    }
+}
 
 /// What all trials share: the samplers of the shapes and the bounds of the barriers.
 #[derive(Clone, Debug, Default)]
@@ -25,7 +45,7 @@ pub struct Starts {
     sampler_of: Vec<Option<u32>>,
     /// The order of placement.
     order: Vec<u32>,
-    barriers: Vec<Option<Bounds>>,
+    barriers: Barriers,
     /// Laws of the bodies, equal ones once.
     laws: Vec<Laws>,
     /// Whose laws are which.
@@ -68,7 +88,7 @@ impl Starts {
         // Who comes in later is placed then.
         let all = (0..scenario.agents.len() as u32).filter(|&k| !arrivals.comes(k as usize));
         out.order = all.clone().filter(fixed).chain(all.filter(|k| !fixed(k))).collect();
-        out.barriers = scenario.scene.barriers.iter().map(|barrier| bounds(&barrier.obstacle)).collect();
+        out.barriers = Barriers::new(&scenario.scene);
         out
     }
 }
@@ -97,13 +117,13 @@ fn bounds(obstacle: &Obstacle) -> Option<Bounds> {
 #[derive(Clone, Copy)]
 pub(super) struct Ground<'a> {
     scene: &'a Scene,
-    bounds: &'a [Option<Bounds>],
+    barriers: &'a Barriers,
 }
 
 impl<'a> Ground<'a> {
     /// The barriers of a scene.
     pub(super) fn of(scene: &'a Scene, starts: &'a Starts) -> Self {
-        Self { scene, bounds: &starts.barriers }
+        Self { scene, barriers: &starts.barriers }
     }
 
     /// The barriers whose bounds are within `reach` of a point.
@@ -111,8 +131,11 @@ impl<'a> Ground<'a> {
         let close = move |b: &Bounds| {
             p.x > b.low.x - reach && p.x < b.high.x + reach && p.y > b.low.y - reach && p.y < b.high.y + reach
         };
-        let pairs = self.scene.barriers.iter().zip(self.bounds);
-        pairs.filter(move |(_, b)| b.as_ref().is_some_and(close)).map(|(barrier, _)| &barrier.obstacle)
+        let candidates = self.barriers.nearby.within(p, reach);
+        (0..candidates.len())
+            .map(move |k| &self.barriers.list[candidates[k] as usize])
+            .filter(move |(_, bounds)| close(bounds))
+            .map(move |(barrier, _)| &self.scene.barriers[*barrier as usize].obstacle)
     }
 
     /// Smallest gap between a disc and the barriers within its reach; infinite without any.
@@ -191,12 +214,13 @@ pub(super) fn place(
     if counts.pushed > 0 {
         relaxation::relax(&mut crowd, &rooms, ground);
     }
-    shrink(&mut crowd, ground, &done, &mut counts);
+    shrink(&mut crowd, ground, &done, &mut counts)?;
     Ok(Placed { positions: crowd.positions, radii: crowd.radii, counts })
 }
 
-/// Shrinks the radii of bodies that overlap a neighbour or a barrier until they touch.
-fn shrink(crowd: &mut Crowd, ground: Ground<'_>, placed: &[bool], counts: &mut Loaded) {
+/// Shrinks the radii of bodies that overlap a neighbour or a barrier until they touch. Nothing helps two at one
+/// point, or somebody whose middle is in an obstacle or on a wall.
+fn shrink(crowd: &mut Crowd, ground: Ground<'_>, placed: &[bool], counts: &mut Loaded) -> Result<(), Fault> {
     let mut near: Vec<u32> = Vec::new();
     for body in (0..crowd.positions.len()).filter(|&body| placed[body]) {
         let p = crowd.positions[body];
@@ -206,6 +230,9 @@ fn shrink(crowd: &mut Crowd, ground: Ground<'_>, placed: &[bool], counts: &mut L
         for other in near.iter().map(|&other| other as usize).filter(|&other| other > body) {
             let (distance, sum) =
                 ((p - crowd.positions[other]).norm(), crowd.radii[body] + crowd.radii[other]);
+            if distance <= ONE_POINT {
+                return Err(Fault::Together { agents: (AgentId(body as u32), AgentId(other as u32)) });
+            }
             if distance < sum {
                 let factor = distance / sum * TOUCH;
                 crowd.radii[body] *= factor;
@@ -215,10 +242,58 @@ fn shrink(crowd: &mut Crowd, ground: Ground<'_>, placed: &[bool], counts: &mut L
         }
         let radius = crowd.radii[body];
         let room = ground.gap(p, radius) + radius;
-        // Whoever starts inside a solid does not touch it from outside: nothing helps there.
-        if room < radius && room > 0.0 {
+        if room <= ONE_POINT {
+            return Err(Fault::Inside { agent: AgentId(body as u32) });
+        }
+        if room < radius {
             crowd.radii[body] = room * TOUCH;
             counts.shrunk_at_barriers += 1;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::geometry::Segment;
+
+    #[test]
+    fn among_many_barriers_those_near_are_found_in_order_as_in_a_look_at_each() {
+        let wall = |k: u32| {
+            let at = Vec2::new(f64::from(k * 7919 % 997) * 0.11, f64::from(k * 104_729 % 1009) * 0.07);
+            // Some have no pieces, one crosses the scene.
+            let to = if k == 7 { Vec2::new(90.0, 50.0) } else { Vec2::new(f64::from(k % 5), 0.3) };
+            let pieces = if k % 11 == 3 { Vec::new() } else { vec![Segment::new(at, at + to)] };
+            Barrier { name: String::new(), obstacle: Obstacle::Wall(pieces) }
+        };
+        for count in [3, 40, 2_000] {
+            let scene = Scene { barriers: (0..count).map(wall).collect(), regions: Vec::new() };
+            let barriers = Barriers::new(&scene);
+            let ground = Ground { scene: &scene, barriers: &barriers };
+            let (mut looked_at, mut near_some) = (0, 0);
+            for k in 0..600 {
+                let p = Vec2::new(f64::from(k % 30) * 4.1 - 5.0, f64::from(k / 30) * 4.3 - 4.0);
+                let reach = f64::from(k % 7) * 0.2;
+                let found: Vec<&Obstacle> = ground.near(p, reach).collect();
+                let each = scene.barriers.iter().map(|barrier| &barrier.obstacle);
+                let wanted: Vec<&Obstacle> = each
+                    .filter(|obstacle| {
+                        bounds(obstacle).is_some_and(|b| {
+                            p.x > b.low.x - reach
+                                && p.x < b.high.x + reach
+                                && p.y > b.low.y - reach
+                                && p.y < b.high.y + reach
+                        })
+                    })
+                    .collect();
+                assert!(found.iter().zip(&wanted).all(|(a, b)| std::ptr::eq(*a, *b)), "{p} {reach}");
+                assert_eq!(found.len(), wanted.len());
+                near_some += usize::from(!found.is_empty());
+                looked_at += barriers.nearby.within(p, reach).len();
+            }
+            assert!(count < 40 || near_some > 100);
+            assert!(count < 2_000 || looked_at < 600 * count as usize / 20, "{looked_at}");
         }
     }
 }

@@ -9,6 +9,7 @@
 mod boolean;
 mod calendar;
 mod cell;
+mod margins;
 mod numbers;
 mod plan;
 pub mod robustness;
@@ -18,7 +19,7 @@ mod window;
 
 use super::formula::{NodeId, TermId, Tree};
 use super::invalid::Invalid;
-use super::reach::{Part, last_state};
+use super::reach::Part;
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::tick::{Clock, Tick};
 use calendar::Calendar;
@@ -72,24 +73,6 @@ impl Monitor {
     /// As for a formula.
     pub fn metric(tree: &Tree, root: TermId, horizon: Tick, clock: Clock) -> Result<Self, Invalid> {
         Plan::new(tree, Part::Term(root), horizon, clock, true).map(|plan| Self::of(plan, clock))
-    }
-
-    /// How many states after the first one a formula needs at most; `None` if it ranges up to the
-    /// horizon.
-    ///
-    /// # Errors
-    /// When a window is empty or the tree is malformed or too deep.
-    pub fn needs(tree: &Tree, root: NodeId) -> Result<Option<Tick>, Invalid> {
-        last_state(tree, Part::Node(root), None).map(|(last, endless)| (!endless).then_some(last))
-    }
-
-    /// How many states after the first one a metric needs at most; `None` if it ranges up to the
-    /// horizon.
-    ///
-    /// # Errors
-    /// When a window is empty or the tree is malformed or too deep.
-    pub fn metric_needs(tree: &Tree, root: TermId) -> Result<Option<Tick>, Invalid> {
-        last_state(tree, Part::Term(root), None).map(|(last, endless)| (!endless).then_some(last))
     }
 
     fn of(plan: Plan, clock: Clock) -> Self {

@@ -4,6 +4,7 @@
 
 use super::Reading;
 use super::present::Present;
+use crate::logic::flat::Sort;
 use crate::logic::formula::{Aggregation, Operation};
 
 /// A truth of the present state, perhaps negated.
@@ -11,6 +12,36 @@ use crate::logic::formula::{Aggregation, Operation};
 pub(super) struct Probe {
     pub(super) slot: usize,
     pub(super) negated: bool,
+}
+
+impl Probe {
+    /// Whether it is so in the present state.
+    #[inline]
+    pub(super) fn is(self, present: &Present) -> bool {
+        present.truth(self.slot) != self.negated
+    }
+}
+
+/// A state lasts from `start` to before `end`, s; infinite after the horizon.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stay {
+    pub(super) start: f64,
+    pub(super) end: f64,
+}
+
+impl Stay {
+    /// Until, or weak until, in a state of this sort: the truth and when it was forced, if it is.
+    #[inline]
+    pub(super) fn until(self, sort: Sort, (from, to): (f64, f64), weak: bool) -> Option<(bool, f64)> {
+        let reached = if self.start >= from { self.start } else { from };
+        if sort.goal && reached < self.end && (sort.hold || reached == self.start) {
+            Some((true, reached))
+        } else if !sort.hold {
+            Some((false, self.start))
+        } else {
+            (self.end > to).then_some((weak, to))
+        }
+    }
 }
 
 /// What is asked at the start of the trial.
@@ -47,23 +78,14 @@ impl Direct {
     /// when it was forced.
     #[inline]
     pub(super) fn step(&mut self, start: f64, end: f64, present: &Present) -> Option<(Reading, f64)> {
-        let is = |probe: Probe| present.truth(probe.slot) != probe.negated;
         match self.question {
             Question::Until { first, second, weak, negated } => {
-                let goes_on = first.is_none_or(is);
-                let reached = if start >= self.from { start } else { self.from };
-                let (truth, at) = if is(second) && reached < end && (goes_on || reached == start) {
-                    (true, reached)
-                } else if !goes_on {
-                    (false, start)
-                } else if end > self.to {
-                    (weak, self.to)
-                } else {
-                    return None;
-                };
+                let hold = first.is_none_or(|probe| probe.is(present));
+                let sort = Sort { hold, goal: second.is(present) };
+                let (truth, at) = Stay { start, end }.until(sort, (self.from, self.to), weak)?;
                 Some((Reading::Truth(truth != negated), at))
             }
-            Question::Time { goal } if is(goal) => Some((Reading::Value(start), start)),
+            Question::Time { goal } if goal.is(present) => Some((Reading::Value(start), start)),
             Question::Time { .. } => (end > self.to).then_some((Reading::Value(f64::INFINITY), self.to)),
             Question::Fold { aggregation, of } => self.fold(aggregation, present.number(of), start, end),
         }

@@ -55,6 +55,31 @@ impl Present {
         }
     }
 
+    /// Computes the margins of everything for a new state: a truth has its margin as its number. One that is no number
+    /// counts as false.
+    pub(super) fn measure(&mut self, atoms: &[bool], signals: &[f64]) {
+        for k in 0..self.code.len() {
+            let of = |x: &usize| self.numbers[*x];
+            self.numbers[k] = match &self.code[k] {
+                Code::Atom(a) if atoms.get(*a).copied().unwrap_or(false) => f64::INFINITY,
+                Code::Atom(_) => f64::NEG_INFINITY,
+                Code::Compare(relation, x, y) => {
+                    let margin = relation.margin(of(x), of(y));
+                    if margin.is_nan() { f64::NEG_INFINITY } else { margin }
+                }
+                Code::Not(x) => -of(x),
+                Code::All(all) => all.iter().map(of).fold(f64::INFINITY, |x, y| if y < x { y } else { x }),
+                Code::Any(all) => {
+                    all.iter().map(of).fold(f64::NEG_INFINITY, |x, y| if y > x { y } else { x })
+                }
+                Code::Signal(s) => signals.get(*s).copied().unwrap_or(f64::NAN),
+                Code::Number(value) => *value,
+                Code::Combine(operation, x, y) => operation.apply(of(x), of(y)),
+                Code::Abs(x) => of(x).abs(),
+            };
+        }
+    }
+
     #[inline]
     pub(super) fn truth(&self, k: usize) -> bool {
         self.truths[k]

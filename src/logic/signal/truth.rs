@@ -35,7 +35,7 @@ pub(super) enum Seen {
 
 impl Seen {
     /// The moments that see the piece `start .. end`.
-    fn of(self, start: Moment, end: Moment) -> (Moment, Moment) {
+    pub(super) fn of(self, start: Moment, end: Moment) -> (Moment, Moment) {
         match self {
             Self::Within { from, to } => (start - to, end - from),
             Self::Soon { within, strictly } => (instant(start) - within + Moment::from(strictly), end),

@@ -40,7 +40,7 @@ pub(super) fn write(text: &mut String, result: &QueryResult, palette: Palette) {
     }
     remarks(text, result, "", palette);
     for witness in &result.witnesses {
-        self::witness(text, witness, palette);
+        self::witness(text, witness, result.of.is_some(), palette);
     }
 }
 
@@ -99,9 +99,14 @@ fn value(text: &mut String, result: &QueryResult, palette: Palette) {
     };
     let (shown, range) = printed(result, &Interval { estimate, low: result.low, high: result.high });
     let kind = if result.interval.is_empty() { String::new() } else { format!("  {}", result.interval) };
+    let of = result.of.as_ref().map_or(String::new(), |of| format!("{of}: "));
     line(
         text,
-        &format!("{}  {range}{}", palette.paint(Paint::Strong, &shown), palette.paint(Paint::Faint, &kind)),
+        &format!(
+            "{of}{}  {range}{}",
+            palette.paint(Paint::Strong, &shown),
+            palette.paint(Paint::Faint, &kind)
+        ),
     );
 }
 
@@ -154,8 +159,10 @@ pub(in crate::report) fn trials(result: &QueryResult) -> String {
     let mut text = counted(counts.trials, "trial");
     let mut parts = Vec::new();
     if counts.successes + counts.failures > 0 {
-        parts.push(format!("{} hold", count(counts.successes)));
-        parts.push(format!("{} fail", count(counts.failures)));
+        // Of a quantile the event is not the claim, so that it does not hold or fail.
+        let words = if result.of.is_some() { ["with it", "without"] } else { ["hold", "fail"] };
+        parts.push(format!("{} {}", count(counts.successes), words[0]));
+        parts.push(format!("{} {}", count(counts.failures), words[1]));
     }
     if counts.unresolved > 0 {
         parts.push(format!("{} unresolved", count(counts.unresolved)));
@@ -204,12 +211,18 @@ pub(in crate::report) fn moment(time: f64, unit: &str) -> String {
 }
 
 /// A trial that shows why, and the command that shows the trial.
-pub(super) fn witness(text: &mut String, witness: &Witness, palette: Palette) {
+pub(super) fn witness(text: &mut String, witness: &Witness, of: bool, palette: Palette) {
     let Witness { shows, trial, time, unit, what, command, .. } = witness;
     let paint = match shows {
         Shows::Fails => Paint::Bad,
         Shows::Holds => Paint::Good,
         Shows::Lowest | Shows::Highest => Paint::Neutral,
+    };
+    // Of a quantile the event is not the claim.
+    let (word, paint) = match shows {
+        Shows::Fails if of => ("without it", Paint::Neutral),
+        Shows::Holds if of => ("with it", Paint::Neutral),
+        _ => (shows.name(), paint),
     };
     let decided = if witness.value.is_some() { "at" } else { "decided at" };
     let said = if what.is_empty() { String::new() } else { format!(": {what}") };
@@ -217,7 +230,7 @@ pub(super) fn witness(text: &mut String, witness: &Witness, palette: Palette) {
         text,
         &format!(
             "{} in trial {}, {decided} {}{said}",
-            palette.paint(paint, shows.name()),
+            palette.paint(paint, word),
             count(*trial),
             moment(*time, unit)
         ),

@@ -64,13 +64,22 @@ pub(super) fn same_sweep(a: &QueryResult, b: &QueryResult) -> bool {
     a.index == b.index && !a.settings.is_empty() && !b.settings.is_empty() && simple(a) && simple(b)
 }
 
+/// Whether a query has got any trials.
+fn begun(result: &QueryResult) -> bool {
+    result.counts.trials > 0
+}
+
 fn summary(run: &Run, palette: Palette) -> String {
-    let number = |verdict| run.results.iter().filter(|r| r.verdict == verdict).count() as u64;
+    let number = |verdict| {
+        run.results.iter().filter(|r| r.verdict == verdict && (verdict.is_some() || begun(r))).count() as u64
+    };
+    let idle = run.results.iter().filter(|r| r.verdict.is_none() && !begun(r)).count() as u64;
     let parts: Vec<String> = [
         (number(Some(Verdict::Satisfied)), "satisfied", Paint::Good),
         (number(Some(Verdict::Violated)), "violated", Paint::Bad),
         (number(Some(Verdict::Undecided)), "undecided", Paint::Caution),
         (number(None), "computed", Paint::Neutral),
+        (idle, "not begun", Paint::Caution),
     ]
     .into_iter()
     .filter(|(n, ..)| *n > 0)

@@ -36,7 +36,7 @@ pub(super) fn write(text: &mut String, results: &[QueryResult], palette: Palette
     for result in results {
         block::remarks(text, result, &format!("{}: ", settings(result)), palette);
         for witness in &result.witnesses {
-            block::witness(text, witness, palette);
+            block::witness(text, witness, result.of.is_some(), palette);
         }
     }
 }

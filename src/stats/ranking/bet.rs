@@ -6,6 +6,10 @@ use crate::base::math;
 pub(super) const BETS: usize = 12;
 const LEAST: f64 = 0.02;
 const MOST: f64 = 0.95;
+/// What rounding can add to the logarithm of a capital, for each trial: the factor and its logarithm are off by parts
+/// in 1e16, and so are sums of logarithms, by parts of their size (below 1000: no capital of e^-1000 comes back).
+/// It is taken off, so that the bound of the race holds for any number of trials.
+pub(super) const ROUNDING: f64 = 1e-14;
 
 /// The bets, in geometric steps.
 pub(super) fn bets() -> [f64; BETS] {
@@ -92,8 +96,7 @@ pub(super) struct Factors {
 }
 
 impl Factors {
-    /// For a gap, with the bets of the mixture. Each factor lies in [0.05, 3]; the error of a logarithm, 1e-16, stays
-    /// far below the slack of the threshold for any number of trials. The loops are vector code.
+    /// For a gap, with the bets of the mixture. Each factor lies in [0.05, 3]. The loops are vector code.
     pub(super) fn new(bets: &[f64; BETS], gap: f64) -> Self {
         let of = |d: f64| {
             let mut logs = [0.0; BETS];
@@ -105,9 +108,10 @@ impl Factors {
         Self { win: of(1.0), tie: of(0.0), lose: of(-1.0) }
     }
 
-    /// The logarithms of all bets' capital.
+    /// The logarithms of all bets' capital, less what rounding can have added.
     pub(super) fn logs(&self, wins: u64, ties: u64, losses: u64) -> [f64; BETS] {
         let (w, t, l) = (wins as f64, ties as f64, losses as f64);
-        std::array::from_fn(|k| w * self.win[k] + t * self.tie[k] + l * self.lose[k])
+        let rounding = ROUNDING * (w + t + l);
+        std::array::from_fn(|k| w * self.win[k] + t * self.tie[k] + l * self.lose[k] - rounding)
     }
 }

@@ -174,16 +174,6 @@ impl<T: Table> Race<T> {
         (0..self.arms).map(|arm| self.table.trials(arm)).sum()
     }
 
-    /// Arms not dropped yet.
-    pub fn live(&self) -> &[usize] {
-        &self.live
-    }
-
-    /// The leader of the last complete round.
-    pub const fn leader(&self) -> usize {
-        self.leader
-    }
-
     /// The smallest gap, to a millionth of the largest, such that `arm` is within it of the best but for
     /// probability delta: at any time and for a live arm. 1 if nothing is certified.
     pub fn gap(&mut self, arm: usize) -> f64 {

@@ -1,7 +1,7 @@
 //! Scores in [0, 1] by trial index; a pair keeps the capital of each bet.
 
 use super::Table;
-use super::bet::{BETS, bets, log_mean_below, log_mean_near};
+use super::bet::{BETS, ROUNDING, bets, log_mean_below, log_mean_near};
 use crate::base::math;
 use std::collections::BTreeMap;
 
@@ -50,8 +50,9 @@ impl Scores {
                     *product *= 1.0 + bet * excess;
                 }
             }
+            let rounding = ROUNDING * (end - start) as f64;
             for (log, product) in logs.iter_mut().zip(products) {
-                *log += math::ln(product);
+                *log += math::ln(product) - rounding;
             }
             start = end;
         }

@@ -2,15 +2,18 @@
 //!
 //! A path has a level that never falls, and reaches the event at its highest. Where few paths get far, those that do
 //! are continued several times from where they were, each with fresh random numbers. Estimates are
-//! unbiased whatever the level is; how much they scatter depends on it. Nothing finite is guaranteed: intervals are
-//! asymptotic, and where the level does not see the way on which the event mostly comes, they are far too low.
+//! unbiased whatever the level is; how much they scatter depends on it. So the runs together certify a lower bound, and
+//! no upper one: intervals are asymptotic, and where the level does not see the way on which the event mostly comes,
+//! they are far too low.
 
 mod adaptive;
 mod effort;
+mod floor;
 mod spread;
 
 pub use adaptive::Adaptive;
 pub use effort::Effort;
+pub use floor::floor;
 pub use spread::{Spread, student};
 
 use super::invalid::Invalid;

@@ -24,6 +24,8 @@ pub struct Spread {
     pub high: f64,
     /// Runs whose estimate is 0.
     pub extinct: u64,
+    /// What the mean is certified not to be below, with an error of at most delta.
+    pub floor: f64,
 }
 
 impl Spread {
@@ -44,6 +46,7 @@ impl Spread {
             low: if low > 0.0 { low } else { 0.0 },
             high: mean + half,
             extinct: estimates.iter().filter(|x| **x == 0.0).count() as u64,
+            floor: super::floor(estimates, delta),
         })
     }
 }

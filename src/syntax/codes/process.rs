@@ -105,15 +105,15 @@ Right:\n\
         code: "E0913",
         title: "more people would come than there is room for",
         text: "\
-A place is kept for everyone who may come by a source up to the horizon, and a trial in which more come is unresolved.\n\
-`limit` says for how many; it is not less than the number that is expected, the horizon over the mean time between\n\
-arrivals. Without `limit` so many places are kept that they suffice in all but one of a thousand million trials, up to\n\
-20,000.\n\
+Without `limit` a place is kept for everyone who may come by a source up to the horizon: so many that they suffice in all\n\
+but one of a thousand million trials, up to 20,000. With `limit` places are used again by those who come after somebody has\n\
+left; about a million people may come in a trial.\n\
 \n\
 Wrong:\n\
-\x20   horizon = 60 s\n\
-\x20   source doors: adult { at = (0, 2)  every = exponential(2 s)  route = exit  limit = 10 }\n\
+\x20   horizon = 24 h\n\
+\x20   source doors: adult { at = (0, 2)  every = exponential(2 s)  route = exit }\n\
 Right:\n\
+\x20   horizon = 24 h\n\
 \x20   source doors: adult { at = (0, 2)  every = exponential(2 s)  route = exit  limit = 80 }",
     },
 ];

@@ -120,7 +120,8 @@ Right:\n\
         code: "W0601",
         title: "this query leaves its family",
         text: "\
-With `family confidence` all queries of a file hold jointly, each with an equal share of the error. A query that states\n\
+With `family confidence` all queries of a file hold jointly, at all points of a sweep, each with an equal share of the\n\
+error. A query that states\n\
 errors of its own is held to those, and the joint statement is about the others only.\n\
 \n\
 Probably wrong:\n\

@@ -8,14 +8,18 @@ pub(super) const PAGES: &[Page] = &[
         code: "E0801",
         title: "people cannot be placed",
         text: "\
-People who start in the same shape need more room than its free area gives; obstacles count, and bodies that are thrown and\n\
-then pushed apart jam at about 84 % of an area. This is said before the first trial.\n\
+People who start in the same shape, or near the same person, need more room than there is; obstacles count, and bodies\n\
+that are thrown and then pushed apart jam at about 84 % of an area. Or even the smallest body that can be drawn is too\n\
+large for the place: a corridor that is narrower, a distance at which two bodies overlap. This is said before the first\n\
+trial; what only bad luck makes impossible leaves its trial unresolved.\n\
 \n\
 Wrong:\n\
 \x20   region hall: rect (0, 0) .. (10, 4)\n\
 \x20   agents crowd[400]: adult { at = uniform in hall }\n\
+\x20   agent  guard: adult { at = near crowd[1] within 0.1 m }\n\
 Right:\n\
-\x20   agents crowd[40]: adult { at = uniform in hall }",
+\x20   agents crowd[40]: adult { at = uniform in hall }\n\
+\x20   agent  guard: adult { at = near crowd[1] within 1 m }",
     },
     Page {
         code: "E0802",

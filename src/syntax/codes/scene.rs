@@ -92,6 +92,21 @@ Right:\n\
 \x20   route = exit then leave",
     },
     Page {
+        code: "E0409",
+        title: "nobody can start there",
+        text: "\
+The middle of a body lies inside an obstacle or on a wall, or two people start at the same point. Bodies that overlap in\n\
+part, or reach over a wall, are no error: their radii shrink until they touch, and the report counts the trials.\n\
+\n\
+Wrong:\n\
+\x20   obstacle pillar: circle (10, 2) radius 0.3 m\n\
+\x20   agent  user: adult { at = (10, 2.1) }\n\
+\x20   agents crowd[3]: adult { at = (4, 2) }\n\
+Right:\n\
+\x20   agent  user: adult { at = (10, 2.6) }\n\
+\x20   agents crowd[3]: adult { at = uniform in circle (4, 2) radius 1 m }",
+    },
+    Page {
         code: "W0401",
         title: "nothing of a file was taken",
         text: "\

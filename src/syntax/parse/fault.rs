@@ -133,7 +133,15 @@ impl Builder<'_> {
     /// is right after the token before.
     fn place_of(&self, fault: &Fault<'_>) -> Span {
         let expects_it = fault.expected.iter().any(|rule| {
-            matches!(rule, Rule::item | Rule::item_end | Rule::property_item | Rule::property_item_end)
+            matches!(
+                rule,
+                Rule::item
+                    | Rule::item_end
+                    | Rule::property_item
+                    | Rule::property_item_end
+                    // A variable may be called as what a declaration starts with.
+                    | Rule::process_item_end
+            )
         });
         if starts_declaration(fault.found) && !expects_it {
             let end = last_token_end(self.text, fault.at);

@@ -12,9 +12,9 @@ use super::truth::{Machine, Ref, Truth};
 use super::{Watched, Way};
 use crate::base::decimal::Decimal;
 use crate::base::tick::Tick;
-use crate::logic::formula::{Node, Tree, Window};
+use crate::logic::formula::{Node, NodeId, Tree, Window};
 use crate::logic::invalid::Invalid;
-use crate::logic::reach::{Ask, Part, below, children_first};
+use crate::logic::reach::{Asked, Part, asked, children_first};
 use std::collections::BTreeMap;
 
 /// Most cells.
@@ -27,39 +27,13 @@ pub(super) fn plan(
     horizon: Tick,
     quantum: Decimal,
 ) -> Result<(Present, Way, Scale, Vec<Watched>), Invalid> {
-    let order = children_first(tree, root)?;
-    if horizon.0 > LONGEST_HORIZON {
-        return Err(Invalid::TooLong { horizon: horizon.0, limit: LONGEST_HORIZON });
-    }
-    if quantum.is_negative() || quantum.numerator() == 0 {
-        return Err(Invalid::NoSteps);
-    }
-    let asked = asked(tree, &order, horizon)?;
-    let needed = asked.last;
-    if needed > horizon.0 {
-        return Err(Invalid::BeyondHorizon { needed, horizon: horizon.0 });
-    }
-    let scale = Scale::new(horizon, quantum);
-    let mut builder = Builder {
-        tree,
-        scale,
-        present: Present::default(),
-        truths: Vec::new(),
-        numbers: Vec::new(),
-        order: Vec::new(),
-        node_slots: vec![None; tree.nodes.len()],
-        term_slots: vec![None; tree.terms.len()],
-        node_constants: vec![None; tree.nodes.len()],
-        term_constants: vec![None; tree.terms.len()],
-        known_truths: BTreeMap::new(),
-        known_numbers: BTreeMap::new(),
-        known_comparisons: BTreeMap::new(),
-    };
+    let (mut builder, order, asked) = prepare(tree, root, horizon, quantum)?;
+    let scale = builder.scale;
     let mut watched = Vec::new();
     for part in order {
         builder.note(part);
         if let Some(slot) = builder.antecedent(part) {
-            let last = asked.parts.get(&key(part)).copied().unwrap_or(needed);
+            let last = asked.of(part).unwrap_or(asked.last);
             watched.push(Watched { slot, last: scale.time(Tick(last)) });
         }
     }
@@ -74,52 +48,57 @@ pub(super) fn plan(
     Ok((builder.present, Way::Cells(Box::new(cells)), scale, watched))
 }
 
-/// The last ticks at which parts are asked about.
-struct Asked {
-    /// Of each part.
-    parts: BTreeMap<(bool, u32), u64>,
-    /// Of all, or what is reached from below by what is asked at every instant before it.
-    last: u64,
+/// The code of present states and the truths of a formula, operands first, and which of them it is.
+pub(super) fn plan_cells(
+    tree: &Tree,
+    root: NodeId,
+    horizon: Tick,
+    quantum: Decimal,
+) -> Result<(Present, Vec<Truth>, Ref, Scale), Invalid> {
+    let (mut builder, order, _) = prepare(tree, Part::Node(root), horizon, quantum)?;
+    for part in order {
+        builder.note(part);
+    }
+    let root = builder.truth(root, (0, 0))?;
+    Ok((builder.present, builder.truths, root, builder.scale))
 }
 
-fn key(part: Part) -> (bool, u32) {
-    match part {
-        Part::Node(id) => (false, id.0),
-        Part::Term(id) => (true, id.0),
+/// What builds cells, the parts in order, and the last ticks at which they are asked about.
+fn prepare(
+    tree: &Tree,
+    root: Part,
+    horizon: Tick,
+    quantum: Decimal,
+) -> Result<(Builder<'_>, Vec<Part>, Asked), Invalid> {
+    let order = children_first(tree, root)?;
+    if horizon.0 > LONGEST_HORIZON {
+        return Err(Invalid::TooLong { horizon: horizon.0, limit: LONGEST_HORIZON });
     }
-}
-
-fn asked(tree: &Tree, order: &[Part], horizon: Tick) -> Result<Asked, Invalid> {
-    let mut asked: BTreeMap<(bool, u32), u64> = BTreeMap::new();
-    if let Some(root) = order.last() {
-        asked.insert(key(*root), 0);
+    if quantum.is_negative() || quantum.numerator() == 0 {
+        return Err(Invalid::NoSteps);
     }
-    let mut last = 0;
-    for part in order.iter().rev() {
-        let Some(&at) = asked.get(&key(*part)) else { continue };
-        last = last.max(at);
-        for (child, ask) in below(tree, *part)? {
-            let latest = match ask {
-                Ask::Here => at,
-                Ask::Within(Window { from, to: Some(to) }) => {
-                    if to < from {
-                        return Err(Invalid::EmptyWindow { from: from.0, to: to.0 });
-                    }
-                    at.saturating_add(to.0)
-                }
-                Ask::Within(Window { from, to: None }) => {
-                    last = last.max(at.saturating_add(from.0));
-                    horizon.0.max(at)
-                }
-                Ask::Before(Some(Tick(0))) => continue,
-                Ask::Until(Some(to)) | Ask::Before(Some(to)) => at.saturating_add(to.0),
-                Ask::Until(None) | Ask::Before(None) | Ask::AtEnd => horizon.0.max(at),
-            };
-            let known = asked.entry(key(child)).or_insert(latest);
-            *known = latest.max(*known);
-        }
+    let asked = asked(tree, root, Some(horizon), true)?;
+    let needed = asked.last;
+    if needed > horizon.0 {
+        return Err(Invalid::BeyondHorizon { needed, horizon: horizon.0 });
     }
-    Ok(Asked { parts: asked, last })
+    let scale = Scale::new(horizon, quantum);
+    let builder = Builder {
+        tree,
+        scale,
+        present: Present::default(),
+        truths: Vec::new(),
+        numbers: Vec::new(),
+        order: Vec::new(),
+        node_slots: vec![None; tree.nodes.len()],
+        term_slots: vec![None; tree.terms.len()],
+        node_constants: vec![None; tree.nodes.len()],
+        term_constants: vec![None; tree.terms.len()],
+        known_truths: BTreeMap::new(),
+        known_numbers: BTreeMap::new(),
+        known_comparisons: BTreeMap::new(),
+    };
+    Ok((builder, order, asked))
 }
 
 /// The first and the last moment at which something is asked about.

@@ -1,0 +1,269 @@
+//! Starts that no trial can make, whatever is drawn: in an obstacle, on a wall, at one point with somebody else,
+//! or where the smallest bodies that can be drawn find no room.
+//!
+//! What overlaps only in part is no error: radii shrink until the bodies touch, and the report counts the trials.
+
+use super::elaborator::Elaborator;
+use super::people::People;
+use super::symbols::Meaning;
+use crate::base::geometry::{Bounds, Shape, Vec2};
+use crate::model::{Agent, AgentId, Barrier, Obstacle, Position};
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+use std::collections::BTreeMap;
+
+/// Nearer than this two points are one, m: far above rounding, far below what anyone sees.
+const ONE_POINT: f64 = 1e-6;
+
+/// Discs that are thrown and pushed jam at about this share of an area.
+const JAMMED: f64 = 0.84;
+
+/// Square cells of the grid on which a free place is sought, about.
+const CELLS: f64 = 10_000.0;
+
+/// Where the start of a declaration is written, by the first of its people.
+pub(super) type Written = Vec<(AgentId, Span)>;
+
+/// The place where the start of somebody is written.
+pub(super) fn written(places: &[(AgentId, Span)], agent: AgentId) -> Option<Span> {
+    let after = places.partition_point(|(first, _)| *first <= agent);
+    Some(places.get(after.checked_sub(1)?)?.1)
+}
+
+/// A barrier and the rectangle around it.
+type Solid<'b> = (&'b Barrier, Bounds);
+
+fn around(barrier: &Barrier) -> Option<Bounds> {
+    match &barrier.obstacle {
+        Obstacle::Wall(segments) => Bounds::around(segments.iter().flat_map(|s| [s.a, s.b])),
+        Obstacle::Solid(shape) => Some(shape.bounds()),
+    }
+}
+
+/// The barrier nearest to a point among those that may be nearer than `reach`, and its distance.
+fn nearest<'b>(barriers: &[Solid<'b>], p: Vec2, reach: f64) -> Option<(&'b Barrier, f64)> {
+    let mut best: Option<(&Barrier, f64)> = None;
+    for (barrier, bounds) in barriers {
+        let outside = p.x < bounds.low.x - reach
+            || p.x > bounds.high.x + reach
+            || p.y < bounds.low.y - reach
+            || p.y > bounds.high.y + reach;
+        if outside {
+            continue;
+        }
+        let distance = barrier.obstacle.distance(p);
+        if distance <= reach && best.is_none_or(|(_, least)| distance < least) {
+            best = Some((barrier, distance));
+        }
+    }
+    best
+}
+
+/// The smallest radius that a trial can give somebody, m.
+fn least_radius(agent: &Agent) -> f64 {
+    agent.body.radius.bounds().0 * agent.particle.map_or(1.0, |particle| particle.radius_factor)
+}
+
+/// Whether some point of a shape may be as far as `radius` from all barriers. Only a sure no is a no.
+fn has_room(shape: &Shape, radius: f64, barriers: &[Solid<'_>]) -> bool {
+    let bounds = shape.bounds();
+    let size = bounds.high - bounds.low;
+    let side = (size.x * size.y / CELLS).sqrt();
+    let counts = size / side;
+    // Shapes so long and thin that cells are no squares are left to chance.
+    if !(side > 0.0 && counts.x < CELLS && counts.y < CELLS) {
+        return true;
+    }
+    let (columns, rows) = (counts.x.ceil() as u32, counts.y.ceil() as u32);
+    let half = 0.5 * side * std::f64::consts::SQRT_2;
+    for row in 0..rows {
+        for column in 0..columns {
+            let p = bounds.low + Vec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5) * side;
+            if shape.distance(p) > half {
+                continue;
+            }
+            let clear = nearest(barriers, p, radius).is_none_or(|(_, distance)| distance + half >= radius);
+            if clear {
+                return true;
+            }
+        }
+    }
+    false
+}
+
+impl Elaborator<'_> {
+    /// Refuses the starts that no trial can make.
+    pub(super) fn check_places(&mut self, people: &People) {
+        let scene = self.scene.clone();
+        let barriers: Vec<Solid<'_>> =
+            scene.barriers.iter().filter_map(|barrier| Some((barrier, around(barrier)?))).collect();
+        let mut points: BTreeMap<(i64, i64), AgentId> = BTreeMap::new();
+        let mut near: BTreeMap<AgentId, Vec<(AgentId, f64)>> = BTreeMap::new();
+        // The last declaration about which something was said.
+        let mut said = None;
+        for (k, agent) in people.agents.iter().enumerate() {
+            let id = AgentId(k as u32);
+            let Some(span) = written(&people.places, id) else { continue };
+            if said == Some(span) {
+                continue;
+            }
+            let comes = people.coming.contains(&id);
+            let wrong = match &agent.start.position {
+                Position::Point(p) => {
+                    let key = ((p.x / ONE_POINT).round() as i64, (p.y / ONE_POINT).round() as i64);
+                    let first = if comes { id } else { *points.entry(key).or_insert(id) };
+                    self.beside_barriers(agent, *p, comes, &barriers, span).or_else(|| {
+                        let other = &people.agents[first.0 as usize];
+                        (first != id).then(|| together(other, agent, written(&people.places, first), span))
+                    })
+                }
+                // All of a declaration start alike.
+                Position::Within(_) | Position::Near { .. } if id != first_of(&people.places, id) => None,
+                Position::Within(shape) => without_room(agent, shape, &barriers, span),
+                Position::Near { agent: anchor, within } => {
+                    let other = &people.agents[anchor.0 as usize];
+                    too_near(agent, other, *within, span).or_else(|| match other.start.position {
+                        Position::Point(centre) => {
+                            let disc = Shape::Circle { centre, radius: *within };
+                            without_room(agent, &disc, &barriers, span)
+                        }
+                        _ => None,
+                    })
+                }
+            };
+            if let Position::Near { agent: anchor, within } = agent.start.position
+                && !comes
+            {
+                near.entry(anchor).or_default().push((id, within));
+            }
+            if let Some(error) = wrong {
+                self.note(error);
+                said = Some(span);
+            }
+        }
+        for (anchor, members) in near {
+            self.crowded_around(people, anchor, &members);
+        }
+    }
+
+    /// In an obstacle, on a wall, or, for who must touch nothing, beside one.
+    fn beside_barriers(
+        &self,
+        agent: &Agent,
+        p: Vec2,
+        comes: bool,
+        barriers: &[Solid<'_>],
+        span: Span,
+    ) -> Option<Diagnostic> {
+        let (name, radius) = (&agent.name, least_radius(agent));
+        let (barrier, distance) = nearest(barriers, p, if comes { radius } else { ONE_POINT })?;
+        let (article, what) = match barrier.obstacle {
+            Obstacle::Wall(_) => ("on", "wall"),
+            Obstacle::Solid(_) if distance < 0.0 => ("inside", "obstacle"),
+            Obstacle::Solid(_) => ("on the rim of", "obstacle"),
+        };
+        let called = match barrier.name.as_str() {
+            "" if what == "wall" => "a wall".to_owned(),
+            "" => "an obstacle".to_owned(),
+            known => format!("the {what} `{known}`"),
+        };
+        let error = if distance <= ONE_POINT {
+            Diagnostic::error("E0409", span, format!("`{name}` starts {article} {called}"))
+                .hint("nobody can stand there: move the start or the barrier")
+        } else if distance < radius {
+            let text = format!(
+                "nobody finds room to come in here: {called} is {distance:.3} m away, and `{name}` has a radius of at \
+                 least {radius:.3} m"
+            );
+            Diagnostic::error("E0801", span, text).hint("people of a source come in where they touch nothing")
+        } else {
+            return None;
+        };
+        let declared = self.scopes[0].get(&barrier.name);
+        Some(match declared {
+            Some(entry) if matches!(entry.meaning, Meaning::Barrier(_)) => {
+                error.related(entry.span, "declared here")
+            }
+            _ => error,
+        })
+    }
+
+    /// More around somebody than fit.
+    fn crowded_around(&mut self, people: &People, anchor: AgentId, members: &[(AgentId, f64)]) {
+        let centre = &people.agents[anchor.0 as usize];
+        let mut distances: Vec<f64> = members.iter().map(|(_, within)| *within).collect();
+        distances.sort_by(f64::total_cmp);
+        distances.dedup();
+        for within in distances {
+            let mut squares = least_radius(centre) * least_radius(centre);
+            let (mut widest, mut count, mut last) = (0.0, 0usize, None);
+            for (id, _) in members.iter().filter(|(_, reach)| *reach <= within) {
+                let radius = least_radius(&people.agents[id.0 as usize]);
+                squares += radius * radius;
+                widest = if radius > widest { radius } else { widest };
+                count += 1;
+                last = Some(*id);
+            }
+            let room = JAMMED * (within + widest) * (within + widest);
+            let Some(span) = last.and_then(|id| written(&people.places, id)) else { continue };
+            // One alone was looked at already.
+            if squares > room && count > 1 {
+                let text = format!(
+                    "{count} people cannot start within {within} m of `{}`: they fill at least {:.1} m^2, and there is room for {:.1} m^2",
+                    centre.name,
+                    std::f64::consts::PI * squares,
+                    std::f64::consts::PI * room
+                );
+                self.note(
+                    Diagnostic::error("E0801", span, text)
+                        .hint("fewer people, a larger distance, or smaller radii"),
+                );
+                return;
+            }
+        }
+    }
+}
+
+/// Two at one point.
+fn together(first: &Agent, second: &Agent, other: Option<Span>, span: Span) -> Diagnostic {
+    let text = format!("`{}` and `{}` start at the same point", first.name, second.name);
+    let error = Diagnostic::error("E0409", span, text);
+    match other {
+        Some(other) if other != span => error
+            .related(other, "taken here")
+            .hint("bodies that overlap shrink until they touch, these cannot"),
+        _ => error.hint("give each a place of its own, or choose by chance: `at = uniform in …`"),
+    }
+}
+
+/// A shape that barriers fill.
+fn without_room(agent: &Agent, shape: &Shape, barriers: &[Solid<'_>], span: Span) -> Option<Diagnostic> {
+    let radius = least_radius(agent);
+    if barriers.is_empty() || has_room(shape, radius, barriers) {
+        return None;
+    }
+    let text = format!(
+        "`{}` finds no free place here: walls and obstacles leave no room for a radius of at least {radius:.3} m",
+        agent.name
+    );
+    Some(Diagnostic::error("E0801", span, text).hint("a larger shape to start from, or smaller radii"))
+}
+
+/// Two bodies that are larger than the distance at which they are to be.
+fn too_near(agent: &Agent, anchor: &Agent, within: f64, span: Span) -> Option<Diagnostic> {
+    let sum = least_radius(agent) + least_radius(anchor);
+    if sum <= within {
+        return None;
+    }
+    let text = format!(
+        "`{}` cannot start within {within} m of `{}`: their bodies touch at {sum:.3} m or more",
+        agent.name, anchor.name
+    );
+    Some(Diagnostic::error("E0801", span, text).hint("the distance is that of their middles"))
+}
+
+/// The first of the people of a declaration.
+fn first_of(places: &[(AgentId, Span)], agent: AgentId) -> AgentId {
+    let after = places.partition_point(|(first, _)| *first <= agent);
+    after.checked_sub(1).and_then(|at| places.get(at)).map_or(agent, |(first, _)| *first)
+}

@@ -1,0 +1,54 @@
+//! The cap of jumps, made small.
+
+use super::*;
+use crate::compile::{Files, Input, compile};
+use crate::engine::budget::Budget;
+use crate::engine::cell::Reading;
+use crate::engine::jumper::Jumper;
+use crate::syntax::parse::{parse_properties, parse_scenario};
+use crate::syntax::source::{Source, SourceId};
+
+const RESTLESS: &str = r#"scenario "Restless"
+horizon = 10 s
+process calm { var n: 0 .. 9 = 0
+ when n < 9 at 0.1 /s -> n = n + 1 }
+process blinker[2] { var on = false
+ when !on at 1500 /s -> on = true
+ when on at 1500 /s -> on = false }
+"#;
+
+fn subject(question: &str) -> Subject {
+    let sources = [Source::new(SourceId(0), "m.scn", RESTLESS), Source::new(SourceId(1), "p.bltl", question)];
+    let (scenario, _) = parse_scenario(&sources[0]);
+    let (properties, _) = parse_properties(&sources[1]);
+    let input = Input {
+        sources: &sources,
+        scenario: &scenario,
+        properties: &[properties],
+        files: &Files::default(),
+        settings: &[],
+    };
+    let (study, faults) = compile(&input);
+    Subject::new(&study.unwrap_or_else(|| panic!("{faults:?}")).worlds[0])
+}
+
+#[test]
+fn a_trial_of_too_many_jumps_is_unresolved_and_the_process_is_named() {
+    let mut subject = subject("estimate P(F (calm.n == 9)) within 0.1\n");
+    assert_eq!(subject.most_jumps, 1 << 26);
+    subject.most_jumps = 500;
+    let mut jumper = Jumper::new(&subject, &[0]).unwrap();
+    let mut items = Item::run(0, 3).into_iter().enumerate();
+    let finished = jumper.run(&subject, 7, &mut || items.next(), &Budget::new(u64::MAX, None));
+    assert_eq!(finished.cells.len(), 3);
+    for cell in &finished.cells {
+        assert_eq!((cell.reading, cell.steps), (Reading::Unresolved, 500));
+    }
+    let item = Item { index: 0, advice: None };
+    let words = unresolved(&subject, 0, item, 7);
+    assert!(words.contains("500 times by 0.") && words.contains("most of them of `blinker["), "{words}");
+    assert!(words.contains("at a rate of 1500 /s"), "{words}");
+    // Enough jumps: nobody is to blame.
+    subject.most_jumps = 100_000;
+    assert_eq!(unresolved(&subject, 0, item, 7), "");
+}

@@ -1,0 +1,165 @@
+//! Bodies in contact: the fast force, advanced in sub-steps.
+//!
+//! Where two bodies (or a body and a wall) overlap by g > 0, compression k1 g pushes them apart and
+//! sliding friction k2 g slows their relative tangential velocity (Helbing, Farkas, Vicsek 2000;
+//! Given-Wilson et al. 2017, equations (4) to (6), each term once). Both are stiff: friction relaxes
+//! within milliseconds. So the drift of a step is not a straight line for such bodies but the flow of
+//! contact alone (`flow`; reversible multiple time steps, Tuckerman, Berne, Martyna 1992).
+//!
+//! The forces list who may touch whom within a step, lane by lane. Where something then can touch
+//! within a drift, the lane's candidates are gathered (`throng`), and all bodies that hang together by
+//! candidates with a pair that can touch move in sub-steps.
+//!
+//! Everything here looks at one lane at a time: which bodies take sub-steps, how many, and in what order
+//! depends on that lane alone.
+
+mod flow;
+mod overlap;
+#[cfg(test)]
+mod plain;
+mod throng;
+
+use super::program::Program;
+use super::state::{Slot, State};
+use crate::base::geometry::Vec2;
+use crate::base::lanes::{LANES, Lanes, Mask};
+use fearless_simd::Simd;
+use flow::flow;
+use throng::Throng;
+
+/// Candidates of contact of each lane, and room to work.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Contacts {
+    candidates: [Candidates; LANES],
+    /// Lanes that have any.
+    listed: Mask,
+    /// The same, gathered; up to date in these lanes.
+    throngs: [Throng; LANES],
+    gathered: Mask,
+}
+
+/// Who may touch what within a step, in one lane.
+#[derive(Clone, Debug, Default)]
+struct Candidates {
+    pairs: Vec<(u32, u32)>,
+    /// An agent and a surface.
+    walls: Vec<(u32, u32)>,
+}
+
+impl Contacts {
+    /// Forgets all candidates.
+    pub(super) fn clear(&mut self) {
+        for lane in self.listed.iter() {
+            self.candidates[lane].pairs.clear();
+            self.candidates[lane].walls.clear();
+        }
+        self.listed = Mask::NONE;
+        self.gathered = Mask::NONE;
+    }
+
+    /// Whether there is no candidate in any lane.
+    pub(super) fn is_empty(&self) -> bool {
+        self.listed.is_empty()
+    }
+
+    /// Agents `i` and `j` may touch within a step in these lanes.
+    #[inline]
+    pub(super) fn push_pair(&mut self, i: u32, j: u32, lanes: Mask) {
+        self.listed |= lanes;
+        for lane in lanes.iter() {
+            self.candidates[lane].pairs.push((i, j));
+        }
+    }
+
+    /// Agent `i` may touch surface `surface` within a step in these lanes.
+    #[inline]
+    pub(super) fn push_wall(&mut self, i: u32, surface: u32, lanes: Mask) {
+        self.listed |= lanes;
+        for lane in lanes.iter() {
+            self.candidates[lane].walls.push((i, surface));
+        }
+    }
+
+    /// Puts the candidates of the only trial into ascending order: they were found in an order that
+    /// depends on the width of the machine's vectors.
+    pub(super) fn arrange(&mut self) {
+        self.candidates[0].pairs.sort_unstable();
+        self.candidates[0].walls.sort_unstable();
+    }
+
+    /// Moves, over `h` seconds, all bodies that touch something or may be touched by someone who does,
+    /// and marks them in `moved`. All others are free: the caller drifts them. Candidates and the
+    /// parameters of bodies are the same in all calls between two of `clear`.
+    #[inline(always)]
+    pub(super) fn advance<S: Simd>(
+        &mut self,
+        simd: S,
+        program: &Program,
+        state: &mut State,
+        moved: &mut [Mask],
+        h: f64,
+    ) {
+        for lane in (state.occupied & self.listed).iter() {
+            let candidates = &self.candidates[lane];
+            let throng = &mut self.throngs[lane];
+            if !self.gathered.has(lane) {
+                if !candidates.can_touch(program, state, lane, h) {
+                    continue;
+                }
+                throng.gather(program, state, candidates, lane);
+                self.gathered |= Mask::lane(lane);
+            }
+            if throng.heat(program, state, h) {
+                flow(simd, program, throng, h);
+                throng.hand_back(state, moved);
+            }
+        }
+    }
+}
+
+impl Candidates {
+    /// Whether anything in the lane can touch within `h` seconds.
+    fn can_touch(&self, program: &Program, state: &State, lane: usize, h: f64) -> bool {
+        let place = |slot| (at(&state.x, &state.y, slot), at(&state.vx, &state.vy, slot));
+        let radius = |slot: Slot| state.radius[slot.block].0[slot.lane];
+        let here = |slot: Slot| state.present[slot.block].has(slot.lane);
+        let pair = |&(i, j): &(u32, u32)| {
+            let (a, b) = (state.slot(i as usize, lane), state.slot(j as usize, lane));
+            here(a) && here(b) && within_reach(radius(a) + radius(b), place(a), place(b), h)
+        };
+        let wall = |&(i, surface): &(u32, u32)| {
+            let a = state.slot(i as usize, lane);
+            here(a) && within_reach_of_surface(program, surface, radius(a), place(a), h)
+        };
+        self.pairs.iter().any(pair) || self.walls.iter().any(wall)
+    }
+}
+
+/// Whether two bodies with these places and velocities, which touch at a distance of `touch`, can do so
+/// within `h` seconds.
+#[inline(always)]
+fn within_reach(touch: f64, (x, v): (Vec2, Vec2), (other_x, other_v): (Vec2, Vec2), h: f64) -> bool {
+    let (d, v) = (x - other_x, v - other_v);
+    let reach = touch + length(v) * h;
+    d.dot(&d) < reach * reach
+}
+
+/// Whether a body of some radius can touch a surface within `h` seconds.
+fn within_reach_of_surface(
+    program: &Program,
+    surface: u32,
+    radius: f64,
+    (x, v): (Vec2, Vec2),
+    h: f64,
+) -> bool {
+    let (_, distance) = program.forces.surfaces[surface as usize].nearest_to(x);
+    distance < radius + length(v) * h
+}
+
+fn at(x: &[Lanes], y: &[Lanes], slot: Slot) -> Vec2 {
+    Vec2::new(x[slot.block].0[slot.lane], y[slot.block].0[slot.lane])
+}
+
+fn length(v: Vec2) -> f64 {
+    v.dot(&v).sqrt()
+}

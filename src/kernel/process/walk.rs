@@ -1,0 +1,160 @@
+//! Many trials on a chain side by side, all at the same tick.
+//!
+//! Those that have ended are taken out and the others move up, so no lane is idle; and the numbers of all of them are
+//! drawn in one go, before anybody moves.
+
+use super::chain::Chain;
+use super::draws::{Draw, RoundKeys, round_keys};
+use crate::base::lanes::{LANES, Lanes};
+use fearless_simd::{Simd, dispatch};
+
+/// The lanes of a block.
+const SLOTS: [u32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7];
+
+/// Trials of a chain side by side, eight to a block. Places beyond the last trial walk on somewhere.
+#[derive(Clone, Debug)]
+pub struct Walk {
+    /// How many trials are left.
+    len: usize,
+    /// Steps made by each of them.
+    tick: u64,
+    /// Their indices.
+    trials: Vec<[u64; LANES]>,
+    states: Vec<[u32; LANES]>,
+    /// Their numbers in the list that began.
+    slots: Vec<[u32; LANES]>,
+    /// Number and state of those taken out last.
+    sifted: Vec<(u32, u32)>,
+    /// Room for the next states, and for one number or branch of each trial.
+    next: Vec<[u32; LANES]>,
+    numbers: Vec<Lanes>,
+    branches: Vec<[u64; LANES]>,
+    keys: RoundKeys,
+}
+
+impl Chain {
+    /// A walk without trials.
+    pub fn walk(&self, seed: u64) -> Walk {
+        Walk {
+            len: 0,
+            tick: 0,
+            trials: Vec::new(),
+            states: Vec::new(),
+            slots: Vec::new(),
+            sifted: Vec::new(),
+            next: Vec::new(),
+            numbers: Vec::new(),
+            branches: Vec::new(),
+            keys: round_keys(seed),
+        }
+    }
+
+    /// The trials with these indices begin; those of before are gone.
+    pub fn begin(&self, walk: &mut Walk, trials: impl ExactSizeIterator<Item = u64>) {
+        let blocks = trials.len().div_ceil(LANES);
+        (walk.len, walk.tick) = (trials.len(), 0);
+        walk.trials.resize(blocks, [0; LANES]);
+        walk.states.clear();
+        walk.states.resize(blocks, [self.initial; LANES]);
+        walk.slots.clear();
+        walk.slots.extend((0..blocks as u32).map(|block| SLOTS.map(|lane| block * LANES as u32 + lane)));
+        walk.sifted.resize(walk.len, (0, 0));
+        walk.next.resize(blocks, [self.initial; LANES]);
+        walk.numbers.resize(blocks, Lanes::ZERO);
+        walk.branches.resize(blocks, [0; LANES]);
+        for (place, trial) in walk.trials.as_flattened_mut().iter_mut().zip(trials) {
+            *place = trial;
+        }
+    }
+
+    /// One step of all trials.
+    #[inline]
+    pub fn step(&self, walk: &mut Walk) {
+        dispatch!(self.level, simd => advance(simd, self, walk));
+        walk.tick += 1;
+    }
+}
+
+impl Walk {
+    /// How many trials are left.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether no trial is left.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Steps made by each trial.
+    pub fn tick(&self) -> u64 {
+        self.tick
+    }
+
+    /// Takes out the trials whose states are of a class that has a bit of `watch`; how many. The others keep their
+    /// order.
+    #[inline]
+    pub fn sift(&mut self, classes: &[u8], watch: u8) -> usize {
+        let all = self.len;
+        let trials = &mut self.trials.as_flattened_mut()[..all];
+        let states = &mut self.states.as_flattened_mut()[..all];
+        let slots = &mut self.slots.as_flattened_mut()[..all];
+        let sifted = &mut self.sifted[..all];
+        let mut kept = 0;
+        // Each is written to the next free place of both lists, and one of them goes on: no jump depends on chance.
+        for place in 0..all {
+            let (trial, state, slot) = (trials[place], states[place], slots[place]);
+            sifted[place - kept] = (slot, state);
+            (trials[kept], states[kept], slots[kept]) = (trial, state, slot);
+            kept += usize::from(classes[state as usize] & watch == 0);
+        }
+        self.len = kept;
+        all - kept
+    }
+
+    /// The number in the list that began, and the state, of one of those taken out last.
+    pub fn sifted(&self, k: usize) -> (u32, u32) {
+        self.sifted[k]
+    }
+
+    /// A trial that was taken out goes on: its number in the list, its state and its index.
+    pub fn put_back(&mut self, (slot, state): (u32, u32), trial: u64) {
+        let place = self.len;
+        self.trials.as_flattened_mut()[place] = trial;
+        self.states.as_flattened_mut()[place] = state;
+        self.slots.as_flattened_mut()[place] = slot;
+        self.len += 1;
+    }
+}
+
+#[inline(always)]
+fn advance<S: Simd>(simd: S, chain: &Chain, walk: &mut Walk) {
+    let blocks = walk.len.div_ceil(LANES);
+    let Walk { len, tick, trials, states, next, numbers, branches, keys, .. } = walk;
+    let (old, trials) = (&states[..blocks], &trials[..blocks]);
+    let (next, numbers, branches) = (&mut next[..blocks], &mut numbers[..blocks], &mut branches[..blocks]);
+    next.copy_from_slice(old);
+    for steps in &chain.steps {
+        // Where no trial needs a number, none is drawn: numbers have addresses, none is used up.
+        if old.as_flattened()[..*len].iter().any(|&state| steps.open[state as usize]) {
+            let draw = Draw { number: *tick, word: steps.word, keys };
+            if let Some(ends) = &steps.common {
+                // Compiled for a coin and for a choice of four.
+                match **ends {
+                    [half] => draw.branch(simd, trials, &[half], branches),
+                    [a, b, c] => draw.branch(simd, trials, &[a, b, c], branches),
+                    ref ends => draw.branch(simd, trials, ends, branches),
+                }
+                steps.take(old, next, branches);
+            } else {
+                draw.uniform(simd, trials, numbers);
+                steps.apply(steps.most, old, next, numbers);
+            }
+        } else {
+            for (state, next) in old.as_flattened().iter().zip(next.as_flattened_mut()) {
+                *next = next.wrapping_add_signed(steps.moves[*state as usize * steps.most]);
+            }
+        }
+    }
+    std::mem::swap(states, &mut walk.next);
+}

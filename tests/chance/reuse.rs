@@ -1,0 +1,123 @@
+//! Places of sources that are used again: few places last for long, everybody is a person of their own, and what follows
+//! single people says that it knows no more.
+
+use crate::{Batch, HEAD, answered, compiled, scenario};
+use smc::kernel::Layout;
+
+/// Somebody comes each `every` at 6 m, with own parameters, waits a drawn time on the way, and leaves at 2 m.
+fn doors(every: &str, limit: &str) -> String {
+    format!(
+        "{HEAD}behaviour phone {{ state a {{ after exponential(1 s) -> b }} state b {{ speed = 0.6 * speed  after 1 s -> a }} }}\n\
+         source doors: adult with phone {{ at = uniform in rect (5, 0) .. (6, 30)  every = {every}\n\
+         route = (4, 10) -> wait uniform(0 s, 1 s) -> west then leave  {limit} }}"
+    )
+}
+
+/// The same, but leaving soon: the goal is near.
+fn passing(every: &str, limit: &str) -> String {
+    doors(every, limit).replace("(4, 10) -> wait uniform(0 s, 1 s) -> west", "wait uniform(0 s, 1 s) -> near")
+}
+
+#[test]
+fn a_source_goes_on_for_an_hour_with_few_places() {
+    let text = passing("exponential(4 s)", "limit = 12").replace("horizon = 60 s", "horizon = 1 h");
+    let study = compiled(
+        &text,
+        "estimate P(G (count(a in doors) <= 12)), P(F[59 min, 60 min] (count(a in doors) >= 1)), \
+         P(F<=1 h (doors[3] in near)), P(F<=2 s (count(a in doors: F<=1 s (a in near)) >= 1)), \
+         P(F<=1 h (count(a in doors: F<=1 s (a in west)) >= 1)) by fixed(trials = 3)",
+    );
+    let run = answered(&study, 0, 1, 1_000);
+    let counts: Vec<_> = run.results.iter().map(|result| result.counts).collect();
+    // Nine hundred come; never more than twelve at once.
+    assert_eq!((counts[0].successes, counts[0].unresolved), (3, 0), "{:?}", run.results[0]);
+    assert_eq!((counts[1].successes, counts[1].unresolved), (3, 0));
+    // What is decided before a place is used again counts.
+    assert_eq!((counts[2].successes, counts[2].unresolved), (3, 0), "{:?}", run.results[2]);
+    assert_eq!(counts[3].unresolved, 0);
+    // What would follow people for an hour does not know.
+    assert_eq!(counts[4].unresolved, 3, "{:?}", run.results[4]);
+    let warning = &run.results[4].warnings[0];
+    assert!(
+        warning.contains("more than 12 people came by `doors`, and this follows single ones of them"),
+        "{warning}"
+    );
+}
+
+#[test]
+fn with_too_few_places_for_those_at_once_a_trial_is_unresolved() {
+    let text = doors("2 s", "limit = 5");
+    let study = compiled(&text, "estimate P(F (count(a in doors) > 90)) by fixed(trials = 3)");
+    let run = answered(&study, 0, 1, 1_000);
+    assert_eq!(run.results[0].counts.unresolved, 3);
+    let warning = &run.results[0].warnings[0];
+    assert!(warning.contains("more than 5 people") && warning.contains("`doors`"), "{warning}");
+}
+
+#[test]
+fn the_numbers_of_a_person_do_not_depend_on_the_place() {
+    // The n-th arrival enters with the same parameters at the same place and time, wherever it is kept.
+    for layout in [Layout::Trials, Layout::Agents] {
+        let seen = |limit: &str| {
+            let scenario = scenario(&passing("exponential(4 s)", limit));
+            let mut batch = Batch::new(&scenario, layout, 0);
+            let mut before = vec![false; scenario.agents.len()];
+            let mut all: Vec<(u32, u32, u64, u64, u64, u64)> = Vec::new();
+            let mut reused = false;
+            for step in 0..3_000u32 {
+                batch.step();
+                let s = &batch.state;
+                for k in 0..scenario.agents.len() {
+                    let here = batch.present(k, 0);
+                    let later = s.queues.later(k, 0);
+                    reused |= later > 0;
+                    if here && (!before[k] || all.iter().all(|(n, ..)| *n != k as u32 + later)) {
+                        let slot = s.slot(k, 0);
+                        let of = |field: &[smc::base::lanes::Lanes]| field[slot.block].0[slot.lane].to_bits();
+                        all.push((k as u32 + later, step, of(&s.mass), of(&s.radius), of(&s.x), of(&s.y)));
+                    }
+                    before[k] = here;
+                }
+            }
+            (all, reused)
+        };
+        let (wide, never) = seen("limit = 40");
+        let (narrow, often) = seen("limit = 6");
+        assert!(!never && often, "{layout:?}");
+        assert!(wide.len() >= 10, "{}", wide.len());
+        // The order of arrival is that of the numbers. People who meet push each other in another order of sums, but who
+        // enters does so as drawn.
+        assert_eq!(wide, narrow, "{layout:?}");
+        assert!(wide.windows(2).all(|pair| pair[0].0 + 1 == pair[1].0));
+    }
+}
+
+#[test]
+fn people_are_named_by_the_number_of_their_arrival() {
+    let text =
+        passing("5 s", "limit = 3").replace("behaviour phone", "behaviour unused").replace(" with phone", "");
+    let study = compiled(
+        &text,
+        "estimate P(F[50 s, 52 s] (count(a in doors: speed(a) > 0.2 m/s) >= 1)), P(F[51 s, 52 s] (exists a in doors: speed(a) > 0.2 m/s)) by fixed(trials = 2)",
+    );
+    let run = answered(&study, 0, 1, 1_000);
+    let witness = &run.results[1].witnesses[0];
+    assert!(witness.what.contains("doors[10]"), "{}", witness.what);
+}
+
+#[test]
+fn where_behaviours_speak_of_single_ones_places_are_used_once() {
+    let text =
+        passing("5 s", "limit = 12").replace("after 1 s -> a", "when distance(self, doors[2]) > 1 m -> a");
+    let one = scenario(&text);
+    let mut batch = Batch::new(&one, Layout::Trials, 0);
+    for _ in 0..2_900 {
+        batch.step();
+    }
+    assert!(batch.state.queues.reused.is_empty() && batch.state.queues.full.is_empty());
+    let text = text.replace("limit = 12", "limit = 4");
+    let study = compiled(&text, "estimate P(F (count(a in doors) > 4)) by fixed(trials = 2)");
+    let run = answered(&study, 0, 1, 1_000);
+    assert_eq!(run.results[0].counts.unresolved, 2);
+    assert!(run.results[0].warnings[0].contains("more than 4 people came by `doors`"));
+}
