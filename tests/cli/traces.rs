@@ -179,7 +179,7 @@ fn without_people_every_step_and_every_jump_is_a_row() {
             }
             None => {
                 assert_eq!(decided, 10.0);
-                assert_eq!(witness["what"], "`queue.n == 5` never held");
+                assert_eq!(witness["what"], "`queue.n == 5` was never true");
             }
         }
     }
