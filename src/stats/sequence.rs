@@ -22,7 +22,7 @@ fn inside(counts: Counts, ln_mixture: f64, ln_delta: f64, m: f64) -> bool {
     let (successes, failures) =
         (times_ln(counts.successes, math::ln(m)), times_ln(counts.failures, math::ln_1p(-m)));
     let slack = math::at_least(1e-12, -2e-15 * (ln_mixture + successes + failures));
-    ln_mixture - successes - failures < slack - ln_delta
+    -successes - failures < -ln_delta - ln_mixture + slack
 }
 
 /// Whether `m`, in (0, 1), lies in the interval: the same as the interval's ends say, without finding them.
