@@ -102,7 +102,10 @@ mod tests {
                         bisected(most, |gap| shape(gap, root)).to_bits(),
                         "{k} {root}"
                     );
-                    assert!(calls <= if k < 2 { STEPS } else { 62 }, "{calls} calls of {k} for {root} of {most}");
+                    assert!(
+                        calls <= if k < 2 { STEPS } else { 62 },
+                        "{calls} calls of {k} for {root} of {most}"
+                    );
                 }
             }
         }
