@@ -29,12 +29,12 @@ agent wild: adult {
 }
 ";
 
-const GAMBLER: &str = r#"horizon = 400 steps
+const GAMBLER: &str = "horizon = 400 steps
 process gambler {
   var wealth: 0 .. 14 = 2
   when wealth > 0 & wealth < 14 -> 0.3: wealth = wealth + 1 | 0.7: wealth = wealth - 1
 }
-"#;
+";
 
 fn run(model: &str, properties: &str, words: &[&str]) -> Vec<Value> {
     let place = Place::new(&[("a.scn", model), ("a.bltl", properties)]);

@@ -3,6 +3,7 @@
 //! exceeded by far.
 
 #![allow(dead_code, reason = "the program is called from other tests too")]
+#![allow(clippy::disallowed_methods, reason = "tests read files and call programs")]
 
 #[path = "cli/program.rs"]
 mod program;

@@ -107,7 +107,7 @@ impl Leaper {
                 let (slot, mut left) = open[place];
                 // A state that lasts no time is as if it had not been.
                 let judged = stay.end > stay.since;
-                if exhausted | (judged & ((stirs[stay.state as usize] & left != 0) | (stay.end > quiet))) {
+                if exhausted || judged && (stirs[stay.state as usize] & left != 0 || stay.end > quiet) {
                     let jumps = before + u64::from(stay.end < f64::INFINITY);
                     let found = Found { sorts: &sorts[stay.state as usize * width..][..width], stay, jumps };
                     let row = &mut block.cells[slot as usize * width..][..width];
@@ -117,7 +117,7 @@ impl Leaper {
                     }
                 }
                 open[kept] = (slot, left);
-                kept += usize::from((left != 0) & (stay.end < f64::INFINITY));
+                kept += usize::from(left != 0 && stay.end < f64::INFINITY);
                 left != 0
             });
         }

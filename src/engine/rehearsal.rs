@@ -53,7 +53,7 @@ impl Rehearsal {
     /// The rows that a forecast is made from: the first 16 trials, or where these did not finish in time, the first 8, 4, 2
     /// or 1. What the clock lets through beyond these leaves no trace in the number of trials.
     pub(super) fn seen(&self) -> impl Iterator<Item = &[Cell]> {
-        let whole = self.cells.rows().take_while(|row| row.is_some()).count();
+        let whole = self.cells.rows().take_while(Option::is_some).count();
         let whole = whole.min(self.items.len());
         let seen = if whole == self.items.len() || whole >= SEEN {
             whole.min(SEEN)

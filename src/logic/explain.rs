@@ -125,9 +125,13 @@ impl Demand<'_> {
                     // One part is enough, or all are needed.
                     if (value == TRUE) == *any {
                         let part = parts.iter().find(|part| offline.look(**part, at) == value);
-                        part.into_iter().for_each(|part| self.ask(*part, at, at));
+                        if let Some(part) = part {
+                            self.ask(*part, at, at);
+                        }
                     } else {
-                        parts.iter().for_each(|part| self.ask(*part, at, at));
+                        for part in parts {
+                            self.ask(*part, at, at);
+                        }
                     }
                 }
             }

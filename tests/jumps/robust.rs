@@ -60,8 +60,7 @@ check P(robustness(F<=10 s (queue.n >= 5)) >= -2) >= 0.5
 check Q(0.5, robustness(F<=10 s (queue.n >= 5))) >= -3
 compare E(robustness(F<=10 s (queue.n >= 5))) in -5 .. 5 under far = 0 with far = 2
 ";
-    let model =
-        QUEUE.replace("process queue", "param far = 0\nprocess queue").replace("n = n + 1", "n = n + 1");
+    let model = QUEUE.replace("process queue", "param far = 0\nprocess queue");
     let run = answered(&compiled(&model, queries).unwrap_or_else(|error| panic!("{error}")), 3, 2);
     let of = |k: usize| &run.results[k];
     assert!(of(0).low <= mean && mean <= of(0).high, "{mean} {:?}", (of(0).low, of(0).high));

@@ -68,7 +68,7 @@ impl Plain<'_> {
                 (Some(x), Some(y)) => always(relation.holds(x, y)),
                 (None, Some(c)) => self.against(*relation, *x, c, at),
                 (Some(c), None) => self.against(relation.flipped(), *y, c, at),
-                _ => self.far(*relation, self.now(*x, at), self.now(*y, at)),
+                _ => Self::far(*relation, self.now(*x, at), self.now(*y, at)),
             },
             Node::Not(x) => not(self.margin(*x, at)),
             Node::And(parts) => worst(parts.iter().map(|x| self.margin(*x, at))),
@@ -108,7 +108,7 @@ impl Plain<'_> {
         }
     }
 
-    fn far(&self, relation: Relation, x: Option<f64>, y: Option<f64>) -> Ends {
+    fn far(relation: Relation, x: Option<f64>, y: Option<f64>) -> Ends {
         let (Some(x), Some(y)) = (x, y) else { return OPEN };
         let margin = match relation {
             Relation::Less | Relation::AtMost => y - x,
@@ -149,7 +149,7 @@ impl Plain<'_> {
                     Unequal => best([not(within(AtMost)), within(Less)].into_iter()),
                 }
             }
-            _ => self.far(relation, self.now(x, at), Some(c)),
+            _ => Self::far(relation, self.now(x, at), Some(c)),
         }
     }
 }
@@ -183,7 +183,8 @@ fn check(seed: u64, depth: u32, horizon: u64) -> Result<(), TestCaseError> {
         .map_err(|error| TestCaseError::fail(error.to_string()))?;
     for _ in 0..3 {
         let jumps = draw.jumps(0, horizon);
-        (robustness.start(), monitor.start());
+        robustness.start();
+        monitor.start();
         let mut met: Option<Reading> = None;
         for (k, jump) in jumps.iter().enumerate() {
             met = monitor.jump(jump.at as f64, &jump.atoms, &jump.signals);

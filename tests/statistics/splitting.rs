@@ -253,7 +253,8 @@ fn floors(repetitions: u32) {
     use super::tally::uniform;
     use smc::stats::splitting::floor;
     // Laws of mean 1: nearly always the same, sometimes nothing; seldom much; a product of many factors.
-    let laws: [fn(&dyn Fn(u32) -> f64) -> f64; 3] = [
+    type Law = fn(&dyn Fn(u32) -> f64) -> f64;
+    let laws: [Law; 3] = [
         |u| if u(0) < 0.95 { 1.0 / 0.95 } else { 0.0 },
         |u| if u(0) < 0.02 { 50.0 } else { 0.0 },
         |u| (0..12).map(|k| if u(k) < 0.5 { 1.5 } else { 0.5 }).product(),

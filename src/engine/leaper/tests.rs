@@ -65,7 +65,7 @@ fn formula() -> impl Strategy<Value = String> {
     let window = (0..4u8, 0..4u8, 0..3u8).prop_map(|(from, more, how)| match how {
         0 => String::new(),
         1 => format!("[{}.{from} s, {}.5 s]", from / 2, from / 2 + more.min(2)),
-        _ => format!("<={}.25 s", more),
+        _ => format!("<={more}.25 s"),
     });
     (state.clone(), state, window, 0..6u8).prop_map(|(x, y, w, how)| match how {
         0 => format!("F{w} {x}"),

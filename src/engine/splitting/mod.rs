@@ -137,9 +137,10 @@ fn run(
     // Where the clock chose their number, only what holds at all times holds.
     let of = if counts.trials < rule.plain { sequence::interval } else { clopper_pearson::interval };
     let interval = of(least, DISAGREEMENT).hull(of(most, DISAGREEMENT));
-    let bound = match counts.trials < rule.plain {
-        true => sequence::interval(most, rule.delta).high,
-        false => clopper_pearson::upper(most, rule.delta),
+    let bound = if counts.trials < rule.plain {
+        sequence::interval(most, rule.delta).high
+    } else {
+        clopper_pearson::upper(most, rule.delta)
     };
     let mut found = Found {
         plain,
@@ -170,12 +171,11 @@ fn run(
     Ok(found)
 }
 
+/// Flies the paths of some runs; whether all of them came to an end.
+type Fly<'f> = &'f mut dyn FnMut(&mut [Running], &mut Found) -> Result<bool, Fault>;
+
 /// All runs under one reading of lost paths; `None` where they did not come to an end. `fly` finishes some of them.
-fn runs(
-    question: &Question<'_>,
-    found: &mut Found,
-    fly: &mut dyn FnMut(&mut [Running], &mut Found) -> Result<bool, Fault>,
-) -> Result<Option<Spread>, Fault> {
+fn runs(question: &Question<'_>, found: &mut Found, fly: Fly<'_>) -> Result<Option<Spread>, Fault> {
     let rule = question.rule;
     let (replicas, seed) = (rule.replicas as usize, question.seed);
     let mut levels = Vec::new();

@@ -197,7 +197,7 @@ impl Draw<'_> {
                 for &end in ends {
                     // The bits of the smallest double are those of 1; nothing is computed with it.
                     let passed = number.simd_ge(part.c(end)).select(part.c(f64::from_bits(1)), part.c(0.0));
-                    branch = branch + passed.to_bits();
+                    branch += passed.to_bits();
                 }
                 part.put_words(branch, out);
             }

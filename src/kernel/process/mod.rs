@@ -187,13 +187,13 @@ impl Processes {
         until: &[f64; LANES],
     ) -> Mask {
         let Some(timed) = &self.timed else { return Mask::NONE };
-        self.set_clocks(timed, layout, state, scratch);
+        Self::set_clocks(timed, layout, state, scratch);
         let lanes = state.occupied & !state.faulty;
         timed.ring(layout, state, &mut scratch.timed, lanes, until)
     }
 
     /// Sets the clocks of trials that have just begun.
-    fn set_clocks(&self, timed: &Timed, layout: Layout, state: &mut State, scratch: &mut Scratch) {
+    fn set_clocks(timed: &Timed, layout: Layout, state: &mut State, scratch: &mut Scratch) {
         let fresh = state.clocks.fresh & state.occupied;
         if !fresh.is_empty() {
             timed.look(layout, state, &mut scratch.timed, fresh);
@@ -211,7 +211,7 @@ impl Processes {
         (at, key): (f64, TrialKey),
     ) {
         if let Some(timed) = &self.timed {
-            self.set_clocks(timed, layout, state, scratch);
+            Self::set_clocks(timed, layout, state, scratch);
             state.keys[lane] = key;
             timed.renew(state, lane, at);
         }

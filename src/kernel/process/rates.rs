@@ -190,6 +190,7 @@ impl Rates {
 
     /// The ways of the race in a row: where the share of each ends in (0, 1], and the new values; `None` if there
     /// is an error among them.
+    #[allow(clippy::type_complexity, reason = "the same as those of a table of steps")]
     pub(super) fn outcomes(&self, row: usize) -> Option<Vec<(f64, Vec<(u32, f64)>)>> {
         let ways = self.ways.get(row * self.clocks)?;
         let blocks = &self.ends[ways.block as usize..(ways.block + ways.blocks) as usize];

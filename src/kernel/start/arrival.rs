@@ -158,8 +158,12 @@ impl Arrivals {
         let mut found = false;
         if !self.doors.is_empty() {
             let mut tell = |id: AgentId| found |= self.comes(id.0 as usize);
-            atoms.iter().for_each(|atom| atom.mentions(&mut tell));
-            signals.iter().for_each(|signal| signal.mentions(&mut tell));
+            for atom in atoms {
+                atom.mentions(&mut tell);
+            }
+            for signal in signals {
+                signal.mentions(&mut tell);
+            }
         }
         found
     }

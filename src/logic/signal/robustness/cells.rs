@@ -33,6 +33,7 @@ struct Margin {
 
 /// All cells; operands before their parents.
 #[derive(Clone, Debug)]
+#[allow(clippy::struct_field_names, reason = "they are the cells")]
 pub(super) struct Cells {
     cells: Vec<Margin>,
     root: Ref,
