@@ -117,3 +117,21 @@ fn a_budget_cuts_it_short_and_says_so() {
     let plain = &run(GAMBLER, properties, &["--max-trials", "300"])["results"][0];
     assert_eq!((&plain["stopped_by"], &plain["trials"]), (&"cap".into(), &300.into()));
 }
+
+/// A door through which the first one comes after a while.
+const DOOR: &str = r#"scenario "Door"
+horizon = 6 s
+step = 0.1 s
+kind person: sfm preset helbing2000 { noise = 0.2 m/s }
+source door: person { at = (0, 0)  velocity = (1, 0) m/s  every = uniform(1 s, 2 s)  route = (50, 0) }
+"#;
+
+#[test]
+fn a_mean_of_nobody_loses_no_path_where_nobody_asks_for_it() {
+    let fast = "F[3 s, 5 s] (mean(speed(a) for a in door) > 1.9 m/s)";
+    let properties = format!("estimate P({fast}) by splitting(replicas = 50, runs = 4, plain = 200)\n");
+    let result = &run(DOOR, &properties, &[])["results"][0];
+    assert_eq!(result["unresolved"], 0, "{result}");
+    assert!(!result["warnings"].to_string().contains("unresolved"), "{result}");
+    assert!(result["splitting"]["estimate"].as_f64().unwrap() > 0.0, "{result}");
+}

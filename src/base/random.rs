@@ -71,11 +71,14 @@ pub enum Purpose {
 pub struct TrialKey {
     /// Seed of the run; the key of the generator.
     pub seed: u64,
-    /// Index of the trial, below 2^48.
+    /// Index of the trial, below `MOST_TRIALS`.
     pub index: u64,
     /// Replica of splitting or replanning cycle; 0 for the trial itself.
     pub branch: u16,
 }
+
+/// Trials of a seed: an index has 48 bits of a counter.
+pub const MOST_TRIALS: u64 = 1 << 48;
 
 /// The stream of one entity of one trial for one purpose. Copying it is free; it holds no state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -255,5 +255,12 @@ pub(super) fn load(model: &Model, properties: &[String]) -> Inputs {
     if diagnostics.iter().any(|d| d.severity == Severity::Error) {
         study = None;
     }
+    if let (Some(study), Some(last)) = (&study, properties.last())
+        && study.queries.is_empty()
+        && let Some(source) = sources.iter().rfind(|source| source.name == *last)
+    {
+        let warning = Diagnostic::warning("W0602", Span::new(source.id, 0, 0), "nothing is asked");
+        diagnostics.push(warning.hint("add a query, as in `check P(safe) >= 0.9` or `estimate P(safe)`"));
+    }
     Inputs { sources, diagnostics, prints, study }
 }

@@ -4,7 +4,7 @@ use super::arguments::{Simulate, TableFormat};
 use super::inputs;
 use super::terminal::{Colors, say};
 use crate::base::geometry::Vec2;
-use crate::base::random::TrialKey;
+use crate::base::random::{MOST_TRIALS, TrialKey};
 use crate::base::tick::{Clock, Tick};
 use crate::compile::nearest::nearest;
 use crate::data::table::{
@@ -233,6 +233,10 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
     if arguments.every == 0 || arguments.trials == 0 {
         let option = if arguments.every == 0 { "--every" } else { "--trials" };
         say(&format!("error: `{option} 0` writes nothing; it takes a number from 1\n"));
+        return Exit::Wrong;
+    }
+    if arguments.trial.saturating_add(arguments.trials) > MOST_TRIALS {
+        say(&format!("error: the trials of a seed are numbered from 0 to {}\n", MOST_TRIALS - 1));
         return Exit::Wrong;
     }
     let inputs = inputs::load(&arguments.model, &[]);

@@ -126,6 +126,8 @@ pub(super) struct Elaborator<'a> {
     outermost: Span,
     /// Names that were expanded in vain: what is wrong with them was said.
     pub(super) broken: BTreeSet<(ScopeId, String)>,
+    /// Parts of the files that were not read to their end: what is wrong with them was said.
+    pub(super) cut: Vec<Span>,
     /// Whether the scenario has no clock that can be told; then errors of times say nothing.
     pub(super) timeless: bool,
     /// Nodes lowered so far.
@@ -169,6 +171,7 @@ impl<'a> Elaborator<'a> {
             depth: 0,
             outermost: Span::default(),
             broken: BTreeSet::new(),
+            cut: Vec::new(),
             timeless: false,
             nodes: 0,
         }
@@ -186,9 +189,19 @@ impl<'a> Elaborator<'a> {
         if self.timeless && matches!(diagnostic.code, "E0501" | "E0502" | "E0503" | "E0507" | "E0508") {
             return;
         }
+        if diagnostic.place.as_ref().is_some_and(|place| self.is_cut(place.span)) {
+            return;
+        }
         if !self.diagnostics.contains(&diagnostic) {
             self.diagnostics.push(diagnostic);
         }
+    }
+
+    /// Whether a place lies in a part that was not read to its end.
+    pub(super) fn is_cut(&self, place: Span) -> bool {
+        let holds =
+            |cut: &Span| cut.source == place.source && cut.start <= place.start && place.end <= cut.end;
+        self.cut.iter().any(holds)
     }
 
     /// Whether an error was found.
@@ -221,7 +234,15 @@ impl<'a> Elaborator<'a> {
             format!("expected {}, found {}", describe(expected), describe(found)),
         );
         if found.is_none() && !expected.is_none() {
-            error = error.hint(format!("write the unit, as in `{} {expected}`", self.text(span)));
+            let text = self.text(span);
+            // A unit belongs to a number or a point.
+            let is_number = text.ends_with(|c: char| c.is_ascii_digit() || c == '.' || c == ')')
+                && text.starts_with(|c: char| !c.is_alphabetic() && c != '_');
+            error = error.hint(if is_number {
+                format!("write the unit, as in `{text} {expected}`")
+            } else {
+                format!("write the unit where the number stands, or multiply: `{text} * 1 {expected}`")
+            });
         }
         self.report(error)
     }

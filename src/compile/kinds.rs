@@ -20,6 +20,11 @@ pub(super) fn parameter(name: &str) -> Option<usize> {
     PARAMETERS.iter().position(|(n, ..)| *n == name)
 }
 
+/// Some law of a parameter.
+fn any_law(parameter: &str) -> Option<Law> {
+    PRESETS.iter().find_map(|preset| law(preset.name, parameter))
+}
+
 impl Kind {
     /// The law of a parameter.
     pub(super) fn law(&self, name: &str) -> Option<&Law> {
@@ -134,11 +139,17 @@ impl Elaborator<'_> {
                 continue;
             };
             let (name, dimension, _) = PARAMETERS[index];
-            let Ok(law) = self.law(&field.value, dimension, locals) else { continue };
-            if let Some(reason) = out_of_range(name, &law) {
-                self.note(Diagnostic::error("E0405", value_span(&field.value), reason));
-                continue;
-            }
+            let law = match self.law(&field.value, dimension, locals) {
+                Ok(law) => match out_of_range(name, &law) {
+                    None => Ok(law),
+                    Some(reason) => {
+                        self.report(Diagnostic::error("E0405", value_span(&field.value), reason))
+                    }
+                },
+                Err(reported) => Err(reported),
+            };
+            // What was set wrongly is set: any value will do until it is set right.
+            let Some(law) = law.ok().or_else(|| any_law(name)) else { continue };
             if let Some(kind) = &mut kind {
                 kind.laws[index] = Some(law);
             }

@@ -33,6 +33,7 @@ impl<'a> Elaborator<'a> {
         this.measured = measured.to_vec();
         this.declare(scenario);
         this.declare_properties(properties);
+        this.set_aside(scenario, properties);
         let built = this.build(scenario, files).ok();
         (this, built)
     }
@@ -103,6 +104,18 @@ impl<'a> Elaborator<'a> {
             }
             self.scopes.push(scope);
         }
+    }
+
+    /// What names mean whose declarations were not read to their end is anybody's guess: no further error comes of them.
+    fn set_aside(&mut self, scenario: &ScenarioFile, properties: &[PropertyFile]) {
+        self.cut.extend(&scenario.cut);
+        self.cut.extend(properties.iter().flat_map(|file| &file.cut));
+        let mut broken = Vec::new();
+        for (scope, names) in self.scopes.iter().enumerate() {
+            let cut = names.entries().filter(|(_, entry)| self.is_cut(entry.span));
+            broken.extend(cut.map(|(name, _)| (scope, name.to_owned())));
+        }
+        self.broken.extend(broken);
     }
 
     fn build(&mut self, file: &'a ScenarioFile, files: &Files) -> Lowered<Scenario> {

@@ -34,6 +34,12 @@ impl Glimpse {
         }
     }
 
+    /// Adds truth values, so many of them true.
+    pub(super) fn count(&mut self, truths: u64, held: u64) {
+        self.truths += truths;
+        self.held += held;
+    }
+
     fn trials(&self) -> f64 {
         self.trials + self.truths as f64
     }
@@ -45,10 +51,7 @@ impl Glimpse {
     /// Adds what a cell reads, clipped to a range.
     pub(super) fn read(&mut self, cell: &Cell, (low, high): (f64, f64)) {
         match cell.reading {
-            Reading::Truth(held) => {
-                self.truths += 1;
-                self.held += u64::from(held);
-            }
+            Reading::Truth(held) => self.count(1, u64::from(held)),
             Reading::Value(value) => self.add(value.clamp(low, high)),
             Reading::Unresolved | Reading::Faulty => {}
         }

@@ -185,23 +185,27 @@ impl Inquiry<'_> {
                 break;
             }
         }
-        for (item, cell) in items[..consumed].iter().zip(cells) {
-            self.count(item.index, cell);
-        }
+        self.count(items[..consumed].iter().map(|item| item.index).zip(cells));
         let capped = self.tally.counts.trials >= most;
         Ok(if finished { Some(self.reason()) } else { capped.then_some(Stop::Cap) })
     }
 
-    #[inline(always)]
-    fn count(&mut self, index: u64, cell: &Cell) {
-        self.tally.add(index, cell, self.range);
-        if let (Ask::Check { threshold, at_least, or_equal, .. }, Reading::Value(value)) =
-            (&self.query.ask, cell.reading)
-        {
-            let beyond = if *at_least { value > *threshold } else { value < *threshold };
-            self.tally.side(index, beyond || (*or_equal && value == *threshold));
+    /// Counts trials with their indices.
+    fn count<'c>(&mut self, trials: impl Iterator<Item = (u64, &'c Cell)> + Clone) {
+        if let Some(held) = self.tally.add_truths(trials.clone()) {
+            self.glimpse.count(trials.count() as u64, held);
+            return;
         }
-        self.glimpse.read(cell, self.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY)));
+        for (index, cell) in trials {
+            self.tally.add(index, cell, self.range);
+            if let (Ask::Check { threshold, at_least, or_equal, .. }, Reading::Value(value)) =
+                (&self.query.ask, cell.reading)
+            {
+                let beyond = if *at_least { value > *threshold } else { value < *threshold };
+                self.tally.side(index, beyond || (*or_equal && value == *threshold));
+            }
+            self.glimpse.read(cell, self.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY)));
+        }
     }
 
     /// Why a finished procedure stopped.

@@ -24,8 +24,46 @@ pub(super) struct Tally {
 
 impl Tally {
     /// Keeps the first trial on each side of a threshold of a metric.
+    #[inline]
     pub(super) fn side(&mut self, index: u64, passing: bool) {
         self.first[usize::from(!passing)].get_or_insert(index);
+    }
+
+    /// Counts trials with their indices, if each says whether a formula held: the same as one by one, without a branch
+    /// that depends on chance. How many of them held.
+    pub(super) fn add_truths<'c>(
+        &mut self,
+        trials: impl Iterator<Item = (u64, &'c Cell)> + Clone,
+    ) -> Option<u64> {
+        if !matches!(trials.clone().next()?.1.reading, Reading::Truth(_)) {
+            return None;
+        }
+        let (mut all, mut truths, mut held) = (0, 0, 0);
+        let (mut steps, mut shrunk, mut triggered) = (0, 0, 0);
+        for (_, cell) in trials.clone() {
+            all += 1;
+            truths += u64::from(matches!(cell.reading, Reading::Truth(_)));
+            held += u64::from(cell.reading == Reading::Truth(true));
+            steps += cell.steps;
+            shrunk += u64::from(cell.shrunk);
+            triggered |= cell.triggered;
+        }
+        if truths < all {
+            return None;
+        }
+        self.counts.trials += all;
+        self.counts.successes += held;
+        self.counts.failures += all - held;
+        self.steps += steps;
+        self.shrunk += shrunk;
+        self.triggered |= triggered;
+        for (first, truth) in self.first.iter_mut().zip([true, false]) {
+            if first.is_none() {
+                let mut of_this = trials.clone().filter(|(_, cell)| cell.reading == Reading::Truth(truth));
+                *first = of_this.next().map(|(index, _)| index);
+            }
+        }
+        Some(held)
     }
 
     /// Counts a trial; `range` is that of an expectation.
@@ -60,5 +98,30 @@ impl Tally {
             }
         };
         self.first[place].get_or_insert(index);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn many_at_once_count_as_one_by_one() {
+        let cell = |k: u64| Cell {
+            reading: Reading::Truth(k % 5 == 3),
+            steps: 10 + k,
+            triggered: 1 << k,
+            shrunk: k.is_multiple_of(4),
+        };
+        let cells: Vec<Cell> = (0..9).map(cell).collect();
+        let trials = |from: usize, to: usize| (from as u64..).zip(&cells[from..to]);
+        let (mut one, mut many) = (Tally::default(), Tally::default());
+        trials(0, 9).for_each(|(index, cell)| one.add(index, cell, None));
+        assert_eq!(many.add_truths(trials(0, 2)), Some(0));
+        assert_eq!(many.add_truths(trials(2, 9)), Some(2));
+        assert_eq!(format!("{one:?}"), format!("{many:?}"));
+        let mixed = [cells[0], Cell::BLANK];
+        assert_eq!(many.add_truths((9..).zip(&mixed)), None);
+        assert_eq!(format!("{one:?}"), format!("{many:?}"));
     }
 }

@@ -169,6 +169,7 @@ fn calls_that_would_do_nothing_are_refused() {
     for (words, said) in [
         (&["simulate", "a.scn", "--every", "0"][..], "`--every 0` writes nothing"),
         (&["simulate", "a.scn", "--trials", "0"], "`--trials 0` writes nothing"),
+        (&["simulate", "a.scn", "--trial", "281474976710656"], "numbered from 0 to 281474976710655"),
         (&["simulate", "a.scn", "--until", "4.5"], "`--until 4.5` lies beyond the horizon of 4 s"),
         (&["simulate", "a.scn", "--until", "-1"], "`--until` takes a time"),
         (&["simulate", "a.scn", "--until", "nan"], "`--until` takes a time"),
@@ -181,6 +182,19 @@ fn calls_that_would_do_nothing_are_refused() {
         assert!(found.err.contains(said), "{words:?}\n{}", found.err);
     }
     assert_eq!(place.call(&["simulate", "a.scn", "--until", "4"]).code, Some(0));
+}
+
+#[test]
+fn a_file_that_asks_nothing_is_warned_of() {
+    for properties in ["property p = F<=3 s contact(user)\n", "// later\n"] {
+        let said = small(properties).call(&["check", "a.scn", "a.bltl"]);
+        assert_eq!(said.code, Some(0));
+        assert!(said.err.contains("warning[W0602]: nothing is asked"), "{}", said.err);
+    }
+    let place = small("property p = F<=3 s contact(user)\n");
+    std::fs::write(place.path("b.bltl"), "check P(F<=3 s contact(user)) >= 0.5\n").unwrap();
+    let said = place.call(&["check", "a.scn", "a.bltl", "b.bltl", "--max-trials", "2", "-q"]);
+    assert!(!said.err.contains("W0602"), "{}", said.err);
 }
 
 #[test]

@@ -145,6 +145,6 @@ fn state(result: &mut QueryResult, found: &Found, delta: f64) {
     if found.lost > 0 {
         result
             .warnings
-            .push(format!("{} paths of splitting diverged: read as reaching the event and as not, and the interval holds both", found.lost));
+            .push(format!("{} paths of splitting are unresolved: read as reaching the event and as not, and the interval holds both", found.lost));
     }
 }

@@ -7,9 +7,9 @@ use crate::engine::budget::Budget;
 use crate::engine::executor::Executor;
 use crate::engine::fault::Fault;
 use crate::engine::observer::Observer;
-use crate::engine::subject::Subject;
+use crate::engine::subject::{Subject, lost};
 use crate::kernel::{Code, Readings, Scratch, State, dynamics, start};
-use crate::logic::Robustness;
+use crate::logic::{Needs, Robustness};
 use crate::stats::splitting::Flight;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -59,6 +59,8 @@ struct Bird {
     formula: (Code, Observer),
     level: (Code, Robustness),
     readings: [Readings; 2],
+    /// When the formula and its level look at what.
+    needs: Needs,
     /// Whether the formula follows single people of a source.
     follows: bool,
     busy: [Option<Busy>; LANES],
@@ -113,6 +115,7 @@ impl<'s> Flock<'s> {
             formula: (subject.code(&[formula]), subject.observer(formula)?),
             level: (subject.code(&[level]), subject.robustness(level)?),
             readings: [Readings::default(), Readings::default()],
+            needs: subject.needs(&[formula, level])?,
             follows: subject.follows(formula),
             busy: [const { None }; LANES],
         })))
@@ -245,12 +248,14 @@ impl Bird {
         self.formula.0.run(&subject.program, &self.state, of_formula);
         self.level.0.run(&subject.program, &self.state, of_level);
         let occupied = self.state.occupied;
-        // A level without a value is none yet; a formula without one is lost.
+        // Without a value where one is needed, nothing more can be said.
         let mut ended = self.state.diverged | self.state.queues.full;
         if self.follows {
             ended |= self.state.queues.reused;
         }
-        let lost = (ended | of_formula.unresolved | of_level.unresolved) & occupied;
+        let ticks = &self.state.ticks;
+        let missed = lost(&self.needs, of_formula, ticks) | lost(&self.needs, of_level, ticks);
+        let lost = (ended | missed) & occupied;
         let watched = occupied & !lost;
         self.formula.1.observe(watched, of_formula);
         self.level.1.observe(watched, &[], &of_level.signals);

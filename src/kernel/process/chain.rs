@@ -5,6 +5,7 @@
 //! processes look at the old state and write variables of their own, so their moves add up. Numbers come from the
 //! same addresses as elsewhere, and pass the same ends: a walk visits the states that the general path visits.
 
+use super::joint::Joint;
 use super::keys::Keys;
 use super::{Form, Machine};
 use crate::base::lanes::{LANES, Lanes};
@@ -41,6 +42,10 @@ pub(super) struct Steps {
 pub struct Chain {
     keys: Keys,
     pub(super) steps: Vec<Steps>,
+    /// Bit k of a state: whether chance decides in the k-th process; the last bit stands for all beyond.
+    pub(super) open: Vec<u64>,
+    /// All processes together, if that is a small table.
+    pub(super) joint: Option<Joint>,
     pub(super) initial: u32,
     reachable: Vec<u32>,
     pub(super) level: Level,
@@ -101,7 +106,17 @@ impl Chain {
             }
         }
         let steps = found.iter().zip(&tables).map(|(found, (word, _))| Steps::of(*word, found));
-        Some(Self { steps: steps.collect(), keys, initial: start, reachable, level: Level::new() })
+        let steps: Vec<Steps> = steps.collect();
+        let open = |state: usize| {
+            steps
+                .iter()
+                .enumerate()
+                .map(|(k, steps)| u64::from(steps.open[state]) << k.min(63))
+                .fold(0, |a, b| a | b)
+        };
+        let open = (0..states).map(open).collect();
+        let joint = Joint::of(&steps, states);
+        Some(Self { steps, open, joint, keys, initial: start, reachable, level: Level::new() })
     }
 
     /// The same chain for the plainest vectors of the machine.

@@ -181,23 +181,24 @@ impl Draw<'_> {
         }
     }
 
-    /// How many of these ends, which ascend, the first number of each trial passes.
+    /// Adds to `out` so many strides as the first number of each trial passes of these ends, which ascend.
     #[inline(always)]
     pub(super) fn branch<S: Simd>(
         &self,
         simd: S,
         trials: &[[u64; LANES]],
         ends: &[f64],
+        stride: u64,
         out: &mut [[u64; LANES]],
     ) {
         for (trials, out) in trials.iter().zip(out) {
             for part in parts(simd) {
                 let number = block(part, self.counter(part, trials), self.keys)[0];
-                let mut branch = part.word(0);
+                let mut branch = part.words(out);
                 for &end in ends {
-                    // The bits of the smallest double are those of 1; nothing is computed with it.
-                    let passed = number.simd_ge(part.c(end)).select(part.c(f64::from_bits(1)), part.c(0.0));
-                    branch += passed.to_bits();
+                    // Doubles whose bits are those of a whole number; nothing is computed with them.
+                    let passed = number.simd_ge(part.c(end));
+                    branch += passed.select(part.c(f64::from_bits(stride)), part.c(0.0)).to_bits();
                 }
                 part.put_words(branch, out);
             }

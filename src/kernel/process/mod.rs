@@ -12,6 +12,7 @@ mod delay;
 mod draws;
 mod embedded;
 mod fault;
+mod joint;
 mod keys;
 mod race;
 mod rates;

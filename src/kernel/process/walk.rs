@@ -3,7 +3,7 @@
 //! Those that have ended are taken out and the others move up, so no lane is idle; and the numbers of all of them are
 //! drawn in one go, before anybody moves.
 
-use super::chain::Chain;
+use super::chain::{Chain, Steps};
 use super::draws::{Draw, RoundKeys, round_keys};
 use crate::base::lanes::{LANES, Lanes};
 use fearless_simd::{Simd, dispatch};
@@ -133,28 +133,66 @@ fn advance<S: Simd>(simd: S, chain: &Chain, walk: &mut Walk) {
     let Walk { len, tick, trials, states, next, numbers, branches, keys, .. } = walk;
     let (old, trials) = (&states[..blocks], &trials[..blocks]);
     let (next, numbers, branches) = (&mut next[..blocks], &mut numbers[..blocks], &mut branches[..blocks]);
-    next.copy_from_slice(old);
-    for steps in &chain.steps {
-        // Where no trial needs a number, none is drawn: numbers have addresses, none is used up.
-        if old.as_flattened()[..*len].iter().any(|&state| steps.open[state as usize]) {
-            let draw = Draw { number: *tick, word: steps.word, keys };
+    let open = open_in(chain, &old.as_flattened()[..*len]);
+    let draw = |steps: &Steps| Draw { number: *tick, word: steps.word, keys };
+    // Where no trial needs a number, none is drawn: numbers have addresses, none is used up.
+    let needed = |k: usize| open >> k.min(63) & 1 == 1;
+    if let Some(joint) = &chain.joint {
+        branches.fill([0; LANES]);
+        for (k, steps) in chain.steps.iter().enumerate().filter(|(k, _)| needed(*k)) {
             if let Some(ends) = &steps.common {
-                // Compiled for a coin and for a choice of four.
-                match **ends {
-                    [half] => draw.branch(simd, trials, &[half], branches),
-                    [a, b, c] => draw.branch(simd, trials, &[a, b, c], branches),
-                    ref ends => draw.branch(simd, trials, ends, branches),
+                pass(simd, &draw(steps), trials, ends, joint.strides[k], branches);
+            }
+        }
+        joint.take(old, next, branches);
+    } else {
+        next.copy_from_slice(old);
+        for (k, steps) in chain.steps.iter().enumerate() {
+            if !needed(k) {
+                for (state, next) in old.as_flattened().iter().zip(next.as_flattened_mut()) {
+                    *next = next.wrapping_add_signed(steps.moves[*state as usize * steps.most]);
                 }
+            } else if let Some(ends) = &steps.common {
+                branches.fill([0; LANES]);
+                pass(simd, &draw(steps), trials, ends, 1, branches);
                 steps.take(old, next, branches);
             } else {
-                draw.uniform(simd, trials, numbers);
+                draw(steps).uniform(simd, trials, numbers);
                 steps.apply(steps.most, old, next, numbers);
-            }
-        } else {
-            for (state, next) in old.as_flattened().iter().zip(next.as_flattened_mut()) {
-                *next = next.wrapping_add_signed(steps.moves[*state as usize * steps.most]);
             }
         }
     }
     std::mem::swap(states, &mut walk.next);
+}
+
+/// The processes that some of these states leave to chance, bit by bit.
+#[inline(always)]
+fn open_in(chain: &Chain, states: &[u32]) -> u64 {
+    let all = u64::MAX >> (64 - chain.steps.len().clamp(1, 64));
+    let mut open = 0;
+    for &state in states {
+        open |= chain.open[state as usize];
+        if open == all {
+            break;
+        }
+    }
+    open
+}
+
+/// Adds the strides of the branches that the numbers choose.
+#[inline(always)]
+fn pass<S: Simd>(
+    simd: S,
+    draw: &Draw<'_>,
+    trials: &[[u64; LANES]],
+    ends: &[f64],
+    stride: u64,
+    branches: &mut [[u64; LANES]],
+) {
+    // Compiled for a coin and for a choice of four.
+    match *ends {
+        [half] => draw.branch(simd, trials, &[half], stride, branches),
+        [a, b, c] => draw.branch(simd, trials, &[a, b, c], stride, branches),
+        ref ends => draw.branch(simd, trials, ends, stride, branches),
+    }
 }

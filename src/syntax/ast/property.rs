@@ -8,6 +8,8 @@ use crate::syntax::source::Span;
 pub struct PropertyFile {
     /// Declarations and queries in order of writing.
     pub items: Vec<PropertyItem>,
+    /// Parts that ended early, since what follows on their line could not be read; that was reported.
+    pub cut: Vec<Span>,
 }
 
 /// One declaration or query.

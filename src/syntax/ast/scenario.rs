@@ -8,6 +8,8 @@ use crate::syntax::source::Span;
 pub struct ScenarioFile {
     /// Declarations in order of writing.
     pub items: Vec<Item>,
+    /// Parts that ended early, since what follows on their line could not be read; that was reported.
+    pub cut: Vec<Span>,
 }
 
 /// One declaration.

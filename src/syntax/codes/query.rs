@@ -131,4 +131,17 @@ Clear:\n\
 \x20   family confidence 95 %\n\
 \x20   estimate P(safe) within 0.01",
     },
+    Page {
+        code: "W0602",
+        title: "nothing is asked",
+        text: "\
+The property files declare names, and no query asks about them: no trial is run, and no check can fail. Files of names\n\
+alone are fine beside a file that asks.\n\
+\n\
+Probably wrong:\n\
+\x20   property safe = G<=5 s (clearance(user) > 0 m)\n\
+Clear:\n\
+\x20   property safe = G<=5 s (clearance(user) > 0 m)\n\
+\x20   check P(safe) >= 0.9",
+    },
 ];

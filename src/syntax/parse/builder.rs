@@ -20,6 +20,8 @@ pub(super) struct Builder<'s> {
     /// The kind of file.
     pub(super) root: Rule,
     pub(super) diagnostics: Vec<Diagnostic>,
+    /// Parts that ended early.
+    pub(super) cut: Vec<Span>,
 }
 
 /// Whether a pair is only a mark or keyword.

@@ -61,6 +61,12 @@ impl Builder<'_> {
                 let same_line = last_bad_end.is_some_and(|end: usize| !text[end..start].contains('\n'));
                 if !same_line {
                     let fault = self.fault(strict, &part, before.as_ref());
+                    if let Some(before) = &before
+                        && fault.from == before.as_span().start()
+                        && !text[end_of(before)..start].contains('\n')
+                    {
+                        self.cut.push(Span::new(self.source.id, fault.from, end_of(&part)));
+                    }
                     let diagnostic = self.describe(&fault);
                     self.say(diagnostic);
                 }

@@ -17,7 +17,7 @@ impl Builder<'_> {
             .filter(|part| part.as_rule() == Rule::property_item)
             .filter_map(|part| self.property_item(part.into_inner().next()?))
             .collect();
-        PropertyFile { items }
+        PropertyFile { items, cut: std::mem::take(&mut self.cut) }
     }
 
     fn property_item(&mut self, pair: Pair<'_>) -> Option<PropertyItem> {
