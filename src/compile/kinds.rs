@@ -142,9 +142,7 @@ impl Elaborator<'_> {
             let law = match self.law(&field.value, dimension, locals) {
                 Ok(law) => match out_of_range(name, &law) {
                     None => Ok(law),
-                    Some(reason) => {
-                        self.report(Diagnostic::error("E0405", value_span(&field.value), reason))
-                    }
+                    Some(reason) => self.report(Diagnostic::error("E0405", value_span(&field.value), reason)),
                 },
                 Err(reported) => Err(reported),
             };

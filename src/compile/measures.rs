@@ -7,7 +7,8 @@ use super::symbols::{Meaning, ScopeId};
 use super::typed::Typed;
 use crate::base::tick::Clock;
 use crate::logic::{
-    Invalid, Node, NodeId, Part, Relation, SignalMonitor, SignalRobustness, Term, TermId, leaves, reach,
+    Invalid, Monitor, Node, NodeId, Part, Relation, Robustness, SignalMonitor, SignalRobustness, Term,
+    TermId, leaves, reach,
 };
 use crate::syntax::ast::{self, BinaryOp, Expr, ExprKind, Moment};
 use crate::syntax::diagnostic::Diagnostic;
@@ -257,21 +258,38 @@ impl Elaborator<'_> {
         Column { root: Root::Formula(node), text: column.text.clone() }
     }
 
-    /// Whether there is a monitor for it in continuous time.
+    /// Whether there is a monitor for it.
     fn watchable(&mut self, root: Root, span: Span) -> Lowered<()> {
-        // Bounds between ticks are not right yet.
-        let (Clock::Jumps(tick), true) = (self.clock, self.between.is_empty()) else { return Ok(()) };
-        let made = match root {
-            Root::Formula(node) => SignalMonitor::formula(&self.tree, node, self.horizon, tick).err(),
-            Root::Metric(term) => SignalMonitor::metric(&self.tree, term, self.horizon, tick).err(),
-            Root::Robustness(node, _) => SignalRobustness::new(&self.tree, node, self.horizon, tick).err(),
+        let (tree, horizon, clock) = (&self.tree, self.horizon, self.clock);
+        let made = match (clock, root) {
+            // Bounds between ticks are not right yet.
+            (Clock::Jumps(_), _) if !self.between.is_empty() => None,
+            (Clock::Jumps(tick), Root::Formula(node)) => {
+                SignalMonitor::formula(tree, node, horizon, tick).err()
+            }
+            (Clock::Jumps(tick), Root::Metric(term)) => {
+                SignalMonitor::metric(tree, term, horizon, tick).err()
+            }
+            (Clock::Jumps(tick), Root::Robustness(node, _)) => {
+                SignalRobustness::new(tree, node, horizon, tick).err()
+            }
+            (_, Root::Formula(node)) => Monitor::formula(tree, node, horizon, clock).err(),
+            (_, Root::Metric(term)) => Monitor::metric(tree, term, horizon, clock).err(),
+            (_, Root::Robustness(node, _)) => Robustness::new(tree, node, horizon, clock).err(),
         };
         match made {
             None => Ok(()),
+            Some(reason @ Invalid::TooLarge { .. }) => {
+                let error = Diagnostic::error("E0509", span, reason.to_string());
+                self.report(error.hint("a longer step, shorter windows, or fewer of them in one another"))
+            }
             Some(reason @ Invalid::BeyondHorizon { .. }) => {
                 self.report(Diagnostic::error("E0502", span, reason.to_string()))
             }
-            Some(reason) => self.report(Diagnostic::error("E0508", span, reason.to_string())),
+            Some(reason) => {
+                let code = if clock.is_jumps() { "E0508" } else { "E0504" };
+                self.report(Diagnostic::error(code, span, reason.to_string()))
+            }
         }
     }
 

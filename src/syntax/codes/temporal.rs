@@ -96,6 +96,18 @@ Right:\n\
 \x20   property late = F[5 s, 10 s] (queue.n > 3)",
     },
     Page {
+        code: "E0509",
+        title: "this formula has to remember too much",
+        text: "\
+A window inside another one keeps the states for which its answer is still open. With long windows and short steps\n\
+these are many, in each trial.\n\
+\n\
+Wrong, with a step of a millisecond:\n\
+\x20   property p = G<=2 h (F<=1 h (queue.n == 0))\n\
+Right, with a step of a second:\n\
+\x20   property p = G<=2 h (F<=1 h (queue.n == 0))",
+    },
+    Page {
         code: "W0501",
         title: "this is always the same",
         text: "\
