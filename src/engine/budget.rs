@@ -10,6 +10,17 @@ use std::time::{Duration, Instant};
 /// Default number of trials of one query.
 pub const DEFAULT_TRIALS: u64 = 1_000_000;
 
+/// Most steps of a batch between two looks at the clock.
+const STEPS_BETWEEN_LOOKS: u32 = 32;
+
+/// Steps times agents between two looks at the clock: about a millisecond.
+const WORK_BETWEEN_LOOKS: usize = 2048;
+
+/// Steps of a batch between two looks at the clock: few where each takes long.
+pub(super) fn steps_between_looks(agents: usize) -> u32 {
+    ((WORK_BETWEEN_LOOKS / agents.max(1)) as u32).clamp(1, STEPS_BETWEEN_LOOKS)
+}
+
 /// How much may be spent.
 #[derive(Debug)]
 pub struct Budget {

@@ -2,16 +2,13 @@
 //!
 //! A lane whose monitors have decided takes the next trial while the others go on (rule 3: stop early).
 
-use super::budget::Budget;
+use super::budget::{Budget, steps_between_looks};
 use super::cell::{Cell, Item, Reading};
 use super::subject::{Sheet, Subject};
 use crate::base::lanes::{LANES, Mask};
 use crate::base::random::TrialKey;
 use crate::kernel::{Readings, Scratch, State, dynamics, start};
 use crate::logic::Invalid;
-
-/// Steps between two looks at the clock.
-const CLOCK_EVERY: u32 = 32;
 
 /// What a lane is busy with.
 #[derive(Clone, Copy, Debug)]
@@ -90,7 +87,7 @@ impl Worker {
         // Lane by lane, one cell a column.
         let mut cells = vec![Cell::BLANK; LANES * width];
         let mut exhausted = false;
-        let mut rounds = 0u32;
+        let (mut rounds, clock_every) = (0u32, steps_between_looks(program.scenario.agents.len()));
         loop {
             if !exhausted {
                 let mut loaded = Mask::NONE;
@@ -132,7 +129,7 @@ impl Worker {
             }
             self.observe(subject, &mut cells, &mut finished);
             rounds += 1;
-            if budget.is_interrupted() || (rounds.is_multiple_of(CLOCK_EVERY) && budget.is_over()) {
+            if budget.is_interrupted() || (rounds.is_multiple_of(clock_every) && budget.is_over()) {
                 self.drop_all();
                 return finished;
             }

@@ -1,6 +1,7 @@
 //! Compiled expressions against a plain evaluator that walks the tree, lane by lane: the same bits.
 
 mod cases;
+mod crowd;
 mod margins;
 mod plain;
 

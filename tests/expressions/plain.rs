@@ -1,6 +1,6 @@
 //! The plain evaluator: what each expression means, written down once more, without lanes.
 
-use crate::{AGENTS, p};
+use crate::p;
 use smc::base::decimal::Decimal;
 use smc::base::geometry::{Shape, Vec2};
 use smc::base::lanes::Lanes;
@@ -97,7 +97,7 @@ impl Plain<'_> {
         if !self.here(who) {
             return f64::INFINITY;
         }
-        let others = (0..AGENTS).filter(|&a| a != who && self.here(a)).map(|a| self.gap(who, a));
+        let others = (0..self.state.agents).filter(|&a| a != who && self.here(a)).map(|a| self.gap(who, a));
         let radius = self.of(&self.state.radius, who);
         let walls = self.walls(self.at(who)).map(|d| d - radius);
         others.chain(walls).fold(f64::INFINITY, least)
@@ -342,8 +342,9 @@ impl Plain<'_> {
             Bool::Contact(who) => {
                 let who = self.who(*who);
                 // Not by the clearance: that is a NaN as soon as one gap is.
-                let others =
-                    (0..AGENTS).filter(|&a| a != who && self.here(a)).any(|a| self.gap(who, a) <= 0.0);
+                let others = (0..self.state.agents)
+                    .filter(|&a| a != who && self.here(a))
+                    .any(|a| self.gap(who, a) <= 0.0);
                 let radius = self.of(&self.state.radius, who);
                 let walls = self.walls(self.at(who)).any(|d| d - radius <= 0.0);
                 self.here(who) && (others || walls)

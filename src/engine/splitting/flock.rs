@@ -3,7 +3,7 @@
 use super::hopper::Hopper;
 use super::path::Path;
 use crate::base::lanes::{LANES, Mask};
-use crate::engine::budget::Budget;
+use crate::engine::budget::{Budget, steps_between_looks};
 use crate::engine::executor::Executor;
 use crate::engine::fault::Fault;
 use crate::engine::observer::Observer;
@@ -13,9 +13,6 @@ use crate::logic::{Needs, Robustness};
 use crate::stats::splitting::Flight;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
-
-/// Steps between two looks at the clock.
-const CLOCK_EVERY: u32 = 32;
 
 /// What a path came to.
 #[derive(Clone, Debug, Default)]
@@ -183,6 +180,7 @@ impl Bird {
         let program = &subject.program;
         let mut done = Vec::new();
         let (mut exhausted, mut rounds) = (false, 0u32);
+        let clock_every = steps_between_looks(program.scenario.agents.len());
         loop {
             let mut loaded = Mask::NONE;
             for lane in 0..self.state.width() {
@@ -216,7 +214,7 @@ impl Bird {
             }
             self.observe(subject, &mut done);
             rounds += 1;
-            if budget.is_interrupted() || (rounds.is_multiple_of(CLOCK_EVERY) && budget.is_over()) {
+            if budget.is_interrupted() || (rounds.is_multiple_of(clock_every) && budget.is_over()) {
                 self.rest();
                 return (done, None);
             }

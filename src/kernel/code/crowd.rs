@@ -10,7 +10,7 @@ use fearless_simd::{Simd, prelude::*};
 
 /// Relative margin within which a comparison without square root is not trusted: a million times what
 /// rounding can do.
-const MARGIN: f64 = 1e-9;
+pub(super) const MARGIN: f64 = 1e-9;
 
 /// The members of a crowd, less perhaps one.
 #[derive(Clone, Copy)]

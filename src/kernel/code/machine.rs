@@ -3,8 +3,9 @@
 use super::arithmetic::{apply, combine};
 use super::crowd::{self, Members, Probe};
 use super::lanes::{Vector, View, by_lane, by_lane_of_two, greater, lesser, narrow, widen};
-use super::node::{Crowd, Id, Join, Node};
+use super::node::{Crowd, Id, Join, Measure, Node};
 use super::schedule::{Instruction, Loop};
+use super::vicinity::{Asker, Vicinity};
 use super::{Code, Readings};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::kernel::state::State;
@@ -27,6 +28,10 @@ struct Machine<'a, S: Simd, const ONE: bool> {
     numbers: &'a mut [Lanes],
     truths: &'a mut [Mask],
     frames: &'a mut [Frame],
+    /// One for each list, where the lanes are those of one large crowd.
+    vicinities: &'a mut [Vicinity],
+    /// Number of the state.
+    number: u64,
 }
 
 /// Runs the code; the registers are left with all values.
@@ -43,6 +48,8 @@ pub(super) fn execute<S: Simd, const ONE: bool>(
         numbers: &mut readings.numbers,
         truths: &mut readings.truths,
         frames: &mut readings.frames,
+        vicinities: &mut readings.vicinities,
+        number: readings.number,
     };
     let instructions = code.schedule.instructions.as_slice();
     let mut at = 0;
@@ -66,7 +73,7 @@ pub(super) fn execute<S: Simd, const ONE: bool>(
     }
 }
 
-impl<S: Simd, const ONE: bool> Machine<'_, S, ONE> {
+impl<'a, S: Simd, const ONE: bool> Machine<'a, S, ONE> {
     #[inline(always)]
     fn who(&self, who: Who) -> usize {
         match who {
@@ -76,7 +83,7 @@ impl<S: Simd, const ONE: bool> Machine<'_, S, ONE> {
     }
 
     #[inline(always)]
-    fn members(&self, crowd: Crowd) -> Members<'_> {
+    fn members(&self, crowd: Crowd) -> Members<'a> {
         let except = crowd.except.map_or(u32::MAX, |who| self.who(who) as u32);
         Members { list: &self.code.lists[crowd.list as usize], except }
     }
@@ -231,9 +238,7 @@ impl<S: Simd, const ONE: bool> Machine<'_, S, ONE> {
             Node::Spread(crowd, x, y) => {
                 crowd::spread(&view, self.members(crowd), self.number(x), self.number(y))
             }
-            Node::Nearest(who, crowd, measure) => {
-                Probe::new(&view, self.who(who), measure).nearest(&view, self.members(crowd))
-            }
+            Node::Nearest(who, crowd, measure) => self.nearest(self.who(who), crowd, measure),
             Node::Apply(function, a) => apply_all(function, self.number(a)),
             Node::Combine(operator, a, b) => combine_all(operator, self.number(a), self.number(b)),
             Node::Select(c, a, b) => widen(view.simd, self.truth(c)).select(self.number(a), self.number(b)),
@@ -245,9 +250,49 @@ impl<S: Simd, const ONE: bool> Machine<'_, S, ONE> {
         self.put(into, value);
     }
 
+    /// Smallest measure between a body and a crowd.
+    #[inline(always)]
+    fn nearest(&mut self, who: usize, crowd: Crowd, measure: Measure) -> Vector<S> {
+        let members = self.members(crowd);
+        if ONE
+            && let Some(vicinity) = self.vicinities.get_mut(crowd.list as usize)
+            && vicinity.is_ready(self.number, self.view.state, members.list)
+            && let Some(found) = vicinity.nearest(&Asker::new(self.view.state, who, measure), members.except)
+        {
+            return self.view.splat(found);
+        }
+        Probe::new(&self.view, who, measure).nearest(&self.view, members)
+    }
+
+    /// The lanes in which the comparison of the measure with a bound has the wanted value for all of a crowd.
+    #[inline(always)]
+    fn all_far(
+        &mut self,
+        who: usize,
+        crowd: Crowd,
+        measure: Measure,
+        (test, wanted): (Comparison, bool),
+        bound: Vector<S>,
+    ) -> Mask {
+        let members = self.members(crowd);
+        if ONE
+            && let Some(vicinity) = self.vicinities.get_mut(crowd.list as usize)
+            && vicinity.is_ready(self.number, self.view.state, members.list)
+        {
+            let asker = Asker::new(self.view.state, who, measure);
+            // The lanes are all the same.
+            match vicinity.all_far(&asker, &members, bound[0], test, wanted) {
+                Some(true) => return Mask::ALL,
+                Some(false) => return Mask::NONE,
+                None => {}
+            }
+        }
+        Probe::new(&self.view, who, measure).all_far(&self.view, members, bound, test, wanted)
+    }
+
     /// One instruction with a truth value.
     #[inline(always)]
-    fn decide(&self, node: &Node) -> Mask {
+    fn decide(&mut self, node: &Node) -> Mask {
         let view = self.view;
         match *node {
             Node::Truth(true) => Mask::ALL,
@@ -278,8 +323,7 @@ impl<S: Simd, const ONE: bool> Machine<'_, S, ONE> {
                     let holds = compare_all(test, nearest, self.number(bound));
                     return if wanted { holds } else { !holds };
                 }
-                let probe = Probe::new(&view, self.who(who), measure);
-                probe.all_far(&view, self.members(crowd), self.number(bound), test, wanted)
+                self.all_far(self.who(who), crowd, measure, (test, wanted), self.number(bound))
             }
             _ => Mask::NONE,
         }

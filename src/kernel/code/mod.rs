@@ -19,6 +19,7 @@ mod machine;
 mod node;
 mod schedule;
 mod span;
+mod vicinity;
 
 use super::program::Program;
 use super::state::{Layout, State};
@@ -32,6 +33,7 @@ use machine::Frame;
 use node::{Id, Node};
 use schedule::Schedule;
 use std::sync::Arc;
+use vicinity::Vicinity;
 
 /// Compiled expressions.
 #[derive(Clone, Debug)]
@@ -68,6 +70,10 @@ pub struct Readings {
     numbers: Vec<Lanes>,
     truths: Vec<Mask>,
     frames: Vec<Frame>,
+    /// Who is near, for each list of members, in one large crowd.
+    vicinities: Vec<Vicinity>,
+    /// Number of the state.
+    number: u64,
 }
 
 impl Code {
@@ -124,6 +130,7 @@ impl Code {
             readings.numbers.clone_from(&self.registers);
             readings.truths = vec![Mask::NONE; self.schedule.truths as usize];
             readings.frames = vec![Frame::default(); self.schedule.running as usize];
+            readings.vicinities.clear();
             readings.loaded = Some(Arc::clone(&self.registers));
         }
         match layout {
@@ -131,6 +138,8 @@ impl Code {
                 dispatch!(self.level, simd => machine::execute::<_, false>(simd, self, state, readings));
             }
             Layout::Agents => {
+                readings.number += 1;
+                readings.vicinities.resize_with(self.lists.len(), Vicinity::default);
                 dispatch!(self.level, simd => machine::execute::<_, true>(simd, self, state, readings));
             }
         }
