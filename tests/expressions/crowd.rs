@@ -140,6 +140,7 @@ fn questions(agents: usize) -> (Vec<Bool>, Vec<Num>) {
         Num::Count(all(None), Box::new(far(Comparison::AtLeast, &distance(), 0.75))),
         Num::Count(some.clone(), Box::new(far(Comparison::Greater, &fixed_first, 7.0))),
         near(some, distance()),
+        near(all(Some(me)), distance()),
         near(all(Some(me)), running_first),
     ];
     for k in [0, 50, 67, agents - 1] {

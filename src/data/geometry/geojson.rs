@@ -91,35 +91,39 @@ fn property(value: JsonValue) -> PropertyValue {
     }
 }
 
-fn vector(position: &Position) -> Vec2 {
-    let at = |k| position.as_slice().get(k).copied().unwrap_or(f64::NAN);
-    Vec2::new(at(0), at(1))
+fn vector(position: &Position) -> Result<Vec2, String> {
+    match *position.as_slice() {
+        [x, y, ..] => Ok(Vec2::new(x, y)),
+        [x] => Err(format!("a position has two numbers; this one has one: [{x}]")),
+        [] => Err("a position has two numbers; this one has none".into()),
+    }
 }
 
-fn vectors(positions: &[Position]) -> Vec<Vec2> {
+fn vectors(positions: &[Position]) -> Result<Vec<Vec2>, String> {
     positions.iter().map(vector).collect()
 }
 
 /// Hands on every part of a geometry. Nesting is bounded by the JSON parser.
 fn flatten(value: GeometryValue, each: &mut impl FnMut(Result<Geometry, String>)) {
-    let rings = |polygon: &[Vec<Position>]| polygon.iter().map(|ring| vectors(ring)).collect();
+    let rings =
+        |polygon: &[Vec<Position>]| polygon.iter().map(|ring| vectors(ring)).collect::<Result<_, _>>();
     match value {
-        GeometryValue::Point { coordinates } => each(feature::point(vector(&coordinates))),
+        GeometryValue::Point { coordinates } => each(vector(&coordinates).and_then(feature::point)),
         GeometryValue::MultiPoint { coordinates } => {
             for p in &coordinates {
-                each(feature::point(vector(p)));
+                each(vector(p).and_then(feature::point));
             }
         }
-        GeometryValue::LineString { coordinates } => each(feature::line(vectors(&coordinates))),
+        GeometryValue::LineString { coordinates } => each(vectors(&coordinates).and_then(feature::line)),
         GeometryValue::MultiLineString { coordinates } => {
             for points in &coordinates {
-                each(feature::line(vectors(points)));
+                each(vectors(points).and_then(feature::line));
             }
         }
-        GeometryValue::Polygon { coordinates } => each(feature::polygon(rings(&coordinates))),
+        GeometryValue::Polygon { coordinates } => each(rings(&coordinates).and_then(feature::polygon)),
         GeometryValue::MultiPolygon { coordinates } => {
             for polygon in &coordinates {
-                each(feature::polygon(rings(polygon)));
+                each(rings(polygon).and_then(feature::polygon));
             }
         }
         GeometryValue::GeometryCollection { geometries } => {
@@ -162,7 +166,7 @@ mod tests {
              "geometry": {"type": "Polygon", "coordinates": [[[0,0],[2,2],[2,0],[0,2],[0,0]]]}},
             {"type": "Feature", "properties": {}, "geometry": {"type": "LineString", "coordinates": [[1,1],[1,1]]}}]}"#;
         let said: Vec<String> = read_geojson(text).unwrap_err().iter().map(ToString::to_string).collect();
-        assert_eq!(said[0], "feature 1 `bow`: the outline meets itself near (2, 0)");
+        assert_eq!(said[0], "feature 1 `bow`: the outline meets itself near (1, 1)");
         assert_eq!(said[1], "feature 2: a line needs two points apart from each other");
     }
 
@@ -172,7 +176,8 @@ mod tests {
         assert_eq!((errors[0].line, errors[0].feature.as_ref()), (Some(3), None));
         assert!(errors[0].column.is_some());
         assert!(read_geojson("{\"type\": \"Point\"}").is_err());
-        assert!(read_geojson("{\"type\": \"Point\", \"coordinates\": [1]}").is_err());
+        let one = read_geojson("{\"type\": \"Point\", \"coordinates\": [1]}").unwrap_err();
+        assert_eq!(one[0].message, "a position has two numbers; this one has one: [1]");
         assert!(read_geojson(&"[".repeat(100_000)).is_err());
     }
 }

@@ -3,7 +3,7 @@
 //! Crossings are looked for with the edges sorted by their left ends, so that only edges that share a
 //! stretch of the x axis are compared.
 
-use crate::base::geometry::{Polygon, Segment, Vec2};
+use crate::base::geometry::{Polygon, Segment, Vec2, cross};
 
 /// The corners of a ring, the closing one not repeated, or what is wrong with it.
 pub(super) fn checked(mut points: Vec<Vec2>) -> Result<Vec<Vec2>, String> {
@@ -21,7 +21,7 @@ pub(super) fn checked(mut points: Vec<Vec2>) -> Result<Vec<Vec2>, String> {
     if ring.area() > 0.0 { Ok(ring.outline) } else { Err("has no area".into()) }
 }
 
-/// A point near which two edges meet that are not neighbours.
+/// A point where two edges meet that are not neighbours, about.
 fn crossing(ring: &[Vec2]) -> Option<Vec2> {
     let n = ring.len();
     let edge = |k: usize| Segment::new(ring[k], ring[(k + 1) % n]);
@@ -38,11 +38,27 @@ fn crossing(ring: &[Vec2]) -> Option<Vec2> {
             }
             let neighbours = (i + 1) % n == j || (j + 1) % n == i;
             if !neighbours && first.meets(&second) {
-                return Some(second.a);
+                return Some(meeting(&first, &second));
             }
         }
     }
     None
+}
+
+/// Where two segments that meet do so: at an end that lies on the other, or where they cross. Rounded to millionths, as
+/// far as that can be seen, for people to read.
+fn meeting(first: &Segment, second: &Segment) -> Vec2 {
+    let ends = [(second, first.a), (second, first.b), (first, second.a), (first, second.b)];
+    if let Some((_, end)) = ends.iter().find(|(other, end)| other.distance(*end) == 0.0) {
+        return *end;
+    }
+    let (along, beside) = (first.b - first.a, second.b - second.a);
+    let share = cross(second.a - first.a, beside) / cross(along, beside);
+    let at = first.a + along * share;
+    if !(at.x.is_finite() && at.y.is_finite()) {
+        return second.a;
+    }
+    at.map(|v| if v.abs() < 1e9 { (v * 1e6).round() / 1e6 } else { v })
 }
 
 #[cfg(test)]
@@ -62,7 +78,11 @@ mod tests {
         );
         assert_eq!(checked(ring(&[(0., 0.), (1., 0.), (2., 0.)])).unwrap_err(), "has no area");
         let bow_tie = checked(ring(&[(0., 0.), (2., 2.), (2., 0.), (0., 2.)])).unwrap_err();
-        assert!(bow_tie.starts_with("meets itself near"), "{bow_tie}");
+        assert_eq!(bow_tie, "meets itself near (1, 1)");
+        let third = checked(ring(&[(0., 0.), (1., 1.), (1., 0.), (0., 0.5)])).unwrap_err();
+        assert_eq!(third, "meets itself near (0.333333, 0.333333)");
+        let touching = checked(ring(&[(0., 0.), (4., 0.), (4., 4.), (3., 0.), (0., 4.)])).unwrap_err();
+        assert_eq!(touching, "meets itself near (3, 0)");
         assert_eq!(checked(ring(&[(0., 0.), (1., 0.), (0., 1.), (0., 0.)])).unwrap().len(), 3);
     }
 

@@ -4,6 +4,7 @@ use super::node::Crowd;
 use crate::model::{AgentId, Set, Who};
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
+use std::sync::Arc;
 
 /// Most members of a set that has a list of its own for each agent left out.
 const OWN_LIST: usize = 64;
@@ -15,6 +16,8 @@ pub(super) struct Lists {
     pub(super) all: Vec<Vec<u32>>,
     /// Where they are, by their hashes.
     known: HashMap<u64, Vec<u32>>,
+    /// The members that were asked for last, and their list: thousands of questions in a row have the same.
+    last: Option<(Arc<[AgentId]>, u32)>,
 }
 
 impl Lists {
@@ -26,7 +29,14 @@ impl Lists {
             Some(Who::Agent(AgentId(out))) if set.members.len() <= OWN_LIST => {
                 Crowd { list: self.list(members.filter(|&id| id != out).collect()), except: None }
             }
-            except => Crowd { list: self.list(members.collect()), except },
+            except => {
+                let list = match &self.last {
+                    Some((last, list)) if Arc::ptr_eq(last, &set.members) => *list,
+                    _ => self.list(members.collect()),
+                };
+                self.last = Some((Arc::clone(&set.members), list));
+                Crowd { list, except }
+            }
         }
     }
 

@@ -10,6 +10,7 @@ use super::span;
 use crate::model::{
     AgentId, Arithmetic, Axis, Bool, Comparison, Field, Fold, Num, Place, Scenario, Set, Who,
 };
+use std::sync::Arc;
 
 /// A value and, if it can be unresolved, the node that tells where it is.
 #[derive(Clone, Copy, Debug)]
@@ -24,6 +25,8 @@ pub(super) struct Lowering<'a> {
     pub(super) graph: Graph,
     /// The lists of members that crowds refer to.
     pub(super) lists: Lists,
+    /// All agents.
+    everybody: Arc<[AgentId]>,
     /// How many loops are around the present place.
     depth: u32,
 }
@@ -34,7 +37,8 @@ const fn resolved(id: Id) -> Value {
 
 impl<'a> Lowering<'a> {
     pub(super) fn new(scenario: &'a Scenario) -> Self {
-        Self { scenario, graph: Graph::default(), lists: Lists::default(), depth: 0 }
+        let everybody = (0..scenario.agents.len() as u32).map(AgentId).collect();
+        Self { scenario, graph: Graph::default(), lists: Lists::default(), everybody, depth: 0 }
     }
 
     /// A second lowering of the same expressions, which knows from the start what was found in the first: so
@@ -53,7 +57,7 @@ impl<'a> Lowering<'a> {
 
     /// Everybody else.
     fn others(&mut self, who: Who) -> Crowd {
-        let everybody = (0..self.scenario.agents.len() as u32).map(AgentId).collect();
+        let everybody = Arc::clone(&self.everybody);
         self.crowd(&Set { members: everybody, except: Some(who) })
     }
 

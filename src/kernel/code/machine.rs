@@ -281,7 +281,7 @@ impl<'a, S: Simd, const ONE: bool> Machine<'a, S, ONE> {
         {
             let asker = Asker::new(self.view.state, who, measure);
             // The lanes are all the same.
-            match vicinity.all_far(&asker, &members, bound[0], test, wanted) {
+            match vicinity.all_far(&asker, members.except, bound[0], (test, wanted)) {
                 Some(true) => return Mask::ALL,
                 Some(false) => return Mask::NONE,
                 None => {}

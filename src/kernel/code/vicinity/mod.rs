@@ -4,11 +4,14 @@
 //! the members who are present are sorted once a state, when the first questions show that it pays, and a
 //! question looks only at the squares around a place, wider and wider until nobody outside can change the answer.
 //! The least of several gaps is one of them, and whether some gap is below a bound does not depend on the
-//! order either: both have the bits of a look at all, whose roundings are kept.
+//! order either: both have the bits of a look at all, whose roundings are kept. Where most of the members ask the
+//! same in each state, `sweep` answers all of them at once.
 //!
 //! Where a position or a radius is no number, or beyond reason, nothing is sorted: a look at all knows what that means.
 
-use super::crowd::{MARGIN, Members};
+mod sweep;
+
+use super::crowd::MARGIN;
 use super::node::Measure;
 use crate::base::geometry::{Bounds, Vec2};
 use crate::base::lanes::{LANES, Lanes};
@@ -16,6 +19,7 @@ use crate::kernel::nearby::amply_around;
 use crate::kernel::state::State;
 use crate::model::Comparison;
 use std::ops::Range;
+use sweep::{Answers, Question};
 
 /// In a list of so many, a look at all is as fast.
 const FEW: usize = 32;
@@ -51,17 +55,6 @@ impl Asker {
     #[inline(always)]
     fn is_reasonable(&self) -> bool {
         self.at.x.abs() <= FARTHEST && self.at.y.abs() <= FARTHEST && self.radius.abs() <= FARTHEST
-    }
-
-    /// The measure at a squared distance, with the roundings of the expression that it stands for.
-    #[inline(always)]
-    fn value(&self, squared: f64, radius: f64) -> f64 {
-        let distance = squared.sqrt();
-        match self.measure {
-            Measure::Centres => distance,
-            Measure::GapFixedFirst => distance - self.radius - radius,
-            Measure::GapRunningFirst => distance - radius - self.radius,
-        }
     }
 }
 
@@ -101,6 +94,8 @@ pub(super) struct Vicinity {
     radius: Vec<f64>,
     /// For each agent of the scene how far one had to look for the nearest in the last state, m; 0 where nobody asked.
     far: Vec<f64>,
+    /// What everybody asks.
+    answers: Vec<Answers>,
 }
 
 #[inline(always)]
@@ -119,6 +114,7 @@ impl Vicinity {
             self.state = number;
             self.asked = (0, self.asked.0);
             self.sorted = None;
+            self.answers.iter_mut().for_each(Answers::forget);
         }
         self.asked.0 = self.asked.0.saturating_add(1);
         if let Some(sorted) = self.sorted {
@@ -227,14 +223,15 @@ impl Vicinity {
         }
     }
 
-    /// How far apart the centres of an asker and a member can be if the measure is at most `bound`: never too little.
+    /// How far apart the centres of an asker and a member can be if the measure is at most `bound`: never
+    /// too little.
     #[inline(always)]
-    fn reach(&self, asker: &Asker, bound: f64) -> f64 {
-        if asker.measure == Measure::Centres {
+    fn reach(&self, measure: Measure, radius: f64, bound: f64) -> f64 {
+        if measure == Measure::Centres {
             return bound + bound.abs() * MARGIN + 1e-30;
         }
-        let slack = (bound.abs() + asker.radius.abs() + self.widest.abs()) * MARGIN + 1e-30;
-        bound + asker.radius + self.widest + slack
+        let slack = (bound.abs() + radius.abs() + self.widest.abs()) * MARGIN + 1e-30;
+        bound + radius + self.widest + slack
     }
 
     /// The rows and columns of all who are not farther than `reach` from a place.
@@ -260,32 +257,39 @@ impl Vicinity {
     }
 
     /// Smallest measure from somebody to the members; infinite over nobody. `None` where only a look at all can tell.
-    #[inline(always)]
     pub(super) fn nearest(&mut self, asker: &Asker, except: u32) -> Option<f64> {
-        if !asker.is_reasonable() {
-            return None;
+        if except as usize == asker.agent
+            && let Some(found) = self.answer(Question::Nearest(asker.measure), asker.agent)
+        {
+            return Some(found);
         }
+        asker.is_reasonable().then(|| self.search(asker, except))
+    }
+
+    /// The same, of this one only.
+    fn search(&mut self, asker: &Asker, except: u32) -> f64 {
+        let Asker { at, radius, measure, .. } = *asker;
         let mut best = f64::INFINITY;
         // Nobody goes far in a step.
         let mut reach = self.far[asker.agent] + 0.125 * self.side;
         let needed = loop {
-            let (rows, columns) = self.around(asker.at, reach);
-            let mut farther = square(self.reach(asker, best));
+            let (rows, columns) = self.around(at, reach);
+            let mut farther = square(self.reach(measure, radius, best));
             for row in rows.clone() {
                 for k in self.stretch(row, &columns) {
-                    let squared = self.squared(asker.at, k);
+                    let squared = self.squared(at, k);
                     if squared > farther || self.agent[k] == except {
                         continue;
                     }
-                    let value = asker.value(squared, self.radius[k]);
-                    if value < best {
-                        best = value;
-                        farther = square(self.reach(asker, best));
+                    let found = value(measure, squared.sqrt(), radius, self.radius[k]);
+                    if found < best {
+                        best = found;
+                        farther = square(self.reach(measure, radius, best));
                     }
                 }
             }
             // Who is outside of the squares looked at is farther than the reach.
-            let needed = self.reach(asker, best);
+            let needed = self.reach(measure, radius, best);
             let all = rows.len() == self.squares.rows && columns.len() == self.squares.columns;
             if needed <= reach || all {
                 break needed;
@@ -294,35 +298,41 @@ impl Vicinity {
         };
         // With nobody else there, all squares are looked at next time, too.
         self.far[asker.agent] = if 0.0 < needed && needed < FARTHEST { needed } else { 0.0 };
-        Some(best)
+        best
     }
 
     /// Whether the comparison with a bound has the wanted value for all members, where it has for all who are far
     /// away. `None` where only a look at all can tell.
-    #[inline(always)]
     pub(super) fn all_far(
-        &self,
+        &mut self,
         asker: &Asker,
-        members: &Members<'_>,
+        except: u32,
         bound: f64,
-        test: Comparison,
-        wanted: bool,
+        (test, wanted): (Comparison, bool),
     ) -> Option<bool> {
+        let Asker { agent, at, radius, measure } = *asker;
         if !(asker.is_reasonable() && bound.abs() <= FARTHEST) {
             return None;
         }
-        let reach = self.reach(asker, bound);
+        let question = Question::AllFar { measure, test, wanted, bound: bound.to_bits() };
+        if except as usize == agent
+            && let Some(found) = self.answer(question, agent)
+        {
+            return Some(found > 0.0);
+        }
+        let reach = self.reach(measure, radius, bound);
         if reach < 0.0 {
             return Some(true);
         }
-        let (farther, (rows, columns)) = (square(reach), self.around(asker.at, reach));
+        let (farther, (rows, columns)) = (square(reach), self.around(at, reach));
         for row in rows {
             for k in self.stretch(row, &columns) {
-                let squared = self.squared(asker.at, k);
-                if squared > farther || self.agent[k] == members.except {
+                let squared = self.squared(at, k);
+                if squared > farther || self.agent[k] == except {
                     continue;
                 }
-                if compare(test, asker.value(squared, self.radius[k]), bound) != wanted {
+                let found = value(measure, squared.sqrt(), radius, self.radius[k]);
+                if compare(test, found, bound) != wanted {
                     return Some(false);
                 }
             }
@@ -335,12 +345,12 @@ impl Squares {
     /// Never falls as the abscissa rises. The cast saturates.
     #[inline(always)]
     fn column(&self, x: f64) -> usize {
-        (((x - self.low.x) * self.per_side) as usize).min(self.columns - 1)
+        (((x - self.low.x) * self.per_side) as u32 as usize).min(self.columns - 1)
     }
 
     #[inline(always)]
     fn row(&self, y: f64) -> usize {
-        (((y - self.low.y) * self.per_side) as usize).min(self.rows - 1)
+        (((y - self.low.y) * self.per_side) as u32 as usize).min(self.rows - 1)
     }
 }
 
@@ -348,6 +358,17 @@ impl Squares {
 #[inline(always)]
 fn square(reach: f64) -> f64 {
     if reach > 0.0 { reach * reach } else { 0.0 }
+}
+
+/// The measure at a distance between a fixed body and a running one of these radii, with the roundings of the expression
+/// that it stands for.
+#[inline(always)]
+fn value(measure: Measure, distance: f64, fixed: f64, running: f64) -> f64 {
+    match measure {
+        Measure::Centres => distance,
+        Measure::GapFixedFirst => distance - fixed - running,
+        Measure::GapRunningFirst => distance - running - fixed,
+    }
 }
 
 #[inline(always)]
