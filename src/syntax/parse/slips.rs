@@ -133,9 +133,10 @@ impl Builder<'_> {
         if fault.found != "=" || !fault.after_value() {
             return None;
         }
-        let (start, word) = lexeme::word_before(self.text, fault.at)?;
-        let line_start = self.text[..start].rfind('\n').map_or(0, |at| at + 1);
-        if self.text[line_start..start].trim().is_empty() && start > fault.from {
+        if let Some((start, word)) = lexeme::word_before(self.text, fault.at)
+            && start > fault.from
+            && self.text[self.text[..start].rfind('\n').map_or(0, |at| at + 1)..start].trim().is_empty()
+        {
             let place = Span::new(self.source.id, start, start + word.len());
             return Some(
                 Diagnostic::error(
@@ -224,6 +225,10 @@ impl Builder<'_> {
             return None;
         }
         let place = self.place(fault.at, fault.found);
+        if fault.found == "in" && self.root == Rule::property_file {
+            let error = Diagnostic::error(code::UNEXPECTED, place, "a range stands after what it is of");
+            return Some(error.hint("as in `check E(m) in 0 .. 2 >= 1.5`; a probability needs none"));
+        }
         let hint = match unit {
             Some(unit) => format!("did you mean `{number} {unit}`?"),
             None => format!(
