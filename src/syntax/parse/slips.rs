@@ -147,6 +147,15 @@ impl Builder<'_> {
                 .hint("the value before it is missing or ends in an operator"),
             );
         }
+        if let Some((start, word)) = lexeme::word_before(self.text, fault.at)
+            && self.text[..start].ends_with('.')
+            && self.text[fault.from.min(start)..start].contains("->")
+        {
+            let error = Diagnostic::error(code::UNEXPECTED, place, "a process sets its own variables only");
+            return Some(error.hint(format!(
+                "let the process that has `{word}` set it, by a command that reads this one"
+            )));
+        }
         Some(
             Diagnostic::error(code::EQUALS, place, "expected an operator, found `=`")
                 .hint("`=` sets, `==` compares"),
