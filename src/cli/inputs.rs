@@ -171,6 +171,11 @@ fn find(path: &str, scenario: &str, data: &[PathBuf]) -> Result<PathBuf, String>
     ))
 }
 
+/// Whether a place lies in another one.
+fn within(place: Span, whole: Span) -> bool {
+    place.source == whole.source && whole.start <= place.start && place.end <= whole.end
+}
+
 /// The text of a place.
 fn word(sources: &[Source], span: Span) -> Option<&str> {
     let source = sources.iter().find(|source| source.id == span.source)?;
@@ -276,7 +281,10 @@ pub(super) fn load(model: &Model, properties: &[String]) -> Inputs {
                 let times = scenario_broken && matches!(d.code, "E0503" | "E0507" | "E0508");
                 let place = d.place.as_ref().map(|p| p.span);
                 let known = matches!(d.code, "E0201" | "E0203" | "E0208" | "E0606") && !missed(place);
-                !(times || names && !known && (scenario_broken || broken(place)))
+                // Moves whose options could not be read have some.
+                let options = d.code == "E0406"
+                    && place.is_some_and(|place| lost.iter().any(|part| within(*part, place)));
+                !(times || options || names && !known && (scenario_broken || broken(place)))
             })
             .collect();
         diagnostics.extend(found);

@@ -15,6 +15,7 @@ impl Builder<'_> {
             .or_else(|| self.slip_of_bound(fault))
             .or_else(|| self.slip_of_equals(fault))
             .or_else(|| self.slip_of_operator(fault))
+            .or_else(|| self.slip_of_range(fault))
             .or_else(|| self.slip_of_unit(fault))
             .or_else(|| self.slip_of_process(fault))
             .or_else(|| self.slip_of_time(fault))
@@ -149,7 +150,7 @@ impl Builder<'_> {
         }
         if let Some((start, word)) = lexeme::word_before(self.text, fault.at)
             && self.text[..start].ends_with('.')
-            && self.text[fault.from.min(start)..start].contains("->")
+            && self.text[..start].rsplit('\n').next().is_some_and(|line| line.contains("->"))
         {
             let error = Diagnostic::error(code::UNEXPECTED, place, "a process sets its own variables only");
             return Some(error.hint(format!(
@@ -198,6 +199,16 @@ impl Builder<'_> {
         Some(say(fault.at, fault.found, plain))
     }
 
+    /// `check E(m) >= 1.5 in 0 .. 2`
+    fn slip_of_range(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
+        if fault.found != "in" || self.root != Rule::property_file || !fault.after_value() {
+            return None;
+        }
+        let place = self.place(fault.at, fault.found);
+        let error = Diagnostic::error(code::UNEXPECTED, place, "a range stands after what it is of");
+        Some(error.hint("as in `check E(m) in 0 .. 2 >= 1.5`; a probability needs none"))
+    }
+
     /// `3 metres`
     fn slip_of_unit(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
         if !fault.found.starts_with(lexeme::starts_name) {
@@ -234,10 +245,6 @@ impl Builder<'_> {
             return None;
         }
         let place = self.place(fault.at, fault.found);
-        if fault.found == "in" && self.root == Rule::property_file {
-            let error = Diagnostic::error(code::UNEXPECTED, place, "a range stands after what it is of");
-            return Some(error.hint("as in `check E(m) in 0 .. 2 >= 1.5`; a probability needs none"));
-        }
         let hint = match unit {
             Some(unit) => format!("did you mean `{number} {unit}`?"),
             None => format!(
