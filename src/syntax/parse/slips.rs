@@ -149,7 +149,7 @@ impl Builder<'_> {
             );
         }
         if let Some((start, word)) = lexeme::word_before(self.text, fault.at)
-            && self.text[..start].ends_with('.')
+            && let Some((_, word)) = word.rsplit_once('.')
             && self.text[..start].rsplit('\n').next().is_some_and(|line| line.contains("->"))
         {
             let error = Diagnostic::error(code::UNEXPECTED, place, "a process sets its own variables only");
