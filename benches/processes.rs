@@ -62,6 +62,7 @@ fn ours(study: &Study) -> (f64, f64) {
     let call = Call {
         seed: 1,
         command: String::new(),
+        point: String::new(),
         simulate: String::new(),
         only: Vec::new(),
         place: &|_| (String::new(), 0),

@@ -34,6 +34,7 @@
 //! let call = Call {
 //!     seed: 0,
 //!     command: "smc check walk.scn walk.bltl".into(),
+//!     point: String::new(),
 //!     simulate: "smc simulate walk.scn".into(),
 //!     only: vec![],
 //!     place: &|span| (property.name.clone(), property.line_column(span.start).0),

@@ -121,6 +121,7 @@ fn results(study: &Study, executor: &dyn Executor) -> Vec<QueryResult> {
     let call = Call {
         seed: 11,
         command: "smc check a.scn a.bltl".to_owned(),
+        point: String::new(),
         simulate: "smc simulate a.scn".to_owned(),
         only: Vec::new(),
         place: &|_| (String::new(), 0),

@@ -139,7 +139,8 @@ fn front_end(scenario: &str, properties: &str) -> Result<(), TestCaseError> {
         settings: &[],
     };
     let (study, found) = compile(&input);
-    let refused = found.iter().any(|d| d.severity == smc::syntax::diagnostic::Severity::Error);
+    let cut = !scenario.cut.is_empty() || !input.properties[0].cut.is_empty();
+    let refused = cut || found.iter().any(|d| d.severity == smc::syntax::diagnostic::Severity::Error);
     prop_assert!(study.is_some() != refused, "a study, or a reason why not");
     said.extend(found);
     for label in said.iter().flat_map(|d| d.place.iter().chain(&d.related)) {

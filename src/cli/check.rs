@@ -59,6 +59,7 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     let call = Call {
         seed: arguments.seed,
         command: command("check", arguments, true),
+        point: command("check", arguments, false),
         simulate: command("simulate", arguments, false),
         only,
         place: &place,
@@ -244,15 +245,15 @@ fn locate(sources: &[Source], span: Span) -> (String, usize) {
     source.map_or((String::new(), 0), |s| (s.name.clone(), s.line_column(span.start).0))
 }
 
-/// The call up to its options, as a shell would take it.
-fn command(verb: &str, arguments: &Check, properties: bool) -> String {
+/// The call up to its options, as a shell would take it, with its sweeps or without them.
+fn command(verb: &str, arguments: &Check, sweeps: bool) -> String {
     let mut words = vec!["smc".to_owned(), verb.to_owned(), quoted(&arguments.model.scenario)];
-    if properties {
+    if verb == "check" {
         words.extend(arguments.properties.iter().map(|p| quoted(p)));
     }
     for set in &arguments.model.set {
-        // A trial belongs to one setting; that of a sweep is named with the witness.
-        if properties || !set.contains("..") {
+        // A trial, or a query, belongs to one setting; that of a sweep is named with it.
+        if sweeps || !set.contains("..") {
             words.push("--set".to_owned());
             words.push(quoted(set));
         }

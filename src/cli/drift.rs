@@ -92,9 +92,8 @@ fn lines(name: &str) -> Result<Box<dyn Iterator<Item = std::io::Result<Vec<u8>>>
 fn summary(arguments: &Drift, cusum: &Cusum, successes: u64, alarms: &[u64]) -> String {
     let (before, after) = (arguments.before, arguments.after);
     let (quiet, delay) = (cusum.mean_to_false_alarm_at_least(), cusum.delay());
-    let certifies = format!(
-        "while P is {before}, at least {quiet:.0} outcomes pass on average before a false alarm; once it is {after}, an alarm takes about {delay:.0}"
-    );
+    let certifies =
+        format!("while P is {before}, at least {quiet:.0} outcomes pass on average before a false alarm");
     match arguments.format {
         DriftFormat::Json => {
             let object = json!({
@@ -122,7 +121,7 @@ fn summary(arguments: &Drift, cusum: &Cusum, successes: u64, alarms: &[u64]) -> 
                 }
             };
             format!(
-                "{said}\n{read} outcomes, {successes} successes ({share:.1} %)\ncertified: {certifies}\nmethod: cusum(before = {before}, after = {after}, threshold = {:.6})\n",
+                "{said}\n{read} outcomes, {successes} successes ({share:.1} %)\ncertified: {certifies}\nonce P is {after}, an alarm takes about {delay:.0} outcomes\nmethod: cusum(before = {before}, after = {after}, threshold = {:.6})\n",
                 cusum.threshold()
             )
         }

@@ -80,11 +80,15 @@ pub(super) fn run(arguments: &Format, colors: Colors) -> Exit {
     exit
 }
 
-/// As whichever language the text is; where it is neither, the errors are those of the one with fewer.
+/// As whichever language the text is; where it is neither, the errors are those of the one that is read farther.
 fn either(source: &Source) -> Result<String, Vec<Diagnostic>> {
+    let read = |errors: &[Diagnostic]| {
+        let first = errors.iter().filter_map(|d| d.place.as_ref()).map(|place| place.span.start).min();
+        (first, std::cmp::Reverse(errors.len()))
+    };
     match (format_scenario(source), format_properties(source)) {
         (Ok(text), _) | (Err(_), Ok(text)) => Ok(text),
-        (Err(scenario), Err(properties)) if properties.len() < scenario.len() => Err(properties),
+        (Err(scenario), Err(properties)) if read(&properties) > read(&scenario) => Err(properties),
         (Err(scenario), Err(_)) => Err(scenario),
     }
 }

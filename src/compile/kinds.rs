@@ -164,12 +164,13 @@ impl Elaborator<'_> {
             .map(|(_, (name, ..))| *name)
             .collect();
         if !missing.is_empty() {
-            let error = Diagnostic::error(
-                "E0209",
-                name.span,
-                format!("`{}` has no {}", name.name, missing.join(", ")),
-            )
-            .hint("set them, or start from a preset: `kind adult: sfm preset helbing2000 { … }`");
+            let title = format!("`{}` has no {}", name.name, missing.join(", "));
+            // Said once, however many are of that kind.
+            if self.diagnostics.iter().any(|d| d.code == "E0209" && d.title == title) {
+                return Err(Reported);
+            }
+            let error = Diagnostic::error("E0209", name.span, title)
+                .hint("set them, or start from a preset: `kind adult: sfm preset helbing2000 { … }`");
             return self.report(error);
         }
         let law = |name: &str| {

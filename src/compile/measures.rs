@@ -323,6 +323,7 @@ impl Elaborator<'_> {
                 let seconds = self.clock.seconds(crate::base::tick::Tick(ticks));
                 format!("{} s", (seconds * 1e9).round() / 1e9)
             }
+            Clock::Steps if ticks == 1 => "1 step".to_owned(),
             Clock::Steps => format!("{ticks} steps"),
         }
     }

@@ -1,5 +1,6 @@
 //! Procedures: from the text of a query and the documented defaults, never from the budget.
 
+use super::arguments::Arguments;
 use super::bounds::WIDEST;
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered};
@@ -21,76 +22,12 @@ pub const DEFAULT_LOSS: f64 = 0.02;
 /// Trials of an expectation, a quantile or a comparison that names no half width.
 pub const PLANNED_TRIALS: u64 = 1000;
 
-/// Named numbers of a method, in order of their names here.
-struct Arguments<'m, const N: usize> {
-    method: &'m Method,
-    values: [Option<(f64, Span)>; N],
+/// Both, where neither failed: what is wrong with each is said before this is asked.
+fn both<A, B>(a: Lowered<A>, b: Lowered<B>) -> Lowered<(A, B)> {
+    Ok((a?, b?))
 }
 
 impl Elaborator<'_> {
-    /// The arguments of a method; all are pure numbers but `epsilon`, which is in the dimension of the measure.
-    fn arguments<'m, const N: usize>(
-        &mut self,
-        method: &'m Method,
-        names: [&str; N],
-        dimension: Dimension,
-        locals: &Locals,
-    ) -> Lowered<Arguments<'m, N>> {
-        let mut values = [None; N];
-        let mut failed = false;
-        for argument in &method.arguments {
-            let Some(at) = names.iter().position(|n| *n == argument.name.name) else {
-                let known = if N == 0 {
-                    "it takes none".to_owned()
-                } else {
-                    format!("it takes {}", names.join(", "))
-                };
-                let hint = nearest(&argument.name.name, names.iter().copied())
-                    .map_or(known, |n| format!("did you mean `{n}`?"));
-                let error = Diagnostic::error(
-                    "E0604",
-                    argument.name.span,
-                    format!("`{}` has no argument `{}`", method.name.name, argument.name.name),
-                );
-                self.note(error.hint(hint));
-                failed = true;
-                continue;
-            };
-            if let Some(first) = method.arguments.iter().find(|a| a.name.name == argument.name.name)
-                && first.name.span != argument.name.span
-            {
-                let text = format!("`{}` is given twice", argument.name.name);
-                let error = Diagnostic::error("E0604", argument.name.span, text);
-                self.note(error.related(first.name.span, "first given here"));
-                failed = true;
-                continue;
-            }
-            let dimension = if names[at] == "epsilon" { dimension } else { Dimension::NONE };
-            match self.number_of(&argument.value, dimension, locals) {
-                Ok(number) => values[at] = Some((number.value, argument.value.span)),
-                Err(_) => failed = true,
-            }
-        }
-        if failed { Err(super::elaborator::Reported) } else { Ok(Arguments { method, values }) }
-    }
-
-    fn required<const N: usize>(
-        &mut self,
-        arguments: &Arguments<'_, N>,
-        at: usize,
-        name: &str,
-    ) -> Lowered<(f64, Span)> {
-        match arguments.values[at] {
-            Some(found) => Ok(found),
-            None => {
-                let method = arguments.method;
-                let error =
-                    Diagnostic::error("E0604", method.span, format!("`{}` needs `{name}`", method.name.name));
-                self.report(error)
-            }
-        }
-    }
-
     /// One minus the confidence of a clause.
     pub(super) fn delta(&mut self, clauses: &Clauses, locals: &Locals) -> Lowered<Option<f64>> {
         let Some(expr) = &clauses.confidence else { return Ok(None) };
@@ -151,13 +88,17 @@ impl Elaborator<'_> {
         let name = method.name.name.as_str();
         match name {
             "sprt" | "sprt2" | "plan" => {
-                let arguments =
-                    self.arguments(method, ["alpha", "beta", "indifference"], Dimension::NONE, locals)?;
+                let arguments = self.arguments(
+                    (clauses, method),
+                    ["alpha", "beta", "indifference"],
+                    Dimension::NONE,
+                    locals,
+                )?;
                 let alpha = self.error_of(arguments.values[0], error, "alpha");
                 let beta = self.error_of(arguments.values[1], error, "beta");
-                let (indifference, span) = self.required(&arguments, 2, "indifference")?;
-                let (alpha, beta) = (alpha?, beta?);
-                self.region(threshold, indifference, at, span)?;
+                let region = self.region(&arguments, 2, threshold, at);
+                let ((alpha, beta), (indifference, span)) = both(both(alpha, beta), region)?;
+                arguments.sound()?;
                 let least = match name {
                     "sprt2" => 1e-5,
                     "plan" => 5e-4,
@@ -176,27 +117,45 @@ impl Elaborator<'_> {
                 })
             }
             "eprocess" => {
-                let arguments = self.arguments(method, ["alpha", "beta"], Dimension::NONE, locals)?;
-                let alpha = self.error_of(arguments.values[0], error, "alpha")?;
-                let beta = self.error_of(arguments.values[1], error, "beta")?;
+                let arguments =
+                    self.arguments((clauses, method), ["alpha", "beta"], Dimension::NONE, locals)?;
+                let alpha = self.error_of(arguments.values[0], error, "alpha");
+                let beta = self.error_of(arguments.values[1], error, "beta");
+                let (alpha, beta) = both(alpha, beta)?;
+                arguments.sound()?;
                 Ok(Test::EProcess { alpha, beta })
             }
             "three_way" => {
-                let arguments = self.arguments(method, ["alpha", "indifference"], Dimension::NONE, locals)?;
-                let alpha = self.error_of(arguments.values[0], error, "alpha")?;
-                let (indifference, span) = self.required(&arguments, 1, "indifference")?;
-                self.region(threshold, indifference, at, span)?;
+                let arguments =
+                    self.arguments((clauses, method), ["alpha", "indifference"], Dimension::NONE, locals)?;
+                let alpha = self.error_of(arguments.values[0], error, "alpha");
+                let region = self.region(&arguments, 1, threshold, at);
+                let (alpha, (indifference, _)) = both(alpha, region)?;
+                arguments.sound()?;
                 Ok(Test::ThreeWay { alpha, indifference })
             }
             _ => self.unknown_method(method, &["sprt", "sprt2", "plan", "eprocess", "three_way"]),
         }
     }
 
-    /// The indifference region must lie inside (0, 1).
-    fn region(&mut self, theta: f64, indifference: f64, at: Span, span: Span) -> Lowered<()> {
+    /// The indifference around a threshold, which is an argument of a method, and where; its region must lie inside
+    /// (0, 1).
+    fn region<const N: usize>(
+        &mut self,
+        arguments: &Arguments<'_, N>,
+        argument: usize,
+        theta: f64,
+        at: Span,
+    ) -> Lowered<(f64, Span)> {
+        let (indifference, span) = self.required(arguments, argument, "indifference")?;
         let (low, high) = (theta - indifference, theta + indifference);
         if indifference > 0.0 && low > 0.0 && high < 1.0 && low < theta && theta < high {
-            return Ok(());
+            return Ok((indifference, span));
+        }
+        if indifference <= 0.0 {
+            let error =
+                Diagnostic::error("E0602", span, format!("`indifference` is {indifference}, but is above 0"));
+            return self.report(error.hint("leave the region out: the default test needs none"));
         }
         let round = |x: f64| (x * 1e12).round() / 1e12;
         let error = Diagnostic::error(
@@ -223,8 +182,15 @@ impl Elaborator<'_> {
                 *dimension
             }
         };
-        let within = self.within(clauses, dimension, locals)?;
-        let delta = allowance.error(self.delta(clauses, locals)?, DEFAULT_DELTA);
+        let within = self.within(clauses, dimension, locals);
+        let confidence = self.delta(clauses, locals);
+        if let (Ok(Some(epsilon)), Some(expr), None) = (&within, &clauses.within, &clauses.by)
+            && confidence.is_err()
+        {
+            let _ = self.width((*epsilon, expr.span), kind, WIDEST);
+        }
+        let (within, confidence) = both(within, confidence)?;
+        let delta = allowance.error(confidence, DEFAULT_DELTA);
         let quantile = matches!(kind, MeasureKind::Quantile { .. });
         if let (true, Some(expr)) = (quantile, &clauses.within) {
             let error =
@@ -247,9 +213,19 @@ impl Elaborator<'_> {
         };
         let name = method.name.name.as_str();
         if name == "fixed" || name == "clopper_pearson" || (quantile && name == "dkw") {
-            let arguments = self.arguments(method, ["trials", "delta"], Dimension::NONE, locals)?;
-            let (trials, span) = self.required(&arguments, 0, "trials")?;
-            let delta = self.claimed(arguments.values[1], delta, allowance)?;
+            if let Some(expr) = &clauses.within {
+                let said = "a number of trials that is fixed promises no width";
+                let error = Diagnostic::error("E0607", expr.span, said);
+                return self.report(
+                    error.hint("leave out `by` and the trials follow from the width, or leave out `within`"),
+                );
+            }
+            let arguments =
+                self.arguments((clauses, method), ["trials", "delta"], Dimension::NONE, locals)?;
+            let trials = self.required(&arguments, 0, "trials");
+            let delta = self.claimed(arguments.values[1], delta, allowance);
+            let ((trials, span), delta) = both(trials, delta)?;
+            arguments.sound()?;
             // The values of a quantile are kept.
             let most = if quantile { 1e9 } else { 1e12 };
             if trials < 1.0 || trials.fract() != 0.0 || trials > most {
@@ -287,10 +263,12 @@ impl Elaborator<'_> {
         if !known.contains(&name) {
             return self.unknown_method(method, known);
         }
-        let arguments = self.arguments(method, ["epsilon", "delta"], dimension, locals)?;
-        let delta = self.claimed(arguments.values[1], delta, allowance)?;
-        let width = self.width_of(clauses, within, &arguments)?;
-        let Some((epsilon, span)) = width else {
+        let arguments = self.arguments((clauses, method), ["epsilon", "delta"], dimension, locals)?;
+        let delta = self.claimed(arguments.values[1], delta, allowance);
+        let width = self.width_of(clauses, within, &arguments);
+        let Some((epsilon, span)) = width? else {
+            delta?;
+            arguments.sound()?;
             let error = Diagnostic::error("E0604", method.span, format!("`{name}` needs `epsilon`"));
             return self.report(error);
         };
@@ -303,6 +281,8 @@ impl Elaborator<'_> {
         } else {
             self.width((epsilon, span), kind, WIDEST)?;
         }
+        let delta = delta?;
+        arguments.sound()?;
         Ok(match name {
             "okamoto" => Estimator::Okamoto { epsilon, delta },
             "massart" => Estimator::Massart { epsilon, delta },
@@ -326,13 +306,18 @@ impl Elaborator<'_> {
             return self.report(error);
         }
         let adaptive = method.name.name == "splitting";
-        let arguments =
-            self.arguments(method, ["replicas", "runs", "plain", "delta", "kill"], Dimension::NONE, locals)?;
+        let arguments = self.arguments(
+            (clauses, method),
+            ["replicas", "runs", "plain", "delta", "kill"],
+            Dimension::NONE,
+            locals,
+        )?;
         let replicas = self.whole_in(arguments.values[0], "replicas", (10, 1_000_000), 1000)?;
         let runs = self.whole_in(arguments.values[1], "runs", (2, 1000), 20)?;
         let plain = self.whole_in(arguments.values[2], "plain", (100, 1_000_000_000), replicas * runs / 2)?;
         let delta = self.claimed(arguments.values[3], delta, allowance)?;
         let kill = self.whole_in(arguments.values[4], "kill", (1, replicas - 1), (replicas / 10).max(1))?;
+        arguments.sound()?;
         Ok(Estimator::Splitting(Splitting { adaptive, replicas, runs, kill, plain, delta, level: 0 }))
     }
 
@@ -402,9 +387,10 @@ impl Elaborator<'_> {
                 "one_challenger" => Ranking::OneChallenger,
                 _ => return self.unknown_method(method, &["betting", "one_challenger", "okamoto"]),
             };
-            let arguments = self.arguments(method, ["epsilon", "delta"], dimension, locals)?;
+            let arguments = self.arguments((clauses, method), ["epsilon", "delta"], dimension, locals)?;
             procedure = (ranking, self.claimed(arguments.values[1], delta, allowance)?);
             width = self.width_of(clauses, within, &arguments)?;
+            arguments.sound()?;
         }
         let (epsilon, at) = match width {
             Some(found) => found,

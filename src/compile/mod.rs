@@ -3,6 +3,7 @@
 //! A scenario is elaborated once for every combination of parameter values that is asked about; each is a
 //! world with its own agents, and the formulas over them.
 
+mod arguments;
 mod asks;
 mod behaviour;
 mod bounds;

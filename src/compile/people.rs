@@ -353,7 +353,7 @@ impl<'a> Elaborator<'a> {
         match value {
             Value::UniformIn(shape) => self.shape(shape, &Locals::default()).map(Position::Within),
             Value::Near { agent, within } => {
-                let distance = self.number_of(within, Dimension::LENGTH, &Locals::default())?;
+                let distance = self.number_of(within, Dimension::LENGTH, &Locals::default());
                 let later = |this: &mut Self| {
                     this.report(
                         Diagnostic::error("E0403", agent.span, "this agent is declared later")
@@ -371,6 +371,7 @@ impl<'a> Elaborator<'a> {
                 }
                 let typed = self.lower(agent, &Locals::default())?;
                 let Who::Agent(id) = self.as_agent(typed, agent.span)? else { return Err(Reported) };
+                let distance = distance?;
                 if distance.value <= 0.0 {
                     return self.report(Diagnostic::error(
                         "E0405",

@@ -54,7 +54,8 @@ pub(super) struct Compiler<'a> {
     measured: Vec<Decimal>,
 }
 
-/// Compiles a scenario and property files. All errors are returned at once; a study only where there is none.
+/// Compiles a scenario and property files. All errors are returned at once; a study only where there is none, and where
+/// the parser cut nothing short.
 pub fn compile(input: &Input<'_>) -> (Option<Study>, Vec<Diagnostic>) {
     let mut measured: Vec<Decimal> = Vec::new();
     loop {
@@ -240,7 +241,11 @@ impl<'a> Compiler<'a> {
                         .hint("its own error counts instead of its share; leave it out to hold jointly with the others");
                     self.sites[base].elaborator.note(warning);
                 }
+                let before = self.queries.len();
                 let _ = self.query(query, scope, base, point, &settings, family);
+                for query in &mut self.queries[before..] {
+                    query.point = if family.is_none() { settings.clone() } else { Vec::new() };
+                }
             }
         }
     }
@@ -445,7 +450,7 @@ impl<'a> Compiler<'a> {
             unbounded.then(|| format!("the horizon of {}", elaborator.duration(elaborator.horizon.0)));
         let index = self.next_index;
         self.next_index += 1;
-        self.queries.push(Query { index, name, text, span, settings, ask, within });
+        self.queries.push(Query { index, name, text, span, settings, point: Vec::new(), ask, within });
     }
 
     fn finish(self) -> (Option<Study>, Vec<Diagnostic>) {
@@ -463,7 +468,9 @@ impl<'a> Compiler<'a> {
             }
         }
         diagnostics.sort_by_key(|d| d.place.as_ref().map(|p| p.span));
-        if diagnostics.iter().any(|d| d.severity == Severity::Error) {
+        // What was cut short is refused by the parser.
+        let cut = self.sites.iter().any(|site| !site.elaborator.cut.is_empty());
+        if cut || diagnostics.iter().any(|d| d.severity == Severity::Error) {
             return (None, diagnostics);
         }
         let named = |at: usize| {

@@ -50,7 +50,10 @@ impl<'a> Elaborator<'a> {
                 let error = Diagnostic::error(
                     "E0702",
                     path.span,
-                    format!("{} lines of this file cannot be read", errors.len()),
+                    match errors.len() {
+                        1 => "a line of this file cannot be read".to_owned(),
+                        many => format!("{many} lines of this file cannot be read"),
+                    },
                 )
                 .label(format!("{}{rest}", shown.join("; ")));
                 self.report(error)
@@ -107,6 +110,7 @@ impl<'a> Elaborator<'a> {
                 }));
             return self.report(error);
         }
+        let mut failed = false;
         for (expr, id) in recorded.only.iter().zip(&only).chain(recorded.except.iter().zip(&except)) {
             if !found.iter().any(|o| o.id == *id) {
                 let present: Vec<String> = found.iter().map(|o| o.id.to_string()).collect();
@@ -116,8 +120,12 @@ impl<'a> Elaborator<'a> {
                     format!("person {id} was not recorded at this time"),
                 )
                 .hint(format!("recorded were {}", present.join(", ")));
-                return self.report(error);
+                self.note(error);
+                failed = true;
             }
+        }
+        if failed {
+            return Err(super::elaborator::Reported);
         }
         let asked = recorded.only.iter().zip(&only).chain(recorded.except.iter().zip(&except));
         let mut named: Vec<u32> = Vec::new();

@@ -11,6 +11,10 @@ use crate::model::{Barrier, BarrierId, Obstacle, Region, RegionId};
 use crate::syntax::ast::{Expr, Ident, SceneItem, ShapeExpr, Text};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
+use std::collections::BTreeSet;
+
+/// Most names of properties that a warning lists.
+const MOST_NAMES: usize = 8;
 
 impl<'a> Elaborator<'a> {
     /// Declares the names of a scene. Regions and barriers get their numbers in order of writing; barriers of
@@ -209,9 +213,13 @@ impl<'a> Elaborator<'a> {
     }
 
     fn import(&mut self, path: &Text, filter: Option<&Expr>, files: &Files) {
-        let (mut total, mut taken, mut wrong) = (0, 0, None);
+        let (mut total, mut wrong) = (0, None);
+        let mut known: BTreeSet<String> = BTreeSet::new();
         let mut select = |name: &str, properties: &[(String, PropertyValue)]| {
             total += 1;
+            if known.len() < MOST_NAMES {
+                known.extend(properties.iter().map(|(name, _)| name.clone()));
+            }
             let selected = match filter.map(|f| filter::selects(f, (name, properties))) {
                 Some(Err(error)) => {
                     wrong = Some(error);
@@ -220,7 +228,6 @@ impl<'a> Elaborator<'a> {
                 Some(Ok(selected)) => selected,
                 None => true,
             };
-            taken += usize::from(selected);
             selected
         };
         let features = self.features(path, files, &mut select);
@@ -228,6 +235,8 @@ impl<'a> Elaborator<'a> {
             return self.note(error);
         }
         let Ok(features) = features else { return };
+        let before = self.scene.barriers.len();
+        let points = features.iter().filter(|f| matches!(f.shape, Geometry::Point(_))).count();
         for feature in features {
             let obstacle = match feature.shape {
                 Geometry::Polygon(polygon) => Obstacle::Solid(Shape::Polygon(polygon)),
@@ -238,14 +247,26 @@ impl<'a> Elaborator<'a> {
             };
             self.scene.barriers.push(Barrier { name: feature.name, obstacle });
         }
-        if taken == 0 {
+        if self.scene.barriers.len() == before {
+            let have = if total == 1 { "1 feature".to_owned() } else { format!("{total} features") };
             let warning = Diagnostic::warning(
                 "W0401",
                 path.span,
-                format!("nothing of this file was taken: it has {total} features"),
-            )
-            .hint("the filter after `where` compares properties of features");
-            self.note(warning);
+                format!("nothing of this file was taken: it has {have}"),
+            );
+            let names: Vec<String> = known.iter().take(MOST_NAMES).map(|name| format!("`{name}`")).collect();
+            self.note(warning.hint(if points > 0 {
+                "polygons become obstacles, lines become walls; points are left out".to_owned()
+            } else if total == 0 {
+                "polygons become obstacles, lines become walls".to_owned()
+            } else if names.is_empty() {
+                "the filter after `where` compares properties of features, and these have none".to_owned()
+            } else {
+                format!(
+                    "the filter after `where` compares properties of features; these have {}",
+                    names.join(", ")
+                )
+            }));
         }
     }
 
@@ -258,6 +279,9 @@ impl<'a> Elaborator<'a> {
         let Ok(text) = std::str::from_utf8(bytes) else {
             return self.report(Diagnostic::error("E0704", path.span, "this file is not text in UTF-8"));
         };
+        if text.trim().is_empty() {
+            return self.report(Diagnostic::error("E0704", path.span, "this file is empty"));
+        }
         let wkt = path.value.to_ascii_lowercase().ends_with(".wkt");
         // Well-known text has no properties, so that a filter takes all of it or nothing.
         let read = if !wkt {

@@ -117,6 +117,9 @@ pub struct Query {
     pub span: Span,
     /// Parameter values that hold for it alone (sweep, `under`).
     pub settings: Vec<(String, String)>,
+    /// Values of swept parameters, where the query can be asked at this point of the sweep alone; in a family the
+    /// other points count too.
+    pub point: Vec<(String, String)>,
     /// What is asked.
     pub ask: Ask,
     /// Set where a formula or metric ranges up to the horizon: the horizon in words.

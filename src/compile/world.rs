@@ -245,6 +245,8 @@ impl<'a> Elaborator<'a> {
 
     fn settle_clock(&mut self, file: &'a ScenarioFile) -> Lowered<()> {
         let mut found: [Option<(&crate::syntax::ast::Expr, Span)>; 2] = [None, None];
+        // What a slip of the pen was probably meant to set.
+        let mut meant = [false; 2];
         let mut failed = false;
         for item in &file.items {
             let Item::Setting { name, value } = item else { continue };
@@ -261,7 +263,11 @@ impl<'a> Elaborator<'a> {
                     );
                     let general = "a scenario sets `horizon` and `step`; constants start with `const`";
                     let hint = match &error.hint {
-                        Some(near) => format!("{near} {general}"),
+                        Some(near) => {
+                            meant =
+                                [meant[0] | near.contains("`horizon`"), meant[1] | near.contains("`step`")];
+                            format!("{near} {general}")
+                        }
                         None => general.to_owned(),
                     };
                     self.note(error.hint(hint));
@@ -281,12 +287,13 @@ impl<'a> Elaborator<'a> {
             return Err(Reported);
         }
         let [horizon, step] = found;
-        let mut missing = |this: &mut Self, what: &str, example: &str| {
-            let error = Diagnostic::placeless("E0505", format!("the scenario has no {what}"))
-                .hint(format!("write `{what} = {example}`"));
-            this.note(error);
-            failed = true;
-        };
+        let title = file.items.iter().find_map(|item| match item {
+            Item::Title(text) => Some(text.span),
+            _ => None,
+        });
+        let start = self.sources.first().map(|source| Span::new(source.id, 0, 0));
+        let place = title.or(start).unwrap_or_default();
+        let mut missing = Vec::new();
         let bodies = file.items.iter().any(|item| {
             matches!(
                 item,
@@ -299,11 +306,20 @@ impl<'a> Elaborator<'a> {
             // Should the step or the horizon be wrong: bounds in seconds still make sense.
             self.clock = Clock::Stepped(Decimal::ONE);
         }
-        if step.is_none() && !free {
-            missing(self, "step", "0.02 s");
+        if step.is_none() && !free && !meant[1] {
+            missing.push(("step", "0.02 s"));
         }
-        if horizon.is_none() {
-            missing(self, "horizon", "30 s");
+        if horizon.is_none() && !meant[0] {
+            missing.push(("horizon", "30 s"));
+        }
+        if !missing.is_empty() {
+            let names: Vec<&str> = missing.iter().map(|(name, _)| *name).collect();
+            let lines: Vec<String> =
+                missing.iter().map(|(name, value)| format!("`{name} = {value}`")).collect();
+            let error =
+                Diagnostic::error("E0505", place, format!("the scenario has no {}", names.join(" and no ")));
+            self.note(error.hint(format!("write {}", lines.join(" and "))));
+            failed = true;
         }
         if free {
             self.clock = Clock::Steps;
@@ -313,8 +329,13 @@ impl<'a> Elaborator<'a> {
             }
             return self.settle_horizon(horizon, failed);
         }
-        let (Some((horizon, _)), Some((step, _))) = (horizon, step) else { return Err(Reported) };
-        let length = self.number_of(step, Dimension::TIME, &Locals::of(0))?;
+        let Some((step, _)) = step else {
+            // What is wrong with the one that is there is said too.
+            let _ = horizon.map(|(horizon, _)| self.number_of(horizon, Dimension::TIME, &Locals::of(0)));
+            return Err(Reported);
+        };
+        let length = self.number_of(step, Dimension::TIME, &Locals::of(0));
+        let (length, Some((horizon, _))) = (length?, horizon) else { return Err(Reported) };
         let Some(exact) = length.exact.filter(|e| !e.is_zero() && !e.is_negative()) else {
             return self.report(Diagnostic::error(
                 "E0505",

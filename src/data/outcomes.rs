@@ -32,7 +32,8 @@ impl Outcomes {
     /// With the number of the line, where there is no outcome in it.
     pub fn read(&mut self, line: &str) -> Result<Option<bool>, String> {
         self.lines += 1;
-        let line = line.trim();
+        // A byte-order mark may open the stream.
+        let line = if self.lines == 1 { line.trim_start_matches('\u{feff}') } else { line }.trim();
         if line.is_empty() || line.starts_with('#') {
             return Ok(None);
         }

@@ -69,7 +69,11 @@ impl Answers<'_> {
 
     /// The call that stops at the same trial; `limit` is the option that counts them.
     pub(super) fn replay(&self, query: &Query, limit: &str, trials: u64) -> String {
-        format!("{} --only {} --seed {} {limit} {trials}", self.call.command, query.index, self.call.seed)
+        let mut words = if query.point.is_empty() { &self.call.command } else { &self.call.point }.clone();
+        for (name, value) in &query.point {
+            words.push_str(&format!(" --set '{name}={value}'"));
+        }
+        format!("{words} --only {} --seed {} {limit} {trials}", query.index, self.call.seed)
     }
 
     /// The results of a survey that has stopped.
@@ -209,10 +213,10 @@ impl Answers<'_> {
             return;
         }
         let trials = tally.counts.trials;
-        // The 64th stands for all beyond.
+        // The 64th stands for all beyond: of those none was triggered, or perhaps all were.
         let idle = |implied: bool| {
-            let some = implications.iter().take(64).enumerate().filter(|(_, one)| **one == implied);
-            let all: Vec<usize> = some.map(|(k, _)| k).collect();
+            let some = implications.iter().enumerate().filter(|(_, one)| **one == implied);
+            let all: Vec<usize> = some.map(|(k, _)| k.min(63)).collect();
             (all.iter().filter(|k| tally.triggered >> **k & 1 == 0).count(), all.len())
         };
         match idle(false) {

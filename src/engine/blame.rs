@@ -161,7 +161,9 @@ fn origin(
     };
     if let Some(state) = state_at(*at) {
         let mut search = Search { subject, state: &state, found: Vec::new() };
-        search.extremum(&subject.signals()[signal.0 as usize]);
+        let signal = &subject.signals()[signal.0 as usize];
+        search.extremum(signal);
+        search.name_members(text, |tell| signal.mentions(tell));
         let found = search.found;
         said.push_str(&names(subject, &found, Some(&state)));
     }
@@ -203,7 +205,7 @@ fn closing(
         Node::Atom(atom) => {
             let Some(text) = subject.texts.atoms.get(atom.0 as usize) else { return String::new() };
             let blamed =
-                |state: &State| blamed(subject, &subject.atoms()[atom.0 as usize], reason.value, state);
+                |state: &State| blamed(subject, &subject.atoms()[atom.0 as usize], text, reason.value, state);
             let state = state_at(reason.to);
             let who = state.as_ref().map_or_else(Vec::new, blamed);
             format!("`{text}` {word}{}", names(subject, &who, state.as_ref()))
@@ -222,9 +224,10 @@ fn closing(
 }
 
 /// The agents that make an atom true or false in a state.
-fn blamed(subject: &Subject, atom: &Bool, truth: bool, state: &State) -> Vec<AgentId> {
+fn blamed(subject: &Subject, atom: &Bool, text: &str, truth: bool, state: &State) -> Vec<AgentId> {
     let mut search = Search { subject, state, found: Vec::new() };
     search.walk(atom, truth);
+    search.name_members(text, |tell| atom.mentions(tell));
     search.found.truncate(NAMED);
     search.found
 }
@@ -248,6 +251,19 @@ impl Search<'_> {
         if !self.found.contains(&id) {
             self.found.push(id);
         }
+    }
+
+    /// Names the members of sets that are spoken of by a name that they share, as `a` in `forall a in crowd`: those
+    /// whose own names do not stand in the text.
+    fn name_members(&mut self, text: &str, mentions: impl FnOnce(&mut dyn FnMut(AgentId))) {
+        let subject = self.subject;
+        let agents = &subject.program.scenario.agents;
+        mentions(&mut |id| {
+            let hidden = |name: &str| name.ends_with(']') && !text.contains(name);
+            if self.found.len() < NAMED && agents.get(id.0 as usize).is_some_and(|a| hidden(&a.name)) {
+                self.name(id);
+            }
+        });
     }
 
     /// Those of a set who are there: nobody else counts.
@@ -331,6 +347,14 @@ impl Search<'_> {
             }
             // The margin of who may not be there yet stands in a condition.
             Num::Apply(_, a) | Num::If(_, a, _) => self.extremum(a),
+            // Those who were counted.
+            Num::Count(set, body) if !matches!(**body, Bool::Constant(_)) => {
+                for id in self.members(set) {
+                    if self.found.len() < NAMED && self.holds(&instantiate_bool(body, 0, id)) {
+                        self.name(id);
+                    }
+                }
+            }
             _ => {}
         }
         let Num::Fold(fold, set, body) = num else { return };

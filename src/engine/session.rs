@@ -25,6 +25,8 @@ pub struct Call<'c> {
     pub seed: u64,
     /// The call up to its options, for replay lines: `smc check a.scn b.bltl --set density=0.8`.
     pub command: String,
+    /// The same without sweeps.
+    pub point: String,
     /// The call that shows a trial: `smc simulate a.scn --set density=0.8`.
     pub simulate: String,
     /// Indices of the queries to ask; all of them if empty.

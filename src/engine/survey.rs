@@ -212,7 +212,11 @@ impl Inquiry<'_> {
     fn reason(&self) -> Stop {
         match &self.procedure {
             procedure if procedure.is_capped() => Stop::Cap,
-            procedure if procedure.is_planned() => Stop::Plan,
+            // A plan whose answer is forced stops before its end.
+            procedure if procedure.is_planned() => {
+                let all = procedure.limit().is_none_or(|size| self.tally.counts.trials >= size);
+                if all { Stop::Plan } else { Stop::Boundary }
+            }
             procedure if procedure.split() => Stop::Unresolved,
             procedure if self.tally.counts.unresolved > 0 && procedure.is_wide(&self.query.ask) => {
                 Stop::Unresolved

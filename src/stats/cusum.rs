@@ -24,7 +24,7 @@ impl Cusum {
         probability("after", after)?;
         range("threshold", threshold, 1e-9, 700.0)?;
         if before == after {
-            return Err(Invalid::Order { low_name: "after", low: after, high_name: "before", high: before });
+            return Err(Invalid::Equal { first: "before", second: "after", value: before });
         }
         Ok(Self {
             per_success: math::ln(after / before),

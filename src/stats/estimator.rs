@@ -1,6 +1,6 @@
 //! What estimators of a probability have in common, the default choice, and unresolved trials.
 
-use super::calibration::{self, Table};
+use super::calibration;
 use super::{Calibrated, Counts, FixedSize, Gbas, Invalid, Massart, Okamoto, Outcome, Spending};
 use std::collections::BTreeMap;
 
@@ -102,12 +102,12 @@ impl AnyEstimator {
     /// (epsilon of 0.005 or more), else whichever of alpha spending and Okamoto has the smaller largest number
     /// of trials.
     pub fn within(epsilon: f64, delta: f64) -> Result<Self, Invalid> {
-        if let Some(row) = Table::row(epsilon, delta).or_else(|| Table::row_below(epsilon, delta)) {
-            return Ok(Self::Calibrated(Calibrated::at_level(epsilon, delta, row.gamma)?));
-        }
         let (spending, okamoto) = (Spending::new(epsilon, delta)?, Okamoto::new(epsilon, delta)?);
-        if let Some(gamma) = calibration::calibrate(epsilon, delta) {
-            return Ok(Self::Calibrated(Calibrated::at_level(epsilon, delta, gamma)?));
+        if let Some(gamma) = calibration::level(epsilon, delta) {
+            let calibrated = Calibrated::at_level(epsilon, delta, gamma)?;
+            if calibrated.limit() <= okamoto.limit() {
+                return Ok(Self::Calibrated(calibrated));
+            }
         }
         Ok(if spending.limit() < okamoto.limit() { Self::Spending(spending) } else { Self::Okamoto(okamoto) })
     }

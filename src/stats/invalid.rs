@@ -33,6 +33,16 @@ pub enum Invalid {
         /// Greatest value.
         high: f64,
     },
+    /// Two numbers that must differ.
+    #[error("{first} and {second} are both {value}, but must differ")]
+    Equal {
+        /// One parameter.
+        first: &'static str,
+        /// The other.
+        second: &'static str,
+        /// The value of both.
+        value: f64,
+    },
     /// Two numbers in the wrong order.
     #[error("{low_name} = {low} must be below {high_name} = {high}")]
     Order {

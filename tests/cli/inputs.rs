@@ -197,3 +197,31 @@ fn what_comes_from_standard_input_is_formatted_as_what_it_is() {
     let said = place.fed(&["fmt", "-", "--language", "scn"], "estimate   P(true) within 0.1");
     assert_eq!((said.code, said.out.as_str()), (Some(2), ""));
 }
+
+#[test]
+fn imports_that_yield_nothing_are_told() {
+    let point = r#"{"type":"FeatureCollection","features":[{"type":"Feature","properties":{"kind":"wall"},"geometry":{"type":"Point","coordinates":[1,2]}}]}"#;
+    let line = r#"{"type":"FeatureCollection","features":[{"type":"Feature","properties":{"kind":"wall"},"geometry":{"type":"LineString","coordinates":[[1,2],[3,4]]}}]}"#;
+    let place = Place::new(&[("e.wkt", " \n"), ("p.geojson", point), ("l.geojson", line)]);
+    for (import, code, said) in [
+        (r#""e.wkt""#, Some(2), "error[E0704]: this file is empty"),
+        (r#""p.geojson""#, Some(0), "points are left out"),
+        (r#""l.geojson" where knd == "wall""#, Some(0), "these have `kind`"),
+        (r#""l.geojson" where kind == "wall""#, Some(0), ""),
+    ] {
+        place.write("a.scn", format!("{SMALL}\nscene {{ import {import} }}\n").as_bytes());
+        let found = place.call(&["show", "a.scn"]);
+        assert_eq!(found.code, code, "{import}: {}", found.err);
+        assert!(
+            found.err.contains(said) && said.is_empty() == found.err.is_empty(),
+            "{import}: {}",
+            found.err
+        );
+    }
+}
+
+#[test]
+fn a_property_file_on_standard_input_is_blamed_as_one() {
+    let said = Place::new(&[]).fed(&["fmt", "-"], "property a = X true\ncheck P(a) > 0.5 wthin\n");
+    assert!(said.err.contains(":2:18"), "{}", said.err);
+}

@@ -8,4 +8,5 @@ mod forecasts;
 mod formats;
 mod inputs;
 mod program;
+mod reasons;
 mod traces;

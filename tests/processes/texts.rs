@@ -34,6 +34,7 @@ pub(crate) fn answered(study: &Study, seed: u64, threads: usize, most: u64) -> R
     let call = Call {
         seed,
         command: String::new(),
+        point: String::new(),
         simulate: "smc simulate model.scn".to_owned(),
         only: Vec::new(),
         place: &|_| (String::new(), 0),

@@ -134,6 +134,10 @@ pub fn gamma_quantile(a: f64, p: f64) -> f64 {
     if p == 1.0 {
         return f64::INFINITY;
     }
+    if a == 1.0 {
+        // The exponential law.
+        return -math::ln_1p(-p);
+    }
     if p > 0.5 {
         return gamma_upper_quantile(a, 1.0 - p);
     }
@@ -152,6 +156,9 @@ pub fn gamma_upper_quantile(a: f64, q: f64) -> f64 {
     }
     if q == 0.0 {
         return f64::INFINITY;
+    }
+    if a == 1.0 {
+        return -math::ln(q);
     }
     if q > 0.5 {
         return gamma_quantile(a, 1.0 - q);

@@ -17,7 +17,7 @@ use super::dimension::{self, Dimension};
 use super::elaborator::{Elaborator, Locals, Lowered};
 use super::number::Number;
 use super::typed::Typed;
-use crate::logic::{NodeId, TermId};
+use crate::logic::{Node, NodeId, TermId};
 use crate::model::{Axis, Bool, Num, Place, Set, Who};
 use crate::syntax::ast::{Expr, ExprKind, Ident, UnaryOp};
 use crate::syntax::diagnostic::Diagnostic;
@@ -188,11 +188,31 @@ impl Elaborator<'_> {
         }
     }
 
+    /// A formula as a truth value of one state, if it joins nothing but such values: implications are formulas, so
+    /// that monitors see them, wherever they stand. `room` is left for so many parts: shared ones are written out.
+    fn of_one_state(&self, node: NodeId, room: &mut u32) -> Option<Bool> {
+        *room = room.checked_sub(1)?;
+        let mut parts = |parts: &[NodeId]| -> Option<Vec<Bool>> {
+            parts.iter().map(|part| self.of_one_state(*part, room)).collect()
+        };
+        Some(match &self.tree.nodes[node.0 as usize] {
+            Node::Constant(value) => Bool::Constant(*value),
+            Node::Atom(atom) => self.atoms[atom.0 as usize].clone(),
+            Node::Not(part) => Bool::Not(Box::new(self.of_one_state(*part, room)?)),
+            Node::And(all) => Bool::And(parts(all)?),
+            Node::Or(all) => Bool::Or(parts(all)?),
+            _ => return None,
+        })
+    }
+
     /// A truth value of one state.
     pub(super) fn as_truth(&mut self, typed: Typed, span: Span) -> Lowered<Bool> {
         match typed {
             Typed::Truth(truth) => Ok(truth),
-            Typed::Formula(_) => {
+            Typed::Formula(node) => {
+                if let Some(truth) = self.of_one_state(node, &mut 10_000) {
+                    return Ok(truth);
+                }
                 let error = Diagnostic::error(
                     "E0504",
                     span,

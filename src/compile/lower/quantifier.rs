@@ -7,7 +7,7 @@ use super::super::elaborator::{Elaborator, Locals, Lowered};
 use super::super::typed::Typed;
 use crate::logic::{Node, NodeId, Operation, Term, TermId};
 use crate::model::{AgentId, Arithmetic, Bool, Fold, Num, Set, Who};
-use crate::syntax::ast::{Aggregate, Expr, Ident, Quantifier};
+use crate::syntax::ast::{Aggregate, BinaryOp, Expr, ExprKind, Ident, Quantifier};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
@@ -37,7 +37,16 @@ impl Elaborator<'_> {
         let typed = self.lower(body, &inner)?;
         match quantifier {
             Quantifier::Forall => {
-                Ok(Typed::Truth(Bool::Forall(set, Box::new(self.as_truth(typed, body.span)?))))
+                let all = Bool::Forall(set.clone(), Box::new(self.as_truth(typed, body.span)?));
+                let watched = self.temporal && locals.running == 0;
+                let Some((left, place)) = (if watched { self.left_side(body, &inner)? } else { None }) else {
+                    return Ok(Typed::Truth(all));
+                };
+                // "Each a: if p then q" is "if some a has p, then each a: if p then q"; so the monitor sees whether
+                // anybody ever had p.
+                let some = self.atom(Bool::Exists(set, Box::new(left)), place);
+                let (none, all) = (self.node(Node::Not(some)), self.atom(all, span));
+                Ok(Typed::Formula(self.node(Node::Or(vec![none, all]))))
             }
             Quantifier::Exists => {
                 Ok(Typed::Truth(Bool::Exists(set, Box::new(self.as_truth(typed, body.span)?))))
@@ -50,6 +59,30 @@ impl Elaborator<'_> {
                 let (num, dimension) = self.as_num(typed, body.span)?;
                 Ok(Typed::Num(Num::Fold(fold(aggregate), set, Box::new(num)), dimension))
             }
+        }
+    }
+
+    /// Where a condition of each is an implication, the condition that some of them has its left side; and the place of
+    /// that side.
+    fn left_side(&mut self, body: &Expr, locals: &Locals) -> Lowered<Option<(Bool, Span)>> {
+        match &body.kind {
+            ExprKind::Binary(BinaryOp::Implies, left, _) => {
+                let typed = self.lower(left, locals)?;
+                Ok(Some((self.as_truth(typed, left.span)?, left.span)))
+            }
+            ExprKind::Quantified { quantifier: Quantifier::Forall, variable, set, body } => {
+                let members = self.lower(set, locals)?;
+                if matches!(members, Typed::Processes(_)) {
+                    return Ok(None);
+                }
+                let set = self.as_set(members, set.span)?;
+                let mut inner = locals.clone();
+                inner.names.push((variable.name.clone(), Typed::Agent(Who::Running(locals.running))));
+                inner.running += 1;
+                let left = self.left_side(body, &inner)?;
+                Ok(left.map(|(truth, place)| (Bool::Exists(set, Box::new(truth)), place)))
+            }
+            _ => Ok(None),
         }
     }
 

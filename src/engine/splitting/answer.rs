@@ -42,15 +42,16 @@ impl Answers<'_> {
             words::number(words::at_most(found.bound)),
             words::error(rule.delta)
         );
-        if counts.trials == 0 {
+        if counts.trials == 0 || found.bound >= 1.0 {
             result.certifies = String::new();
         }
         if let Some(spread) =
             found.spreads.map(|[low, _]| low).filter(|s| 0.0 < s.floor && s.floor <= found.bound)
         {
+            let above = std::mem::take(&mut result.certifies);
+            let joint = if above.is_empty() { "" } else { "; " };
             result.certifies = format!(
-                "{}; {name} >= {}, error at most {} (from the runs, which are unbiased)",
-                result.certifies,
+                "{above}{joint}{name} >= {}, error at most {} (from the runs, which are unbiased)",
                 words::number(words::at_least(spread.floor)),
                 words::error(rule.delta)
             );

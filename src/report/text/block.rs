@@ -144,8 +144,9 @@ fn rare(text: &mut String, rare: &Rare) {
         line(
             text,
             &format!(
-                "splitting: {}, {levels} levels each, {}, {}",
+                "splitting: {}, {levels} {} each, {}, {}",
                 counted(rare.runs, "run"),
+                if levels == "1" { "level" } else { "levels" },
                 counted(rare.paths, "path"),
                 counted(rare.steps, "step")
             ),

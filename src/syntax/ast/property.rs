@@ -10,6 +10,8 @@ pub struct PropertyFile {
     pub items: Vec<PropertyItem>,
     /// Parts that ended early, since what follows on their line could not be read; that was reported.
     pub cut: Vec<Span>,
+    /// Parts that could not be read; that was reported.
+    pub lost: Vec<Span>,
 }
 
 /// One declaration or query.

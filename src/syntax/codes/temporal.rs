@@ -102,9 +102,11 @@ Right:\n\
 A window inside another one keeps the states for which its answer is still open. With long windows and short steps\n\
 these are many, in each trial.\n\
 \n\
-Wrong, with a step of a millisecond:\n\
+Wrong:\n\
+\x20   step = 1 ms\n\
 \x20   property p = G<=2 h (F<=1 h (queue.n == 0))\n\
-Right, with a step of a second:\n\
+Right:\n\
+\x20   step = 1 s\n\
 \x20   property p = G<=2 h (F<=1 h (queue.n == 0))",
     },
     Page {

@@ -22,6 +22,8 @@ pub(super) struct Builder<'s> {
     pub(super) diagnostics: Vec<Diagnostic>,
     /// Parts that ended early.
     pub(super) cut: Vec<Span>,
+    /// Parts that could not be read.
+    pub(super) lost: Vec<Span>,
 }
 
 /// Whether a pair is only a mark or keyword.

@@ -57,6 +57,7 @@ impl Builder<'_> {
             let rule = part.as_rule();
             if let Some(strict) = strict_rule(rule) {
                 let start = part.as_span().start();
+                self.lost.push(Span::new(self.source.id, start, end_of(&part)));
                 // What follows a bad part on its line is a consequence of it.
                 let same_line = last_bad_end.is_some_and(|end: usize| !text[end..start].contains('\n'));
                 if !same_line {

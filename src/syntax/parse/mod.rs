@@ -102,8 +102,14 @@ fn parse<T>(
     rule: Rule,
     build: impl FnOnce(&mut Builder<'_>, builder::Pair<'_>) -> T,
 ) -> (Option<T>, Vec<Diagnostic>) {
-    let mut builder =
-        Builder { source, text: &source.text, root: rule, diagnostics: Vec::new(), cut: Vec::new() };
+    let mut builder = Builder {
+        source,
+        text: &source.text,
+        root: rule,
+        diagnostics: Vec::new(),
+        cut: Vec::new(),
+        lost: Vec::new(),
+    };
     match nesting::scan(source) {
         Scan::Fine => {}
         Scan::TooDeep(diagnostic) => return (None, vec![diagnostic]),

@@ -17,7 +17,7 @@ impl Builder<'_> {
             .filter(|part| part.as_rule() == Rule::property_item)
             .filter_map(|part| self.property_item(part.into_inner().next()?))
             .collect();
-        PropertyFile { items, cut: std::mem::take(&mut self.cut) }
+        PropertyFile { items, cut: std::mem::take(&mut self.cut), lost: std::mem::take(&mut self.lost) }
     }
 
     fn property_item(&mut self, pair: Pair<'_>) -> Option<PropertyItem> {

@@ -11,7 +11,7 @@ impl Builder<'_> {
             .filter(|part| part.as_rule() == Rule::item)
             .filter_map(|part| self.item(part.into_inner().next()?))
             .collect();
-        ScenarioFile { items, cut: std::mem::take(&mut self.cut) }
+        ScenarioFile { items, cut: std::mem::take(&mut self.cut), lost: std::mem::take(&mut self.lost) }
     }
 
     fn item(&mut self, pair: Pair<'_>) -> Option<Item> {

@@ -15,6 +15,7 @@ impl Builder<'_> {
             .or_else(|| self.slip_of_bound(fault))
             .or_else(|| self.slip_of_equals(fault))
             .or_else(|| self.slip_of_operator(fault))
+            .or_else(|| self.slip_of_range(fault))
             .or_else(|| self.slip_of_unit(fault))
             .or_else(|| self.slip_of_process(fault))
             .or_else(|| self.slip_of_time(fault))
@@ -133,9 +134,10 @@ impl Builder<'_> {
         if fault.found != "=" || !fault.after_value() {
             return None;
         }
-        let (start, word) = lexeme::word_before(self.text, fault.at)?;
-        let line_start = self.text[..start].rfind('\n').map_or(0, |at| at + 1);
-        if self.text[line_start..start].trim().is_empty() && start > fault.from {
+        if let Some((start, word)) = lexeme::word_before(self.text, fault.at)
+            && start > fault.from
+            && self.text[self.text[..start].rfind('\n').map_or(0, |at| at + 1)..start].trim().is_empty()
+        {
             let place = Span::new(self.source.id, start, start + word.len());
             return Some(
                 Diagnostic::error(
@@ -145,6 +147,15 @@ impl Builder<'_> {
                 )
                 .hint("the value before it is missing or ends in an operator"),
             );
+        }
+        if let Some((start, word)) = lexeme::word_before(self.text, fault.at)
+            && let Some((_, word)) = word.rsplit_once('.')
+            && self.text[..start].rsplit('\n').next().is_some_and(|line| line.contains("->"))
+        {
+            let error = Diagnostic::error(code::UNEXPECTED, place, "a process sets its own variables only");
+            return Some(error.hint(format!(
+                "let the process that has `{word}` set it, by a command that reads this one"
+            )));
         }
         Some(
             Diagnostic::error(code::EQUALS, place, "expected an operator, found `=`")
@@ -186,6 +197,16 @@ impl Builder<'_> {
             return None;
         }
         Some(say(fault.at, fault.found, plain))
+    }
+
+    /// `check E(m) >= 1.5 in 0 .. 2`
+    fn slip_of_range(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
+        if fault.found != "in" || self.root != Rule::property_file || !fault.after_value() {
+            return None;
+        }
+        let place = self.place(fault.at, fault.found);
+        let error = Diagnostic::error(code::UNEXPECTED, place, "a range stands after what it is of");
+        Some(error.hint("as in `check E(m) in 0 .. 2 >= 1.5`; a probability needs none"))
     }
 
     /// `3 metres`

@@ -1,0 +1,81 @@
+//! What a report says of a verdict: implications that never had a case, people who decided, the call that repeats it.
+
+use crate::program::{Place, SMALL};
+use serde_json::Value;
+
+fn asked(properties: &str, words: &[&str]) -> Value {
+    let place = Place::new(&[("a.scn", SMALL), ("a.bltl", properties)]);
+    let mut call = vec!["check", "a.scn", "a.bltl", "-q", "--format", "json", "--max-trials", "40"];
+    call.extend(words);
+    let said = place.call(&call);
+    assert!(said.code != Some(2), "{}", said.err);
+    said.json()
+}
+
+#[test]
+fn implications_of_each_are_seen_to_have_no_case() {
+    for (formula, idle) in [
+        ("forall a in crowd: (speed(a) > 99 m/s => speed(user) > 1 m/s)", true),
+        (
+            "forall a in crowd: forall b in others(a): (contact(a, b) & speed(a) > 99 m/s => speed(b) > 1 m/s)",
+            true,
+        ),
+        ("forall a in crowd: (speed(a) < 99 m/s => speed(user) < 99 m/s)", false),
+        ("speed(user) > 99 m/s => (forall a in crowd: speed(a) > 1 m/s)", true),
+    ] {
+        let json = asked(&format!("check P(G<=1 s ({formula})) >= 0.5\n"), &[]);
+        let result = &json["results"][0];
+        assert_eq!(result["verdict"], "satisfied", "{result}");
+        assert_eq!(result["warnings"].to_string().contains("never triggered"), idle, "{formula}: {result}");
+    }
+}
+
+#[test]
+fn an_implication_is_a_condition_like_any_other() {
+    let left = "speed(a) > 1.2 m/s";
+    let right = "x(position(a)) < 5 m";
+    let forms = [
+        format!("G<=2 s (forall a in crowd: ({left} => {right}))"),
+        format!("G<=2 s (forall a in crowd: (!({left}) | {right}))"),
+        format!("G<=2 s (count(a in crowd: {left} => {right}) == count(a in crowd))"),
+        format!("G<=2 s (min(if({left} => {right}, 1, 0) for a in crowd) > 0)"),
+        "G<=2 s (if(speed(user) > 99 m/s => speed(user) > 1 m/s, 1, 0) > 0)".to_owned(),
+    ];
+    let queries: Vec<String> =
+        forms.iter().map(|form| format!("estimate P({form}) by fixed(trials = 40)\n")).collect();
+    let json = asked(&queries.concat(), &[]);
+    let successes = |k: usize| json["results"][k]["successes"].as_u64().unwrap();
+    assert!((1..40).contains(&successes(0)), "{json}");
+    assert_eq!([successes(1), successes(2), successes(3)], [successes(0); 3]);
+    assert_eq!(successes(4), 40);
+}
+
+#[test]
+fn those_who_decided_are_named_where_a_formula_is_about_each() {
+    for formula in [
+        "forall o in crowd: F<=1 s (x(position(o)) < 2 m)",
+        "exists o in crowd: G<=1 s (x(position(o)) < 2 m)",
+        "count(o in crowd: F<=1 s (x(position(o)) < 2 m)) >= 3",
+        "G<=1 s (count(o in crowd: x(position(o)) > 2 m) < 2)",
+        "forall o in crowd: max<=1 s (x(position(o))) < 2 m",
+    ] {
+        let json = asked(&format!("check P({formula}) >= 0.5\n"), &[]);
+        let witness = &json["results"][0]["witnesses"][0];
+        assert!(witness["what"].as_str().unwrap().contains("crowd["), "{formula}: {witness}");
+    }
+}
+
+#[test]
+fn a_point_of_a_sweep_is_repeated_alone() {
+    let query = "estimate P(F<=1 s contact(user)) by fixed(trials = 20)\n";
+    let sweep = ["--set", "density=0.1..0.2 by 0.1"];
+    let json = asked(query, &sweep);
+    let replay = |k: usize| json["results"][k]["replay"].as_str().unwrap();
+    assert!(replay(1).contains("--set 'density=0.2 /m^2' --only 0 --seed 0"), "{}", replay(1));
+    assert!(!replay(0).contains(".."), "{}", replay(0));
+    let again = asked(query, &["--set", "density=0.2 /m^2"]);
+    assert_eq!(again["results"][0]["successes"], json["results"][1]["successes"]);
+    // In a family the errors are shared with the other points.
+    let family = asked("family confidence 95 %\nestimate P(F<=1 s contact(user)) within 0.4\n", &sweep);
+    assert!(family["results"][1]["replay"].as_str().unwrap().contains(".."), "{family}");
+}
