@@ -176,8 +176,12 @@ mod tests {
         assert_eq!((errors[0].line, errors[0].feature.as_ref()), (Some(3), None));
         assert!(errors[0].column.is_some());
         assert!(read_geojson("{\"type\": \"Point\"}").is_err());
-        let one = read_geojson("{\"type\": \"Point\", \"coordinates\": [1]}").unwrap_err();
-        assert_eq!(one[0].message, "a position has two numbers; this one has one: [1]");
+        assert!(read_geojson("{\"type\": \"Point\", \"coordinates\": [1]}").is_err());
+        let fault = |text| read_geojson(text).unwrap_err()[0].message.clone();
+        let one = fault("{\"type\": \"LineString\", \"coordinates\": [[1], [1, 1]]}");
+        assert_eq!(one, "a position has two numbers; this one has one: [1]");
+        let none = fault("{\"type\": \"Polygon\", \"coordinates\": [[[1, 1], [], [0, 1]]]}");
+        assert_eq!(none, "a position has two numbers; this one has none");
         assert!(read_geojson(&"[".repeat(100_000)).is_err());
     }
 }
