@@ -332,7 +332,7 @@ impl Vicinity {
                     continue;
                 }
                 let found = value(measure, squared.sqrt(), radius, self.radius[k]);
-                if compare(test, found, bound) != wanted {
+                if test.of(found, bound) != wanted {
                     return Some(false);
                 }
             }
@@ -368,18 +368,5 @@ fn value(measure: Measure, distance: f64, fixed: f64, running: f64) -> f64 {
         Measure::Centres => distance,
         Measure::GapFixedFirst => distance - fixed - running,
         Measure::GapRunningFirst => distance - running - fixed,
-    }
-}
-
-#[inline(always)]
-fn compare(test: Comparison, a: f64, b: f64) -> bool {
-    match test {
-        Comparison::Less => a < b,
-        Comparison::AtMost => a <= b,
-        Comparison::Greater => a > b,
-        Comparison::AtLeast => a >= b,
-        Comparison::Equal => a == b,
-        // Not `!=`, which holds of a NaN.
-        Comparison::Unequal => a < b || a > b,
     }
 }

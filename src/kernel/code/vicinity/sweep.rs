@@ -3,7 +3,7 @@
 //! The squares are swept row by row; a square meets those after it, a few columns and rows on. For the nearest these are
 //! the next ones; who has nobody so near searches farther alone.
 
-use super::{Asker, Vicinity, compare, square, value};
+use super::{Asker, Vicinity, square, value};
 use crate::base::geometry::Vec2;
 use crate::kernel::code::node::Measure;
 use crate::model::Comparison;
@@ -133,7 +133,7 @@ impl Vicinity {
                 for first in own.clone() {
                     all(first, first + 1..right);
                 }
-                for above in row + 1..(row + span).min(rows - 1) + 1 {
+                for above in row + 1..=(row + span).min(rows - 1) {
                     let others = self.stretch(above, &(column.saturating_sub(span)..last));
                     for first in own.clone() {
                         all(first, others.clone());
@@ -185,10 +185,10 @@ impl Vicinity {
                 return;
             }
             let (distance, ra, rb) = (squared.sqrt(), self.radius[a], self.radius[b]);
-            if compare(test, value(measure, distance, ra, rb), bound) != wanted {
+            if test.of(value(measure, distance, ra, rb), bound) != wanted {
                 far[a] = 0.0;
             }
-            if compare(test, value(measure, distance, rb, ra), bound) != wanted {
+            if test.of(value(measure, distance, rb, ra), bound) != wanted {
                 far[b] = 0.0;
             }
         });
