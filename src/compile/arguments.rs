@@ -30,7 +30,7 @@ impl Elaborator<'_> {
         names: [&str; N],
         dimension: Dimension,
         locals: &Locals,
-    ) -> Lowered<Arguments<'m, N>> {
+    ) -> Arguments<'m, N> {
         let mut values = [None; N];
         let mut failed = false;
         for argument in &method.arguments {
@@ -73,7 +73,7 @@ impl Elaborator<'_> {
                 Err(_) => failed = true,
             }
         }
-        Ok(Arguments { method, values, failed })
+        Arguments { method, values, failed }
     }
 
     pub(super) fn required<const N: usize>(

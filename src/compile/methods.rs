@@ -93,7 +93,7 @@ impl Elaborator<'_> {
                     ["alpha", "beta", "indifference"],
                     Dimension::NONE,
                     locals,
-                )?;
+                );
                 let alpha = self.error_of(arguments.values[0], error, "alpha");
                 let beta = self.error_of(arguments.values[1], error, "beta");
                 let region = self.region(&arguments, 2, threshold, at);
@@ -117,8 +117,7 @@ impl Elaborator<'_> {
                 })
             }
             "eprocess" => {
-                let arguments =
-                    self.arguments((clauses, method), ["alpha", "beta"], Dimension::NONE, locals)?;
+                let arguments = self.arguments((clauses, method), ["alpha", "beta"], Dimension::NONE, locals);
                 let alpha = self.error_of(arguments.values[0], error, "alpha");
                 let beta = self.error_of(arguments.values[1], error, "beta");
                 let (alpha, beta) = both(alpha, beta)?;
@@ -127,7 +126,7 @@ impl Elaborator<'_> {
             }
             "three_way" => {
                 let arguments =
-                    self.arguments((clauses, method), ["alpha", "indifference"], Dimension::NONE, locals)?;
+                    self.arguments((clauses, method), ["alpha", "indifference"], Dimension::NONE, locals);
                 let alpha = self.error_of(arguments.values[0], error, "alpha");
                 let region = self.region(&arguments, 1, threshold, at);
                 let (alpha, (indifference, _)) = both(alpha, region)?;
@@ -220,8 +219,7 @@ impl Elaborator<'_> {
                     error.hint("leave out `by` and the trials follow from the width, or leave out `within`"),
                 );
             }
-            let arguments =
-                self.arguments((clauses, method), ["trials", "delta"], Dimension::NONE, locals)?;
+            let arguments = self.arguments((clauses, method), ["trials", "delta"], Dimension::NONE, locals);
             let trials = self.required(&arguments, 0, "trials");
             let delta = self.claimed(arguments.values[1], delta, allowance);
             let ((trials, span), delta) = both(trials, delta)?;
@@ -263,7 +261,7 @@ impl Elaborator<'_> {
         if !known.contains(&name) {
             return self.unknown_method(method, known);
         }
-        let arguments = self.arguments((clauses, method), ["epsilon", "delta"], dimension, locals)?;
+        let arguments = self.arguments((clauses, method), ["epsilon", "delta"], dimension, locals);
         let delta = self.claimed(arguments.values[1], delta, allowance);
         let width = self.width_of(clauses, within, &arguments);
         let Some((epsilon, span)) = width? else {
@@ -311,7 +309,7 @@ impl Elaborator<'_> {
             ["replicas", "runs", "plain", "delta", "kill"],
             Dimension::NONE,
             locals,
-        )?;
+        );
         let replicas = self.whole_in(arguments.values[0], "replicas", (10, 1_000_000), 1000)?;
         let runs = self.whole_in(arguments.values[1], "runs", (2, 1000), 20)?;
         let plain = self.whole_in(arguments.values[2], "plain", (100, 1_000_000_000), replicas * runs / 2)?;
@@ -387,7 +385,7 @@ impl Elaborator<'_> {
                 "one_challenger" => Ranking::OneChallenger,
                 _ => return self.unknown_method(method, &["betting", "one_challenger", "okamoto"]),
             };
-            let arguments = self.arguments((clauses, method), ["epsilon", "delta"], dimension, locals)?;
+            let arguments = self.arguments((clauses, method), ["epsilon", "delta"], dimension, locals);
             procedure = (ranking, self.claimed(arguments.values[1], delta, allowance)?);
             width = self.width_of(clauses, within, &arguments)?;
             arguments.sound()?;

@@ -220,15 +220,14 @@ impl<'a> Elaborator<'a> {
             if known.len() < MOST_NAMES {
                 known.extend(properties.iter().map(|(name, _)| name.clone()));
             }
-            let selected = match filter.map(|f| filter::selects(f, (name, properties))) {
+            match filter.map(|f| filter::selects(f, (name, properties))) {
                 Some(Err(error)) => {
                     wrong = Some(error);
                     false
                 }
                 Some(Ok(selected)) => selected,
                 None => true,
-            };
-            selected
+            }
         };
         let features = self.features(path, files, &mut select);
         if let Some(error) = wrong {

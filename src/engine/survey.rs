@@ -192,7 +192,7 @@ impl Inquiry<'_> {
 
     /// Counts trials with their indices.
     fn count<'c>(&mut self, trials: impl Iterator<Item = (u64, &'c Cell)> + Clone) {
-        if let Some(held) = self.tally.add_truths(trials.clone()) {
+        if let Some(held) = self.tally.add_truths(&trials) {
             self.glimpse.count(trials.count() as u64, held);
             return;
         }

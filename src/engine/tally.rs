@@ -33,7 +33,7 @@ impl Tally {
     /// that depends on chance. How many of them held.
     pub(super) fn add_truths<'c>(
         &mut self,
-        trials: impl Iterator<Item = (u64, &'c Cell)> + Clone,
+        trials: &(impl Iterator<Item = (u64, &'c Cell)> + Clone),
     ) -> Option<u64> {
         if !matches!(trials.clone().next()?.1.reading, Reading::Truth(_)) {
             return None;
@@ -117,11 +117,11 @@ mod tests {
         let trials = |from: usize, to: usize| (from as u64..).zip(&cells[from..to]);
         let (mut one, mut many) = (Tally::default(), Tally::default());
         trials(0, 9).for_each(|(index, cell)| one.add(index, cell, None));
-        assert_eq!(many.add_truths(trials(0, 2)), Some(0));
-        assert_eq!(many.add_truths(trials(2, 9)), Some(2));
+        assert_eq!(many.add_truths(&trials(0, 2)), Some(0));
+        assert_eq!(many.add_truths(&trials(2, 9)), Some(2));
         assert_eq!(format!("{one:?}"), format!("{many:?}"));
         let mixed = [cells[0], Cell::BLANK];
-        assert_eq!(many.add_truths((9..).zip(&mixed)), None);
+        assert_eq!(many.add_truths(&(9..).zip(&mixed)), None);
         assert_eq!(format!("{one:?}"), format!("{many:?}"));
     }
 }
