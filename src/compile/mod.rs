@@ -32,6 +32,7 @@ mod scenery;
 mod settings;
 mod sources;
 pub mod study;
+mod sweeps;
 mod symbols;
 mod typed;
 mod ways;

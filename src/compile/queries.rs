@@ -6,7 +6,7 @@ use super::families::{self, Allowance};
 use super::files::Files;
 use super::measures::Observed;
 use super::number::Number;
-use super::settings::{MOST_POINTS, Setting};
+use super::settings::Setting;
 use super::study::{Ask, Column, Estimator, Measure, MeasureKind, Query, Study, Target, World};
 use super::symbols::ScopeId;
 use crate::base::decimal::Decimal;
@@ -40,7 +40,7 @@ pub(super) struct Site<'a> {
 }
 
 pub(super) struct Compiler<'a> {
-    input: &'a Input<'a>,
+    pub(super) input: &'a Input<'a>,
     pub(super) sites: Vec<Site<'a>>,
     /// Sites by the names and bits of their settings; numbers of the same bits may differ in what is exact.
     known: BTreeMap<Vec<(String, u64)>, Vec<usize>>,
@@ -84,42 +84,7 @@ impl<'a> Compiler<'a> {
     fn run(&mut self) {
         // Sweep points are computed in the plain world, which also checks what no query uses.
         let plain = self.site(BTreeMap::new());
-        let mut points: Vec<BTreeMap<String, Number>> = vec![BTreeMap::new()];
-        let mut seen: Vec<&Setting> = Vec::new();
-        for setting in self.input.settings {
-            if seen.iter().any(|s| s.name == setting.name) {
-                let error =
-                    Diagnostic::error("E0210", setting.span, format!("`{}` is set twice", setting.name));
-                self.sites[plain].elaborator.note(error);
-                continue;
-            }
-            seen.push(setting);
-            let Ok(values) = self.sites[plain].elaborator.points(setting) else { continue };
-            let combinations = points.len().saturating_mul(values.len());
-            if combinations > MOST_POINTS {
-                let error = Diagnostic::error(
-                    "E0405",
-                    setting.span,
-                    format!(
-                        "with this there are {combinations} combinations of values, more than {MOST_POINTS}"
-                    ),
-                );
-                self.sites[plain]
-                    .elaborator
-                    .note(error.hint("sweep fewer parameters at once, or by larger steps"));
-                continue;
-            }
-            points = points
-                .iter()
-                .flat_map(|point| {
-                    values.iter().map(|value| {
-                        let mut next = point.clone();
-                        next.insert(setting.name.clone(), *value);
-                        next
-                    })
-                })
-                .collect();
-        }
+        let mut points = self.points(plain);
         let swept: Vec<&str> = self
             .input
             .settings

@@ -1,0 +1,50 @@
+//! The points of a call: every combination of the values that `--set` names.
+
+use super::number::Number;
+use super::queries::Compiler;
+use super::settings::{MOST_POINTS, Setting};
+use crate::syntax::diagnostic::Diagnostic;
+use std::collections::BTreeMap;
+
+impl Compiler<'_> {
+    /// All combinations, values of the first setting slowest. Values are computed in the plain world.
+    pub(super) fn points(&mut self, plain: usize) -> Vec<BTreeMap<String, Number>> {
+        let mut points: Vec<BTreeMap<String, Number>> = vec![BTreeMap::new()];
+        let mut seen: Vec<&Setting> = Vec::new();
+        for setting in self.input.settings {
+            if seen.iter().any(|s| s.name == setting.name) {
+                let error =
+                    Diagnostic::error("E0210", setting.span, format!("`{}` is set twice", setting.name));
+                self.sites[plain].elaborator.note(error);
+                continue;
+            }
+            seen.push(setting);
+            let Ok(values) = self.sites[plain].elaborator.points(setting) else { continue };
+            let combinations = points.len().saturating_mul(values.len());
+            if combinations > MOST_POINTS {
+                let error = Diagnostic::error(
+                    "E0405",
+                    setting.span,
+                    format!(
+                        "with this there are {combinations} combinations of values, more than {MOST_POINTS}"
+                    ),
+                );
+                self.sites[plain]
+                    .elaborator
+                    .note(error.hint("sweep fewer parameters at once, or by larger steps"));
+                continue;
+            }
+            points = points
+                .iter()
+                .flat_map(|point| {
+                    values.iter().map(|value| {
+                        let mut next = point.clone();
+                        next.insert(setting.name.clone(), *value);
+                        next
+                    })
+                })
+                .collect();
+        }
+        points
+    }
+}
