@@ -91,7 +91,7 @@ fn estimates() {
         Okamoto::new(0.01, 0.05),
         Massart::new(0.01, 0.05, 0.001),
         Spending::new(0.01, 0.05),
-        AnyEstimator::within(0.01, 0.05),
+        AnyEstimator::within(0.01, 0.05, smc::stats::calibration::Patience::ENDLESS),
     ) else {
         return;
     };

@@ -45,8 +45,10 @@ impl Compiler<'_> {
             let hint = if theta > 1.0 && theta <= 100.0 {
                 format!("a share is written with its sign: `{theta} %`")
             } else {
-                "that something is certain or impossible cannot be decided by sampling; ask for `>= 0.999`"
-                    .to_owned()
+                let near = if theta <= 0.0 { "`<= 0.001`" } else { "`>= 0.999`" };
+                format!(
+                    "that something is certain or impossible cannot be decided by sampling; ask for {near}"
+                )
             };
             let error = Diagnostic::error(
                 "E0601",

@@ -135,18 +135,21 @@ impl Elaborator<'_> {
             };
             return self.report(Diagnostic::error("E0204", span, format!("`{name}` takes {usage}")));
         }
-        let numbers: Vec<_> = arguments.iter().map(|a| self.number_of(a, dimension, locals)).collect();
-        let numbers: Vec<f64> =
-            numbers.into_iter().collect::<Lowered<Vec<_>>>()?.iter().map(|n| n.value).collect();
-        let (first, second) = (numbers[0], numbers.get(1).copied().unwrap_or(0.0));
         if matches!(name, "uniform_int" | "poisson" | "bernoulli") && !dimension.is_none() {
             let error = Diagnostic::error(
                 "E0404",
                 span,
                 format!("`{name}` gives pure numbers, here {dimension} is needed"),
+            )
+            .hint(
+                "`choice` takes values with their units, and so do `uniform`, `normal`, `gamma` and the like",
             );
             return self.report(error);
         }
+        let numbers: Vec<_> = arguments.iter().map(|a| self.number_of(a, dimension, locals)).collect();
+        let numbers: Vec<f64> =
+            numbers.into_iter().collect::<Lowered<Vec<_>>>()?.iter().map(|n| n.value).collect();
+        let (first, second) = (numbers[0], numbers.get(1).copied().unwrap_or(0.0));
         Ok(match name {
             "normal" => Family::Normal { mean: first, sd: second },
             "lognormal" => Family::LogNormal { mean: first, sd: second },

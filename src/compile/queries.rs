@@ -154,7 +154,10 @@ impl<'a> Compiler<'a> {
                             _ => None,
                         });
                         let place = declared.map_or(name.span, |f| f.span);
-                        let _ = elaborator.formula_column(&Expr { span: place, ..body }, number + 1);
+                        if elaborator.formula_column(&Expr { span: place, ..body }, number + 1).is_err() {
+                            // What is wrong with it was said: what it is a part of says no more.
+                            elaborator.broken.insert((number + 1, name.name.clone()));
+                        }
                     }
                     PropertyItem::Const { value, .. } => {
                         let _ = elaborator.number(value, &Locals::of(number + 1));

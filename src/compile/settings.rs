@@ -74,12 +74,13 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    /// The value that a parameter is set to. A bare number takes the unit of the default.
+    /// The value that a parameter is set to. A bare number takes the unit of the default; a share (`50 %`) is none.
     pub(super) fn setting(&mut self, name: &str, value: &Expr, locals: &Locals) -> Lowered<Number> {
         let (default, range) = self.param(name, value.span)?;
         let declared = self.number(default, &Locals::of(0))?;
         let mut number = self.number(value, locals)?;
-        if number.dimension.is_none() && !declared.dimension.is_none() {
+        let bare = !matches!(&value.kind, ExprKind::Quantity(quantity) if quantity.unit.is_some());
+        if bare && number.dimension.is_none() && !declared.dimension.is_none() {
             let unit = Self::unit_of_default(default).and_then(|unit| dimension::resolve(unit).ok());
             number = match unit {
                 Some(unit) => number.times(Number::literal(Decimal::ONE, &unit)).unwrap_or(number),
@@ -117,6 +118,7 @@ impl<'a> Elaborator<'a> {
         match &setting.value {
             SettingValue::One(value) => Ok(vec![self.setting(&setting.name, value, &locals)?]),
             SettingValue::Sweep(from, to, by) => {
+                self.param(&setting.name, setting.span)?;
                 let ends =
                     (self.setting(&setting.name, from, &locals), self.setting(&setting.name, to, &locals));
                 let (first, last) = (ends.0?, ends.1?);

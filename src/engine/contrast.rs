@@ -229,6 +229,11 @@ impl<'s> Contrast<'s> {
             }
         };
         let pairs = tallies[0].counts.trials;
+        let wide = |within: f64| interval.half_width() > within * (1.0 + 1e-9);
+        let stop = match stop {
+            Stop::Width if unresolved > 0 && self.within.is_some_and(wide) => Stop::Unresolved,
+            stop => stop,
+        };
         Gap { sides: tallies, means, stop, interval, estimate, alone, pairs, unresolved }
     }
 }

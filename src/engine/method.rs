@@ -59,7 +59,7 @@ pub(super) fn of(ask: &Ask, procedure: Option<&Procedure>) -> Method {
             (Estimator::Default { epsilon, delta }, MeasureKind::Probability) => {
                 let name = match procedure {
                     Some(Procedure::Probability(p)) => match p.readings().0 {
-                        AnyEstimator::Calibrated(c) => {
+                        AnyEstimator::Calibrated(c) if c.is_proven() => {
                             return named(
                                 "calibrated",
                                 &[("epsilon", epsilon), ("delta", delta), ("gamma", c.gamma())],
@@ -69,6 +69,7 @@ pub(super) fn of(ask: &Ask, procedure: Option<&Procedure>) -> Method {
                             let looks = ("looks", spending.looks().len() as f64);
                             return named("spending", &[("epsilon", epsilon), ("delta", delta), looks]);
                         }
+                        AnyEstimator::Calibrated(_) => "calibrated",
                         _ => "okamoto",
                     },
                     _ => "calibrated",

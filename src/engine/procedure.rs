@@ -5,6 +5,7 @@ use super::cell::{Cell, Reading};
 use super::fault::Fault;
 use super::outcome::{Distribution, Histogram, Interval, Quantile, Step};
 use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Test};
+use crate::stats::calibration::Patience;
 use crate::stats::quantile::Sample;
 use crate::stats::test::Verdict as TestVerdict;
 use crate::stats::{
@@ -64,10 +65,16 @@ pub(super) fn value(cell: &Cell) -> Option<f64> {
 
 impl Procedure {
     /// The procedure of a check or an estimate. `seed` addresses what a procedure draws for itself.
-    pub(super) fn new(ask: &Ask, seed: u64, defaults: &mut Defaults) -> Result<Self, Fault> {
+    pub(super) fn new(
+        ask: &Ask,
+        seed: u64,
+        (defaults, patience): (&mut Defaults, Patience<'_>),
+    ) -> Result<Self, Fault> {
         match ask {
             Ask::Check { measure, threshold, test, .. } => Self::test(measure, *threshold, test),
-            Ask::Estimate { measure, estimator } => Self::estimate(measure, estimator, seed, defaults),
+            Ask::Estimate { measure, estimator } => {
+                Self::estimate(measure, estimator, seed, (defaults, patience))
+            }
             Ask::Compare { .. } | Ask::Rank { .. } => Err(Fault::Unsuitable),
         }
     }
@@ -102,12 +109,12 @@ impl Procedure {
         measure: &Measure,
         estimator: &Estimator,
         seed: u64,
-        defaults: &mut Defaults,
+        (defaults, patience): (&mut Defaults, Patience<'_>),
     ) -> Result<Self, Fault> {
         match (&measure.kind, *estimator) {
             (MeasureKind::Probability, estimator) => {
                 let estimator = match estimator {
-                    Estimator::Default { epsilon, delta } => defaults.within(epsilon, delta)?,
+                    Estimator::Default { epsilon, delta } => defaults.within(epsilon, delta, patience)?,
                     Estimator::Okamoto { epsilon, delta } => {
                         AnyEstimator::Okamoto(Okamoto::new(epsilon, delta)?)
                     }
@@ -240,16 +247,18 @@ impl Procedure {
     /// Whether the interval is wider than was asked for, as that of both readings of unresolved trials can be.
     pub(super) fn is_wide(&self, ask: &Ask) -> bool {
         let Ask::Estimate { estimator, .. } = ask else { return false };
-        let (Estimator::Default { epsilon, .. }
-        | Estimator::Massart { epsilon, .. }
-        | Estimator::Spending { epsilon, .. }) = *estimator
-        else {
-            return false;
-        };
         let interval = match self {
             Self::Probability(estimator) => estimator.interval(),
             Self::Mean { mean, .. } => mean.interval(),
             Self::Test(_) | Self::Quantile { .. } => return false,
+        };
+        let epsilon = match *estimator {
+            Estimator::Default { epsilon, .. }
+            | Estimator::Massart { epsilon, .. }
+            | Estimator::Spending { epsilon, .. } => epsilon,
+            // Of the middle.
+            Estimator::Relative { epsilon, .. } => epsilon * 0.5 * (interval.low + interval.high),
+            _ => return false,
         };
         interval.half_width() > epsilon * (1.0 + 1e-9)
     }

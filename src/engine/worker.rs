@@ -189,7 +189,7 @@ impl Worker {
             if busy.open == 0 || diverged.has(lane) {
                 let row = &mut cells[lane * width..][..width];
                 for (cell, settled) in row.iter_mut().zip(&self.settled) {
-                    if matches!(cell.reading, Reading::Unresolved) && cell.steps == 0 {
+                    if !settled.has(lane) {
                         cell.steps = self.state.ticks[lane];
                     }
                     if faulty.has(lane) && !settled.has(lane) {

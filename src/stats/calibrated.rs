@@ -19,6 +19,7 @@ pub struct Calibrated {
     ahead: Ahead,
     counts: Counts,
     finished: bool,
+    proven: bool,
 }
 
 impl Calibrated {
@@ -36,7 +37,18 @@ impl Calibrated {
             ahead: Ahead::new(),
             counts: Counts::default(),
             finished: false,
+            proven: true,
         })
+    }
+
+    /// The same at a level that nobody knows: it never stops, and has the interval that holds at all times.
+    pub fn without_level(epsilon: f64, delta: f64) -> Result<Self, Invalid> {
+        Ok(Self { proven: false, ..Self::at_level(epsilon, delta, delta)? })
+    }
+
+    /// Whether its level is known.
+    pub const fn is_proven(&self) -> bool {
+        self.proven
     }
 
     /// The level at which the intervals are formed.
@@ -50,6 +62,9 @@ impl Estimator for Calibrated {
     fn observe(&mut self, success: bool) -> bool {
         if !self.finished {
             self.counts.add(success);
+            if !self.proven {
+                return false;
+            }
             let (gamma, width) = (self.gamma, 2.0 * self.epsilon);
             self.finished = self
                 .ahead
@@ -78,7 +93,7 @@ impl Estimator for Calibrated {
     }
 
     fn limit(&self) -> Option<u64> {
-        Some(self.limit)
+        self.proven.then_some(self.limit)
     }
 }
 

@@ -7,12 +7,14 @@
 //! the stopping point along the boundary, on which both ends rise (checked). Branch and bound over [0, 1/2]
 //! closes the proof; the other half is its mirror.
 
-use super::{Counts, clopper_pearson};
+use super::{Counts, clopper_pearson, okamoto};
 use crate::base::math;
 use crate::base::special::ln_gamma;
 
 /// Smallest half-width for which the proof takes seconds at most.
 const LEAST_EPSILON: f64 = 0.005;
+/// Largest size of Okamoto's plan for which it does: the time of a proof grows with its square.
+const LARGEST_PLAN: u64 = 60_000;
 /// Largest error worth a proof: beyond, trials are so few that the bound is loose.
 const MOST_DELTA: f64 = 0.3;
 /// Rounding that the proof allows for.
@@ -74,18 +76,60 @@ impl Table {
     }
 }
 
+/// When a proof is given up.
+#[derive(Clone, Copy)]
+pub struct Patience<'g> {
+    /// Largest size of Okamoto's plan for which a proof is begun.
+    pub largest_plan: u64,
+    /// Most trials that will be read: where the procedure needs more to stop, its level does not matter.
+    pub trials: u64,
+    /// Whether to go on.
+    pub go_on: &'g dyn Fn() -> bool,
+}
+
+impl Patience<'_> {
+    /// Never.
+    pub const ENDLESS: Patience<'static> =
+        Patience { largest_plan: u64::MAX, trials: u64::MAX, go_on: &|| true };
+}
+
+/// What there is of a level.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Level {
+    /// Proven.
+    Proven(f64),
+    /// Not worth a proof, or no level of the ladder can be proven.
+    None,
+    /// There may be one; patience ended before it was known.
+    GivenUp,
+}
+
 /// The level for a half-width and an error: of the table, proven here and now, or of a row of a smaller error. That one
 /// spares a proof, which takes a second at half-widths near 0.01, where the errors are alike: at 0.8 of the error a
 /// few percent more trials are needed, at half of it a fifth more. (A list of estimates shares its error, and so asks
 /// for errors such as 0.05/3.)
-pub fn level(epsilon: f64, delta: f64) -> Option<f64> {
+pub fn level(epsilon: f64, delta: f64, patience: Patience<'_>) -> Level {
     let alike = if epsilon < 0.02 { 0.5 } else { 0.8 };
     let below = Table::row_below(epsilon, delta);
-    Table::row(epsilon, delta)
-        .or_else(|| below.filter(|row| row.delta >= alike * delta))
-        .map(|row| row.gamma)
-        .or_else(|| calibrate(epsilon, math::at_most(delta, MOST_DELTA)))
-        .or_else(|| below.map(|row| row.gamma))
+    let known = Table::row(epsilon, delta).or_else(|| below.filter(|row| row.delta >= alike * delta));
+    if let Some(row) = known {
+        return Level::Proven(row.gamma);
+    }
+    let asked = math::at_most(delta, MOST_DELTA);
+    if is_affordable(epsilon, asked) {
+        // Without a success the interval is widest at the smallest number of trials at which it is narrow at all.
+        let least = math::ln(2.0 / asked) / -math::ln_1p(-2.0 * epsilon);
+        if okamoto::size(epsilon, asked) > patience.largest_plan || least > patience.trials as f64 {
+            return Level::GivenUp;
+        }
+        if let Some(gamma) = calibrate(epsilon, asked, patience.go_on) {
+            return Level::Proven(gamma);
+        }
+        if !(patience.go_on)() {
+            return Level::GivenUp;
+        }
+    }
+    below.map_or(Level::None, |row| Level::Proven(row.gamma))
 }
 
 /// A point where the procedure can stop.
@@ -109,6 +153,11 @@ impl Boundary {
     /// Follows the procedure of half-width `epsilon` at level `gamma`. None if the ends of the intervals
     /// do not rise along the boundary or a stop is too wide, which no level met so far.
     pub fn new(epsilon: f64, gamma: f64) -> Option<Self> {
+        Self::while_patient(epsilon, gamma, &|| true)
+    }
+
+    /// The same; `None` too where it is given up.
+    fn while_patient(epsilon: f64, gamma: f64, go_on: &dyn Fn() -> bool) -> Option<Self> {
         let limit = clopper_pearson::size(epsilon, gamma) as usize;
         let mut ln_factorial = Vec::with_capacity(limit + 1);
         for n in 0..=limit {
@@ -124,6 +173,9 @@ impl Boundary {
         let mut open_from = 0;
         for n in 1..=limit {
             let total = n as f64;
+            if n.is_multiple_of(256) && !go_on() {
+                return None;
+            }
             // Going on is possible for s in open_from ..= n - open_from.
             while 2 * open_from <= n
                 && (n == limit
@@ -223,6 +275,11 @@ impl Boundary {
 
     /// Whether the probability of missing is proven to be at most `delta` for every p.
     pub fn proves(&self, delta: f64) -> bool {
+        self.proves_while_patient(delta, &|| true)
+    }
+
+    /// The same; not so where it is given up.
+    fn proves_while_patient(&self, delta: f64, go_on: &dyn Fn() -> bool) -> bool {
         let allowed = delta - ROUNDING;
         // Between neighbouring ends of intervals the sets of stops that miss do not change, so cutting
         // exactly there costs nothing.
@@ -242,6 +299,9 @@ impl Boundary {
         }
         let mut open = vec![(0, cuts.len() - 1)];
         while let Some((i, j)) = open.pop() {
+            if !go_on() {
+                return false;
+            }
             if self.bound(cuts[i], cuts[j]) <= allowed {
                 continue;
             }
@@ -281,17 +341,24 @@ impl Boundary {
 
 /// A level for half-width `epsilon` and error `delta`, proven here and now; None where the proof would take
 /// longer than seconds or no level of the ladder can be proven.
-pub fn calibrate(epsilon: f64, delta: f64) -> Option<f64> {
-    let affordable = (LEAST_EPSILON..=0.4).contains(&epsilon) && delta > 1e-6 && delta <= MOST_DELTA;
-    if !affordable {
-        return None;
-    }
+fn calibrate(epsilon: f64, delta: f64, go_on: &dyn Fn() -> bool) -> Option<f64> {
     let (ladder, most_at_small_errors) = LADDER;
     ladder
         .into_iter()
         .filter(|part| delta > 0.02 || *part < most_at_small_errors)
         .map(|part| part * delta)
-        .find(|gamma| Boundary::new(epsilon, *gamma).is_some_and(|boundary| boundary.proves(delta)))
+        .find(|gamma| {
+            Boundary::while_patient(epsilon, *gamma, go_on)
+                .is_some_and(|boundary| boundary.proves_while_patient(delta, go_on))
+        })
+}
+
+/// Whether a proof takes seconds at most.
+fn is_affordable(epsilon: f64, delta: f64) -> bool {
+    (LEAST_EPSILON..=0.4).contains(&epsilon)
+        && delta > 1e-6
+        && delta <= MOST_DELTA
+        && okamoto::size(epsilon, delta) <= LARGEST_PLAN
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! What estimators of a probability have in common, the default choice, and unresolved trials.
 
-use super::calibration;
+use super::calibration::{self, Level, Patience};
 use super::{Calibrated, Counts, FixedSize, Gbas, Invalid, Massart, Okamoto, Outcome, Spending};
 use std::collections::BTreeMap;
 
@@ -101,9 +101,15 @@ impl AnyEstimator {
     /// the level, or that of a slightly smaller error, is in the proven table or can be proven in seconds
     /// (epsilon of 0.005 or more), else whichever of alpha spending and Okamoto has the smaller largest number
     /// of trials.
-    pub fn within(epsilon: f64, delta: f64) -> Result<Self, Invalid> {
+    ///
+    /// Where the proof is given up, the estimator never stops by itself.
+    pub fn within(epsilon: f64, delta: f64, patience: Patience<'_>) -> Result<Self, Invalid> {
         let (spending, okamoto) = (Spending::new(epsilon, delta)?, Okamoto::new(epsilon, delta)?);
-        if let Some(gamma) = calibration::level(epsilon, delta) {
+        let level = calibration::level(epsilon, delta, patience);
+        if level == Level::GivenUp {
+            return Ok(Self::Calibrated(Calibrated::without_level(epsilon, delta)?));
+        }
+        if let Level::Proven(gamma) = level {
             let calibrated = Calibrated::at_level(epsilon, delta, gamma)?;
             if calibrated.limit() <= okamoto.limit() {
                 return Ok(Self::Calibrated(calibrated));
@@ -174,12 +180,17 @@ pub struct Defaults(BTreeMap<(u64, u64), AnyEstimator>);
 
 impl Defaults {
     /// The default for half-width `epsilon` and error `delta`, fresh.
-    pub fn within(&mut self, epsilon: f64, delta: f64) -> Result<AnyEstimator, Invalid> {
+    pub fn within(
+        &mut self,
+        epsilon: f64,
+        delta: f64,
+        patience: Patience<'_>,
+    ) -> Result<AnyEstimator, Invalid> {
         let key = (epsilon.to_bits(), delta.to_bits());
         if let Some(known) = self.0.get(&key) {
             return Ok(known.clone());
         }
-        let made = AnyEstimator::within(epsilon, delta)?;
+        let made = AnyEstimator::within(epsilon, delta, patience)?;
         self.0.insert(key, made.clone());
         Ok(made)
     }
@@ -253,12 +264,18 @@ mod tests {
 
     #[test]
     fn the_default_takes_the_table_then_proves_then_falls_back() {
-        assert!(matches!(AnyEstimator::within(0.01, 0.05), Ok(AnyEstimator::Calibrated(_))));
-        assert!(matches!(AnyEstimator::within(0.08, 0.02), Ok(AnyEstimator::Calibrated(_))));
-        assert!(matches!(AnyEstimator::within(0.001, 0.05), Ok(AnyEstimator::Okamoto(_))));
-        assert!(AnyEstimator::within(0.0, 0.05).is_err());
-        assert!(AnyEstimator::within(0.6, 0.05).is_err());
-        assert!(AnyEstimator::within(0.01, 1.0).is_err());
+        assert!(matches!(
+            AnyEstimator::within(0.01, 0.05, Patience::ENDLESS),
+            Ok(AnyEstimator::Calibrated(_))
+        ));
+        assert!(matches!(
+            AnyEstimator::within(0.08, 0.02, Patience::ENDLESS),
+            Ok(AnyEstimator::Calibrated(_))
+        ));
+        assert!(matches!(AnyEstimator::within(0.001, 0.05, Patience::ENDLESS), Ok(AnyEstimator::Okamoto(_))));
+        assert!(AnyEstimator::within(0.0, 0.05, Patience::ENDLESS).is_err());
+        assert!(AnyEstimator::within(0.6, 0.05, Patience::ENDLESS).is_err());
+        assert!(AnyEstimator::within(0.01, 1.0, Patience::ENDLESS).is_err());
     }
 
     #[test]

@@ -171,7 +171,11 @@ impl Elaborator<'_> {
                     Diagnostic::error("E0503", span, "a scenario in continuous time has no steps")
                         .hint("write a time, as in `5 s`"),
                 ),
-                None => self.report(Diagnostic::error("E0501", span, "a number of steps must be whole")),
+                None => {
+                    let below = number.value.floor();
+                    let error = Diagnostic::error("E0501", span, "a number of steps must be whole");
+                    self.report(error.hint(format!("the nearest bounds are #{below} and #{}", below + 1.0)))
+                }
             };
         }
         if number.dimension.is_none() {

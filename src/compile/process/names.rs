@@ -1,7 +1,7 @@
 //! Names of processes, read from inside and from outside: `n`, `queue.n`, `sensor[2].works`.
 
 use super::Inside;
-use crate::compile::elaborator::{Elaborator, Locals, Lowered};
+use crate::compile::elaborator::{Elaborator, Locals, Lowered, Reported};
 use crate::compile::symbols::unknown;
 use crate::compile::typed::Typed;
 use crate::model::{Bool, Comparison, Domain, Num};
@@ -44,6 +44,10 @@ impl<'a> Elaborator<'a> {
                 self.report(error)
             }
             Inside::Let(LetDecl { body, .. }) | Inside::Label(body) => {
+                // What was not read to its end means nobody knows what.
+                if self.is_cut(body.span) {
+                    return Err(Reported);
+                }
                 self.expand(0, &path, span, |this| this.lower(body, &locals))
             }
         })

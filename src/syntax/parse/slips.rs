@@ -65,7 +65,7 @@ impl Builder<'_> {
             "%" if fault.after_value() => {
                 return Some(
                     Diagnostic::error(code::CHARACTER, place, "`%` is the unit percent, no operator")
-                        .hint("the remainder is written `mod(a, b)`"),
+                        .hint("there is no remainder; a share is written `95 %`"),
                 );
             }
             _ => return None,
@@ -245,6 +245,13 @@ impl Builder<'_> {
             return None;
         }
         let place = self.place(fault.at, fault.found);
+        let rest = self.text[fault.at + fault.found.len()..].trim_start();
+        let argues = rest.starts_with('(') || rest.starts_with('=') && !rest.starts_with("==");
+        if argues && fault.expected.contains(&Rule::t_comma) {
+            let error =
+                Diagnostic::error(code::UNEXPECTED, place, format!("expected `,`, found `{}`", fault.found));
+            return Some(error.hint(format!("write `{number}, {}`", fault.found)));
+        }
         let hint = match unit {
             Some(unit) => format!("did you mean `{number} {unit}`?"),
             None => format!(
@@ -266,6 +273,11 @@ impl Builder<'_> {
             return None;
         }
         let place = self.place(fault.at, fault.found);
+        let line = self.text[..fault.at].rsplit('\n').next().unwrap_or("");
+        if line.contains("->") {
+            let error = Diagnostic::error(code::UNEXPECTED, place, "several updates stand in braces");
+            return Some(error.hint("as in `-> { a = 1; b = 2 }`"));
+        }
         Some(
             Diagnostic::error(code::FIELD_PLACE, place, "a process has no fields")
                 .hint(format!("write `var {} = …` or `let {} = …`", fault.found, fault.found)),
