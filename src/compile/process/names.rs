@@ -46,7 +46,7 @@ impl<'a> Elaborator<'a> {
             Inside::Let(LetDecl { body, .. }) | Inside::Label(body) => {
                 // What was not read to its end means nobody knows what.
                 if self.is_cut(body.span) {
-                    return Err(Reported);
+                    return Some(Err(Reported));
                 }
                 self.expand(0, &path, span, |this| this.lower(body, &locals))
             }
