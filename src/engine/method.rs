@@ -69,7 +69,7 @@ pub(super) fn of(ask: &Ask, procedure: Option<&Procedure>) -> Method {
                             let looks = ("looks", spending.looks().len() as f64);
                             return named("spending", &[("epsilon", epsilon), ("delta", delta), looks]);
                         }
-                        AnyEstimator::Calibrated(_) => "calibrated",
+                        AnyEstimator::Calibrated(_) => "confidence_sequence",
                         _ => "okamoto",
                     },
                     _ => "calibrated",

@@ -9,6 +9,9 @@ use super::invalid::{Invalid, probability, range};
 use super::width::Ahead;
 use super::{Counts, Coverage, Estimator, Interval, clopper_pearson, sequence};
 
+/// Trials between two looks at the interval that holds at all times.
+const LOOK_EVERY: u64 = 64;
+
 /// Estimates P within a half-width.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibrated {
@@ -41,7 +44,8 @@ impl Calibrated {
         })
     }
 
-    /// The same at a level that nobody knows: it never stops, and has the interval that holds at all times.
+    /// The same at a level that nobody knows: it has the interval that holds at all times, and stops once that is narrow
+    /// enough.
     pub fn without_level(epsilon: f64, delta: f64) -> Result<Self, Invalid> {
         Ok(Self { proven: false, ..Self::at_level(epsilon, delta, delta)? })
     }
@@ -63,7 +67,9 @@ impl Estimator for Calibrated {
         if !self.finished {
             self.counts.add(success);
             if !self.proven {
-                return false;
+                let looks = self.counts.trials().is_multiple_of(LOOK_EVERY);
+                self.finished = looks && self.interval().half_width() <= self.epsilon;
+                return self.finished;
             }
             let (gamma, width) = (self.gamma, 2.0 * self.epsilon);
             self.finished = self
@@ -82,7 +88,7 @@ impl Estimator for Calibrated {
     }
 
     fn interval(&self) -> Interval {
-        if !self.finished {
+        if !(self.finished && self.proven) {
             return sequence::interval(self.counts, self.delta);
         }
         Interval {
@@ -101,6 +107,20 @@ impl Estimator for Calibrated {
 mod tests {
     use super::*;
     use crate::base::random::{Purpose, Stream, TrialKey};
+
+    #[test]
+    fn without_a_level_it_stops_when_the_interval_of_all_times_is_narrow() {
+        let mut estimator = Calibrated::without_level(0.05, 0.05).unwrap();
+        let mut trials = 0u64;
+        while !estimator.observe(trials.is_multiple_of(4)) {
+            trials += 1;
+            assert!(trials < 10_000);
+        }
+        let interval = estimator.interval();
+        assert!(interval.half_width() <= 0.05 && interval.low < 0.25 && 0.25 < interval.high);
+        assert_eq!(interval.coverage, sequence::interval(estimator.counts(), 0.05).coverage);
+        assert!(estimator.limit().is_none());
+    }
 
     #[test]
     fn the_lazy_stop_is_the_stop_of_checking_every_index() {

@@ -102,7 +102,7 @@ impl AnyEstimator {
     /// (epsilon of 0.005 or more), else whichever of alpha spending and Okamoto has the smaller largest number
     /// of trials.
     ///
-    /// Where the proof is given up, the estimator never stops by itself.
+    /// Where the proof is given up, the estimator stops once the interval that holds at all times is narrow.
     pub fn within(epsilon: f64, delta: f64, patience: Patience<'_>) -> Result<Self, Invalid> {
         let (spending, okamoto) = (Spending::new(epsilon, delta)?, Okamoto::new(epsilon, delta)?);
         let level = calibration::level(epsilon, delta, patience);
