@@ -423,15 +423,26 @@ impl<'a> Compiler<'a> {
 
     fn finish(self) -> (Option<Study>, Vec<Diagnostic>) {
         let mut diagnostics: Vec<Diagnostic> = Vec::new();
-        for site in &self.sites {
+        for (at, site) in self.sites.iter().enumerate() {
+            // What is wrong with some values of parameters only says with which.
+            let names: Vec<&str> = site.settings.keys().map(String::as_str).collect();
+            let values = self.described(at, &site.settings, &names);
+            let values: Vec<String> =
+                values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
             for diagnostic in &site.elaborator.diagnostics {
                 // The same place says the same thing once, whatever the parameter values.
                 let known = diagnostics.iter().any(|d| {
                     d.code == diagnostic.code
                         && d.place.as_ref().map(|p| p.span) == diagnostic.place.as_ref().map(|p| p.span)
                 });
-                if !known || diagnostic.place.is_none() && !diagnostics.contains(diagnostic) {
-                    diagnostics.push(diagnostic.clone());
+                if !known
+                    || diagnostic.place.is_none() && values.is_empty() && !diagnostics.contains(diagnostic)
+                {
+                    let mut diagnostic = diagnostic.clone();
+                    if !values.is_empty() && diagnostic.severity == Severity::Error {
+                        diagnostic.title = format!("{} (with {})", diagnostic.title, values.join(", "));
+                    }
+                    diagnostics.push(diagnostic);
                 }
             }
         }

@@ -9,7 +9,8 @@ use crate::logic::{
     AtomId, Node, NodeId, Reason, Recording, SignalId, Source, Term, TermId, critical, explain, sides,
     sources,
 };
-use crate::model::{AgentId, Bool, Num, Place, Scenario, Set, Who};
+use crate::model::{AgentId, Bool, Num, Place, Scenario, Set, VariableId, Who};
+use std::collections::BTreeSet;
 
 /// Truth values and numbers of the states of one trial.
 #[derive(Default)]
@@ -208,7 +209,15 @@ fn closing(
                 |state: &State| blamed(subject, &subject.atoms()[atom.0 as usize], text, reason.value, state);
             let state = state_at(reason.to);
             let who = state.as_ref().map_or_else(Vec::new, blamed);
-            format!("`{text}` {word}{}", names(subject, &who, state.as_ref()))
+            let named = names(subject, &who, state.as_ref());
+            if !named.is_empty() {
+                return format!("`{text}` {word}{named}");
+            }
+            let of =
+                |state: &State| copies(subject, &subject.atoms()[atom.0 as usize], text, reason.value, state);
+            let copies = state.as_ref().map_or_else(Vec::new, of);
+            let colon = if copies.is_empty() { "" } else { ": " };
+            format!("`{text}` {word}{colon}{}", copies.join(", "))
         }
         Node::Compare(..) => {
             let Some((text, _)) = subject.texts.comparisons.get(&reason.leaf.0) else { return String::new() };
@@ -230,6 +239,37 @@ fn blamed(subject: &Subject, atom: &Bool, text: &str, truth: bool, state: &State
     search.name_members(text, |tell| atom.mentions(tell));
     search.found.truncate(NAMED);
     search.found
+}
+
+/// The copies of processes that make an atom true or false in a state, where they are spoken of by a name that they
+/// share, as `a` in `forall a in sensor`.
+fn copies(subject: &Subject, atom: &Bool, text: &str, truth: bool, state: &State) -> Vec<String> {
+    let search = Search { subject, state, found: Vec::new() };
+    let (mut part, mut truth) = (atom, truth);
+    loop {
+        part = match part {
+            Bool::Not(inner) => {
+                truth = !truth;
+                inner
+            }
+            // A false conjunct, or a true disjunct, is enough; otherwise all of them decide, and nobody is named.
+            Bool::And(list) | Bool::Or(list) if matches!(part, Bool::Or(_)) == truth => {
+                let Some(one) = list.iter().find(|one| search.holds(one) == truth) else { return Vec::new() };
+                one
+            }
+            Bool::Compare(..) | Bool::Iff(..) => break,
+            _ => return Vec::new(),
+        };
+    }
+    let mut read = BTreeSet::new();
+    part.reads(&mut read);
+    let variables = &subject.program.scenario.processes.variables;
+    let owner = |id: &VariableId| Some(variables.get(id.0 as usize)?.name.rsplit_once('.')?.0.to_owned());
+    let mut found: Vec<String> = read.iter().filter_map(owner).collect();
+    found.retain(|copy| copy.ends_with(']') && !text.contains(copy.as_str()));
+    found.dedup();
+    found.truncate(NAMED);
+    found
 }
 
 struct Search<'s> {

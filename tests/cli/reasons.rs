@@ -79,3 +79,23 @@ fn a_point_of_a_sweep_is_repeated_alone() {
     let family = asked("family confidence 95 %\nestimate P(F<=1 s contact(user)) within 0.4\n", &sweep);
     assert!(family["results"][1]["replay"].as_str().unwrap().contains(".."), "{family}");
 }
+
+#[test]
+fn copies_of_processes_that_decided_are_named() {
+    let model = "scenario \"Lamps\"\nhorizon = 9 steps\n\
+        process s[3] { var up = true  when up -> 1/10: up = false | 9/10: { } }\n\
+        process t { var n: 0 .. 3 = 0  when n < 3 -> n = n + 1 }\n";
+    for (formula, shows) in [
+        ("G (forall a in s: (a.up | t.n == 3))", "fails"),
+        ("forall a in s: G<=#9 a.up", "fails"),
+        ("F (exists a in s: !a.up)", "holds"),
+    ] {
+        let place = Place::new(&[
+            ("a.scn", model),
+            ("a.bltl", &format!("estimate P({formula}) by fixed(trials = 60)\n")),
+        ]);
+        let said = place.call(&["check", "a.scn", "a.bltl", "-q"]);
+        let line = said.out.lines().find(|line| line.contains(&format!("{shows} in trial"))).unwrap();
+        assert!(line.contains(": s["), "{formula}: {line}");
+    }
+}

@@ -304,7 +304,10 @@ impl<'a> Elaborator<'a> {
                     index.span,
                     format!("there is no member {} of `{}`", number.value, self.text(base.span)),
                 )
-                .hint(format!("it has {count} members, counted from 1"));
+                .hint(match count {
+                    1 => "it has 1 member, `[1]`".to_owned(),
+                    count => format!("it has {count} members, counted from 1"),
+                });
                 self.report(error)
             }
         }
