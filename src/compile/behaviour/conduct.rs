@@ -2,7 +2,7 @@
 
 use super::{lets, states};
 use crate::compile::dimension::Dimension;
-use crate::compile::elaborator::{Elaborator, Locals, Lowered};
+use crate::compile::elaborator::{Elaborator, Locals, Lowered, Reported};
 use crate::compile::kinds;
 use crate::compile::laws::{distribution, value_span};
 use crate::compile::presets::PARAMETERS;
@@ -23,10 +23,9 @@ impl<'a> Elaborator<'a> {
         locals: &Locals,
         variables: usize,
     ) -> Lowered<Conduct> {
-        self.check_lets(decl, locals, variables)?;
         let mut out = Conduct::default();
         let mut guards = 0;
-        let mut failed = None;
+        let mut failed = self.check_lets(decl, locals, variables).err();
         for state in states(decl) {
             match self.mode(decl, state, locals, variables, &mut guards) {
                 Ok(mode) => out.states.push(mode),
@@ -49,13 +48,14 @@ impl<'a> Elaborator<'a> {
         if written.is_empty() {
             return Ok(Vec::new());
         }
-        written
+        let lowered: Vec<Lowered<Bool>> = written
             .into_iter()
             .map(|guard| {
                 let typed = self.lower(guard, locals)?;
                 self.as_truth(typed, guard.span)
             })
-            .collect()
+            .collect();
+        lowered.into_iter().collect()
     }
 
     /// Checks the names that the behaviour declares, as far as they have no arguments.
@@ -81,6 +81,7 @@ impl<'a> Elaborator<'a> {
         let mut failed = None;
         for field in &state.fields {
             let lowered = match Parameter::of(&field.name.name) {
+                None if field.name.name != "route" => Err(Reported),
                 None => self.route(&field.value, locals).map(|route| mode.route = Some(route)),
                 Some(parameter) => self
                     .amount(parameter, field, locals, variables)

@@ -13,7 +13,8 @@ use super::typed::Typed;
 use crate::model::{AgentId, Attached, Behaviour, BehaviourId, Behaviours, Mode, Parameter, Route, Who};
 use crate::syntax::ast::process::{BehaviourDecl, BehaviourItem, StateDecl};
 use crate::syntax::ast::{Expr, ExprKind, Ident, LetDecl};
-use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::diagnostic::{Diagnostic, Severity};
+use crate::syntax::source::Span;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -179,7 +180,17 @@ impl<'a> Elaborator<'a> {
             let states = states(decl).map(|state| state.name.name.clone()).collect();
             out.declared.push(Behaviour { name: decl.name.name.clone(), states });
         }
-        if self.failed() {
+        // Errors outside of behaviours may have taken away whom these speak of.
+        let inside = |place: Span| {
+            self.behaviours
+                .iter()
+                .map(|decl| decl.span)
+                .any(|span| span.source == place.source && span.start <= place.start && place.end <= span.end)
+        };
+        let elsewhere = |d: &Diagnostic| {
+            d.severity == Severity::Error && d.place.as_ref().is_none_or(|place| !inside(place.span))
+        };
+        if self.diagnostics.iter().any(elsewhere) {
             return out;
         }
         let withs = std::mem::take(&mut self.withs);
@@ -240,7 +251,12 @@ impl<'a> Elaborator<'a> {
         }
         locals.behaviour = Some((id.0, locals.names.len() + 1));
         let first = with.members.first().copied().unwrap_or(AgentId(0));
-        let conduct = Arc::new(self.conduct(decl, &of(&locals, first), variables)?);
+        let conduct = self.conduct(decl, &of(&locals, first), variables);
+        if conduct.is_err() {
+            // What is wrong with its conditions is said too.
+            let _ = self.conditions(decl, &of(&locals, first));
+        }
+        let conduct = Arc::new(conduct?);
         let entity = people.entities(&format!("{}.{}", with.name, decl.name.name), with.members.len() as u32);
         // Later people on the places of a source have numbers of their own.
         let later = match with.most {
