@@ -245,18 +245,20 @@ fn blamed(subject: &Subject, atom: &Bool, text: &str, truth: bool, state: &State
 /// share, as `a` in `forall a in sensor`.
 fn copies(subject: &Subject, atom: &Bool, text: &str, truth: bool, state: &State) -> Vec<String> {
     let search = Search { subject, state, found: Vec::new() };
-    let (mut part, mut truth) = (atom, truth);
+    let (mut part, mut truth, mut narrowed) = (atom, truth, false);
     loop {
         part = match part {
             Bool::Not(inner) => {
                 truth = !truth;
                 inner
             }
-            // A false conjunct, or a true disjunct, is enough; otherwise all of them decide, and nobody is named.
+            // A false conjunct, or a true disjunct, is enough; otherwise all of them decide.
             Bool::And(list) | Bool::Or(list) if matches!(part, Bool::Or(_)) == truth => {
                 let Some(one) = list.iter().find(|one| search.holds(one) == truth) else { return Vec::new() };
+                narrowed = true;
                 one
             }
+            Bool::And(_) | Bool::Or(_) if narrowed => break,
             Bool::Compare(..) | Bool::Iff(..) => break,
             _ => return Vec::new(),
         };
@@ -268,8 +270,8 @@ fn copies(subject: &Subject, atom: &Bool, text: &str, truth: bool, state: &State
     let mut found: Vec<String> = read.iter().filter_map(owner).collect();
     found.retain(|copy| copy.ends_with(']') && !text.contains(copy.as_str()));
     found.dedup();
-    found.truncate(NAMED);
-    found
+    // What depends on many of them is about none of them.
+    if found.len() > 2 { Vec::new() } else { found }
 }
 
 struct Search<'s> {
