@@ -1,6 +1,7 @@
 //! `smc check`: decide, estimate, compare, rank.
 
 use super::arguments::{Check, OutputFormat};
+use super::complaint;
 use super::inputs;
 use super::progress::Progress;
 use super::terminal::{Colors, print, say};
@@ -11,7 +12,7 @@ use crate::engine::budget::DEFAULT_TRIALS;
 use crate::engine::outcome::{Failure, Finding, Run};
 use crate::engine::{Budget, Call, Fault, Outlook, Threads, forecast, run as run_study};
 use crate::report::{self, ExitCode as Exit, Format, Palette};
-use crate::syntax::render::render;
+use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
 use std::sync::Arc;
 
@@ -29,10 +30,10 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     let Some(study) = &inputs.study else { return desk.refused() };
     let only = match chosen(study, &arguments.only) {
         Ok(only) => only,
-        Err(reason) => return desk.refuse(reason),
+        Err(error) => return desk.refuse(error),
     };
     if arguments.threads == Some(0) {
-        return desk.refuse("`--threads 0` runs nothing");
+        return desk.refuse(complaint::argument("`--threads 0` runs nothing", "it takes a number from 1"));
     }
     let most = most_threads();
     if arguments.threads.is_some_and(|threads| threads > most) {
@@ -42,7 +43,7 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     }
     let threads = match Threads::new(arguments.threads.map(|threads| threads.min(most))) {
         Ok(threads) => threads,
-        Err(error) => return desk.refuse(format!("no threads can be started: {error}")),
+        Err(error) => return desk.fault(&Fault::Threads(error.to_string())),
     };
     let mut budget = Budget::new(arguments.max_trials.unwrap_or(DEFAULT_TRIALS), arguments.timeout);
     budget.max_total = arguments.total_trials;
@@ -102,15 +103,15 @@ impl Desk<'_> {
         };
         match print(&text) {
             Ok(()) => Exit::Success,
-            Err(reason) => self.refuse(reason),
+            Err(reason) => self.refuse(complaint::output(reason)),
         }
     }
 
-    /// The call is wrong in a way that no file shows.
-    fn refuse(self, reason: impl Into<String>) -> Exit {
-        let reason = reason.into();
-        say(&format!("error: {reason}\n"));
-        self.hand_out(reason)
+    /// The call is wrong, or nothing could be run.
+    fn refuse(mut self, error: Diagnostic) -> Exit {
+        complaint::tell(&error, self.sources, self.colors);
+        self.findings.extend(inputs::findings(&[error], self.sources));
+        self.refused()
     }
 
     /// The inputs are wrong; standard error has said how.
@@ -126,15 +127,8 @@ impl Desk<'_> {
     }
 
     /// Nothing could be run.
-    fn fault(mut self, fault: &Fault) -> Exit {
-        match super::refusal(fault) {
-            Some(error) => {
-                say(&render(std::slice::from_ref(&error), self.sources, self.colors.err));
-                self.findings.extend(inputs::findings(&[error], self.sources));
-                self.refused()
-            }
-            None => self.refuse(fault.to_string()),
-        }
+    fn fault(self, fault: &Fault) -> Exit {
+        self.refuse(complaint::refusal(fault))
     }
 
     /// A report of a run that never began, in formats for machines; people have read it already.
@@ -152,25 +146,30 @@ impl Desk<'_> {
         if self.arguments.format != OutputFormat::Text
             && let Err(reason) = print(&report::render(&run, format(self.arguments.format), Palette::PLAIN))
         {
-            say(&format!("error: {reason}\n"));
+            complaint::tell(&complaint::output(reason), &[], self.colors);
         }
-        page(self.arguments, &run);
+        page(self.arguments, &run, self.colors);
         Exit::Wrong
     }
 
     /// Prints the results of a run.
-    fn finish(self, run: Run) -> Exit {
+    fn finish(mut self, run: Run) -> Exit {
+        let broken = match &run.failure {
+            Some(Failure::Model(flaw)) => Some(complaint::of_model(flaw)),
+            _ => None,
+        };
+        self.findings.extend(inputs::findings(broken.as_slice(), self.sources));
         let run = Run { inputs: self.prints, diagnostics: self.findings, ..run };
         let palette = if self.colors.out { Palette::ANSI } else { Palette::PLAIN };
         let mut exit = report::exit_code(&run);
         if let Err(reason) = print(&report::render(&run, format(self.arguments.format), palette)) {
-            say(&format!("error: {reason}\n"));
+            complaint::tell(&complaint::output(reason), &[], self.colors);
             exit = exit.worse(Exit::Wrong);
         }
-        if let Some(Failure::Input(reason) | Failure::Bug(reason)) = &run.failure {
-            say(&format!("error: {reason}\n"));
+        if let Some(error) = &broken {
+            complaint::tell(error, self.sources, self.colors);
         }
-        exit.worse(page(self.arguments, &run))
+        exit.worse(page(self.arguments, &run, self.colors))
     }
 }
 
@@ -199,18 +198,20 @@ const fn format(chosen: OutputFormat) -> Format {
 
 /// Writes the page that was asked for, if one was.
 #[allow(clippy::disallowed_methods, reason = "files are written by the command line")]
-fn page(arguments: &Check, run: &Run) -> Exit {
+fn page(arguments: &Check, run: &Run, colors: Colors) -> Exit {
     if let Some(path) = &arguments.report
         && let Err(error) = std::fs::write(path, report::render(run, Format::Html, Palette::PLAIN))
     {
-        say(&format!("error: `{}` cannot be written: {error}\n", path.display()));
+        let error = format!("`{}` cannot be written: {error}", path.display());
+        complaint::tell(&complaint::output(error), &[], colors);
         return Exit::Wrong;
     }
     Exit::Success
 }
 
 /// Indices of the queries that `--only` names.
-fn chosen(study: &Study, only: &[String]) -> Result<Vec<usize>, String> {
+#[allow(clippy::result_large_err, reason = "called once")]
+fn chosen(study: &Study, only: &[String]) -> Result<Vec<usize>, Diagnostic> {
     let mut chosen = Vec::new();
     for wanted in only {
         let number = wanted.parse::<usize>().ok();
@@ -221,16 +222,18 @@ fn chosen(study: &Study, only: &[String]) -> Result<Vec<usize>, String> {
             .map(|q| q.index)
             .collect();
         if found.is_empty() {
-            let names = study.queries.iter().filter_map(|q| q.name.as_deref());
-            let hint =
-                nearest(wanted, names).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
-            let last = study.queries.iter().map(|q| q.index).max();
-            return Err(match (number, last) {
-                (Some(number), Some(last)) => {
-                    format!("there is no query {number}: they are numbered from 0 to {last}")
-                }
-                _ => format!("no query is about `{wanted}`{hint}"),
-            });
+            let mut names: Vec<&str> = study.queries.iter().filter_map(|q| q.name.as_deref()).collect();
+            names.dedup();
+            let last = study.queries.iter().map(|q| q.index).max().unwrap_or(0);
+            let near = nearest(wanted, names.iter().copied());
+            let hint = match near {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => format!("queries are numbered from 0 to {last}, and are about {}", names.join(", ")),
+            };
+            return Err(complaint::argument(match number {
+                Some(number) => format!("`--only {number}`: there is no query {number}"),
+                None => format!("`--only {wanted}`: no query is about `{wanted}`"),
+            }, hint));
         }
         chosen.extend(found);
     }

@@ -7,6 +7,7 @@ use super::kinds::Kind;
 use super::margin::Margins;
 use super::number::Number;
 use super::places::Written;
+use super::study::Origins;
 use super::process::Declared;
 use super::study::Texts;
 use super::symbols::{Scope, ScopeId};
@@ -90,6 +91,10 @@ pub(super) struct Elaborator<'a> {
     pub(super) agent_names: Vec<String>,
     /// Where the starts of people are written.
     pub(super) places: Written,
+    /// Where the behaviour that is looked at gets its arguments, if it takes any.
+    pub(super) attached_at: Option<Span>,
+    /// Where processes and behaviours are written.
+    pub(super) origins: Origins,
     /// Whether somebody may come in during a trial.
     pub(super) coming: bool,
     /// Agents who come or leave during a trial.
@@ -153,6 +158,8 @@ impl<'a> Elaborator<'a> {
             withs: Vec::new(),
             agent_names: Vec::new(),
             places: Vec::new(),
+            attached_at: None,
+            origins: Origins::default(),
             coming: false,
             passing: BTreeSet::new(),
             clock: Clock::Steps,
