@@ -230,10 +230,13 @@ fn chosen(study: &Study, only: &[String]) -> Result<Vec<usize>, Diagnostic> {
                 Some(near) => format!("did you mean `{near}`?"),
                 None => format!("queries are numbered from 0 to {last}, and are about {}", names.join(", ")),
             };
-            return Err(complaint::argument(match number {
-                Some(number) => format!("`--only {number}`: there is no query {number}"),
-                None => format!("`--only {wanted}`: no query is about `{wanted}`"),
-            }, hint));
+            return Err(complaint::argument(
+                match number {
+                    Some(number) => format!("`--only {number}`: there is no query {number}"),
+                    None => format!("`--only {wanted}`: no query is about `{wanted}`"),
+                },
+                hint,
+            ));
         }
         chosen.extend(found);
     }

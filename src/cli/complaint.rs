@@ -19,7 +19,8 @@ pub(super) fn output(title: impl Into<String>) -> Diagnostic {
 
 /// A file, or standard input, cannot be read.
 pub(super) fn input(title: impl Into<String>) -> Diagnostic {
-    Diagnostic::placeless("E0701", title).hint("names are relative to the folder of the call; `-` is standard input")
+    Diagnostic::placeless("E0701", title)
+        .hint("names are relative to the folder of the call; `-` is standard input")
 }
 
 /// What the engine refuses.

@@ -37,13 +37,14 @@ fn watch(arguments: &Drift) -> Result<bool, Diagnostic> {
         (Some(threshold), _) => threshold,
         (None, quiet) => math::ln(quiet.unwrap_or(QUIET)),
     };
-    let mut cusum = Cusum::new(arguments.before, arguments.after, threshold).map_err(|error| {
-        complaint::argument(error.to_string(), "for example `--before 0.9 --after 0.8`")
-    })?;
+    let mut cusum = Cusum::new(arguments.before, arguments.after, threshold)
+        .map_err(|error| complaint::argument(error.to_string(), "for example `--before 0.9 --after 0.8`"))?;
     let column = match &arguments.column {
         None => Column::Line,
         Some(name) => match name.parse::<usize>() {
-            Ok(0) => return Err(complaint::argument("`--column 0`: columns count from 1", "write `--column 1`")),
+            Ok(0) => {
+                return Err(complaint::argument("`--column 0`: columns count from 1", "write `--column 1`"));
+            }
             Ok(number) => Column::Number(number),
             Err(_) => Column::Head(name.clone()),
         },
@@ -88,7 +89,8 @@ fn watch(arguments: &Drift) -> Result<bool, Diagnostic> {
 
 /// Outcomes that cannot be read as such.
 fn table(reason: String) -> Diagnostic {
-    Diagnostic::placeless("E0707", reason).hint("one outcome a line: 0 or 1, true or false; `--column` picks one of a table")
+    Diagnostic::placeless("E0707", reason)
+        .hint("one outcome a line: 0 or 1, true or false; `--column` picks one of a table")
 }
 
 #[allow(clippy::disallowed_methods, reason = "the command line opens files")]

@@ -250,7 +250,11 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
     let Some(study) = &inputs.study else { return Exit::Wrong };
     let Some(world) = study.worlds.last() else { return Exit::Wrong };
     if study.worlds.len() > 2 {
-        return refuse("a sweep has several settings, and a trace is of one", "write `--set name=value`", colors);
+        return refuse(
+            "a sweep has several settings, and a trace is of one",
+            "write `--set name=value`",
+            colors,
+        );
     }
     let scenario: Arc<Scenario> = world.scenario.clone();
     let advice = match arguments.advice.as_deref().map(|name| option(&scenario, name)) {

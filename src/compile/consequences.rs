@@ -37,13 +37,31 @@ const MOST_MARKS: usize = 3;
 
 /// Words that start a declaration with a name.
 const DECLARES: [&str; 20] = [
-    "agent", "agents", "behaviour", "const", "group", "kind", "label", "let", "obstacle", "param", "point",
-    "process", "property", "region", "source", "state", "tracks", "var", "wall", "on",
+    "agent",
+    "agents",
+    "behaviour",
+    "const",
+    "group",
+    "kind",
+    "label",
+    "let",
+    "obstacle",
+    "param",
+    "point",
+    "process",
+    "property",
+    "region",
+    "source",
+    "state",
+    "tracks",
+    "var",
+    "wall",
+    "on",
 ];
 /// Words that start what has no name of its own.
 const NAMELESS: [&str; 13] = [
-    "after", "check", "choose", "compare", "estimate", "family", "heading", "import", "moves", "rank", "scene",
-    "stop", "when",
+    "after", "check", "choose", "compare", "estimate", "family", "heading", "import", "moves", "rank",
+    "scene", "stop", "when",
 ];
 /// Words that start a part of a scene.
 const SCENERY: [&str; 5] = ["import", "obstacle", "point", "region", "wall"];
@@ -117,7 +135,9 @@ impl<'i> Broken<'i> {
     fn may_declare(&self, place: Span) -> bool {
         let Some(text) = word(self.sources, place) else { return true };
         let (name, _) = leading_word(text);
-        self.any_name || self.suspects.contains(&name) || self.lost.iter().any(|(_, skipped)| has_word(skipped, name))
+        self.any_name
+            || self.suspects.contains(&name)
+            || self.lost.iter().any(|(_, skipped)| has_word(skipped, name))
     }
 
     fn is_own(&self, one: &Diagnostic) -> bool {
@@ -144,10 +164,19 @@ impl<'i> Broken<'i> {
         let of_name =
             NAMES.contains(&one.code) && (!PLACED_AT_NAME.contains(&one.code) || self.may_declare(place));
         let line = lines(self.sources, place).unwrap_or_default();
-        let unit = UNKNOWN.contains(&one.code) && word(self.sources, place).is_some_and(|name| dimension::unit(name).is_some());
-        let of_suspect = (one.code.starts_with("E03") || one.code.starts_with("E09") || UNKNOWN.contains(&one.code))
-            && self.suspects.iter().any(|name| has_word(line, name));
-        !(scenario && of_clock || of_options || of_moves || of_scenery || of_name || of_suspect || of_line || unit)
+        let unit = UNKNOWN.contains(&one.code)
+            && word(self.sources, place).is_some_and(|name| dimension::unit(name).is_some());
+        let of_suspect =
+            (one.code.starts_with("E03") || one.code.starts_with("E09") || UNKNOWN.contains(&one.code))
+                && self.suspects.iter().any(|name| has_word(line, name));
+        !(scenario && of_clock
+            || of_options
+            || of_moves
+            || of_scenery
+            || of_name
+            || of_suspect
+            || of_line
+            || unit)
     }
 }
 
@@ -160,18 +189,21 @@ fn less_what_follows(mut found: Vec<Diagnostic>, sources: &[Source]) -> Vec<Diag
         .filter(|one| one.code == UNKNOWN_FIELD)
         .filter_map(|one| word(sources, place(one)?))
         .collect();
-    let all: Vec<(&'static str, Span)> = found.iter().filter_map(|one| Some((one.code, place(one)?))).collect();
+    let all: Vec<(&'static str, Span)> =
+        found.iter().filter_map(|one| Some((one.code, place(one)?))).collect();
     let follows = |one: &Diagnostic| {
         let Some(span) = place(one) else { return false };
         let beside = all.iter().any(|(_, before)| {
             before.source == span.source
                 && before.end <= span.start
-                && word(sources, Span { start: before.end, end: span.start, ..span })
-                    .is_some_and(|between| ["", "==", "!=", "/", "*"].contains(&between.trim()) && !between.contains('\n'))
+                && word(sources, Span { start: before.end, end: span.start, ..span }).is_some_and(|between| {
+                    ["", "==", "!=", "/", "*"].contains(&between.trim()) && !between.contains('\n')
+                })
         });
         let of_setting = word(sources, span).is_some_and(|name| settings.contains(&name));
         let misspelt = || {
-            let next = all.iter().filter(|(_, other)| other.source == span.source && other.start > span.start);
+            let next =
+                all.iter().filter(|(_, other)| other.source == span.source && other.start > span.start);
             next.min_by_key(|(_, other)| other.start).is_some_and(|(code, _)| *code == UNKNOWN_FIELD)
         };
         one.severity == Severity::Error
@@ -200,9 +232,9 @@ struct Bare<'i> {
 /// Of a bare number that is used as a quantity its declaration lacks the unit, not each of its uses.
 fn at_declarations(found: Vec<Diagnostic>, input: &Input<'_>) -> Vec<Diagnostic> {
     let bare = |name: &'_ Ident, value: &'_ Expr| {
-        matches!(&value.kind, ExprKind::Quantity(quantity) if quantity.unit.is_none()).then_some(value.span).map(
-            |value| (name.span, value),
-        )
+        matches!(&value.kind, ExprKind::Quantity(quantity) if quantity.unit.is_none())
+            .then_some(value.span)
+            .map(|value| (name.span, value))
     };
     let of_scenario = input.scenario.items.iter().filter_map(|item| match item {
         Item::Const { name, value } | Item::Param { name, value, .. } => bare(name, value),
@@ -223,7 +255,9 @@ fn at_declarations(found: Vec<Diagnostic>, input: &Input<'_>) -> Vec<Diagnostic>
             kept.push(one);
             continue;
         };
-        let before = kept.iter_mut().find(|k| k.code == DIMENSION && k.place.as_ref().is_some_and(|p| p.span == bare.value));
+        let before = kept
+            .iter_mut()
+            .find(|k| k.code == DIMENSION && k.place.as_ref().is_some_and(|p| p.span == bare.value));
         let use_of = Label { span: place, text: format!("used as {wanted}") };
         if let Some(before) = before {
             if before.related.len() < MOST_MARKS {

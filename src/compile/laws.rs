@@ -128,12 +128,14 @@ impl Elaborator<'_> {
         let (family, by) = (family?, by?);
         self.validated(family.clone(), (f64::NEG_INFINITY, f64::INFINITY), Dimension::NONE, span)?;
         if !(by.value > 0.0 && by.value.is_finite()) {
-            let error = Diagnostic::error("E0404", factor.span, "a distribution is multiplied by what is positive");
+            let error =
+                Diagnostic::error("E0404", factor.span, "a distribution is multiplied by what is positive");
             return self.report(error);
         }
         let Some(scaled) = family.scaled(by.value) else {
-            let error = Diagnostic::error("E0404", span, format!("no multiple of this `{}` is drawn", drawn.name))
-                .hint("a multiple of `beta` leaves (0, 1), and a count has at most 4096 values");
+            let error =
+                Diagnostic::error("E0404", span, format!("no multiple of this `{}` is drawn", drawn.name))
+                    .hint("a multiple of `beta` leaves (0, 1), and a count has at most 4096 values");
             return self.report(error);
         };
         Ok(scaled)

@@ -40,9 +40,11 @@ impl Flaw {
             origins.behaviours.get(one.behaviour.0 as usize).copied()
         };
         let (code, place, hint) = match fault {
-            process::Fault::Ambiguous { process, commands } => {
-                ("E0901", command(process, commands.1), "make their guards exclude each other, or add `choose`")
-            }
+            process::Fault::Ambiguous { process, commands } => (
+                "E0901",
+                command(process, commands.1),
+                "make their guards exclude each other, or add `choose`",
+            ),
             process::Fault::Weights { process, command: one } => {
                 ("E0902", command(process, one), "they must be at least 0 and sum to 1 in every state")
             }

@@ -6,8 +6,8 @@
 
 use crate::base::random;
 use crate::engine::outcome::{
-    Comparison, Counts, Distribution, Finding, Interval, Method, QueryResult, Ranking, Rare, Run,
-    Shows, Side, Witness,
+    Comparison, Counts, Distribution, Finding, Interval, Method, QueryResult, Ranking, Rare, Run, Shows,
+    Side, Witness,
 };
 use serde_json::{Map, Value, json};
 

@@ -90,7 +90,10 @@ fn what_a_trial_shows_has_a_place_and_a_code() {
     let json = said.json();
     validated(&json);
     let shown = &json["diagnostics"][0];
-    assert_eq!((&shown["code"], &shown["line"], &shown["file"]), (&"E0903".into(), &4.into(), &"a.scn".into()));
+    assert_eq!(
+        (&shown["code"], &shown["line"], &shown["file"]),
+        (&"E0903".into(), &4.into(), &"a.scn".into())
+    );
     assert!(shown["label"].as_str().unwrap().contains("p.n = 9"), "{json:#}");
     assert!(call("github").out.contains("::error file=a.scn,line=4,col=7"), "{}", call("github").out);
     assert!(call("junit").out.contains("type=\"E0903\""), "{}", call("junit").out);
@@ -102,7 +105,11 @@ fn a_wrong_call_has_a_code_and_a_hint() {
     for (words, code, hint) in [
         (&["check", "a.scn", "a.bltl", "--only", "7"][..], "E0705", "numbered from 0 to 0"),
         (&["check", "a.scn", "a.bltl", "--threads", "0"], "E0705", "a number from 1"),
-        (&["check", "a.scn", "a.bltl", "-q", "--max-trials", "9", "--report", "none/a.html"], "E0706", "the place"),
+        (
+            &["check", "a.scn", "a.bltl", "-q", "--max-trials", "9", "--report", "none/a.html"],
+            "E0706",
+            "the place",
+        ),
         (&["simulate", "a.scn", "--until", "900"], "E0705", "horizon"),
         (&["simulate", "a.scn", "--trials", "0"], "E0705", "from 1"),
         (&["simulate", "a.scn", "--move", "heading 0.5 rad"], "E0705", "there are heading"),

@@ -51,8 +51,7 @@ fn errors([scenario, properties]: [&str; 2], files: &Files) -> (Vec<Source>, Vec
     let (asked, more) = parse_properties(&sources[1]);
     said.extend(more);
     let asked = [asked];
-    let input =
-        Input { sources: &sources, scenario: &tree, properties: &asked, files, settings: &[] };
+    let input = Input { sources: &sources, scenario: &tree, properties: &asked, files, settings: &[] };
     let (_, found) = compile(&input);
     let own = own_errors(found, &said, &input);
     said.extend(own);
@@ -81,7 +80,8 @@ fn one_change_is_one_error() {
                     let lines = line(text, token.start)..=line(text, last);
                     let place = first.place.as_ref().map(|place| place.span);
                     let near = place.is_some_and(|place| {
-                        place.source.0 as usize == which && lines.contains(&line(&mutant, place.start as usize))
+                        place.source.0 as usize == which
+                            && lines.contains(&line(&mutant, place.start as usize))
                     });
                     elsewhere += u32::from(!near);
                     if found.len() > 1 {

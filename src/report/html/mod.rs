@@ -44,7 +44,8 @@ pub fn render(run: &Run) -> String {
         page.push_str("<p class=\"warning\">Interrupted: these are the results so far.</p>\n");
     }
     if let Some(failure) = &run.failure {
-        let _ = writeln!(page, "<p class=\"failure\">Stopped by an error: {}</p>", escape(&failure.message()));
+        let _ =
+            writeln!(page, "<p class=\"failure\">Stopped by an error: {}</p>", escape(&failure.message()));
     }
     let _ = writeln!(
         page,

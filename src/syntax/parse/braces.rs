@@ -187,9 +187,13 @@ fn changes(text: &str, lines: &[Line<'_>], slip: Slip) -> Vec<Change> {
         Slip::Stray { at } => vec![Change { place: at..at + 1, by: ' ' }],
         Slip::NotClosed { open, line } => {
             let last = lines[line].tokens.last();
-            let close = last.into_iter().flat_map(|last| after(last, '}').into_iter().chain(instead(last, '}')));
+            let close =
+                last.into_iter().flat_map(|last| after(last, '}').into_iter().chain(instead(last, '}')));
             // Something else stands where the brace belongs, alone on its line.
-            let alone = lines.get(line + 1).filter(|next| next.tokens.len() == 1).and_then(|next| instead(&next.tokens[0], '}'));
+            let alone = lines
+                .get(line + 1)
+                .filter(|next| next.tokens.len() == 1)
+                .and_then(|next| instead(&next.tokens[0], '}'));
             close.chain(alone).chain([Change { place: open..open + 1, by: ' ' }]).collect()
         }
         Slip::NotOpened { line } => {
@@ -220,11 +224,7 @@ fn error(source: &Source, slip: Slip, change: &Change) -> Diagnostic {
     // A block of several lines should have ended before what stands there.
     let ends_block = matches!(slip, Slip::NotClosed { open, .. } if text[open..before].contains('\n'));
     let later = text[change.place.start..next].contains('\n') && !ends_block;
-    let place = if later || found.is_empty() {
-        span(before, before)
-    } else {
-        span(next, next + found.len())
-    };
+    let place = if later || found.is_empty() { span(before, before) } else { span(next, next + found.len()) };
     match slip {
         Slip::Turned { at } => {
             let title = format!("expected `{}`, found `{}`", change.by, &text[at..=at]);
@@ -298,7 +298,8 @@ pub(super) fn mend(source: &Source, errors: &dyn Fn(&str, Vec<Diagnostic>) -> us
             continue;
         }
         let ways: Vec<Vec<Change>> = slips.iter().map(|slip| changes(text, &lines, *slip)).collect();
-        let Some(mut chosen) = ways.iter().map(|ways| ways.first().cloned()).collect::<Option<Vec<_>>>() else {
+        let Some(mut chosen) = ways.iter().map(|ways| ways.first().cloned()).collect::<Option<Vec<_>>>()
+        else {
             continue;
         };
         let cost = |chosen: &[Change]| {

@@ -63,14 +63,16 @@ pub fn decode(id: SourceId, name: &str, bytes: &[u8]) -> Result<Source, Diagnost
 /// Parses a scenario (`.scn`). What could not be read is missing from the tree and reported.
 #[allow(clippy::redundant_closure_for_method_calls, reason = "the method has one lifetime, the closure any")]
 pub fn parse_scenario(source: &Source) -> (ScenarioFile, Vec<Diagnostic>) {
-    let (file, diagnostics) = mended(source, Rule::scenario_file, &|builder, file| builder.scenario_file(file));
+    let (file, diagnostics) =
+        mended(source, Rule::scenario_file, &|builder, file| builder.scenario_file(file));
     (file.unwrap_or_default(), diagnostics)
 }
 
 /// Parses a property file (`.bltl`). What could not be read is missing from the tree and reported.
 #[allow(clippy::redundant_closure_for_method_calls, reason = "the method has one lifetime, the closure any")]
 pub fn parse_properties(source: &Source) -> (PropertyFile, Vec<Diagnostic>) {
-    let (file, diagnostics) = parse(source, &source.text, Rule::property_file, |builder, file| builder.property_file(file));
+    let (file, diagnostics) =
+        parse(source, &source.text, Rule::property_file, |builder, file| builder.property_file(file));
     (file.unwrap_or_default(), diagnostics)
 }
 
@@ -127,14 +129,8 @@ fn parse<T>(
     rule: Rule,
     build: impl FnOnce(&mut Builder<'_>, builder::Pair<'_>) -> T,
 ) -> (Option<T>, Vec<Diagnostic>) {
-    let mut builder = Builder {
-        source,
-        text,
-        root: rule,
-        diagnostics: Vec::new(),
-        cut: Vec::new(),
-        lost: Vec::new(),
-    };
+    let mut builder =
+        Builder { source, text, root: rule, diagnostics: Vec::new(), cut: Vec::new(), lost: Vec::new() };
     match nesting::scan(source, text) {
         Scan::Fine => {}
         Scan::TooDeep(diagnostic) => return (None, vec![diagnostic]),

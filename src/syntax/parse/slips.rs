@@ -185,7 +185,8 @@ impl Builder<'_> {
         let (Some(number), true) = (number, quantity::UNITS.contains(&name)) else { return false };
         let equals = start + text.find('=').unwrap_or(0);
         let place = Span::new(self.source.id, equals, equals + 1);
-        let error = Diagnostic::error(code::UNEXPECTED, place, format!("unexpected `=` after `{number} {name}`"));
+        let error =
+            Diagnostic::error(code::UNEXPECTED, place, format!("unexpected `=` after `{number} {name}`"));
         self.say(error.hint("the name that is set is missing; `==` compares"));
         self.cut.push(Span::new(self.source.id, line, start + text.len()));
         true
@@ -226,10 +227,14 @@ impl Builder<'_> {
             "*" if !after_value && self.text[..fault.at].ends_with('*') => {
                 return Some(say(fault.at - 1, "**", "^"));
             }
-            _ if after_value && lexeme::word_before(self.text, fault.at).is_some_and(|(_, word)| word == "if") => {
+            _ if after_value
+                && lexeme::word_before(self.text, fault.at).is_some_and(|(_, word)| word == "if") =>
+            {
                 let at = lexeme::word_before(self.text, fault.at)?.0;
                 let error = Diagnostic::error(code::OPERATOR, self.place(at, "if"), "`if` is a function");
-                return Some(error.hint("write `if(condition, then, otherwise)`; of formulas `(a => b) & (!a => c)`"));
+                return Some(
+                    error.hint("write `if(condition, then, otherwise)`; of formulas `(a => b) & (!a => c)`"),
+                );
             }
             "~" if !after_value => "!",
             "is" if after_value => "==",
@@ -270,10 +275,10 @@ impl Builder<'_> {
         {
             let place = self.place(fault.at, fault.found);
             let title = format!("unexpected `{}` after `{number} {before_it}`", fault.found);
-            return Some(Diagnostic::error(code::UNIT, place, title).hint(format!(
-                "a product of units is written `{number} {before_it}*{}`",
-                fault.found
-            )));
+            return Some(
+                Diagnostic::error(code::UNIT, place, title)
+                    .hint(format!("a product of units is written `{number} {before_it}*{}`", fault.found)),
+            );
         }
         let before = &self.text[..fault.at];
         let between = &before[before.trim_end().len()..];
