@@ -69,9 +69,11 @@ const SCENERY: [&str; 5] = ["import", "obstacle", "point", "region", "wall"];
 /// What compilation found, less what follows from what the parser had said of the same texts.
 pub fn own_errors(found: Vec<Diagnostic>, said: &[Diagnostic], input: &Input<'_>) -> Vec<Diagnostic> {
     let broken = Broken::of(said, input);
-    let mut found: Vec<Diagnostic> = found.into_iter().filter(|one| broken.is_own(one)).collect();
-    found = less_what_follows(found, input.sources);
-    once_a_name(at_declarations(found, input), input.sources)
+    let fails = |all: &[Diagnostic]| all.iter().any(|one| one.severity == Severity::Error);
+    let own: Vec<Diagnostic> = found.iter().filter(|one| broken.is_own(one)).cloned().collect();
+    let own = once_a_name(at_declarations(less_what_follows(own, input.sources), input), input.sources);
+    // Nothing is refused without a word.
+    if fails(&found) && !fails(&own) && !fails(said) { found } else { own }
 }
 
 /// What could not be read.
