@@ -91,6 +91,8 @@ pub(super) struct Elaborator<'a> {
     pub(super) agent_names: Vec<String>,
     /// Where the starts of people are written.
     pub(super) places: Written,
+    /// Stand-ins for people whose declaration is wrong.
+    pub(super) undeclared: BTreeSet<AgentId>,
     /// Where the behaviour that is looked at gets its arguments, if it takes any.
     pub(super) attached_at: Option<Span>,
     /// Where processes and behaviours are written.
@@ -158,6 +160,7 @@ impl<'a> Elaborator<'a> {
             withs: Vec::new(),
             agent_names: Vec::new(),
             places: Vec::new(),
+            undeclared: BTreeSet::new(),
             attached_at: None,
             origins: Origins::default(),
             coming: false,

@@ -209,6 +209,7 @@ impl<'a> Elaborator<'a> {
         // What follows can then speak of the name without further errors.
         let id = AgentId(self.agent_names.len() as u32);
         self.agent_names.push(name.name.clone());
+        self.undeclared.insert(id);
         self.attach(with, &[id]);
         let meaning = if plural {
             Meaning::Agents { members: [id].into(), particle: false }

@@ -231,6 +231,30 @@ proptest! {
     }
 
     #[test]
+    fn braces_in_wrong_places_never_panic(
+        which in 0_usize..100,
+        braces in proptest::collection::vec((0_usize..10_000, 0_u8..4), 1..7),
+        flat in any::<bool>(),
+    ) {
+        let examples = examples();
+        let mut text = examples[which % examples.len()].text.clone();
+        for (at, what) in braces {
+            let tokens = tokens(&text);
+            let token = tokens[at % tokens.len()].clone();
+            match what {
+                0 => text.insert(token.start, '{'),
+                1 => text.insert(token.start, '}'),
+                2 => text.replace_range(token, "{"),
+                _ => {
+                    let brace = tokens.iter().filter(|t| ["{", "}"].contains(&&text[t.start..t.end])).nth(at % 5);
+                    text.replace_range(brace.cloned().unwrap_or(token), "");
+                }
+            }
+        }
+        never_panics(&if flat { text.replace('\n', " ") } else { text });
+    }
+
+    #[test]
     fn soup_never_panics(words in proptest::collection::vec(proptest::sample::select(&WORDS[..]), 0..60)) {
         never_panics(&words.join(" "));
     }

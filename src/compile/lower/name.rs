@@ -286,6 +286,12 @@ impl<'a> Elaborator<'a> {
             }
             found => return self.mismatch(base.span, "a set of agents", &found),
         };
+        // Of those who could not be declared nobody knows the number.
+        if let [only] = set.members[..]
+            && self.undeclared.contains(&only)
+        {
+            return Ok(Typed::Agent(Who::Agent(only)));
+        }
         let place = self.member(base, index, set.members.len(), locals)?;
         Ok(Typed::Agent(Who::Agent(set.members[place])))
     }

@@ -78,15 +78,17 @@ pub(super) struct Mended {
 
 fn lines(text: &str) -> Vec<Line<'_>> {
     let mut lines: Vec<Line<'_>> = Vec::new();
-    let (mut at, mut end) = (0, 0);
+    let (mut at, mut end, mut start) = (0, 0, 0);
     while at < text.len() {
         let rest = &text[at..];
         if let Some(length) = lexeme::trivia(rest) {
+            if let Some(newline) = rest[..length].rfind('\n') {
+                start = at + newline + 1;
+            }
             at += length;
             continue;
         }
         let token = lexeme::first(rest);
-        let start = text[..at].rfind('\n').map_or(0, |newline| newline + 1);
         match lines.last_mut() {
             Some(line) if end > start => line.tokens.push((at, token)),
             _ => lines.push(Line { indent: text[start..at].chars().count(), tokens: vec![(at, token)] }),
@@ -194,7 +196,16 @@ fn changes(text: &str, lines: &[Line<'_>], slip: Slip) -> Vec<Change> {
                 .get(line + 1)
                 .filter(|next| next.tokens.len() == 1)
                 .and_then(|next| instead(&next.tokens[0], '}'));
-            close.chain(alone).chain([Change { place: open..open + 1, by: ' ' }]).collect()
+            let mut changes: Vec<Change> = close.chain(alone).collect();
+            let erased = Change { place: open..open + 1, by: ' ' };
+            // One within a line that is not closed on it was hardly meant.
+            let within = |tokens: &[(usize, &str)]| tokens.iter().rev().skip(1).any(|(at, _)| *at == open);
+            if lines[..line].iter().any(|line| within(&line.tokens)) {
+                changes.insert(0, erased);
+            } else {
+                changes.push(erased);
+            }
+            changes
         }
         Slip::NotOpened { line } => {
             let tokens = lines[line].tokens.iter().rev();
@@ -222,7 +233,10 @@ fn error(source: &Source, slip: Slip, change: &Change) -> Diagnostic {
     let found = lexeme::first(&text[next..]);
     let before = text[..change.place.start].trim_end().len();
     // A block of several lines should have ended before what stands there.
-    let ends_block = matches!(slip, Slip::NotClosed { open, .. } if text[open..before].contains('\n'));
+    let ends_block = matches!(
+        slip,
+        Slip::NotClosed { open, .. } if text.get(open..before).is_some_and(|block| block.contains('\n'))
+    );
     let later = text[change.place.start..next].contains('\n') && !ends_block;
     let place = if later || found.is_empty() { span(before, before) } else { span(next, next + found.len()) };
     match slip {
@@ -279,8 +293,11 @@ pub(super) fn together(source: &Source, said: Vec<Diagnostic>, slips: Vec<Diagno
 /// mended text and of its slips. `None` where they do pair up, or the layout is no help.
 pub(super) fn mend(source: &Source, errors: &dyn Fn(&str, Vec<Diagnostic>) -> usize) -> Option<Mended> {
     let text = source.text.as_str();
+    if text.len() > LONGEST {
+        return None;
+    }
     let lines = lines(text);
-    if text.len() > LONGEST || pairs_up(&lines) {
+    if pairs_up(&lines) {
         return None;
     }
     let mut best: Option<(usize, Vec<Slip>, Vec<Change>)> = None;
