@@ -102,7 +102,8 @@ impl AnyEstimator {
     /// (epsilon of 0.005 or more), else whichever of alpha spending and Okamoto has the smaller largest number
     /// of trials.
     ///
-    /// Where the proof is given up, the estimator stops once the interval that holds at all times is narrow.
+    /// Which one it is depends on `epsilon` and `delta` alone. Where the proof is given up it has no level, and nothing
+    /// is to be sampled with it.
     pub fn within(epsilon: f64, delta: f64, patience: Patience<'_>) -> Result<Self, Invalid> {
         let (spending, okamoto) = (Spending::new(epsilon, delta)?, Okamoto::new(epsilon, delta)?);
         let level = calibration::level(epsilon, delta, patience);
