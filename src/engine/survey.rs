@@ -17,7 +17,7 @@ use super::watch::{Forecast, Watch};
 use crate::compile::study::{Ask, Query};
 
 /// Largest round.
-const LARGEST_ROUND: u64 = 16_384;
+pub(super) const LARGEST_ROUND: u64 = 16_384;
 
 /// One query on its way.
 pub(super) struct Inquiry<'q> {

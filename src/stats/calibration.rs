@@ -12,9 +12,9 @@ use crate::base::math;
 use crate::base::special::ln_gamma;
 use std::cell::Cell;
 
-/// Smallest half-width for which the proof takes seconds at most.
+/// Smallest half-width for which a proof is tried.
 const LEAST_EPSILON: f64 = 0.005;
-/// Largest size of Okamoto's plan for which it does: the time of a proof grows with its square.
+/// Largest size of Okamoto's plan for which it is: the time of a proof grows with its square, and is seconds at this one.
 const LARGEST_PLAN: u64 = 60_000;
 /// Largest error worth a proof: beyond, trials are so few that the bound is loose.
 const MOST_DELTA: f64 = 0.3;
@@ -356,7 +356,7 @@ fn calibrate(epsilon: f64, delta: f64, go_on: &dyn Fn() -> bool) -> Option<f64> 
         })
 }
 
-/// Whether a proof takes seconds at most.
+/// Whether a proof is worth a try, and takes seconds at most.
 fn is_affordable(epsilon: f64, delta: f64) -> bool {
     (LEAST_EPSILON..=0.4).contains(&epsilon)
         && delta > 1e-6

@@ -44,13 +44,15 @@ impl Interval {
         self.low <= x && x <= self.high
     }
 
-    /// The smallest interval that holds both.
+    /// The smallest interval that holds both. It holds at all times if one of them is meant to: of two readings one
+    /// has stopped, and the other goes on.
     pub fn hull(self, other: Self) -> Self {
+        let endless = other.coverage == Coverage::TimeUniform;
         Self {
             low: if other.low < self.low { other.low } else { self.low },
             high: if other.high > self.high { other.high } else { self.high },
             error: if other.error > self.error { other.error } else { self.error },
-            coverage: self.coverage,
+            coverage: if endless { other.coverage } else { self.coverage },
         }
     }
 }
@@ -277,6 +279,21 @@ mod tests {
         assert!(AnyEstimator::within(0.0, 0.05, Patience::ENDLESS).is_err());
         assert!(AnyEstimator::within(0.6, 0.05, Patience::ENDLESS).is_err());
         assert!(AnyEstimator::within(0.01, 1.0, Patience::ENDLESS).is_err());
+    }
+
+    #[test]
+    fn a_reading_that_goes_on_has_an_interval_of_all_times_and_so_have_both() {
+        let mut readings = EstimatorReadings::new(Calibrated::at_level(0.1, 0.05, 0.033).unwrap());
+        readings.observe(Outcome::Unresolved);
+        let mut trials = 1;
+        while !readings.readings().0.finished() {
+            // One reading sees none, and soon stops; the other sees a third.
+            readings.observe(if trials % 3 == 0 { Outcome::Unresolved } else { Outcome::False });
+            trials += 1;
+        }
+        assert!(!readings.finished() && trials < 40, "{trials}");
+        assert_eq!(readings.readings().0.interval().coverage, Coverage::Sequential);
+        assert_eq!(readings.interval().coverage, Coverage::TimeUniform);
     }
 
     #[test]
