@@ -120,4 +120,5 @@ fn the_procedure_comes_from_the_property_alone() {
     let none = result(&["--timeout", "1ms"]);
     assert_eq!((&none["method"]["name"], &none["stopped_by"]), (&"calibrated".into(), &"deadline".into()));
     assert_eq!((&none["trials"], &none["certifies"]), (&0.into(), &"".into()), "{none:#}");
+    assert!(none["warnings"].to_string().contains("no time to prove the level"), "{none:#}");
 }

@@ -204,6 +204,12 @@ impl Procedure {
         }
     }
 
+    /// Whether time ended the proof of its level, so that nothing could be sampled.
+    pub(super) fn is_unproven(&self) -> bool {
+        matches!(self, Self::Probability(e)
+            if matches!(e.readings().0, AnyEstimator::Calibrated(one) if !one.is_proven()))
+    }
+
     /// Whether it is over without having come to what was asked: at its own largest number of trials.
     pub(super) fn is_capped(&self) -> bool {
         match self {
