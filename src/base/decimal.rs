@@ -150,10 +150,18 @@ impl PartialOrd for Decimal {
 
 impl Ord for Decimal {
     fn cmp(&self, other: &Self) -> Ordering {
-        // The sign of the difference; where it does not fit, doubles are far enough apart.
-        match self.sub(*other) {
-            Some(difference) => difference.numerator.cmp(&0),
-            None => self.to_f64().total_cmp(&other.to_f64()),
+        // Whole parts first, then what is left, upside down: as Euclid's algorithm goes, so that nothing overflows.
+        let (mut a, mut b) = ((self.numerator, self.denominator), (other.numerator, other.denominator));
+        loop {
+            let whole = a.0.div_euclid(a.1).cmp(&b.0.div_euclid(b.1));
+            let (left, right) = (a.0.rem_euclid(a.1), b.0.rem_euclid(b.1));
+            if whole != Ordering::Equal {
+                return whole;
+            }
+            if left == 0 || right == 0 {
+                return (left != 0).cmp(&(right != 0));
+            }
+            (a, b) = ((b.1, right), (a.1, left));
         }
     }
 }

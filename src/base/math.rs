@@ -126,9 +126,12 @@ pub fn sin_cos_turn(turn: f64) -> (f64, f64) {
     in_quadrant(t.to_bits(), sin, cos)
 }
 
-/// Sine and cosine of an angle in radians, for |x| up to about 1e5 within 2 ulp of 1.
+/// Sine and cosine of an angle in radians, for |x| up to about 1e5 within 2 ulp of 1; beyond that of an angle within an
+/// ulp of x.
 #[inline(always)]
 pub fn sin_cos(x: f64) -> (f64, f64) {
+    // A remainder is exact, so the same everywhere.
+    let x = if x.abs() > 1e5 { x % (2.0 * PI) } else { x };
     const PIO2_HIGH: f64 = 1.570_796_326_734_125_614_17;
     const PIO2_MIDDLE: f64 = 6.077_100_506_303_965_976_60e-11;
     const PIO2_LOW: f64 = 2.022_266_248_795_950_631_5e-21;
