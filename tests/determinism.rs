@@ -228,7 +228,7 @@ fn t16_neither_ranks_nor_their_loss_leave_a_trace() {
     let never = u64::MAX;
     // The first message of a rank says that it is ready. One is lost with it, others with answers.
     for lost in
-        [&[never][..], &[never, never], &[never; 4], &[9], &[3, never], &[never, 40, 1, 0], &[7, 20, 2, 60]]
+        [&[never][..], &[never, never], &[never; 4], &[9], &[3, never], &[never, 25, 1, 0], &[7, 20, 2, 60]]
     {
         let lines = lost.iter().zip(1..).map(|(lost, state)| rank(&study, state, *lost)).collect();
         let ranks = head(&study, lines).unwrap();
@@ -236,7 +236,7 @@ fn t16_neither_ranks_nor_their_loss_leave_a_trace() {
             assert_eq!(found, plain, "ranks that are lost after {lost:?}: {}", plain.query);
         }
         let (traffic, gone) = (ranks.traffic(), lost.iter().filter(|lost| **lost != never).count());
-        assert!(traffic.leases > 9, "{lost:?}: {traffic:?}, {:?}", ranks.warnings());
+        assert!(traffic.leases >= 9, "{lost:?}: {traffic:?}, {:?}", ranks.warnings());
         assert_eq!(ranks.warnings().len(), gone, "{lost:?}: {:?}", ranks.warnings());
         // Who was alone has nobody to take over.
         assert_eq!(traffic.again > 0, gone > 0 && lost.len() > 1, "{lost:?}: {traffic:?}");
@@ -330,6 +330,7 @@ fn a_rank_that_falls_silent_blocks_nobody() {
     let plain = results(&study, &Threads::new(Some(1)).unwrap());
     assert!(results(&study, &ranks) == plain);
     assert!(ranks.traffic().again > 0, "its lease is overdue");
+    assert!(ranks.warnings()[0].contains("answers no more"), "{:?}", ranks.warnings());
     // Nor does it hold up a call whose time is up.
     let silent = relayed(&study, |number, _| {
         while number > 0 {
@@ -341,4 +342,6 @@ fn a_rank_that_falls_silent_blocks_nobody() {
     let found = run(&study, &call(), &ranks, &Budget::new(2_000, Some(Duration::from_millis(200))), &Nobody);
     assert!(found.is_ok_and(|run| run.results.len() == plain.len()));
     assert!(started.elapsed() < Duration::from_secs(2), "{:?}", started.elapsed());
+    // Where it is the only one, and time is not up, the head runs what it cannot lease.
+    assert!(results(&study, &ranks) == plain);
 }

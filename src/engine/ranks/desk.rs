@@ -14,8 +14,10 @@ use std::time::{Duration, Instant};
 
 /// Longest wait for ranks that have not said that they are ready, s.
 const WELCOME: f64 = 30.0;
-/// How long a lease should take, s.
-const LEASE: f64 = 0.05;
+/// How long a lease should take at most, s.
+const LONG: f64 = 0.2;
+/// How long it should take at least, s.
+const BRIEF: f64 = 0.001;
 /// Where leases take less than this, a rank has a second one at hand while its answer is under way, s.
 const SHORT: f64 = 0.02;
 /// How long ranks may take to hand in what they have once time is up, s.
@@ -61,6 +63,11 @@ struct Rank {
 impl Rank {
     fn works(&self) -> bool {
         self.ready && self.orders.is_some()
+    }
+
+    /// Whether it was told to leave a lease and has not done so for long.
+    fn hangs(&self) -> bool {
+        self.held.front().is_some_and(|held| held.void && held.since.elapsed().as_secs_f64() > OVERDUE)
     }
 }
 
@@ -156,7 +163,7 @@ impl Desk {
             if round.open == 0 {
                 break End::Over;
             }
-            if !able || self.width() == 0 {
+            if !able || !self.ranks.iter().any(|rank| rank.works() && !rank.hangs()) {
                 break End::Alone;
             }
             if budget.must_stop() {
@@ -219,19 +226,21 @@ impl Desk {
     }
 
     /// How many trials the next lease has: at first much, towards the end of a round little, so that all ranks end
-    /// together; but enough for all lanes, and little enough that a lease that is lost costs little.
+    /// together; but enough for all lanes and worth a message, and little enough that a lease that is lost costs little.
     fn size(&self, round: &Round<'_, '_>) -> usize {
         let ranks = self.ranks.iter().filter(|rank| rank.works()).count().max(1);
-        let lanes = self.each * round.job.lanes();
+        let (lanes, left) = (self.each * round.job.lanes(), round.untouched());
         let share = round.items.len().div_ceil(ranks).next_multiple_of(lanes);
         let least = share.min(2 * lanes);
-        let most = match self.pace {
-            Some((world, seconds)) if world == round.world && seconds > 0.0 => (LEASE / seconds) as usize,
-            Some((world, _)) if world == round.world => MOST_ITEMS,
+        // So many are run in some seconds; few where nothing is known.
+        let run_in = |seconds: f64| match self.pace {
+            Some((world, pace)) if world == round.world => (seconds / pace) as usize,
             _ => least,
         };
-        let most = most.min(MOST_CELLS / round.job.columns.len().max(1)).max(least).min(MOST_ITEMS);
-        round.untouched().div_ceil(2 * ranks).next_multiple_of(round.job.lanes()).clamp(least.min(most), most)
+        let most = run_in(LONG).min(MOST_CELLS / round.job.columns.len().max(1)).max(least).min(MOST_ITEMS);
+        let pieces = if ranks == 1 { 1 } else { 2 * ranks };
+        let fair = left.div_ceil(pieces).max(run_in(BRIEF).min(left.div_ceil(ranks)));
+        fair.next_multiple_of(round.job.lanes()).clamp(least.min(most), most)
     }
 
     /// How long so many trials should take.
@@ -355,6 +364,8 @@ impl Desk {
                     k + 1,
                     rank.why
                 ));
+            } else if rank.hangs() {
+                warnings.push(format!("rank {} of {all} answers no more; others ran its trials", k + 1));
             } else if !rank.ready {
                 warnings.push(format!("rank {} of {all} never answered; it ran no trial", k + 1));
             }

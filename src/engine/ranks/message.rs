@@ -12,7 +12,7 @@ use std::io::{self, Read};
 /// What a greeting begins with: who speaks, and which edition of this protocol.
 const OPENING: &str = "smc ranks 1";
 /// Most trials of a lease.
-pub(super) const MOST_ITEMS: usize = 4096;
+pub(super) const MOST_ITEMS: usize = 1 << 14;
 /// Most threads of a rank.
 const MOST_THREADS: u64 = 1024;
 /// Longest message, bytes: greetings carry recordings.
