@@ -317,26 +317,27 @@ fn a_rank_that_talks_nonsense_is_as_good_as_lost() {
     }
 }
 
+/// Lets messages pass up to this one, and then nothing any more.
+fn silent_after(last: u64, number: u64) {
+    if number > last {
+        loop {
+            std::thread::park();
+        }
+    }
+}
+
 #[test]
 fn a_rank_that_falls_silent_blocks_nobody() {
     let (study, _sources) = study();
     // Its line stays open. The first messages answer rehearsals, which wait for nobody.
-    let silent = relayed(&study, |number, _| {
-        while number > 40 {
-            std::thread::park();
-        }
-    });
+    let silent = relayed(&study, |number, _| silent_after(40, number));
     let ranks = head(&study, vec![silent, rank(&study, 1, u64::MAX)]).unwrap();
     let plain = results(&study, &Threads::new(Some(1)).unwrap());
     assert!(results(&study, &ranks) == plain);
     assert!(ranks.traffic().again > 0, "its lease is overdue");
     assert!(ranks.warnings()[0].contains("answers no more"), "{:?}", ranks.warnings());
     // Nor does it hold up a call whose time is up.
-    let silent = relayed(&study, |number, _| {
-        while number > 0 {
-            std::thread::park();
-        }
-    });
+    let silent = relayed(&study, |number, _| silent_after(0, number));
     let ranks = head(&study, vec![silent]).unwrap();
     let started = Instant::now();
     let found = run(&study, &call(), &ranks, &Budget::new(2_000, Some(Duration::from_millis(200))), &Nobody);

@@ -48,7 +48,9 @@ pub(super) fn pack(model: &Model, properties: &[String], shelf: &Shelf) -> Vec<u
     to.text(&model.scenario);
     for list in [properties, &model.set] {
         to.whole(list.len() as u64);
-        list.iter().for_each(|text| to.text(text));
+        for text in list {
+            to.text(text);
+        }
     }
     let Shelf::Kept(opened) = shelf else { return to.finish() };
     for (name, contents) in opened {
@@ -93,7 +95,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    const SCENARIO: &str = "horizon = 1 s\nstep = 0.1 s\nparam n: 1 = 2\nkind adult: sfm preset helbing2000 { }\n\
+    const SCENARIO: &str = "horizon = 1 s\nstep = 0.1 s\nparam n = 2\n\
+        scene { import \"walls.wkt\" }\nkind adult: sfm preset helbing2000 { }\n\
         agent user: adult { at = (0, 0)  route = (5, 0) }\n";
 
     fn packed() -> Vec<u8> {
@@ -101,6 +104,7 @@ mod tests {
         let opened = vec![
             ("-".to_owned(), Ok(SCENARIO.as_bytes().to_vec())),
             ("a.bltl".to_owned(), Ok(b"estimate P(F<=1 s (travelled(user) > 1 m))".to_vec())),
+            ("walls.wkt".to_owned(), Ok(b"LINESTRING (-1 2, 6 2)".to_vec())),
         ];
         pack(&model, &["a.bltl".to_owned()], &Shelf::Kept(opened))
     }
@@ -108,7 +112,9 @@ mod tests {
     #[test]
     fn what_was_packed_is_compiled_without_a_file() {
         let inputs = unpack(&packed()).unwrap();
-        assert!(inputs.study.is_some_and(|study| study.queries.len() == 1), "{:?}", inputs.diagnostics);
+        let found =
+            inputs.study.map(|study| (study.queries.len(), study.worlds[0].scenario.scene.barriers.len()));
+        assert_eq!(found, Some((1, 1)), "{:?}", inputs.diagnostics);
     }
 
     #[test]

@@ -47,9 +47,8 @@ fn any_number_of_ranks_reports_the_same() {
 }
 
 #[test]
-fn ranks_need_no_file() {
-    let place = place(PROPERTIES);
-    place.write("walls.wkt", b"LINESTRING (0 4, 20 4)");
+fn ranks_are_handed_standard_input() {
+    let place = place("");
     let words = ["check", "a.scn", "-", "-q", "--format", "json"];
     let alone = place.fed(&words, PROPERTIES);
     let led = place.fed(&[&words[..], &["--ranks", "2"]].concat(), PROPERTIES);

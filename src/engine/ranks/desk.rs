@@ -9,7 +9,7 @@ use crate::engine::budget::Budget;
 use crate::engine::fault::Fault;
 use std::collections::VecDeque;
 use std::ops::Range;
-use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
+use std::sync::mpsc::{self, Receiver};
 use std::time::{Duration, Instant};
 
 /// Longest wait for ranks that have not said that they are ready, s.
@@ -125,10 +125,7 @@ impl Desk {
     /// The next thing that happens, if it happens soon.
     fn wait(&self, budget: &Budget) -> Option<(usize, Event)> {
         let left = budget.seconds_left().filter(|left| *left > 0.0).unwrap_or(LOOK).min(LOOK);
-        match self.events.recv_timeout(Duration::from_secs_f64(left)) {
-            Ok(event) => Some(event),
-            Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => None,
-        }
+        self.events.recv_timeout(Duration::from_secs_f64(left)).ok()
     }
 
     /// Whether a rank that says so runs what this process runs.

@@ -413,7 +413,8 @@ mod tests {
                 prop_assert!(matches!(receive(&mut line), Err(_) | Ok(None)));
                 if cut > 4 {
                     let part = &bytes[4..cut];
-                    prop_assert!(if whose == 0 { Order::read(part).is_err() } else { Reply::read(part).is_err() });
+                    let refused = if whose == 0 { Order::read(part).is_err() } else { Reply::read(part).is_err() };
+                    prop_assert!(refused);
                 }
             }
         }
@@ -448,7 +449,9 @@ mod tests {
         assert!(receive(&mut [0, 0, 0, 0x40, 1, 2, 3].as_slice()).is_err());
         let mut lease = Encoder::default();
         lease.byte(1);
-        [0, 0, 0, 0].iter().for_each(|zero| lease.whole(*zero));
+        for _ in 0..4 {
+            lease.whole(0);
+        }
         lease.number(f64::INFINITY);
         lease.whole(1);
         lease.byte(0);
