@@ -16,8 +16,11 @@ compare P(near) under density = 0.1 /m^2 with density = 0.4 /m^2 within 0.1
 rank moves of user by P(near) within 0.1
 ";
 
-/// Works for some seconds.
+/// Works for about a second.
 const LONG: &str = "estimate P(F<=3 s contact(user)) by clopper_pearson(trials = 60000)\n";
+
+/// Works for hours.
+const ENDLESS: &str = "check P(F<=3 s contact(user)) >= 0.17 by sprt(indifference = 0.00001)\n";
 
 fn place(properties: &str) -> Place {
     Place::new(&[("a.scn", SMALL), ("a.bltl", properties)])
@@ -123,12 +126,14 @@ fn signal(name: &str, whom: &str) {
 fn at_work(place: &Place, words: &[&str], ranks: usize) -> (std::process::Child, Vec<u32>) {
     use std::os::unix::process::CommandExt as _;
     let count = ranks.to_string();
-    let words = [&["check", "a.scn", "a.bltl", "-q", "--format", "json", "--ranks", &count], words].concat();
+    let words =
+        [&["check", "a.scn", "a.bltl", "-q", "--format", "json", "-j", "2", "--ranks", &count], words]
+            .concat();
     let mut command = place.command(&words);
     command.process_group(0).stdout(Stdio::piped()).stderr(Stdio::piped());
     let child = command.spawn().unwrap();
     soon("all ranks are there", || children(child.id()).len() == ranks);
-    std::thread::sleep(Duration::from_millis(300));
+    std::thread::sleep(Duration::from_millis(100));
     let there = children(child.id());
     assert_eq!(there.len(), ranks, "the call works for long enough");
     (child, there)
@@ -142,6 +147,9 @@ fn a_rank_that_is_killed_changes_no_result() {
     let alone = report(&place.call(&words).out);
     for (ranks, killed) in [(2, 1), (2, 2), (1, 1)] {
         let (child, there) = at_work(&place, &[], ranks);
+        // Those that stand still keep their leases, so that the call is not over before they are gone.
+        there[..killed].iter().for_each(|pid| signal("-STOP", &pid.to_string()));
+        std::thread::sleep(Duration::from_millis(100));
         there[..killed].iter().for_each(|pid| signal("-KILL", &pid.to_string()));
         let output = child.wait_with_output().unwrap();
         let mut led = report(&String::from_utf8_lossy(&output.stdout));
@@ -158,14 +166,14 @@ fn a_rank_that_is_killed_changes_no_result() {
 #[cfg(target_os = "linux")]
 #[test]
 fn no_rank_outlives_its_head() {
-    let place = place(LONG);
-    let (mut child, there) = at_work(&place, &[], 2);
+    let place = place(ENDLESS);
+    let (mut child, there) = at_work(&place, &["--max-trials", "900000000"], 2);
     let over = || there.iter().all(|pid| status(*pid).is_none_or(|(state, _)| state == "Z"));
     child.kill().unwrap();
     child.wait().unwrap();
     soon("all ranks are over", over);
     // One that is stopped and reads nothing is no exception where its head ends by itself.
-    let (child, there) = at_work(&place, &["--timeout", "800ms"], 2);
+    let (child, there) = at_work(&place, &["--timeout", "800ms", "--max-trials", "900000000"], 2);
     signal("-STOP", &there[0].to_string());
     let output = child.wait_with_output().unwrap();
     assert_eq!(report(&String::from_utf8_lossy(&output.stdout))["results"][0]["stopped_by"], "deadline");
@@ -175,9 +183,9 @@ fn no_rank_outlives_its_head() {
 #[cfg(target_os = "linux")]
 #[test]
 fn an_interruption_ends_all_in_silence() {
-    let place = place(LONG);
+    let place = place(ENDLESS);
     for group in [false, true] {
-        let (child, there) = at_work(&place, &[], 2);
+        let (child, there) = at_work(&place, &["--max-trials", "900000000"], 2);
         let whom = if group { format!("-{}", child.id()) } else { child.id().to_string() };
         signal("-INT", &whom);
         let output = child.wait_with_output().unwrap();
