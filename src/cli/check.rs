@@ -5,7 +5,7 @@ use super::progress::Progress;
 use super::ranks::Crew;
 use super::shelf::{Shelf, pack};
 use super::terminal::{Colors, print, say};
-use super::{inputs, ranks};
+use super::{complaint, inputs, ranks};
 use crate::base::fingerprint::Fingerprint;
 use crate::compile::Study;
 use crate::compile::nearest::nearest;
@@ -13,7 +13,7 @@ use crate::engine::budget::DEFAULT_TRIALS;
 use crate::engine::outcome::{Failure, Finding, Run};
 use crate::engine::{Budget, Call, Fault, Outlook, Ranks, Threads, forecast, run as run_study};
 use crate::report::{self, ExitCode as Exit, Format, Palette};
-use crate::syntax::render::render;
+use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
 use std::sync::Arc;
 
@@ -33,10 +33,10 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     let Some(study) = &inputs.study else { return desk.refused() };
     let only = match chosen(study, &arguments.only) {
         Ok(only) => only,
-        Err(reason) => return desk.refuse(reason),
+        Err(error) => return desk.refuse(error),
     };
     if arguments.threads == Some(0) {
-        return desk.refuse("`--threads 0` runs nothing");
+        return desk.refuse(complaint::argument("`--threads 0` runs nothing", "it takes a number from 1"));
     }
     let most = most_threads();
     if arguments.threads.is_some_and(|threads| threads > most) {
@@ -58,7 +58,7 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     });
     let crew = match crew(arguments, study, &shelf, threads, &budget) {
         Ok(crew) => crew,
-        Err(fault) => return desk.refuse(fault),
+        Err(error) => return desk.refuse(error),
     };
     drop(shelf);
     let place = |span: Span| locate(&inputs.sources, span);
@@ -91,20 +91,23 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     }
 }
 
-/// Those who run the trials of a call; in words why there are none.
+/// Those who run the trials of a call.
 fn crew(
     arguments: &Check,
     study: &Study,
     shelf: &Shelf,
     threads: Option<usize>,
     budget: &Budget,
-) -> Result<Crew, String> {
-    let own = Threads::new(threads).map_err(|error| format!("no threads can be started: {error}"))?;
+) -> Result<Crew, Diagnostic> {
+    let own =
+        Threads::new(threads).map_err(|error| complaint::refusal(&Fault::Threads(error.to_string())))?;
     let Some(count) = arguments.ranks.map(usize::from) else { return Ok(Crew::Alone(own)) };
     let each = (threads.unwrap_or_else(cores) / count).max(1);
     let packed = pack(&arguments.model, &arguments.properties, shelf);
-    let (children, lines) = ranks::start(count)?;
-    let ranks = Ranks::new(lines, study, packed, each, own, budget).map_err(|fault| fault.to_string())?;
+    let (children, lines) = ranks::start(count)
+        .map_err(|reason| complaint::argument(reason, "leave `--ranks` out: threads do the same"))?;
+    let ranks =
+        Ranks::new(lines, study, packed, each, own, budget).map_err(|fault| complaint::refusal(&fault))?;
     Ok(Crew::Led { ranks: Box::new(ranks), _children: children })
 }
 
@@ -135,15 +138,15 @@ impl Desk<'_> {
         };
         match print(&text) {
             Ok(()) => Exit::Success,
-            Err(reason) => self.refuse(reason),
+            Err(reason) => self.refuse(complaint::output(reason)),
         }
     }
 
-    /// The call is wrong in a way that no file shows.
-    fn refuse(self, reason: impl Into<String>) -> Exit {
-        let reason = reason.into();
-        say(&format!("error: {reason}\n"));
-        self.hand_out(reason)
+    /// The call is wrong, or nothing could be run.
+    fn refuse(mut self, error: Diagnostic) -> Exit {
+        complaint::tell(&error, self.sources, self.colors);
+        self.findings.extend(inputs::findings(&[error], self.sources));
+        self.refused()
     }
 
     /// The inputs are wrong; standard error has said how.
@@ -159,15 +162,8 @@ impl Desk<'_> {
     }
 
     /// Nothing could be run.
-    fn fault(mut self, fault: &Fault) -> Exit {
-        match super::refusal(fault) {
-            Some(error) => {
-                say(&render(std::slice::from_ref(&error), self.sources, self.colors.err));
-                self.findings.extend(inputs::findings(&[error], self.sources));
-                self.refused()
-            }
-            None => self.refuse(fault.to_string()),
-        }
+    fn fault(self, fault: &Fault) -> Exit {
+        self.refuse(complaint::refusal(fault))
     }
 
     /// A report of a run that never began, in formats for machines; people have read it already.
@@ -185,25 +181,30 @@ impl Desk<'_> {
         if self.arguments.format != OutputFormat::Text
             && let Err(reason) = print(&report::render(&run, format(self.arguments.format), Palette::PLAIN))
         {
-            say(&format!("error: {reason}\n"));
+            complaint::tell(&complaint::output(reason), &[], self.colors);
         }
-        page(self.arguments, &run);
+        page(self.arguments, &run, self.colors);
         Exit::Wrong
     }
 
     /// Prints the results of a run.
-    fn finish(self, run: Run) -> Exit {
+    fn finish(mut self, run: Run) -> Exit {
+        let broken = match &run.failure {
+            Some(Failure::Model(flaw)) => Some(complaint::of_model(flaw)),
+            _ => None,
+        };
+        self.findings.extend(inputs::findings(broken.as_slice(), self.sources));
         let run = Run { inputs: self.prints, diagnostics: self.findings, ..run };
         let palette = if self.colors.out { Palette::ANSI } else { Palette::PLAIN };
         let mut exit = report::exit_code(&run);
         if let Err(reason) = print(&report::render(&run, format(self.arguments.format), palette)) {
-            say(&format!("error: {reason}\n"));
+            complaint::tell(&complaint::output(reason), &[], self.colors);
             exit = exit.worse(Exit::Wrong);
         }
-        if let Some(Failure::Input(reason) | Failure::Bug(reason)) = &run.failure {
-            say(&format!("error: {reason}\n"));
+        if let Some(error) = &broken {
+            complaint::tell(error, self.sources, self.colors);
         }
-        exit.worse(page(self.arguments, &run))
+        exit.worse(page(self.arguments, &run, self.colors))
     }
 }
 
@@ -232,18 +233,20 @@ const fn format(chosen: OutputFormat) -> Format {
 
 /// Writes the page that was asked for, if one was.
 #[allow(clippy::disallowed_methods, reason = "files are written by the command line")]
-fn page(arguments: &Check, run: &Run) -> Exit {
+fn page(arguments: &Check, run: &Run, colors: Colors) -> Exit {
     if let Some(path) = &arguments.report
         && let Err(error) = std::fs::write(path, report::render(run, Format::Html, Palette::PLAIN))
     {
-        say(&format!("error: `{}` cannot be written: {error}\n", path.display()));
+        let error = format!("`{}` cannot be written: {error}", path.display());
+        complaint::tell(&complaint::output(error), &[], colors);
         return Exit::Wrong;
     }
     Exit::Success
 }
 
 /// Indices of the queries that `--only` names.
-fn chosen(study: &Study, only: &[String]) -> Result<Vec<usize>, String> {
+#[allow(clippy::result_large_err, reason = "called once")]
+fn chosen(study: &Study, only: &[String]) -> Result<Vec<usize>, Diagnostic> {
     let mut chosen = Vec::new();
     for wanted in only {
         let number = wanted.parse::<usize>().ok();
@@ -254,16 +257,21 @@ fn chosen(study: &Study, only: &[String]) -> Result<Vec<usize>, String> {
             .map(|q| q.index)
             .collect();
         if found.is_empty() {
-            let names = study.queries.iter().filter_map(|q| q.name.as_deref());
-            let hint =
-                nearest(wanted, names).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
-            let last = study.queries.iter().map(|q| q.index).max();
-            return Err(match (number, last) {
-                (Some(number), Some(last)) => {
-                    format!("there is no query {number}: they are numbered from 0 to {last}")
-                }
-                _ => format!("no query is about `{wanted}`{hint}"),
-            });
+            let mut names: Vec<&str> = study.queries.iter().filter_map(|q| q.name.as_deref()).collect();
+            names.dedup();
+            let last = study.queries.iter().map(|q| q.index).max().unwrap_or(0);
+            let near = nearest(wanted, names.iter().copied());
+            let hint = match near {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => format!("queries are numbered from 0 to {last}, and are about {}", names.join(", ")),
+            };
+            return Err(complaint::argument(
+                match number {
+                    Some(number) => format!("`--only {number}`: there is no query {number}"),
+                    None => format!("`--only {wanted}`: no query is about `{wanted}`"),
+                },
+                hint,
+            ));
         }
         chosen.extend(found);
     }

@@ -1,11 +1,13 @@
 //! `smc drift`: has a probability changed? A cumulative sum over recorded or streamed outcomes (Page 1954).
 
 use super::arguments::{Drift, DriftFormat};
-use super::terminal::{print, say};
+use super::complaint;
+use super::terminal::{Colors, print};
 use crate::base::math;
 use crate::data::outcomes::{Column, Outcomes};
 use crate::report::ExitCode as Exit;
 use crate::stats::Cusum;
+use crate::syntax::diagnostic::Diagnostic;
 use serde_json::json;
 use std::fs::File;
 use std::io::{BufRead, BufReader};
@@ -14,14 +16,14 @@ use std::io::{BufRead, BufReader};
 const QUIET: f64 = 1000.0;
 
 /// Runs the command.
-pub(super) fn run(arguments: &Drift) -> Exit {
+pub(super) fn run(arguments: &Drift, colors: Colors) -> Exit {
     match watch(arguments) {
         Ok(true) => Exit::Violated,
         Ok(false) => Exit::Success,
-        Err(reason) => {
-            say(&format!("error: {reason}\n"));
+        Err(error) => {
+            complaint::tell(&error, &[], colors);
             if arguments.format == DriftFormat::Json {
-                let error = json!({ "schema": 1, "error": { "bug": false, "message": reason } });
+                let error = json!({ "schema": 1, "error": { "bug": false, "message": error.title } });
                 let _ = print(&format!("{error}\n"));
             }
             Exit::Wrong
@@ -30,16 +32,19 @@ pub(super) fn run(arguments: &Drift) -> Exit {
 }
 
 /// Whether there was an alarm.
-fn watch(arguments: &Drift) -> Result<bool, String> {
+fn watch(arguments: &Drift) -> Result<bool, Diagnostic> {
     let threshold = match (arguments.threshold, arguments.false_alarm) {
         (Some(threshold), _) => threshold,
         (None, quiet) => math::ln(quiet.unwrap_or(QUIET)),
     };
-    let mut cusum = Cusum::new(arguments.before, arguments.after, threshold).map_err(|e| e.to_string())?;
+    let mut cusum = Cusum::new(arguments.before, arguments.after, threshold)
+        .map_err(|error| complaint::argument(error.to_string(), "for example `--before 0.9 --after 0.8`"))?;
     let column = match &arguments.column {
         None => Column::Line,
         Some(name) => match name.parse::<usize>() {
-            Ok(0) => return Err("columns count from 1".to_owned()),
+            Ok(0) => {
+                return Err(complaint::argument("`--column 0`: columns count from 1", "write `--column 1`"));
+            }
             Ok(number) => Column::Number(number),
             Err(_) => Column::Head(name.clone()),
         },
@@ -48,12 +53,13 @@ fn watch(arguments: &Drift) -> Result<bool, String> {
     let mut alarms: Vec<u64> = Vec::new();
     let mut successes = 0u64;
     let name = super::inputs::shown(&arguments.file);
-    for line in lines(&arguments.file)? {
-        let line = line.map_err(|error| format!("`{name}` cannot be read: {error}"))?;
+    for line in lines(&arguments.file).map_err(complaint::input)? {
+        let line = line.map_err(|error| complaint::input(format!("`{name}` cannot be read: {error}")))?;
         let Ok(line) = std::str::from_utf8(&line) else {
-            return Err(format!("{name}: line {}: this is not text in UTF-8", outcomes.lines() + 1));
+            let reason = format!("{name}: line {}: this is not text in UTF-8", outcomes.lines() + 1);
+            return Err(table(reason));
         };
-        let Some(success) = outcomes.read(line).map_err(|e| format!("{name}: {e}"))? else {
+        let Some(success) = outcomes.read(line).map_err(|error| table(format!("{name}: {error}")))? else {
             continue;
         };
         successes += u64::from(success);
@@ -67,17 +73,24 @@ fn watch(arguments: &Drift) -> Result<bool, String> {
                 DriftFormat::Json => {
                     format!("{}\n", json!({ "alarm": cusum.read(), "line": outcomes.lines() }))
                 }
-            })?;
+            })
+            .map_err(complaint::output)?;
             if arguments.first {
                 break;
             }
         }
     }
     if cusum.read() == 0 {
-        return Err(format!("{name}: there is no outcome in it"));
+        return Err(table(format!("{name}: there is no outcome in it")));
     }
-    print(&summary(arguments, &cusum, successes, &alarms))?;
+    print(&summary(arguments, &cusum, successes, &alarms)).map_err(complaint::output)?;
     Ok(!alarms.is_empty())
+}
+
+/// Outcomes that cannot be read as such.
+fn table(reason: String) -> Diagnostic {
+    Diagnostic::placeless("E0707", reason)
+        .hint("one outcome a line: 0 or 1, true or false; `--column` picks one of a table")
 }
 
 #[allow(clippy::disallowed_methods, reason = "the command line opens files")]

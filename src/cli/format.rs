@@ -1,6 +1,7 @@
 //! `smc fmt`: one layout for all files.
 
 use super::arguments::{Format, Language};
+use super::complaint;
 use super::inputs;
 use super::terminal::{Colors, print, say};
 use crate::report::ExitCode as Exit;
@@ -14,13 +15,20 @@ use crate::syntax::source::{Source, SourceId};
 #[allow(clippy::disallowed_methods, reason = "files are opened by the command line")]
 pub(super) fn run(arguments: &Format, colors: Colors) -> Exit {
     let mut exit = Exit::Success;
-    for name in &arguments.files {
+    for (at, name) in arguments.files.iter().enumerate() {
+        if name == "-" && arguments.files[..at].contains(name) {
+            complaint::tell(&complaint::input("standard input can be read once only"), &[], colors);
+            exit = Exit::Wrong;
+            continue;
+        }
         let language = match name.rsplit_once('.').map(|(_, ending)| ending) {
             _ if name == "-" => arguments.language,
             Some("scn") => Some(Language::Scn),
             Some("bltl") => Some(Language::Bltl),
             _ => {
-                say(&format!("error: `{name}` is neither a scenario (.scn) nor a property file (.bltl)\n"));
+                let error = format!("`{name}` is neither a scenario (.scn) nor a property file (.bltl)");
+                let hint = "the ending says which it is; standard input is `-`, with `--language`";
+                complaint::tell(&complaint::argument(error, hint), &[], colors);
                 exit = Exit::Wrong;
                 continue;
             }
@@ -28,7 +36,7 @@ pub(super) fn run(arguments: &Format, colors: Colors) -> Exit {
         let bytes = match inputs::read(name) {
             Ok(bytes) => bytes,
             Err(reason) => {
-                say(&format!("error: {reason}\n"));
+                complaint::tell(&complaint::input(reason), &[], colors);
                 exit = Exit::Wrong;
                 continue;
             }
@@ -67,13 +75,13 @@ pub(super) fn run(arguments: &Format, colors: Colors) -> Exit {
             }
         } else if name == "-" {
             if let Err(reason) = print(&text) {
-                say(&format!("error: {reason}\n"));
+                complaint::tell(&complaint::output(reason), &[], colors);
                 return Exit::Wrong;
             }
         } else if text != source.text
             && let Err(error) = std::fs::write(name, &text)
         {
-            say(&format!("error: `{name}` cannot be written: {error}\n"));
+            complaint::tell(&complaint::output(format!("`{name}` cannot be written: {error}")), &[], colors);
             exit = Exit::Wrong;
         }
     }

@@ -3,7 +3,7 @@
 use super::arguments::Model;
 use super::shelf::Shelf;
 use crate::base::fingerprint::Fingerprint;
-use crate::compile::{Files, Input, Setting, SettingValue, Study, compile, requests};
+use crate::compile::{Files, Input, Setting, SettingValue, Study, compile, own_errors, requests};
 use crate::engine::outcome::{Finding, Spot};
 use crate::syntax::ast::ScenarioFile;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
@@ -175,27 +175,6 @@ fn find(path: &str, scenario: &str, data: &[PathBuf]) -> Result<PathBuf, String>
     ))
 }
 
-/// Whether a place lies in another one.
-fn within(place: Span, whole: Span) -> bool {
-    place.source == whole.source && whole.start <= place.start && place.end <= whole.end
-}
-
-/// The text of a place.
-fn word(sources: &[Source], span: Span) -> Option<&str> {
-    let source = sources.iter().find(|source| source.id == span.source)?;
-    source.text.get(span.start as usize..span.end as usize)
-}
-
-/// Whether a name stands in a text as a word of its own.
-fn has_word(text: &str, name: &str) -> bool {
-    let inside = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_');
-    let name = name.trim();
-    name.is_empty()
-        || text.match_indices(name).any(|(at, _)| {
-            !inside(text[..at].chars().next_back()) && !inside(text[at + name.len()..].chars().next())
-        })
-}
-
 /// Reads, parses and compiles what a call names.
 pub(super) fn load(model: &Model, properties: &[String]) -> Inputs {
     load_from(Shelf::Files, model, properties)
@@ -263,41 +242,7 @@ pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> I
             settings: &settings,
         };
         let (compiled, found) = compile(&input);
-        // What could not be parsed may be missed elsewhere: those errors would only confuse. A name may have been
-        // declared where it stands in what was skipped, or anywhere where brackets are amiss.
-        let lost: Vec<Span> =
-            scenario.lost.iter().chain(parsed.iter().flat_map(|file| &file.lost)).copied().collect();
-        let amiss = diagnostics
-            .iter()
-            .any(|d| matches!(d.code, "E0102" | "E0103" | "E0104" | "E0105" | "E0106" | "E0107"));
-        let missed = |place: Option<Span>| {
-            amiss
-                || place.and_then(|span| word(&sources, span)).is_none_or(|name| {
-                    lost.iter().filter_map(|span| word(&sources, *span)).any(|text| has_word(text, name))
-                })
-        };
-        let broken = |span: Option<Span>| {
-            diagnostics.iter().any(|d| {
-                d.severity == Severity::Error
-                    && d.place.as_ref().map(|p| p.span.source) == span.map(|s| s.source)
-            })
-        };
-        let scenario_broken = broken(Some(Span::default()));
-        let found: Vec<Diagnostic> = found
-            .into_iter()
-            .filter(|d| {
-                let names =
-                    matches!(d.code, "E0201" | "E0203" | "E0205" | "E0208" | "E0209" | "E0505" | "E0606");
-                // A process that could not be read may have had rates, and time would be another.
-                let times = scenario_broken && matches!(d.code, "E0503" | "E0507" | "E0508");
-                let place = d.place.as_ref().map(|p| p.span);
-                let known = matches!(d.code, "E0201" | "E0203" | "E0208" | "E0606") && !missed(place);
-                // Moves whose options could not be read have some.
-                let options = d.code == "E0406"
-                    && place.is_some_and(|place| lost.iter().any(|part| within(*part, place)));
-                !(times || options || names && !known && (scenario_broken || broken(place)))
-            })
-            .collect();
+        let found = own_errors(found, &diagnostics, &input);
         diagnostics.extend(found);
         study = compiled;
     }

@@ -2,6 +2,7 @@
 
 mod arguments;
 mod check;
+mod complaint;
 mod drift;
 mod explain;
 mod format;
@@ -14,9 +15,7 @@ mod show;
 mod simulate;
 mod terminal;
 
-use crate::engine::Fault;
 use crate::report::ExitCode as Exit;
-use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::render::render;
 use arguments::{Arguments, Command};
 use clap::Parser;
@@ -55,7 +54,8 @@ pub fn run() -> process::ExitCode {
             Exit::Bug
         }
         Err(error) => {
-            say(&format!("error: no thread can be started: {error}\n"));
+            let error = complaint::argument(format!("no thread can be started: {error}"), "is memory short?");
+            complaint::tell(&error, &[], Colors { out: false, err: false });
             Exit::Wrong
         }
     };
@@ -77,12 +77,12 @@ fn dispatch(arguments: &Arguments) -> Exit {
     match &arguments.command {
         Command::Check(command) => check::run(command, colors),
         Command::Simulate(command) => simulate::run(command, colors),
-        Command::Drift(command) => drift::run(command),
+        Command::Drift(command) => drift::run(command, colors),
         Command::Show(command) => show::run(command, colors),
         Command::Fmt(command) => format::run(command, colors),
-        Command::Explain(command) => explain::run(command),
-        Command::Completions { shell } => manual::completions(*shell),
-        Command::Man { directory } => manual::pages(directory),
+        Command::Explain(command) => explain::run(command, colors),
+        Command::Completions { shell } => manual::completions(*shell, colors),
+        Command::Man { directory } => manual::pages(directory, colors),
     }
 }
 
@@ -90,20 +90,5 @@ fn dispatch(arguments: &Arguments) -> Exit {
 fn diagnose(inputs: &inputs::Inputs, colors: Colors) {
     if !inputs.diagnostics.is_empty() {
         say(&render(&inputs.diagnostics, &inputs.sources, colors.err));
-    }
-}
-
-/// What the engine refuses, where it has a code.
-fn refusal(fault: &Fault) -> Option<Diagnostic> {
-    match fault {
-        Fault::Placement { reason, place } => {
-            let error = match place {
-                Some(span) => Diagnostic::error("E0801", *span, reason.as_str()),
-                None => Diagnostic::placeless("E0801", reason.as_str()),
-            };
-            Some(error.hint("fewer people, a larger shape to start from, or smaller radii"))
-        }
-        Fault::Procedure { place, reason } => Some(Diagnostic::error("E0604", *place, reason.to_string())),
-        _ => None,
     }
 }

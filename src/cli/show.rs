@@ -1,8 +1,9 @@
 //! `smc show`: how a scenario and property files were understood, in units.
 
 use super::arguments::Show;
+use super::complaint;
 use super::inputs;
-use super::terminal::{Colors, print, say};
+use super::terminal::{Colors, print};
 use crate::report::ExitCode as Exit;
 use crate::report::model;
 
@@ -14,7 +15,7 @@ pub(super) fn run(arguments: &Show, colors: Colors) -> Exit {
     match print(&model::describe(study)) {
         Ok(()) => Exit::Success,
         Err(reason) => {
-            say(&format!("error: {reason}\n"));
+            complaint::tell(&complaint::output(reason), &[], colors);
             Exit::Wrong
         }
     }

@@ -1,6 +1,7 @@
 //! `smc simulate`: traces of trials as tables.
 
 use super::arguments::{Simulate, TableFormat};
+use super::complaint;
 use super::inputs;
 use super::terminal::{Colors, say};
 use crate::base::geometry::Vec2;
@@ -15,7 +16,6 @@ use crate::engine::{no_start, placeable};
 use crate::kernel::{Program, Scratch, Slot, State, dynamics, start};
 use crate::model::{AgentId, Domain, Scenario};
 use crate::report::ExitCode as Exit;
-use crate::syntax::render::render;
 use std::io::{BufWriter, Write};
 use std::sync::Arc;
 
@@ -210,7 +210,7 @@ fn modes<'p>(program: &'p Program, state: &State, slot: Slot) -> Vec<&'p str> {
 }
 
 /// The option of a name.
-fn option(scenario: &Scenario, name: &str) -> Result<(usize, usize), String> {
+fn option(scenario: &Scenario, name: &str) -> Result<(usize, usize), (String, String)> {
     let wanted = name.trim();
     for (declaration, moves) in scenario.moves.iter().enumerate() {
         if let Some(at) = moves.options.iter().position(|(label, _)| label == wanted) {
@@ -220,11 +220,18 @@ fn option(scenario: &Scenario, name: &str) -> Result<(usize, usize), String> {
     let labels: Vec<&str> =
         scenario.moves.iter().flat_map(|m| m.options.iter().map(|(l, _)| l.as_str())).collect();
     let hint = match nearest(wanted, labels.iter().copied()) {
-        Some(near) => format!("; did you mean `{near}`?"),
-        None if labels.is_empty() => "; the scenario declares no moves".to_owned(),
-        None => format!("; there are {}", labels.join(", ")),
+        _ if labels.is_empty() => "the scenario declares no moves".to_owned(),
+        // Of numbers that differ, none is meant more than another.
+        Some(near) if !wanted.contains(|c: char| c.is_ascii_digit()) => format!("did you mean `{near}`?"),
+        _ => format!("there are {}", labels.join(", ")),
     };
-    Err(format!("there is no move `{wanted}`{hint}"))
+    Err((format!("there is no move `{wanted}`"), hint))
+}
+
+/// The call is wrong.
+fn refuse(reason: impl Into<String>, hint: impl Into<String>, colors: Colors) -> Exit {
+    complaint::tell(&complaint::argument(reason, hint), &[], colors);
+    Exit::Wrong
 }
 
 /// Runs the command.
@@ -232,48 +239,43 @@ fn option(scenario: &Scenario, name: &str) -> Result<(usize, usize), String> {
 pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
     if arguments.every == 0 || arguments.trials == 0 {
         let option = if arguments.every == 0 { "--every" } else { "--trials" };
-        say(&format!("error: `{option} 0` writes nothing; it takes a number from 1\n"));
-        return Exit::Wrong;
+        return refuse(format!("`{option} 0` writes nothing"), "it takes a number from 1", colors);
     }
     if arguments.trial.saturating_add(arguments.trials) > MOST_TRIALS {
-        say(&format!("error: the trials of a seed are numbered from 0 to {}\n", MOST_TRIALS - 1));
-        return Exit::Wrong;
+        let hint = format!("they are numbered from 0 to {}", MOST_TRIALS - 1);
+        return refuse("a seed has no such trials", hint, colors);
     }
     let inputs = inputs::load(&arguments.model, &[]);
     super::diagnose(&inputs, colors);
     let Some(study) = &inputs.study else { return Exit::Wrong };
     let Some(world) = study.worlds.last() else { return Exit::Wrong };
     if study.worlds.len() > 2 {
-        say("error: `smc simulate` runs one setting; a sweep has several\n");
-        return Exit::Wrong;
+        return refuse(
+            "a sweep has several settings, and a trace is of one",
+            "write `--set name=value`",
+            colors,
+        );
     }
     let scenario: Arc<Scenario> = world.scenario.clone();
     let advice = match arguments.advice.as_deref().map(|name| option(&scenario, name)) {
-        Some(Err(reason)) => {
-            say(&format!("error: {reason}\n"));
-            return Exit::Wrong;
-        }
+        Some(Err((reason, hint))) => return refuse(reason, hint, colors),
         Some(Ok(advice)) => Some(advice),
         None => None,
     };
     if let Err(fault) = placeable(world) {
-        match super::refusal(&fault) {
-            Some(error) => say(&render(&[error], &inputs.sources, colors.err)),
-            None => say(&format!("error: {fault}\n")),
-        }
+        complaint::tell(&complaint::refusal(&fault), &inputs.sources, colors);
         return Exit::Wrong;
     }
     let mut last = scenario.horizon.0;
     if let Some(until) = arguments.until {
         if until.is_nan() || until < 0.0 {
-            say("error: `--until` takes a time in seconds\n");
-            return Exit::Wrong;
+            return refuse(format!("`--until {until}` is no time"), "it takes a number of seconds", colors);
         }
         let end = scenario.clock.seconds(scenario.horizon);
         if until > end * (1.0 + 1e-12) {
             let unit = if scenario.clock == Clock::Steps { "steps" } else { "s" };
-            say(&format!("error: `--until {until}` lies beyond the horizon of {end} {unit}\n"));
-            return Exit::Wrong;
+            let hint = format!("the horizon of the scenario is {end} {unit}");
+            return refuse(format!("`--until {until}` lies beyond the horizon"), hint, colors);
         }
         // The longest time that is a whole number of ticks, in continuous time of very short ones.
         last = last.min(match scenario.clock {
@@ -287,7 +289,8 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
         Some(path) => match std::fs::File::create(path) {
             Ok(file) => write(arguments.format, BufWriter::new(file), &scenario, &mut walk),
             Err(error) => {
-                say(&format!("error: `{}` cannot be written: {error}\n", path.display()));
+                let error = format!("`{}` cannot be written: {error}", path.display());
+                complaint::tell(&complaint::output(error), &[], colors);
                 return Exit::Wrong;
             }
         },
@@ -300,7 +303,7 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
         Ok(_) => Exit::Success,
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Exit::Success,
         Err(error) => {
-            say(&format!("error: {error}\n"));
+            complaint::tell(&complaint::output(error.to_string()), &[], colors);
             Exit::Wrong
         }
     }

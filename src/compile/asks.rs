@@ -143,7 +143,9 @@ impl Compiler<'_> {
         }
         let Some(scenario) = &self.sites[site].scenario else { return Err(Reported) };
         let Some(moves) = scenario.moves.iter().position(|m| m.agent == id) else {
-            let name = scenario.agents.get(id.0 as usize).map_or("", |a| a.name.as_str()).to_owned();
+            // One that could not be declared was reported.
+            let Some(agent_of) = scenario.agents.get(id.0 as usize) else { return Err(Reported) };
+            let name = agent_of.name.clone();
             let error = Diagnostic::error(
                 "E0606",
                 agent.span,

@@ -8,6 +8,7 @@ use super::margin::Margins;
 use super::number::Number;
 use super::places::Written;
 use super::process::Declared;
+use super::study::Origins;
 use super::study::Texts;
 use super::symbols::{Scope, ScopeId};
 use super::typed::Typed;
@@ -90,6 +91,12 @@ pub(super) struct Elaborator<'a> {
     pub(super) agent_names: Vec<String>,
     /// Where the starts of people are written.
     pub(super) places: Written,
+    /// Stand-ins for people whose declaration is wrong.
+    pub(super) undeclared: BTreeSet<AgentId>,
+    /// Where the behaviour that is looked at gets its arguments, if it takes any.
+    pub(super) attached_at: Option<Span>,
+    /// Where processes and behaviours are written.
+    pub(super) origins: Origins,
     /// Whether somebody may come in during a trial.
     pub(super) coming: bool,
     /// Agents who come or leave during a trial.
@@ -153,6 +160,9 @@ impl<'a> Elaborator<'a> {
             withs: Vec::new(),
             agent_names: Vec::new(),
             places: Vec::new(),
+            undeclared: BTreeSet::new(),
+            attached_at: None,
+            origins: Origins::default(),
             coming: false,
             passing: BTreeSet::new(),
             clock: Clock::Steps,

@@ -5,7 +5,7 @@ use super::elaborator::{Elaborator, Locals, Lowered};
 use super::lower::DISTRIBUTIONS;
 use super::symbols::unknown;
 use crate::model::{Family, Law};
-use crate::syntax::ast::{Expr, ExprKind, Value};
+use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Value};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
@@ -52,15 +52,15 @@ impl Elaborator<'_> {
     pub(super) fn law(&mut self, value: &Value, dimension: Dimension, locals: &Locals) -> Lowered<Law> {
         match value {
             Value::Plain(expr) => match distribution(expr) {
-                Some((name, arguments)) => {
-                    let family = self.family(name, expr.span, arguments, dimension, locals)?;
+                Some(drawn) => {
+                    let family = self.family(&drawn, expr.span, dimension, locals)?;
                     self.validated(family, (f64::NEG_INFINITY, f64::INFINITY), dimension, expr.span)
                 }
                 None => self.number_of(expr, dimension, locals).map(|n| Law::Constant(n.value)),
             },
             Value::Truncated { law, low, high } => {
                 let ends = (self.number_of(low, dimension, locals), self.number_of(high, dimension, locals));
-                let Some((name, arguments)) = distribution(law) else {
+                let Some(drawn) = distribution(law) else {
                     if let ExprKind::Call { function, .. } = &law.kind {
                         let error = unknown(
                             "distribution",
@@ -78,7 +78,7 @@ impl Elaborator<'_> {
                         ));
                     return self.report(error);
                 };
-                let family = self.family(name, law.span, arguments, dimension, locals)?;
+                let family = self.family(&drawn, law.span, dimension, locals)?;
                 self.validated(family.clone(), (f64::NEG_INFINITY, f64::INFINITY), dimension, law.span)?;
                 let (low, high) = (ends.0?.value, ends.1?.value);
                 self.validated(family, (low, high), dimension, value_span(value))
@@ -112,14 +112,43 @@ impl Elaborator<'_> {
         }
     }
 
+    /// The family of a distribution, or of a multiple of one.
     fn family(
         &mut self,
-        name: &str,
+        drawn: &Drawn<'_>,
         span: Span,
-        arguments: &[Expr],
         dimension: Dimension,
         locals: &Locals,
     ) -> Lowered<Family> {
+        let Some(factor) = drawn.factor else {
+            return self.own_family(drawn, span, dimension, locals);
+        };
+        let family = self.own_family(drawn, span, Dimension::NONE, locals);
+        let by = self.number_of(factor, dimension, locals);
+        let (family, by) = (family?, by?);
+        self.validated(family.clone(), (f64::NEG_INFINITY, f64::INFINITY), Dimension::NONE, span)?;
+        if !(by.value > 0.0 && by.value.is_finite()) {
+            let error =
+                Diagnostic::error("E0404", factor.span, "a distribution is multiplied by what is positive");
+            return self.report(error);
+        }
+        let Some(scaled) = family.scaled(by.value) else {
+            let error =
+                Diagnostic::error("E0404", span, format!("no multiple of this `{}` is drawn", drawn.name))
+                    .hint("a multiple of `beta` leaves (0, 1), and a count has at most 4096 values");
+            return self.report(error);
+        };
+        Ok(scaled)
+    }
+
+    fn own_family(
+        &mut self,
+        drawn: &Drawn<'_>,
+        span: Span,
+        dimension: Dimension,
+        locals: &Locals,
+    ) -> Lowered<Family> {
+        let (name, arguments) = (drawn.name, drawn.arguments);
         let wanted = match name {
             "choice" => arguments.len().max(1),
             "exponential" | "poisson" | "bernoulli" => 1,
@@ -141,9 +170,7 @@ impl Elaborator<'_> {
                 span,
                 format!("`{name}` gives pure numbers, here {dimension} is needed"),
             )
-            .hint(
-                "`choice` takes values with their units, and so do `uniform`, `normal`, `gamma` and the like",
-            );
+            .hint(format!("multiply it by what one stands for: `{} * 1 {dimension}`", self.text(span)));
             return self.report(error);
         }
         let numbers: Vec<_> = arguments.iter().map(|a| self.number_of(a, dimension, locals)).collect();
@@ -178,11 +205,28 @@ impl Elaborator<'_> {
     }
 }
 
-/// The name and arguments of a distribution.
-pub(super) fn distribution(expr: &Expr) -> Option<(&str, &[Expr])> {
+/// A distribution as written: `poisson(4)`, `poisson(4) * 1 s`.
+pub(super) struct Drawn<'e> {
+    name: &'e str,
+    arguments: &'e [Expr],
+    /// What it is multiplied by.
+    factor: Option<&'e Expr>,
+}
+
+/// A distribution, or a multiple of one.
+pub(super) fn distribution(expr: &Expr) -> Option<Drawn<'_>> {
     match &expr.kind {
         ExprKind::Call { function, arguments } if DISTRIBUTIONS.contains(&function.name.as_str()) => {
-            Some((&function.name, arguments))
+            Some(Drawn { name: &function.name, arguments, factor: None })
+        }
+        ExprKind::Binary(BinaryOp::Times, left, right) => {
+            let (drawn, factor) = match (distribution(left), distribution(right)) {
+                (Some(drawn), None) => (drawn, right),
+                (None, Some(drawn)) => (drawn, left),
+                _ => return None,
+            };
+            // One factor is enough for a unit.
+            drawn.factor.is_none().then_some(Drawn { factor: Some(factor), ..drawn })
         }
         _ => None,
     }

@@ -7,6 +7,7 @@ mod arguments;
 mod asks;
 mod behaviour;
 mod bounds;
+mod consequences;
 pub mod dimension;
 mod elaborator;
 mod families;
@@ -39,6 +40,7 @@ mod ways;
 mod world;
 mod written;
 
+pub use consequences::own_errors;
 pub use files::{Files, Request, requests};
 pub use queries::{Input, compile};
 pub use settings::{Setting, SettingValue};

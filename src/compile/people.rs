@@ -163,11 +163,13 @@ impl<'a> Elaborator<'a> {
         }
         let given = |name: &str| decl.body.iter().any(|f| f.name.name == name);
         let body = kind.and_then(|kind| self.body(&kind, &decl.kind));
-        let (Ok(count), Ok(body), Ok(start), Ok(route)) = (count, body, start, route) else {
+        let forces = (attraction, repulsion, friction);
+        let (Ok(count), Ok(body), Ok(start), Ok(route), (Ok(attraction), Ok(repulsion), Ok(friction))) =
+            (count, body, start, route, forces)
+        else {
             self.define_empty(&decl.name, true, with);
             return;
         };
-        let (Ok(attraction), Ok(repulsion), Ok(friction)) = (attraction, repulsion, friction) else { return };
         if let Some(span) = decl.particle {
             if count == 0 {
                 self.note(Diagnostic::error("E0402", span, "a body stands for at least one person"));
@@ -207,6 +209,7 @@ impl<'a> Elaborator<'a> {
         // What follows can then speak of the name without further errors.
         let id = AgentId(self.agent_names.len() as u32);
         self.agent_names.push(name.name.clone());
+        self.undeclared.insert(id);
         self.attach(with, &[id]);
         let meaning = if plural {
             Meaning::Agents { members: [id].into(), particle: false }

@@ -474,6 +474,7 @@ impl<'a> Compiler<'a> {
                 tree: elaborator.tree,
                 columns: site.columns,
                 places: elaborator.places,
+                origins: elaborator.origins,
             });
         }
         (Some(Study { title, worlds, base: self.base, queries: self.queries }), diagnostics)

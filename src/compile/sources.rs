@@ -37,6 +37,8 @@ impl<'a> Elaborator<'a> {
         self.only(&rest, &["at", "every", "route", "limit", "velocity"]);
         let body = kind.and_then(|kind| self.body(&kind, &decl.kind));
         let places = match (&every, &limit) {
+            // Without a clock nobody knows how many come.
+            (Ok(_), Ok(_)) if self.timeless => Err(super::elaborator::Reported),
             (Ok(every), Ok(limit)) => self.places(decl, &rest, every, *limit),
             (Err(reported), _) | (_, Err(reported)) => Err(*reported),
         };

@@ -40,6 +40,8 @@ pub struct World {
     pub tree: Tree,
     /// What is asked of each trace.
     pub columns: Vec<Column>,
+    /// Where what can go wrong while a trial runs is written.
+    pub origins: Origins,
     /// Where the starts of the people of each declaration are written, by the first of them; ascending.
     pub places: Vec<(AgentId, Span)>,
 }
@@ -49,6 +51,17 @@ impl World {
     pub fn place_of(&self, agent: AgentId) -> Option<Span> {
         super::places::written(&self.places, agent)
     }
+}
+
+/// Where what can go wrong while a trial runs is written.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Origins {
+    /// The commands of each process, copies of an array one by one.
+    pub commands: Vec<Vec<Span>>,
+    /// The variables of all processes.
+    pub variables: Vec<Span>,
+    /// The behaviours, in the order of their declaration.
+    pub behaviours: Vec<Span>,
 }
 
 /// How what is observed was written.

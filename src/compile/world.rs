@@ -143,9 +143,7 @@ impl<'a> Elaborator<'a> {
         }
         let mut sources = Vec::new();
         for item in &file.items {
-            if let Item::Source(decl) = item
-                && clock.is_ok()
-            {
+            if let Item::Source(decl) = item {
                 sources.extend(self.source(decl, &mut people));
             }
         }
@@ -156,7 +154,6 @@ impl<'a> Elaborator<'a> {
         let mut declared: Vec<Span> = Vec::new();
         for item in &file.items {
             if let Item::Moves(decl) = item
-                && clock.is_ok()
                 && let Ok(one) = self.moves(decl, &people)
             {
                 if let Some(first) = moves.iter().position(|m| m.agent == one.agent) {
@@ -261,13 +258,11 @@ impl<'a> Elaborator<'a> {
                         "E0207",
                         ["horizon", "step"].into_iter(),
                     );
+                    let near = super::nearest::nearest(&name.name, ["horizon", "step"].into_iter());
+                    meant = [meant[0] | (near == Some("horizon")), meant[1] | (near == Some("step"))];
                     let general = "a scenario sets `horizon` and `step`; constants start with `const`";
                     let hint = match &error.hint {
-                        Some(near) => {
-                            meant =
-                                [meant[0] | near.contains("`horizon`"), meant[1] | near.contains("`step`")];
-                            format!("{near} {general}")
-                        }
+                        Some(near) => format!("{near} {general}"),
                         None => general.to_owned(),
                     };
                     self.note(error.hint(hint));
@@ -335,6 +330,13 @@ impl<'a> Elaborator<'a> {
             return Err(Reported);
         };
         let length = self.number_of(step, Dimension::TIME, &Locals::of(0));
+        if length.is_err()
+            && let Some((horizon, _)) = horizon
+            && !self.text(horizon.span).contains("step")
+        {
+            // What is wrong with the horizon is said too.
+            let _ = self.number_of(horizon, Dimension::TIME, &Locals::of(0));
+        }
         let (length, Some((horizon, _))) = (length?, horizon) else { return Err(Reported) };
         let Some(exact) = length.exact.filter(|e| !e.is_zero() && !e.is_negative()) else {
             return self.report(Diagnostic::error(

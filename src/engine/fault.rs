@@ -1,5 +1,6 @@
 //! What can go wrong in the engine.
 
+use super::flaw::Flaw;
 use crate::syntax::source::Span;
 use thiserror::Error;
 
@@ -33,7 +34,7 @@ pub enum Fault {
     },
     /// A trial in which the model is wrong.
     #[error("{0}")]
-    Model(String),
+    Model(Box<Flaw>),
     /// No threads can be started.
     #[error("no threads can be started: {0}")]
     Threads(String),

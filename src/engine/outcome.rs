@@ -3,6 +3,7 @@
 //! Everything but the times is a function of input, seed and version. Counts are those of consumed trials.
 
 pub use super::finding::{Finding, Spot};
+use super::flaw::Flaw;
 use crate::base::fingerprint::Fingerprint;
 
 /// Everything one call has computed.
@@ -35,10 +36,27 @@ pub struct Run {
 /// Why a run ended before its queries.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Failure {
-    /// The call, an input or the model is wrong.
+    /// The call or an input is wrong.
     Input(String),
+    /// A trial shows that the model is wrong.
+    Model(Box<Flaw>),
     /// A bug in `smc`.
     Bug(String),
+}
+
+impl Failure {
+    /// What happened.
+    pub fn message(&self) -> String {
+        match self {
+            Self::Input(message) | Self::Bug(message) => message.clone(),
+            Self::Model(flaw) => flaw.to_string(),
+        }
+    }
+
+    /// Whether it is one of `smc`.
+    pub const fn is_bug(&self) -> bool {
+        matches!(self, Self::Bug(_))
+    }
 }
 
 /// The result of one query under one setting.

@@ -5,6 +5,7 @@ use super::budget::{Budget, DEFAULT_TRIALS};
 use super::contrast::{Contrast, Sides};
 use super::executor::Executor;
 use super::fault::Fault;
+use super::flaw::Flaw;
 use super::forecast::Glimpse;
 use super::outcome::{Failure, QueryResult, Run, Stop};
 use super::procedure::Procedure;
@@ -61,8 +62,8 @@ pub fn run(
             results[k] = Some(result);
         }
         // What was decided before stays decided.
-        if let Some(reason) = broken {
-            failure = Some(Failure::Input(reason));
+        if let Some(flaw) = broken {
+            failure = Some(Failure::Model(flaw));
             break;
         }
     }
@@ -238,12 +239,12 @@ fn range(measure: &Measure) -> Option<(f64, f64)> {
 }
 
 /// Results by the places of their queries, and what was wrong with the model.
-type Answered = (Vec<(usize, QueryResult)>, Option<String>);
+type Answered = (Vec<(usize, QueryResult)>, Option<Box<Flaw>>);
 
 /// What is wrong with the model, if the fault is one of it.
-fn reason(fault: Fault) -> Result<String, Fault> {
+fn flaw(fault: Fault) -> Result<Box<Flaw>, Fault> {
     match fault {
-        Fault::Model(reason) => Ok(reason),
+        Fault::Model(flaw) => Ok(flaw),
         fault => Err(fault),
     }
 }
@@ -375,7 +376,7 @@ impl<'a> Session<'a> {
         let results = match sampling {
             Sampling::Survey(mut survey) => {
                 if let Err(fault) = survey.run(executor, self.budget, watch) {
-                    broken = Some(reason(fault)?);
+                    broken = Some(flaw(fault)?);
                     // Those that had stopped before that trial do not know of it.
                     let mut decided = survey.inquiries.iter().map(|inquiry| inquiry.stop.is_some());
                     places.retain(|_| decided.next().unwrap_or(false));
@@ -389,7 +390,7 @@ impl<'a> Session<'a> {
         };
         match results {
             Ok(results) => Ok((places.into_iter().zip(results).collect(), broken)),
-            Err(fault) => Ok((Vec::new(), Some(reason(fault)?))),
+            Err(fault) => Ok((Vec::new(), Some(flaw(fault)?))),
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::observer::Observer;
 use crate::base::lanes::{LANES, Mask};
 use crate::base::tick::{Clock, Tick};
-use crate::compile::study::{Root, Study, Texts, World};
+use crate::compile::study::{Origins, Root, Study, Texts, World};
 use crate::kernel::process::View;
 use crate::kernel::{Code, Program, Readings};
 use crate::logic::{
@@ -30,6 +30,8 @@ pub struct Subject {
     pub horizon: Tick,
     /// How atoms, signals and comparisons were written.
     pub texts: Texts,
+    /// Where what can go wrong is written.
+    pub origins: Origins,
     /// Most jumps of a trial in continuous time; one that needs more is unresolved.
     pub most_jumps: u64,
     atoms: Vec<Bool>,
@@ -92,6 +94,7 @@ impl Subject {
             tree: world.tree.clone(),
             columns: world.columns.iter().map(|c| c.root).collect(),
             texts: world.texts.clone(),
+            origins: world.origins.clone(),
             most_jumps: MOST_JUMPS,
             atoms: world.atoms.clone(),
             signals: world.signals.clone(),

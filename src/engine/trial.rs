@@ -2,11 +2,12 @@
 
 use super::cell::Item;
 use super::fault::Fault;
+use super::flaw::Flaw;
 use super::subject::Subject;
 use crate::base::lanes::Mask;
 use crate::base::random::TrialKey;
 use crate::base::tick::{Clock, Tick};
-use crate::kernel::{Scratch, State, dynamics, process, start};
+use crate::kernel::{Scratch, State, dynamics, start};
 
 /// Runs a trial up to its error, and says what is wrong, when, and in which state.
 pub(super) fn fault(subject: &Subject, item: Item, seed: u64) -> Fault {
@@ -32,7 +33,6 @@ pub(super) fn fault(subject: &Subject, item: Item, seed: u64) -> Fault {
         Clock::Stepped(_) => format!("{} s", scenario.clock.seconds(before)),
         Clock::Jumps(_) => format!("{} s", state.clocks.now[0]),
     };
-    let what = fault.describe(scenario);
-    let values = process::Fault::state(&scenario.processes, |k| state.variables[k].0[0]);
-    Fault::Model(format!("trial {} at {time}: {what}\n  the state is {values}", item.index))
+    let moment = format!("trial {} at {time}", item.index);
+    Fault::Model(Box::new(Flaw::of(fault, scenario, &subject.origins, moment, |k| state.variables[k].0[0])))
 }

@@ -43,7 +43,7 @@ impl ExitCode {
 pub fn exit_code(run: &Run) -> ExitCode {
     let start = match &run.failure {
         Some(Failure::Bug(_)) => ExitCode::Bug,
-        Some(Failure::Input(_)) => ExitCode::Wrong,
+        Some(Failure::Input(_) | Failure::Model(_)) => ExitCode::Wrong,
         None if run.interrupted => ExitCode::Interrupted,
         None => ExitCode::Success,
     };

@@ -36,9 +36,10 @@ pub fn render(run: &Run) -> String {
     }
     match &run.failure {
         // Those of the front end are annotated one by one.
-        Some(Failure::Input(_)) if run.diagnostics.iter().any(|finding| finding.error) => {}
-        Some(Failure::Input(message)) => {
-            let _ = writeln!(text, "::error title=smc::{}", data(message));
+        Some(Failure::Input(_) | Failure::Model(_))
+            if run.diagnostics.iter().any(|finding| finding.error) => {}
+        Some(failure @ (Failure::Input(_) | Failure::Model(_))) => {
+            let _ = writeln!(text, "::error title=smc::{}", data(&failure.message()));
         }
         Some(Failure::Bug(message)) => {
             let _ = writeln!(text, "::error title=bug in smc::{}", data(message));

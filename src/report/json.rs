@@ -6,8 +6,8 @@
 
 use crate::base::random;
 use crate::engine::outcome::{
-    Comparison, Counts, Distribution, Failure, Finding, Interval, Method, QueryResult, Ranking, Rare, Run,
-    Shows, Side, Witness,
+    Comparison, Counts, Distribution, Finding, Interval, Method, QueryResult, Ranking, Rare, Run, Shows,
+    Side, Witness,
 };
 use serde_json::{Map, Value, json};
 
@@ -36,11 +36,7 @@ pub fn object(run: &Run) -> Value {
         "elapsed_s": run.elapsed_s,
     });
     if let Some(failure) = &run.failure {
-        let (bug, message) = match failure {
-            Failure::Input(message) => (false, message),
-            Failure::Bug(message) => (true, message),
-        };
-        object["error"] = json!({ "bug": bug, "message": message });
+        object["error"] = json!({ "bug": failure.is_bug(), "message": failure.message() });
     }
     object
 }

@@ -5,7 +5,7 @@
 
 use super::palette::Palette;
 use super::{certified, one_line, settings, text};
-use crate::engine::outcome::{Failure, Finding, QueryResult, Run, Verdict};
+use crate::engine::outcome::{Finding, QueryResult, Run, Verdict};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use std::time::Duration;
 
@@ -31,9 +31,8 @@ pub fn render(run: &Run) -> String {
     if !errors.is_empty() {
         report.add_test_suite(refused(&errors));
     } else if let Some(failure) = &run.failure {
-        let (Failure::Input(message) | Failure::Bug(message)) = failure;
-        let kind = if matches!(failure, Failure::Bug(_)) { "bug" } else { "input" };
-        report.add_test_suite(stopped("run", kind, message));
+        let kind = if failure.is_bug() { "bug" } else { "input" };
+        report.add_test_suite(stopped("run", kind, &failure.message()));
     } else if run.interrupted {
         report.add_test_suite(stopped("run", "interrupted", "interrupted before all queries were answered"));
     }

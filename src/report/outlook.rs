@@ -36,7 +36,7 @@ pub fn json(outlook: &Outlook) -> String {
         })
     };
     let queries: Vec<Value> = outlook.queries.iter().map(query).collect();
-    format!("{:#}\n", json!({ "forecast": queries, "seconds": outlook.seconds }))
+    format!("{:#}\n", json!({ "schema": 1, "forecast": queries, "seconds": outlook.seconds }))
 }
 
 /// Two digits are enough for a forecast.

@@ -61,8 +61,9 @@ fn errors_without_a_place_and_of_the_call_are_reported_too() {
     validated(&said.json());
     assert_eq!(
         (said.code, &said.json()["error"]["message"]),
-        (Some(2), &"no query is about `nobody`".into())
+        (Some(2), &"error[E0705]: `--only nobody`: no query is about `nobody`".into())
     );
+    assert!(said.err.contains("queries are numbered from 0 to 0"), "{}", said.err);
     let said = call("github", &["--set", "densty=0.2"]);
     assert!(said.out.starts_with("::error title=E0210::--set densty: unknown parameter"), "{}", said.out);
     let said = call("json", &["--set", "density=1 /m^2"]);
@@ -71,6 +72,61 @@ fn errors_without_a_place_and_of_the_call_are_reported_too() {
     let place = Place::new(&[("a.scn", &crowded), ("a.bltl", "check P(F<=1 s contact(user)) >= 0.5\n")]);
     let said = place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "json"]);
     assert_eq!((said.code, &said.json()["diagnostics"][0]["code"]), (Some(2), &"E0801".into()));
+}
+
+#[test]
+fn what_a_trial_shows_has_a_place_and_a_code() {
+    let scenario = "horizon = 50 steps\nprocess p {\n  var x = 0\n  var n: 0 .. 9 = 0\n  \
+                    when true -> 3/4: x = x + 0.5 | 1/4: n = n + 1\n}\n";
+    let place = Place::new(&[
+        ("a.scn", scenario),
+        ("a.bltl", "check P(F<=#2 p.n > 0) >= 0.2\ncheck P(F p.n > 20) >= 0.5\n"),
+    ]);
+    let call = |format: &str| place.call(&["check", "a.scn", "a.bltl", "-q", "--format", format]);
+    let said = call("json");
+    assert_eq!(said.code, Some(2));
+    assert!(said.err.contains("error[E0903]: trial ") && said.err.contains("a.scn:4:7"), "{}", said.err);
+    assert!(said.err.contains("= help: a guard can keep it inside"), "{}", said.err);
+    let json = said.json();
+    validated(&json);
+    let shown = &json["diagnostics"][0];
+    assert_eq!(
+        (&shown["code"], &shown["line"], &shown["file"]),
+        (&"E0903".into(), &4.into(), &"a.scn".into())
+    );
+    assert!(shown["label"].as_str().unwrap().contains("p.n = 9"), "{json:#}");
+    assert!(call("github").out.contains("::error file=a.scn,line=4,col=7"), "{}", call("github").out);
+    assert!(call("junit").out.contains("type=\"E0903\""), "{}", call("junit").out);
+}
+
+#[test]
+fn a_wrong_call_has_a_code_and_a_hint() {
+    let place = Place::new(&[("a.scn", SMALL), ("a.bltl", "check P(F<=1 s contact(user)) >= 0.5\n")]);
+    for (words, code, hint) in [
+        (&["check", "a.scn", "a.bltl", "--only", "7"][..], "E0705", "numbered from 0 to 0"),
+        (&["check", "a.scn", "a.bltl", "--threads", "0"], "E0705", "a number from 1"),
+        (
+            &["check", "a.scn", "a.bltl", "-q", "--max-trials", "9", "--report", "none/a.html"],
+            "E0706",
+            "the place",
+        ),
+        (&["simulate", "a.scn", "--until", "900"], "E0705", "horizon"),
+        (&["simulate", "a.scn", "--trials", "0"], "E0705", "from 1"),
+        (&["simulate", "a.scn", "--move", "heading 0.5 rad"], "E0705", "there are heading"),
+        (&["simulate", "a.scn", "--output", "none/a.csv"], "E0706", "the place"),
+        (&["fmt", "a.txt"], "E0705", "--language"),
+        (&["fmt", "none.scn"], "E0701", "relative"),
+        (&["fmt", "-", "-"], "E0701", "relative"),
+        (&["explain", "E9999"], "E0705", "lists all"),
+        (&["drift", "none.csv", "--before", "0.9", "--after", "0.8"], "E0701", "relative"),
+        (&["drift", "a.scn", "--before", "0.9", "--after", "0.8"], "E0707", "0 or 1"),
+        (&["drift", "a.scn", "--before", "0.9", "--after", "0.9"], "E0705", "--before"),
+    ] {
+        let said = place.call(words);
+        assert_eq!(said.code, Some(2), "{words:?}\n{}", said.err);
+        assert!(said.err.contains(&format!("error[{code}]: ")), "{words:?}\n{}", said.err);
+        assert!(said.err.contains(hint), "{words:?}\n{}", said.err);
+    }
 }
 
 #[test]

@@ -50,6 +50,8 @@ fn planned_numbers_are_told_exactly() {
     place.write("a.bltl", queries.as_bytes());
     let said = place.call(&["check", "a.scn", "a.bltl", "--forecast", "--format", "json"]);
     assert_eq!(trials(&said.json()["forecast"]), [740.0, 1000.0]);
+    let schema = serde_json::from_str(include_str!("../../docs/schema/forecast.schema.json")).unwrap();
+    assert!(jsonschema::validator_for(&schema).unwrap().is_valid(&said.json()), "{}", said.out);
     let text = place.call(&["check", "a.scn", "a.bltl", "--forecast"]).out;
     assert!(text.starts_with("forecast: about 740 trials, "), "{text}");
     assert!(text.lines().count() == 3 && text.lines().last().unwrap().contains(" in all;"), "{text}");

@@ -67,17 +67,21 @@ fn questions_that_have_no_meaning_in_continuous_time() {
 
 #[test]
 fn errors_that_show_while_running_name_trial_time_and_state() {
-    for (process, what) in [
-        ("when true at 1 /s * (x - 0.5) -> x = x + 1", "rate of command 1 of `p` is -0.5 /s"),
-        ("when true at 1 /s -> x = x / 0", "`p.x` would become"),
-        ("when true at 1 /s -> x / 3: x = 1 | 2 / 3: x = 2", "probabilities of command 1 of `p`"),
-        ("when x >= 0 after 0 s -> x = x + 1", "time does not go on"),
+    for (process, what, code) in [
+        ("when true at 1 /s * (x - 0.5) -> x = x + 1", "rate of command 1 of `p` is -0.5 /s", "E0904"),
+        ("when true at 1 /s -> x = x / 0", "`p.x` would become", "E0903"),
+        ("when true at 1 /s -> x / 3: x = 1 | 2 / 3: x = 2", "probabilities of command 1 of `p`", "E0902"),
+        ("when x >= 0 after 0 s -> x = x + 1", "time does not go on", "E0907"),
     ] {
         let scenario = format!("horizon = 50 s\nprocess p {{ var x = 0\n {process} }}");
         let study = compiled(&scenario, "estimate P(F (p.x > 9000000)) within 0.01").unwrap();
         let runs = [1, 2].map(|threads| answered(&study, 3, threads));
         for run in &runs {
-            let Some(Failure::Input(reason)) = &run.failure else { panic!("{process}: {:?}", run.failure) };
+            let Some(Failure::Model(flaw)) = &run.failure else { panic!("{process}: {:?}", run.failure) };
+            let reason = flaw.to_string();
+            let place = flaw.place.unwrap();
+            let written = &scenario[place.start as usize..place.end as usize];
+            assert_eq!((flaw.code, written), (code, if code == "E0903" { "x" } else { process }));
             assert!(reason.contains(what) && reason.contains("p.x = "), "{reason}");
             assert!(reason.starts_with("trial 0 at ") && reason.contains(" s: "), "{reason}");
             assert_eq!(smc::report::exit_code(run).code(), 2);
@@ -98,7 +102,7 @@ fn a_trial_that_is_decided_before_the_error_counts() {
     let run = answered(&study, 3, 1);
     assert_eq!((run.failure, run.results[0].counts.successes), (None, 20));
     let study = compiled(scenario, "estimate P(G<=5 s (p.x < 5)) by fixed(trials = 20)").unwrap();
-    assert!(matches!(answered(&study, 3, 1).failure, Some(Failure::Input(_))));
+    assert!(matches!(answered(&study, 3, 1).failure, Some(Failure::Model(_))));
 }
 
 #[test]
@@ -107,7 +111,8 @@ fn rates_that_read_people_are_checked_while_running() {
         agent user: adult { at = (0, 0)  velocity = (1, 0) m/s  speed = 1 m/s  route = (20, 0) }\n\
         process alarm { var on = false\n when !on at 1 /s * (1 - travelled(user) / 2 m) -> on = true }";
     let study = compiled(scenario, "estimate P(F (alarm.on & travelled(user) > 2.5 m)) within 0.1").unwrap();
-    let Some(Failure::Input(reason)) = answered(&study, 0, 2).failure else { panic!() };
+    let Some(Failure::Model(flaw)) = answered(&study, 0, 2).failure else { panic!() };
+    let reason = flaw.to_string();
     assert!(
         reason.contains("rate of command 1 of `alarm`") && reason.contains(" at 2 s: ")
             || reason.contains(" at 2.1 s: "),

@@ -52,7 +52,10 @@ fn errors_that_show_while_running_name_trial_time_and_state() {
             .unwrap();
     let runs = [1, 2].map(|threads| answered(&study, 3, threads));
     for run in &runs {
-        let Some(Failure::Input(reason)) = &run.failure else { panic!("{:?}", run.failure) };
+        let Some(Failure::Model(flaw)) = &run.failure else { panic!("{:?}", run.failure) };
+        let reason = flaw.to_string();
+        let written = &scenario[flaw.place.unwrap().start as usize..flaw.place.unwrap().end as usize];
+        assert_eq!((flaw.code, written), ("E0903", "n"));
         assert!(reason.contains("`p.n` would become 10") && reason.contains("p.n = 9"), "{reason}");
         assert!(reason.starts_with("trial ") && reason.contains(" at step "), "{reason}");
         assert_eq!(smc::report::exit_code(run).code(), 2);

@@ -189,7 +189,11 @@ impl<'a> Elaborator<'a> {
         let known: Option<Vec<f64>> =
             out.iter().map(|(w, _)| if let Num::Constant(w) = w { Some(*w) } else { None }).collect();
         if let Some(wrong) = known.and_then(|known| wrong_weights(&known)) {
-            return self.report(Diagnostic::error("E0902", span, wrong));
+            let error = Diagnostic::error("E0902", span, wrong);
+            return self.report(match self.attached_at {
+                Some(with) => error.related(with, "with these arguments"),
+                None => error,
+            });
         }
         Ok(out)
     }

@@ -178,6 +178,7 @@ impl<'a> Elaborator<'a> {
         let mut out = Behaviours::default();
         for decl in &self.behaviours {
             let states = states(decl).map(|state| state.name.name.clone()).collect();
+            self.origins.behaviours.push(decl.name.span);
             out.declared.push(Behaviour { name: decl.name.name.clone(), states });
         }
         // Errors outside of behaviours may have taken away whom these speak of.
@@ -251,7 +252,9 @@ impl<'a> Elaborator<'a> {
         }
         locals.behaviour = Some((id.0, locals.names.len() + 1));
         let first = with.members.first().copied().unwrap_or(AgentId(0));
+        self.attached_at = (!arguments.is_empty()).then_some(written.span);
         let conduct = self.conduct(decl, &of(&locals, first), variables);
+        self.attached_at = None;
         if conduct.is_err() {
             // What is wrong with its conditions is said too.
             let _ = self.conditions(decl, &of(&locals, first));

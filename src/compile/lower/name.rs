@@ -8,7 +8,7 @@ use crate::syntax::ast::{Expr, LetDecl};
 use crate::syntax::diagnostic::{Diagnostic, Label};
 use crate::syntax::source::Span;
 
-use super::super::dimension::Dimension;
+use super::super::dimension::{self, Dimension};
 
 /// Names that stand for something unless they are declared.
 const BUILT_IN: [&str; 3] = ["time", "everyone", "pi"];
@@ -126,7 +126,12 @@ impl<'a> Elaborator<'a> {
         }
         known.extend(BUILT_IN.map(str::to_owned));
         let error = unknown("name", name, span, "E0201", known.iter().map(String::as_str));
-        self.report(error)
+        self.report(match dimension::unit(name) {
+            Some(_) => error.hint(format!(
+                "a unit belongs to a number: `1 {name}`; one to divide by has no blank after the slash: `1 /{name}`"
+            )),
+            None => error,
+        })
     }
 
     /// Dimension of the clock: seconds, or steps where steps have no length.
@@ -281,6 +286,12 @@ impl<'a> Elaborator<'a> {
             }
             found => return self.mismatch(base.span, "a set of agents", &found),
         };
+        // Of those who could not be declared nobody knows the number.
+        if let [only] = set.members[..]
+            && self.undeclared.contains(&only)
+        {
+            return Ok(Typed::Agent(Who::Agent(only)));
+        }
         let place = self.member(base, index, set.members.len(), locals)?;
         Ok(Typed::Agent(Who::Agent(set.members[place])))
     }

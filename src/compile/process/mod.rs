@@ -33,6 +33,8 @@ enum Inside<'a> {
     Let(&'a LetDecl),
     /// A named condition.
     Label(&'a Expr),
+    /// A variable whose declaration is wrong, which was reported.
+    Lost,
 }
 
 /// A process under elaboration.
@@ -115,8 +117,10 @@ impl<'a> Elaborator<'a> {
                 continue;
             }
             if let ProcessItem::Var(var) = item {
-                let (dimension, domain, initial) =
-                    self.variable(var, &locals).unwrap_or((Dimension::NONE, Domain::Real, 0.0));
+                let Ok((dimension, domain, initial)) = self.variable(var, &locals) else {
+                    self.processes[at].names.insert(&name.name, Inside::Lost);
+                    continue;
+                };
                 self.processes[at].variables.push((dimension, domain));
                 initials.push((var.name.name.as_str(), domain, initial));
             }
@@ -126,6 +130,7 @@ impl<'a> Elaborator<'a> {
         for copy in 0..self.processes[at].copies.unwrap_or(1) {
             let owner = self.copy_name(at, copy);
             for (name, domain, initial) in &initials {
+                self.origins.variables.push(spans.get(name).copied().unwrap_or(decl.name.span));
                 variables.push(Variable {
                     name: format!("{owner}.{name}"),
                     domain: *domain,
@@ -265,6 +270,7 @@ impl<'a> Elaborator<'a> {
         if !self.failed() {
             self.check_reachable(&out, &spans);
         }
+        self.origins.commands = spans;
         out
     }
 
@@ -282,7 +288,7 @@ impl<'a> Elaborator<'a> {
                         let _ = self.as_truth(typed, value.span);
                     }
                 }
-                Inside::Let(_) | Inside::Variable(_) => {}
+                Inside::Let(_) | Inside::Variable(_) | Inside::Lost => {}
             }
         }
     }
@@ -365,6 +371,9 @@ impl<'a> Elaborator<'a> {
     ) -> Lowered<(VariableId, Num)> {
         let process = &self.processes[at];
         let Some(Inside::Variable(place)) = process.names.get(update.target.name.as_str()).copied() else {
+            if let Some(Inside::Lost) = process.names.get(update.target.name.as_str()) {
+                return Err(Reported);
+            }
             let known = process.names.iter().filter(|(_, i)| matches!(i, Inside::Variable(_)));
             let known: Vec<&str> = known.map(|(n, _)| *n).collect();
             let error =

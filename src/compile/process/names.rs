@@ -22,6 +22,7 @@ impl<'a> Elaborator<'a> {
         let locals = Locals { process: Some((at, copy)), ..Locals::of(0) };
         let path = format!("{}.{name}", process.decl.name.name);
         Some(match inside {
+            Inside::Lost => Err(Reported),
             Inside::Variable(place) => {
                 let (dimension, domain) = process.variables[place];
                 let value = Num::Variable(process.variable(copy, place));

@@ -6,6 +6,7 @@ use crate::base::lanes::{LANES, Mask};
 use crate::engine::budget::{Budget, steps_between_looks};
 use crate::engine::executor::Executor;
 use crate::engine::fault::Fault;
+use crate::engine::flaw::Flaw;
 use crate::engine::observer::Observer;
 use crate::engine::subject::{Subject, lost};
 use crate::kernel::{Code, Readings, Scratch, State, dynamics, start};
@@ -207,10 +208,14 @@ impl Bird {
             }
             if let Some(lane) = (self.state.faulty & self.state.occupied).iter().next() {
                 let place = self.busy[lane].as_ref().map_or(0, |busy| busy.place);
-                let what =
-                    self.state.faults[lane].map_or_else(String::new, |f| f.describe(&program.scenario));
+                let moment = "in a path of splitting".to_owned();
+                let value = |k: usize| self.state.variables[k].0[lane];
+                let fault = self.state.faults[lane].map_or(Fault::Unsuitable, |fault| {
+                    let flaw = Flaw::of(fault, &program.scenario, &subject.origins, moment, value);
+                    Fault::Model(Box::new(flaw))
+                });
                 self.rest();
-                return (done, Some((place, Fault::Model(format!("in a path of splitting: {what}")))));
+                return (done, Some((place, fault)));
             }
             self.observe(subject, &mut done);
             rounds += 1;

@@ -9,6 +9,7 @@ use super::path::Path;
 use crate::base::lanes::{LANES, Mask};
 use crate::engine::budget::Budget;
 use crate::engine::fault::Fault;
+use crate::engine::flaw::Flaw;
 use crate::engine::subject::Subject;
 use crate::kernel::process::{Sight, View};
 use crate::kernel::{Scratch, State, dynamics, start};
@@ -82,10 +83,14 @@ impl Hopper {
             let jumped = dynamics::jump_until(program, &mut self.state, &mut self.scratch, &until);
             if let Some(lane) = (self.state.faulty & self.state.occupied).iter().next() {
                 let place = self.busy[lane].as_ref().map_or(0, |busy| busy.place);
-                let what =
-                    self.state.faults[lane].map_or_else(String::new, |f| f.describe(&program.scenario));
+                let moment = "in a path of splitting".to_owned();
+                let value = |k: usize| self.state.variables[k].0[lane];
+                let fault = self.state.faults[lane].map_or(Fault::Unsuitable, |fault| {
+                    let flaw = Flaw::of(fault, &program.scenario, &subject.origins, moment, value);
+                    Fault::Model(Box::new(flaw))
+                });
                 self.rest();
-                return (done, Some((place, Fault::Model(format!("in a path of splitting: {what}")))));
+                return (done, Some((place, fault)));
             }
             self.view.look(&self.state, &mut self.sight);
             for lane in self.state.occupied.iter() {

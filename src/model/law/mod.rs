@@ -7,6 +7,7 @@
 mod discrete;
 mod draw;
 mod family;
+mod scaled;
 mod validate;
 
 pub use draw::Ready;

@@ -5,7 +5,7 @@ mod histogram;
 
 use super::number::{count, counted, duration};
 use super::{certified, one_line, settings, text};
-use crate::engine::outcome::{Failure, Interval, QueryResult, Run, Status, Verdict, Witness};
+use crate::engine::outcome::{Interval, QueryResult, Run, Status, Verdict, Witness};
 use chart::{Mark, Tone};
 use std::fmt::Write as _;
 
@@ -43,8 +43,9 @@ pub fn render(run: &Run) -> String {
     if run.interrupted {
         page.push_str("<p class=\"warning\">Interrupted: these are the results so far.</p>\n");
     }
-    if let Some(Failure::Input(message) | Failure::Bug(message)) = &run.failure {
-        let _ = writeln!(page, "<p class=\"failure\">Stopped by an error: {}</p>", escape(message));
+    if let Some(failure) = &run.failure {
+        let _ =
+            writeln!(page, "<p class=\"failure\">Stopped by an error: {}</p>", escape(&failure.message()));
     }
     let _ = writeln!(
         page,

@@ -11,7 +11,7 @@ pub(super) use block::{moment, printed, trials};
 
 use super::number::{count, counted, duration};
 use super::palette::{Paint, Palette};
-use crate::engine::outcome::{Failure, QueryResult, Run, Verdict};
+use crate::engine::outcome::{QueryResult, Run, Verdict};
 use std::fmt::Write as _;
 
 /// The report of a run, ending with its replay line.
@@ -34,14 +34,9 @@ pub fn render(run: &Run, palette: Palette) -> String {
         let _ =
             writeln!(text, "{}these are the results so far", palette.paint(Paint::Caution, "interrupted: "));
     }
-    match &run.failure {
-        Some(Failure::Input(message)) => {
-            let _ = writeln!(text, "{}{message}", palette.paint(Paint::Bad, "stopped by an error: "));
-        }
-        Some(Failure::Bug(message)) => {
-            let _ = writeln!(text, "{}{message}", palette.paint(Paint::Bad, "stopped by a bug in smc: "));
-        }
-        None => {}
+    if let Some(failure) = &run.failure {
+        let by = if failure.is_bug() { "stopped by a bug in smc: " } else { "stopped by an error: " };
+        let _ = writeln!(text, "{}{}", palette.paint(Paint::Bad, by), failure.message());
     }
     let _ = writeln!(text, "{}", summary(run, palette));
     for (at, line) in run.replay.lines().enumerate() {

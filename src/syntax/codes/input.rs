@@ -55,4 +55,42 @@ Right:\n\
 \x20   import \"floor.geojson\"\n\
 \x20   import \"floor.wkt\"",
     },
+    Page {
+        code: "E0705",
+        title: "the call is wrong",
+        text: "\
+An option names what the files do not hold, or has a value that means nothing. `smc help` and `smc help check` list the\n\
+options.\n\
+\n\
+Wrong:\n\
+\x20   smc check corridor.scn corridor.bltl --only nobody\n\
+\x20   smc simulate corridor.scn --until 900\n\
+Right:\n\
+\x20   smc check corridor.scn corridor.bltl --only safe\n\
+\x20   smc simulate corridor.scn --until 9",
+    },
+    Page {
+        code: "E0706",
+        title: "a file cannot be written",
+        text: "\
+The folder is not there, may not be written, or is full; or standard output was closed in a way that is no end.\n\
+\n\
+Wrong:\n\
+\x20   smc check corridor.scn corridor.bltl --report /nowhere/report.html\n\
+Right:\n\
+\x20   smc check corridor.scn corridor.bltl --report report.html",
+    },
+    Page {
+        code: "E0707",
+        title: "these are no outcomes",
+        text: "\
+`smc drift` reads one outcome a line, 0 or 1, true or false, or a column of a table. The message gives the line.\n\
+\n\
+Wrong:\n\
+\x20   trial,safe\n\
+\x20   0,maybe\n\
+Right:\n\
+\x20   trial,safe\n\
+\x20   0,true",
+    },
 ];

@@ -79,6 +79,18 @@ Right:\n\
 \x20   when up after gamma(5 s, 2 s) -> up = false",
     },
     Page {
+        code: "E0907",
+        title: "time does not go on",
+        text: "\
+Jump follows jump at one instant, a hundred thousand of them: a delay of zero that its own firing enables again. The error\n\
+names the trial and the process.\n\
+\n\
+Wrong:\n\
+\x20   when true after 0 s -> n = 1 - n\n\
+Right:\n\
+\x20   when true after 0.1 s -> n = 1 - n",
+    },
+    Page {
         code: "E0911",
         title: "a state changes what belongs to the body",
         text: "\
@@ -115,5 +127,17 @@ Wrong:\n\
 Right:\n\
 \x20   horizon = 24 h\n\
 \x20   source doors: adult { at = (0, 2)  every = exponential(2 s)  route = exit  limit = 80 }",
+    },
+    Page {
+        code: "E0914",
+        title: "a state makes its agent one who cannot move",
+        text: "\
+A state of a behaviour computes a parameter while a trial runs, and its value is one with which nobody can move: a\n\
+negative speed, a relaxation time of zero. The error names the trial and the value.\n\
+\n\
+Wrong:\n\
+\x20   state wary { speed = distance(self, user) * 1 /s - 1 m/s }\n\
+Right:\n\
+\x20   state wary { speed = max(0 m/s, distance(self, user) * 1 /s - 1 m/s) }",
     },
 ];

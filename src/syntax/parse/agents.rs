@@ -99,6 +99,9 @@ impl Builder<'_> {
     }
 
     pub(super) fn field(&mut self, pair: Pair<'_>) -> Option<Field> {
+        if self.sets_a_unit(&pair) {
+            return None;
+        }
         let mut parts = Parts::of(pair);
         let name = self.ident(&parts.part(Rule::ident)?);
         let value = parts.part(Rule::value)?.into_inner().next()?;

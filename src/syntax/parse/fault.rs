@@ -64,7 +64,9 @@ impl Builder<'_> {
                     let fault = self.fault(strict, &part, before.as_ref());
                     if let Some(before) = &before
                         && fault.from == before.as_span().start()
-                        && !text[end_of(before)..start].contains('\n')
+                        && (fault.at > start
+                            || !text[end_of(before)..start].contains('\n')
+                            || !text[start..].starts_with(lexeme::starts_name))
                     {
                         self.cut.push(Span::new(self.source.id, fault.from, end_of(&part)));
                     }

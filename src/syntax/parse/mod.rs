@@ -4,6 +4,7 @@
 //! rest is returned.
 
 mod agents;
+mod braces;
 mod builder;
 pub(super) mod comments;
 mod expression;
@@ -62,20 +63,44 @@ pub fn decode(id: SourceId, name: &str, bytes: &[u8]) -> Result<Source, Diagnost
 /// Parses a scenario (`.scn`). What could not be read is missing from the tree and reported.
 #[allow(clippy::redundant_closure_for_method_calls, reason = "the method has one lifetime, the closure any")]
 pub fn parse_scenario(source: &Source) -> (ScenarioFile, Vec<Diagnostic>) {
-    let (file, diagnostics) = parse(source, Rule::scenario_file, |builder, file| builder.scenario_file(file));
+    let (file, diagnostics) =
+        mended(source, Rule::scenario_file, &|builder, file| builder.scenario_file(file));
     (file.unwrap_or_default(), diagnostics)
 }
 
 /// Parses a property file (`.bltl`). What could not be read is missing from the tree and reported.
 #[allow(clippy::redundant_closure_for_method_calls, reason = "the method has one lifetime, the closure any")]
 pub fn parse_properties(source: &Source) -> (PropertyFile, Vec<Diagnostic>) {
-    let (file, diagnostics) = parse(source, Rule::property_file, |builder, file| builder.property_file(file));
+    let (file, diagnostics) =
+        parse(source, &source.text, Rule::property_file, |builder, file| builder.property_file(file));
     (file.unwrap_or_default(), diagnostics)
+}
+
+/// Parses a file; one whose braces do not pair up as if they did, if that leaves fewer errors.
+fn mended<T>(
+    source: &Source,
+    rule: Rule,
+    build: &dyn Fn(&mut Builder<'_>, builder::Pair<'_>) -> T,
+) -> (Option<T>, Vec<Diagnostic>) {
+    let plain = parse(source, &source.text, rule, build);
+    let count = |said: &[Diagnostic]| said.iter().filter(|one| one.severity == Severity::Error).count();
+    if count(&plain.1) == 0 {
+        return plain;
+    }
+    let read = |text: &str, slips: Vec<Diagnostic>| {
+        let (built, said) = parse(source, text, rule, build);
+        let mut said = braces::together(source, said, slips);
+        order(source, &mut said);
+        (built, said)
+    };
+    let Some(mended) = braces::mend(source, &|text, slips| count(&read(text, slips).1)) else { return plain };
+    let (built, said) = read(&mended.text, mended.errors);
+    if count(&said) <= count(&plain.1) { (built, said) } else { plain }
 }
 
 /// Parses one value, such as the right side of `--set name=value`.
 pub fn parse_value(source: &Source) -> Result<Expr, Vec<Diagnostic>> {
-    let (value, diagnostics) = parse(source, Rule::value_file, |builder, file| {
+    let (value, diagnostics) = parse(source, &source.text, Rule::value_file, |builder, file| {
         file.into_inner().next().and_then(|value| builder.expr(value))
     });
     let fails = diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error);
@@ -91,33 +116,30 @@ pub(super) fn with_pairs<T>(
     rule: Rule,
     take: impl FnOnce(Pair<'_>) -> T,
 ) -> Result<T, Vec<Diagnostic>> {
-    match parse(source, rule, |_, file| take(file)) {
+    match parse(source, &source.text, rule, |_, file| take(file)) {
         (Some(taken), _) => Ok(taken),
         (None, diagnostics) => Err(diagnostics),
     }
 }
 
+/// Parses a text, which is that of the source or one as long.
 fn parse<T>(
     source: &Source,
+    text: &str,
     rule: Rule,
     build: impl FnOnce(&mut Builder<'_>, builder::Pair<'_>) -> T,
 ) -> (Option<T>, Vec<Diagnostic>) {
-    let mut builder = Builder {
-        source,
-        text: &source.text,
-        root: rule,
-        diagnostics: Vec::new(),
-        cut: Vec::new(),
-        lost: Vec::new(),
-    };
-    match nesting::scan(source) {
+    let mut builder =
+        Builder { source, text, root: rule, diagnostics: Vec::new(), cut: Vec::new(), lost: Vec::new() };
+    match nesting::scan(source, text) {
         Scan::Fine => {}
         Scan::TooDeep(diagnostic) => return (None, vec![diagnostic]),
         Scan::Until(at, diagnostic) => {
-            builder.text = &source.text[..at];
+            builder.text = &text[..at];
             builder.say(diagnostic);
         }
     }
+    let whole = text.len();
     let text = builder.text;
     let built = match Grammar::parse(rule, text) {
         Ok(mut pairs) => pairs.next().map(|file| build(&mut builder, file)),
@@ -128,16 +150,32 @@ fn parse<T>(
     };
     let mut diagnostics = builder.diagnostics;
     // An error at the end of a text that was cut there is a consequence of the cut.
-    if text.len() < source.text.len() {
+    if text.len() < whole {
         let last = text.trim_end().len() as u32;
         diagnostics.retain(|diagnostic| {
             diagnostic.code == code::COMMENT
                 || diagnostic.place.as_ref().is_none_or(|place| place.span.start < last)
         });
     }
+    order(source, &mut diagnostics);
+    (built, diagnostics)
+}
+
+/// Sorts by place, one a place, and leaves out what follows from the one before.
+fn order(source: &Source, diagnostics: &mut Vec<Diagnostic>) {
     diagnostics.sort_by_key(|diagnostic| diagnostic.place.as_ref().map(|place| place.span));
     diagnostics.dedup_by_key(|diagnostic| {
         diagnostic.place.as_ref().map(|place| (place.span.start, diagnostic.severity))
     });
-    (built, diagnostics)
+    // A bracket without a partner on the line of an error has lost it there.
+    let mut errors: Vec<usize> = Vec::new();
+    diagnostics.retain(|diagnostic| {
+        let Some(place) = diagnostic.place.as_ref().filter(|_| diagnostic.severity == Severity::Error) else {
+            return true;
+        };
+        let line = source.line_column(place.span.start).0;
+        let known = errors.contains(&line);
+        errors.push(line);
+        !known || diagnostic.code != code::STRAY
+    });
 }

@@ -23,9 +23,8 @@ pub(super) fn too_deep(span: Span) -> Diagnostic {
         .hint("give inner parts names with `let`")
 }
 
-/// Scans a text.
-pub(super) fn scan(source: &Source) -> Scan {
-    let text = &source.text;
+/// Scans a text, which is that of the source or one as long.
+pub(super) fn scan(source: &Source, text: &str) -> Scan {
     let mut depth = 0_u16;
     let mut at = 0;
     while at < text.len() {

@@ -19,6 +19,9 @@ impl Builder<'_> {
         match pair.as_rule() {
             Rule::title => Some(Item::Title(self.quoted(&Parts::of(pair).part(Rule::text)?))),
             Rule::setting => {
+                if self.sets_a_unit(&pair) || self.sets_a_keyword(&pair) {
+                    return None;
+                }
                 let mut parts = Parts::of(pair);
                 let name = self.ident(&parts.part(Rule::ident)?);
                 Some(Item::Setting { name, value: self.expr(parts.part(Rule::expr)?)? })

@@ -1,9 +1,9 @@
 //! Common slips, each with its own words.
 
-use super::builder::Builder;
+use super::builder::{Builder, Pair};
 use super::fault::{Fault, quote};
 use super::grammar::Rule;
-use super::{lexeme, quantity};
+use super::{lexeme, nouns, quantity};
 use crate::syntax::codes::syntax as code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -115,6 +115,14 @@ impl Builder<'_> {
 
     fn slip_of_equals(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
         let place = self.place(fault.at, fault.found);
+        if fault.expected.contains(&Rule::relation) && matches!(fault.found, "=" | "==" | "=>" | "!=") {
+            let title = format!("expected `>=`, `>`, `<=` or `<`, found `{}`", fault.found);
+            let hint = match fault.found {
+                "=>" => "write `>=`; `=>` is an implication",
+                _ => "a test tells on which side of a number something lies, never whether it is that number",
+            };
+            return Some(Diagnostic::error(code::EQUALS, place, title).hint(hint));
+        }
         if fault.found == ":=" {
             return Some(
                 Diagnostic::error(code::EQUALS, place, "`:=` is not known").hint("`=` sets, `==` compares"),
@@ -163,6 +171,41 @@ impl Builder<'_> {
         )
     }
 
+    /// `horizon = 30 s = 0.02 s`: a name that is set is no unit, so that the grammar took `s = …` for a setting of its
+    /// own. Reports it, and whether it is so.
+    pub(super) fn sets_a_unit(&mut self, setting: &Pair<'_>) -> bool {
+        let (start, text) = (setting.as_span().start(), setting.as_str());
+        let name = lexeme::first(text);
+        let line = self.text[..start].rfind('\n').map_or(0, |newline| newline + 1);
+        // The number may stand on the line before, where what is set here lost its name.
+        let before = self.text[..start].trim_end();
+        let number = lexeme::word_before(self.text, start)
+            .map(|(_, number)| number)
+            .filter(|number| number.starts_with(|c: char| c.is_ascii_digit()) && before.len() > line);
+        let (Some(number), true) = (number, quantity::UNITS.contains(&name)) else { return false };
+        let equals = start + text.find('=').unwrap_or(0);
+        let place = Span::new(self.source.id, equals, equals + 1);
+        let error =
+            Diagnostic::error(code::UNEXPECTED, place, format!("unexpected `=` after `{number} {name}`"));
+        self.say(error.hint("the name that is set is missing; `==` compares"));
+        self.cut.push(Span::new(self.source.id, line, start + text.len()));
+        true
+    }
+
+    /// `const = 3`: a declaration without its name reads as a setting. Reports it, and whether it is so.
+    pub(super) fn sets_a_keyword(&mut self, setting: &Pair<'_>) -> bool {
+        let (start, text) = (setting.as_span().start(), setting.as_str());
+        let name = lexeme::first(text);
+        if !nouns::words(Rule::item).contains(&name) || matches!(name, "horizon" | "step") {
+            return false;
+        }
+        let equals = start + text.find('=').unwrap_or(0);
+        let place = Span::new(self.source.id, equals, equals + 1);
+        self.say(Diagnostic::error(code::UNEXPECTED, place, "expected a name, found `=`"));
+        self.lost.push(Span::new(self.source.id, start, start + text.len()));
+        true
+    }
+
     /// Operators of other languages.
     fn slip_of_operator(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
         let say = |at: usize, found: &str, plain: &str| {
@@ -183,6 +226,15 @@ impl Builder<'_> {
             "iff" if after_value => "<=>",
             "*" if !after_value && self.text[..fault.at].ends_with('*') => {
                 return Some(say(fault.at - 1, "**", "^"));
+            }
+            _ if after_value
+                && lexeme::word_before(self.text, fault.at).is_some_and(|(_, word)| word == "if") =>
+            {
+                let at = lexeme::word_before(self.text, fault.at)?.0;
+                let error = Diagnostic::error(code::OPERATOR, self.place(at, "if"), "`if` is a function");
+                return Some(
+                    error.hint("write `if(condition, then, otherwise)`; of formulas `(a => b) & (!a => c)`"),
+                );
             }
             "~" if !after_value => "!",
             "is" if after_value => "==",
@@ -213,6 +265,20 @@ impl Builder<'_> {
     fn slip_of_unit(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
         if !fault.found.starts_with(lexeme::starts_name) {
             return None;
+        }
+        // `3 N m`
+        let (unit_at, before_it) = lexeme::word_before(self.text, fault.at)?;
+        let factor = quantity::UNITS.contains(&fault.found) && quantity::UNITS.contains(&before_it);
+        if factor
+            && let Some((_, number)) = lexeme::word_before(self.text, unit_at)
+            && number.starts_with(|c: char| c.is_ascii_digit())
+        {
+            let place = self.place(fault.at, fault.found);
+            let title = format!("unexpected `{}` after `{number} {before_it}`", fault.found);
+            return Some(
+                Diagnostic::error(code::UNIT, place, title)
+                    .hint(format!("a product of units is written `{number} {before_it}*{}`", fault.found)),
+            );
         }
         let before = &self.text[..fault.at];
         let between = &before[before.trim_end().len()..];

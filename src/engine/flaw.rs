@@ -1,0 +1,79 @@
+//! What one trial shows to be wrong with a model: two commands at once, a variable that leaves its range.
+
+use crate::compile::study::Origins;
+use crate::kernel::process;
+use crate::model::Scenario;
+use crate::syntax::source::Span;
+use std::fmt;
+
+/// What is wrong with a model, found while a trial ran.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Flaw {
+    /// Stable code; the page of the same error at compile time.
+    pub code: &'static str,
+    /// Where the command, variable or behaviour at fault is written.
+    pub place: Option<Span>,
+    /// In which trial, and when: `trial 3 at 2 s`.
+    pub moment: String,
+    /// What is wrong, in words.
+    pub what: String,
+    /// Values of the variables just before; may be empty.
+    pub state: String,
+    /// What to do about it.
+    pub hint: &'static str,
+}
+
+impl Flaw {
+    /// Puts an error of the kernel into words.
+    pub(super) fn of(
+        fault: process::Fault,
+        scenario: &Scenario,
+        origins: &Origins,
+        moment: String,
+        value: impl Fn(usize) -> f64,
+    ) -> Self {
+        let command = |process: u32, command: u32| {
+            origins.commands.get(process as usize)?.get(command as usize).copied()
+        };
+        let behaviour = |attached: u32| {
+            let one = scenario.behaviours.attached.get(attached as usize)?;
+            origins.behaviours.get(one.behaviour.0 as usize).copied()
+        };
+        let (code, place, hint) = match fault {
+            process::Fault::Ambiguous { process, commands } => (
+                "E0901",
+                command(process, commands.1),
+                "make their guards exclude each other, or add `choose`",
+            ),
+            process::Fault::Weights { process, command: one } => {
+                ("E0902", command(process, one), "they must be at least 0 and sum to 1 in every state")
+            }
+            process::Fault::Branches { attached } => {
+                ("E0902", behaviour(attached), "they must be at least 0 and sum to 1 in every state")
+            }
+            process::Fault::Range { variable, .. } => (
+                "E0903",
+                origins.variables.get(variable as usize).copied(),
+                "a guard can keep it inside, or give it a wider range",
+            ),
+            process::Fault::Rate { process, command: one, .. } => {
+                ("E0904", command(process, one), "`max(0 /s, …)` or a guard can keep it from falling below 0")
+            }
+            process::Fault::Stuck { process } => {
+                ("E0907", command(process, 0), "let the command change its own guard, or take some time")
+            }
+            process::Fault::Change { attached, .. } => {
+                ("E0914", behaviour(attached), "keep the value in a range: `max(0.1 m/s, …)`")
+            }
+        };
+        let state = process::Fault::state(&scenario.processes, value);
+        Self { code, place, moment, what: fault.describe(scenario), state, hint }
+    }
+}
+
+impl fmt::Display for Flaw {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.moment, self.what)?;
+        if self.state.is_empty() { Ok(()) } else { write!(f, "; the state is {}", self.state) }
+    }
+}

@@ -1,0 +1,104 @@
+//! Mutations of every token of every example through the whole front end, with the file beside it: one change is one
+//! error.
+
+use super::{line, tokens};
+use smc::compile::{Files, Input, compile, own_errors, requests};
+use smc::syntax::diagnostic::{Diagnostic, Severity};
+use smc::syntax::parse::{parse_properties, parse_scenario};
+use smc::syntax::render::render;
+use smc::syntax::source::{Source, SourceId};
+
+/// A scenario, the properties that go with it, and the files it names.
+struct Pair {
+    name: String,
+    texts: [String; 2],
+    files: Files,
+}
+
+fn pairs() -> Vec<Pair> {
+    let data = std::env::var("SMC_DATA").unwrap_or_else(|_| "../shared/data/eth-biwi".to_owned());
+    let mut pairs = Vec::new();
+    for entry in std::fs::read_dir("models").unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
+        let texts = [
+            std::fs::read_to_string(&path).unwrap(),
+            std::fs::read_to_string(format!("properties/{name}.bltl")).unwrap(),
+        ];
+        let (tree, _) = parse_scenario(&Source::new(SourceId(0), "a.scn", texts[0].as_str()));
+        let mut files = Files::default();
+        let mut there = true;
+        for request in requests(&tree) {
+            let found = std::fs::read(format!("{data}/{}", request.path)).map_err(|e| e.to_string());
+            there &= found.is_ok();
+            files.insert(request.path, found);
+        }
+        if there {
+            pairs.push(Pair { name, texts, files });
+        } else {
+            println!("skipped: {name} needs a recording that is not in {data}");
+        }
+    }
+    assert!(pairs.len() >= 11);
+    pairs
+}
+
+/// The errors in a scenario and its properties.
+fn errors([scenario, properties]: [&str; 2], files: &Files) -> (Vec<Source>, Vec<Diagnostic>) {
+    let sources =
+        vec![Source::new(SourceId(0), "a.scn", scenario), Source::new(SourceId(1), "a.bltl", properties)];
+    let (tree, mut said) = parse_scenario(&sources[0]);
+    let (asked, more) = parse_properties(&sources[1]);
+    said.extend(more);
+    let asked = [asked];
+    let input = Input { sources: &sources, scenario: &tree, properties: &asked, files, settings: &[] };
+    let (_, found) = compile(&input);
+    let own = own_errors(found, &said, &input);
+    said.extend(own);
+    said.retain(|one| one.severity == Severity::Error);
+    (sources, said)
+}
+
+#[test]
+fn one_change_is_one_error() {
+    let others = ["=", ")", "}", "{", " xyzzy ", " 42 ", "->"];
+    let (mut refused, mut several, mut elsewhere) = (0_u32, Vec::new(), 0_u32);
+    for pair in pairs() {
+        for (which, text) in pair.texts.iter().enumerate() {
+            let tokens = tokens(text);
+            for (k, token) in tokens.iter().enumerate() {
+                // Each token is dropped, and replaced by some of the others in turn.
+                let doubled = format!("{0} {0}", &text[token.clone()]);
+                for replacement in ["", others[k % others.len()], others[(k + 3) % others.len()], &doubled] {
+                    let mutant = format!("{}{replacement}{}", &text[..token.start], &text[token.end..]);
+                    let mut texts = [pair.texts[0].as_str(), pair.texts[1].as_str()];
+                    texts[which] = &mutant;
+                    let (sources, found) = errors(texts, &pair.files);
+                    let Some(first) = found.first() else { continue };
+                    refused += 1;
+                    let last = tokens.get(k + 1).map_or(text.len(), |next| next.start);
+                    let lines = line(text, token.start)..=line(text, last);
+                    let place = first.place.as_ref().map(|place| place.span);
+                    let near = place.is_some_and(|place| {
+                        place.source.0 as usize == which
+                            && lines.contains(&line(&mutant, place.start as usize))
+                    });
+                    elsewhere += u32::from(!near);
+                    if found.len() > 1 {
+                        several.push(format!(
+                            "{}: `{}` -> `{replacement}` in line {}\n{}",
+                            pair.name,
+                            &text[token.clone()],
+                            line(text, token.start) + 1,
+                            render(&found, &sources, false)
+                        ));
+                    }
+                }
+            }
+        }
+    }
+    assert!(refused > 3_000);
+    assert!(several.len() as u32 * 250 < refused, "{} of {refused}\n{}", several.len(), several.join("\n"));
+    // A name that is declared no more is missed where it is used, a brace where its block ends.
+    assert!(elsewhere * 50 < refused, "{elsewhere} of {refused}");
+}
