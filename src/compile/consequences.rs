@@ -22,6 +22,10 @@ const BRACKETS: [&str; 6] = ["E0102", "E0103", "E0104", "E0105", "E0106", "E0107
 const NO_OPTIONS: &str = "E0406";
 /// Code of an agent that nothing advises.
 const NO_MOVES: &str = "E0606";
+/// Code of people who start inside an obstacle.
+const INSIDE: &str = "E0409";
+/// Codes after which the rest of a line is anybody's guess, besides those of brackets.
+const DERAILS: [&str; 2] = ["E0101", "E0112"];
 /// Code of what a declaration lacks.
 const LACKING: &str = "E0209";
 /// Code of a field that nobody knows.
@@ -156,13 +160,16 @@ impl<'i> Broken<'i> {
             Some((span.source, source.line_column(span.start).0))
         };
         let of_line = self.said.iter().any(|said| {
+            if !DERAILS.contains(&said.code) && !BRACKETS.contains(&said.code) {
+                return false;
+            }
             let at = said.place.as_ref().filter(|_| said.severity == Severity::Error);
             at.is_some_and(|at| line_of(at.span) == line_of(place))
         });
         let of_clock = CLOCKS.contains(&one.code) || one.code == DIMENSION && one.title.contains("(steps)");
         let of_options = one.code == NO_OPTIONS && self.lost.iter().any(|(part, _)| within(*part, place));
         let of_moves = one.code == NO_MOVES && self.moves;
-        let of_scenery = one.code.starts_with("E04") && self.scenery;
+        let of_scenery = one.code == INSIDE && self.scenery;
         let of_name =
             NAMES.contains(&one.code) && (!PLACED_AT_NAME.contains(&one.code) || self.may_declare(place));
         let line = lines(self.sources, place).unwrap_or_default();

@@ -170,12 +170,12 @@ fn calls_that_would_do_nothing_are_refused() {
         (&["simulate", "a.scn", "--every", "0"][..], "`--every 0` writes nothing"),
         (&["simulate", "a.scn", "--trials", "0"], "`--trials 0` writes nothing"),
         (&["simulate", "a.scn", "--trial", "281474976710656"], "numbered from 0 to 281474976710655"),
-        (&["simulate", "a.scn", "--until", "4.5"], "`--until 4.5` lies beyond the horizon of 4 s"),
-        (&["simulate", "a.scn", "--until", "-1"], "`--until` takes a time"),
-        (&["simulate", "a.scn", "--until", "nan"], "`--until` takes a time"),
+        (&["simulate", "a.scn", "--until", "4.5"], "the horizon of the scenario is 4 s"),
+        (&["simulate", "a.scn", "--until", "-1"], "is no time"),
+        (&["simulate", "a.scn", "--until", "nan"], "is no time"),
         (&["simulate", "a.scn", "--data", "nowhere"], "`--data nowhere` is not there"),
         (&["check", "a.scn", "a.bltl", "--data", "a.bltl"], "`--data a.bltl` is no directory"),
-        (&["check", "a.scn", "a.bltl", "--only", "2"], "no query 2: they are numbered from 0 to 1"),
+        (&["check", "a.scn", "a.bltl", "--only", "2"], "there is no query 2"),
     ] {
         let found = place.call(words);
         assert_eq!((found.code, found.out.as_str()), (Some(2), ""), "{words:?}");

@@ -166,9 +166,9 @@ fn what_was_decided_before_an_error_of_the_model_is_printed() {
     let results = json["results"].as_array().unwrap();
     assert_eq!((results.len(), &results[0]["verdict"]), (1, &"satisfied".into()), "{json:#}");
     let out = call("github").out;
-    assert!(out.contains("::error title=smc::trial "), "{out}");
+    assert!(out.contains("title=E0903::trial "), "{out}");
     let out = call("junit").out;
-    assert!(out.contains("type=\"input\""), "{out}");
+    assert!(out.contains("type=\"E0903\""), "{out}");
 }
 
 #[test]
