@@ -278,7 +278,10 @@ fn parse_duration(text: &str) -> Result<std::time::Duration, String> {
     };
     let value: f64 = digits.trim().parse().map_err(|_| format!("`{digits}` is not a number"))?;
     let seconds = value * scale;
-    if !(seconds > 0.0 && seconds < 1e9) {
+    if seconds >= 1e9 {
+        return Err("a timeout is shorter than 30 years; leave it out to wait as long as it takes".to_owned());
+    }
+    if seconds.is_nan() || seconds <= 0.0 {
         return Err("a timeout must be positive".to_owned());
     }
     Ok(std::time::Duration::from_secs_f64(seconds))

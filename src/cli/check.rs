@@ -258,11 +258,13 @@ fn chosen(study: &Study, only: &[String]) -> Result<Vec<usize>, Diagnostic> {
             .collect();
         if found.is_empty() {
             let mut names: Vec<&str> = study.queries.iter().filter_map(|q| q.name.as_deref()).collect();
+            names.sort_unstable();
             names.dedup();
             let last = study.queries.iter().map(|q| q.index).max().unwrap_or(0);
             let near = nearest(wanted, names.iter().copied());
             let hint = match near {
                 Some(near) => format!("did you mean `{near}`?"),
+                None if names.is_empty() => format!("queries are numbered from 0 to {last}"),
                 None => format!("queries are numbered from 0 to {last}, and are about {}", names.join(", ")),
             };
             return Err(complaint::argument(

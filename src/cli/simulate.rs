@@ -280,7 +280,8 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
         // The longest time that is a whole number of ticks, in continuous time of very short ones.
         last = last.min(match scenario.clock {
             Clock::Jumps(tick) => (until / tick.to_f64()).floor() as u64,
-            clock => (until / clock.step_seconds()).round() as u64,
+            // In spite of rounding, and never beyond what was asked for.
+            clock => (until / clock.step_seconds() * (1.0 + 1e-12)).floor() as u64,
         });
     }
     let program = Program::new(scenario.clone());

@@ -11,6 +11,16 @@ pub enum Column {
     Head(String),
 }
 
+/// The cells of a line; a comma between quotes parts nothing.
+fn cells(line: &str) -> Vec<&str> {
+    let mut quoted = false;
+    let parts = line.split(move |c: char| {
+        quoted ^= c == '"';
+        c == ',' && !quoted
+    });
+    parts.map(|cell| cell.trim().trim_matches('"')).collect()
+}
+
 /// Reads outcomes from successive lines.
 #[derive(Clone, Debug)]
 pub struct Outcomes {
@@ -38,7 +48,7 @@ impl Outcomes {
             return Ok(None);
         }
         let fail = |what: String| Err(format!("line {}: {what}", self.lines));
-        let cells: Vec<&str> = line.split(',').map(|cell| cell.trim().trim_matches('"')).collect();
+        let cells = cells(line);
         let heads = self.place.is_none();
         let place = match (&self.column, self.place) {
             (_, Some(place)) => place,

@@ -62,10 +62,11 @@ impl Margins<'_> {
 
     fn leaf(&self, (relation, x, y): (Relation, usize, usize), at: u64) -> f64 {
         let Some((x, y)) = self.offline.value(x, at).zip(self.offline.value(y, at)) else { return f64::NAN };
-        match relation {
-            Relation::Greater | Relation::AtLeast => x - y,
-            Relation::Less | Relation::AtMost => y - x,
-            Relation::Equal | Relation::Unequal => f64::NAN,
+        match relation.margin(x, y) {
+            _ if matches!(relation, Relation::Equal | Relation::Unequal) => f64::NAN,
+            // Of what is no number nothing holds.
+            margin if margin.is_nan() => f64::NEG_INFINITY,
+            margin => margin,
         }
     }
 

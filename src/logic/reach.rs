@@ -100,8 +100,8 @@ pub(super) fn children_first(tree: &Tree, root: Part) -> Result<Vec<Part>, Inval
 
 /// Where parts are asked about at last, in ticks.
 pub(super) struct Asked {
-    /// Of each formula, then of each number; `None` where nothing asks.
-    parts: Vec<Option<u64>>,
+    /// Of each formula, then of each number, the first and the last tick; `None` where nothing asks.
+    parts: Vec<Option<(u64, u64)>>,
     /// Number of formulas.
     nodes: usize,
     /// The last tick that is looked at through bounds alone.
@@ -111,8 +111,8 @@ pub(super) struct Asked {
 }
 
 impl Asked {
-    /// The last tick at which a part is asked about.
-    pub(super) fn of(&self, part: Part) -> Option<u64> {
+    /// The first and the last tick at which a part is asked about.
+    pub(super) fn of(&self, part: Part) -> Option<(u64, u64)> {
         match part {
             Part::Node(id) => self.parts[id.0 as usize],
             Part::Term(id) => self.parts[self.nodes + id.0 as usize],
@@ -130,13 +130,18 @@ pub(super) fn asked(tree: &Tree, root: Part, horizon: Option<Tick>, dense: bool)
         Part::Term(id) => tree.nodes.len() + id.0 as usize,
     };
     let end = |at: u64| horizon.map_or(at, |horizon| horizon.0.max(at));
-    let mut parts: Vec<Option<u64>> = vec![None; tree.nodes.len() + tree.terms.len()];
-    parts[slot(root)] = Some(0);
+    let mut parts: Vec<Option<(u64, u64)>> = vec![None; tree.nodes.len() + tree.terms.len()];
+    parts[slot(root)] = Some((0, 0));
     let (mut last, mut to_horizon) = (0, false);
     for part in order.into_iter().rev() {
-        let Some(at) = parts[slot(part)] else { continue };
+        let Some((from, at)) = parts[slot(part)] else { continue };
         last = last.max(at);
         for (child, ask) in below(tree, part)? {
+            let earliest = match ask {
+                Ask::Within(window) => from.saturating_add(window.from.0),
+                Ask::AtEnd => end(from),
+                Ask::Here | Ask::Until(_) | Ask::Before(_) => from,
+            };
             let latest = match ask {
                 Ask::Here => Some(at),
                 Ask::Within(Window { from, to: Some(to) }) => {
@@ -161,7 +166,8 @@ pub(super) fn asked(tree: &Tree, root: Part, horizon: Option<Tick>, dense: bool)
             );
             if let Some(latest) = latest {
                 let known = &mut parts[slot(child)];
-                *known = Some(known.map_or(latest, |k| k.max(latest)));
+                let (first, last) = known.unwrap_or((earliest, latest));
+                *known = Some((first.min(earliest), last.max(latest)));
             }
         }
     }

@@ -3,21 +3,21 @@
 //! A violated `check` is an error, an undecided one and every warning is a warning; a notice sums up.
 //! Values are escaped as the runner unescapes them: `%`, line ends, and in properties `:` and `,` too.
 
-use super::{certified, exit_code, one_line, settings};
-use crate::engine::outcome::{Failure, Finding, QueryResult, Run, Spot, Verdict};
+use super::{certified, exit_code, one_line, settings, text};
+use crate::engine::outcome::{Failure, Finding, QueryResult, Run, Verdict};
 use std::fmt::Write as _;
 
 /// The annotations of a run, one a line.
 pub fn render(run: &Run) -> String {
-    let mut text = String::new();
+    let mut page = String::new();
     for result in &run.results {
-        let at = if result.file.is_empty() {
+        let at = if result.file.is_empty() || !is_file(&result.file) {
             String::new()
         } else {
             format!("file={},line={},", property(&result.file), result.line)
         };
         let mut annotate = |level: &str, title: &str, message: &str| {
-            let _ = writeln!(text, "::{level} {at}title={}::{}", property(title), data(message));
+            let _ = writeln!(page, "::{level} {at}title={}::{}", property(title), data(message));
         };
         match result.verdict {
             Some(Verdict::Violated) => annotate("error", "violated", &finding(result)),
@@ -29,45 +29,45 @@ pub fn render(run: &Run) -> String {
         }
     }
     for finding in &run.diagnostics {
-        text.push_str(&annotation(finding));
+        page.push_str(&annotation(finding));
     }
     for warning in &run.warnings {
-        let _ = writeln!(text, "::warning title=smc::{}", data(warning));
+        let _ = writeln!(page, "::warning title=smc::{}", data(warning));
     }
     match &run.failure {
         // Those of the front end are annotated one by one.
         Some(Failure::Input(_) | Failure::Model(_))
             if run.diagnostics.iter().any(|finding| finding.error) => {}
         Some(failure @ (Failure::Input(_) | Failure::Model(_))) => {
-            let _ = writeln!(text, "::error title=smc::{}", data(&failure.message()));
+            let _ = writeln!(page, "::error title=smc::{}", data(&failure.message()));
         }
         Some(Failure::Bug(message)) => {
-            let _ = writeln!(text, "::error title=bug in smc::{}", data(message));
+            let _ = writeln!(page, "::error title=bug in smc::{}", data(message));
         }
         None => {}
     }
-    let number = |verdict| run.results.iter().filter(|r| r.verdict == verdict).count();
+    let parts: Vec<String> = text::tally(run).into_iter().map(|(n, word, _)| format!("{n} {word}")).collect();
     let summary = format!(
-        "{}: {} satisfied, {} violated, {} undecided, {} computed{}; exit code {}\n{}",
+        "{}: {}{}; exit code {}\n{}",
         run.scenario,
-        number(Some(Verdict::Satisfied)),
-        number(Some(Verdict::Violated)),
-        number(Some(Verdict::Undecided)),
-        number(None),
+        if parts.is_empty() { "no results".to_owned() } else { parts.join(", ") },
         if run.interrupted { "; interrupted" } else { "" },
         exit_code(run).code(),
         run.replay
     );
-    let _ = writeln!(text, "::notice title=smc::{}", data(&summary));
-    text
+    let _ = writeln!(page, "::notice title=smc::{}", data(&summary));
+    page
+}
+
+/// Standard input and the words of the call are no files that an annotation could stand in.
+fn is_file(name: &str) -> bool {
+    !name.starts_with(['-', '<'])
 }
 
 /// An error or warning of the front end, at its place.
 fn annotation(finding: &Finding) -> String {
     let level = if finding.error { "error" } else { "warning" };
-    // Standard input and the words of the call are no files that an annotation could stand in.
-    let filed = |spot: &&Spot| !spot.file.starts_with(['-', '<']);
-    let at = finding.spot.as_ref().filter(filed).map_or(String::new(), |spot| {
+    let at = finding.spot.as_ref().filter(|spot| is_file(&spot.file)).map_or(String::new(), |spot| {
         let (start, end) = (spot.start, spot.end);
         // The columns of a mark over several lines would be read as those of its first.
         let columns = if start.0 == end.0 {
@@ -91,25 +91,21 @@ fn annotation(finding: &Finding) -> String {
 }
 
 fn finding(result: &QueryResult) -> String {
-    let mut text = one_line(&result.query);
+    let mut said = one_line(&result.query);
     let with = settings(result);
     if !with.is_empty() {
-        let _ = write!(text, " where {with}");
+        let _ = write!(said, " where {with}");
     }
     let statement = certified(result);
     if !statement.is_empty() {
-        let _ = write!(text, "\ncertified: {statement}");
+        let _ = write!(said, "\ncertified: {statement}");
     }
-    let _ = write!(
-        text,
-        "\n{} trials: {} hold, {} fail, {} unresolved",
-        result.counts.trials, result.counts.successes, result.counts.failures, result.counts.unresolved
-    );
+    let _ = write!(said, "\n{}", text::counts(result));
     for witness in &result.witnesses {
-        let word = witness.shows.name();
-        let _ = write!(text, "\n{word} in trial {}: {}\n  {}", witness.trial, witness.what, witness.command);
+        let word = text::shown(witness.shows, result.of.is_some());
+        let _ = write!(said, "\n{word} in trial {}: {}\n  {}", witness.trial, witness.what, witness.command);
     }
-    text
+    said
 }
 
 fn data(text: &str) -> String {

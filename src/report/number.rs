@@ -45,7 +45,12 @@ pub fn interval(value: &Interval, horizon: Option<f64>) -> Printed {
             _ if x == 0.0 => "0".to_owned(),
             _ if largest < SMALL => scientific(x, round),
             Some(decimals) => fixed(x, decimals, round),
-            None => plain(x),
+            // Without a width six digits serve, rounded outwards where they are not exact.
+            None if plain(x).parse() == Ok(x) => plain(x),
+            None => match round {
+                Round::Nearest => plain(x),
+                outwards => fixed(x, (5 - leading(x).1).clamp(0, 12) as usize, outwards),
+            },
         }
     };
     Printed {

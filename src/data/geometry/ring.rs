@@ -25,8 +25,20 @@ pub(super) fn checked(mut points: Vec<Vec2>) -> Result<Vec<Vec2>, String> {
 fn crossing(ring: &[Vec2]) -> Option<Vec2> {
     let n = ring.len();
     let edge = |k: usize| Segment::new(ring[k], ring[(k + 1) % n]);
-    let left = |s: &Segment| s.a.x.min(s.b.x);
-    let right = |s: &Segment| s.a.x.max(s.b.x);
+    // Along the axis on which the edges, all in all, reach less far.
+    let reach = |of: fn(&Vec2) -> f64| {
+        let (low, high) = ring.iter().map(of).fold((f64::MAX, f64::MIN), |(l, h), x| (l.min(x), h.max(x)));
+        (0..n).map(|k| (of(&ring[k]) - of(&ring[(k + 1) % n])).abs()).sum::<f64>() / (high - low)
+    };
+    let (along, beside): (fn(&Vec2) -> f64, fn(&Vec2) -> f64) =
+        if reach(|p| p.x) <= reach(|p| p.y) { (|p| p.x, |p| p.y) } else { (|p| p.y, |p| p.x) };
+    let left = |s: &Segment| along(&s.a).min(along(&s.b));
+    let right = |s: &Segment| along(&s.a).max(along(&s.b));
+    let apart = |s: &Segment, t: &Segment| {
+        let ends = |s: &Segment| (beside(&s.a).min(beside(&s.b)), beside(&s.a).max(beside(&s.b)));
+        let ((a, b), (c, d)) = (ends(s), ends(t));
+        b < c || d < a
+    };
     let mut order: Vec<usize> = (0..n).collect();
     order.sort_by(|&i, &j| left(&edge(i)).total_cmp(&left(&edge(j))));
     for (k, &i) in order.iter().enumerate() {
@@ -37,7 +49,7 @@ fn crossing(ring: &[Vec2]) -> Option<Vec2> {
                 break;
             }
             let neighbours = (i + 1) % n == j || (j + 1) % n == i;
-            if !neighbours && first.meets(&second) {
+            if !neighbours && !apart(&first, &second) && first.meets(&second) {
                 return Some(meeting(&first, &second));
             }
         }

@@ -47,10 +47,14 @@ struct Piece<'a> {
     depth: usize,
 }
 
+/// What stands between geometries.
+fn parting(c: char) -> bool {
+    c.is_whitespace() || c == ',' || c == ';'
+}
+
 /// Cuts the text after every closing parenthesis of the outermost level and after `EMPTY` there.
 fn pieces(text: &str) -> Vec<Piece<'_>> {
     let mut found = Vec::new();
-    let parting = |c: char| c.is_whitespace() || c == ',' || c == ';';
     let (mut rest, mut line, mut column) = (text, 1, 1);
     let mut pass = |passed: &str| {
         line += passed.matches('\n').count();
@@ -86,8 +90,8 @@ fn extent(text: &str) -> (usize, usize) {
                     return (byte + 1, deepest);
                 }
             }
-            _ if depth == 0 && c.is_whitespace() => {
-                if text[word..byte].trim().eq_ignore_ascii_case("empty") {
+            _ if depth == 0 && parting(c) => {
+                if text[word..byte].trim_matches(parting).eq_ignore_ascii_case("empty") {
                     return (byte, deepest);
                 }
                 word = byte;

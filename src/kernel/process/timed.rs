@@ -10,7 +10,7 @@
 
 use super::super::code::{Code, Readings};
 use super::super::state::{Layout, State};
-use super::delay::delay;
+use super::delay::{after, delay};
 use super::draws::exponentials;
 use super::fault::Fault;
 use super::race::{Race, reads};
@@ -365,7 +365,7 @@ impl Timed {
                 let number = &mut clocks.delays[k][lane];
                 let (wait, pick) = delay(state.keys[lane], racer.entity, *number, law);
                 *number += 1;
-                *due = now + wait;
+                *due = after(now, wait);
                 clocks.pick[clock].0[lane] = pick;
             }
         }

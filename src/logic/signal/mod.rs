@@ -54,7 +54,9 @@ enum Way {
 struct Watched {
     /// Where the left side is in the code of the present state.
     slot: usize,
-    /// The last second at which it is asked about.
+    /// The first second at which it is asked about.
+    first: f64,
+    /// The last one.
     last: f64,
 }
 
@@ -170,7 +172,7 @@ impl SignalMonitor {
     #[inline]
     fn close(&mut self, end: f64) {
         for (k, watched) in self.watched.iter().enumerate() {
-            if self.since <= watched.last && self.present.truth(watched.slot) {
+            if self.since <= watched.last && end > watched.first && self.present.truth(watched.slot) {
                 self.triggered |= 1 << k.min(63);
             }
         }

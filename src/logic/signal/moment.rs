@@ -1,6 +1,6 @@
 //! Continuous time as whole numbers: every instant, and the open span right after it, has an index.
 //!
-//! A tick is divided into 2^k units, so many that the horizon is about 2^60 units; times of jumps are
+//! A tick is divided into 2^k units, so many that the horizon is 2^58 to 2^59 units; times of jumps are
 //! rounded down to units once, when they come in, and bounds are whole ticks. From there on everything is exact.
 //! Moment 2u is the instant u, moment 2u + 1 the open span between u and u + 1. Nothing changes inside
 //! such a span, so a function of time is a function of moments, and its ends are open or closed as the
@@ -30,6 +30,7 @@ pub(super) struct Scale {
     horizon: u64,
     seconds_per_tick: (f64, f64),
     units_per_second: f64,
+    ticks_per_unit: f64,
 }
 
 impl Scale {
@@ -38,7 +39,8 @@ impl Scale {
         let bits = 59 - (64 - horizon.0.leading_zeros()).max(1);
         let seconds_per_tick = (quantum.numerator() as f64, quantum.denominator() as f64);
         let units_per_second = seconds_per_tick.1 / seconds_per_tick.0 * (1u64 << bits) as f64;
-        Self { bits, horizon: horizon.0, seconds_per_tick, units_per_second }
+        let ticks_per_unit = 1.0 / (1u64 << bits) as f64;
+        Self { bits, horizon: horizon.0, seconds_per_tick, units_per_second, ticks_per_unit }
     }
 
     /// The moment right after the instant of the horizon.
@@ -61,9 +63,15 @@ impl Scale {
         (ticks.0.min(self.horizon + 1) as i64) << (self.bits + 1)
     }
 
-    /// The instant of a time in seconds, at most the end.
+    /// The instant of a time in seconds, at most the end. What is the double nearest to a tick is that tick.
     pub(super) fn at(self, seconds: f64) -> Moment {
         let units = seconds * self.units_per_second;
+        let ticks = (units * self.ticks_per_unit + 0.5).floor();
+        if ticks <= self.horizon as f64
+            && ticks * self.seconds_per_tick.0 / self.seconds_per_tick.1 == seconds
+        {
+            return self.shift(Tick(ticks as u64));
+        }
         if units <= (self.end() / 2) as f64 { 2 * (units as i64).max(0) } else { self.end() }
     }
 

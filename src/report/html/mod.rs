@@ -29,7 +29,7 @@ pub fn render(run: &Run) -> String {
         duration(run.elapsed_s),
         tally(run)
     );
-    for group in run.results.chunk_by(text::same_sweep) {
+    for group in text::by_query(&run.results).chunk_by(|a, b| text::same_sweep(a, b)) {
         section(&mut page, group);
     }
     for finding in &run.diagnostics {
@@ -56,25 +56,18 @@ pub fn render(run: &Run) -> String {
 }
 
 fn tally(run: &Run) -> String {
-    let kinds = [
-        (Some(Verdict::Satisfied), "satisfied"),
-        (Some(Verdict::Violated), "violated"),
-        (Some(Verdict::Undecided), "undecided"),
-        (None, "computed"),
-    ];
-    let parts: Vec<String> = kinds
+    let parts: Vec<String> = text::tally(run)
         .into_iter()
-        .map(|(verdict, word)| (run.results.iter().filter(|r| r.verdict == verdict).count(), word))
-        .filter(|(n, _)| *n > 0)
-        .map(|(n, word)| format!("<span class=\"badge {word}\">{n} {word}</span>"))
+        .map(|(n, word, _)| format!("<span class=\"badge {}\">{n} {word}</span>", word.replace(' ', "-")))
         .collect();
     parts.join(" ")
 }
 
 /// One query: alone, or under several settings.
-fn section(page: &mut String, group: &[QueryResult]) {
+fn section(page: &mut String, group: &[&QueryResult]) {
     let Some(first) = group.first() else { return };
-    let word = group.iter().map(word).max_by_key(|word| severity(word)).unwrap_or("computed");
+    let word =
+        group.iter().map(|result| word(result)).max_by_key(|word| severity(word)).unwrap_or("computed");
     let place = if first.file.is_empty() { String::new() } else { format!("{}:{}", first.file, first.line) };
     let _ = writeln!(
         page,
@@ -87,9 +80,13 @@ fn section(page: &mut String, group: &[QueryResult]) {
     } else {
         marks(first)
     };
-    let threshold = first.method.numbers.iter().find(|(name, _)| name == "theta").map(|(_, value)| *value);
+    let theta = |result: &QueryResult| {
+        result.method.numbers.iter().find(|(name, _)| name == "theta").map(|(_, value)| *value)
+    };
+    // A threshold may be a parameter, and is then another in each row.
+    let threshold = theta(first).filter(|_| group.iter().all(|result| theta(result) == theta(first)));
     page.push_str(&chart::intervals(&marks, &first.unit, threshold, first.censored));
-    if !first.interval.is_empty() {
+    if !first.interval.is_empty() && group.iter().all(|result| result.interval == first.interval) {
         let _ = writeln!(page, "<p class=\"faint\">intervals: {}</p>", escape(&first.interval));
     }
     if let Some(ranking) = &first.rank {
@@ -152,7 +149,7 @@ fn facts(page: &mut String, result: &QueryResult, swept: bool) {
         let _ = writeln!(
             page,
             "<p>{} in trial {}, {} {}: <code>{}</code></p>\n<pre>{}</pre>",
-            shows.name(),
+            text::shown(*shows, result.of.is_some()),
             count(*trial),
             if value.is_some() { "at" } else { "decided at" },
             text::moment(*time, unit),

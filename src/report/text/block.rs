@@ -156,6 +156,11 @@ fn rare(text: &mut String, rare: &Rare) {
 
 /// The counts and why sampling stopped.
 pub(in crate::report) fn trials(result: &QueryResult) -> String {
+    format!("{}, {}, {}", counts(result), cause(result), duration(result.elapsed_s))
+}
+
+/// The counts.
+pub(in crate::report) fn counts(result: &QueryResult) -> String {
     let counts = result.counts;
     let mut text = counted(counts.trials, "trial");
     let mut parts = Vec::new();
@@ -174,7 +179,13 @@ pub(in crate::report) fn trials(result: &QueryResult) -> String {
     if !parts.is_empty() {
         text = format!("{text} ({})", parts.join(", "));
     }
-    let cause = match result.stopped_by {
+    text
+}
+
+/// Why sampling stopped.
+pub(super) fn cause(result: &QueryResult) -> &'static str {
+    let counts = result.counts;
+    match result.stopped_by {
         Stop::Boundary => "stopped at the boundary of the test",
         Stop::Width if result.rank.is_some() => "stopped once the choice was certain enough",
         Stop::Width => "stopped when narrow enough",
@@ -187,8 +198,7 @@ pub(in crate::report) fn trials(result: &QueryResult) -> String {
         Stop::Deadline => "stopped when time was up",
         Stop::Interrupt => "interrupted",
         Stop::Error => "stopped by an error",
-    };
-    format!("{text}, {cause}, {}", duration(result.elapsed_s))
+    }
 }
 
 /// Warnings of a result, and how often bodies were shrunk.
@@ -211,6 +221,15 @@ pub(in crate::report) fn moment(time: f64, unit: &str) -> String {
     if unit == "steps" { format!("step {}", plain(time)) } else { format!("{} {unit}", plain(time)) }
 }
 
+/// What a witness is one of, in words. Of a quantile the event is not the claim.
+pub(in crate::report) fn shown(shows: Shows, of: bool) -> &'static str {
+    match shows {
+        Shows::Fails if of => "without it",
+        Shows::Holds if of => "with it",
+        _ => shows.name(),
+    }
+}
+
 /// A trial that shows why, and the command that shows the trial.
 pub(super) fn witness(text: &mut String, witness: &Witness, of: bool, palette: Palette) {
     let Witness { shows, trial, time, unit, what, command, .. } = witness;
@@ -219,12 +238,7 @@ pub(super) fn witness(text: &mut String, witness: &Witness, of: bool, palette: P
         Shows::Holds => Paint::Good,
         Shows::Lowest | Shows::Highest => Paint::Neutral,
     };
-    // Of a quantile the event is not the claim.
-    let (word, paint) = match shows {
-        Shows::Fails if of => ("without it", Paint::Neutral),
-        Shows::Holds if of => ("with it", Paint::Neutral),
-        _ => (shows.name(), paint),
-    };
+    let (word, paint) = (shown(*shows, of), if of { Paint::Neutral } else { paint });
     let decided = if witness.value.is_some() { "at" } else { "decided at" };
     let said = if what.is_empty() { String::new() } else { format!(": {what}") };
     line(

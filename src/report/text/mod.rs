@@ -7,7 +7,7 @@ mod distribution;
 mod rank;
 mod sweep;
 
-pub(super) use block::{moment, printed, trials};
+pub(super) use block::{counts, moment, printed, shown, trials};
 
 use super::number::{count, counted, duration};
 use super::palette::{Paint, Palette};
@@ -20,7 +20,7 @@ pub fn render(run: &Run, palette: Palette) -> String {
     if !run.scenario.is_empty() {
         let _ = writeln!(text, "{}\n", palette.paint(Paint::Strong, &run.scenario));
     }
-    for group in run.results.chunk_by(same_sweep) {
+    for group in by_query(&run.results).chunk_by(|a, b| same_sweep(a, b)) {
         match group {
             [one] => block::write(&mut text, one, palette),
             many => sweep::write(&mut text, many, palette),
@@ -64,22 +64,34 @@ fn begun(result: &QueryResult) -> bool {
     result.counts.trials > 0
 }
 
-fn summary(run: &Run, palette: Palette) -> String {
+/// Results query by query: a sweep comes point by point, with all queries at each.
+pub(super) fn by_query(results: &[QueryResult]) -> Vec<&QueryResult> {
+    let mut ordered: Vec<&QueryResult> = results.iter().collect();
+    ordered.sort_by_key(|result| result.index);
+    ordered
+}
+
+/// How many queries there are of each verdict, without it, and without a trial, each with its word.
+pub(super) fn tally(run: &Run) -> Vec<(u64, &'static str, Paint)> {
     let number = |verdict| {
         run.results.iter().filter(|r| r.verdict == verdict && (verdict.is_some() || begun(r))).count() as u64
     };
     let idle = run.results.iter().filter(|r| r.verdict.is_none() && !begun(r)).count() as u64;
-    let parts: Vec<String> = [
+    let all = [
         (number(Some(Verdict::Satisfied)), "satisfied", Paint::Good),
         (number(Some(Verdict::Violated)), "violated", Paint::Bad),
         (number(Some(Verdict::Undecided)), "undecided", Paint::Caution),
         (number(None), "computed", Paint::Neutral),
         (idle, "not begun", Paint::Caution),
-    ]
-    .into_iter()
-    .filter(|(n, ..)| *n > 0)
-    .map(|(n, word, paint)| palette.paint(paint, &format!("{} {word}", count(n))))
-    .collect();
+    ];
+    all.into_iter().filter(|(n, ..)| *n > 0).collect()
+}
+
+fn summary(run: &Run, palette: Palette) -> String {
+    let parts: Vec<String> = tally(run)
+        .into_iter()
+        .map(|(n, word, paint)| palette.paint(paint, &format!("{} {word}", count(n))))
+        .collect();
     let trials = run.results.iter().map(|r| r.counts.trials).sum::<u64>();
     let mut text = if parts.is_empty() { "no results".to_owned() } else { parts.join(", ") };
     let _ = write!(text, "; {} in {}", counted(trials, "trial"), duration(run.elapsed_s));

@@ -8,8 +8,8 @@ use crate::report::palette::{Paint, Palette};
 use crate::report::{certified, settings};
 
 /// Writes all results of one query.
-pub(super) fn write(text: &mut String, results: &[QueryResult], palette: Palette) {
-    let worst = |r: &&QueryResult| match r.verdict {
+pub(super) fn write(text: &mut String, results: &[&QueryResult], palette: Palette) {
+    let worst = |r: &&&QueryResult| match r.verdict {
         Some(Verdict::Violated) => 3,
         Some(Verdict::Undecided) => 2,
         Some(Verdict::Satisfied) => 1,
@@ -17,12 +17,16 @@ pub(super) fn write(text: &mut String, results: &[QueryResult], palette: Palette
     };
     let Some(first) = results.iter().max_by_key(worst) else { return };
     block::head(text, first, palette);
-    let rows: Vec<Vec<Cell>> = results.iter().map(row).collect();
+    let same_cause = results.iter().all(|r| block::cause(r) == block::cause(first));
+    let rows: Vec<Vec<Cell>> = results.iter().map(|result| row(result, same_cause)).collect();
     block::table(text, &rows, palette);
+    if same_cause {
+        block::line(text, &format!("each {}", block::cause(first)));
+    }
     if !first.interval.is_empty() && results.iter().all(|r| r.interval == first.interval) {
         block::line(text, &palette.paint(Paint::Faint, &format!("intervals: {}", first.interval)));
     }
-    block::method(text, first, palette);
+    block::method(text, &common(first, results), palette);
     let statement = certified(first);
     if results.iter().all(|r| certified(r) == statement) {
         if !statement.is_empty() {
@@ -41,7 +45,14 @@ pub(super) fn write(text: &mut String, results: &[QueryResult], palette: Palette
     }
 }
 
-fn row(result: &QueryResult) -> Vec<Cell> {
+/// A result with those numbers of the procedure that all have: a threshold may be a parameter.
+fn common(first: &QueryResult, results: &[&QueryResult]) -> QueryResult {
+    let mut shown = first.clone();
+    shown.method.numbers.retain(|number| results.iter().all(|result| result.method.numbers.contains(number)));
+    shown
+}
+
+fn row(result: &QueryResult, same_cause: bool) -> Vec<Cell> {
     let (word, paint) = block::word(result);
     let word = if result.verdict.is_some() { word } else { "" };
     let (estimate, interval) = result.estimate.map_or_else(Default::default, |estimate| {
@@ -51,12 +62,21 @@ fn row(result: &QueryResult) -> Vec<Cell> {
         0 => String::new(),
         n => format!("{} unresolved", count(n)),
     };
+    let clipped = match result.clipped {
+        0 => String::new(),
+        n => format!("{} clipped to the range", count(n)),
+    };
+    // Of a quantile the figures are those of a probability.
+    let of = result.of.as_ref().map_or(String::new(), |of| format!("{of}:"));
     vec![
         Cell::left(settings(result)),
         Cell::left(word).paint(paint),
+        Cell::left(of),
         Cell::left(estimate).paint(Paint::Strong),
         Cell::left(interval),
         Cell::right(counted(result.counts.trials, "trial")),
         Cell::left(unresolved),
+        Cell::left(clipped),
+        Cell::left(if same_cause { "" } else { block::cause(result) }),
     ]
 }

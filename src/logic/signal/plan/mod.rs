@@ -33,8 +33,8 @@ pub(super) fn plan(
     for part in order {
         builder.note(part);
         if let Some(slot) = builder.antecedent(part) {
-            let last = asked.of(part).unwrap_or(asked.last);
-            watched.push(Watched { slot, last: scale.time(Tick(last)) });
+            let (first, last) = asked.of(part).unwrap_or((0, asked.last));
+            watched.push(Watched { slot, first: scale.time(Tick(first)), last: scale.time(Tick(last)) });
         }
     }
     if let Some(direct) = builder.direct(root) {
