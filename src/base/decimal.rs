@@ -150,10 +150,18 @@ impl PartialOrd for Decimal {
 
 impl Ord for Decimal {
     fn cmp(&self, other: &Self) -> Ordering {
-        // The sign of the difference; where it does not fit, doubles are far enough apart.
-        match self.sub(*other) {
-            Some(difference) => difference.numerator.cmp(&0),
-            None => self.to_f64().total_cmp(&other.to_f64()),
+        // Whole parts first, then what is left, upside down: as Euclid's algorithm goes, so that nothing overflows.
+        let (mut a, mut b) = ((self.numerator, self.denominator), (other.numerator, other.denominator));
+        loop {
+            let whole = a.0.div_euclid(a.1).cmp(&b.0.div_euclid(b.1));
+            let (left, right) = (a.0.rem_euclid(a.1), b.0.rem_euclid(b.1));
+            if whole != Ordering::Equal {
+                return whole;
+            }
+            if left == 0 || right == 0 {
+                return (left != 0).cmp(&(right != 0));
+            }
+            (a, b) = ((b.1, right), (a.1, left));
         }
     }
 }
@@ -192,6 +200,17 @@ mod tests {
         let step = Decimal::ONE.div(Decimal::whole(60)).unwrap();
         assert_eq!(step.mul(Decimal::whole(60)).unwrap(), Decimal::ONE);
         assert!(Decimal::ONE.div(Decimal::ZERO).is_none());
+    }
+
+    #[test]
+    fn order_is_exact_where_differences_do_not_fit() {
+        let big = i128::MAX / 3;
+        let a = Decimal::ratio(big, big - 1).unwrap();
+        let b = Decimal::ratio(big - 1, big - 2).unwrap();
+        assert_eq!(a.sub(b), None);
+        assert_eq!((a.cmp(&b), b.cmp(&a), a.cmp(&a)), (Ordering::Less, Ordering::Greater, Ordering::Equal));
+        let minus = |x: Decimal| Decimal::ZERO.sub(x).unwrap();
+        assert_eq!(minus(a).cmp(&minus(b)), Ordering::Greater);
     }
 
     #[test]

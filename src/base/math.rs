@@ -126,9 +126,12 @@ pub fn sin_cos_turn(turn: f64) -> (f64, f64) {
     in_quadrant(t.to_bits(), sin, cos)
 }
 
-/// Sine and cosine of an angle in radians, for |x| up to about 1e5 within 2 ulp of 1.
+/// Sine and cosine of an angle in radians, for |x| up to about 1e5 within 2 ulp of 1; beyond that of an angle within an
+/// ulp of x.
 #[inline(always)]
 pub fn sin_cos(x: f64) -> (f64, f64) {
+    // A remainder is exact, so the same everywhere.
+    let x = if x.abs() > 1e5 { x % (2.0 * PI) } else { x };
     const PIO2_HIGH: f64 = 1.570_796_326_734_125_614_17;
     const PIO2_MIDDLE: f64 = 6.077_100_506_303_965_976_60e-11;
     const PIO2_LOW: f64 = 2.022_266_248_795_950_631_5e-21;
@@ -304,6 +307,13 @@ mod tests {
             let y = f64::from(k % 37) * 0.31;
             assert!((atan2(y, x) - y.atan2(x)).abs() < 1e-15, "{y} {x}");
         }
+        // Beyond, of an angle within an ulp of it; always a sine.
+        for x in [1.5e5, 3e8, 1e12, 1e17, 1e20, 1e30, 1e300, -1e20] {
+            let (s, c) = sin_cos(x);
+            assert!((s * s + c * c - 1.0).abs() < 1e-12, "{x}");
+            assert!((s - x.sin()).abs() <= 2e-16 * x.abs(), "{x}");
+        }
+        assert!(sin_cos(f64::INFINITY).0.is_nan());
         assert!((acos(-1.0) - PI).abs() < 1e-15 && acos(1.0) == 0.0);
         assert!((asin(0.5) - 0.5f64.asin()).abs() < 1e-15);
     }

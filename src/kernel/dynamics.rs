@@ -133,7 +133,10 @@ pub fn step(program: &Program, state: &mut State, scratch: &mut Scratch) {
         scratch.lanewise.forget();
     }
     drive::steer(program, state);
-    program.arrivals.step(program, state);
+    // Who comes in has other radii and ranges than who had the place before.
+    if program.arrivals.step(program, state) {
+        scratch.lanewise.forget();
+    }
     dispatch!(scratch.level, simd => finish(simd, program, state, scratch));
 }
 

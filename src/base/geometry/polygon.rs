@@ -1,5 +1,6 @@
 //! A polygon with holes.
 
+use super::shape::Bounds;
 use super::{Segment, Shape, Vec2, cross};
 
 /// A simple outline and the holes in it. Rings are closed implicitly; their sense does not matter.
@@ -119,6 +120,14 @@ impl Polygon {
     /// each other; rims may touch.
     pub fn hole_fault(&self) -> Option<HoleFault> {
         let outline = Self::new(self.outline.clone());
+        let bounds: Vec<Option<Bounds>> =
+            self.holes.iter().map(|hole| Bounds::around(hole.iter().copied())).collect();
+        let apart = |j: usize, k: usize| match (&bounds[j], &bounds[k]) {
+            (Some(a), Some(b)) => {
+                a.high.x < b.low.x || b.high.x < a.low.x || a.high.y < b.low.y || b.high.y < a.low.y
+            }
+            _ => true,
+        };
         for (k, hole) in self.holes.iter().enumerate() {
             let outside = marks(hole).filter(|p| !outline.contains(*p)).count();
             if outside > 0 || rings_cross(hole, &self.outline) {
@@ -128,6 +137,9 @@ impl Polygon {
                 return Some(if apart { HoleFault::Outside(k + 1) } else { HoleFault::Crosses(k + 1) });
             }
             for (j, other) in self.holes[..k].iter().enumerate() {
+                if apart(j, k) {
+                    continue;
+                }
                 let overlap = rings_cross(hole, other)
                     || marks(hole).any(|p| strictly_inside(other, p))
                     || marks(other).any(|p| strictly_inside(hole, p));

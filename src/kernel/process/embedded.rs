@@ -21,7 +21,7 @@ const MOST_WAYS: usize = 1 << 17;
 const NEVER: f64 = 2.0;
 /// Most jumps that a trial is expected to make. Below it a wait that is lost beside the time it is added to is so
 /// rare that they never come in the rows that are an error of the model.
-const MOST_EXPECTED: f64 = 1e12;
+const MOST_EXPECTED: f64 = 1e9;
 
 /// Where a state leads to.
 #[derive(Clone, Copy, Debug)]

@@ -200,20 +200,23 @@ impl Arrivals {
         }
     }
 
-    /// Lets in who has arrived; to be called with the ticks and positions after a step.
-    pub(in crate::kernel) fn step(&self, program: &Program, state: &mut State) {
+    /// Lets in who has arrived; to be called with the ticks and positions after a step. Whether somebody came in.
+    pub(in crate::kernel) fn step(&self, program: &Program, state: &mut State) -> bool {
+        let mut came = false;
         for source in 0..self.doors.len() {
             for lane in state.occupied.iter() {
                 let now = (state.ticks[lane] as f64 + SLACK) * program.dt;
                 let due = state.queues.next[source].0[lane] <= now;
                 if due || state.queues.entered[source][lane] < state.queues.arrived[source][lane] {
-                    self.arrive(program, state, source, lane, now);
+                    came |= self.arrive(program, state, source, lane, now);
                 }
             }
         }
+        came
     }
 
-    fn arrive(&self, program: &Program, state: &mut State, source: usize, lane: usize, now: f64) {
+    fn arrive(&self, program: &Program, state: &mut State, source: usize, lane: usize, now: f64) -> bool {
+        let mut came = false;
         let door = &self.doors[source];
         let key = state.keys[lane];
         while state.queues.next[source].0[lane] <= now {
@@ -222,7 +225,7 @@ impl Arrivals {
             if *arrived >= most {
                 state.queues.full |= Mask::lane(lane);
                 state.queues.which[lane] = source as u32;
-                return;
+                return came;
             }
             *arrived += 1;
             state.queues.next[source].0[lane] += door.interval(key, *arrived);
@@ -232,7 +235,7 @@ impl Arrivals {
             let Some(place) = door.place(state, lane, number) else {
                 state.queues.full |= Mask::lane(lane);
                 state.queues.which[lane] = source as u32;
-                return;
+                return came;
             };
             let (member, later) = (door.members[place], number - place as u32);
             let agent = &program.scenario.agents[member.0 as usize];
@@ -242,12 +245,12 @@ impl Arrivals {
             else {
                 // Nobody can move like that; such laws are refused when they are compiled.
                 state.diverged |= Mask::lane(lane);
-                return;
+                return came;
             };
             let tries = state.queues.tries[source][lane];
             let Some(at) = free_place(program, state, lane, (member, entity), body.radius, tries) else {
                 state.queues.tries[source][lane] += 1;
-                return;
+                return came;
             };
             state.queues.tries[source][lane] = 0;
             state.queues.entered[source][lane] += 1;
@@ -259,7 +262,9 @@ impl Arrivals {
             enter(program, state, member.0 as usize, lane, &body, at, None);
             let slot = state.slot(member.0 as usize, lane);
             crate::kernel::dynamics::prepare(state, program.dt, slot);
+            came = true;
         }
+        came
     }
 }
 

@@ -1,7 +1,7 @@
 //! Multiples of a distribution: `poisson(4) * 1 s` is a whole number of seconds.
 //!
 //! Continuous families stay what they are. Counts become lists of values: of a Poisson law up to where both tails are
-//! beyond what a uniform number of 53 bits can reach.
+//! beyond what a uniform number of 52 bits can reach.
 
 use super::{Family, discrete};
 
