@@ -197,6 +197,33 @@ fn which_results_an_error_of_the_model_leaves_does_not_depend_on_rounds() {
     }
 }
 
+/// A walk that is wrong shortly before its rare end, so that only paths of splitting come there, many at once; the chains
+/// beside it tell them apart.
+const FAULTY_PATHS: &str = "scenario \"Faulty paths\"
+horizon = 40 steps
+process w { var x: 0 .. 12 = 2
+ when x > 0 & x < 12 -> 1/4: x = x + 1 | 3/4: x = x - 1 }
+process d[8] { var k: 0 .. 60 = 0
+ when k < 60 -> 1/2: k = k + 1 | 1/2: k = k }
+process q { var r: 0 .. 3 = 0
+ when w.x == 10 & d[1].k + d[2].k + d[3].k + d[4].k + d[5].k + d[6].k + d[7].k + d[8].k > 9 -> r = r + 4 }
+";
+
+#[test]
+fn of_several_faulty_paths_the_same_one_is_told() {
+    let query = "estimate P(F (w.x > 11)) by splitting(replicas = 40, runs = 2, plain = 100)\n";
+    let (study, _sources) = study(FAULTY_PATHS, query);
+    for seed in 0..4 {
+        let found = |threads| whole(&study, seed, &Threads::new(Some(threads)).unwrap()).failure;
+        let alone = found(1);
+        let Some(Failure::Model(flaw)) = &alone else { panic!("{alone:?}") };
+        assert_eq!(flaw.moment, "in a path of splitting");
+        for threads in [2, 3, 5, 8] {
+            assert_eq!(found(threads), alone, "{threads} threads, seed {seed}");
+        }
+    }
+}
+
 #[test]
 fn every_result_says_what_it_certifies_and_how_to_get_it_again() {
     let (study, _sources) = study(SMALL, QUERIES);

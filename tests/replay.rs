@@ -66,7 +66,13 @@ fn of(queries: &str, words: &[&str]) {
         }
         assert!(lines.len() == 1 || lines.contains(&line));
     }
-    if lines.len() == 1 {
+    // Where time was up during a proof nothing was sampled; the replay has the time, and names the level.
+    let unproven = |result: &Value| {
+        result["method"]["name"] == "calibrated"
+            && result["method"]["gamma"].is_null()
+            && result["trials"] == 0
+    };
+    if lines.len() == 1 && !first["results"].as_array().unwrap().iter().any(unproven) {
         let mut second = again(&place, lines[0]);
         timeless(&mut second);
         for run in [&mut first, &mut second] {
