@@ -105,7 +105,7 @@ mod tests {
     const THRESHOLD: f64 = 6.0;
 
     /// Scores around 0.5 and a little more, in groups of three with the same; some have fewer trials.
-    fn scores(arms: usize) -> Scores {
+    fn scores(arms: usize, rise: f64) -> Scores {
         let mut table = Scores::new(arms, 0.05);
         for arm in 0..arms {
             let trials = if arm % 7 == 3 { 400 } else { 403 };
@@ -113,7 +113,7 @@ mod tests {
                 .map(|index| {
                     let stream =
                         Stream::of(TrialKey { seed: 5, index, branch: 0 }, (arm / 3) as u32, Purpose::Test);
-                    let value = 0.4 + 0.2 * stream.uniform(0) + 0.005 * (arm / 3) as f64;
+                    let value = 0.4 + 0.2 * stream.uniform(0) + rise * (arm / 3) as f64;
                     (index % 200 != 7).then_some(value)
                 })
                 .collect();
@@ -124,7 +124,7 @@ mod tests {
 
     #[test]
     fn classes_leave_no_trace() {
-        let mut table = scores(24);
+        let mut table = scores(24, 0.005);
         let live: Vec<usize> = (0..24).filter(|arm| arm % 5 != 4).collect();
         let plain: Vec<usize> = live
             .iter()
@@ -133,7 +133,7 @@ mod tests {
             .collect();
         assert!(plain.len() > 3 && plain.len() < live.len() - 3, "{plain:?}");
         for fresh in [true, false] {
-            let mut table = if fresh { scores(24) } else { table.clone() };
+            let mut table = if fresh { scores(24, 0.005) } else { table.clone() };
             assert_eq!(among(&mut table, &live, live[2], THRESHOLD, &|arm| arm as f64), plain);
         }
     }
@@ -150,7 +150,7 @@ mod tests {
 
     #[test]
     fn little_work_is_for_the_leader_and_those_who_deviate_least() {
-        let mut table = scores(24);
+        let mut table = scores(24, 0.002);
         let live: Vec<usize> = (0..24).collect();
         let all = among(&mut table.clone(), &live, 23, THRESHOLD, &|_| 0.0);
         let best = *all.iter().min().unwrap();
