@@ -6,7 +6,7 @@
 use smc::compile::{Files, Input, Study, compile};
 use smc::engine::cell::Item;
 use smc::engine::executor::{Cells, Job};
-use smc::engine::outcome::QueryResult;
+use smc::engine::outcome::{Failure, QueryResult, Run};
 use smc::engine::ranks::{Line, serve};
 use smc::engine::{Budget, Call, Executor, Fault, Nobody, Ranks, Threads, run};
 use smc::logic::Invalid;
@@ -48,8 +48,8 @@ rank moves of user by P(near) by okamoto(epsilon = 0.3, delta = 0.2)
 rank moves of user by E(min<=1 s (clearance(user))) in -1 m .. 6 m within 0.3 m
 ";
 
-fn study() -> (Study, Vec<Source>) {
-    let sources = vec![Source::new(SourceId(0), "a.scn", SMALL), Source::new(SourceId(1), "a.bltl", QUERIES)];
+fn study(model: &str, queries: &str) -> (Study, Vec<Source>) {
+    let sources = vec![Source::new(SourceId(0), "a.scn", model), Source::new(SourceId(1), "a.bltl", queries)];
     let (scenario, _) = parse_scenario(&sources[0]);
     let (properties, _) = parse_properties(&sources[1]);
     let files = Files::default();
@@ -133,17 +133,21 @@ fn call() -> Call<'static> {
 }
 
 fn results(study: &Study, executor: &dyn Executor) -> Vec<QueryResult> {
-    let run = run(study, &call(), executor, &Budget::new(2_000, None), &Nobody).unwrap();
-    let mut results = run.results;
-    for result in &mut results {
+    whole(study, 11, executor).results
+}
+
+fn whole(study: &Study, seed: u64, executor: &dyn Executor) -> Run {
+    let call = Call { seed, ..call() };
+    let mut run = run(study, &call, executor, &Budget::new(2_000, None), &Nobody).unwrap();
+    for result in &mut run.results {
         result.elapsed_s = 0.0;
     }
-    results
+    run
 }
 
 #[test]
 fn t16_neither_threads_nor_rounds_nor_sleep_leave_a_trace() {
-    let (study, _sources) = study();
+    let (study, _sources) = study(SMALL, QUERIES);
     let plain = results(&study, &Threads::new(Some(1)).unwrap());
     assert_eq!(plain.len(), study.queries.len());
     for (threads, width, state) in [(1, 1, 1), (2, 1000, 2), (3, 7, 3), (8, 64, 4)] {
@@ -155,9 +159,47 @@ fn t16_neither_threads_nor_rounds_nor_sleep_leave_a_trace() {
     }
 }
 
+/// Eight copies that go on by chance; a ninth process is wrong as soon as they have come far: at seed 1 for the first
+/// time in trial 29.
+const WRONG: &str = "scenario \"Wrong\"
+horizon = 20 steps
+process p[8] { var s: 0 .. 30 = 0
+ when s < 30 -> 1/2: s = s + 1 | 1/2: s = s }
+process q { var r: 0 .. 12 = 0
+ when p[1].s + p[2].s + p[3].s + p[4].s + p[5].s + p[6].s + p[7].s + p[8].s > 85 -> r = r + 13 }
+";
+
+/// The first query reads on until the model is wrong; the others are decided before that in each trial, and stop after
+/// 47, 42, 10, 1 and 2 of them.
+const UNHARMED: &str = "\
+estimate P(F<=#20 (q.r == 11)) by clopper_pearson(trials = 3000)
+check P(F<=#2 (p[1].s == 1)) >= 0.5
+check P(F<=#3 (p[1].s == 1)) >= 0.55
+check P(F<=#1 (p[1].s == 1)) >= 0.01
+estimate P(F<=#1 (p[1].s == 1)) by clopper_pearson(trials = 1)
+estimate P(F<=#1 (p[1].s == 1)) by clopper_pearson(trials = 2)
+";
+
+#[test]
+fn which_results_an_error_of_the_model_leaves_does_not_depend_on_rounds() {
+    let (study, _sources) = study(WRONG, UNHARMED);
+    for (threads, width, state) in [(1, 1, 5), (2, 1000, 6), (3, 7, 7), (8, 64, 8)] {
+        let restless =
+            Restless { threads: Threads::new(Some(threads)).unwrap(), width, state: AtomicU64::new(state) };
+        for executor in [&restless as &dyn Executor, &restless.threads] {
+            let found = whole(&study, 1, executor);
+            let Some(Failure::Model(flaw)) = &found.failure else { panic!("{:?}", found.failure) };
+            assert!(flaw.moment.starts_with("trial 29 at "), "{}", flaw.moment);
+            // Those that stopped later, in the same round or not, would have come to that trial.
+            let left: Vec<u64> = found.results.iter().map(|result| result.counts.trials).collect();
+            assert_eq!(left, [10, 1, 2], "{threads} threads, rounds of {width}");
+        }
+    }
+}
+
 #[test]
 fn every_result_says_what_it_certifies_and_how_to_get_it_again() {
-    let (study, _sources) = study();
+    let (study, _sources) = study(SMALL, QUERIES);
     for result in results(&study, &Threads::new(Some(2)).unwrap()) {
         let query = &result.query;
         assert!(result.certifies.contains("error at most"), "{query}: {}", result.certifies);
@@ -223,7 +265,7 @@ fn head(study: &Study, lines: Vec<Line>) -> Result<Ranks, Fault> {
 
 #[test]
 fn t16_neither_ranks_nor_their_loss_leave_a_trace() {
-    let (study, _sources) = study();
+    let (study, _sources) = study(SMALL, QUERIES);
     let plain = results(&study, &Threads::new(Some(1)).unwrap());
     let never = u64::MAX;
     // The first message of a rank says that it is ready. One is lost with it, others with answers.
@@ -284,7 +326,7 @@ fn relayed(study: &Study, change: impl FnMut(u64, &mut Vec<u8>) + Send + 'static
 
 #[test]
 fn a_rank_with_another_model_is_refused() {
-    let (study, _sources) = study();
+    let (study, _sources) = study(SMALL, QUERIES);
     let mut other = study.clone();
     Arc::make_mut(&mut other.worlds[0].scenario).horizon.0 += 1;
     let refused = head(&study, vec![rank(&study, 1, u64::MAX), rank(&other, 2, u64::MAX)]).err().unwrap();
@@ -298,7 +340,7 @@ fn a_rank_with_another_model_is_refused() {
 
 #[test]
 fn a_rank_that_talks_nonsense_is_as_good_as_lost() {
-    let (study, _sources) = study();
+    let (study, _sources) = study(SMALL, QUERIES);
     let plain = results(&study, &Threads::new(Some(1)).unwrap());
     // The kind of a message, the number of a lease, a message that is cut short and one that is too long.
     for (place, by, why) in
@@ -328,7 +370,7 @@ fn silent_after(last: u64, number: u64) {
 
 #[test]
 fn a_rank_that_falls_silent_blocks_nobody() {
-    let (study, _sources) = study();
+    let (study, _sources) = study(SMALL, QUERIES);
     // Its line stays open. The first messages answer rehearsals, which wait for nobody.
     let silent = relayed(&study, |number, _| silent_after(40, number));
     let ranks = head(&study, vec![silent, rank(&study, 1, u64::MAX)]).unwrap();

@@ -9,6 +9,12 @@ mod program;
 use program::{Place, SMALL, timeless};
 use serde_json::Value;
 
+/// The level of its procedure is in no table and has to be proven.
+const PROVEN: &str = "\
+property near = F<=3 s (min(distance(user, a) for a in crowd) < 1.0 m)
+estimate P(near) within 0.03
+";
+
 const QUERIES: &str = "\
 property near = F<=3 s (min(distance(user, a) for a in crowd) < 1.0 m)
 estimate P(near) within 0.004
@@ -26,7 +32,11 @@ fn again(place: &Place, line: &str) -> Value {
 }
 
 fn holds(words: &[&str]) {
-    let place = Place::new(&[("a.scn", SMALL), ("a.bltl", QUERIES)]);
+    of(QUERIES, words);
+}
+
+fn of(queries: &str, words: &[&str]) {
+    let place = Place::new(&[("a.scn", SMALL), ("a.bltl", queries)]);
     let mut call = vec!["check", "a.scn", "a.bltl", "-q", "--format", "json"];
     call.extend(words);
     let mut first = place.call(&call).json();
@@ -40,9 +50,18 @@ fn holds(words: &[&str]) {
         let mut second = again(&place, line);
         timeless(&mut second);
         let second = &second["results"][0];
-        for field in
-            ["trials", "successes", "failures", "estimate", "low", "high", "certifies", "options", "gap"]
-        {
+        for field in [
+            "method",
+            "trials",
+            "successes",
+            "failures",
+            "estimate",
+            "low",
+            "high",
+            "certifies",
+            "options",
+            "gap",
+        ] {
             assert_eq!(second[field], result[field], "{field} by {line}");
         }
         assert!(lines.len() == 1 || lines.contains(&line));
@@ -74,4 +93,32 @@ fn after_a_deadline() {
         holds(&["--timeout", time, "--only", only, "-j", "2"]);
     }
     holds(&["--timeout", "150ms"]);
+}
+
+/// Neither the clock nor the largest number of trials chooses the procedure.
+#[test]
+fn the_procedure_comes_from_the_property_alone() {
+    let place = Place::new(&[("a.scn", SMALL), ("a.bltl", PROVEN)]);
+    let result = |words: &[&str]| {
+        let call = ["check", "a.scn", "a.bltl", "-q", "--format", "json"];
+        place.call(&[&call[..], words].concat()).json()["results"][0].clone()
+    };
+    let free = result(&[]);
+    assert_eq!((&free["method"]["name"], &free["stopped_by"]), (&"calibrated".into(), &"width".into()));
+    assert!(free["method"]["gamma"].as_f64().is_some_and(|gamma| gamma < 0.05), "{free:#}");
+    let timed = result(&["--timeout", "10min"]);
+    for field in ["method", "trials", "successes", "low", "high", "interval"] {
+        assert_eq!(timed[field], free[field], "{field}");
+    }
+    for words in [["--max-trials", "0"], ["--max-trials", "5"], ["--max-trials", "200"]] {
+        assert_eq!(result(&words)["method"], free["method"], "{words:?}");
+    }
+    for time in ["200ms", "300ms", "400ms"] {
+        of(PROVEN, &["--timeout", time]);
+    }
+    // No time to prove anything: nothing is sampled, and nothing is said.
+    let none = result(&["--timeout", "1ms"]);
+    assert_eq!((&none["method"]["name"], &none["stopped_by"]), (&"calibrated".into(), &"deadline".into()));
+    assert_eq!((&none["trials"], &none["certifies"]), (&0.into(), &"".into()), "{none:#}");
+    assert!(none["warnings"].to_string().contains("no time to prove the level"), "{none:#}");
 }

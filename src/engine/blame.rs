@@ -412,8 +412,9 @@ impl Search<'_> {
         code.run(&self.subject.program, self.state, &mut readings);
         let value = |k: &usize| readings.signals[*k].0[0];
         let best = (0..members.len()).min_by(|a, b| {
-            let (a, b) = if smallest { (value(a), value(b)) } else { (value(b), value(a)) };
-            a.total_cmp(&b)
+            // What is not a number comes last, whatever sign the platform gives it.
+            let (one, other) = if smallest { (value(a), value(b)) } else { (value(b), value(a)) };
+            value(a).is_nan().cmp(&value(b).is_nan()).then(one.total_cmp(&other))
         });
         if let Some(best) = best {
             self.name(members[best]);

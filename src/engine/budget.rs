@@ -76,11 +76,6 @@ impl Budget {
         self.deadline.is_some()
     }
 
-    /// Seconds from the start to the deadline, if there is one.
-    pub fn span(&self) -> Option<f64> {
-        self.deadline.map(|end| end.saturating_duration_since(self.started).as_secs_f64())
-    }
-
     /// Seconds left, if there is a deadline.
     #[allow(clippy::disallowed_methods, reason = "the engine keeps deadlines; trials never see the clock")]
     pub fn seconds_left(&self) -> Option<f64> {

@@ -2,13 +2,14 @@
 
 use super::cell::{Item, Reading};
 use super::onlooker::Onlooker;
-use super::subject::Subject;
+use super::subject::{Subject, lost};
 use super::words;
 use crate::base::lanes::Mask;
 use crate::base::random::TrialKey;
 use crate::base::tick::Tick;
 use crate::kernel::process::Sight;
 use crate::kernel::{Code, Readings, Scratch, State, dynamics, start};
+use crate::logic::Needs;
 use crate::model::{Scenario, TOP_SPEED};
 
 /// Most jumps that are made again to see why a trial is unresolved.
@@ -29,7 +30,9 @@ pub(super) fn unresolved(subject: &Subject, column: usize, item: Item, seed: u64
     let lane = Mask::lane(0);
     dynamics::refresh(program, &mut state, &mut scratch, lane);
     let code = subject.code(&[column]);
-    let Ok(mut observer) = subject.observer(column) else { return String::new() };
+    let (Ok(mut observer), Ok(needs)) = (subject.observer(column), subject.needs(&[column])) else {
+        return String::new();
+    };
     let mut readings = Readings::default();
     observer.start(0);
     loop {
@@ -46,8 +49,9 @@ pub(super) fn unresolved(subject: &Subject, column: usize, item: Item, seed: u64
             return format!("it diverged at {time}: {}; a smaller step may help", runaway(scenario, &state));
         }
         code.run(program, &state, &mut readings);
-        if readings.unresolved.has(0) {
-            return nobody(subject, column, &state, &time);
+        // As for a worker: only where something is looked at in this state that has no value.
+        if lost(&needs, &readings, &state.ticks).has(0) {
+            return nobody(subject, (column, &needs), &state, &time);
         }
         observer.observe(lane, &readings);
         if observer.decided().has(0) {
@@ -126,20 +130,21 @@ pub fn no_start(scenario: &Scenario, fault: start::Fault) -> String {
     }
 }
 
-/// A mean or a middle of nobody: in which condition or number.
-fn nobody(subject: &Subject, column: usize, state: &State, time: &str) -> String {
+/// A mean or a middle of nobody: in which condition or number of those that a column looks at now.
+fn nobody(subject: &Subject, (column, needs): (usize, &Needs), state: &State, time: &str) -> String {
+    let tick = state.ticks[0];
     let scenario = &subject.program.scenario;
     let lost = |code: &Code| {
         let mut readings = Readings::default();
         code.run(&subject.program, state, &mut readings);
         readings.unresolved.has(0)
     };
-    let atoms = subject.atoms_of(column).into_iter().find_map(|k| {
+    let atoms = subject.atoms_of(column).into_iter().filter(|k| needs.atom(*k, tick)).find_map(|k| {
         let code = Code::compile(scenario, std::slice::from_ref(&subject.atoms()[k]), &[]);
         lost(&code).then(|| subject.texts.atoms.get(k).cloned())?
     });
     let text = atoms.or_else(|| {
-        (0..subject.signals().len()).find_map(|k| {
+        subject.signals_of(column).into_iter().filter(|k| needs.signal(*k, tick)).find_map(|k| {
             let code = Code::compile(scenario, &[], std::slice::from_ref(&subject.signals()[k]));
             lost(&code).then(|| subject.texts.signals.get(k).map(|(text, _)| text.clone()))?
         })

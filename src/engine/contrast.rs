@@ -9,6 +9,7 @@ use super::outcome::Stop;
 use super::procedure::{outcome, value};
 use super::rehearsal::Rehearsal;
 use super::subject::Subject;
+use super::survey::LARGEST_ROUND;
 use super::tally::Tally;
 use super::watch::{Forecast, Watch};
 use crate::compile::methods;
@@ -49,6 +50,16 @@ pub(super) struct Sides<'s> {
     pub(super) subjects: [&'s Subject; 2],
     /// Their columns.
     pub(super) columns: [usize; 2],
+}
+
+/// How many pairs the next round has: as in a survey. With a deadline it takes no more than a tenth of the time that is
+/// left, because nothing of a round counts until its second side runs.
+fn round(consumed: u64, width: u64, seconds: f64, budget: &Budget) -> u64 {
+    let least = 2 * width;
+    let size = (consumed / 8).clamp(least, least.max(LARGEST_ROUND));
+    let Some(left) = budget.seconds_left().filter(|_| consumed > 0) else { return size };
+    let soon = 0.1 * left * consumed as f64 / seconds.max(1e-9);
+    size.min(least.max(soon as u64))
 }
 
 /// A comparison on its way.
@@ -164,6 +175,7 @@ impl<'s> Contrast<'s> {
             _ => Vec::new(),
         };
         let mut next = 0u64;
+        let started = budget.elapsed();
         let stop = 'sampling: loop {
             if next >= most {
                 break if self.within.is_none() && most == planned { Stop::Plan } else { Stop::Cap };
@@ -176,7 +188,8 @@ impl<'s> Contrast<'s> {
                 Some([first, second]) => (first.items, first.cells, second.cells),
                 None => {
                     let width = executor.width(&self.jobs[0]) as u64;
-                    let items = Item::run(next, (next / 8).max(2 * width).min(most - next));
+                    let size = round(next, width, budget.elapsed() - started, budget).min(most - next);
+                    let items = Item::run(next, size);
                     let first = executor.run(&self.jobs[0], &items, budget)?;
                     let second = executor.run(&self.jobs[1], &items, budget)?;
                     (items, first, second)

@@ -69,7 +69,8 @@ pub(super) fn of(ask: &Ask, procedure: Option<&Procedure>) -> Method {
                             let looks = ("looks", spending.looks().len() as f64);
                             return named("spending", &[("epsilon", epsilon), ("delta", delta), looks]);
                         }
-                        AnyEstimator::Calibrated(_) => "confidence_sequence",
+                        // Time was up before its level was known, and nothing was sampled.
+                        AnyEstimator::Calibrated(_) => "calibrated",
                         _ => "okamoto",
                     },
                     _ => "calibrated",

@@ -390,7 +390,7 @@ pub enum Status {
     Chosen,
     /// It carries the same certificate as the choice: it, too, is at most the wanted loss worse than the best.
     Tied,
-    /// Shown to be worse than the choice.
+    /// Shown to be worse than another option, which led when that was shown.
     Beaten,
     /// Neither: it may be the best by no more than the certified gap, and may be much worse.
     Open,

@@ -137,10 +137,7 @@ impl Procedure {
             (MeasureKind::Expectation { range: (low, high), .. }, estimator) => {
                 let mean = match estimator {
                     Estimator::Fixed { trials, delta } => Mean::fixed(*low, *high, trials, delta)?,
-                    Estimator::Okamoto { epsilon, delta } => {
-                        let trials = stats::okamoto::size(epsilon / (high - low), delta);
-                        Mean::fixed(*low, *high, trials, delta)?
-                    }
+                    Estimator::Okamoto { epsilon, delta } => Mean::planned(*low, *high, epsilon, delta)?,
                     Estimator::Default { epsilon, delta }
                     | Estimator::Massart { epsilon, delta }
                     | Estimator::Spending { epsilon, delta }
@@ -205,6 +202,12 @@ impl Procedure {
             Self::Mean { mean, threshold, .. } => threshold.is_none() && mean.is_fixed(),
             Self::Quantile { .. } => true,
         }
+    }
+
+    /// Whether time ended the proof of its level, so that nothing could be sampled.
+    pub(super) fn is_unproven(&self) -> bool {
+        matches!(self, Self::Probability(e)
+            if matches!(e.readings().0, AnyEstimator::Calibrated(one) if !one.is_proven()))
     }
 
     /// Whether it is over without having come to what was asked: at its own largest number of trials.
@@ -395,5 +398,9 @@ fn around(estimate: f64, interval: stats::Interval) -> Interval {
 
 /// Share of successes; unresolved trials count half. Of no trials it is not a number.
 pub(super) fn share(counts: super::outcome::Counts) -> f64 {
+    if counts.trials == 0 {
+        // The sign of 0 / 0 is the platform's.
+        return f64::NAN;
+    }
     (counts.successes as f64 + 0.5 * counts.unresolved as f64) / counts.trials as f64
 }

@@ -12,7 +12,7 @@ use super::procedure::Procedure;
 use super::race::{Contest, Field};
 use super::splitting::Question;
 use super::subject::Subject;
-use super::survey::{Inquiry, Survey};
+use super::survey::{Broken, Inquiry, Survey};
 use super::tally::Tally;
 use super::watch::{Outlook, Watch};
 use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Query, Study, World};
@@ -303,24 +303,19 @@ impl<'a> Session<'a> {
         Ok(groups)
     }
 
-    /// How long a proof may take: about a twentieth of the time that there is. Where Okamoto's plan has 40 000 trials
-    /// a proof takes about two seconds, and the time grows with the square.
-    fn patience<'g>(&self, go_on: &'g dyn Fn() -> bool) -> Patience<'g> {
-        let plan = |seconds: f64| (4e4 * (0.05 * seconds / 2.0).sqrt()) as u64;
-        let largest_plan = self.budget.span().map_or(u64::MAX, plan);
-        Patience { largest_plan, trials: self.budget.max_trials, go_on }
-    }
-
     fn inquiry<'q>(&self, query: &'q Query, defaults: &mut Defaults) -> Result<Inquiry<'q>, Fault> {
         let (Ask::Check { measure, .. } | Ask::Estimate { measure, .. }) = &query.ask else {
             return Err(Fault::Unsuitable);
         };
-        let go_on = || !self.budget.is_interrupted();
+        // The procedure never depends on the time that there is. Whoever ends a proof, or finds that its time is up, ends
+        // the sampling too.
+        let go_on = || !self.budget.must_stop();
+        let patience = Patience { go_on: &go_on };
         Ok(Inquiry {
             query,
             column: measure.target.column,
             range: range(measure),
-            procedure: Procedure::new(&query.ask, self.call.seed, (defaults, self.patience(&go_on)))?,
+            procedure: Procedure::new(&query.ask, self.call.seed, (defaults, patience))?,
             tally: Tally::default(),
             glimpse: Glimpse::default(),
             stop: None,
@@ -375,12 +370,12 @@ impl<'a> Session<'a> {
         let mut broken = None;
         let results = match sampling {
             Sampling::Survey(mut survey) => {
-                if let Err(fault) = survey.run(executor, self.budget, watch) {
+                if let Some(Broken { index, fault }) = survey.run(executor, self.budget, watch)? {
                     broken = Some(flaw(fault)?);
                     // Those that had stopped before that trial do not know of it.
-                    let mut decided = survey.inquiries.iter().map(|inquiry| inquiry.stop.is_some());
+                    let mut decided = survey.inquiries.iter().map(|inquiry| inquiry.stopped_before(index));
                     places.retain(|_| decided.next().unwrap_or(false));
-                    survey.inquiries.retain(|inquiry| inquiry.stop.is_some());
+                    survey.inquiries.retain(|inquiry| inquiry.stopped_before(index));
                 }
                 answers.survey(survey)
             }

@@ -47,11 +47,10 @@ pub(super) fn ranked(podium: &Podium, labels: &[&str]) -> Ranking {
     let told = |tally: &super::tally::Tally| tally.counts.trials > tally.counts.unresolved;
     let chosen = podium.finished || podium.tallies.iter().any(told);
     let mut order: Vec<usize> = (0..labels.len()).collect();
-    let key = |arm: &usize| (*arm != choice.arm, -podium.values[*arm].0, *arm);
-    order.sort_by(|a, b| {
-        let ((fa, va, ia), (fb, vb, ib)) = (key(a), key(b));
-        fa.cmp(&fb).then(va.total_cmp(&vb)).then(ia.cmp(&ib))
-    });
+    // Those without trials have no value, and come last.
+    let key = |arm: usize| (arm != choice.arm, podium.tallies[arm].counts.trials == 0);
+    let value = |arm: usize| if key(arm).1 { 0.0 } else { -podium.values[arm].0 };
+    order.sort_by(|&a, &b| key(a).cmp(&key(b)).then(value(a).total_cmp(&value(b))).then(a.cmp(&b)));
     let options: Vec<RankedOption> = order
         .iter()
         .map(|&arm| {

@@ -17,7 +17,7 @@ use super::watch::{Forecast, Watch};
 use crate::compile::study::{Ask, Query};
 
 /// Largest round.
-const LARGEST_ROUND: u64 = 16_384;
+pub(super) const LARGEST_ROUND: u64 = 16_384;
 
 /// One query on its way.
 pub(super) struct Inquiry<'q> {
@@ -45,6 +45,22 @@ pub(super) struct Survey<'q> {
     /// The queries.
     pub(super) inquiries: Vec<Inquiry<'q>>,
     ahead: Option<Rehearsal>,
+}
+
+/// A trial in which the model is wrong, the first that was read.
+pub(super) struct Broken {
+    /// Its index: an inquiry that had stopped before does not know of it.
+    pub(super) index: u64,
+    /// What is wrong.
+    pub(super) fault: Fault,
+}
+
+impl Inquiry<'_> {
+    /// Whether it had stopped before a trial. Whoever stops later in the same round is one who would have seen it in a
+    /// smaller round, so that only this leaves no trace of the size of rounds.
+    pub(super) fn stopped_before(&self, index: u64) -> bool {
+        self.stop.is_some() && self.tally.counts.trials <= index
+    }
 }
 
 impl<'q> Survey<'q> {
@@ -89,13 +105,13 @@ impl<'q> Survey<'q> {
         Ok(forecasts)
     }
 
-    /// Runs until each inquiry has stopped.
+    /// Runs until each inquiry has stopped, or up to a trial in which the model is wrong.
     pub(super) fn run(
         &mut self,
         executor: &dyn Executor,
         budget: &Budget,
         watch: &dyn Watch,
-    ) -> Result<(), Fault> {
+    ) -> Result<Option<Broken>, Fault> {
         let started = budget.elapsed();
         let mut next = 0u64;
         let mut items = Vec::new();
@@ -121,9 +137,16 @@ impl<'q> Survey<'q> {
                 }
             };
             next += items.len() as u64;
-            if !self.read(&items, &cells, started, budget)? {
-                close(&mut self.inquiries, budget);
-                break;
+            match self.read(&items, &cells, started, budget) {
+                Ok(true) => {}
+                Ok(false) => {
+                    close(&mut self.inquiries, budget);
+                    break;
+                }
+                Err(item) => {
+                    let fault = super::trial::fault(self.job.subject, item, self.job.seed);
+                    return Ok(Some(Broken { index: item.index, fault }));
+                }
             }
             self.job.reuse(cells);
             if let Some(inquiry) = self.inquiries.iter().find(|i| i.stop.is_none()) {
@@ -135,12 +158,13 @@ impl<'q> Survey<'q> {
         for inquiry in self.inquiries.iter_mut().filter(|i| i.seconds == 0.0) {
             inquiry.seconds = seconds;
         }
-        Ok(())
+        Ok(None)
     }
 
-    /// Shows a round to the inquiries; false where time ended it. None of them depends on what another one finds, so
-    /// each reads in one go, trial by trial, up to where it stops.
-    fn read(&mut self, items: &[Item], cells: &Cells, started: f64, budget: &Budget) -> Result<bool, Fault> {
+    /// Shows a round to the inquiries; false where time ended it, and the first trial in which somebody sees that the
+    /// model is wrong. None of them depends on what another one finds, so each reads in one go, trial by trial, up to
+    /// where it stops.
+    fn read(&mut self, items: &[Item], cells: &Cells, started: f64, budget: &Budget) -> Result<bool, Item> {
         // What follows an unfinished trial is not looked at: outcomes count in index order.
         let ready = &items[..cells.ready().min(items.len())];
         let mut faulty: Option<usize> = None;
@@ -156,7 +180,7 @@ impl<'q> Survey<'q> {
             }
         }
         if let Some(at) = faulty {
-            return Err(super::trial::fault(self.job.subject, items[at], self.job.seed));
+            return Err(items[at]);
         }
         // Nobody needs what was not finished, if all have stopped before it.
         Ok(ready.len() == items.len() || self.inquiries.iter().all(|i| i.stop.is_some()))

@@ -2,16 +2,36 @@
 
 use crate::stats::{Claim, Coverage, Statement};
 
-/// A number without noise of rounding.
+/// Largest number that is written with an exponent, for the many zeros it would begin with.
+const TINY: f64 = 1e-9;
+
+/// A number without noise of rounding: to ten places, and a small one to ten digits.
 pub(super) fn number(value: f64) -> String {
+    if !value.is_finite() {
+        return as_it_is(value);
+    }
+    let rounded = if value.abs() < 1e-4 {
+        format!("{value:.9e}").parse().unwrap_or(value)
+    } else {
+        (value * 1e10).round() / 1e10
+    };
+    // What is too large to be counted in such places is whole.
+    as_it_is(if rounded.is_finite() { rounded } else { value })
+}
+
+/// A number with all its digits.
+fn as_it_is(value: f64) -> String {
     if !value.is_finite() {
         return if value > 0.0 { "∞".to_owned() } else { "-∞".to_owned() };
     }
-    let magnitude = value.abs();
-    let digits = if magnitude == 0.0 || magnitude >= 1e-4 { 1e10 } else { 1e15 };
-    let rounded = (value * digits).round() / digits;
-    format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    if value.abs() < TINY { format!("{value:e}") } else { format!("{value}") }
 }
+
+/// Largest power of ten by which digits are counted.
+const LARGEST_SCALE: f64 = 1e300;
 
 /// A number with its unit.
 pub(super) fn quantity(value: f64, unit: &str) -> String {
@@ -38,17 +58,21 @@ pub(super) fn ends(low: f64, high: f64, unit: &str) -> String {
     }
     // Two digits of the width.
     let mut scale = 1.0;
-    while width * scale < 10.0 && scale < 1e12 {
+    while width * scale < 10.0 && scale < LARGEST_SCALE {
         scale *= 10.0;
     }
-    let (low, high) = ((low * scale).floor() / scale, (high * scale).ceil() / scale);
-    format!("{} .. {}", quantity(low, unit), quantity(high, unit))
+    // All digits that are left are written: rounding them to the nearest once more could make the interval narrower.
+    let end = |scaled: f64, given: f64| {
+        let said = as_it_is(if scaled.is_finite() { scaled / scale } else { given });
+        if unit.is_empty() { said } else { format!("{said} {unit}") }
+    };
+    format!("{} .. {}", end((low * scale).floor(), low), end((high * scale).ceil(), high))
 }
 
 /// A bound with four digits, rounded upward or downward.
 pub(super) fn rounded(value: f64, upward: bool, unit: &str) -> String {
     let mut scale = 1.0;
-    while value != 0.0 && value.abs() * scale < 1000.0 && scale < 1e15 {
+    while value != 0.0 && value.abs() * scale < 1000.0 && scale < LARGEST_SCALE {
         scale *= 10.0;
     }
     let scaled = value * scale;
@@ -70,12 +94,12 @@ fn three_digits(value: f64, round: impl Fn(f64) -> f64) -> f64 {
         return value;
     }
     let mut scale = 1.0;
-    while value * scale < 100.0 && scale < 1e12 {
+    while value * scale < 100.0 && scale < LARGEST_SCALE {
         scale *= 10.0;
     }
-    // A number that has so few digits already stays as it is.
+    // A number that has so few digits already stays as it is; and so does one that is smaller than any scale.
     let scaled = value * scale;
-    if (scaled - scaled.round()).abs() < 1e-9 { value } else { round(scaled) / scale }
+    if scaled < 100.0 || (scaled - scaled.round()).abs() < 1e-9 { value } else { round(scaled) / scale }
 }
 
 /// The measure of a query as one would say it: `P(safe)`. The check of a quantile is decided as one of a
@@ -158,19 +182,23 @@ pub(super) fn error(error: f64) -> String {
     number(at_most(error))
 }
 
-/// The level that an error leaves, as a percentage, rounded downward: never more than is true.
+/// The level that an error leaves, as a percentage, rounded downward: never more than is true. One of more nines than
+/// anybody counts is said by what it lacks, `1 - 1e-22`.
 pub(super) fn level(error: f64) -> String {
-    let error = 100.0 * at_most(error);
-    if !(error > 0.0 && error < 100.0) {
-        return format!("{} %", number(100.0 - error));
+    let percent = 100.0 * at_most(error);
+    if !(percent > 0.0 && percent < 100.0) {
+        return format!("{} %", number(100.0 - percent));
+    }
+    if error < 1e-11 {
+        return format!("1 - {}", self::error(error));
     }
     // As many places as the three digits of the error have.
     let (mut places, mut scale) = (0usize, 1.0);
-    while places < 15 && (error * scale - (error * scale).round()).abs() > 1e-9 * error * scale {
+    while places < 12 && (percent * scale - (percent * scale).round()).abs() > 1e-9 * percent * scale {
         places += 1;
         scale *= 10.0;
     }
-    format!("{:.places$} %", 100.0 - error)
+    format!("{:.places$} %", 100.0 - percent)
 }
 
 /// Of a condition; "holds" and "fails" are said of what was asked.
@@ -260,6 +288,28 @@ mod tests {
         assert_eq!(at_most(0.049_169_9), 0.0492);
     }
 
+    /// However small an error or a bound is, it is not said to be nothing, and no level is all.
+    #[test]
+    fn small_ones_are_not_rounded_away() {
+        assert_eq!([1e-22, 1.2341e-13, 5e-324].map(error), ["1e-22", "1.24e-13", "5e-324"]);
+        assert_eq!(
+            [1e-22, 1.2341e-13, 1e-11, 2e-11, 1.234e-10].map(level),
+            ["1 - 1e-22", "1 - 1.24e-13", "99.999999999 %", "99.999999998 %", "99.9999999876 %"]
+        );
+        assert_eq!((at_least(3.456e-15), at_most(3.456e-15)), (3.45e-15, 3.46e-15));
+        assert_eq!(number(at_least(3.456e-15)), "3.45e-15");
+        assert_eq!([1e-9, 9.87e-10, -1.5e-20].map(number), ["0.000000001", "9.87e-10", "-1.5e-20"]);
+        assert_eq!(rounded(1.234_56e-18, true, "m"), "1.235e-18 m");
+        assert_eq!(rounded(1.234_56e-18, false, ""), "1.234e-18");
+        assert_eq!(ends(1.23e-15, 7.89e-15, ""), "1.2e-15 .. 7.9e-15");
+        // Narrow, and not small: outward all the same.
+        let (low, high) = (0.499_999_999_999, 0.500_000_000_003_6);
+        let said = ends(low, high, "");
+        let (from, to) = said.split_once(" .. ").unwrap();
+        let (from, to) = (from.parse::<f64>().unwrap(), to.parse::<f64>().unwrap());
+        assert!(from <= low && high <= to && to - from < 2.0 * (high - low), "{said}");
+    }
+
     #[test]
     fn numbers_have_no_noise() {
         assert_eq!(number(0.1 + 0.2), "0.3");
@@ -269,6 +319,8 @@ mod tests {
             ["95 %", "99 %", "98.33 %", "99.5 %", "99.9999999 %"]
         );
         assert_eq!([0.05, 0.05 / 3.0, 1.0 / 3.0].map(error), ["0.05", "0.0167", "0.334"]);
+        assert_eq!([0.0, -0.0, 123_456.789].map(number), ["0", "0", "123456.789"]);
+        assert!(number(1e300).starts_with("1000"));
         let said = statement("P(safe)", &Statement { claim: Claim::Above(0.48), error: 0.01 }, "");
         assert_eq!(said, "P(safe) > 0.48, error at most 0.01");
     }

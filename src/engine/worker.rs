@@ -188,12 +188,18 @@ impl Worker {
             let Some(busy) = self.busy[lane] else { continue };
             if busy.open == 0 || diverged.has(lane) {
                 let row = &mut cells[lane * width..][..width];
-                for (cell, settled) in row.iter_mut().zip(&self.settled) {
-                    if !settled.has(lane) {
+                for sheet in &self.sheets {
+                    for (observer, &place) in sheet.observers.iter().zip(&sheet.places) {
+                        if self.settled[place].has(lane) {
+                            continue;
+                        }
+                        let cell = &mut row[place];
                         cell.steps = self.state.ticks[lane];
-                    }
-                    if faulty.has(lane) && !settled.has(lane) {
-                        cell.reading = Reading::Faulty;
+                        // What its monitors saw before it went astray they have seen.
+                        cell.triggered = observer.triggered(lane);
+                        if faulty.has(lane) {
+                            cell.reading = Reading::Faulty;
+                        }
                     }
                 }
                 finished.push(busy.place, row);

@@ -9,9 +9,6 @@ use super::invalid::{Invalid, probability, range};
 use super::width::Ahead;
 use super::{Counts, Coverage, Estimator, Interval, clopper_pearson, sequence};
 
-/// Trials between two looks at the interval that holds at all times.
-const LOOK_EVERY: u64 = 64;
-
 /// Estimates P within a half-width.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibrated {
@@ -27,7 +24,7 @@ pub struct Calibrated {
 
 impl Calibrated {
     /// Half-width `epsilon` at level `gamma`, of which the caller knows that it keeps the error below
-    /// `delta`: from `calibration::Table` or `calibration::calibrate`.
+    /// `delta`: from `calibration::level`.
     pub fn at_level(epsilon: f64, delta: f64, gamma: f64) -> Result<Self, Invalid> {
         range("epsilon", epsilon, 1e-5, 0.5)?;
         probability("delta", delta)?;
@@ -44,8 +41,8 @@ impl Calibrated {
         })
     }
 
-    /// The same at a level that nobody knows: it has the interval that holds at all times, and stops once that is narrow
-    /// enough.
+    /// The same where time ended before its level was known: it has the interval that holds at all times, and never
+    /// stops by itself.
     pub fn without_level(epsilon: f64, delta: f64) -> Result<Self, Invalid> {
         Ok(Self { proven: false, ..Self::at_level(epsilon, delta, delta)? })
     }
@@ -67,9 +64,7 @@ impl Estimator for Calibrated {
         if !self.finished {
             self.counts.add(success);
             if !self.proven {
-                let looks = self.counts.trials().is_multiple_of(LOOK_EVERY);
-                self.finished = looks && self.interval().half_width() <= self.epsilon;
-                return self.finished;
+                return false;
             }
             let (gamma, width) = (self.gamma, 2.0 * self.epsilon);
             self.finished = self
@@ -88,7 +83,7 @@ impl Estimator for Calibrated {
     }
 
     fn interval(&self) -> Interval {
-        if !(self.finished && self.proven) {
+        if !self.finished {
             return sequence::interval(self.counts, self.delta);
         }
         Interval {
@@ -109,17 +104,11 @@ mod tests {
     use crate::base::random::{Purpose, Stream, TrialKey};
 
     #[test]
-    fn without_a_level_it_stops_when_the_interval_of_all_times_is_narrow() {
+    fn without_a_level_it_has_the_interval_of_all_times_and_never_stops() {
         let mut estimator = Calibrated::without_level(0.05, 0.05).unwrap();
-        let mut trials = 0u64;
-        while !estimator.observe(trials.is_multiple_of(4)) {
-            trials += 1;
-            assert!(trials < 10_000);
-        }
-        let interval = estimator.interval();
-        assert!(interval.half_width() <= 0.05 && interval.low < 0.25 && 0.25 < interval.high);
-        assert_eq!(interval.coverage, sequence::interval(estimator.counts(), 0.05).coverage);
-        assert!(estimator.limit().is_none());
+        assert!((0..10_000u32).all(|k| !estimator.observe(k.is_multiple_of(4))));
+        assert_eq!(estimator.interval(), sequence::interval(estimator.counts(), 0.05));
+        assert!(estimator.limit().is_none() && !estimator.is_proven());
     }
 
     #[test]

@@ -10,15 +10,21 @@
 use super::{Counts, clopper_pearson, okamoto};
 use crate::base::math;
 use crate::base::special::ln_gamma;
+use std::cell::Cell;
 
-/// Smallest half-width for which the proof takes seconds at most.
+/// Smallest half-width for which a proof is tried.
 const LEAST_EPSILON: f64 = 0.005;
-/// Largest size of Okamoto's plan for which it does: the time of a proof grows with its square.
+/// Largest size of Okamoto's plan for which it is: the time of a proof grows with its square, and is seconds at this one.
 const LARGEST_PLAN: u64 = 60_000;
 /// Largest error worth a proof: beyond, trials are so few that the bound is loose.
 const MOST_DELTA: f64 = 0.3;
 /// Rounding that the proof allows for.
 const ROUNDING: f64 = 1e-8;
+/// Most work of a proof, in cells of the lattice: a few seconds. It is counted and not timed, so that a proof comes to the
+/// same on every machine.
+const MOST_WORK: u64 = 6_000_000_000;
+/// The work of one stop in a bound, in cells of the lattice.
+const STOP_WORK: u64 = 8;
 /// Tried levels over delta, the largest first; those above the second number hardly ever hold for errors
 /// of 0.02 and below, and are left out there.
 const LADDER: ([f64; 8], f64) = ([0.76, 0.72, 0.68, 0.64, 0.60, 0.55, 0.48, 0.40], 0.65);
@@ -76,21 +82,17 @@ impl Table {
     }
 }
 
-/// When a proof is given up.
+/// When a proof is given up. Nothing that it says ever leads to another procedure: which one it is comes from the
+/// half-width and the error alone.
 #[derive(Clone, Copy)]
 pub struct Patience<'g> {
-    /// Largest size of Okamoto's plan for which a proof is begun.
-    pub largest_plan: u64,
-    /// Most trials that will be read: where the procedure needs more to stop, its level does not matter.
-    pub trials: u64,
-    /// Whether to go on.
+    /// Whether to go on; once it says no, nothing more is sampled.
     pub go_on: &'g dyn Fn() -> bool,
 }
 
 impl Patience<'_> {
     /// Never.
-    pub const ENDLESS: Patience<'static> =
-        Patience { largest_plan: u64::MAX, trials: u64::MAX, go_on: &|| true };
+    pub const ENDLESS: Patience<'static> = Patience { go_on: &|| true };
 }
 
 /// What there is of a level.
@@ -100,7 +102,7 @@ pub enum Level {
     Proven(f64),
     /// Not worth a proof, or no level of the ladder can be proven.
     None,
-    /// There may be one; patience ended before it was known.
+    /// There may be one; somebody ended the proof before it was known.
     GivenUp,
 }
 
@@ -117,11 +119,6 @@ pub fn level(epsilon: f64, delta: f64, patience: Patience<'_>) -> Level {
     }
     let asked = math::at_most(delta, MOST_DELTA);
     if is_affordable(epsilon, asked) {
-        // Without a success the interval is widest at the smallest number of trials at which it is narrow at all.
-        let least = math::ln(2.0 / asked) / -math::ln_1p(-2.0 * epsilon);
-        if okamoto::size(epsilon, asked) > patience.largest_plan || least > patience.trials as f64 {
-            return Level::GivenUp;
-        }
         if let Some(gamma) = calibrate(epsilon, asked, patience.go_on) {
             return Level::Proven(gamma);
         }
@@ -153,11 +150,11 @@ impl Boundary {
     /// Follows the procedure of half-width `epsilon` at level `gamma`. None if the ends of the intervals
     /// do not rise along the boundary or a stop is too wide, which no level met so far.
     pub fn new(epsilon: f64, gamma: f64) -> Option<Self> {
-        Self::while_patient(epsilon, gamma, &|| true)
+        Self::while_patient(epsilon, gamma, &|_| true)
     }
 
-    /// The same; `None` too where it is given up.
-    fn while_patient(epsilon: f64, gamma: f64, go_on: &dyn Fn() -> bool) -> Option<Self> {
+    /// The same; `None` too where it is given up. `go_on` is told of the work since it was asked last.
+    fn while_patient(epsilon: f64, gamma: f64, go_on: &dyn Fn(u64) -> bool) -> Option<Self> {
         let limit = clopper_pearson::size(epsilon, gamma) as usize;
         let mut ln_factorial = Vec::with_capacity(limit + 1);
         for n in 0..=limit {
@@ -173,7 +170,7 @@ impl Boundary {
         let mut open_from = 0;
         for n in 1..=limit {
             let total = n as f64;
-            if n.is_multiple_of(256) && !go_on() {
+            if n.is_multiple_of(256) && !go_on(256 * (last - first) as u64) {
                 return None;
             }
             // Going on is possible for s in open_from ..= n - open_from.
@@ -275,11 +272,12 @@ impl Boundary {
 
     /// Whether the probability of missing is proven to be at most `delta` for every p.
     pub fn proves(&self, delta: f64) -> bool {
-        self.proves_while_patient(delta, &|| true)
+        self.proves_while_patient(delta, &|_| true)
     }
 
     /// The same; not so where it is given up.
-    fn proves_while_patient(&self, delta: f64, go_on: &dyn Fn() -> bool) -> bool {
+    fn proves_while_patient(&self, delta: f64, go_on: &dyn Fn(u64) -> bool) -> bool {
+        let work = STOP_WORK * self.stops.len() as u64;
         let allowed = delta - ROUNDING;
         // Between neighbouring ends of intervals the sets of stops that miss do not change, so cutting
         // exactly there costs nothing.
@@ -290,16 +288,16 @@ impl Boundary {
         cuts.dedup();
         // A cheap look first: just above each upper end and just below each lower end it misses most.
         let stride = 1 + cuts.len() / 500;
-        if cuts
-            .iter()
-            .step_by(stride)
-            .any(|p| self.miss(p.next_up()) > allowed || (*p > 0.0 && self.miss(p.next_down()) > allowed))
-        {
+        if cuts.iter().step_by(stride).any(|p| {
+            !go_on(2 * work)
+                || self.miss(p.next_up()) > allowed
+                || (*p > 0.0 && self.miss(p.next_down()) > allowed)
+        }) {
             return false;
         }
         let mut open = vec![(0, cuts.len() - 1)];
         while let Some((i, j)) = open.pop() {
-            if !go_on() {
+            if !go_on(work) {
                 return false;
             }
             if self.bound(cuts[i], cuts[j]) <= allowed {
@@ -309,7 +307,7 @@ impl Boundary {
                 let middle = usize::midpoint(i, j);
                 open.push((i, middle));
                 open.push((middle, j));
-            } else if !self.proves_between(cuts[i], cuts[j], allowed) {
+            } else if !self.proves_between(cuts[i], cuts[j], allowed, go_on) {
                 return false;
             }
         }
@@ -317,7 +315,7 @@ impl Boundary {
     }
 
     /// The same between two neighbouring ends, where the bound falls continuously with the width.
-    fn proves_between(&self, c: f64, d: f64, allowed: f64) -> bool {
+    fn proves_between(&self, c: f64, d: f64, allowed: f64, go_on: &dyn Fn(u64) -> bool) -> bool {
         // For p strictly inside, `high < d` is what `high < p` is there, and `low > c` what `low > p` is.
         // At p = c and p = d fewer stops miss.
         let below = self.stops.partition_point(|stop| stop.high < d);
@@ -328,7 +326,7 @@ impl Boundary {
             if bound <= allowed {
                 continue;
             }
-            if depth >= 12 {
+            if depth >= 12 || !go_on(STOP_WORK * self.stops.len() as u64) {
                 return false;
             }
             let middle = 0.5 * (c + d);
@@ -339,21 +337,26 @@ impl Boundary {
     }
 }
 
-/// A level for half-width `epsilon` and error `delta`, proven here and now; None where the proof would take
-/// longer than seconds or no level of the ladder can be proven.
+/// A level for half-width `epsilon` and error `delta`, proven here and now; None where no level of the ladder can be
+/// proven with the work that there is, or somebody ends the proof.
 fn calibrate(epsilon: f64, delta: f64, go_on: &dyn Fn() -> bool) -> Option<f64> {
     let (ladder, most_at_small_errors) = LADDER;
+    let done = Cell::new(0);
+    let go_on = |work: u64| {
+        done.set(done.get() + work);
+        done.get() <= MOST_WORK && go_on()
+    };
     ladder
         .into_iter()
         .filter(|part| delta > 0.02 || *part < most_at_small_errors)
         .map(|part| part * delta)
         .find(|gamma| {
-            Boundary::while_patient(epsilon, *gamma, go_on)
-                .is_some_and(|boundary| boundary.proves_while_patient(delta, go_on))
+            Boundary::while_patient(epsilon, *gamma, &go_on)
+                .is_some_and(|boundary| boundary.proves_while_patient(delta, &go_on))
         })
 }
 
-/// Whether a proof takes seconds at most.
+/// Whether a proof is worth a try, and takes seconds at most.
 fn is_affordable(epsilon: f64, delta: f64) -> bool {
     (LEAST_EPSILON..=0.4).contains(&epsilon)
         && delta > 1e-6

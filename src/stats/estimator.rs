@@ -44,13 +44,15 @@ impl Interval {
         self.low <= x && x <= self.high
     }
 
-    /// The smallest interval that holds both.
+    /// The smallest interval that holds both. It holds at all times if one of them is meant to: of two readings one
+    /// has stopped, and the other goes on.
     pub fn hull(self, other: Self) -> Self {
+        let endless = other.coverage == Coverage::TimeUniform;
         Self {
             low: if other.low < self.low { other.low } else { self.low },
             high: if other.high > self.high { other.high } else { self.high },
             error: if other.error > self.error { other.error } else { self.error },
-            coverage: self.coverage,
+            coverage: if endless { other.coverage } else { self.coverage },
         }
     }
 }
@@ -102,7 +104,8 @@ impl AnyEstimator {
     /// (epsilon of 0.005 or more), else whichever of alpha spending and Okamoto has the smaller largest number
     /// of trials.
     ///
-    /// Where the proof is given up, the estimator stops once the interval that holds at all times is narrow.
+    /// Which one it is depends on `epsilon` and `delta` alone. Where the proof is given up it has no level, and nothing
+    /// is to be sampled with it.
     pub fn within(epsilon: f64, delta: f64, patience: Patience<'_>) -> Result<Self, Invalid> {
         let (spending, okamoto) = (Spending::new(epsilon, delta)?, Okamoto::new(epsilon, delta)?);
         let level = calibration::level(epsilon, delta, patience);
@@ -276,6 +279,21 @@ mod tests {
         assert!(AnyEstimator::within(0.0, 0.05, Patience::ENDLESS).is_err());
         assert!(AnyEstimator::within(0.6, 0.05, Patience::ENDLESS).is_err());
         assert!(AnyEstimator::within(0.01, 1.0, Patience::ENDLESS).is_err());
+    }
+
+    #[test]
+    fn a_reading_that_goes_on_has_an_interval_of_all_times_and_so_have_both() {
+        let mut readings = EstimatorReadings::new(Calibrated::at_level(0.1, 0.05, 0.033).unwrap());
+        readings.observe(Outcome::Unresolved);
+        let mut trials = 1;
+        while !readings.readings().0.finished() {
+            // One reading sees none, and soon stops; the other sees a third.
+            readings.observe(if trials % 3 == 0 { Outcome::Unresolved } else { Outcome::False });
+            trials += 1;
+        }
+        assert!(!readings.finished() && trials < 40, "{trials}");
+        assert_eq!(readings.readings().0.interval().coverage, Coverage::Sequential);
+        assert_eq!(readings.interval().coverage, Coverage::TimeUniform);
     }
 
     #[test]

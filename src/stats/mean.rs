@@ -1,7 +1,7 @@
 //! The mean of a bounded metric: the predictable plug-in empirical Bernstein confidence sequence of
 //! Waudby-Smith and Ramdas, "Estimating means of bounded random variables by betting", JRSS B 86 (2024),
 //! at 0.8 of the error, capped by Hoeffding's bound at the other 0.2; or at the whole of the error, where there
-//! is no cap.
+//! is no cap. Or, at Okamoto's size, Hoeffding's interval alone, at the whole of the error.
 
 use super::invalid::{Invalid, probability, range};
 use super::{Coverage, Interval};
@@ -82,6 +82,8 @@ pub struct Mean {
     delta: f64,
     /// The part of the error that is for the cap.
     cap: f64,
+    /// Half-width of the interval at the planned number of trials, over the range, where there is a plan.
+    planned: Option<f64>,
     limit: u64,
     lower: Sequence,
     /// The reading with unresolved trials at the upper end, once there are any.
@@ -109,6 +111,17 @@ impl Mean {
         Ok(mean)
     }
 
+    /// Values in [low, high], Okamoto's number of trials for half-width `epsilon` in the same unit at error `delta`: the
+    /// interval is then `epsilon` around the mean. Before, it is that of the sequence at the whole error.
+    pub fn planned(low: f64, high: f64, epsilon: f64, delta: f64) -> Result<Self, Invalid> {
+        let part = range("epsilon over the range", epsilon / (high - low), 1e-6, 0.5)?;
+        let trials = super::okamoto::size(part, delta);
+        let mut mean = Self::new(low, high, delta, 0.0, Some(trials))?;
+        mean.limit = trials;
+        mean.planned = Some(part);
+        Ok(mean)
+    }
+
     /// Values in [low, high], error `delta`, as many trials as somebody shows it: the bets are for all times alike, so
     /// that the interval may be looked at after each trial and is narrow at small numbers of them too.
     pub fn running(low: f64, high: f64, delta: f64) -> Result<Self, Invalid> {
@@ -128,6 +141,7 @@ impl Mean {
             epsilon: None,
             delta,
             cap,
+            planned: None,
             limit: 0,
             lower: Sequence::new(delta - cap, aim),
             upper: None,
@@ -209,9 +223,12 @@ impl Mean {
                 // At the number of trials fixed in advance Hoeffding's interval holds too.
                 let n = sequence.n as f64;
                 let mean = sequence.sum / n;
-                let reach = (math::ln(2.0 / self.cap) / (2.0 * n)).sqrt();
-                low = math::at_least(low, mean - reach);
-                high = math::at_most(high, mean + reach);
+                (low, high) = if let Some(reach) = self.planned {
+                    (mean - reach, mean + reach)
+                } else {
+                    let reach = (math::ln(2.0 / self.cap) / (2.0 * n)).sqrt();
+                    (math::at_least(low, mean - reach), math::at_most(high, mean + reach))
+                };
             }
             let scale =
                 |x: f64| self.low + (self.high - self.low) * math::at_most(math::at_least(x, 0.0), 1.0);
@@ -257,6 +274,30 @@ mod tests {
         assert_eq!(mean.read(), (1000, 100, 100));
         let interval = mean.interval();
         assert!(interval.low < 0.5 && interval.high > 0.6);
+    }
+
+    /// As for a probability, whose values are 0 and 1: the same size and the same interval.
+    #[test]
+    fn okamotos_size_gives_what_was_asked_for() {
+        use crate::stats::{Estimator as _, Okamoto};
+        let mut mean = Mean::planned(0.0, 1.0, 0.05, 0.05).unwrap();
+        let mut share = Okamoto::new(0.05, 0.05).unwrap();
+        assert_eq!((mean.limit(), mean.is_fixed()), (738, true));
+        for k in 0..738u32 {
+            let success = k.is_multiple_of(3);
+            // Until it is over the interval is one that holds at all times.
+            assert_eq!(mean.interval().coverage, Coverage::TimeUniform);
+            assert_eq!(mean.observe(Some(f64::from(u8::from(success)))), share.observe(success));
+        }
+        let (one, other) = (mean.interval(), share.interval());
+        assert_eq!((one.low, one.high, one.error), (other.low, other.high, other.error));
+        assert!((one.half_width() - 0.05).abs() < 1e-15);
+        // In the unit of the metric.
+        let mut mean = Mean::planned(10.0, 30.0, 1.0, 0.05).unwrap();
+        while !mean.observe(Some(20.0)) {}
+        assert_eq!(mean.read().0, 738);
+        assert!((mean.interval().low - 19.0).abs() < 1e-12 && (mean.interval().high - 21.0).abs() < 1e-12);
+        assert!(Mean::planned(0.0, 1.0, 0.6, 0.05).is_err() && Mean::planned(1.0, 1.0, 0.1, 0.05).is_err());
     }
 
     /// Uniform values on 5 .. 15 in 0 .. 20, error 0.01: the mean lies above 9 after 275 trials or so, where Hoeffding's

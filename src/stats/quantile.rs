@@ -13,6 +13,11 @@ fn at_most(n: u64, k: u64, q: f64) -> f64 {
     if k >= n { 1.0 } else { beta_tails(k as f64 + 1.0, (n - k) as f64, q, 1.0 - q).upper() }
 }
 
+/// P(Bin(n, q) > k): not one less the other, which would lose what is smaller than the rounding of 1.
+fn above(n: u64, k: u64, q: f64) -> f64 {
+    if k >= n { 0.0 } else { beta_tails(k as f64 + 1.0, (n - k) as f64, q, 1.0 - q).lower() }
+}
+
 /// The smallest k in 0..n for which something holds that holds from some k on; n where it does for none.
 fn first(n: u64, holds: &dyn Fn(u64) -> bool) -> u64 {
     let (mut low, mut high) = (0, n);
@@ -48,9 +53,9 @@ pub fn band_at_all_times(n: u64, delta: f64) -> f64 {
 /// The ranks, from 1, of the order statistics that hold the `q`-quantile with error at most `delta`, half
 /// of it on either side; None where no rank is far enough out.
 pub fn ranks(n: u64, q: f64, delta: f64) -> (Option<u64>, Option<u64>) {
-    // The largest l with P(Bin <= l - 1) <= delta / 2, the smallest u with P(Bin <= u - 1) >= 1 - delta / 2.
+    // The largest l with P(Bin <= l - 1) <= delta / 2, the smallest u with P(Bin > u - 1) <= delta / 2.
     let lower = first(n, &|k| at_most(n, k, q) > 0.5 * delta);
-    let upper = first(n, &|k| at_most(n, k, q) >= 1.0 - 0.5 * delta) + 1;
+    let upper = first(n, &|k| above(n, k, q) <= 0.5 * delta) + 1;
     ((lower >= 1).then_some(lower), (upper <= n).then_some(upper))
 }
 
@@ -255,6 +260,18 @@ mod tests {
                 let miss_high = upper.map_or(0.0, |u| 1.0 - at_most(n, u - 1, q));
                 assert!(miss_low <= 0.025 && miss_high <= 0.025 + 1e-12, "{n} {q}");
             }
+        }
+    }
+
+    /// Both sides of the median are alike, however small the error is.
+    #[test]
+    fn no_error_is_lost_in_rounding() {
+        for delta in [1e-3, 1e-12, 1e-16, 1e-18, 1e-40] {
+            let (lower, upper) = ranks(1000, 0.5, delta);
+            assert_eq!(lower.map(|l| 1001 - l), upper, "{delta}");
+            let (lower, upper) = (lower.unwrap(), upper.unwrap());
+            assert!(above(1000, upper - 1, 0.5) <= 0.5 * delta && above(1000, upper - 2, 0.5) > 0.5 * delta);
+            assert!(at_most(1000, lower - 1, 0.5) <= 0.5 * delta);
         }
     }
 

@@ -99,3 +99,51 @@ fn copies_of_processes_that_decided_are_named() {
         assert!(line.contains(": s["), "{formula}: {line}");
     }
 }
+
+/// Both people fly apart after the first step, in which the left side was true.
+const WILD: &str = "scenario \"Wild\"\nhorizon = 10 s\nstep = 0.1 s\n\
+    scene { region hall: rect (-50, -50) .. (50, 50)  region exit: rect (18, 0) .. (20, 4) }\n\
+    kind adult: sfm preset helbing2000 { radius = 0.25 m  speed = 1.3 m/s  A = 1e9 N }\n\
+    agent user: adult { at = (1, 1)  route = exit }\n\
+    agent other: adult { at = (2.2, 1)  route = (0, 1) }\n";
+
+#[test]
+fn what_a_trial_saw_before_it_went_astray_it_saw() {
+    for (left, idle) in [("user in hall", false), ("user in exit", true)] {
+        let query = format!(
+            "estimate P(G (({left}) => (distance(user, other) > 0.01 m))) by clopper_pearson(trials = 5)\n"
+        );
+        let place = Place::new(&[("a.scn", WILD), ("a.bltl", &query)]);
+        let json = place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "json"]).json();
+        let result = &json["results"][0];
+        assert_eq!(result["unresolved"], 5, "{result}");
+        assert_eq!(result["warnings"].to_string().contains("never triggered"), idle, "{left}: {result}");
+    }
+}
+
+/// The first arrives after some seconds, and nobody before.
+const LATE: &str = "scenario \"Late\"\nhorizon = 12 s\nstep = 0.1 s\n\
+    scene { region west: rect (0, 0) .. (1, 4) }\n\
+    kind adult: sfm preset helbing2000 { radius = 0.25 m  speed = 1.3 m/s }\n\
+    source entrance: adult { at = uniform in rect (4, 1) .. (5, 3)  every = 3 s  route = west then leave }\n";
+
+/// A mean over nobody does no harm where nobody looks at it: the reason is that of the state in which it did, and of the
+/// number that was looked at.
+#[test]
+fn why_a_trial_is_unresolved_is_what_made_it_so() {
+    let queries = "\
+        estimate P(G[1 s, 12 s] (mean(speed(a) for a in entrance) > 0 m/s)) by clopper_pearson(trials = 2)\n\
+        estimate E(max[1 s, 12 s] (mean(speed(a) for a in entrance))) in 0 m/s .. 5 m/s by fixed(trials = 2)\n\
+        estimate E(max[2 s, 12 s] (mean(clearance(b) for b in entrance))) in 0 m .. 50 m by fixed(trials = 2)\n";
+    let place = Place::new(&[("a.scn", LATE), ("a.bltl", queries)]);
+    let json = place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "json"]).json();
+    let said = [
+        "in `mean(speed(a) for a in entrance) > 0 m/s` is over nobody at 1 s",
+        "in `mean(speed(a) for a in entrance)` is over nobody at 1 s",
+        "in `mean(clearance(b) for b in entrance)` is over nobody at 2 s",
+    ];
+    for (result, said) in json["results"].as_array().unwrap().iter().zip(said) {
+        assert_eq!(result["unresolved"], 2, "{result}");
+        assert!(result["warnings"].to_string().contains(said), "{said}: {}", result["warnings"]);
+    }
+}

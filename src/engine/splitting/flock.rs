@@ -13,7 +13,7 @@ use crate::kernel::{Code, Readings, Scratch, State, dynamics, start};
 use crate::logic::{Needs, Robustness};
 use crate::stats::splitting::Flight;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// What a path came to.
 #[derive(Clone, Debug, Default)]
@@ -128,9 +128,13 @@ impl<'s> Flock<'s> {
         budget: &Budget,
     ) -> Result<Option<Vec<Flown>>, Fault> {
         let next = AtomicUsize::new(0);
+        let broken = AtomicBool::new(false);
         let done: Mutex<Landed> = Mutex::new(Vec::with_capacity(paths.len()));
         let failed: Mutex<Option<(usize, Fault)>> = Mutex::new(None);
+        // Places are handed out in order, and each batch ends those before the one that failed: of several faults the first
+        // is told, whichever thread met it.
         let fail = |place: usize, fault: Fault| {
+            broken.store(true, Ordering::Relaxed);
             if let Ok(mut first) = failed.lock()
                 && first.as_ref().is_none_or(|(at, _)| place < *at)
             {
@@ -139,6 +143,9 @@ impl<'s> Flock<'s> {
         };
         executor.everywhere(&|| {
             let mut take = || {
+                if broken.load(Ordering::Relaxed) {
+                    return None;
+                }
                 let place = next.fetch_add(1, Ordering::Relaxed);
                 paths.get(place).map(|path| (place, path))
             };
@@ -170,6 +177,36 @@ impl<'s> Flock<'s> {
     }
 }
 
+/// Keeps the fault of the first of the paths that are found to be faulty. Which lanes are left: theirs, and those of later
+/// paths; the earlier ones go on, in case they are faulty too.
+pub(super) fn first_fault(
+    subject: &Subject,
+    state: &State,
+    faulty: Mask,
+    place: &dyn Fn(usize) -> usize,
+    failed: &mut Option<(usize, Fault)>,
+) -> Mask {
+    for lane in faulty.iter() {
+        if failed.as_ref().is_some_and(|(first, _)| *first < place(lane)) {
+            continue;
+        }
+        let moment = "in a path of splitting".to_owned();
+        let value = |k: usize| state.variables[k].0[lane];
+        let fault = state.faults[lane].map_or(Fault::Unsuitable, |fault| {
+            let flaw = Flaw::of(fault, &subject.program.scenario, &subject.origins, moment, value);
+            Fault::Model(Box::new(flaw))
+        });
+        *failed = Some((place(lane), fault));
+    }
+    let first = failed.as_ref().map_or(usize::MAX, |(first, _)| *first);
+    state
+        .occupied
+        .iter()
+        .filter(|lane| place(*lane) >= first)
+        .map(Mask::lane)
+        .fold(faulty, |all, lane| all | lane)
+}
+
 impl Bird {
     fn run<'p>(
         &mut self,
@@ -179,7 +216,7 @@ impl Bird {
         budget: &Budget,
     ) -> (Landed, Option<(usize, Fault)>) {
         let program = &subject.program;
-        let mut done = Vec::new();
+        let (mut done, mut failed) = (Vec::new(), None);
         let (mut exhausted, mut rounds) = (false, 0u32);
         let clock_every = steps_between_looks(program.scenario.agents.len());
         loop {
@@ -204,24 +241,24 @@ impl Bird {
                 dynamics::refresh(program, &mut self.state, &mut self.scratch, loaded);
             }
             if self.state.occupied.is_empty() {
-                return (done, None);
+                return (done, failed);
             }
-            if let Some(lane) = (self.state.faulty & self.state.occupied).iter().next() {
-                let place = self.busy[lane].as_ref().map_or(0, |busy| busy.place);
-                let moment = "in a path of splitting".to_owned();
-                let value = |k: usize| self.state.variables[k].0[lane];
-                let fault = self.state.faults[lane].map_or(Fault::Unsuitable, |fault| {
-                    let flaw = Flaw::of(fault, &program.scenario, &subject.origins, moment, value);
-                    Fault::Model(Box::new(flaw))
-                });
-                self.rest();
-                return (done, Some((place, fault)));
+            let faulty = self.state.faulty & self.state.occupied;
+            if !faulty.is_empty() {
+                let place = |lane: usize| self.busy[lane].as_ref().map_or(0, |busy| busy.place);
+                let after = first_fault(subject, &self.state, faulty, &place, &mut failed);
+                exhausted = true;
+                for lane in after.iter() {
+                    self.busy[lane] = None;
+                }
+                self.state.occupied &= !after;
+                continue;
             }
             self.observe(subject, &mut done);
             rounds += 1;
             if budget.is_interrupted() || (rounds.is_multiple_of(clock_every) && budget.is_over()) {
                 self.rest();
-                return (done, None);
+                return (done, failed);
             }
             for lane in self.state.occupied.iter() {
                 let Some(busy) = &mut self.busy[lane] else { continue };

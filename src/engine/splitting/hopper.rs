@@ -4,12 +4,11 @@
 //! that state; one that is forced while the state lasts (a window ends) counts from the next jump, which is known
 //! by then. Times are the bits of seconds, which order as the seconds do.
 
-use super::flock::{Flown, Landed};
+use super::flock::{Flown, Landed, first_fault};
 use super::path::Path;
 use crate::base::lanes::{LANES, Mask};
 use crate::engine::budget::Budget;
 use crate::engine::fault::Fault;
-use crate::engine::flaw::Flaw;
 use crate::engine::subject::Subject;
 use crate::kernel::process::{Sight, View};
 use crate::kernel::{Scratch, State, dynamics, start};
@@ -66,12 +65,12 @@ impl Hopper {
     ) -> (Landed, Option<(usize, Fault)>) {
         let program = &subject.program;
         let horizon = program.scenario.clock.seconds(subject.horizon);
-        let mut done = Vec::new();
+        let (mut done, mut failed) = (Vec::new(), None);
         let (mut exhausted, mut rounds) = (false, 0u32);
         loop {
             self.load(subject, take, &mut exhausted, &mut done);
             if self.state.occupied.is_empty() {
-                return (done, None);
+                return (done, failed);
             }
             // Up to where the key changes.
             let mut until = [horizon; LANES];
@@ -81,16 +80,15 @@ impl Hopper {
                 }
             }
             let jumped = dynamics::jump_until(program, &mut self.state, &mut self.scratch, &until);
-            if let Some(lane) = (self.state.faulty & self.state.occupied).iter().next() {
-                let place = self.busy[lane].as_ref().map_or(0, |busy| busy.place);
-                let moment = "in a path of splitting".to_owned();
-                let value = |k: usize| self.state.variables[k].0[lane];
-                let fault = self.state.faults[lane].map_or(Fault::Unsuitable, |fault| {
-                    let flaw = Flaw::of(fault, &program.scenario, &subject.origins, moment, value);
-                    Fault::Model(Box::new(flaw))
-                });
-                self.rest();
-                return (done, Some((place, fault)));
+            let faulty = self.state.faulty & self.state.occupied;
+            if !faulty.is_empty() {
+                let place = |lane: usize| self.busy[lane].as_ref().map_or(0, |busy| busy.place);
+                let after = first_fault(subject, &self.state, faulty, &place, &mut failed);
+                exhausted = true;
+                for lane in after.iter() {
+                    self.busy[lane] = None;
+                }
+                self.state.occupied &= !after;
             }
             self.view.look(&self.state, &mut self.sight);
             for lane in self.state.occupied.iter() {
@@ -108,7 +106,7 @@ impl Hopper {
             rounds += 1;
             if budget.is_interrupted() || (rounds.is_multiple_of(CLOCK_EVERY) && budget.is_over()) {
                 self.rest();
-                return (done, None);
+                return (done, failed);
             }
         }
     }

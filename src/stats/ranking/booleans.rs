@@ -3,6 +3,7 @@
 use super::Table;
 use super::bet::{BETS, Factors, bets, log_mean_below, log_mean_near, reaches};
 use crate::stats::Outcome;
+use std::cmp::Ordering;
 
 /// Outcomes of one arm.
 #[derive(Clone, Debug, Default)]
@@ -144,6 +145,22 @@ impl Table for Booleans {
         // The evidence against being better at all is the smaller.
         let close = reaches(&logs(pair, close), threshold);
         (close && reaches(&logs(pair, worse), threshold), close)
+    }
+
+    fn is_close(&mut self, rival: usize, leader: usize, threshold: f64) -> bool {
+        self.passes(rival, leader, threshold).1
+    }
+
+    fn work(&self, rival: usize, leader: usize) -> u64 {
+        // Words of 64 trials, each about as dear as one trial of two scores.
+        let trials = |arm: usize| self.arms[arm].trials;
+        let common = if trials(rival) < trials(leader) { trials(rival) } else { trials(leader) };
+        8 + common.saturating_sub(self.pairs[rival * self.arms.len() + leader].trials) / 64
+    }
+
+    fn order(&self, one: usize, other: usize) -> Ordering {
+        let (one, other) = (&self.arms[one], &self.arms[other]);
+        (one.trials, &one.sure, &one.possible).cmp(&(other.trials, &other.sure, &other.possible))
     }
 
     fn least_evidence(&mut self, rivals: &[usize], leader: usize, gap: f64) -> f64 {

@@ -4,8 +4,11 @@
 //! outcomes, and when a round is complete the next is a function of all outcomes so far. Any dependence
 //! between the arms of one trial is allowed, so common random numbers only help.
 
+use std::cmp::Ordering;
+
 mod bet;
 mod booleans;
+mod certified;
 mod each;
 mod gap;
 mod race;
@@ -37,7 +40,8 @@ pub struct Choice {
     pub gap: f64,
     /// Other arms that are not known to be worse than the leader.
     pub open: Vec<usize>,
-    /// Arms, the chosen one included, that each carry the full certificate: within epsilon of the best.
+    /// Arms, the chosen one included, that each carry the full certificate: within epsilon of the best. Of very many
+    /// near the best not all are looked at.
     pub certified: Vec<usize>,
 }
 
@@ -64,6 +68,16 @@ pub trait Table {
 
     /// Whether that evidence reaches the threshold: that `rival` is worse, and that it is less than epsilon better.
     fn passes(&mut self, rival: usize, leader: usize, threshold: f64) -> (bool, bool);
+
+    /// Whether the evidence that `rival` is less than epsilon better than `leader` reaches the threshold: the second of
+    /// what `passes` says, of any pair.
+    fn is_close(&mut self, rival: usize, leader: usize, threshold: f64) -> bool;
+
+    /// How much work that is: trials that have to be gone through.
+    fn work(&self, rival: usize, leader: usize) -> u64;
+
+    /// An order of arms by their outcomes, in which only those with the same outcomes are equal.
+    fn order(&self, one: usize, other: usize) -> Ordering;
 
     /// The logarithm of the evidence that a rival is less than `gap` better than `leader`, of the rival for which
     /// it is least; infinite without rivals.

@@ -7,9 +7,10 @@
 //! probability at most delta/(k - 1), and there are k - 1 rivals. Chains of eliminations are harmless, and
 //! so is adaptive sampling: every trial exists before it is looked at, and the bound holds for all prefixes.
 
-use super::{Choice, Share, Table, gap};
+use super::{Choice, Share, Table, certified, gap};
 use crate::base::math;
 use crate::stats::invalid::{Invalid, probability, range};
+use std::cmp::Ordering;
 
 /// Which of the rivals that are not yet decided get more trials in a round.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -182,7 +183,10 @@ impl<T: Table> Race<T> {
 
     /// The smallest gap, at most `most`, which is taken for granted.
     fn gap_below(&mut self, arm: usize, most: f64) -> f64 {
-        let rivals: Vec<usize> = self.live.iter().copied().filter(|rival| *rival != arm).collect();
+        let mut rivals: Vec<usize> = self.live.iter().copied().filter(|rival| *rival != arm).collect();
+        // One of those with the same outcomes stands for all of them.
+        rivals.sort_by(|a, b| self.table.order(*a, *b).then(a.cmp(b)));
+        rivals.dedup_by(|a, b| self.table.order(*a, *b) == Ordering::Equal);
         if rivals.is_empty() {
             return 0.0;
         }
@@ -198,21 +202,15 @@ impl<T: Table> Race<T> {
             self.leader = self.ahead();
         }
         let live = self.live.clone();
-        let mut certified = Vec::new();
-        if self.finished {
-            for arm in &live {
-                let passes = live
-                    .iter()
-                    .all(|rival| rival == arm || self.table.passes(*rival, *arm, self.threshold).1);
-                if passes {
-                    certified.push(*arm);
-                }
-            }
-        }
+        let of = |arm: usize| deviations.and_then(|all| all.get(arm)).copied().unwrap_or(f64::INFINITY);
+        let certified = if self.finished {
+            certified::among(&mut self.table, &live, self.leader, self.threshold, &of)
+        } else {
+            Vec::new()
+        };
         let mut arm = self.leader;
-        if let Some(deviations) = deviations {
+        if deviations.is_some() {
             for other in &certified {
-                let of = |arm: usize| deviations.get(arm).copied().unwrap_or(f64::INFINITY);
                 if of(*other) < of(arm) {
                     arm = *other;
                 }

@@ -3,6 +3,7 @@
 use super::Table;
 use super::bet::{BETS, ROUNDING, bets, log_mean_below, log_mean_near};
 use crate::base::math;
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 /// Factors of a product before its logarithm is taken: each lies in [0.05, 3], so sixteen stay far from
@@ -17,7 +18,7 @@ struct Arm {
     sum: f64,
 }
 
-/// Logarithms of the capital of each bet, on a gap of 0 and of epsilon.
+/// Logarithms of the capital of each bet, on a gap of 0 and of epsilon, after whole chunks.
 #[derive(Clone, Copy, Debug, Default)]
 struct Pair {
     trials: u64,
@@ -40,7 +41,6 @@ impl Scores {
         let (b, a) = (&self.arms[rival].greatest, &self.arms[leader].least);
         let mut start = from;
         while start < to {
-            // Chunks lie on a fixed lattice of trial indices, so that sums do not depend on the rounds.
             let lattice = (start / CHUNK + 1) * CHUNK;
             let end = if lattice < to { lattice } else { to };
             let mut products = [1.0; BETS];
@@ -58,10 +58,23 @@ impl Scores {
         }
     }
 
+    /// The logarithms after all common trials, those after whole chunks given. Chunks lie on a fixed lattice of trial
+    /// indices and only whole ones are kept, so that sums do not depend on the rounds, nor on who was compared when.
+    fn ended(&self, mut logs: [f64; BETS], rival: usize, leader: usize, gap: f64) -> [f64; BETS] {
+        let common = self.common(rival, leader);
+        self.add(&mut logs, rival, leader, gap, (whole(common), common));
+        logs
+    }
+
     fn common(&self, rival: usize, leader: usize) -> u64 {
         let (b, a) = (self.trials(rival), self.trials(leader));
         if a < b { a } else { b }
     }
+}
+
+/// The trials of whole chunks.
+const fn whole(trials: u64) -> u64 {
+    trials - trials % CHUNK
 }
 
 impl Table for Scores {
@@ -98,18 +111,40 @@ impl Table for Scores {
 
     fn evidence(&mut self, rival: usize, leader: usize, threshold: f64) -> (f64, f64) {
         let mut pair = self.pairs.get(&(rival, leader)).copied().unwrap_or_default();
-        let common = self.common(rival, leader);
-        let range = (pair.trials, common);
-        self.add(&mut pair.logs[0], rival, leader, 0.0, range);
-        self.add(&mut pair.logs[1], rival, leader, self.epsilon, range);
-        pair.trials = common;
+        let chunks = whole(self.common(rival, leader));
+        self.add(&mut pair.logs[0], rival, leader, 0.0, (pair.trials, chunks));
+        self.add(&mut pair.logs[1], rival, leader, self.epsilon, (pair.trials, chunks));
+        pair.trials = chunks;
         self.pairs.insert((rival, leader), pair);
-        (log_mean_near(&pair.logs[0], threshold), log_mean_near(&pair.logs[1], threshold))
+        let worse = self.ended(pair.logs[0], rival, leader, 0.0);
+        let close = self.ended(pair.logs[1], rival, leader, self.epsilon);
+        (log_mean_near(&worse, threshold), log_mean_near(&close, threshold))
     }
 
     fn passes(&mut self, rival: usize, leader: usize, threshold: f64) -> (bool, bool) {
         let (worse, close) = self.evidence(rival, leader, threshold);
         (worse >= threshold, close >= threshold)
+    }
+
+    fn is_close(&mut self, rival: usize, leader: usize, threshold: f64) -> bool {
+        // Of those who never led nothing is kept: this is asked once, at the end.
+        let Pair { trials, logs: [_, mut logs] } =
+            self.pairs.get(&(rival, leader)).copied().unwrap_or_default();
+        self.add(&mut logs, rival, leader, self.epsilon, (trials, whole(self.common(rival, leader))));
+        log_mean_near(&self.ended(logs, rival, leader, self.epsilon), threshold) >= threshold
+    }
+
+    fn work(&self, rival: usize, leader: usize) -> u64 {
+        let known = self.pairs.get(&(rival, leader)).map_or(0, |pair| pair.trials);
+        1 + self.common(rival, leader).saturating_sub(known)
+    }
+
+    fn order(&self, one: usize, other: usize) -> Ordering {
+        let bits = |arm: usize| {
+            let Arm { least, greatest, .. } = &self.arms[arm];
+            least.iter().zip(greatest).map(|(low, high)| (low.to_bits(), high.to_bits()))
+        };
+        bits(one).cmp(bits(other))
     }
 
     fn least_evidence(&mut self, rivals: &[usize], leader: usize, gap: f64) -> f64 {
