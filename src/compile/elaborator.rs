@@ -17,7 +17,7 @@ use crate::base::geometry::{Shape, Vec2};
 use crate::base::tick::{Clock, Tick};
 use crate::data::tracks::Recording;
 use crate::logic::{Node, NodeId, Relation, SignalId, Term, TermId, Tree};
-use crate::model::{AgentId, Bool, Num, Scene, Who};
+use crate::model::{AgentId, BehaviourId, Bool, Num, Scene, Who};
 use crate::syntax::ast::{BehaviourDecl, Expr};
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::source::{Source, Span};
@@ -85,8 +85,10 @@ pub(super) struct Elaborator<'a> {
     pub(super) processes: Vec<Declared<'a>>,
     /// Behaviours so far.
     pub(super) behaviours: Vec<&'a BehaviourDecl>,
-    /// Who has which.
+    /// Who has which, by declarations.
     pub(super) withs: Vec<With<'a>>,
+    /// Who has which, one by one.
+    pub(super) having: BTreeSet<(AgentId, BehaviourId)>,
     /// Names of the agents so far.
     pub(super) agent_names: Vec<String>,
     /// Where the starts of people are written.
@@ -158,6 +160,7 @@ impl<'a> Elaborator<'a> {
             processes: Vec::new(),
             behaviours: Vec::new(),
             withs: Vec::new(),
+            having: BTreeSet::new(),
             agent_names: Vec::new(),
             places: Vec::new(),
             undeclared: BTreeSet::new(),

@@ -1,13 +1,12 @@
 //! The whole of a call: worlds and questions.
 
-use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::families::{self, Allowance};
 use super::files::Files;
 use super::measures::Observed;
 use super::number::Number;
 use super::settings::Setting;
-use super::study::{Ask, Column, Estimator, Measure, MeasureKind, Query, Study, Target, World};
+use super::study::{Ask, Column, Estimator, Measure, Query, Study, Target, World};
 use super::symbols::ScopeId;
 use crate::base::decimal::Decimal;
 use crate::model::Scenario;
@@ -239,8 +238,8 @@ impl<'a> Compiler<'a> {
             .collect()
     }
 
-    /// The world in which some parameters take other values.
-    fn under(
+    /// The world in which some parameters take other values, and these in words.
+    pub(super) fn under(
         &mut self,
         bindings: &'a [Binding],
         scope: ScopeId,
@@ -368,31 +367,8 @@ impl<'a> Compiler<'a> {
                 }
             }
             QueryKind::Compare { measure, first, second } => {
-                let sides = (self.under(first, scope, base, point), self.under(second, scope, base, point));
-                let ((one, first_settings), (two, second_settings)) = (sides.0?, sides.1?);
-                let (a, unbounded) = self.measured(one, measure, scope)?;
-                let (b, _) = self.measured(two, measure, scope)?;
-                let dimension = match &a.kind {
-                    MeasureKind::Probability => Dimension::NONE,
-                    MeasureKind::Expectation { dimension, .. } => *dimension,
-                    MeasureKind::Quantile { .. } => {
-                        let error =
-                            Diagnostic::error("E0607", measure.span, "quantiles cannot be compared directly")
-                                .hint("compare `P(metric <= bound)`, or estimate both");
-                        return self.sites[base].elaborator.report(error);
-                    }
-                };
-                let allowance = Allowance { family, claims: 1 };
-                let (within, delta) = self.sites[base]
-                    .elaborator
-                    .comparison_clauses(clauses, &a.kind, dimension, allowance, &locals)?;
-                let ask = Ask::Compare {
-                    first: a,
-                    second: b,
-                    settings: [first_settings, second_settings],
-                    within,
-                    delta,
-                };
+                let sides = [first.as_slice(), second];
+                let (ask, unbounded, one) = self.compare(site, measure, sides, clauses, family, scope)?;
                 self.push(query.span, text, settings, property_name(measure), ask, unbounded, one);
             }
             QueryKind::Rank { what, agent, measure } => {

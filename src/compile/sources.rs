@@ -140,7 +140,11 @@ impl<'a> Elaborator<'a> {
             (Some(limit), Some(people)) if (limit as f64) < expected && people <= MOST_PEOPLE => {
                 Ok((limit, range(people)))
             }
-            (Some(limit), _) if (limit as f64) >= expected => Ok((limit, range(limit))),
+            // More may come than are expected.
+            (Some(limit), enough) if (limit as f64) >= expected => {
+                let people = enough.filter(|people| *people <= MOST_PEOPLE);
+                Ok((limit, range(people.unwrap_or(limit).max(limit))))
+            }
             (None, Some(places)) if places <= MOST_PLACES => Ok((places, range(places))),
             (limit, _) => {
                 let text = format!("about {expected:.0} people would come by `{}`", decl.name.name);

@@ -93,10 +93,13 @@ fn fastest(scenario: &Scenario) -> f64 {
     let modes = scenario.behaviours.attached.iter().flat_map(|one| &one.conduct.states);
     for (parameter, amount) in modes.flat_map(|mode| &mode.changes) {
         if *parameter == Parameter::Speed {
-            speed = at_least(speed, match amount {
-                Amount::Drawn(law) => most(law),
-                Amount::Computed(_) => 2.0 * own,
-            });
+            speed = at_least(
+                speed,
+                match amount {
+                    Amount::Drawn(law) => most(law),
+                    Amount::Computed(_) => 2.0 * own,
+                },
+            );
         }
     }
     at_most(speed, TOP_SPEED)

@@ -163,14 +163,15 @@ impl<'a> Elaborator<'a> {
     /// Gives behaviours to the members of a declaration.
     pub(super) fn attach(&mut self, mut with: With<'a>, members: &[AgentId]) {
         with.members = members.to_vec();
+        for (behaviour, ..) in &with.behaviours {
+            self.having.extend(members.iter().map(|member| (*member, *behaviour)));
+        }
         self.withs.push(with);
     }
 
     /// Whether an agent has a behaviour.
     fn has_behaviour(&self, agent: AgentId, behaviour: BehaviourId) -> bool {
-        self.withs.iter().any(|with| {
-            with.members.contains(&agent) && with.behaviours.iter().any(|(id, ..)| *id == behaviour)
-        })
+        self.having.contains(&(agent, behaviour))
     }
 
     /// Lowers the behaviours of all agents.

@@ -292,8 +292,22 @@ impl<'a> Elaborator<'a> {
         {
             return Ok(Typed::Agent(Who::Agent(only)));
         }
-        let place = self.member(base, index, set.members.len(), locals)?;
-        Ok(Typed::Agent(Who::Agent(set.members[place])))
+        let left_out = match set.except {
+            None => None,
+            Some(Who::Agent(id)) => Some(id),
+            Some(Who::Running(_)) => {
+                let error = Diagnostic::error(
+                    "E0304",
+                    base.span,
+                    "who the members of this are depends on whom the quantifier is at",
+                )
+                .hint("choose a member of a set that is the same for all, as in `crowd[1]`, or quantify over this one");
+                return self.report(error);
+            }
+        };
+        let members: Vec<_> = set.members.iter().filter(|id| Some(**id) != left_out).copied().collect();
+        let place = self.member(base, index, members.len(), locals)?;
+        Ok(Typed::Agent(Who::Agent(members[place])))
     }
 
     /// One copy of an array of processes.

@@ -215,14 +215,7 @@ impl Arrivals {
         came
     }
 
-    fn arrive(
-        &self,
-        program: &Program,
-        state: &mut State,
-        source: usize,
-        lane: usize,
-        now: f64,
-    ) -> bool {
+    fn arrive(&self, program: &Program, state: &mut State, source: usize, lane: usize, now: f64) -> bool {
         let mut came = false;
         let door = &self.doors[source];
         let key = state.keys[lane];
