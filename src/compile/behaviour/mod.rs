@@ -249,7 +249,7 @@ impl<'a> Elaborator<'a> {
         let mut locals = Locals::of(0);
         for (name, argument) in decl.arguments.iter().zip(arguments) {
             let value = self.lower(argument, &Locals::of(0))?;
-            locals.names.push((name.name.clone(), value));
+            locals.bind(&name.name, value);
         }
         locals.behaviour = Some((id.0, locals.names.len() + 1));
         let first = with.members.first().copied().unwrap_or(AgentId(0));
@@ -261,11 +261,12 @@ impl<'a> Elaborator<'a> {
             let _ = self.conditions(decl, &of(&locals, first));
         }
         let conduct = Arc::new(conduct?);
-        let entity = people.entities(&format!("{}.{}", with.name, decl.name.name), with.members.len() as u32);
+        let path = format!("{}.{}", with.name, decl.name.name);
+        let entity = self.entities(people, &path, with.members.len() as u32, written.span)?;
         // Later people on the places of a source have numbers of their own.
         let later = match with.most {
             0 => 0,
-            most => people.entities(&format!("{}.{}.later", with.name, decl.name.name), most),
+            most => self.entities(people, &format!("{path}.later"), most, written.span)?,
         };
         let mut out = Vec::with_capacity(with.members.len());
         for (k, &agent) in with.members.iter().enumerate() {
@@ -294,7 +295,7 @@ impl<'a> Elaborator<'a> {
 /// Names as one agent sees them.
 fn of(locals: &Locals, agent: AgentId) -> Locals {
     let mut own = locals.clone();
-    own.names.insert(0, ("self".to_owned(), Typed::Agent(Who::Agent(agent))));
+    own.names.insert(0, ("self".to_owned(), Arc::new(Typed::Agent(Who::Agent(agent)))));
     own
 }
 
