@@ -264,7 +264,7 @@ fn states_of_many_processes_are_walked_as_far_as_they_fit() {
 #[test]
 fn what_is_known_now_is_computed_now() {
     let scenario = "scenario \"k\"\nhorizon = 2 s\nstep = 0.1 s\nconst k = modulo(7, 2)\nconst j = if(k > 0, 2, 3)\n\
-        scene { point base: (1, 1)  region hall: circle base * 2 - (1, 0) radius norm((3, 4)) }\n\
+        scene { point base: (1, 1)  region hall: circle (base * 2 - (1, 0)) radius norm((3, 4)) }\n\
         kind adult: sfm preset helbing2000\n\
         agent me: adult { at = base + (1, 0)  route = hall }\n\
         agent far: adult { at = (base + (7, 3)) / 2  route = hall }\n\
@@ -284,9 +284,9 @@ fn what_is_known_now_is_computed_now() {
     assert!((angle - std::f64::consts::FRAC_PI_4).abs() < 1e-15, "{angle}");
     for (wrong, code) in [
         ("const z = modulo(1, 0)", "E0405"),
-        ("scene { point a: (1, 1) + (1 s, 1 s) }", "E0303"),
-        ("scene { point a: (1, 1) / 0 }", "E0405"),
-        ("scene { point a: (1e300, 1) * 1e300 }", "E0405"),
+        ("scene { point a: ((1, 1) + (1 s, 1 s)) }", "E0303"),
+        ("scene { point a: ((1, 1) / 0) }", "E0405"),
+        ("scene { point a: ((1e300, 1) * 1e300) }", "E0405"),
     ] {
         let scenario = format!(
             "scenario \"k\"\nhorizon = 2 s\nstep = 0.1 s\n{wrong}\nkind adult: sfm preset helbing2000\nagent me: adult {{ at = (1, 1) }}\n"
