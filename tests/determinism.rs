@@ -1,5 +1,5 @@
 //! T16: every procedure comes to the same verdict, counts and numbers whatever the threads, the width of rounds, the
-//! order in which trials end, and trials that are run a second time.
+//! order in which trials end, trials that are run a second time, and the number of processes, of which some may be lost.
 
 #![allow(clippy::disallowed_methods, reason = "a test sleeps and reads the clock")]
 
@@ -7,12 +7,15 @@ use smc::compile::{Files, Input, Study, compile};
 use smc::engine::cell::Item;
 use smc::engine::executor::{Cells, Job};
 use smc::engine::outcome::QueryResult;
-use smc::engine::{Budget, Call, Executor, Nobody, Threads, run};
+use smc::engine::ranks::{Line, serve};
+use smc::engine::{Budget, Call, Executor, Fault, Nobody, Ranks, Threads, run};
 use smc::logic::Invalid;
 use smc::syntax::parse::{parse_properties, parse_scenario};
 use smc::syntax::source::{Source, SourceId};
+use std::io::{self, PipeReader, PipeWriter, Read, Write};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 const SMALL: &str = include_str!("cli/small.scn");
 
@@ -117,8 +120,8 @@ impl Executor for Restless {
     }
 }
 
-fn results(study: &Study, executor: &dyn Executor) -> Vec<QueryResult> {
-    let call = Call {
+fn call() -> Call<'static> {
+    Call {
         seed: 11,
         command: "smc check a.scn a.bltl".to_owned(),
         point: String::new(),
@@ -126,8 +129,11 @@ fn results(study: &Study, executor: &dyn Executor) -> Vec<QueryResult> {
         only: Vec::new(),
         place: &|_| (String::new(), 0),
         file: String::new(),
-    };
-    let run = run(study, &call, executor, &Budget::new(2_000, None), &Nobody).unwrap();
+    }
+}
+
+fn results(study: &Study, executor: &dyn Executor) -> Vec<QueryResult> {
+    let run = run(study, &call(), executor, &Budget::new(2_000, None), &Nobody).unwrap();
     let mut results = run.results;
     for result in &mut results {
         result.elapsed_s = 0.0;
@@ -164,4 +170,179 @@ fn every_result_says_what_it_certifies_and_how_to_get_it_again() {
         assert_eq!(sides * trials, result.counts.trials + paths, "{query}: {}", result.replay);
         assert!(result.low <= result.estimate.unwrap() && result.estimate.unwrap() <= result.high, "{query}");
     }
+}
+
+/// The voice of a rank: it takes its time, and breaks off in the middle of one of its messages.
+struct Voice {
+    to: PipeWriter,
+    state: u64,
+    left: u64,
+}
+
+impl Write for Voice {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.state =
+            self.state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        std::thread::sleep(Duration::from_micros((self.state >> 33) % 300));
+        if self.left == 0 {
+            self.to.write_all(&bytes[..bytes.len() / 2])?;
+            return Err(io::ErrorKind::BrokenPipe.into());
+        }
+        self.left -= 1;
+        self.to.write_all(bytes)?;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.to.flush()
+    }
+}
+
+/// A line to nobody yet: what the head holds, what the rank hears, and where it speaks.
+fn line() -> (Line, PipeReader, PipeWriter) {
+    let (heard, to) = io::pipe().unwrap();
+    let (from, voice) = io::pipe().unwrap();
+    (Line { from: Box::new(from), to: Box::new(to) }, heard, voice)
+}
+
+/// A rank in a thread, which is lost in its message of this number, counted from 0.
+fn rank(study: &Study, state: u64, lost: u64) -> Line {
+    let (line, heard, to) = line();
+    let study = study.clone();
+    std::thread::spawn(move || {
+        let mut voice = Voice { to, state, left: lost };
+        let _ = serve(Box::new(heard), &mut voice, &|_| Ok(study.clone()));
+    });
+    line
+}
+
+fn head(study: &Study, lines: Vec<Line>) -> Result<Ranks, Fault> {
+    let threads = Threads::new(Some(1)).unwrap();
+    Ranks::new(lines, study, Vec::new(), 1, threads, &Budget::new(1, None))
+}
+
+#[test]
+fn t16_neither_ranks_nor_their_loss_leave_a_trace() {
+    let (study, _sources) = study();
+    let plain = results(&study, &Threads::new(Some(1)).unwrap());
+    let never = u64::MAX;
+    // The first message of a rank says that it is ready. One is lost with it, others with answers.
+    for lost in
+        [&[never][..], &[never, never], &[never; 4], &[9], &[3, never], &[never, 25, 1, 0], &[7, 20, 2, 60]]
+    {
+        let lines = lost.iter().zip(1..).map(|(lost, state)| rank(&study, state, *lost)).collect();
+        let ranks = head(&study, lines).unwrap();
+        for (found, plain) in results(&study, &ranks).iter().zip(&plain) {
+            assert_eq!(found, plain, "ranks that are lost after {lost:?}: {}", plain.query);
+        }
+        let (traffic, gone) = (ranks.traffic(), lost.iter().filter(|lost| **lost != never).count());
+        assert!(traffic.leases >= 9, "{lost:?}: {traffic:?}, {:?}", ranks.warnings());
+        assert_eq!(ranks.warnings().len(), gone, "{lost:?}: {:?}", ranks.warnings());
+        // Who was alone has nobody to take over.
+        assert_eq!(traffic.again > 0, gone > 0 && lost.len() > 1, "{lost:?}: {traffic:?}");
+    }
+}
+
+/// Passes on what a rank says, message by message, each of which may be changed.
+struct Relay<F> {
+    from: Box<dyn Read + Send>,
+    message: Vec<u8>,
+    number: u64,
+    change: F,
+}
+
+impl<F: FnMut(u64, &mut Vec<u8>)> Relay<F> {
+    fn next(&mut self) -> io::Result<()> {
+        let mut length = [0; 4];
+        self.from.read_exact(&mut length)?;
+        self.message = length.to_vec();
+        self.message.resize(4 + u32::from_le_bytes(length) as usize, 0);
+        self.from.read_exact(&mut self.message[4..])?;
+        (self.change)(self.number, &mut self.message);
+        self.number += 1;
+        Ok(())
+    }
+}
+
+impl<F: FnMut(u64, &mut Vec<u8>)> Read for Relay<F> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        if self.message.is_empty() && self.next().is_err() {
+            return Ok(0);
+        }
+        let count = bytes.len().min(self.message.len());
+        bytes[..count].copy_from_slice(&self.message[..count]);
+        self.message.drain(..count);
+        Ok(count)
+    }
+}
+
+/// A rank of whose messages some are changed on the way.
+fn relayed(study: &Study, change: impl FnMut(u64, &mut Vec<u8>) + Send + 'static) -> Line {
+    let Line { from, to } = rank(study, 9, u64::MAX);
+    Line { from: Box::new(Relay { from, message: Vec::new(), number: 0, change }), to }
+}
+
+#[test]
+fn a_rank_with_another_model_is_refused() {
+    let (study, _sources) = study();
+    let mut other = study.clone();
+    Arc::make_mut(&mut other.worlds[0].scenario).horizon.0 += 1;
+    let refused = head(&study, vec![rank(&study, 1, u64::MAX), rank(&other, 2, u64::MAX)]).err().unwrap();
+    assert!(matches!(&refused, Fault::Rank { rank: 2, .. }), "{refused}");
+    assert!(refused.to_string().contains("another model"), "{refused}");
+    // Nor is one that says the same of another version.
+    let change = |number, message: &mut Vec<u8>| message[6] ^= u8::from(number == 0);
+    let refused = head(&study, vec![relayed(&study, change)]).err().unwrap();
+    assert!(refused.to_string().contains("the head is smc"), "{refused}");
+}
+
+#[test]
+fn a_rank_that_talks_nonsense_is_as_good_as_lost() {
+    let (study, _sources) = study();
+    let plain = results(&study, &Threads::new(Some(1)).unwrap());
+    // The kind of a message, the number of a lease, a message that is cut short and one that is too long.
+    for (place, by, why) in
+        [(4, 0x40, "means nothing"), (5, 1, "does not fit"), (0, 1, "means nothing"), (3, 0x80, "too long")]
+    {
+        let change = move |number, message: &mut Vec<u8>| {
+            if number == 6 {
+                message[place] ^= by;
+            }
+        };
+        let ranks = head(&study, vec![relayed(&study, change), rank(&study, 1, u64::MAX)]).unwrap();
+        assert!(results(&study, &ranks) == plain, "byte {place}");
+        let warnings = ranks.warnings();
+        assert!(warnings.len() == 1 && warnings[0].contains(why), "byte {place}: {warnings:?}");
+        assert!(ranks.traffic().again > 0, "byte {place}");
+    }
+}
+
+/// Lets messages pass up to this one, and then nothing any more.
+fn silent_after(last: u64, number: u64) {
+    if number > last {
+        loop {
+            std::thread::park();
+        }
+    }
+}
+
+#[test]
+fn a_rank_that_falls_silent_blocks_nobody() {
+    let (study, _sources) = study();
+    // Its line stays open. The first messages answer rehearsals, which wait for nobody.
+    let silent = relayed(&study, |number, _| silent_after(40, number));
+    let ranks = head(&study, vec![silent, rank(&study, 1, u64::MAX)]).unwrap();
+    let plain = results(&study, &Threads::new(Some(1)).unwrap());
+    assert!(results(&study, &ranks) == plain);
+    assert!(ranks.traffic().again > 0, "its lease is overdue");
+    assert!(ranks.warnings()[0].contains("answers no more"), "{:?}", ranks.warnings());
+    // Nor does it hold up a call whose time is up.
+    let silent = relayed(&study, |number, _| silent_after(0, number));
+    let ranks = head(&study, vec![silent]).unwrap();
+    let started = Instant::now();
+    let found = run(&study, &call(), &ranks, &Budget::new(2_000, Some(Duration::from_millis(200))), &Nobody);
+    assert!(found.is_ok_and(|run| run.results.len() == plain.len()));
+    assert!(started.elapsed() < Duration::from_secs(2), "{:?}", started.elapsed());
+    // Where it is the only one, and time is not up, the head runs what it cannot lease.
+    assert!(results(&study, &ranks) == plain);
 }

@@ -497,3 +497,33 @@ fn a_speed_that_no_human_reaches_is_divergence_of_that_lane_alone() {
         assert!(run.state.diverged.has(0));
     }
 }
+
+#[test]
+fn nobody_steps_over_a_wall_or_through_a_body() {
+    for layout in BOTH {
+        for (speed, dt) in [(7.0, "0.1"), (10.0, "0.1"), (14.0, "0.1"), (12.0, "0.05"), (14.0, "0.02")] {
+            for k in 0..40 {
+                let runner = |x: f64, v: f64| Person {
+                    velocity: p(v, 0.0),
+                    towards: p(v.signum(), 0.0),
+                    drive: speed,
+                    ..person(p(x, 0.0))
+                };
+                let start = f64::from(k) * 0.037;
+                let mut scene = crowd(vec![runner(start, speed)], dt);
+                scene.obstacles.push(wall(p(8.0, -50.0), p(8.0, 50.0)));
+                let mut run = scene.start(layout);
+                for _ in 0..60 {
+                    run.steps(1);
+                    assert!(!(run.at(0).x > 8.0), "{speed} m/s, {dt} s: {}", run.at(0).x);
+                }
+                let mut run = crowd(vec![runner(start, speed), runner(9.0, -speed)], dt).start(layout);
+                for _ in 0..60 {
+                    run.steps(1);
+                    let (a, b) = (run.at(0), run.at(1));
+                    assert!(!(a.x > b.x && (a.y - b.y).abs() < 0.1), "{speed} m/s, {dt} s: {a} {b}");
+                }
+            }
+        }
+    }
+}

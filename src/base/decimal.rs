@@ -203,6 +203,17 @@ mod tests {
     }
 
     #[test]
+    fn order_is_exact_where_differences_do_not_fit() {
+        let big = i128::MAX / 3;
+        let a = Decimal::ratio(big, big - 1).unwrap();
+        let b = Decimal::ratio(big - 1, big - 2).unwrap();
+        assert_eq!(a.sub(b), None);
+        assert_eq!((a.cmp(&b), b.cmp(&a), a.cmp(&a)), (Ordering::Less, Ordering::Greater, Ordering::Equal));
+        let minus = |x: Decimal| Decimal::ZERO.sub(x).unwrap();
+        assert_eq!(minus(a).cmp(&minus(b)), Ordering::Greater);
+    }
+
+    #[test]
     fn order_and_floor() {
         let third = Decimal::ratio(1, 3).unwrap();
         assert!(third < Decimal::ratio(1, 2).unwrap());

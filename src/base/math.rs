@@ -307,6 +307,13 @@ mod tests {
             let y = f64::from(k % 37) * 0.31;
             assert!((atan2(y, x) - y.atan2(x)).abs() < 1e-15, "{y} {x}");
         }
+        // Beyond, of an angle within an ulp of it; always a sine.
+        for x in [1.5e5, 3e8, 1e12, 1e17, 1e20, 1e30, 1e300, -1e20] {
+            let (s, c) = sin_cos(x);
+            assert!((s * s + c * c - 1.0).abs() < 1e-12, "{x}");
+            assert!((s - x.sin()).abs() <= 2e-16 * x.abs(), "{x}");
+        }
+        assert!(sin_cos(f64::INFINITY).0.is_nan());
         assert!((acos(-1.0) - PI).abs() < 1e-15 && acos(1.0) == 0.0);
         assert!((asin(0.5) - 0.5f64.asin()).abs() < 1e-15);
     }

@@ -1,8 +1,9 @@
 //! Floor 0: what every other floor may use and what knows nothing of people, languages or statistics.
 //!
 //! Geometry of the plane, mathematics with the same bits on every machine, counter-based random
-//! streams, exact decimals, ticks of the clock, lane vectors and recorded traces.
+//! streams, exact decimals, ticks of the clock, lane vectors and recorded traces; numbers as bytes and back.
 
+pub mod bytes;
 pub mod decimal;
 pub mod fingerprint;
 pub mod geometry;

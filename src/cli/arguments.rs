@@ -86,6 +86,9 @@ pub(super) struct Check {
     /// Number of threads; all cores by default. Never changes a result.
     #[arg(short = 'j', long)]
     pub(super) threads: Option<usize>,
+    /// Number of further processes that run the trials and share the threads. Never changes a result.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub(super) ranks: Option<u16>,
     /// Most trials of one query (of a ranking: of one option); one million by default.
     #[arg(long, value_name = "N")]
     pub(super) max_trials: Option<u64>,

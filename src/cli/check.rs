@@ -1,16 +1,17 @@
 //! `smc check`: decide, estimate, compare, rank.
 
 use super::arguments::{Check, OutputFormat};
-use super::complaint;
-use super::inputs;
 use super::progress::Progress;
+use super::ranks::Crew;
+use super::shelf::{Shelf, pack};
 use super::terminal::{Colors, print, say};
+use super::{complaint, inputs, ranks};
 use crate::base::fingerprint::Fingerprint;
 use crate::compile::Study;
 use crate::compile::nearest::nearest;
 use crate::engine::budget::DEFAULT_TRIALS;
 use crate::engine::outcome::{Failure, Finding, Run};
-use crate::engine::{Budget, Call, Fault, Outlook, Threads, forecast, run as run_study};
+use crate::engine::{Budget, Call, Fault, Outlook, Ranks, Threads, forecast, run as run_study};
 use crate::report::{self, ExitCode as Exit, Format, Palette};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
@@ -18,7 +19,9 @@ use std::sync::Arc;
 
 /// Runs the command.
 pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
-    let inputs = inputs::load(&arguments.model, &arguments.properties);
+    let shelf = if arguments.ranks.is_some() { Shelf::Kept(Vec::new()) } else { Shelf::Files };
+    let mut inputs = inputs::load_from(shelf, &arguments.model, &arguments.properties);
+    let shelf = std::mem::replace(&mut inputs.shelf, Shelf::Files);
     super::diagnose(&inputs, colors);
     let desk = Desk {
         arguments,
@@ -41,10 +44,7 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
             "warning: {most} threads are as many as help here; results are the same with any number\n"
         ));
     }
-    let threads = match Threads::new(arguments.threads.map(|threads| threads.min(most))) {
-        Ok(threads) => threads,
-        Err(error) => return desk.fault(&Fault::Threads(error.to_string())),
-    };
+    let threads = arguments.threads.map(|threads| threads.min(most));
     let mut budget = Budget::new(arguments.max_trials.unwrap_or(DEFAULT_TRIALS), arguments.timeout);
     budget.max_total = arguments.total_trials;
     let budget = Arc::new(budget);
@@ -56,6 +56,11 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
         }
         interrupted.interrupt();
     });
+    let crew = match crew(arguments, study, &shelf, threads, &budget) {
+        Ok(crew) => crew,
+        Err(error) => return desk.refuse(error),
+    };
+    drop(shelf);
     let place = |span: Span| locate(&inputs.sources, span);
     let call = Call {
         seed: arguments.seed,
@@ -67,22 +72,52 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
         file: arguments.model.scenario.clone(),
     };
     if arguments.forecast {
-        return match forecast(study, &call, &threads, &budget) {
+        return match forecast(study, &call, crew.executor(), &budget) {
             Ok(outlook) => desk.tell(&outlook),
             Err(fault) => desk.fault(&fault),
         };
     }
     let progress = Progress::new(arguments.quiet);
-    match run_study(study, &call, &threads, &budget, &progress) {
-        Ok(run) => desk.finish(run),
+    match run_study(study, &call, crew.executor(), &budget, &progress) {
+        Ok(mut run) => {
+            // An interruption ends ranks too.
+            if !run.interrupted {
+                run.warnings.extend(crew.warnings());
+            }
+            drop(crew);
+            desk.finish(run)
+        }
         Err(fault) => desk.fault(&fault),
     }
 }
 
+/// Those who run the trials of a call.
+fn crew(
+    arguments: &Check,
+    study: &Study,
+    shelf: &Shelf,
+    threads: Option<usize>,
+    budget: &Budget,
+) -> Result<Crew, Diagnostic> {
+    let own =
+        Threads::new(threads).map_err(|error| complaint::refusal(&Fault::Threads(error.to_string())))?;
+    let Some(count) = arguments.ranks.map(usize::from) else { return Ok(Crew::Alone(own)) };
+    let each = (threads.unwrap_or_else(cores) / count).max(1);
+    let packed = pack(&arguments.model, &arguments.properties, shelf);
+    let (children, lines) = ranks::start(count)
+        .map_err(|reason| complaint::argument(reason, "leave `--ranks` out: threads do the same"))?;
+    let ranks =
+        Ranks::new(lines, study, packed, each, own, budget).map_err(|fault| complaint::refusal(&fault))?;
+    Ok(Crew::Led { ranks: Box::new(ranks), _children: children })
+}
+
+fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
+}
+
 /// So many threads are run at most: each has trials of its own to begin and to throw away.
 fn most_threads() -> usize {
-    let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-    (2 * cores).max(16)
+    (2 * cores()).max(16)
 }
 
 /// Where what a call has to say is handed out, in the format that was asked for.

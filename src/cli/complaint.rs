@@ -42,6 +42,7 @@ pub(super) fn refusal(fault: &Fault) -> Diagnostic {
             .hint("shorter bounds or a longer step need less memory"),
         Fault::Unsuitable => Diagnostic::placeless("E0603", fault.to_string())
             .hint("`smc explain E0603` says which procedure goes with what"),
+        Fault::Rank { .. } => argument(fault.to_string(), "all processes of a call must be the same program"),
         Fault::Threads(_) => argument(fault.to_string(), "ask for fewer: `--threads 1`"),
     }
 }

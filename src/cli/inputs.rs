@@ -1,6 +1,7 @@
 //! Files of a call: read, decoded, parsed, compiled.
 
 use super::arguments::Model;
+use super::shelf::Shelf;
 use crate::base::fingerprint::Fingerprint;
 use crate::compile::{Files, Input, Setting, SettingValue, Study, compile, own_errors, requests};
 use crate::engine::outcome::{Finding, Spot};
@@ -21,6 +22,8 @@ pub(super) struct Inputs {
     pub(super) prints: Vec<(String, Fingerprint)>,
     /// What compilation yields, if nothing is wrong.
     pub(super) study: Option<Study>,
+    /// What was opened, for others who are to compile the same.
+    pub(super) shelf: Shelf,
 }
 
 /// Errors and warnings as reports quote them.
@@ -67,6 +70,7 @@ pub(super) fn shown(name: &str) -> &str {
 }
 
 struct Reader {
+    shelf: Shelf,
     sources: Vec<Source>,
     prints: Vec<(String, Fingerprint)>,
     diagnostics: Vec<Diagnostic>,
@@ -75,7 +79,7 @@ struct Reader {
 impl Reader {
     fn source(&mut self, name: &str) -> Option<Source> {
         let id = SourceId(self.sources.len() as u16);
-        let bytes = match read(name) {
+        let bytes = match self.shelf.open(name, || read(name)) {
             Ok(bytes) => bytes,
             Err(reason) => {
                 self.diagnostics.push(Diagnostic::placeless("E0701", reason));
@@ -172,9 +176,14 @@ fn find(path: &str, scenario: &str, data: &[PathBuf]) -> Result<PathBuf, String>
 }
 
 /// Reads, parses and compiles what a call names.
-#[allow(clippy::disallowed_methods, reason = "files are opened by the command line")]
 pub(super) fn load(model: &Model, properties: &[String]) -> Inputs {
-    let mut reader = Reader { sources: Vec::new(), prints: Vec::new(), diagnostics: Vec::new() };
+    load_from(Shelf::Files, model, properties)
+}
+
+/// The same, with files from a shelf.
+#[allow(clippy::disallowed_methods, reason = "files are opened by the command line")]
+pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> Inputs {
+    let mut reader = Reader { shelf, sources: Vec::new(), prints: Vec::new(), diagnostics: Vec::new() };
     let twice = std::iter::once(&model.scenario).chain(properties).filter(|name| *name == "-").count() > 1;
     if twice {
         reader.diagnostics.push(Diagnostic::placeless("E0701", "standard input can be read once only"));
@@ -212,15 +221,17 @@ pub(super) fn load(model: &Model, properties: &[String]) -> Inputs {
     let settings: Vec<Setting> = model.set.iter().filter_map(|text| reader.setting(text)).collect();
     let mut files = Files::default();
     for request in requests(&scenario) {
-        let contents = find(&request.path, &model.scenario, &model.data).and_then(|path| {
-            std::fs::read(&path).map_err(|e| format!("`{}` cannot be read: {e}", request.path))
+        let contents = reader.shelf.open(&request.path, || {
+            find(&request.path, &model.scenario, &model.data).and_then(|path| {
+                std::fs::read(&path).map_err(|e| format!("`{}` cannot be read: {e}", request.path))
+            })
         });
         if let Ok(bytes) = &contents {
             reader.prints.push((request.path.clone(), Fingerprint::of(bytes)));
         }
         files.insert(request.path, contents);
     }
-    let Reader { sources, prints, mut diagnostics } = reader;
+    let Reader { shelf, sources, prints, mut diagnostics } = reader;
     let mut study = None;
     if complete {
         let input = Input {
@@ -245,5 +256,5 @@ pub(super) fn load(model: &Model, properties: &[String]) -> Inputs {
         let warning = Diagnostic::warning("W0602", Span::new(source.id, 0, 0), "nothing is asked");
         diagnostics.push(warning.hint("add a query, as in `check P(safe) >= 0.9` or `estimate P(safe)`"));
     }
-    Inputs { sources, diagnostics, prints, study }
+    Inputs { sources, diagnostics, prints, study, shelf }
 }

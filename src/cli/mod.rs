@@ -9,6 +9,8 @@ mod format;
 mod inputs;
 mod manual;
 mod progress;
+mod ranks;
+mod shelf;
 mod show;
 mod simulate;
 mod terminal;
@@ -25,6 +27,9 @@ const STACK: usize = 256 << 20;
 
 /// Runs the program.
 pub fn run() -> process::ExitCode {
+    if std::env::args_os().skip(1).eq([ranks::WORD]) {
+        return process::ExitCode::from(rank().code());
+    }
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
@@ -55,6 +60,16 @@ pub fn run() -> process::ExitCode {
         }
     };
     process::ExitCode::from(exit.code())
+}
+
+/// Runs the program as a rank of another one, which hears of it if that fails.
+fn rank() -> Exit {
+    let worker = std::thread::Builder::new().stack_size(STACK).spawn(ranks::run);
+    match worker.map(std::thread::JoinHandle::join) {
+        Ok(Ok(exit)) => exit,
+        Ok(Err(_)) => Exit::Bug,
+        Err(_) => Exit::Wrong,
+    }
 }
 
 fn dispatch(arguments: &Arguments) -> Exit {

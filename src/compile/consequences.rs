@@ -9,6 +9,7 @@ use super::queries::Input;
 use crate::syntax::ast::{Expr, ExprKind, Ident, Item, PropertyItem};
 use crate::syntax::diagnostic::{Diagnostic, Label, Severity};
 use crate::syntax::source::{Source, SourceId, Span};
+use std::collections::BTreeSet;
 
 /// Codes of names that are not there, or of what needs one.
 const NAMES: [&str; 8] = ["E0201", "E0203", "E0205", "E0208", "E0209", "E0210", "E0505", "E0606"];
@@ -82,7 +83,6 @@ pub fn own_errors(found: Vec<Diagnostic>, said: &[Diagnostic], input: &Input<'_>
 
 /// What could not be read.
 struct Broken<'i> {
-    said: &'i [Diagnostic],
     sources: &'i [Source],
     /// Texts that were skipped.
     lost: Vec<(Span, &'i str)>,
@@ -93,24 +93,35 @@ struct Broken<'i> {
     /// Whether moves, or parts of the scene, were not read.
     moves: bool,
     scenery: bool,
+    /// Sources with errors, and the lines that say no more since they could not be read.
+    sources_broken: BTreeSet<SourceId>,
+    derailed: BTreeSet<(SourceId, usize)>,
 }
 
 impl<'i> Broken<'i> {
-    fn of(said: &'i [Diagnostic], input: &Input<'i>) -> Self {
+    fn of(said: &[Diagnostic], input: &Input<'i>) -> Self {
         let files = input.properties.iter();
         let lost = input.scenario.lost.iter().chain(files.clone().flat_map(|file| &file.lost));
         let cut = input.scenario.cut.iter().chain(files.flat_map(|file| &file.cut));
         let text = |span: &Span| Some((*span, word(input.sources, *span)?));
         let lost: Vec<(Span, &str)> = lost.filter_map(text).collect();
         let mut broken = Self {
-            said,
             sources: input.sources,
             suspects: Vec::new(),
             any_name: said.iter().any(|one| BRACKETS.contains(&one.code)),
             moves: false,
             scenery: false,
+            sources_broken: BTreeSet::new(),
+            derailed: BTreeSet::new(),
             lost: lost.clone(),
         };
+        for one in said.iter().filter(|one| one.severity == Severity::Error) {
+            let Some(place) = &one.place else { continue };
+            broken.sources_broken.insert(place.span.source);
+            if DERAILS.contains(&one.code) || BRACKETS.contains(&one.code) {
+                broken.derailed.extend(broken.line_of(place.span));
+            }
+        }
         for (_, text) in lost.into_iter().chain(cut.filter_map(text)) {
             broken.add(text);
         }
@@ -133,8 +144,13 @@ impl<'i> Broken<'i> {
     }
 
     fn is_broken(&self, source: SourceId) -> bool {
-        let at = |one: &Diagnostic| one.place.as_ref().map(|place| place.span.source);
-        self.said.iter().any(|one| one.severity == Severity::Error && at(one) == Some(source))
+        self.sources_broken.contains(&source)
+    }
+
+    /// The line in which a place starts.
+    fn line_of(&self, span: Span) -> Option<(SourceId, usize)> {
+        let source = self.sources.iter().find(|source| source.id == span.source)?;
+        Some((span.source, source.line_column(span.start).0))
     }
 
     /// Whether a name may have been declared where it stands in what was skipped.
@@ -155,17 +171,7 @@ impl<'i> Broken<'i> {
             return true;
         }
         // A line that could not be read says no more.
-        let line_of = |span: Span| {
-            let source = self.sources.iter().find(|source| source.id == span.source)?;
-            Some((span.source, source.line_column(span.start).0))
-        };
-        let of_line = self.said.iter().any(|said| {
-            if !DERAILS.contains(&said.code) && !BRACKETS.contains(&said.code) {
-                return false;
-            }
-            let at = said.place.as_ref().filter(|_| said.severity == Severity::Error);
-            at.is_some_and(|at| line_of(at.span) == line_of(place))
-        });
+        let of_line = self.line_of(place).is_some_and(|line| self.derailed.contains(&line));
         let of_clock = CLOCKS.contains(&one.code) || one.code == DIMENSION && one.title.contains("(steps)");
         let of_options = one.code == NO_OPTIONS && self.lost.iter().any(|(part, _)| within(*part, place));
         let of_moves = one.code == NO_MOVES && self.moves;

@@ -259,7 +259,7 @@ impl<'a> Elaborator<'a> {
                         ["horizon", "step"].into_iter(),
                     );
                     let near = super::nearest::nearest(&name.name, ["horizon", "step"].into_iter());
-                    meant = [meant[0] | (near == Some("horizon")), meant[1] | (near == Some("step"))];
+                    meant = [meant[0] || near == Some("horizon"), meant[1] || near == Some("step")];
                     let general = "a scenario sets `horizon` and `step`; constants start with `const`";
                     let hint = match &error.hint {
                         Some(near) => format!("{near} {general}"),

@@ -131,10 +131,18 @@ impl<'s> Job<'s> {
     }
 
     /// Room for a round.
-    fn cells(&self, items: usize) -> Cells {
+    pub(super) fn cells(&self, items: usize) -> Cells {
         let mut cells = self.room.lock().ok().and_then(|mut room| room.pop()).unwrap_or_default();
         cells.clear(items, self.columns.len());
         cells
+    }
+
+    /// How many trials a worker runs side by side.
+    pub(super) fn lanes(&self) -> usize {
+        match self.subject.program.layout {
+            crate::kernel::Layout::Trials => LANES,
+            crate::kernel::Layout::Agents => 1,
+        }
     }
 
     fn worker(&self) -> Result<Runner, Invalid> {
@@ -179,20 +187,15 @@ impl Executor for Threads {
     }
 
     fn width(&self, job: &Job<'_>) -> usize {
-        let lanes = match job.subject.program.layout {
-            crate::kernel::Layout::Trials => LANES,
-            crate::kernel::Layout::Agents => 1,
-        };
-        self.pool.current_num_threads() * lanes
+        self.pool.current_num_threads() * job.lanes()
     }
 
     fn run(&self, job: &Job<'_>, items: &[Item], budget: &Budget) -> Result<Cells, Invalid> {
         let next = AtomicUsize::new(0);
         let mut cells = job.cells(items.len());
         let threads = self.pool.current_num_threads();
-        let lanes = (self.width(job) / threads).max(1);
         // No more workers than there is work for.
-        let workers = threads.min(items.len().div_ceil(lanes)).max(1);
+        let workers = threads.min(items.len().div_ceil(job.lanes())).max(1);
         let size = items.len().div_ceil(workers).next_multiple_of(LANES).clamp(LANES, LARGEST_BLOCK);
         let blocks = Mutex::new(cells.blocks(items, size));
         let work = || -> Result<Finished, Invalid> {

@@ -128,8 +128,7 @@ fn subjects(study: &Study, asked: &[&Query]) -> Result<Vec<Option<Subject>>, Fau
         for world in worlds(&query.ask) {
             if subjects[world].is_none() {
                 placeable(&study.worlds[world])?;
-                let subject = Subject::new(&study.worlds[world]);
-                subjects[world] = Some(subject);
+                subjects[world] = Subject::of(study, world);
             }
         }
     }

@@ -3,7 +3,7 @@
 use super::observer::Observer;
 use crate::base::lanes::{LANES, Mask};
 use crate::base::tick::{Clock, Tick};
-use crate::compile::study::{Origins, Root, Texts, World};
+use crate::compile::study::{Origins, Root, Study, Texts, World};
 use crate::kernel::process::View;
 use crate::kernel::{Code, Program, Readings};
 use crate::logic::{
@@ -18,6 +18,8 @@ const MOST_JUMPS: u64 = 1 << 26;
 
 /// A world made ready to run.
 pub struct Subject {
+    /// Number of the world in its study, by which other processes find it; `None` where it is of no study.
+    pub number: Option<usize>,
     /// The program of the kernel.
     pub program: Program,
     /// Formulas and metrics.
@@ -77,10 +79,16 @@ fn join(a: Mask, b: Mask) -> Mask {
 }
 
 impl Subject {
+    /// Makes a world of a study ready; `None` beyond the last one.
+    pub fn of(study: &Study, number: usize) -> Option<Self> {
+        Some(Self { number: Some(number), ..Self::new(study.worlds.get(number)?) })
+    }
+
     /// Makes a world ready.
     pub fn new(world: &World) -> Self {
         let scenario = world.scenario.clone();
         Self {
+            number: None,
             horizon: scenario.horizon,
             program: Program::new(scenario),
             tree: world.tree.clone(),

@@ -9,6 +9,7 @@ mod presence;
 mod reuse;
 #[path = "../processes/texts.rs"]
 mod texts;
+mod turns;
 
 use smc::base::lanes::{LANES, Mask};
 use smc::base::random::TrialKey;

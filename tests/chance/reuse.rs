@@ -124,3 +124,32 @@ fn where_behaviours_speak_of_single_ones_places_are_used_once() {
     assert_eq!(run.results[0].counts.unresolved, 2);
     assert!(run.results[0].warnings[0].contains("more than 4 people came by `doors`"));
 }
+
+#[test]
+fn newcomers_on_a_used_place_are_felt_in_every_lane_as_alone() {
+    // The goal lies beside the entry, so that who comes next stands where the one before left, with another B.
+    let text = "horizon = 12 s\nstep = 0.02 s\n\
+        scene { region door: rect (0,-1) .. (0.4,1) region kiosk: rect (1.2,-1) .. (1.5,1) }\n\
+        kind k: sfm preset helbing2000 { noise = 0 m/s radius = 0.2 m lambda = 0.5 }\n\
+        kind v: k { B = choice(0.02 m, 0.3 m) speed = uniform(0.9 m/s, 1.5 m/s) }\n\
+        source doors: v { at = (0.35, 0) every = uniform(4.2 s, 4.5 s) limit = 1 route = kiosk -> door then leave }\n\
+        agent stander: k { B = 0.02 m at = (2.6, 0.3) }\n";
+    let scenario = scenario(text);
+    let people = scenario.agents.len();
+    let mut together = Batch::new(&scenario, Layout::Trials, 0);
+    let mut alone: Vec<Batch> =
+        (0..8).map(|trial| Batch::of(&scenario, Layout::Trials, std::iter::once((0, trial)), None)).collect();
+    for step in 0..600 {
+        together.step();
+        for (lane, one) in alone.iter_mut().enumerate() {
+            one.step();
+            for agent in 0..people {
+                assert_eq!(together.present(agent, lane), one.present(agent, 0), "step {step}, trial {lane}");
+                if one.present(agent, 0) {
+                    assert_eq!(together.bits(agent, lane), one.bits(agent, 0), "step {step}, trial {lane}");
+                }
+            }
+        }
+    }
+    assert!(!together.state.queues.reused.is_empty(), "a place was used again");
+}

@@ -8,5 +8,6 @@ mod forecasts;
 mod formats;
 mod inputs;
 mod program;
+mod ranks;
 mod reasons;
 mod traces;

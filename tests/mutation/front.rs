@@ -36,7 +36,7 @@ fn pairs() -> Vec<Pair> {
         if there {
             pairs.push(Pair { name, texts, files });
         } else {
-            println!("skipped: {name} needs a recording that is not in {data}");
+            eprintln!("skipped: {name} needs a recording that is not in {data}");
         }
     }
     assert!(pairs.len() >= 11);

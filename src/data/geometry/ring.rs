@@ -21,16 +21,19 @@ pub(super) fn checked(mut points: Vec<Vec2>) -> Result<Vec<Vec2>, String> {
     if ring.area() > 0.0 { Ok(ring.outline) } else { Err("has no area".into()) }
 }
 
+/// A coordinate of a point.
+type Coordinate = fn(&Vec2) -> f64;
+
 /// A point where two edges meet that are not neighbours, about.
 fn crossing(ring: &[Vec2]) -> Option<Vec2> {
     let n = ring.len();
     let edge = |k: usize| Segment::new(ring[k], ring[(k + 1) % n]);
     // Along the axis on which the edges, all in all, reach less far.
-    let reach = |of: fn(&Vec2) -> f64| {
+    let reach = |of: Coordinate| {
         let (low, high) = ring.iter().map(of).fold((f64::MAX, f64::MIN), |(l, h), x| (l.min(x), h.max(x)));
         (0..n).map(|k| (of(&ring[k]) - of(&ring[(k + 1) % n])).abs()).sum::<f64>() / (high - low)
     };
-    let (along, beside): (fn(&Vec2) -> f64, fn(&Vec2) -> f64) =
+    let (along, beside): (Coordinate, Coordinate) =
         if reach(|p| p.x) <= reach(|p| p.y) { (|p| p.x, |p| p.y) } else { (|p| p.y, |p| p.x) };
     let left = |s: &Segment| along(&s.a).min(along(&s.b));
     let right = |s: &Segment| along(&s.a).max(along(&s.b));

@@ -1,15 +1,17 @@
 //! Behaviours: automata of agents, of all trials of a batch.
 //!
 //! At a step each behaviour looks at the state before it (`watch`), as processes do. What it decided holds from the
-//! state after the step on (`turn`): the parameters of the agent are computed anew from its own values, which are
-//! drawn again from their addresses, so that nothing is kept and nothing compounds. Times are drawn on entering a
+//! state after the step on (`turn`). First all states are entered, then each agent concerned is changed once (`apply`),
+//! so that nobody walks or leaves by a state of affairs that never was. What a state sets is computed on entering it and
+//! kept as long as the state lasts; the parameters of the agent are then its own values, drawn again from their
+//! addresses, with what the present states set put over them, so that nothing compounds. Times are drawn on entering a
 //! state, the n-th of them from draw n of the behaviour's own stream; branches from the draw of the tick. Attention
 //! multiplies A and A2 of the agent who feels the force.
 
 mod conduct;
 
 use super::code::{Code, Readings};
-use super::drive;
+use super::drive::{self, Halt};
 use super::dynamics;
 use super::process::Fault;
 use super::program::Program;
@@ -40,7 +42,8 @@ struct Machine {
 /// The behaviours of a scenario, made ready to run.
 #[derive(Clone, Debug, Default)]
 pub struct Behaviours {
-    declared: usize,
+    /// Most parameters that a state of each declared behaviour sets.
+    most: Vec<usize>,
     machines: Vec<Machine>,
     /// First machine of each agent; one more at the end.
     first: Vec<u32>,
@@ -60,12 +63,13 @@ pub struct Standing {
     exit: Vec<Vec<[u32; LANES]>>,
     /// How many states have been entered.
     entered: Vec<Vec<[u32; LANES]>>,
-    /// Under which key each state was entered: what it set belongs to that key.
-    keys: Vec<Vec<[TrialKey; LANES]>>,
+    /// What the present state set on entering it, SI units: so many values for each block as a state of the behaviour
+    /// sets at most, in order of writing.
+    set: Vec<Vec<Lanes>>,
     /// Under which key the parameters of an agent were drawn, by block.
     own_keys: Vec<[TrialKey; LANES]>,
-    /// First stage of a route that a state demands, and the stage of the own route to return to.
-    detours: Vec<[(u32, u32); LANES]>,
+    /// First stage of a route that a state demands, and where the own route was left.
+    detours: Vec<[(u32, Halt); LANES]>,
 }
 
 /// A state that is entered with the present step.
@@ -83,6 +87,8 @@ pub(super) struct Scratch {
     turns: Vec<Turn>,
     /// The lanes of each machine that turn.
     turning: Vec<Mask>,
+    /// Those among them in which the state before or the one after changes something of the agent.
+    changing: Vec<Mask>,
 }
 
 /// The lane of keys and ticks of a slot.
@@ -111,14 +117,17 @@ impl Behaviours {
             return Self::default();
         }
         let mut known: Vec<&std::sync::Arc<crate::model::Conduct>> = Vec::new();
-        let mut out = Self { declared: all.declared.len(), ..Self::default() };
+        let mut out = Self { most: vec![0; all.declared.len()], ..Self::default() };
         let mut atoms = Vec::new();
         for one in &all.attached {
             let at = known.iter().rposition(|conduct| std::sync::Arc::ptr_eq(conduct, &one.conduct));
             let conduct = at.unwrap_or_else(|| {
                 known.push(&one.conduct);
                 let declared = &all.declared[one.behaviour.0 as usize];
-                out.conducts.push(Conduct::new(scenario, declared, &one.conduct, drive));
+                let conduct = Conduct::new(scenario, declared, &one.conduct, drive);
+                let most = &mut out.most[one.behaviour.0 as usize];
+                *most = conduct.modes.iter().map(|mode| mode.changes.len()).fold(*most, usize::max);
+                out.conducts.push(conduct);
                 known.len() - 1
             });
             out.machines.push(Machine {
@@ -168,19 +177,20 @@ impl Behaviours {
         }
         let blocks = state.x.len();
         let standing = &mut state.behaviours;
-        if standing.modes.len() != self.declared || standing.detours.len() != blocks {
+        let declared = self.most.len();
+        if standing.modes.len() != declared || standing.detours.len() != blocks {
             *standing = Standing {
-                modes: vec![vec![Lanes::splat(-1.0); blocks]; self.declared],
-                due: vec![vec![Lanes::splat(f64::INFINITY); blocks]; self.declared],
-                exit: vec![vec![[0; LANES]; blocks]; self.declared],
-                entered: vec![vec![[0; LANES]; blocks]; self.declared],
-                keys: vec![vec![[TrialKey::default(); LANES]; blocks]; self.declared],
+                modes: vec![vec![Lanes::splat(-1.0); blocks]; declared],
+                due: vec![vec![Lanes::splat(f64::INFINITY); blocks]; declared],
+                exit: vec![vec![[0; LANES]; blocks]; declared],
+                entered: vec![vec![[0; LANES]; blocks]; declared],
+                set: self.most.iter().map(|most| vec![Lanes::ZERO; blocks * most]).collect(),
                 own_keys: vec![[TrialKey::default(); LANES]; blocks],
-                detours: vec![[(OWN_ROUTE, 0); LANES]; blocks],
+                detours: vec![[(OWN_ROUTE, Halt::default()); LANES]; blocks],
             };
         }
         let slot = state.slot(agent, lane);
-        state.behaviours.detours[slot.block][slot.lane] = (OWN_ROUTE, 0);
+        state.behaviours.detours[slot.block][slot.lane] = (OWN_ROUTE, Halt::default());
         state.behaviours.own_keys[slot.block][slot.lane] = state.keys[trial_of(state.layout, slot.lane)];
         for at in self.machines_of(agent) {
             let machine = &self.machines[at];
@@ -194,7 +204,7 @@ impl Behaviours {
             conduct.modes.first().is_some_and(conduct::Mode::changes_something)
         });
         if changed {
-            self.apply(program, state, agent, lane);
+            self.apply(program, state, agent, lane, |_| true);
         }
     }
 
@@ -202,11 +212,13 @@ impl Behaviours {
     pub(super) fn watch(&self, layout: Layout, state: &mut State, scratch: &mut Scratch) {
         for turn in scratch.turns.drain(..) {
             scratch.turning[turn.machine as usize] = Mask::NONE;
+            scratch.changing[turn.machine as usize] = Mask::NONE;
         }
         if self.is_empty() || state.occupied.is_empty() {
             return;
         }
         scratch.turning.resize(self.machines.len(), Mask::NONE);
+        scratch.changing.resize(self.machines.len(), Mask::NONE);
         if let Some(code) = &self.code {
             code.read(layout, state, &mut scratch.readings);
             for at in 0..self.machines.len() {
@@ -274,15 +286,19 @@ impl Behaviours {
         let machine = &self.machines[at];
         let trial = trial_of(state.layout, lane);
         let slot = state.slot(machine.agent as usize, trial);
-        let mode = state.behaviours.modes[machine.behaviour as usize][slot.block].0[slot.lane] as usize;
-        let exits = self.conducts[machine.conduct as usize].modes.get(mode).map(|mode| &mode.exits);
-        let Some(exit) = exits.and_then(|exits| exits.get(exit as usize)) else { return };
+        let old = state.behaviours.modes[machine.behaviour as usize][slot.block].0[slot.lane] as usize;
+        let modes = &self.conducts[machine.conduct as usize].modes;
+        let Some(old) = modes.get(old) else { return };
+        let Some(exit) = old.exits.get(exit as usize) else { return };
         let variables: Vec<f64> = state.variables.iter().map(|lanes| lanes.0[trial]).collect();
         let stream = Stream::of(state.keys[trial], machine.number(state, trial), Purpose::Process);
         match pick(&exit.targets, &variables, || stream.uniform(state.ticks[trial] as u32)) {
             Some(mode) => {
                 scratch.turns.push(Turn { machine: at as u32, lane, mode });
                 scratch.turning[at] |= Mask::lane(lane);
+                if old.changes_something() || modes[mode as usize].changes_something() {
+                    scratch.changing[at] |= Mask::lane(lane);
+                }
             }
             None => fail(state, trial, Fault::Branches { attached: at as u32 }),
         }
@@ -291,19 +307,23 @@ impl Behaviours {
     /// Enters the states that were decided on; to be called with the ticks and positions after the step. Whether
     /// the range of some force changed.
     pub(super) fn turn(&self, program: &Program, state: &mut State, scratch: &Scratch) -> bool {
-        let mut ranges = false;
         for &Turn { machine: at, lane, mode } in &scratch.turns {
             let machine = &self.machines[at as usize];
             let trial = trial_of(state.layout, lane);
-            if state.faulty.has(trial) {
-                continue;
+            if !state.faulty.has(trial) {
+                let slot = state.slot(machine.agent as usize, trial);
+                self.enter(program, state, at as usize, slot, mode);
             }
-            let slot = state.slot(machine.agent as usize, trial);
-            let old = state.behaviours.modes[machine.behaviour as usize][slot.block].0[slot.lane] as usize;
-            self.enter(program, state, at as usize, slot, mode);
-            let modes = &self.conducts[machine.conduct as usize].modes;
-            if modes[old].changes_something() || modes[mode as usize].changes_something() {
-                ranges |= self.apply(program, state, machine.agent as usize, trial);
+        }
+        let mut ranges = false;
+        for &Turn { machine: at, lane, .. } in &scratch.turns {
+            let agent = self.machines[at as usize].agent as usize;
+            let trial = trial_of(state.layout, lane);
+            // Where several behaviours of an agent turn, the first of them stands for all.
+            let changing = |at: usize| scratch.changing[at].has(lane);
+            let first = self.machines_of(agent).find(|&at| changing(at));
+            if first == Some(at as usize) && !state.faulty.has(trial) {
+                ranges |= self.apply(program, state, agent, trial, changing);
             }
         }
         ranges
@@ -322,7 +342,6 @@ impl Behaviours {
         let first = entered.wrapping_mul(conduct.delays);
         *entered = entered.wrapping_add(1);
         standing.modes[behaviour][block].0[lane] = f64::from(mode);
-        standing.keys[behaviour][block][lane] = state.keys[trial];
         // The shortest time wins, also among those that end with the same step.
         let (mut shortest, mut chosen) = (f64::INFINITY, 0);
         for (number, exit) in conduct.modes[mode as usize].exits.iter().enumerate() {
@@ -337,8 +356,16 @@ impl Behaviours {
         standing.exit[behaviour][block][lane] = chosen;
     }
 
-    /// Gives an agent the parameters and the route that its behaviours want now. Whether a range changed.
-    fn apply(&self, program: &Program, state: &mut State, agent: usize, trial: usize) -> bool {
+    /// Gives an agent the parameters and the route that its behaviours want now. What those set that have just
+    /// `turned` is computed; what others set stays as it was. Whether a range changed.
+    fn apply(
+        &self,
+        program: &Program,
+        state: &mut State,
+        agent: usize,
+        trial: usize,
+        turned: impl Fn(usize) -> bool,
+    ) -> bool {
         let slot = state.slot(agent, trial);
         // Replicas of a trial go on under other keys: what was drawn stays.
         let key = state.behaviours.own_keys[slot.block][slot.lane];
@@ -351,24 +378,29 @@ impl Behaviours {
         let mut round = 0;
         for at in self.machines_of(agent) {
             let machine = &self.machines[at];
-            let mode = state.behaviours.modes[machine.behaviour as usize][slot.block].0[slot.lane] as usize;
+            let behaviour = machine.behaviour as usize;
+            let mode = state.behaviours.modes[behaviour][slot.block].0[slot.lane] as usize;
             let Some(mode) = self.conducts[machine.conduct as usize].modes.get(mode) else { continue };
-            let entered = state.behaviours.entered[machine.behaviour as usize][slot.block][slot.lane];
-            for (parameter, amount) in &mode.changes {
-                let value = match amount {
-                    Amount::Computed(num) => num.evaluate(&known).unwrap_or(f64::NAN),
-                    Amount::Drawn(law) => {
-                        let key = state.behaviours.keys[machine.behaviour as usize][slot.block][slot.lane];
-                        let draw = (name_hash(parameter.name()) as u32).wrapping_add(entered);
-                        let entity = machine.number(state, trial);
-                        law.draw(Stream::of(key, entity, Purpose::Parameter).uniform(draw))
+            let entered = state.behaviours.entered[behaviour][slot.block][slot.lane];
+            let (first, turned) = (slot.block * self.most[behaviour], turned(at));
+            for (number, (parameter, amount)) in mode.changes.iter().enumerate() {
+                if turned {
+                    let value = match amount {
+                        Amount::Computed(num) => num.evaluate(&known).unwrap_or(f64::NAN),
+                        Amount::Drawn(law) => {
+                            let draw = (name_hash(parameter.name()) as u32).wrapping_add(entered);
+                            let entity = machine.number(state, trial);
+                            law.draw(Stream::of(state.keys[trial], entity, Purpose::Parameter).uniform(draw))
+                        }
+                    };
+                    if !parameter.allows(value) {
+                        let (attached, parameter) = (at as u32, *parameter);
+                        fail(state, trial, Fault::Change { attached, parameter, value });
+                        return false;
                     }
-                };
-                if !parameter.allows(value) {
-                    fail(state, trial, Fault::Change { attached: at as u32, parameter: *parameter, value });
-                    return false;
+                    state.behaviours.set[behaviour][first + number].0[slot.lane] = value;
                 }
-                values[*parameter as usize] = value;
+                values[*parameter as usize] = state.behaviours.set[behaviour][first + number].0[slot.lane];
             }
             if let Some(stage) = mode.route {
                 (route, round) = (stage, entered);
@@ -381,11 +413,10 @@ impl Behaviours {
             drive::renew(program, state, slot);
             return ranges;
         }
-        let stage = drive::stage(state, slot);
-        let home = if present == OWN_ROUTE { stage } else { home };
+        let home = if present == OWN_ROUTE { drive::halt(program, state, slot) } else { home };
         state.behaviours.detours[slot.block][slot.lane] = (route, home);
-        let (stage, round) = if route == OWN_ROUTE { (home, 0) } else { (route, round) };
-        drive::divert(program, state, slot, stage, round);
+        let (from, round) = if route == OWN_ROUTE { (home, 0) } else { (Halt::before(route), round) };
+        drive::divert(program, state, slot, from, round);
         ranges
     }
 }

@@ -4,13 +4,15 @@
 //! driving velocity is zero inside the last goal. A region is reached when the centre is inside, a point
 //! within two radii, or when the line across it, perpendicular to the way from where the leg began, has
 //! been passed within 2 m of it. Advice replaces direction and speed for its time; waypoints passed
-//! meanwhile count.
+//! meanwhile count. A route that is left for another goes on with the stage it was on, a pause with what is
+//! left of it.
 
 mod lanes;
 mod person;
 mod route;
 mod stage;
 
+pub(super) use route::Halt;
 pub use route::{Routes, Way};
 pub use stage::Drive;
 
@@ -20,6 +22,7 @@ use crate::base::lanes::Mask;
 use crate::model::Move;
 use fearless_simd::{Level, Simd, dispatch};
 use person::Person;
+use stage::Target;
 
 /// Puts agent `agent` of the trial in lane `lane` at the beginning of its way: direction, driving speed and
 /// route. Position, parameters, key and tick of the trial must be in the state. `advice` is a move and the
@@ -30,14 +33,18 @@ pub fn begin(program: &Program, state: &mut State, agent: usize, lane: usize, ad
     Person::new(program, state, slot.block, slot.lane).begin(start, advice);
 }
 
-/// The stage of its route that a slot is on.
-pub(super) fn stage(state: &State, slot: Slot) -> u32 {
-    state.route.way(slot.block, slot.lane).stage
+/// Where the one in a slot is on the route, to be left and gone on with later.
+pub(super) fn halt(program: &Program, state: &State, slot: Slot) -> Halt {
+    let way = state.route.way(slot.block, slot.lane);
+    let stage = program.drive.stages.get(way.stage as usize);
+    let pausing = stage.is_some_and(|stage| matches!(stage.target, Target::Pause(_)));
+    let tick = state.ticks[person::trial_of(state.layout, slot.lane)];
+    Halt { stage: way.stage, left: pausing.then(|| way.until.saturating_sub(tick)) }
 }
 
-/// Sends someone along the route that begins with a stage, the `round`-th time.
-pub(super) fn divert(program: &Program, state: &mut State, slot: Slot, stage: u32, round: u32) {
-    Person::new(program, state, slot.block, slot.lane).divert(stage, round);
+/// Sends someone along a route from a stage of it on, the `round`-th time.
+pub(super) fn divert(program: &Program, state: &mut State, slot: Slot, from: Halt, round: u32) {
+    Person::new(program, state, slot.block, slot.lane).divert(from, round);
 }
 
 /// Someone's driving speed has changed.

@@ -1,7 +1,7 @@
 //! One agent of one trial on its way: begin, next leg, advice, pauses. The plain counterpart of the vector
 //! code in `lanes`, which hands over to it whenever something happens.
 
-use super::route::Way;
+use super::route::{Halt, Way};
 use super::stage::{Stage, Target};
 use crate::base::geometry::{Vec2, rotated};
 use crate::base::random::{Purpose, Stream, TrialKey};
@@ -256,10 +256,13 @@ impl<'a> Person<'a> {
         self.keep();
     }
 
-    /// Goes on along the route that begins with a stage.
-    pub(super) fn divert(mut self, stage: u32, round: u32) {
+    /// Goes on along another route. A pause that had begun there lasts only what was left of it.
+    pub(super) fn divert(mut self, from: Halt, round: u32) {
         self.way.round = round;
-        self.enter(stage);
+        self.enter(from.stage);
+        if let Some(left) = from.left {
+            self.way.until = self.tick().saturating_add(left);
+        }
         self.step();
     }
 

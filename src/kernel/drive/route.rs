@@ -39,6 +39,22 @@ impl Default for Way {
     }
 }
 
+/// Where a route is gone on with.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(in crate::kernel) struct Halt {
+    /// Index into the scenario's stages.
+    pub(super) stage: u32,
+    /// Ticks that are left of a pause which had begun.
+    pub(super) left: Option<u64>,
+}
+
+impl Halt {
+    /// Before a stage.
+    pub(in crate::kernel) fn before(stage: u32) -> Self {
+        Self { stage, left: None }
+    }
+}
+
 /// The slots of a block that are on the same stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Party {

@@ -19,7 +19,10 @@ const LONGEST: usize = 1 << 17;
 const MOST_SLIPS: usize = 8;
 
 /// Most braces that are turned for a try.
-const MOST_TURNED: usize = 200;
+const MOST_TURNED: usize = 50;
+/// Most ways to mend one slip that are tried, and most texts in all.
+const MOST_WAYS: usize = 24;
+const MOST_TRIES: usize = 40;
 
 /// A line that has tokens.
 struct Line<'t> {
@@ -129,10 +132,6 @@ fn slips(lines: &[Line<'_>], closes_inside: bool) -> Vec<Slip> {
         while let Some(open) = stack.last().copied()
             && (line.indent < open.indent || line.indent == open.indent && !line.starts_with("}"))
         {
-            // A brace on a line of its own opens the block of the line before.
-            if line.starts_with("{") && number == open.line {
-                break;
-            }
             stack.pop();
             found.push(Slip::NotClosed { open: open.at, line: number - 1 });
         }
@@ -208,7 +207,12 @@ fn changes(text: &str, lines: &[Line<'_>], slip: Slip) -> Vec<Change> {
             changes
         }
         Slip::NotOpened { line } => {
-            let tokens = lines[line].tokens.iter().rev();
+            // At the end of a line that starts a block; near the start of one that closes it, too.
+            let mut tokens: Vec<&(usize, &str)> = lines[line].tokens.iter().collect();
+            if !lines[line].has("}") {
+                tokens.reverse();
+            }
+            let tokens = tokens.into_iter();
             tokens.flat_map(|token| after(token, '{').into_iter().chain(instead(token, '{'))).collect()
         }
     }
@@ -301,6 +305,7 @@ pub(super) fn mend(source: &Source, errors: &dyn Fn(&str, Vec<Diagnostic>) -> us
         return None;
     }
     let mut best: Option<(usize, Vec<Slip>, Vec<Change>)> = None;
+    let tries = std::cell::Cell::new(0_usize);
     // One brace that is turned the wrong way is two that do not pair up.
     for slip in turned(&lines) {
         let (slips, chosen) = (vec![slip], changes(text, &lines, slip));
@@ -320,13 +325,17 @@ pub(super) fn mend(source: &Source, errors: &dyn Fn(&str, Vec<Diagnostic>) -> us
             continue;
         };
         let cost = |chosen: &[Change]| {
+            tries.set(tries.get() + 1);
+            if tries.get() > MOST_TRIES {
+                return usize::MAX;
+            }
             let mended = changed(text, chosen).filter(|mended| pairs_up(&self::lines(mended)));
             mended.map_or(usize::MAX, |mended| errors(&mended, said(source, &slips, chosen)))
         };
         let mut least = cost(&chosen);
         for (place, ways) in ways.iter().enumerate() {
-            for way in &ways[1..] {
-                if least <= 1 {
+            for way in ways.iter().take(MOST_WAYS).skip(1) {
+                if least <= 1 || tries.get() >= MOST_TRIES {
                     break;
                 }
                 let mut other = chosen.clone();

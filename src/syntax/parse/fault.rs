@@ -132,7 +132,7 @@ impl Builder<'_> {
         if found.is_empty() {
             // At the end of the text: right after its last token.
             let end = self.text.trim_end().len();
-            let end = last_token_end(self.text, end);
+            let end = last_token_end(self.text, 0, end);
             return Span::new(self.source.id, end, end);
         }
         Span::new(self.source.id, at, at + found.len())
@@ -153,7 +153,7 @@ impl Builder<'_> {
             )
         });
         if starts_declaration(fault.found) && !expects_it {
-            let end = last_token_end(self.text, fault.at);
+            let end = last_token_end(self.text, fault.from, fault.at);
             if end > fault.from && self.text[end..fault.at].contains('\n') {
                 return Span::new(self.source.id, end, end);
             }
@@ -268,10 +268,10 @@ fn failure(strict: Rule, text: &str, from: usize) -> Option<(usize, Vec<Rule>)> 
     Some((at, expected))
 }
 
-/// End of the last token before `end`: comments there are no tokens.
-fn last_token_end(text: &str, end: usize) -> usize {
-    let mut at = 0;
-    let mut last = 0;
+/// End of the last token from `from` on and before `end`: comments there are no tokens.
+fn last_token_end(text: &str, from: usize, end: usize) -> usize {
+    let mut at = from;
+    let mut last = from;
     while at < end {
         let rest = &text[at..];
         if let Some(length) = lexeme::trivia(rest) {

@@ -91,7 +91,12 @@ fn quoted(text: &str) -> &str {
 
 /// Whether what `first` gave is a quoted text without its closing quote.
 pub(super) fn is_open_text(token: &str) -> bool {
-    token.starts_with('"') && (token.len() == 1 || !token.ends_with('"') || token.ends_with("\\\""))
+    let (mut closed, mut escaped) = (false, false);
+    for c in token.chars().skip(1) {
+        closed = c == '"' && !escaped;
+        escaped = c == '\\' && !escaped;
+    }
+    token.starts_with('"') && !closed
 }
 
 /// The word or number that ends right before `at`, blanks skipped, and where it starts.

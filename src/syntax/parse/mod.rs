@@ -32,6 +32,7 @@ use builder::Builder;
 use grammar::{Grammar, Rule};
 use nesting::Scan;
 use pest::Parser;
+use std::collections::BTreeSet;
 
 /// Reads bytes as a source text: UTF-8, not empty, below 4 GiB.
 #[allow(clippy::result_large_err, reason = "called once a file")]
@@ -168,14 +169,12 @@ fn order(source: &Source, diagnostics: &mut Vec<Diagnostic>) {
         diagnostic.place.as_ref().map(|place| (place.span.start, diagnostic.severity))
     });
     // A bracket without a partner on the line of an error has lost it there.
-    let mut errors: Vec<usize> = Vec::new();
+    let mut errors: BTreeSet<usize> = BTreeSet::new();
     diagnostics.retain(|diagnostic| {
         let Some(place) = diagnostic.place.as_ref().filter(|_| diagnostic.severity == Severity::Error) else {
             return true;
         };
         let line = source.line_column(place.span.start).0;
-        let known = errors.contains(&line);
-        errors.push(line);
-        !known || diagnostic.code != code::STRAY
+        errors.insert(line) || diagnostic.code != code::STRAY
     });
 }
