@@ -397,6 +397,13 @@ fn a_condition_may_ask_for_the_state_of_another_behaviour() {
         let successes: Vec<u64> = run.results.iter().map(|result| result.counts.successes).collect();
         assert_eq!(successes, [0, 8], "{whose}");
     }
+    // Of a behaviour that nobody has it is not known who could ask for what.
+    let nobody = format!(
+        "{HEAD}behaviour mood {{ state calm {{ after 2 s -> angry }} state angry {{ }} }}\n\
+         behaviour phone {{ state away {{ when self.mood == angry -> looking }} state looking {{ }} }}\n\
+         agent me: adult {{ at = (0, 0) }}"
+    );
+    compiled(&nobody, "");
     let errors = crate::texts::compiled(&text("third"), "").unwrap_err();
     assert!(errors.contains("E0201") && errors.contains("`third` has no behaviour `mood`"), "{errors}");
 }

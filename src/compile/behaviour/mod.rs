@@ -279,6 +279,9 @@ impl<'a> Elaborator<'a> {
 
     /// Behaviours that nobody has are checked too, if they need no arguments.
     fn check_unused_behaviours(&mut self, variables: usize) {
+        // Whoever would have one could have the others too.
+        let having = self.having.clone();
+        self.having.extend((0..self.behaviours.len()).map(|k| (AgentId(0), BehaviourId(k as u32))));
         for (k, decl) in self.behaviours.clone().into_iter().enumerate() {
             let id = BehaviourId(k as u32);
             let used = self.withs.iter().any(|with| with.behaviours.iter().any(|(known, ..)| *known == id));
@@ -289,6 +292,7 @@ impl<'a> Elaborator<'a> {
                 let _: Result<_, Reported> = self.conditions(decl, &locals);
             }
         }
+        self.having = having;
     }
 }
 

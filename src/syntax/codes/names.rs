@@ -134,7 +134,7 @@ Right:\n\
         text: "\
 Functions and properties are written out where they are used, with what they are given, and quantifiers over formulas\n\
 once for every agent. Nested in one another that can grow beyond any machine. Quantify over states rather than over\n\
-formulas, and call functions that repeat what they are given not in one another.\n\
+formulas, and do not nest calls of functions that repeat what they are given, as `let f(v) = v + v` does.\n\
 \n\
 Wrong:\n\
 \x20   property p = forall a in crowd: forall b in crowd: forall c in crowd: F<=1 s (…)\n\
