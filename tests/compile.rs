@@ -2,7 +2,10 @@
 
 #![allow(clippy::disallowed_methods, reason = "a test opens the files that a scenario names")]
 
+use smc::base::geometry::Vec2;
+use smc::compile::study::Ask;
 use smc::compile::{Files, Input, Study, compile, requests};
+use smc::model::{AgentId, Bool, Move, Position, Who};
 use smc::syntax::diagnostic::Diagnostic;
 use smc::syntax::parse::{parse_properties, parse_scenario};
 use smc::syntax::render::render;
@@ -44,4 +47,250 @@ fn the_corridor_is_understood() {
     assert_eq!(study.worlds.len(), 3, "the plain one and two sides of the comparison");
     assert_eq!(study.queries.len(), 8);
     assert_eq!(study.worlds[0].scenario.moves[0].options.len(), 10);
+}
+
+/// Somebody alone and two more, with parameters.
+const THREE: &str = "scenario \"three\"\nhorizon = 2 s\nstep = 0.1 s\nparam n = 1\nparam m = 1\n\
+    scene { region hall: rect (0, 0) .. (10, 10) }\nkind adult: sfm preset helbing2000\n\
+    agent me: adult { at = (1, 1)  route = hall }\nagents crowd[2]: adult { at = uniform in hall  route = hall }\n";
+
+fn understood(scenario: &str, properties: &str) -> Study {
+    let (study, found) = compiled(scenario, properties);
+    study.unwrap_or_else(|| panic!("{found}"))
+}
+
+fn refused(scenario: &str, properties: &str, code: &str) {
+    let (study, found) = compiled(scenario, properties);
+    assert!(study.is_none() && found.contains(&format!("error[{code}]")), "{properties}\n{found}");
+}
+
+#[test]
+fn the_others_are_counted_without_the_one() {
+    let asked = |who: &str| understood(THREE, &format!("estimate P({who} in hall)")).worlds[0].atoms.clone();
+    for (who, id) in [
+        ("others(me)[1]", 1),
+        ("others(me)[2]", 2),
+        ("others(crowd[1])[1]", 0),
+        ("others(crowd[1])[2]", 2),
+        ("others(crowd[2])[2]", 1),
+    ] {
+        let atoms = asked(who);
+        assert!(
+            matches!(atoms[..], [Bool::In(Who::Agent(AgentId(found)), _)] if found == id),
+            "{who}: {atoms:?}"
+        );
+    }
+    refused(THREE, "estimate P(others(me)[3] in hall)", "E0212");
+    refused(THREE, "estimate P(forall a in crowd: others(a)[1] in hall)", "E0304");
+    // Where each has a formula of its own, it is known who is left out.
+    let study = understood(THREE, "estimate P(forall a in crowd: F<=1 s (others(a)[2] in hall))");
+    let ids: Vec<u32> = study.worlds[0]
+        .atoms
+        .iter()
+        .map(|atom| if let Bool::In(Who::Agent(id), _) = atom { id.0 } else { panic!("{atom:?}") })
+        .collect();
+    assert_eq!(ids, [2, 1]);
+}
+
+#[test]
+fn what_a_comparison_sets_at_its_end_holds_on_both_sides() {
+    for (query, expected) in [
+        ("under n = 2 with n = 3 under m = 4", [vec![("m", "4"), ("n", "2")], vec![("m", "4"), ("n", "3")]]),
+        ("under n = m with n = 3 under m = 4", [vec![("m", "4"), ("n", "4")], vec![("m", "4"), ("n", "3")]]),
+        ("under n = 2 with n = 3 under n = 4", [vec![("n", "2")], vec![("n", "3")]]),
+        ("under n = 2 with m = 3 under n = 4", [vec![("n", "2")], vec![("m", "3"), ("n", "4")]]),
+    ] {
+        let study = understood(THREE, &format!("compare P(x(me) > n * m * 1 m) {query}"));
+        let Ask::Compare { first, second, .. } = &study.queries[0].ask else { panic!("{query}") };
+        for (side, expected) in [first, second].into_iter().zip(expected) {
+            let settings = &study.worlds[side.target.world].settings;
+            let settings: Vec<_> =
+                settings.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect();
+            assert_eq!(settings, expected, "{query}");
+        }
+    }
+}
+
+#[test]
+fn the_sides_of_a_comparison_have_one_range() {
+    let query = |high: &str| format!("compare E(x(me) at end) in 0 m .. {high} under n = 4 with n = 1");
+    refused(THREE, &query("n * 1 m"), "E0605");
+    for high in ["9 m", "m * 1 m"] {
+        understood(THREE, &query(high));
+    }
+}
+
+#[test]
+fn numbers_of_people_suffice_for_all_who_may_come() {
+    // About 1000 come; more than 1024 do in every fifth trial, more than 2048 in none.
+    for (limit, most) in [(100, 2048), (999, 2048), (1000, 2048), (1024, 2048), (3000, 4096)] {
+        let text = format!(
+            "{THREE}source doors: adult {{ at = uniform in hall  every = exponential(0.1 s)  route = hall  limit = {limit} }}"
+        )
+        .replace("horizon = 2 s", "horizon = 100 s");
+        let study = understood(&text, "");
+        assert_eq!(study.worlds[0].scenario.sources[0].most, most, "{limit}");
+    }
+}
+
+#[test]
+fn bounds_between_ticks_make_those_of_their_own_world_finer() {
+    // All of them together do not fit between the ticks of one horizon.
+    let rates = [7, 11, 13, 17, 19];
+    let properties: String =
+        rates.iter().map(|r| format!("estimate P(F<=(1 s / r) (p.n == 1)) under r = {r}\n")).collect();
+    let scenario =
+        "horizon = 10 s\nparam r = 1\nprocess p { var n: 0..1 = 0  when n == 0 at 1 /s -> n = 1 }\n";
+    let study = understood(scenario, &properties);
+    let mut ticks: Vec<(String, u64)> = Vec::new();
+    for world in &study.worlds {
+        let value = world.settings.first().map_or("1", |(_, value)| value.as_str());
+        ticks.push((value.to_owned(), world.scenario.horizon.0));
+    }
+    let expected: Vec<(String, u64)> =
+        [1].iter().chain(&rates).map(|r| (r.to_string(), 1_000_000_000 * r)).collect();
+    assert_eq!(ticks, expected);
+}
+
+#[test]
+fn more_people_than_there_are_numbers_are_refused() {
+    let doors = |count: usize| -> String {
+        let door = |k: usize| {
+            format!(
+                "source s{k}: adult {{ at = uniform in hall  every = exponential(0.01 s)  route = hall  limit = 1 }}\n"
+            )
+        };
+        THREE.replace("horizon = 2 s", "horizon = 6000 s") + &(0..count).map(door).collect::<String>()
+    };
+    let study = understood(&doors(4), "");
+    let mut taken: Vec<(u32, u32)> = study.worlds[0]
+        .scenario
+        .sources
+        .iter()
+        .map(|source| (study.worlds[0].scenario.agents[source.members[0].0 as usize].entity, source.most))
+        .collect();
+    taken.sort_unstable();
+    assert!(taken.iter().all(|(_, most)| *most == 1 << 20), "{taken:?}");
+    assert!(taken.windows(2).all(|pair| pair[0].0 + pair[0].1 <= pair[1].0), "{taken:?}");
+    refused(&doors(17), "", "E0913");
+}
+
+/// In a thread with as much room as the program has.
+fn with_room(test: impl FnOnce() + Send + 'static) {
+    std::thread::Builder::new().stack_size(256 << 20).spawn(test).unwrap().join().unwrap();
+}
+
+#[test]
+fn what_functions_repeat_grows_only_within_reason() {
+    fn nested(times: usize, before: &str, inner: &str, after: &str) -> String {
+        format!("{}{inner}{}", before.repeat(times), after.repeat(times))
+    }
+    with_room(|| {
+        let double = |times| {
+            format!("let f(v) = v + v\nestimate P({} > 1 m/s)", nested(times, "f(", "speed(me)", ")"))
+        };
+        let long = |times| {
+            let sum = " + 1 m/s".repeat(500);
+            format!("let f(v) = v{sum}\nestimate P({} > 1 m/s)", nested(times, "f(", "speed(me)", ")"))
+        };
+        let norm =
+            |times| format!("estimate P({} > 1 m/s)", nested(times, "norm((", "speed(me)", ", 1 m/s))"));
+        let distance = |times| {
+            let far = nested(times, "distance((1 m, 1 m) * ", "(x(me) / 1 m)", ", me) / 1 m");
+            format!("estimate P({far} > 1)")
+        };
+        let constants = |times| {
+            let all: String = (1..=times).map(|k| format!("let c{k} = c{} + c{}\n", k - 1, k - 1)).collect();
+            format!("let c0 = speed(me)\n{all}estimate P(c{times} > 1 m/s)")
+        };
+        for (text, code) in
+            [(double(12), ""), (long(7), ""), (norm(8), ""), (distance(8), ""), (constants(8), "")]
+                .into_iter()
+                .chain(
+                    [double(27), long(100), norm(40), distance(40), constants(40)]
+                        .map(|text| (text, "E0211")),
+                )
+        {
+            let (study, found) = compiled(THREE, &text);
+            let start: String = text.chars().take(40).collect();
+            if code.is_empty() {
+                assert!(study.is_some(), "{start}\n{found}");
+            } else {
+                assert_eq!(found.matches("error[").count(), 1, "{start}\n{found}");
+                assert!(found.contains("error[E0211]"), "{start}\n{found}");
+            }
+        }
+    });
+}
+
+#[test]
+fn headings_without_number_are_refused() {
+    for to in ["1e30", "1000000000000000000000", "1001"] {
+        let moves = format!("{THREE}moves me for 1 s {{ heading from 0 deg to {to} deg by 1 deg }}");
+        let (study, found) = compiled(&moves, "");
+        assert!(study.is_none() && found.contains("these are more than 1000 options"), "{to}\n{found}");
+    }
+}
+
+#[test]
+fn after_many_unknown_names_nobody_guesses_what_they_mean() {
+    let properties: String = (0..150u8)
+        .map(|k| {
+            let (a, b) = (char::from(b'a' + k / 26), char::from(b'a' + k % 26));
+            format!("property p{k} = crowd{a}{b} in hall\n")
+        })
+        .collect();
+    let (study, found) = compiled(THREE, &properties);
+    assert!(study.is_none());
+    assert_eq!(found.matches("error[E0201]").count(), 150, "{found}");
+    assert_eq!(found.matches("did you mean `crowd`?").count(), 100, "{found}");
+}
+
+#[test]
+fn states_of_many_processes_are_walked_as_far_as_they_fit() {
+    // 2^17 joint states of a thousand variables would be a gigabyte.
+    let wide = "horizon = 100000 steps\n\
+        process coin[17] { var n: 0..1 = 0  when true -> 1/2: n = 0 | 1/2: n = 1 }\n\
+        process still[983] { var k: 0..1 = 0  when k == 0 -> k = 1 }\n";
+    understood(wide, "estimate P(F<=3 coin[1].n == 1)");
+    // Fewer are walked to where it goes wrong.
+    let wrong = "horizon = 10 steps\n\
+        process coin[2] { var n: 0..1 = 0  when true -> 1/2: n = 0 | 1/2: n = 1 }\n\
+        process still[900] { var k: 0..1 = 0  when k == 0 -> k = 1 }\n\
+        process late { var n: 0..5 = 0  when true -> n = n + 1 }\n";
+    refused(wrong, "", "E0903");
+}
+
+#[test]
+fn what_is_known_now_is_computed_now() {
+    let scenario = "scenario \"k\"\nhorizon = 2 s\nstep = 0.1 s\nconst k = modulo(7, 2)\nconst j = if(k > 0, 2, 3)\n\
+        scene { point base: (1, 1)  region hall: circle (base * 2 - (1, 0)) radius norm((3, 4)) }\n\
+        kind adult: sfm preset helbing2000\n\
+        agent me: adult { at = base + (1, 0)  route = hall }\n\
+        agent far: adult { at = (base + (7, 3)) / 2  route = hall }\n\
+        agents crowd[j]: adult { at = uniform in hall  route = hall }\n\
+        agents more[distance(base, (4, 5)) / 1 m]: adult { at = uniform in hall  route = hall }\n\
+        moves me for 1 s { heading atan2(1, 1) }\n";
+    let study = understood(scenario, "");
+    let scenario = &study.worlds[0].scenario;
+    let places: Vec<&Position> = scenario.agents.iter().take(2).map(|agent| &agent.start.position).collect();
+    assert_eq!(places, [&Position::Point(Vec2::new(2.0, 1.0)), &Position::Point(Vec2::new(4.0, 2.0))]);
+    assert_eq!(scenario.agents.len(), 2 + 2 + 5);
+    assert_eq!(
+        scenario.scene.regions[0].shape,
+        smc::base::geometry::Shape::Circle { centre: Vec2::new(1.0, 2.0), radius: 5.0 }
+    );
+    let (_, Move::Heading(angle)) = scenario.moves[0].options[0] else { panic!("{:?}", scenario.moves) };
+    assert!((angle - std::f64::consts::FRAC_PI_4).abs() < 1e-15, "{angle}");
+    for (wrong, code) in [
+        ("const z = modulo(1, 0)", "E0405"),
+        ("scene { point a: ((1, 1) + (1 s, 1 s)) }", "E0303"),
+        ("scene { point a: ((1, 1) / 0) }", "E0405"),
+        ("scene { point a: ((1e300, 1) * 1e300) }", "E0405"),
+    ] {
+        let scenario = format!(
+            "scenario \"k\"\nhorizon = 2 s\nstep = 0.1 s\n{wrong}\nkind adult: sfm preset helbing2000\nagent me: adult {{ at = (1, 1) }}\n"
+        );
+        refused(&scenario, "estimate P(x(me) > 1 m)", code);
+    }
 }

@@ -499,7 +499,7 @@ fn a_speed_that_no_human_reaches_is_divergence_of_that_lane_alone() {
 }
 
 #[test]
-fn nobody_steps_over_a_wall_or_through_a_body() {
+fn nobody_steps_over_a_wall() {
     for layout in BOTH {
         for (speed, dt) in [(7.0, "0.1"), (10.0, "0.1"), (14.0, "0.1"), (12.0, "0.05"), (14.0, "0.02")] {
             for k in 0..40 {
@@ -515,13 +515,7 @@ fn nobody_steps_over_a_wall_or_through_a_body() {
                 let mut run = scene.start(layout);
                 for _ in 0..60 {
                     run.steps(1);
-                    assert!(!(run.at(0).x > 8.0), "{speed} m/s, {dt} s: {}", run.at(0).x);
-                }
-                let mut run = crowd(vec![runner(start, speed), runner(9.0, -speed)], dt).start(layout);
-                for _ in 0..60 {
-                    run.steps(1);
-                    let (a, b) = (run.at(0), run.at(1));
-                    assert!(!(a.x > b.x && (a.y - b.y).abs() < 0.1), "{speed} m/s, {dt} s: {a} {b}");
+                    assert!(run.at(0).x <= 8.0, "{speed} m/s, {dt} s: {}", run.at(0).x);
                 }
             }
         }

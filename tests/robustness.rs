@@ -143,3 +143,29 @@ fn a_witness_names_the_moment_and_the_condition_of_its_margin() {
         assert!(witness["what"].as_str().unwrap().contains(": crowd["), "{witness}");
     }
 }
+
+/// Whether a point is in a region is a distance of zero; its margin is the depth, and so it is within a quantifier.
+#[test]
+fn points_of_all_have_the_depth_in_a_region_as_their_margin() {
+    let scenario = "scenario \"a\"\nhorizon = 1 s\nstep = 0.1 s\n\
+        scene { region big: rect (-10, -10) .. (30, 30)  region far: rect (20, 0) .. (30, 10) }\n\
+        kind adult: sfm preset helbing2000\nagent one: adult { at = (1, 1) }\nagent two: adult { at = (5, 5) }\n";
+    let asked = [
+        ("forall a in everyone: (position(a) + (1, 0)) in big", 11.0),
+        ("exists a in everyone: (position(a) + (1, 0)) in big", 15.0),
+        ("forall a in everyone: (position(a) + (1, 0)) in far", -18.0),
+        ("exists a in everyone: (position(a) + (1, 0)) in far", -14.0),
+        ("(position(one) + (1, 0)) in big", 11.0),
+    ];
+    let queries: String = asked
+        .iter()
+        .map(|(formula, _)| {
+            format!("estimate E(robustness({formula})) in -20 m .. 20 m by fixed(trials = 8)\n")
+        })
+        .collect();
+    let place = Place::new(&[("a.scn", scenario), ("a.bltl", &queries)]);
+    let json = place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "json"]).json();
+    for (result, (formula, margin)) in json["results"].as_array().unwrap().iter().zip(asked) {
+        assert!((result["estimate"].as_f64().unwrap() - margin).abs() < 1e-9, "{formula}: {result}");
+    }
+}

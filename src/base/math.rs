@@ -130,11 +130,11 @@ pub fn sin_cos_turn(turn: f64) -> (f64, f64) {
 /// ulp of x.
 #[inline(always)]
 pub fn sin_cos(x: f64) -> (f64, f64) {
-    // A remainder is exact, so the same everywhere.
-    let x = if x.abs() > 1e5 { x % (2.0 * PI) } else { x };
     const PIO2_HIGH: f64 = 1.570_796_326_734_125_614_17;
     const PIO2_MIDDLE: f64 = 6.077_100_506_303_965_976_60e-11;
     const PIO2_LOW: f64 = 2.022_266_248_795_950_631_5e-21;
+    // A remainder is exact, so the same everywhere.
+    let x = if x.abs() > 1e5 { x % (2.0 * PI) } else { x };
     let t = x * (2.0 / PI) + ROUND;
     let n = t - ROUND;
     let reduced = ((x - n * PIO2_HIGH) - n * PIO2_MIDDLE) - n * PIO2_LOW;

@@ -1,4 +1,4 @@
-//! Checks and rankings: claims, thresholds, tests, options.
+//! Checks, comparisons and rankings: claims, thresholds, tests, sides, options.
 
 use super::dimension::Dimension;
 use super::elaborator::{Locals, Lowered, Reported};
@@ -8,13 +8,13 @@ use super::queries::Compiler;
 use super::study::{Ask, Measure, MeasureKind, Ranking, Target};
 use super::symbols::ScopeId;
 use crate::model::Who;
-use crate::syntax::ast::{self, BinaryOp, Clauses, Expr};
+use crate::syntax::ast::{self, BinaryOp, Binding, Clauses, Expr};
 use crate::syntax::diagnostic::Diagnostic;
 
 /// Most options of a ranking.
 const MOST_OPTIONS: usize = 4096;
 
-impl Compiler<'_> {
+impl<'a> Compiler<'a> {
     /// A check: its claim, threshold and test.
     pub(super) fn check(
         &mut self,
@@ -101,6 +101,43 @@ impl Compiler<'_> {
         Ok((Ask::Check { measure, at_least, or_equal, threshold: theta, test, beside }, unbounded))
     }
 
+    /// A comparison: its sides, width and error; and the world of the first side.
+    pub(super) fn compare(
+        &mut self,
+        site: usize,
+        measure: &ast::Measure,
+        [first, second]: [&'a [Binding]; 2],
+        clauses: &Clauses,
+        family: Option<f64>,
+        scope: ScopeId,
+    ) -> Lowered<(Ask, bool, usize)> {
+        // What `under` sets at the end of the query holds for both sides.
+        let common = self.sites[site].settings.clone();
+        let sides = (self.under(first, scope, site, &common), self.under(second, scope, site, &common));
+        let ((one, first_settings), (two, second_settings)) = (sides.0?, sides.1?);
+        let (a, unbounded) = self.measured(one, measure, scope)?;
+        let (b, _) = self.measured(two, measure, scope)?;
+        let settings = [first_settings, second_settings];
+        let elaborator = &mut self.sites[site].elaborator;
+        let dimension = match &a.kind {
+            MeasureKind::Probability => Dimension::NONE,
+            MeasureKind::Expectation { .. } if a.kind != b.kind => {
+                return elaborator.report(unlike(measure, [&a.kind, &b.kind], &settings));
+            }
+            MeasureKind::Expectation { dimension, .. } => *dimension,
+            MeasureKind::Quantile { .. } => {
+                let error = Diagnostic::error("E0607", measure.span, "quantiles cannot be compared directly")
+                    .hint("compare `P(metric <= bound)`, or estimate both");
+                return elaborator.report(error);
+            }
+        };
+        let allowance = Allowance { family, claims: 1 };
+        let locals = Locals::of(scope);
+        let (within, delta) =
+            elaborator.comparison_clauses(clauses, &a.kind, dimension, allowance, &locals)?;
+        Ok((Ask::Compare { first: a, second: b, settings, within, delta }, unbounded, one))
+    }
+
     /// A ranking: whose moves, by which score.
     pub(super) fn rank(
         &mut self,
@@ -163,4 +200,32 @@ impl Compiler<'_> {
         }
         Ok((Ask::Rank { moves, measure: measured, epsilon, delta, ranking }, unbounded))
     }
+}
+
+/// The error of a comparison whose sides have ranges, or units, of their own.
+fn unlike(
+    measure: &ast::Measure,
+    kinds: [&MeasureKind; 2],
+    settings: &[Vec<(String, String)>; 2],
+) -> Diagnostic {
+    let side = |kind: &MeasureKind, settings: &[(String, String)]| {
+        let range = match kind {
+            MeasureKind::Expectation { range, dimension } => {
+                let unit = if dimension.is_none() { String::new() } else { format!(" {dimension}") };
+                format!("{}{unit} .. {}{unit}", range.0, range.1)
+            }
+            _ => "none".to_owned(),
+        };
+        let settings: Vec<String> =
+            settings.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+        format!("{range} with {}", settings.join(", "))
+    };
+    let (first, second) = (side(kinds[0], &settings[0]), side(kinds[1], &settings[1]));
+    let place = measure.range.as_ref().map_or(measure.span, |(low, high)| low.span.to(high.span));
+    Diagnostic::error(
+        "E0605",
+        place,
+        format!("the sides of a comparison need one range: it is {first}, but {second}"),
+    )
+    .hint("write a range that holds for both sides and depends on none of the parameters that differ")
 }

@@ -94,7 +94,7 @@ struct Broken<'i> {
     moves: bool,
     scenery: bool,
     /// Sources with errors, and the lines that say no more since they could not be read.
-    sources_broken: BTreeSet<SourceId>,
+    with_errors: BTreeSet<SourceId>,
     derailed: BTreeSet<(SourceId, usize)>,
 }
 
@@ -111,13 +111,13 @@ impl<'i> Broken<'i> {
             any_name: said.iter().any(|one| BRACKETS.contains(&one.code)),
             moves: false,
             scenery: false,
-            sources_broken: BTreeSet::new(),
+            with_errors: BTreeSet::new(),
             derailed: BTreeSet::new(),
             lost: lost.clone(),
         };
         for one in said.iter().filter(|one| one.severity == Severity::Error) {
             let Some(place) = &one.place else { continue };
-            broken.sources_broken.insert(place.span.source);
+            broken.with_errors.insert(place.span.source);
             if DERAILS.contains(&one.code) || BRACKETS.contains(&one.code) {
                 broken.derailed.extend(broken.line_of(place.span));
             }
@@ -144,7 +144,7 @@ impl<'i> Broken<'i> {
     }
 
     fn is_broken(&self, source: SourceId) -> bool {
-        self.sources_broken.contains(&source)
+        self.with_errors.contains(&source)
     }
 
     /// The line in which a place starts.

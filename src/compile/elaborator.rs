@@ -17,11 +17,12 @@ use crate::base::geometry::{Shape, Vec2};
 use crate::base::tick::{Clock, Tick};
 use crate::data::tracks::Recording;
 use crate::logic::{Node, NodeId, Relation, SignalId, Term, TermId, Tree};
-use crate::model::{AgentId, Bool, Num, Scene, Who};
+use crate::model::{AgentId, BehaviourId, Bool, Num, Scene, Who};
 use crate::syntax::ast::{BehaviourDecl, Expr};
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::source::{Source, Span};
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// An error was reported; what depends on it is left out without another word.
 #[derive(Clone, Copy, Debug)]
@@ -33,7 +34,9 @@ pub(super) type Lowered<T> = Result<T, Reported>;
 /// How deep expressions may nest once names are expanded.
 const DEEPEST: u32 = 1000;
 /// How many expression nodes one combination of parameter values may expand to.
-const MOST_NODES: u64 = 4_000_000;
+pub(super) const MOST_NODES: u64 = 4_000_000;
+/// After so many errors no unknown name is told which one it may mean.
+const MOST_LOOKED_FOR: usize = 100;
 /// How many conditions on states it may have.
 const MOST_ATOMS: usize = 5_000;
 
@@ -43,7 +46,7 @@ pub(super) struct Locals {
     /// Which table of names is looked up after the locals.
     pub(super) scope: ScopeId,
     /// Bound names, innermost last.
-    pub(super) names: Vec<(String, Typed)>,
+    pub(super) names: Vec<(String, Arc<Typed>)>,
     /// Number of enclosing folds over agents.
     pub(super) running: u32,
     /// The process, and which of its copies, whose names come next.
@@ -56,6 +59,11 @@ impl Locals {
     /// No locals in a scope.
     pub(super) fn of(scope: ScopeId) -> Self {
         Self { scope, ..Self::default() }
+    }
+
+    /// Binds a name, which hides others that are equal.
+    pub(super) fn bind(&mut self, name: &str, value: Typed) {
+        self.names.push((name.to_owned(), Arc::new(value)));
     }
 }
 
@@ -85,8 +93,10 @@ pub(super) struct Elaborator<'a> {
     pub(super) processes: Vec<Declared<'a>>,
     /// Behaviours so far.
     pub(super) behaviours: Vec<&'a BehaviourDecl>,
-    /// Who has which.
+    /// Who has which, by declarations.
     pub(super) withs: Vec<With<'a>>,
+    /// Who has which, one by one.
+    pub(super) having: BTreeSet<(AgentId, BehaviourId)>,
     /// Names of the agents so far.
     pub(super) agent_names: Vec<String>,
     /// Where the starts of people are written.
@@ -158,6 +168,7 @@ impl<'a> Elaborator<'a> {
             processes: Vec::new(),
             behaviours: Vec::new(),
             withs: Vec::new(),
+            having: BTreeSet::new(),
             agent_names: Vec::new(),
             places: Vec::new(),
             undeclared: BTreeSet::new(),
@@ -217,6 +228,11 @@ impl<'a> Elaborator<'a> {
     /// Whether an error was found.
     pub(super) fn failed(&self) -> bool {
         self.diagnostics.iter().any(|d| d.severity == Severity::Error)
+    }
+
+    /// Whether a known name is looked for that an unknown one may mean: after many errors that only takes time.
+    pub(super) fn looks_for_names(&self) -> bool {
+        self.diagnostics.len() < MOST_LOOKED_FOR
     }
 
     /// The text of a span.
@@ -284,11 +300,19 @@ impl<'a> Elaborator<'a> {
         self.depth += 1;
         if self.nodes > MOST_NODES {
             self.depth -= 1;
-            let error = Diagnostic::error("E0211", span, "this grows beyond reason once names are expanded")
-                .hint("quantifiers over formulas are written out for every agent; quantify over states where you can");
-            return self.report(error);
+            return self.too_large(span);
         }
         Ok(())
+    }
+
+    /// Something grows beyond reason.
+    pub(super) fn too_large<T>(&mut self, span: Span) -> Lowered<T> {
+        if self.endless() {
+            return Err(Reported);
+        }
+        let error = Diagnostic::error("E0211", span, "this grows beyond reason once names are expanded")
+            .hint("quantifiers over formulas are written out for every agent; quantify over states where you can");
+        self.report(error)
     }
 
     /// Whether it was said that something nests or grows beyond reason.

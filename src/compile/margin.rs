@@ -332,6 +332,7 @@ fn difference(truth: &Bool, larger: &Num, smaller: &Num) -> Num {
 fn fold(fold: Fold, set: &Set, body: &Bool) -> Num {
     let of = |fold, body: &Num| Num::Fold(fold, set.clone(), Box::new(body.clone()));
     if let Bool::Compare(comparison, a, b) = body
+        && depth(body).is_none()
         && let Num::Constant(bound) = **b
         && bound.is_finite()
         && !may_be_none(a)

@@ -211,7 +211,14 @@ impl Elaborator<'_> {
             });
         };
         let name = method.name.name.as_str();
-        if name == "fixed" || name == "clopper_pearson" || (quantile && name == "dkw") {
+        let of_trials = match name {
+            "fixed" => true,
+            // Its interval is that of a share.
+            "clopper_pearson" => probability,
+            "dkw" => quantile,
+            _ => false,
+        };
+        if of_trials {
             if let Some(expr) = &clauses.within {
                 let said = "a number of trials that is fixed promises no width";
                 let error = Diagnostic::error("E0607", expr.span, said);

@@ -37,6 +37,7 @@ mod sweeps;
 mod symbols;
 mod typed;
 mod ways;
+mod weight;
 mod world;
 mod written;
 

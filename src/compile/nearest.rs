@@ -1,5 +1,8 @@
 //! The known name nearest to an unknown one, for hints.
 
+/// So many letters of a name are looked at.
+const LONGEST: usize = 64;
+
 /// Edit distance with transpositions of neighbours (optimal string alignment).
 fn distance(a: &[char], b: &[char]) -> usize {
     let width = b.len() + 1;
@@ -23,12 +26,14 @@ fn distance(a: &[char], b: &[char]) -> usize {
 
 /// The nearest of the known names, if it is near enough to be meant.
 pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    let chars: Vec<char> = name.chars().take(64).collect();
+    let chars: Vec<char> = name.chars().take(LONGEST).collect();
     let limit = (chars.len() / 3).max(1);
     known
         .filter(|candidate| *candidate != name)
+        // Each letter more or less is a change.
+        .filter(|candidate| candidate.chars().take(LONGEST).count().abs_diff(chars.len()) <= limit)
         .map(|candidate| {
-            let other: Vec<char> = candidate.chars().take(64).collect();
+            let other: Vec<char> = candidate.chars().take(LONGEST).collect();
             let other_case = candidate.eq_ignore_ascii_case(name);
             (if other_case { 0 } else { distance(&chars, &other) }, candidate)
         })
@@ -47,5 +52,9 @@ mod tests {
         assert_eq!(nearest("velcoity", known.into_iter()), Some("velocity"));
         assert_eq!(nearest("User", known.into_iter()), Some("user"));
         assert_eq!(nearest("density", known.into_iter()), None);
+        // A third of the letters may differ, also by being there or not.
+        assert_eq!(nearest("veloci", known.into_iter()), Some("velocity"));
+        assert_eq!(nearest("veloc", known.into_iter()), None);
+        assert_eq!(nearest("EXIT", known.into_iter()), Some("exit"));
     }
 }

@@ -54,25 +54,46 @@ impl People {
         }
     }
 
-    /// A range of `size` stable numbers for a declaration; where ranges collide, the next free one. It begins where
-    /// the name says, whatever the size: who is there already keeps its numbers when more are declared.
-    pub(super) fn entities(&mut self, path: &str, size: u32) -> u32 {
+    /// A range of `size` stable numbers for a declaration; where ranges collide, the next free one, if there is one. It
+    /// begins where the name says, whatever the size: who is there already keeps its numbers when more are declared.
+    fn entities(&mut self, path: &str, size: u32) -> Option<u32> {
         const ALL: u64 = 1 << 24;
         let mut first = name_hash(path) % (ALL - MOST_ENTITIES);
+        let mut turned = false;
         while let Some((start, length)) = self.ranges.iter().find(|(start, length)| {
             first < u64::from(start + length) && u64::from(*start) < first + u64::from(size)
         }) {
             first = u64::from(start + length);
             if first + u64::from(size) >= ALL {
+                if std::mem::replace(&mut turned, true) {
+                    return None;
+                }
                 first = 0;
             }
         }
         self.ranges.push((first as u32, size));
-        first as u32
+        Some(first as u32)
     }
 }
 
 impl<'a> Elaborator<'a> {
+    /// A range of `size` stable numbers for what is declared at a place.
+    pub(super) fn entities(
+        &mut self,
+        people: &mut People,
+        path: &str,
+        size: u32,
+        span: Span,
+    ) -> Lowered<u32> {
+        match people.entities(path, size) {
+            Some(first) => Ok(first),
+            None => self.report(
+                Diagnostic::error("E0913", span, "with this there are more people than can be told apart")
+                    .hint("all who may come by sources count, about 16 million in all: let fewer come, or shorten the horizon"),
+            ),
+        }
+    }
+
     /// `agent user: adult { … }`, `agents crowd[12]: adult { … }`
     pub(super) fn agents(&mut self, decl: &'a AgentsDecl, people: &mut People) {
         let kind = self.kind(&decl.kind);
@@ -114,9 +135,12 @@ impl<'a> Elaborator<'a> {
             self.define_empty(&decl.name, decl.plural, with);
             return;
         };
-        let members = self.people(&decl.name, count, decl.plural, people, |_| {
+        let Ok(members) = self.people(&decl.name, count, decl.plural, people, |_| {
             (Arc::new(body.clone()), start.clone(), route.clone())
-        });
+        }) else {
+            self.define_empty(&decl.name, decl.plural, with);
+            return;
+        };
         people.written(&members, &rest, decl.name.span);
         self.attach(with, &members);
         let meaning = match members.as_slice() {
@@ -183,18 +207,24 @@ impl<'a> Elaborator<'a> {
                 radius_factor: if given("radius") { 1.0 } else { size },
                 tau_factor: if given("tau") { 1.0 } else { size },
             };
-            let members = self.people(&decl.name, 1, false, people, |_| {
+            let Ok(members) = self.people(&decl.name, 1, false, people, |_| {
                 (Arc::new(body.clone()), start.clone(), route.clone())
-            });
+            }) else {
+                self.define_empty(&decl.name, true, with);
+                return;
+            };
             people.agents[members[0].0 as usize].particle = Some(particle);
             people.written(&members, &rest, decl.name.span);
             self.attach(with, &members);
             self.scopes[0].define(&decl.name, Meaning::Agents { members: members.into(), particle: true });
             return;
         }
-        let members = self.people(&decl.name, count, true, people, |_| {
+        let Ok(members) = self.people(&decl.name, count, true, people, |_| {
             (Arc::new(body.clone()), start.clone(), route.clone())
-        });
+        }) else {
+            self.define_empty(&decl.name, true, with);
+            return;
+        };
         people.written(&members, &rest, decl.name.span);
         self.attach(with, &members);
         let index = people.groups.len() as u32;
@@ -227,9 +257,9 @@ impl<'a> Elaborator<'a> {
         plural: bool,
         people: &mut People,
         each: impl Fn(usize) -> (Arc<Body>, Start, Route),
-    ) -> Vec<AgentId> {
-        let first = people.entities(&name.name, count as u32);
-        self.members(name, count, plural, first, people, each)
+    ) -> Lowered<Vec<AgentId>> {
+        let first = self.entities(people, &name.name, count as u32, name.span)?;
+        Ok(self.members(name, count, plural, first, people, each))
     }
 
     /// Adds `count` people of one declaration, whose stable numbers begin with `first`.
@@ -441,7 +471,7 @@ impl<'a> Elaborator<'a> {
             return;
         };
         let own_speed = decl.body.iter().any(|f| f.name.name == "speed");
-        let members = self.people(&decl.name, found.len(), decl.plural, people, |k| {
+        let Ok(members) = self.people(&decl.name, found.len(), decl.plural, people, |k| {
             let velocity = found[k].velocity;
             let speed = velocity.norm();
             let mut body = base.clone();
@@ -449,7 +479,10 @@ impl<'a> Elaborator<'a> {
                 body.speed = Law::Constant(speed);
             }
             (Arc::new(body), Start { position: Position::Point(found[k].position), velocity }, route.clone())
-        });
+        }) else {
+            self.define_empty(&decl.name, decl.plural, with);
+            return;
+        };
         people.written(&members, &[], recorded.span);
         self.attach(with, &members);
         let meaning = match members.as_slice() {

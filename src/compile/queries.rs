@@ -1,13 +1,12 @@
 //! The whole of a call: worlds and questions.
 
-use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::families::{self, Allowance};
 use super::files::Files;
 use super::measures::Observed;
 use super::number::Number;
 use super::settings::Setting;
-use super::study::{Ask, Column, Estimator, Measure, MeasureKind, Query, Study, Target, World};
+use super::study::{Ask, Column, Estimator, Measure, Query, Study, Target, World};
 use super::symbols::ScopeId;
 use crate::base::decimal::Decimal;
 use crate::model::Scenario;
@@ -39,25 +38,28 @@ pub(super) struct Site<'a> {
     pub(super) columns: Vec<Column>,
 }
 
+/// Names and bits of the values of parameters.
+type Key = Vec<(String, u64)>;
+
 pub(super) struct Compiler<'a> {
     pub(super) input: &'a Input<'a>,
     pub(super) sites: Vec<Site<'a>>,
     /// Sites by the names and bits of their settings; numbers of the same bits may differ in what is exact.
-    known: BTreeMap<Vec<(String, u64)>, Vec<usize>>,
+    known: BTreeMap<Key, Vec<usize>>,
     queries: Vec<Query>,
     next_index: usize,
     /// Claims that share the error of a family.
     members: usize,
     /// The world of the values of `--set`, of a sweep the first.
     base: usize,
-    /// Times that ticks of continuous time must measure.
-    measured: Vec<Decimal>,
+    /// Times that ticks of continuous time must measure, world by world.
+    measured: BTreeMap<Key, Vec<Decimal>>,
 }
 
 /// Compiles a scenario and property files. All errors are returned at once; a study only where there is none, and where
 /// the parser cut nothing short.
 pub fn compile(input: &Input<'_>) -> (Option<Study>, Vec<Diagnostic>) {
-    let mut measured: Vec<Decimal> = Vec::new();
+    let mut measured: BTreeMap<Key, Vec<Decimal>> = BTreeMap::new();
     loop {
         let mut compiler = Compiler {
             input,
@@ -70,13 +72,20 @@ pub fn compile(input: &Input<'_>) -> (Option<Study>, Vec<Diagnostic>) {
             measured: measured.clone(),
         };
         compiler.run();
-        // Bounds in continuous time that fall between its ticks: once more, with finer ticks.
-        let between = compiler.sites.iter().flat_map(|site| &site.elaborator.between);
-        let more: Vec<Decimal> = between.filter(|time| !measured.contains(time)).copied().collect();
-        if more.is_empty() {
+        // Bounds in continuous time that fall between the ticks of a world: once more, with finer ticks in that world.
+        let mut more = false;
+        for (key, alike) in &compiler.known {
+            let known = measured.entry(key.clone()).or_default();
+            for time in alike.iter().flat_map(|at| &compiler.sites[*at].elaborator.between) {
+                if !known.contains(time) {
+                    known.push(*time);
+                    more = true;
+                }
+            }
+        }
+        if !more {
             return compiler.finish();
         }
-        measured.extend(more);
     }
 }
 
@@ -115,8 +124,9 @@ impl<'a> Compiler<'a> {
     /// The world of a combination of parameter values.
     fn site(&mut self, settings: BTreeMap<String, Number>) -> usize {
         // Both zeros are one.
-        let key =
+        let key: Key =
             settings.iter().map(|(name, number)| (name.clone(), (number.value + 0.0).to_bits())).collect();
+        let measured = self.measured.get(&key).map_or(&[][..], Vec::as_slice);
         let alike = self.known.entry(key).or_default();
         if let Some(at) = alike.iter().find(|at| self.sites[**at].settings == settings) {
             return *at;
@@ -128,7 +138,7 @@ impl<'a> Compiler<'a> {
             self.input.properties,
             self.input.files,
             settings.clone(),
-            &self.measured,
+            measured,
         );
         self.sites.push(Site { settings, elaborator, scenario, columns: Vec::new() });
         self.sites.len() - 1
@@ -239,8 +249,8 @@ impl<'a> Compiler<'a> {
             .collect()
     }
 
-    /// The world in which some parameters take other values.
-    fn under(
+    /// The world in which some parameters take other values, and these in words.
+    pub(super) fn under(
         &mut self,
         bindings: &'a [Binding],
         scope: ScopeId,
@@ -368,31 +378,8 @@ impl<'a> Compiler<'a> {
                 }
             }
             QueryKind::Compare { measure, first, second } => {
-                let sides = (self.under(first, scope, base, point), self.under(second, scope, base, point));
-                let ((one, first_settings), (two, second_settings)) = (sides.0?, sides.1?);
-                let (a, unbounded) = self.measured(one, measure, scope)?;
-                let (b, _) = self.measured(two, measure, scope)?;
-                let dimension = match &a.kind {
-                    MeasureKind::Probability => Dimension::NONE,
-                    MeasureKind::Expectation { dimension, .. } => *dimension,
-                    MeasureKind::Quantile { .. } => {
-                        let error =
-                            Diagnostic::error("E0607", measure.span, "quantiles cannot be compared directly")
-                                .hint("compare `P(metric <= bound)`, or estimate both");
-                        return self.sites[base].elaborator.report(error);
-                    }
-                };
-                let allowance = Allowance { family, claims: 1 };
-                let (within, delta) = self.sites[base]
-                    .elaborator
-                    .comparison_clauses(clauses, &a.kind, dimension, allowance, &locals)?;
-                let ask = Ask::Compare {
-                    first: a,
-                    second: b,
-                    settings: [first_settings, second_settings],
-                    within,
-                    delta,
-                };
+                let sides = [first.as_slice(), second];
+                let (ask, unbounded, one) = self.compare(site, measure, sides, clauses, family, scope)?;
                 self.push(query.span, text, settings, property_name(measure), ask, unbounded, one);
             }
             QueryKind::Rank { what, agent, measure } => {

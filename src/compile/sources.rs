@@ -49,7 +49,14 @@ impl<'a> Elaborator<'a> {
             return None;
         };
         let body = Arc::new(body);
-        let first = people.entities(&decl.name.name, range);
+        let numbers = (
+            self.entities(people, &decl.name.name, range, decl.name.span),
+            self.entities(people, &format!("{}.every", decl.name.name), 1, decl.name.span),
+        );
+        let (Ok(first), Ok(entity)) = numbers else {
+            self.define_empty(&decl.name, true, with);
+            return None;
+        };
         self.coming = true;
         let members = self.members(&decl.name, places, true, first, people, |_| {
             (body.clone(), start.clone(), route.clone())
@@ -61,7 +68,6 @@ impl<'a> Elaborator<'a> {
         }
         with.most = range;
         self.attach(with, &members);
-        let entity = people.entities(&format!("{}.every", decl.name.name), 1);
         self.scopes[0]
             .define(&decl.name, Meaning::Agents { members: members.clone().into(), particle: false });
         Some(Source { name: decl.name.name.clone(), entity, every, members, most: range })
@@ -140,7 +146,11 @@ impl<'a> Elaborator<'a> {
             (Some(limit), Some(people)) if (limit as f64) < expected && people <= MOST_PEOPLE => {
                 Ok((limit, range(people)))
             }
-            (Some(limit), _) if (limit as f64) >= expected => Ok((limit, range(limit))),
+            // More may come than are expected.
+            (Some(limit), enough) if (limit as f64) >= expected => {
+                let people = enough.filter(|people| *people <= MOST_PEOPLE);
+                Ok((limit, range(people.unwrap_or(limit).max(limit))))
+            }
             (None, Some(places)) if places <= MOST_PLACES => Ok((places, range(places))),
             (limit, _) => {
                 let text = format!("about {expected:.0} people would come by `{}`", decl.name.name);

@@ -254,9 +254,9 @@ pub enum Test {
     },
     /// One-sided mixture e-process, without indifference region.
     EProcess {
-        /// Error of either wrong side.
+        /// Error when the truth is above.
         alpha: f64,
-        /// Error of the other side.
+        /// Error when the truth is below.
         beta: f64,
     },
     /// Also "within the indifference region of the threshold".

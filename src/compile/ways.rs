@@ -145,15 +145,16 @@ impl<'a> Elaborator<'a> {
                     );
                     return self.report(error);
                 }
-                let count = ((to - from) / by + 1e-9).floor() as usize + 1;
-                if count + options.len() > MOST_OPTIONS {
+                // As a float: a count of headings can be larger than any whole number of the machine.
+                let steps = ((to - from) / by + 1e-9).floor();
+                if steps >= MOST_OPTIONS.saturating_sub(options.len()) as f64 {
                     return self.report(Diagnostic::error(
                         "E0406",
                         *span,
                         format!("these are more than {MOST_OPTIONS} options"),
                     ));
                 }
-                for k in 0..count {
+                for k in 0..=steps as usize {
                     let angle = from + by * k as f64;
                     // What is zero but for rounding is the direct way.
                     let angle = if angle.abs() < 1e-12 { 0.0 } else { angle };

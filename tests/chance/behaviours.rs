@@ -379,3 +379,31 @@ fn names_and_functions_of_a_behaviour_see_one_another_and_the_own_parameters() {
     }
     assert!((800..15_200).contains(&waiting), "{waiting}");
 }
+
+#[test]
+fn a_condition_may_ask_for_the_state_of_another_behaviour() {
+    let text = |whose: &str| {
+        format!(
+            "{HEAD}behaviour mood {{ state calm {{ after 2 s -> angry }} state angry {{ }} }}\n\
+             behaviour phone {{ state away {{ when {whose}.mood == angry -> looking }} state looking {{ }} }}\n\
+             agent me: adult with mood, phone {{ at = (0, 0) }}\n\
+             agent other: adult with mood {{ at = (50, 0) }}\n\
+             agent third: adult {{ at = (100, 0) }}"
+        )
+    };
+    for whose in ["self", "me", "other"] {
+        let query = "estimate P(F<=1.96 s (me.phone == looking)), P(F<=2.1 s (me.phone == looking)) by fixed(trials = 8)";
+        let run = answered(&compiled(&text(whose), query), 0, 1, 100);
+        let successes: Vec<u64> = run.results.iter().map(|result| result.counts.successes).collect();
+        assert_eq!(successes, [0, 8], "{whose}");
+    }
+    // Of a behaviour that nobody has it is not known who could ask for what.
+    let nobody = format!(
+        "{HEAD}behaviour mood {{ state calm {{ after 2 s -> angry }} state angry {{ }} }}\n\
+         behaviour phone {{ state away {{ when self.mood == angry -> looking }} state looking {{ }} }}\n\
+         agent me: adult {{ at = (0, 0) }}"
+    );
+    compiled(&nobody, "");
+    let errors = crate::texts::compiled(&text("third"), "").unwrap_err();
+    assert!(errors.contains("E0201") && errors.contains("`third` has no behaviour `mood`"), "{errors}");
+}

@@ -70,3 +70,23 @@ fn a_count_over_time_is_no_number() {
     let refused = compiled(COINS, "check P(count(c in coin: F<=#3 (c.heads)) + 1 >= 4) >= 0.5").unwrap_err();
     assert!(refused.contains("E0504") && refused.contains("only compared with a number"), "{refused}");
 }
+
+#[test]
+fn a_count_of_implications_of_one_state_is_a_number_of_it() {
+    let sensors = "horizon = 20 steps\n\
+        process sensor[3] { var a: bool = false var b: bool = true  when !a -> 1/2: a = true | 1/2: b = false }";
+    let count = "count(s in sensor: s.a => s.b)";
+    let queries = [
+        (format!("G<=1 ({count} + 1 == 4)"), 10),
+        (format!("F<=20 ({count} + 1 > 4)"), 0),
+        (format!("G<=20 ({count} == count(s in sensor: !s.a | s.b))"), 10),
+        (format!("{count} >= 3"), 10),
+    ];
+    let text: String =
+        queries.iter().map(|(query, _)| format!("estimate P({query}) by fixed(trials = 10)\n")).collect();
+    let study = compiled(sensors, &text).unwrap_or_else(|errors| panic!("{errors}"));
+    let run = super::answered(&study, 3, 1);
+    for (result, (query, successes)) in run.results.iter().zip(queries) {
+        assert_eq!(result.counts.successes, successes, "{query}");
+    }
+}

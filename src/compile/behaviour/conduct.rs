@@ -14,6 +14,7 @@ use crate::syntax::ast::{Field, Value};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 impl<'a> Elaborator<'a> {
     /// What a behaviour does.
@@ -203,7 +204,7 @@ impl<'a> Elaborator<'a> {
 fn with_own(locals: &Locals, variables: usize) -> Locals {
     let own = Parameter::ALL.into_iter().enumerate().map(|(k, own)| {
         let value = Num::Variable(VariableId((variables + k) as u32));
-        (own.name().to_owned(), Typed::Num(value, dimension_of(own)))
+        (own.name().to_owned(), Arc::new(Typed::Num(value, dimension_of(own))))
     });
     let names: Vec<_> = own.chain(locals.names.iter().cloned()).collect();
     let behaviour = locals.behaviour.map(|(at, _)| (at, names.len()));

@@ -163,14 +163,15 @@ impl<'a> Elaborator<'a> {
     /// Gives behaviours to the members of a declaration.
     pub(super) fn attach(&mut self, mut with: With<'a>, members: &[AgentId]) {
         with.members = members.to_vec();
+        for (behaviour, ..) in &with.behaviours {
+            self.having.extend(members.iter().map(|member| (*member, *behaviour)));
+        }
         self.withs.push(with);
     }
 
     /// Whether an agent has a behaviour.
     fn has_behaviour(&self, agent: AgentId, behaviour: BehaviourId) -> bool {
-        self.withs.iter().any(|with| {
-            with.members.contains(&agent) && with.behaviours.iter().any(|(id, ..)| *id == behaviour)
-        })
+        self.having.contains(&(agent, behaviour))
     }
 
     /// Lowers the behaviours of all agents.
@@ -248,7 +249,7 @@ impl<'a> Elaborator<'a> {
         let mut locals = Locals::of(0);
         for (name, argument) in decl.arguments.iter().zip(arguments) {
             let value = self.lower(argument, &Locals::of(0))?;
-            locals.names.push((name.name.clone(), value));
+            locals.bind(&name.name, value);
         }
         locals.behaviour = Some((id.0, locals.names.len() + 1));
         let first = with.members.first().copied().unwrap_or(AgentId(0));
@@ -260,11 +261,12 @@ impl<'a> Elaborator<'a> {
             let _ = self.conditions(decl, &of(&locals, first));
         }
         let conduct = Arc::new(conduct?);
-        let entity = people.entities(&format!("{}.{}", with.name, decl.name.name), with.members.len() as u32);
+        let path = format!("{}.{}", with.name, decl.name.name);
+        let entity = self.entities(people, &path, with.members.len() as u32, written.span)?;
         // Later people on the places of a source have numbers of their own.
         let later = match with.most {
             0 => 0,
-            most => people.entities(&format!("{}.{}.later", with.name, decl.name.name), most),
+            most => self.entities(people, &format!("{path}.later"), most, written.span)?,
         };
         let mut out = Vec::with_capacity(with.members.len());
         for (k, &agent) in with.members.iter().enumerate() {
@@ -277,6 +279,9 @@ impl<'a> Elaborator<'a> {
 
     /// Behaviours that nobody has are checked too, if they need no arguments.
     fn check_unused_behaviours(&mut self, variables: usize) {
+        // Whoever would have one could have the others too.
+        let having = self.having.clone();
+        self.having.extend((0..self.behaviours.len()).map(|k| (AgentId(0), BehaviourId(k as u32))));
         for (k, decl) in self.behaviours.clone().into_iter().enumerate() {
             let id = BehaviourId(k as u32);
             let used = self.withs.iter().any(|with| with.behaviours.iter().any(|(known, ..)| *known == id));
@@ -287,13 +292,14 @@ impl<'a> Elaborator<'a> {
                 let _: Result<_, Reported> = self.conditions(decl, &locals);
             }
         }
+        self.having = having;
     }
 }
 
 /// Names as one agent sees them.
 fn of(locals: &Locals, agent: AgentId) -> Locals {
     let mut own = locals.clone();
-    own.names.insert(0, ("self".to_owned(), Typed::Agent(Who::Agent(agent))));
+    own.names.insert(0, ("self".to_owned(), Arc::new(Typed::Agent(Who::Agent(agent)))));
     own
 }
 

@@ -4,6 +4,7 @@ use super::super::dimension::{Dimension, describe};
 use super::super::elaborator::{Elaborator, Locals, Lowered};
 use super::super::number::Number;
 use super::super::typed::Typed;
+use super::super::weight::Weight;
 use crate::base::math;
 use crate::logic::{Operation, Term};
 use crate::model::{Arithmetic, Function, Num};
@@ -45,7 +46,7 @@ impl Elaborator<'_> {
         let sides = (self.lower(left, locals), self.lower(right, locals));
         let (a, b) = (sides.0?, sides.1?);
         if let (Typed::Number(a), Typed::Number(b)) = (&a, &b) {
-            return self.fold(span, op, (*a, left), (*b, right)).map(Typed::Number);
+            return self.fold(span, op, *a, (*b, right.span)).map(Typed::Number);
         }
         if is_vector(&a) || is_vector(&b) {
             return self.lower_vector(op, (a, left.span), (b, right.span));
@@ -89,16 +90,17 @@ impl Elaborator<'_> {
         }
     }
 
-    fn fold(&mut self, span: Span, op: BinaryOp, a: (Number, &Expr), b: (Number, &Expr)) -> Lowered<Number> {
-        self.joined(span, op, a.0.dimension, b.0.dimension, b.1.span)?;
-        if op == BinaryOp::Over && b.0.value == 0.0 {
-            return self.report(Diagnostic::error("E0405", b.1.span, "division by zero"));
+    /// The result of two numbers that are known now.
+    fn fold(&mut self, span: Span, op: BinaryOp, a: Number, (b, right): (Number, Span)) -> Lowered<Number> {
+        self.joined(span, op, a.dimension, b.dimension, right)?;
+        if op == BinaryOp::Over && b.value == 0.0 {
+            return self.report(Diagnostic::error("E0405", right, "division by zero"));
         }
         let value = match op {
-            BinaryOp::Plus => Some(a.0.plus(b.0)),
-            BinaryOp::Minus => Some(a.0.minus(b.0)),
-            BinaryOp::Times => a.0.times(b.0),
-            _ => a.0.over(b.0),
+            BinaryOp::Plus => Some(a.plus(b)),
+            BinaryOp::Minus => Some(a.minus(b)),
+            BinaryOp::Times => a.times(b),
+            _ => a.over(b),
         };
         value.map_or_else(
             || self.report(Diagnostic::error("E0302", span, "the unit of this is out of range")),
@@ -106,8 +108,33 @@ impl Elaborator<'_> {
         )
     }
 
+    /// Both coordinates of a point that is known now.
+    fn fold_point(
+        &mut self,
+        op: BinaryOp,
+        (ax, ay, left): (Number, Number, Span),
+        (bx, by, right): (Number, Number, Span),
+    ) -> Lowered<Typed> {
+        let span = left.to(right);
+        let x = self.fold(span, op, ax, (bx, right))?;
+        let y = self.fold(span, op, ay, (by, right))?;
+        if !(x.value.is_finite() && y.value.is_finite()) {
+            return self.report(Diagnostic::error("E0405", span, "this is not a finite point"));
+        }
+        Ok(Typed::Point(x, y))
+    }
+
     /// Sums of vectors, and products with numbers.
     fn lower_vector(&mut self, op: BinaryOp, a: (Typed, Span), b: (Typed, Span)) -> Lowered<Typed> {
+        match (op, &a.0, &b.0) {
+            (BinaryOp::Plus | BinaryOp::Minus, Typed::Point(ax, ay), Typed::Point(bx, by)) => {
+                return self.fold_point(op, (*ax, *ay, a.1), (*bx, *by, b.1));
+            }
+            (BinaryOp::Times | BinaryOp::Over, Typed::Point(x, y), Typed::Number(factor)) => {
+                return self.fold_point(op, (*x, *y, a.1), (*factor, *factor, b.1));
+            }
+            _ => {}
+        }
         let combine = |op, x: &Num, y: &Num| Num::Combine(op, Box::new(x.clone()), Box::new(y.clone()));
         match op {
             BinaryOp::Plus | BinaryOp::Minus => {
@@ -122,6 +149,7 @@ impl Elaborator<'_> {
             BinaryOp::Times | BinaryOp::Over if is_vector(&a.0) && !is_vector(&b.0) => {
                 let (x, y, dv) = self.as_vector(a.0, a.1)?;
                 let (factor, df) = self.as_num(b.0, b.1)?;
+                self.count_copy(Weight::of_num(&factor), b.1)?;
                 let dimension = self.joined(b.1, op, dv, df, b.1)?;
                 let op = arithmetic(op);
                 Ok(Typed::Vector(combine(op, &x, &factor), combine(op, &y, &factor), dimension))

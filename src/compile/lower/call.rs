@@ -5,6 +5,7 @@ use super::super::elaborator::{Elaborator, Locals, Lowered};
 use super::super::number::Number;
 use super::super::symbols::{Meaning, unknown};
 use super::super::typed::Typed;
+use super::super::weight::Weight;
 use super::builtin::{DISTRIBUTIONS, FUNCTIONS};
 use super::coordinates;
 use crate::base::math;
@@ -12,6 +13,7 @@ use crate::logic::{Operation, Term};
 use crate::model::{Arithmetic, Axis, Bool, Field, Function, Num, Place, Set, Who};
 use crate::syntax::ast::{Expr, Ident};
 use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
 
 impl Elaborator<'_> {
     pub(super) fn lower_call(
@@ -89,6 +91,7 @@ impl Elaborator<'_> {
                 let mut known: Vec<&str> = FUNCTIONS.into_iter().chain(DISTRIBUTIONS).collect();
                 let declared: Vec<String> = [locals.scope, 0]
                     .iter()
+                    .filter(|_| self.looks_for_names())
                     .filter_map(|s| self.scopes.get(*s))
                     .flat_map(super::super::symbols::Scope::entries)
                     .filter(|(_, e)| matches!(&e.meaning, Meaning::Let(d) if !d.arguments.is_empty()))
@@ -151,11 +154,26 @@ impl Elaborator<'_> {
                 return Ok(Typed::Vector(x, y, Dimension::SPEED));
             }
             "x" | "y" | "norm" => {
+                if let Typed::Point(x, y) = typed {
+                    return match function.name.as_str() {
+                        "x" => Ok(Typed::Number(x)),
+                        "y" => Ok(Typed::Number(y)),
+                        name => {
+                            let length = (x.value * x.value + y.value * y.value).sqrt();
+                            self.computed(length, x.dimension, name, span)
+                        }
+                    };
+                }
                 let (x, y, dimension) = self.as_vector(typed, span)?;
                 let value = match function.name.as_str() {
                     "x" => x,
                     "y" => y,
-                    _ => norm(x, y),
+                    _ => {
+                        // Each is squared, and so written twice.
+                        self.count_copy(Weight::of_num(&x), span)?;
+                        self.count_copy(Weight::of_num(&y), span)?;
+                        norm(x, y)
+                    }
                 };
                 return Ok(Typed::Num(value, dimension));
             }
@@ -203,7 +221,7 @@ impl Elaborator<'_> {
         Ok(Typed::Num(Num::Of(field, self.as_agent(typed, span)?), dimension))
     }
 
-    fn area(&mut self, typed: Typed, span: crate::syntax::source::Span) -> Lowered<Number> {
+    fn area(&mut self, typed: Typed, span: Span) -> Lowered<Number> {
         match typed {
             Typed::Region(region) => {
                 let shape = self.region_shape(region, span)?;
@@ -267,22 +285,20 @@ impl Elaborator<'_> {
             _ => (Function::Cos, |x| math::sin_cos(x).1),
         };
         match known {
-            Some(number) => {
-                let value = compute(number.value);
-                if !value.is_finite() {
-                    let error = Diagnostic::error(
-                        "E0405",
-                        argument.span,
-                        format!("`{}` of this is not a finite number", function.name),
-                    );
-                    return self.report(error);
-                }
-                let whole = value.fract() == 0.0 && value.abs() < 9e15;
-                let exact = whole.then(|| crate::base::decimal::Decimal::whole(value as i64));
-                Ok(Typed::Number(Number { value, exact, dimension }))
-            }
+            Some(number) => self.computed(compute(number.value), dimension, &function.name, argument.span),
             None => Ok(Typed::Num(Num::Apply(apply, Box::new(num)), dimension)),
         }
+    }
+
+    /// What a function gives for what is known now: exact where it is whole.
+    fn computed(&mut self, value: f64, dimension: Dimension, function: &str, span: Span) -> Lowered<Typed> {
+        if !value.is_finite() {
+            let text = format!("`{function}` of this is not a finite number");
+            return self.report(Diagnostic::error("E0405", span, text));
+        }
+        let whole = value.fract() == 0.0 && value.abs() < 9e15;
+        let exact = whole.then(|| crate::base::decimal::Decimal::whole(value as i64));
+        Ok(Typed::Number(Number { value, exact, dimension }))
     }
 
     fn extremum(
@@ -361,6 +377,14 @@ impl Elaborator<'_> {
         let (a, b) = (sides.0?, sides.1?);
         match function.name.as_str() {
             "distance" => {
+                if let (Typed::Point(ax, ay), Typed::Point(bx, by)) = (&a, &b)
+                    && ax.dimension == Dimension::LENGTH
+                    && bx.dimension == Dimension::LENGTH
+                {
+                    let (dx, dy) = (ax.value - bx.value, ay.value - by.value);
+                    let length = (dx * dx + dy * dy).sqrt();
+                    return self.computed(length, Dimension::LENGTH, &function.name, expr.span);
+                }
                 let (a, b) = (self.as_place(a, left.span)?, self.as_place(b, right.span)?);
                 let extended = |p: &Place| matches!(p, Place::Region(_) | Place::Barrier(_));
                 if extended(&a) && extended(&b) {
@@ -378,6 +402,7 @@ impl Elaborator<'_> {
                 Ok(Typed::Num(Num::TimeToCollision(a, b), Dimension::TIME))
             }
             _ => {
+                let known = matches!((&a, &b), (Typed::Number(_), Typed::Number(_)));
                 let (a, da) = self.as_num(a, left.span)?;
                 let (b, db) = self.as_num(b, right.span)?;
                 if da != db {
@@ -388,6 +413,12 @@ impl Elaborator<'_> {
                 } else {
                     (Arithmetic::Modulo, da)
                 };
+                if let (true, Num::Constant(a), Num::Constant(b)) = (known, &a, &b) {
+                    if op == Arithmetic::Modulo && *b == 0.0 {
+                        return self.report(Diagnostic::error("E0405", right.span, "division by zero"));
+                    }
+                    return self.computed(op.of(*a, *b), dimension, &function.name, expr.span);
+                }
                 Ok(Typed::Num(Num::Combine(op, Box::new(a), Box::new(b)), dimension))
             }
         }
@@ -426,8 +457,14 @@ impl Elaborator<'_> {
         let typed = self.lower(condition, locals)?;
         let truth = self.as_truth(typed, condition.span)?;
         let sides = (self.lower(yes, locals), self.lower(no, locals));
-        let (a, da) = self.as_num(sides.0?, yes.span)?;
-        let (b, db) = self.as_num(sides.1?, no.span)?;
+        let sides = (sides.0?, sides.1?);
+        if let (Bool::Constant(holds), Typed::Number(a), Typed::Number(b)) = (&truth, &sides.0, &sides.1)
+            && a.dimension == b.dimension
+        {
+            return Ok(Typed::Number(if *holds { *a } else { *b }));
+        }
+        let (a, da) = self.as_num(sides.0, yes.span)?;
+        let (b, db) = self.as_num(sides.1, no.span)?;
         if da != db {
             return self.wrong_dimension(no.span, da, db);
         }

@@ -14,9 +14,10 @@ pub(super) use builtin::DISTRIBUTIONS;
 pub(super) use logic::relation;
 
 use super::dimension::{self, Dimension};
-use super::elaborator::{Elaborator, Locals, Lowered};
+use super::elaborator::{Elaborator, Locals, Lowered, MOST_NODES};
 use super::number::Number;
 use super::typed::Typed;
+use super::weight::Weight;
 use crate::logic::{Node, NodeId, TermId};
 use crate::model::{Axis, Bool, Num, Place, Set, Who};
 use crate::syntax::ast::{Expr, ExprKind, Ident, UnaryOp};
@@ -55,6 +56,9 @@ impl Elaborator<'_> {
                 // A variable of a process may be called so.
                 if let Typed::Process { .. } | Typed::Processes(_) = typed {
                     return self.lower_member(base, field, locals);
+                }
+                if let Typed::Point(x, y) = typed {
+                    return Ok(Typed::Number(if field.name == "x" { x } else { y }));
                 }
                 let (x, y, dimension) = self.as_vector(typed, base.span)?;
                 Ok(Typed::Num(if field.name == "x" { x } else { y }, dimension))
@@ -190,15 +194,23 @@ impl Elaborator<'_> {
 
     /// A formula as a truth value of one state, if it joins nothing but such values: implications are formulas, so
     /// that monitors see them, wherever they stand. `room` is left for so many parts: shared ones are written out.
-    fn of_one_state(&self, node: NodeId, room: &mut u32) -> Option<Bool> {
+    /// `size` counts what their conditions are made of.
+    fn of_one_state(&self, node: NodeId, room: &mut u32, size: &mut u64) -> Option<Bool> {
         *room = room.checked_sub(1)?;
         let mut parts = |parts: &[NodeId]| -> Option<Vec<Bool>> {
-            parts.iter().map(|part| self.of_one_state(*part, room)).collect()
+            parts.iter().map(|part| self.of_one_state(*part, room, size)).collect()
         };
         Some(match &self.tree.nodes[node.0 as usize] {
             Node::Constant(value) => Bool::Constant(*value),
-            Node::Atom(atom) => self.atoms[atom.0 as usize].clone(),
-            Node::Not(part) => Bool::Not(Box::new(self.of_one_state(*part, room)?)),
+            Node::Atom(atom) => {
+                let truth = &self.atoms[atom.0 as usize];
+                *size += Weight::of_truth(truth).nodes();
+                if *size > MOST_NODES {
+                    return None;
+                }
+                truth.clone()
+            }
+            Node::Not(part) => Bool::Not(Box::new(self.of_one_state(*part, room, size)?)),
             Node::And(all) => Bool::And(parts(all)?),
             Node::Or(all) => Bool::Or(parts(all)?),
             _ => return None,
@@ -210,7 +222,13 @@ impl Elaborator<'_> {
         match typed {
             Typed::Truth(truth) => Ok(truth),
             Typed::Formula(node) => {
-                if let Some(truth) = self.of_one_state(node, &mut 10_000) {
+                let mut size = 0;
+                let written = self.of_one_state(node, &mut 10_000, &mut size);
+                self.nodes = self.nodes.saturating_add(size);
+                if self.nodes > MOST_NODES {
+                    return self.too_large(span);
+                }
+                if let Some(truth) = written {
                     return Ok(truth);
                 }
                 let error = Diagnostic::error(

@@ -3,6 +3,7 @@
 use super::super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::super::symbols::{Meaning, ScopeId, unknown};
 use super::super::typed::Typed;
+use super::super::weight::Weight;
 use crate::model::{Set, Who};
 use crate::syntax::ast::{Expr, LetDecl};
 use crate::syntax::diagnostic::{Diagnostic, Label};
@@ -26,7 +27,8 @@ impl<'a> Elaborator<'a> {
 
     pub(super) fn lower_name(&mut self, name: &str, span: Span, locals: &Locals) -> Lowered<Typed> {
         if let Some((_, typed)) = locals.names.iter().rev().find(|(bound, _)| bound == name) {
-            return Ok(typed.clone());
+            self.count_copy(Weight::of(typed), span)?;
+            return Ok((**typed).clone());
         }
         if let Some(process) = locals.process
             && let Some(inside) = self.lower_inside(process, name, span)
@@ -119,12 +121,15 @@ impl<'a> Elaborator<'a> {
     }
 
     fn unknown_name(&mut self, name: &str, span: Span, locals: &Locals) -> Lowered<Typed> {
-        let mut known: Vec<String> = locals.names.iter().map(|(n, _)| n.clone()).collect();
-        known.extend(self.names_inside(locals));
-        for scope in [locals.scope, 0] {
-            known.extend(self.scopes.get(scope).into_iter().flat_map(|s| s.names().map(str::to_owned)));
+        let mut known: Vec<String> = Vec::new();
+        if self.looks_for_names() {
+            known.extend(locals.names.iter().map(|(n, _)| n.clone()));
+            known.extend(self.names_inside(locals));
+            for scope in [locals.scope, 0] {
+                known.extend(self.scopes.get(scope).into_iter().flat_map(|s| s.names().map(str::to_owned)));
+            }
+            known.extend(BUILT_IN.map(str::to_owned));
         }
-        known.extend(BUILT_IN.map(str::to_owned));
         let error = unknown("name", name, span, "E0201", known.iter().map(String::as_str));
         self.report(match dimension::unit(name) {
             Some(_) => error.hint(format!(
@@ -152,7 +157,9 @@ impl<'a> Elaborator<'a> {
     ) -> Lowered<Typed> {
         let key = (scope, name.to_owned());
         if let Some(known) = self.constants.get(&key) {
-            return known.clone();
+            let weight = known.as_ref().map(Weight::of).map_err(|reported| *reported)?;
+            self.count_copy(weight, span)?;
+            return self.constants.get(&key).cloned().unwrap_or(Err(Reported));
         }
         let value = self.expand(scope, name, span, compute);
         self.constants.insert(key, value.clone());
@@ -241,7 +248,7 @@ impl<'a> Elaborator<'a> {
         }
         for (name, argument) in decl.arguments.iter().zip(arguments) {
             let value = self.lower(argument, locals)?;
-            inner.names.push((name.name.clone(), value));
+            inner.bind(&name.name, value);
         }
         let before = self.diagnostics.len();
         let value = self.expand(inner.scope, &path, span, |this| this.lower(&decl.body, &inner));
@@ -292,8 +299,22 @@ impl<'a> Elaborator<'a> {
         {
             return Ok(Typed::Agent(Who::Agent(only)));
         }
-        let place = self.member(base, index, set.members.len(), locals)?;
-        Ok(Typed::Agent(Who::Agent(set.members[place])))
+        let left_out = match set.except {
+            None => None,
+            Some(Who::Agent(id)) => Some(id),
+            Some(Who::Running(_)) => {
+                let error = Diagnostic::error(
+                    "E0304",
+                    base.span,
+                    "who the members of this are depends on whom the quantifier is at",
+                )
+                .hint("choose a member of a set that is the same for all, as in `crowd[1]`, or quantify over this one");
+                return self.report(error);
+            }
+        };
+        let members: Vec<_> = set.members.iter().filter(|id| Some(**id) != left_out).copied().collect();
+        let place = self.member(base, index, members.len(), locals)?;
+        Ok(Typed::Agent(Who::Agent(members[place])))
     }
 
     /// One copy of an array of processes.

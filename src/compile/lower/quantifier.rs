@@ -32,7 +32,7 @@ impl Elaborator<'_> {
             return self.write_out(span, quantifier, variable, &set, body, locals);
         }
         let mut inner = locals.clone();
-        inner.names.push((variable.name.clone(), Typed::Agent(Who::Running(locals.running))));
+        inner.bind(&variable.name, Typed::Agent(Who::Running(locals.running)));
         inner.running += 1;
         let typed = self.lower(body, &inner)?;
         match quantifier {
@@ -77,7 +77,7 @@ impl Elaborator<'_> {
                 }
                 let set = self.as_set(members, set.span)?;
                 let mut inner = locals.clone();
-                inner.names.push((variable.name.clone(), Typed::Agent(Who::Running(locals.running))));
+                inner.bind(&variable.name, Typed::Agent(Who::Running(locals.running)));
                 inner.running += 1;
                 let left = self.left_side(body, &inner)?;
                 Ok(left.map(|(truth, place)| (Bool::Exists(set, Box::new(truth)), place)))
@@ -100,7 +100,7 @@ impl Elaborator<'_> {
         let mut each = Vec::new();
         for copy in self.copies(process) {
             let mut inner = locals.clone();
-            inner.names.push((variable.name.clone(), copy));
+            inner.bind(&variable.name, copy);
             each.push(if formulas {
                 self.inside_a_formula(|this| this.lower(body, &inner))?
             } else {
@@ -123,7 +123,7 @@ impl Elaborator<'_> {
                 let all = quantifier == Quantifier::Forall;
                 Ok(Typed::Truth(if all { Bool::And(truths) } else { Bool::Or(truths) }))
             }
-            Quantifier::Count if over_time => {
+            Quantifier::Count if formulas => {
                 let nodes: Lowered<Vec<_>> =
                     each.into_iter().map(|typed| self.as_formula(typed, body.span)).collect();
                 Ok(Typed::Tally(nodes?))
@@ -191,7 +191,7 @@ impl Elaborator<'_> {
         let mut each = Vec::with_capacity(members.len());
         for &id in &members {
             let mut inner = locals.clone();
-            inner.names.push((variable.name.clone(), Typed::Agent(Who::Agent(id))));
+            inner.bind(&variable.name, Typed::Agent(Who::Agent(id)));
             each.push(if quantifier == Quantifier::Count {
                 self.inside_a_formula(|this| this.lower(body, &inner))?
             } else {
@@ -201,7 +201,7 @@ impl Elaborator<'_> {
         if each.is_empty() && !self.agent_names.is_empty() {
             // Over nobody the body is read for anybody: what is wrong in it is reported, and a fold needs its unit.
             let mut inner = locals.clone();
-            inner.names.push((variable.name.clone(), Typed::Agent(Who::Agent(AgentId(0)))));
+            inner.bind(&variable.name, Typed::Agent(Who::Agent(AgentId(0))));
             let typed = self.lower(body, &inner)?;
             if let Quantifier::Fold(aggregate) = quantifier {
                 let (_, dimension) = self.as_term(typed, body.span)?;

@@ -61,6 +61,12 @@ impl Elaborator<'_> {
                 // X<=k p: p at exactly the k-th state, as in the paper; X p is X<=1.
                 let at = match (bound, window.to) {
                     (None, _) => Tick(1),
+                    (Some(Bound::Interval(start, end)), _) => {
+                        let place = start.span.to(end.span);
+                        let error = Diagnostic::error("E0503", place, "`X` asks one state, not an interval")
+                            .hint("`X<=0.5 s p` is p at exactly 0.5 s; for some or all states of an interval write `F[a, b]` or `G[a, b]`");
+                        return self.report(error);
+                    }
                     (Some(_), Some(to)) => to,
                     (Some(_), None) => {
                         return self.report(Diagnostic::error("E0503", span, "`X` needs a finite time"));

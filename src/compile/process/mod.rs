@@ -243,7 +243,7 @@ impl<'a> Elaborator<'a> {
         for at in 0..self.processes.len() {
             let decl = self.processes[at].decl;
             let copies = self.processes[at].copies.unwrap_or(1);
-            let first = people.entities(&decl.name.name, copies);
+            let Ok(first) = self.entities(people, &decl.name.name, copies, decl.name.span) else { break };
             self.check_names(at);
             let choose = decl.items.iter().any(|item| matches!(item, ProcessItem::Choose(_)));
             for copy in 0..copies {

@@ -15,6 +15,10 @@ use std::collections::BTreeSet;
 const MOST_STATES: usize = 4096;
 /// Most successors that are computed.
 const MOST_SUCCESSORS: usize = 1 << 17;
+/// Most values of variables that are kept at a time, of known states or of the successors of one.
+const MOST_VALUES: usize = 1 << 22;
+/// Most values of variables of all successors.
+const MOST_WRITTEN: usize = 1 << 24;
 
 /// What is wrong, and where it is written.
 struct Wrong {
@@ -70,7 +74,9 @@ impl Elaborator<'_> {
                         next_front.push(next);
                     }
                 }
-                if known.len() > MOST_STATES || made > MOST_SUCCESSORS {
+                let values = |states: usize| states.saturating_mul(processes.variables.len());
+                let many = known.len() > MOST_STATES || made > MOST_SUCCESSORS;
+                if many || values(known.len()) > MOST_VALUES || values(made) > MOST_WRITTEN {
                     return;
                 }
             }
@@ -115,7 +121,16 @@ fn successors(processes: &Processes, spans: &[Vec<Span>], state: &[i64]) -> Resu
     let mut joint: Vec<Vec<i64>> = vec![state.to_vec()];
     for (process, spans) in processes.list.iter().zip(spans) {
         let changes = changes(process, spans, &processes.variables, &values)?;
-        if joint.len() * changes.len() > MOST_SUCCESSORS {
+        if let [only] = changes.as_slice() {
+            for after in &mut joint {
+                for &(variable, value) in only {
+                    after[variable] = value;
+                }
+            }
+            continue;
+        }
+        let ways = joint.len().saturating_mul(changes.len());
+        if ways > MOST_SUCCESSORS || ways.saturating_mul(state.len()) > MOST_VALUES {
             return Err(End::Unknown);
         }
         joint = joint
@@ -157,6 +172,9 @@ fn jumped(processes: &Processes, spans: &[Vec<Span>], state: &[i64]) -> Result<V
                 branches(command, *span, &processes.variables, &values, &mut changes)?;
             }
         }
+    }
+    if changes.len().saturating_mul(state.len()) > MOST_VALUES {
+        return Err(End::Unknown);
     }
     let after = changes.iter().map(|change| {
         let mut after = state.to_vec();

@@ -132,8 +132,9 @@ Right:\n\
         code: "E0211",
         title: "an expression grows beyond reason",
         text: "\
-Functions and properties are written out where they are used, and quantifiers over formulas once for every agent.\n\
-Nested in one another that can grow beyond any machine. Quantify over states rather than over formulas.\n\
+Functions and properties are written out where they are used, with what they are given, and quantifiers over formulas\n\
+once for every agent. Nested in one another that can grow beyond any machine. Quantify over states rather than over\n\
+formulas, and do not nest calls of functions that repeat what they are given, as `let f(v) = v + v` does.\n\
 \n\
 Wrong:\n\
 \x20   property p = forall a in crowd: forall b in crowd: forall c in crowd: F<=1 s (…)\n\

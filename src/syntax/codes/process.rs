@@ -119,7 +119,7 @@ Right:\n\
         text: "\
 Without `limit` a place is kept for everyone who may come by a source up to the horizon: so many that they suffice in all\n\
 but one of a thousand million trials, up to 20,000. With `limit` places are used again by those who come after somebody has\n\
-left; about a million people may come in a trial.\n\
+left; about a million people may come by it in a trial, by all sources together about 16 million.\n\
 \n\
 Wrong:\n\
 \x20   horizon = 24 h\n\

@@ -59,7 +59,7 @@ Right:\n\
         title: "an expectation needs a range",
         text: "\
 Without a range no finite number of trials guarantees anything about a mean. Values outside are clipped to the range,\n\
-and the report counts them. Only expectations have one.\n\
+and the report counts them. Only expectations have one. Of a comparison both sides have the same.\n\
 \n\
 Wrong:\n\
 \x20   estimate E(min<=10 s (clearance(user)))\n\

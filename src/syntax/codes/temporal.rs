@@ -35,6 +35,7 @@ Right:\n\
         title: "this is no time bound",
         text: "\
 A bound is a time or a number of steps, not negative, and where it is needed finite; an interval ends after it starts.\n\
+`X` takes the time of its one state and no interval.\n\
 A bare number is legal only where the model has steps without a length.\n\
 \n\
 Wrong:\n\

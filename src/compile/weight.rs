@@ -1,0 +1,170 @@
+//! How large and how deep expressions of one state grow where names and operators repeat what they stand for.
+//!
+//! `let f(v) = v + v` doubles what it is given: called 27 times in itself it is larger than any memory, though each
+//! call is a few words. So whatever is copied counts as if it had been written out.
+
+use super::elaborator::{Elaborator, Lowered, MOST_NODES};
+use super::typed::Typed;
+use crate::model::{Bool, Num, Place};
+use crate::syntax::source::Span;
+
+/// How deep an expression may be that is copied: what walks it does so on the stack.
+const DEEPEST: u32 = 4000;
+
+/// A part of an expression.
+enum Part<'p> {
+    Num(&'p Num),
+    Bool(&'p Bool),
+    Place(&'p Place),
+}
+
+impl<'p> Part<'p> {
+    /// The parts that it is made of.
+    fn parts(&self, mut tell: impl FnMut(Part<'p>)) {
+        match *self {
+            Self::Num(num) => match num {
+                Num::Coordinate(_, place) | Num::Depth(place, _) => tell(Part::Place(place)),
+                Num::Distance(a, b) => {
+                    tell(Part::Place(a));
+                    tell(Part::Place(b));
+                }
+                Num::Apply(_, a) | Num::Fold(_, _, a) => tell(Part::Num(a)),
+                Num::Combine(_, a, b) => {
+                    tell(Part::Num(a));
+                    tell(Part::Num(b));
+                }
+                Num::Count(_, condition) => tell(Part::Bool(condition)),
+                Num::If(condition, a, b) => {
+                    tell(Part::Bool(condition));
+                    tell(Part::Num(a));
+                    tell(Part::Num(b));
+                }
+                Num::Constant(_)
+                | Num::Time
+                | Num::Variable(_)
+                | Num::Of(..)
+                | Num::MeanVelocity(..)
+                | Num::Clearance(_)
+                | Num::TimeToCollision(..)
+                | Num::Spread(_) => {}
+            },
+            Self::Bool(truth) => match truth {
+                Bool::Compare(_, a, b) => {
+                    tell(Part::Num(a));
+                    tell(Part::Num(b));
+                }
+                Bool::Not(a) | Bool::Forall(_, a) | Bool::Exists(_, a) => tell(Part::Bool(a)),
+                Bool::And(list) | Bool::Or(list) => list.iter().for_each(|one| tell(Part::Bool(one))),
+                Bool::Iff(a, b) => {
+                    tell(Part::Bool(a));
+                    tell(Part::Bool(b));
+                }
+                Bool::Constant(_)
+                | Bool::Present(_)
+                | Bool::In(..)
+                | Bool::Contact(_)
+                | Bool::Touching(..) => {}
+            },
+            Self::Place(place) => {
+                if let Place::Point(x, y) = place {
+                    tell(Part::Num(x));
+                    tell(Part::Num(y));
+                }
+            }
+        }
+    }
+}
+
+/// Size and depth of an expression.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Weight {
+    /// Number of its parts.
+    nodes: u64,
+    /// How deep they are in one another.
+    depth: u32,
+}
+
+impl Weight {
+    /// That of some parts. It goes no further than expressions may grow.
+    fn of_parts(parts: Vec<Part<'_>>) -> Self {
+        let mut weight = Self::default();
+        let mut open: Vec<(Part<'_>, u32)> = parts.into_iter().map(|part| (part, 1)).collect();
+        while let Some((part, depth)) = open.pop() {
+            weight.nodes += 1;
+            weight.depth = weight.depth.max(depth);
+            if weight.nodes > MOST_NODES || depth > DEEPEST {
+                break;
+            }
+            part.parts(|inner| open.push((inner, depth + 1)));
+        }
+        weight
+    }
+
+    /// That of what an expression turned out to be.
+    pub(super) fn of(typed: &Typed) -> Self {
+        match typed {
+            Typed::Num(num, _) => Self::of_num(num),
+            Typed::Vector(x, y, _) => Self::of_parts(vec![Part::Num(x), Part::Num(y)]),
+            Typed::Truth(truth) => Self::of_truth(truth),
+            Typed::Tally(formulas) => Self { nodes: formulas.len() as u64, depth: 1 },
+            _ => Self { nodes: 1, depth: 1 },
+        }
+    }
+
+    /// That of a number.
+    pub(super) fn of_num(num: &Num) -> Self {
+        Self::of_parts(vec![Part::Num(num)])
+    }
+
+    /// That of a condition.
+    pub(super) fn of_truth(truth: &Bool) -> Self {
+        Self::of_parts(vec![Part::Bool(truth)])
+    }
+
+    /// Number of parts.
+    pub(super) fn nodes(self) -> u64 {
+        self.nodes
+    }
+}
+
+impl Elaborator<'_> {
+    /// Counts a copy of something; an error where that grows beyond reason.
+    pub(super) fn count_copy(&mut self, weight: Weight, span: Span) -> Lowered<()> {
+        self.nodes = self.nodes.saturating_add(weight.nodes);
+        if weight.depth > DEEPEST || self.nodes > MOST_NODES {
+            return self.too_large(span);
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Arithmetic, Comparison};
+
+    fn sum(a: Num, b: Num) -> Num {
+        Num::Combine(Arithmetic::Add, Box::new(a), Box::new(b))
+    }
+
+    #[test]
+    fn parts_are_counted_wherever_they_stand() {
+        assert_eq!(Weight::of_num(&Num::Time), Weight { nodes: 1, depth: 1 });
+        let two = sum(Num::Time, Num::Constant(1.0));
+        assert_eq!(Weight::of_num(&two), Weight { nodes: 3, depth: 2 });
+        let place = Place::Point(Box::new(two.clone()), Box::new(Num::Time));
+        let far = Num::Distance(place.clone(), place);
+        assert_eq!(Weight::of_num(&far), Weight { nodes: 11, depth: 4 });
+        let near = Bool::Compare(Comparison::Less, Box::new(far), Box::new(two));
+        let both = Bool::And(vec![near, Bool::Constant(true)]);
+        assert_eq!(Weight::of_truth(&both), Weight { nodes: 17, depth: 6 });
+    }
+
+    #[test]
+    fn what_is_too_deep_is_looked_at_no_further() {
+        let deep = (0..2 * DEEPEST).fold(Num::Time, |sum_so_far, _| sum(sum_so_far, Num::Time));
+        let weight = Weight::of_num(&deep);
+        assert_eq!(weight.depth, DEEPEST + 1);
+        assert!(weight.nodes <= 2 * u64::from(DEEPEST) + 2, "{weight:?}");
+    }
+}
