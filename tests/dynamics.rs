@@ -501,7 +501,8 @@ fn a_speed_that_no_human_reaches_is_divergence_of_that_lane_alone() {
 #[test]
 fn nobody_steps_over_a_wall() {
     for layout in BOTH {
-        for (speed, dt) in [(7.0, "0.1"), (10.0, "0.1"), (14.0, "0.1"), (12.0, "0.05"), (14.0, "0.02")] {
+        // Beyond r sqrt(k1 / m), 9.7 m/s, compression itself cannot hold a body, however short the step.
+        for (speed, dt) in [(7.0, "0.1"), (9.0, "0.1"), (9.0, "0.05"), (9.0, "0.02")] {
             for k in 0..40 {
                 let runner = |x: f64, v: f64| Person {
                     velocity: p(v, 0.0),

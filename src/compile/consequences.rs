@@ -88,6 +88,8 @@ struct Broken<'i> {
     lost: Vec<(Span, &'i str)>,
     /// Names whose declarations were not read, or not to their end.
     suspects: Vec<&'i str>,
+    /// Names that were set, perhaps in a declaration whose first word is missing.
+    set: Vec<&'i str>,
     /// Whether any name may have been declared in what was not read.
     any_name: bool,
     /// Whether moves, or parts of the scene, were not read.
@@ -108,6 +110,7 @@ impl<'i> Broken<'i> {
         let mut broken = Self {
             sources: input.sources,
             suspects: Vec::new(),
+            set: Vec::new(),
             any_name: said.iter().any(|one| BRACKETS.contains(&one.code)),
             moves: false,
             scenery: false,
@@ -118,7 +121,9 @@ impl<'i> Broken<'i> {
         for one in said.iter().filter(|one| one.severity == Severity::Error) {
             let Some(place) = &one.place else { continue };
             broken.with_errors.insert(place.span.source);
-            if DERAILS.contains(&one.code) || BRACKETS.contains(&one.code) {
+            // What stands first in its line is missed by the one before.
+            let first = broken.starts_line(place.span);
+            if !first && (DERAILS.contains(&one.code) || BRACKETS.contains(&one.code)) {
                 broken.derailed.extend(broken.line_of(place.span));
             }
         }
@@ -137,14 +142,23 @@ impl<'i> Broken<'i> {
         if DECLARES.contains(&first) {
             self.any_name |= second.is_empty();
             self.suspects.extend(Some(second).filter(|name| !name.is_empty()));
+        } else if rest.trim_start().starts_with('=') {
+            self.set.push(first);
         } else if !NAMELESS.contains(&first) {
-            // A field or setting, or a first word that is misspelt.
+            // The first word is misspelt.
             self.suspects.extend([first, second].into_iter().filter(|name| !name.is_empty()));
         }
     }
 
     fn is_broken(&self, source: SourceId) -> bool {
         self.with_errors.contains(&source)
+    }
+
+    /// Whether a place is the first of its line.
+    fn starts_line(&self, span: Span) -> bool {
+        let before = Span { start: 0, end: span.start, ..span };
+        let text = word(self.sources, before).unwrap_or_default();
+        text[text.rfind('\n').map_or(0, |newline| newline + 1)..].trim().is_empty()
     }
 
     /// The line in which a place starts.
@@ -159,6 +173,7 @@ impl<'i> Broken<'i> {
         let (name, _) = leading_word(text);
         self.any_name
             || self.suspects.contains(&name)
+            || self.set.contains(&name)
             || self.lost.iter().any(|(_, skipped)| has_word(skipped, name))
     }
 
