@@ -37,8 +37,8 @@ use fearless_simd::{Level, Simd, dispatch};
 
 use crate::model::TOP_SPEED;
 
-/// Room to work, and what can be kept from one step to the next. It holds no part of the state: any
-/// scratch does for any batch, and changes no bit.
+/// Room to work, and what can be kept from one step to the next of one batch. It holds no part of the state, and a fresh
+/// one after `refresh` changes no bit.
 #[derive(Clone, Debug)]
 pub struct Scratch {
     level: Level,

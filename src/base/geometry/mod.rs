@@ -11,11 +11,6 @@ pub use shape::{Bounds, Shape};
 /// A point or vector of the plane.
 pub type Vec2 = nalgebra::Vector2<f64>;
 
-/// The vector turned by a quarter to the left.
-pub fn left_of(v: Vec2) -> Vec2 {
-    Vec2::new(-v.y, v.x)
-}
-
 /// The vector turned by `angle` radians to the left.
 pub fn rotated(v: Vec2, angle: f64) -> Vec2 {
     let (sin, cos) = super::math::sin_cos(angle);

@@ -1,6 +1,7 @@
 //! The driver of social-force agents: where each wants to go and how fast.
 //!
-//! A route is a list of stages. The aim is the nearest point of a goal's region a body radius inside;
+//! A route is a list of stages. The aim is the nearest point of a goal's region a body radius inside (of a polygon
+//! that is no upright rectangle, on its rim);
 //! driving velocity is zero inside the last goal. A region is reached when the centre is inside, a point
 //! within two radii, or when the line across it, perpendicular to the way from where the leg began, has
 //! been passed within 2 m of it. Advice replaces direction and speed for its time; waypoints passed
