@@ -145,8 +145,8 @@ impl<'i> Broken<'i> {
         } else if rest.trim_start().starts_with('=') {
             self.set.push(first);
         } else if !NAMELESS.contains(&first) {
-            // The first word is misspelt.
-            self.suspects.extend([first, second].into_iter().filter(|name| !name.is_empty()));
+            // The first word is misspelt, and a name follows.
+            self.suspects.extend(Some(second).filter(|name| !name.is_empty()));
         }
     }
 
