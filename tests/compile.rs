@@ -297,3 +297,25 @@ fn what_is_known_now_is_computed_now() {
         refused(&scenario, "estimate P(x(me) > 1 m)", code);
     }
 }
+
+#[test]
+fn a_behaviour_may_be_called_as_a_coordinate() {
+    let scenario = THREE.replace(
+        "agents crowd[2]: adult {",
+        "behaviour x { state one { after 0.3 s -> two } state two { } }\nagents crowd[2]: adult with x {",
+    );
+    for formula in ["crowd[1].x == two", "exists a in crowd: a.x == two", "position(crowd[1]).x > 1 m"] {
+        understood(&scenario, &format!("estimate P(F<=1 s ({formula}))"));
+    }
+}
+
+#[test]
+fn what_is_wrong_with_a_procedure_is_said_beside_a_wrong_formula() {
+    let both = |query: &str, codes: [&str; 2]| {
+        let (_, found) = compiled(THREE, query);
+        assert!(codes.iter().all(|code| found.contains(&format!("error[{code}]"))), "{query}\n{found}");
+    };
+    both("check P(nobody in hall) >= 0.5 by nosuch(alpha = 0.1)", ["E0201", "E0603"]);
+    both("estimate P(nobody in hall) confidence 10 %", ["E0201", "E0604"]);
+    both("rank moves of somebody by P(F<=1 s (speed(me) > 1 s))", ["E0201", "E0303"]);
+}

@@ -61,6 +61,10 @@ impl<'a> Compiler<'a> {
         let beside = allowance.error(elaborator.delta(clauses, &locals)?, super::methods::DEFAULT_DELTA);
         let mut at_least = matches!(relation, BinaryOp::AtLeast | BinaryOp::Greater);
         let or_equal = matches!(relation, BinaryOp::AtLeast | BinaryOp::AtMost);
+        if observed.is_err() && matches!(measure.kind, ast::MeasureKind::Probability) {
+            // What is wrong with the procedure is said beside what is wrong with the formula.
+            let _ = elaborator.test(clauses, bound.value, threshold.span, allowance, &locals);
+        }
         let Observed { column, kind, unbounded } = observed?;
         let (column, kind, theta) = match kind {
             // A quantile is at most x exactly if P(metric <= x) is at least its level. It is below x if
@@ -150,7 +154,7 @@ impl<'a> Compiler<'a> {
         scope: ScopeId,
     ) -> Lowered<(Ask, bool)> {
         let locals = Locals::of(scope);
-        let (measured, unbounded) = self.measured(site, measure, scope)?;
+        let measured = self.measured(site, measure, scope);
         let elaborator = &mut self.sites[site].elaborator;
         if what.name != "moves" {
             let error =
@@ -160,6 +164,7 @@ impl<'a> Compiler<'a> {
         }
         let typed = elaborator.lower(agent, &locals)?;
         let Who::Agent(id) = elaborator.as_agent(typed, agent.span)? else { return Err(Reported) };
+        let (measured, unbounded) = measured?;
         let dimension = match &measured.kind {
             MeasureKind::Probability => Dimension::NONE,
             MeasureKind::Expectation { dimension, .. } => *dimension,

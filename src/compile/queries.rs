@@ -323,7 +323,9 @@ impl<'a> Compiler<'a> {
         let locals = Locals::of(scope);
         let text = self.sites[base].elaborator.text(query.span);
         let (site, own) = self.under(&clauses.under, scope, base, point)?;
-        let settings: Vec<_> = settings.iter().cloned().chain(own).collect();
+        // What a query sets itself takes the place of what a sweep sets.
+        let swept = settings.iter().filter(|(name, _)| own.iter().all(|(mine, _)| mine != name));
+        let settings: Vec<_> = swept.cloned().chain(own.iter().cloned()).collect();
         match &query.kind {
             QueryKind::Check { measure, relation, threshold } => {
                 let ask = self.check(site, measure, *relation, threshold, clauses, family, scope);
@@ -335,6 +337,12 @@ impl<'a> Compiler<'a> {
                 let mut failed = false;
                 for measure in measures {
                     let Ok((measured, unbounded)) = self.measured(site, measure, scope) else {
+                        if matches!(measure.kind, ast::MeasureKind::Probability) {
+                            // What is wrong with the procedure is said beside what is wrong with the formula.
+                            let elaborator = &mut self.sites[site].elaborator;
+                            let kind = super::study::MeasureKind::Probability;
+                            let _ = elaborator.estimator(clauses, &kind, allowance, &locals);
+                        }
                         failed = true;
                         continue;
                     };

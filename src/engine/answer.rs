@@ -274,11 +274,7 @@ impl Answers<'_> {
         let shown = first.map_or(String::new(), |first| {
             let why = cause::unresolved(first.subject, first.column, first.item, self.call.seed);
             let index = first.item.index;
-            let mut command = self.call.simulate.clone();
-            for (name, value) in &first.settings {
-                command.push_str(&format!(" --set '{name}={value}'"));
-            }
-            command.push_str(&format!(" --trial {index} --seed {}", self.call.seed));
+            let mut command = self.call.simulate_with(&first.settings, index);
             if let Some(label) = witness::label(first.subject, first.item.advice) {
                 command.push_str(&format!(" --move '{label}'"));
             }
@@ -307,7 +303,8 @@ impl Answers<'_> {
         let unit = unit(first);
         result.method = method::of(&query.ask, None);
         if gap.pairs > 0 {
-            result.estimate = (gap.unresolved < gap.pairs).then_some(gap.estimate);
+            let known = |side: &Tally| side.counts.trials > side.counts.unresolved;
+            result.estimate = gap.sides.iter().all(known).then_some(gap.estimate);
             result.low = gap.interval.low;
             result.high = gap.interval.high;
             result.interval = words::interval(gap.interval.coverage, gap.interval.error);

@@ -39,6 +39,37 @@ pub struct Call<'c> {
     pub file: String,
 }
 
+impl Call<'_> {
+    /// The call that shows a trial under some settings: each takes the place of one of the call, and the last of several
+    /// of one name holds.
+    pub(super) fn simulate_with(&self, settings: &[(String, String)], trial: u64) -> String {
+        let mut command = String::new();
+        for (k, piece) in self.simulate.split(" --set ").enumerate() {
+            let quoted = piece.strip_prefix('\'');
+            let name = quoted.unwrap_or(piece).split('=').next().unwrap_or_default();
+            if k > 0 && settings.iter().any(|(own, _)| own == name) {
+                // What follows the value stays.
+                let end = quoted.map_or_else(
+                    || piece.find(' ').unwrap_or(piece.len()),
+                    |rest| rest.find('\'').map_or(piece.len(), |at| at + 2),
+                );
+                command.push_str(&piece[end..]);
+                continue;
+            }
+            if k > 0 {
+                command.push_str(" --set ");
+            }
+            command.push_str(piece);
+        }
+        for (k, (name, value)) in settings.iter().enumerate() {
+            if settings[k + 1..].iter().all(|(later, _)| later != name) {
+                command.push_str(&format!(" --set '{name}={value}'"));
+            }
+        }
+        format!("{command} --seed {} --trial {trial}", self.seed)
+    }
+}
+
 /// Runs a study.
 pub fn run(
     study: &Study,

@@ -9,9 +9,10 @@ use super::race::Podium;
 pub(super) fn sides(contrast: &Gap, labels: &[String; 2], delta: f64) -> Comparison {
     let side = |at: usize| {
         let counts = contrast.sides[at].counts;
+        let known = counts.trials > counts.unresolved;
         let value = if let Some(mean) = contrast.means.get(at) {
             let ((low, high), interval) = (mean.estimate(), mean.interval());
-            let estimate = if counts.trials == 0 { f64::NAN } else { 0.5 * (low + high) };
+            let estimate = if known { 0.5 * (low + high) } else { f64::NAN };
             Interval { estimate, low: interval.low, high: interval.high }
         } else {
             let reading = |successes: u64| {
@@ -19,14 +20,17 @@ pub(super) fn sides(contrast: &Gap, labels: &[String; 2], delta: f64) -> Compari
                 crate::stats::sequence::interval(read, delta)
             };
             let hull = reading(counts.successes).hull(reading(counts.successes + counts.unresolved));
-            Interval { estimate: procedure::share(counts), low: hull.low, high: hull.high }
+            let estimate = if known { procedure::share(counts) } else { f64::NAN };
+            Interval { estimate, low: hull.low, high: hull.high }
         };
         Side { label: labels[at].clone(), value, counts }
     };
+    let both_known = contrast.sides.iter().all(|side| side.counts.trials > side.counts.unresolved);
     let difference = Side {
         label: "first - second".to_owned(),
         value: Interval {
-            estimate: if contrast.pairs == 0 { f64::NAN } else { contrast.estimate },
+            // Of nothing resolved on a side there is no difference.
+            estimate: if both_known { contrast.estimate } else { f64::NAN },
             low: contrast.interval.low,
             high: contrast.interval.high,
         },

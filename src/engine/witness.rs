@@ -62,11 +62,7 @@ fn witness(
 ) -> Option<Witness> {
     let program = &subject.program;
     let unit = if program.scenario.clock == Clock::Steps { "steps" } else { "s" };
-    let mut command = call.simulate.clone();
-    for (name, value) in settings {
-        command.push_str(&format!(" --set '{name}={value}'"));
-    }
-    command.push_str(&format!(" --seed {} --trial {trial}", call.seed));
+    let mut command = call.simulate_with(settings, trial);
     if let Some(label) = label(subject, advice) {
         command.push_str(&format!(" --move '{label}'"));
     }

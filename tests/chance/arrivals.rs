@@ -148,3 +148,13 @@ fn large_crowds_take_people_in() {
     assert!((100..200).contains(&busy), "half of them, about: {busy}");
     assert_eq!(smc::kernel::Program::new(scenario.clone()).layout, Layout::Agents);
 }
+
+#[test]
+fn who_comes_at_once_is_there_in_the_first_state() {
+    let text = format!(
+        "{HEAD}source doors: adult {{ at = uniform in near  every = bernoulli(50 %) * 1 s  route = west  limit = 90 }}"
+    );
+    let study = compiled(&text, "estimate P(F<=0 s (count(a in doors) >= 1)) by fixed(trials = 400)");
+    let counts = answered(&study, 0, 1, 1_000).results[0].counts;
+    assert!(near(counts.successes as f64 / 400.0, 0.5, 0.5, 400.0), "{counts:?}");
+}

@@ -153,3 +153,20 @@ fn newcomers_on_a_used_place_are_felt_in_every_lane_as_alone() {
     }
     assert!(!together.state.queues.reused.is_empty(), "a place was used again");
 }
+
+#[test]
+fn a_comparison_of_what_is_nowhere_resolved_has_no_numbers() {
+    let text = doors("gap", "limit = 2").replace("horizon = 60 s", "horizon = 60 s\nparam gap = 2 s");
+    for measure in ["P(F (count(a in doors) > 90))", "E(count(a in doors) at end) in 0 .. 90"] {
+        let query = format!("compare {measure} under gap = 2 s with gap = 1 s");
+        let study = compiled(&text, &query);
+        let run = answered(&study, 0, 1, 200);
+        let result = &run.results[0];
+        assert_eq!(result.counts.unresolved, result.counts.trials, "{measure}");
+        assert_eq!(result.estimate, None, "{measure}");
+        let sides = result.compare.as_ref().unwrap();
+        for side in [&sides.first, &sides.second, &sides.difference] {
+            assert!(side.value.estimate.is_nan(), "{measure}: {side:?}");
+        }
+    }
+}

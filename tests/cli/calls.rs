@@ -234,3 +234,23 @@ fn what_a_procedure_refuses_has_a_code_and_a_place() {
         assert!(said.err.starts_with("error[E0604]: ") && said.err.contains("a.bltl:2:"), "{}", said.err);
     }
 }
+
+#[test]
+fn the_command_of_a_witness_sets_each_parameter_once() {
+    let query = "estimate P(F<=3 s contact(user)) within 0.3 under density = 0.5 /m^2\n";
+    let place = small(query);
+    for set in ["density=0.1", "density=0.1..0.3 by 0.1"] {
+        let said = place.call(&["check", "a.scn", "a.bltl", "-q", "--set", set, "--format", "json"]);
+        assert_eq!(said.code, Some(0), "{}", said.err);
+        let json = said.json();
+        let command = json["results"][0]["witnesses"][0]["command"].as_str().unwrap().to_owned();
+        assert_eq!(command.matches("density=").count(), 1, "{command}");
+        let words: Vec<String> = command.split(" --").map(|part| part.replace('\'', "")).collect();
+        let mut call = vec!["simulate", "a.scn"];
+        let options: Vec<String> = words[1..].iter().map(|part| format!("--{part}")).collect();
+        let split: Vec<(&str, &str)> = options.iter().filter_map(|part| part.split_once(' ')).collect();
+        call.extend(split.iter().flat_map(|(name, value)| [*name, *value]));
+        let shown = place.call(&call);
+        assert_eq!(shown.code, Some(0), "{command}\n{}", shown.err);
+    }
+}

@@ -57,6 +57,12 @@ impl Elaborator<'_> {
                 if let Typed::Process { .. } | Typed::Processes(_) = typed {
                     return self.lower_member(base, field, locals);
                 }
+                // So may a behaviour.
+                if matches!(typed, Typed::Agent(_))
+                    && self.behaviours.iter().any(|decl| decl.name.name == field.name)
+                {
+                    return self.lower_member(base, field, locals);
+                }
                 if let Typed::Point(x, y) = typed {
                     return Ok(Typed::Number(if field.name == "x" { x } else { y }));
                 }

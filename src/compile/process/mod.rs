@@ -329,7 +329,9 @@ impl<'a> Elaborator<'a> {
             .iter()
             .map(|b| if let Num::Constant(weight) = b.weight { Some(weight) } else { None })
             .collect();
-        if let Some(wrong) = known.and_then(|known| wrong_weights(&known)) {
+        // Of several branches each has a weight; one that lacks it was reported.
+        let weighed = command.branches.len() == 1 || command.branches.iter().all(|b| b.weight.is_some());
+        if let Some(wrong) = known.filter(|_| weighed).and_then(|known| wrong_weights(&known)) {
             return self.report(Diagnostic::error("E0902", command.span, wrong));
         }
         Ok(Command { guard, timing, branches })

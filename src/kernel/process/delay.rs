@@ -4,6 +4,7 @@
 //! delay by the inverse distribution function, the second is left for what happens at its end.
 
 use crate::base::random::{Purpose, Stream, TrialKey};
+use crate::base::tick::{Clock, Tick};
 use crate::model::law::Ready;
 
 /// A delay in seconds, and a number in (0, 1) that decides what happens after it.
@@ -15,10 +16,24 @@ pub(in crate::kernel) fn delay(trial: TrialKey, entity: u32, number: u32, law: &
 /// A time after a delay. Times that people write are short decimals, and sums of them are, too: three times 0.1 s is 0.3 s,
 /// and what is due then happens in the state of then. Sums of doubles miss that by a unit in the last place; one that is as
 /// near to a whole number of nanoseconds as that is taken for it. Only `+ - * /`, so the same everywhere.
-pub(in crate::kernel) fn after(now: f64, wait: f64) -> f64 {
+/// So is one that is near a tick of the clock, where states are looked at and bounds end: 1 s / 3 is no decimal, and its
+/// sums go astray a little more each time.
+pub(in crate::kernel) fn after(now: f64, wait: f64, clock: Clock) -> f64 {
     /// A few units in the last place.
     const ROUNDING: f64 = 4.0 * f64::EPSILON;
+    /// What the sum of thousands of delays may be off.
+    const ASTRAY: f64 = 1e-12;
     let due = now + wait;
+    if let Clock::Stepped(length) | Clock::Jumps(length) = clock {
+        let ticks = (due * length.denominator() as f64 / length.numerator() as f64 + 0.5).floor();
+        // Ticks that are nearer to each other than that tell nothing.
+        if ticks < 1e11 {
+            let tick = clock.seconds(Tick(ticks as u64));
+            if (tick - due).abs() <= due * ASTRAY {
+                return tick;
+            }
+        }
+    }
     let nearest = (due * 1e9 + 0.5).floor() / 1e9;
     if (nearest - due).abs() <= due * ROUNDING { nearest } else { due }
 }
@@ -26,6 +41,7 @@ pub(in crate::kernel) fn after(now: f64, wait: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::decimal::Decimal;
     use crate::model::{Family, Law};
 
     #[test]
@@ -37,14 +53,33 @@ mod tests {
             let thousandths = (wait * 1000.0).round() as u64;
             let mut now = 0.0;
             for k in 1..=count {
-                now = after(now, wait);
+                now = after(now, wait, Clock::Steps);
                 assert_eq!(now, (k * thousandths) as f64 / 1000.0, "{k} times {text}");
             }
         }
         // What is no decimal stays what it is.
-        assert_eq!(after(0.1, std::f64::consts::PI), 0.1 + std::f64::consts::PI);
-        assert_eq!(after(1.0, f64::INFINITY), f64::INFINITY);
-        assert_eq!(after(1e300, 1.0), 1e300);
+        let after_steps = |now: f64, wait: f64| after(now, wait, Clock::Steps);
+        assert_eq!(after_steps(0.1, std::f64::consts::PI), 0.1 + std::f64::consts::PI);
+        assert_eq!(after_steps(1.0, f64::INFINITY), f64::INFINITY);
+        assert_eq!(after_steps(1e300, 1.0), 1e300);
+        // Sums of what is no decimal meet the ticks all the same.
+        for parts in [3_i128, 7, 49, 60] {
+            let length = Decimal::ratio(1, parts).unwrap();
+            for clock in [Clock::Stepped(length), Clock::Jumps(length)] {
+                let mut now = 0.0;
+                for k in 1..=20_000 {
+                    now = after(now, length.to_f64(), clock);
+                    assert_eq!(now, clock.seconds(Tick(k)), "{k} times 1/{parts}");
+                }
+            }
+            // Where only the end is a tick, too.
+            let whole = Clock::Jumps(Decimal::ONE);
+            let mut now = 0.0;
+            for k in 1..=1_000 * parts {
+                now = after(now, length.to_f64(), whole);
+                assert!(k % parts != 0 || now == (k / parts) as f64, "{k} times 1/{parts}");
+            }
+        }
     }
 
     #[test]

@@ -17,6 +17,7 @@ use super::race::{Race, reads};
 use super::rates::Rates;
 use crate::base::lanes::{LANES, Mask};
 use crate::base::random::{Purpose, Stream, TrialKey};
+use crate::base::tick::Clock;
 use crate::model::law::Ready;
 use crate::model::{Domain, Process, Scenario, Timing};
 use fearless_simd::Level;
@@ -60,6 +61,7 @@ pub(super) struct Timed {
     code: Option<Code>,
     /// The variables that they set.
     pub(super) written: Vec<u32>,
+    clock: Clock,
     level: Level,
 }
 
@@ -117,6 +119,7 @@ impl Timed {
             racer.followers = (0..timed.len()).filter(|&j| follows(j)).collect();
         }
         Some(Self {
+            clock: scenario.clock,
             racers,
             owners,
             code: coded.then(|| Code::compile(scenario, &atoms, &signals)),
@@ -365,7 +368,7 @@ impl Timed {
                 let number = &mut clocks.delays[k][lane];
                 let (wait, pick) = delay(state.keys[lane], racer.entity, *number, law);
                 *number += 1;
-                *due = after(now, wait);
+                *due = after(now, wait, self.clock);
                 clocks.pick[clock].0[lane] = pick;
             }
         }

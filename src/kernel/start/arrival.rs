@@ -86,7 +86,8 @@ impl Queues {
         let source = sources.get(self.which[lane] as usize).filter(|_| self.reused.has(lane))?;
         let (count, name) = (source.members.len(), &source.name);
         Some(format!(
-            "more than {count} people came by `{name}`, and this follows single ones of them; a larger `limit` keeps a place for each"
+            "more than {} came by `{name}`, and this follows single ones of them; a larger `limit` keeps a place for each",
+            if count == 1 { "1 person".to_owned() } else { format!("{count} people") }
         ))
     }
 
@@ -196,6 +197,16 @@ impl Arrivals {
         for door in &self.doors {
             for member in &door.members {
                 leave_empty(state, member.0 as usize, lane);
+            }
+        }
+    }
+
+    /// Lets in who comes at time 0.
+    pub(super) fn open(&self, program: &Program, state: &mut State, lane: usize) {
+        let now = SLACK * program.dt;
+        for source in 0..self.doors.len() {
+            if state.queues.next[source].0[lane] <= now {
+                self.arrive(program, state, source, lane, now);
             }
         }
     }

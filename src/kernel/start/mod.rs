@@ -124,6 +124,7 @@ pub fn load(
         let own = advised.filter(|(whose, _)| whose.0 as usize == k).map(|(_, advice)| advice);
         enter(program, state, k, lane, &body, placed.positions[k], own);
     }
+    program.arrivals.open(program, state, lane);
     Ok(placed.counts)
 }
 

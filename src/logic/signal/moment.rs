@@ -65,18 +65,29 @@ impl Scale {
 
     /// The instant of a time in seconds, at most the end. What is the double nearest to a tick is that tick.
     pub(super) fn at(self, seconds: f64) -> Moment {
-        let units = seconds * self.units_per_second;
-        let ticks = (units * self.ticks_per_unit + 0.5).floor();
-        if ticks <= self.horizon as f64
-            && ticks * self.seconds_per_tick.0 / self.seconds_per_tick.1 == seconds
-        {
-            return self.shift(Tick(ticks as u64));
+        if let Some(moment) = self.on_tick(seconds) {
+            return moment;
         }
+        let units = seconds * self.units_per_second;
         if units <= (self.end() / 2) as f64 { 2 * (units as i64).max(0) } else { self.end() }
     }
 
-    /// A finite number of seconds as a shift, to the nearest unit, kept within some horizons.
+    /// The moment of a number of seconds that is the double nearest to a tick up to the horizon.
+    fn on_tick(self, seconds: f64) -> Option<Moment> {
+        let ticks = (seconds * self.units_per_second * self.ticks_per_unit + 0.5).floor();
+        let meets = (0.0..=self.horizon as f64).contains(&ticks)
+            && ticks * self.seconds_per_tick.0 / self.seconds_per_tick.1 == seconds;
+        meets.then(|| self.shift(Tick(ticks as u64)))
+    }
+
+    /// A finite number of seconds as a shift, to the nearest unit or to a tick, kept within some horizons.
     pub(super) fn span(self, seconds: f64) -> Moment {
+        if let Some(moment) = self.on_tick(seconds) {
+            return moment;
+        }
+        if let Some(moment) = self.on_tick(-seconds) {
+            return -moment;
+        }
         let (units, most) = (seconds * self.units_per_second, self.end() as f64);
         2 * ((units.max(-most).min(most) + 0.5).floor() as i64)
     }
@@ -90,6 +101,18 @@ impl Scale {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_number_of_seconds_is_the_same_moment_as_the_instant() {
+        for (quantum, horizon) in [("0.000000001", 7_000_000_000), ("0.1", 70), ("0.3", 30)] {
+            let scale = Scale::new(Tick(horizon), Decimal::parse(quantum).unwrap());
+            for ticks in (0..horizon).step_by((horizon / 70) as usize) {
+                let seconds = scale.time(Tick(ticks));
+                assert_eq!(scale.span(seconds), scale.at(seconds), "{seconds}");
+                assert_eq!(scale.span(-seconds), -scale.at(seconds), "{seconds}");
+            }
+        }
+    }
 
     #[test]
     fn ticks_and_seconds_meet_and_come_back() {

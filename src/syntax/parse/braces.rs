@@ -54,8 +54,8 @@ struct Open {
 /// What is wrong with the braces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Slip {
-    /// A line lacks a `{`.
-    NotOpened { line: usize },
+    /// A line lacks a `{`; or, where it has a `}` within it, at this byte, that one is too many.
+    NotOpened { line: usize, close: Option<usize> },
     /// The `{` at this byte lacks its `}` at the end of a line.
     NotClosed { open: usize, line: usize },
     /// The `}` at this byte closes nothing.
@@ -119,7 +119,8 @@ fn pairs_up(lines: &[Line<'_>]) -> bool {
 /// The line that should have opened the block that ends before line `end`: the last one that is no deeper.
 fn header(lines: &[Line<'_>], end: usize) -> Option<usize> {
     let line = (0..end).rev().find(|&line| lines[line].indent <= lines[end].indent)?;
-    let opens = lines[line].tokens.last().is_some_and(|(_, token)| *token == "{");
+    // A line that opens a block of its own lacks none.
+    let opens = lines[line].has("{");
     (lines[line].indent == lines[end].indent && line + 1 < end && !opens && !lines[line].starts_with("}"))
         .then_some(line)
 }
@@ -143,14 +144,14 @@ fn slips(lines: &[Line<'_>], closes_inside: bool) -> Vec<Slip> {
                 }
                 ("}", Some(open)) if k == 0 && open.indent == line.indent => drop(stack.pop()),
                 ("}", _) if k == 0 => found.push(match header(lines, number) {
-                    Some(line) => Slip::NotOpened { line },
+                    Some(line) => Slip::NotOpened { line, close: None },
                     None => Slip::Stray { at },
                 }),
                 ("}", Some(open)) if open.line == number || !open.last || closes_inside => drop(stack.pop()),
                 ("}", _) => found.push(if line.has("{") {
                     Slip::Stray { at }
                 } else {
-                    Slip::NotOpened { line: number }
+                    Slip::NotOpened { line: number, close: Some(at) }
                 }),
                 _ => {}
             }
@@ -206,14 +207,16 @@ fn changes(text: &str, lines: &[Line<'_>], slip: Slip) -> Vec<Change> {
             }
             changes
         }
-        Slip::NotOpened { line } => {
+        Slip::NotOpened { line, close } => {
             // At the end of a line that starts a block; near the start of one that closes it, too.
             let mut tokens: Vec<&(usize, &str)> = lines[line].tokens.iter().collect();
-            if !lines[line].has("}") {
+            if close.is_none() {
                 tokens.reverse();
             }
-            let tokens = tokens.into_iter();
-            tokens.flat_map(|token| after(token, '{').into_iter().chain(instead(token, '{'))).collect()
+            let erased = close.map(|at| Change { place: at..at + 1, by: ' ' });
+            let opened =
+                tokens.into_iter().flat_map(|token| after(token, '{').into_iter().chain(instead(token, '{')));
+            erased.into_iter().chain(opened).collect()
         }
     }
 }
@@ -249,11 +252,18 @@ fn error(source: &Source, slip: Slip, change: &Change) -> Diagnostic {
             Diagnostic::error(code::UNEXPECTED, span(at, at + 1), title)
         }
         Slip::Stray { at } => Diagnostic::error(code::STRAY, span(at, at + 1), "`}` closes nothing"),
+        Slip::NotOpened { close: Some(at), .. } if change.by == ' ' => {
+            Diagnostic::error(code::STRAY, span(at, at + 1), "`}` closes nothing")
+        }
         Slip::NotOpened { .. } => {
             Diagnostic::error(code::UNEXPECTED, place, format!("expected `{{`, found {}", quote(found)))
         }
         Slip::NotClosed { open, .. } if change.by == ' ' => {
             Diagnostic::error(code::UNEXPECTED, span(open, open + 1), "unexpected `{`, which nothing closes")
+        }
+        Slip::NotClosed { open, .. } if found == "}" => {
+            Diagnostic::error(code::UNCLOSED, span(open, open + 1), "this `{` is not closed")
+                .related(place, "this closes the block around it")
         }
         Slip::NotClosed { open, .. } => {
             Diagnostic::error(code::UNCLOSED, place, format!("expected `}}`, found {}", quote(found)))
@@ -293,8 +303,11 @@ pub(super) fn together(source: &Source, said: Vec<Diagnostic>, slips: Vec<Diagno
     kept
 }
 
-/// Mends a text whose braces do not pair up, in the way that leaves the fewest errors: `errors` counts them, of a
-/// mended text and of its slips. `None` where they do pair up, or the layout is no help.
+/// What one error costs, where what it hides costs less.
+pub(super) const ONE: usize = 1 << 10;
+
+/// Mends a text whose braces do not pair up, in the way that leaves the fewest errors: `errors` weighs them, of a
+/// mended text and of its slips, each `ONE`, and those that are hidden by another a little. `None` where they do pair up, or the layout is no help.
 pub(super) fn mend(source: &Source, errors: &dyn Fn(&str, Vec<Diagnostic>) -> usize) -> Option<Mended> {
     let text = source.text.as_str();
     if text.len() > LONGEST {
@@ -314,7 +327,8 @@ pub(super) fn mend(source: &Source, errors: &dyn Fn(&str, Vec<Diagnostic>) -> us
             return Some(Mended { text: changed(text, &chosen)?, errors: said(source, &slips, &chosen) });
         }
     }
-    for closes_inside in [true, false] {
+    // On a tie, what closes within a line is the slip.
+    for closes_inside in [false, true] {
         let slips = slips(&lines, closes_inside);
         if slips.is_empty() || slips.len() > MOST_SLIPS {
             continue;
@@ -335,7 +349,7 @@ pub(super) fn mend(source: &Source, errors: &dyn Fn(&str, Vec<Diagnostic>) -> us
         let mut least = cost(&chosen);
         for (place, ways) in ways.iter().enumerate() {
             for way in ways.iter().take(MOST_WAYS).skip(1) {
-                if least <= 1 || tries.get() >= MOST_TRIES {
+                if least <= ONE || tries.get() >= MOST_TRIES {
                     break;
                 }
                 let mut other = chosen.clone();

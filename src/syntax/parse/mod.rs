@@ -94,7 +94,11 @@ fn mended<T>(
         order(source, &mut said);
         (built, said)
     };
-    let Some(mended) = braces::mend(source, &|text, slips| count(&read(text, slips).1)) else { return plain };
+    let weigh = |text: &str, slips: Vec<Diagnostic>| {
+        let hidden = count(&parse(source, text, rule, build).1).min(braces::ONE - 1);
+        count(&read(text, slips).1) * braces::ONE + hidden
+    };
+    let Some(mended) = braces::mend(source, &weigh) else { return plain };
     let (built, said) = read(&mended.text, mended.errors);
     if count(&said) <= count(&plain.1) { (built, said) } else { plain }
 }
