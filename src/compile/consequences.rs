@@ -121,10 +121,11 @@ impl<'i> Broken<'i> {
         for one in said.iter().filter(|one| one.severity == Severity::Error) {
             let Some(place) = &one.place else { continue };
             broken.with_errors.insert(place.span.source);
-            // What stands first in its line is missed by the one before.
-            let first = broken.starts_line(place.span);
-            if !first && (DERAILS.contains(&one.code) || BRACKETS.contains(&one.code)) {
+            // What stands first in its line is missed by the one before, but for a bracket.
+            let derails = DERAILS.contains(&one.code) && !broken.starts_line(place.span);
+            if derails || BRACKETS.contains(&one.code) {
                 broken.derailed.extend(broken.line_of(place.span));
+                broken.add(lines(input.sources, place.span).unwrap_or_default());
             }
         }
         for (_, text) in lost.into_iter().chain(cut.filter_map(text)) {
@@ -329,7 +330,7 @@ fn once_a_name(found: Vec<Diagnostic>, sources: &[Source]) -> Vec<Diagnostic> {
     for one in found {
         let name = |one: &Diagnostic| {
             let place = one.place.as_ref().filter(|_| UNKNOWN.contains(&one.code))?;
-            word(sources, place.span)
+            word(sources, place.span).map(|text| leading_word(text).0)
         };
         let known = name(&one).filter(|name| !name.is_empty());
         let first = kept.iter().position(|before| known.is_some() && name(before) == known);
