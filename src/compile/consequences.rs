@@ -190,7 +190,7 @@ impl<'i> Broken<'i> {
         let of_line = self.line_of(place).is_some_and(|line| self.derailed.contains(&line));
         let of_clock = CLOCKS.contains(&one.code) || one.code == DIMENSION && one.title.contains("(steps)");
         let of_options = one.code == NO_OPTIONS && self.lost.iter().any(|(part, _)| within(*part, place));
-        let of_moves = one.code == NO_MOVES && self.moves;
+        let of_moves = one.code == NO_MOVES && one.title.contains("no moves") && self.moves;
         let of_scenery = one.code == INSIDE && self.scenery;
         let of_name =
             NAMES.contains(&one.code) && (!PLACED_AT_NAME.contains(&one.code) || self.may_declare(place));
