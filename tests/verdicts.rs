@@ -144,7 +144,8 @@ estimate E(max<=2 s (speed(wild))) in 0 m/s .. 3 m/s by fixed(trials = 1000)
     assert!(number(4, "high") - number(4, "low") > 3.0 * share, "{}", results[4]);
     let warnings = results[0]["warnings"].to_string();
     assert!(warnings.contains("smaller step") && warnings.contains("--trial "), "{warnings}");
-    let first = warnings.split("--trial ").nth(1).unwrap().split(' ').next().unwrap();
+    let first = warnings.split("--trial ").nth(1).unwrap();
+    let first = first.split(|c: char| !c.is_ascii_digit()).next().unwrap();
     let shown = place.call(&["simulate", "a.scn", "--trial", first]);
     assert!(shown.err.contains(&format!("trial {first} diverged at ")), "{}", shown.err);
 }
