@@ -34,12 +34,20 @@ fn plain(scene: &Crowd, i: usize) -> Vec2 {
         };
         force += n * (factor * (term(one.a, one.b, one.lambda) + term(one.a2, one.b2, one.lambda2)));
     }
-    for obstacle in &scene.obstacles {
-        let distance = obstacle.distance(one.at);
+    let distances: Vec<f64> = scene.obstacles.iter().map(|obstacle| obstacle.distance(one.at)).collect();
+    for (k, obstacle) in scene.obstacles.iter().enumerate() {
+        let distance = distances[k];
         // The normal is the gradient of the distance.
         let (h, at) = (1e-6, one.at);
         let slope = |step: Vec2| (obstacle.distance(at + step) - obstacle.distance(at - step)) / (2.0 * h);
         let n = p(slope(p(h, 0.0)), slope(p(0.0, h)));
+        // Where the nearest point lies on another one that is nearer, that one pushes.
+        let foot = at - n * distance;
+        let others = scene.obstacles.iter().zip(&distances).enumerate();
+        let mut before = others.filter(|(j, (_, d))| d.total_cmp(&distance).then(j.cmp(&k)).is_lt());
+        if before.any(|(_, (other, _))| other.distance(foot) <= 1e-3) {
+            continue;
+        }
         if one.radius - distance > -16.0 * one.b {
             force += n * (one.a * ((one.radius - distance) / one.b).exp());
         }

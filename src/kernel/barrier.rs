@@ -1,12 +1,13 @@
 //! Walls and obstacles as the forces see them: the nearest point of the surface, inside or outside.
 //!
 //! A barrier gives one force, from its nearest point: so a corner, where two segments are equally near,
-//! counts once, and an end repels along the line to that end. Inside a solid the normal points out.
+//! counts once, and an end repels along the line to that end. Inside a solid the normal points out. What holds
+//! where barriers meet stands in `surfaces`.
 //! Given-Wilson et al. 2017, equations (5) and (6), with `d_ib` the distance from the centre of the body.
 
 use super::edges::{Edges, squared_distance};
 use super::vector::{Doubles, Part};
-use crate::base::geometry::{Bounds, Shape, Vec2};
+use crate::base::geometry::{Bounds, Segment, Shape, Vec2};
 use crate::model::{Barrier, Obstacle};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -53,6 +54,15 @@ impl Surface {
             ),
         };
         Some(Self { form, bounds })
+    }
+
+    /// Its straight edges; a disc has none.
+    pub(super) fn edges(&self) -> impl Iterator<Item = Segment> + '_ {
+        let edges = match &self.form {
+            Form::Wall(edges) | Form::Polygon(edges) => Some(edges),
+            Form::Disc { .. } => None,
+        };
+        edges.into_iter().flat_map(Edges::segments)
     }
 
     /// Squared distance from eight places to the rectangle around the surface.
@@ -119,7 +129,7 @@ impl Surface {
 mod tests {
     use super::super::vector::parts;
     use super::*;
-    use crate::base::geometry::{Polygon, Segment};
+    use crate::base::geometry::Polygon;
     use crate::base::lanes::Lanes;
     use fearless_simd::{Level, dispatch};
 

@@ -20,8 +20,7 @@ struct Edge {
     along: Vec2,
     /// One over the squared length; 0 for a point.
     inverse_square: f64,
-    /// Ordinate of the other end.
-    end_y: f64,
+    b: Vec2,
     /// Abscissa gained per ordinate, for the crossing test.
     slope: f64,
 }
@@ -34,7 +33,7 @@ impl Edge {
             a: segment.a,
             along,
             inverse_square: if square > 0.0 { 1.0 / square } else { 0.0 },
-            end_y: segment.b.y,
+            b: segment.b,
             slope: if along.y == 0.0 { 0.0 } else { along.x / along.y },
         }
     }
@@ -79,6 +78,11 @@ impl Edges {
             groups,
             slack: (1e-8 * extent) * (1e-8 * extent),
         }
+    }
+
+    /// Its segments.
+    pub(super) fn segments(&self) -> impl Iterator<Item = Segment> + '_ {
+        self.list.iter().map(|edge| Segment::new(edge.a, edge.b))
     }
 
     /// The edges of each group, and its rectangle.
@@ -130,7 +134,7 @@ impl Edges {
                 }
             }
             for e in edges {
-                let straddles = part.c(e.a.y).simd_gt(y) ^ part.c(e.end_y).simd_gt(y);
+                let straddles = part.c(e.a.y).simd_gt(y) ^ part.c(e.b.y).simd_gt(y);
                 let left = x.simd_lt(part.c(e.a.x) + (y - part.c(e.a.y)) * part.c(e.slope));
                 inside ^= straddles & left;
             }
@@ -171,7 +175,7 @@ impl Edges {
                 continue;
             }
             for e in edges {
-                if (e.a.y > p.y) != (e.end_y > p.y) && p.x < e.a.x + (p.y - e.a.y) * e.slope {
+                if (e.a.y > p.y) != (e.b.y > p.y) && p.x < e.a.x + (p.y - e.a.y) * e.slope {
                     inside = !inside;
                 }
             }

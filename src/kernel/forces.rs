@@ -8,9 +8,8 @@
 //! A second exponential term of the same form acts between bodies alone. Walls: equation (5) without its
 //! compression, which is contact (and counted once).
 
-use super::barrier::Surface;
-use super::nearby::Nearby;
 use super::noise;
+use super::surfaces::Surfaces;
 use crate::base::math::{at_least, at_most};
 use crate::model::{Amount, Body, Law, Parameter, Scenario, TOP_SPEED};
 
@@ -45,9 +44,7 @@ pub(super) struct Cohesion {
 #[derive(Clone, Debug)]
 pub struct Forces {
     /// Walls and obstacles.
-    pub(super) surfaces: Vec<Surface>,
-    /// Which of them may be near.
-    pub(super) nearby: Nearby,
+    pub(super) surfaces: Surfaces,
     /// Groups with an attraction.
     pub(super) groups: Vec<Cohesion>,
     /// Per agent: set in a body of several persons. Empty if there are not two of them.
@@ -128,10 +125,8 @@ impl Forces {
         let first_range = shared_constant(scenario, |body| &body.b).filter(|_| same);
         let second_range = if second { shared_constant(scenario, |body| &body.b2) } else { Some(1.0) };
         let shared = first_range.zip(second_range).filter(|_| ties.is_empty());
-        let surfaces: Vec<Surface> = scenario.scene.barriers.iter().filter_map(Surface::new).collect();
         Self {
-            nearby: Nearby::new(&surfaces.iter().map(|surface| surface.bounds).collect::<Vec<_>>()),
-            surfaces,
+            surfaces: Surfaces::new(&scenario.scene.barriers),
             groups: scenario
                 .groups
                 .iter()

@@ -249,8 +249,8 @@ impl Lanewise {
             }
             list.first_surface.push(list.surfaces.len() as u32);
             let around = around(one, &reaches[i]);
-            for &k in forces.nearby.find(&around, &mut self.room) {
-                let surface = &forces.surfaces[k as usize];
+            for &k in forces.surfaces.nearby.find(&around, &mut self.room) {
+                let surface = &forces.surfaces.at(k);
                 let mut near = false;
                 for part in parts(simd) {
                     let limit = larger::<S>(part.load(&one.r) + part.load(&reaches[i]), part.c(0.0));
@@ -350,13 +350,14 @@ impl Lanewise {
                 };
                 let (mut fx, mut fy) = (part.load(&sums[i].x), part.load(&sums[i].y));
                 for &k in near {
-                    let nearest = forces.surfaces[k as usize].nearest(part, x, y);
+                    let nearest = forces.surfaces.at(k).nearest(part, x, y);
                     let gap = r - nearest.distance;
                     let touching = gap.simd_gt(part.c(-forces.margin));
                     if touching.any_true() {
                         contacts.push_wall(i as u32, k, part.bits(touching));
                     }
-                    let f = a * decay(part, gap * rate);
+                    let felt = forces.surfaces.felt(k, part, (x, y), &nearest);
+                    let f = a * decay(part, (r - felt) * rate);
                     fx += f * nearest.nx;
                     fy += f * nearest.ny;
                 }

@@ -20,6 +20,7 @@ pub mod program;
 mod social;
 pub mod start;
 pub mod state;
+mod surfaces;
 mod vector;
 
 pub use code::{Code, Readings};

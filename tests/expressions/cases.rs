@@ -19,7 +19,9 @@ pub(crate) fn who(depth: u32) -> BoxedStrategy<Who> {
 }
 
 pub(crate) fn set(depth: u32) -> BoxedStrategy<Set> {
-    let members = proptest::bits::u8::between(0, AGENTS).prop_map(|bits| {
+    // Everybody now and then: a whole block of one trial.
+    let some = prop_oneof![3 => proptest::bits::u16::between(0, AGENTS), 1 => Just(u16::MAX)];
+    let members = some.prop_map(|bits| {
         (0..AGENTS as u32).filter(|k| bits >> k & 1 == 1).map(AgentId).collect::<Vec<_>>().into()
     });
     (members, proptest::option::of(who(depth))).prop_map(|(members, except)| Set { members, except }).boxed()

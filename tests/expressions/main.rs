@@ -19,7 +19,7 @@ use smc::model::{
 };
 use std::sync::Arc;
 
-const AGENTS: usize = 6;
+const AGENTS: usize = 10;
 
 fn p(x: f64, y: f64) -> Vec2 {
     Vec2::new(x, y)

@@ -22,7 +22,7 @@ impl Cells {
             for k in here.clone().step_by(LANES) {
                 let group = k..here.end.min(k + LANES);
                 let around = grid.around(&self.x[group.clone()], &self.y[group]);
-                for &index in forces.nearby.find(&around, &mut room) {
+                for &index in forces.surfaces.nearby.find(&around, &mut room) {
                     for part in parts(simd) {
                         self.wall(part, grid, forces, index, k, contacts);
                     }
@@ -43,7 +43,7 @@ impl Cells {
         k: usize,
         contacts: &mut Contacts,
     ) {
-        let surface = &forces.surfaces[index as usize];
+        let surface = forces.surfaces.at(index);
         let eight = k..k + LANES;
         let (x, y) = (part.slice(&self.x[eight.clone()]), part.slice(&self.y[eight.clone()]));
         let limit = part.c(grid.reach * grid.reach);
@@ -51,12 +51,14 @@ impl Cells {
             return;
         }
         let nearest = surface.nearest(part, x, y);
-        let gap = part.slice(&self.r[eight.clone()]) - nearest.distance;
+        let r = part.slice(&self.r[eight.clone()]);
+        let gap = r - nearest.distance;
         for lane in part.bits(gap.simd_gt(part.c(-forces.margin))).iter() {
             contacts.push_wall(self.agent[k + lane], index, Mask::lane(0));
         }
+        let felt = forces.surfaces.felt(index, part, (x, y), &nearest);
         let rate = part.slice(&self.term.rate[eight.clone()]);
-        let f = part.slice(&self.a[eight.clone()]) * decay(part, gap * rate);
+        let f = part.slice(&self.a[eight.clone()]) * decay(part, (r - felt) * rate);
         part.take(f * -nearest.nx, &mut self.fx[eight.clone()]);
         part.take(f * -nearest.ny, &mut self.fy[eight]);
     }

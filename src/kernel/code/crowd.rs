@@ -1,6 +1,6 @@
 //! Tight loops over a crowd: the shapes of expression that nearly every property has.
 
-use super::lanes::{Truth, Vector, View, by_lane_of_two, lesser, narrow, widen};
+use super::lanes::{Body, Truth, Vector, View, by_lane_of_two, lesser, narrow, widen};
 use super::machine::compare_all;
 use super::node::{Measure, Reading};
 use crate::base::lanes::{Lanes, Mask};
@@ -196,38 +196,36 @@ impl<S: Simd> Probe<S> {
     }
 }
 
-/// A number of an agent.
+/// A number of whoever is read.
 #[inline(always)]
 pub(super) fn reading<S: Simd, const ONE: bool>(
     view: &View<'_, S, ONE>,
     reading: Reading,
-    agent: usize,
+    body: Body,
 ) -> Vector<S> {
     let state = view.state;
     match reading {
-        Reading::X => view.load(&state.x, agent),
-        Reading::Y => view.load(&state.y, agent),
-        Reading::Field(Field::VelocityX) => view.load(&state.vx, agent),
-        Reading::Field(Field::VelocityY) => view.load(&state.vy, agent),
+        Reading::X => view.read(&state.x, body),
+        Reading::Y => view.read(&state.y, body),
+        Reading::Field(Field::VelocityX) => view.read(&state.vx, body),
+        Reading::Field(Field::VelocityY) => view.read(&state.vy, body),
         Reading::Field(Field::Speed) => {
-            let (x, y) = (view.load(&state.vx, agent), view.load(&state.vy, agent));
+            let (x, y) = (view.read(&state.vx, body), view.read(&state.vy, body));
             (x * x + y * y).sqrt()
         }
         Reading::Field(Field::Heading) => {
-            let (x, y, zero) = (view.load(&state.vx, agent), view.load(&state.vy, agent), view.splat(0.0));
+            let (x, y, zero) = (view.read(&state.vx, body), view.read(&state.vy, body), view.splat(0.0));
             let stands = x.simd_eq(zero) & y.simd_eq(zero);
-            let (x, y) = (
-                stands.select(view.load(&state.ex, agent), x),
-                stands.select(view.load(&state.ey, agent), y),
-            );
+            let (x, y) =
+                (stands.select(view.read(&state.ex, body), x), stands.select(view.read(&state.ey, body), y));
             by_lane_of_two(y, x, math::atan2)
         }
-        Reading::Field(Field::Radius) => view.load(&state.radius, agent),
-        Reading::Field(Field::Mass) => view.load(&state.mass, agent),
-        Reading::Field(Field::DrivingSpeed) => view.load(&state.speed, agent),
-        Reading::Field(Field::Travelled) => view.load(&state.travelled, agent),
+        Reading::Field(Field::Radius) => view.read(&state.radius, body),
+        Reading::Field(Field::Mass) => view.read(&state.mass, body),
+        Reading::Field(Field::DrivingSpeed) => view.read(&state.speed, body),
+        Reading::Field(Field::Travelled) => view.read(&state.travelled, body),
         Reading::Field(Field::Mode(behaviour)) => match state.behaviours.modes.get(behaviour.0 as usize) {
-            Some(modes) => view.load(modes, agent),
+            Some(modes) => view.read(modes, body),
             None => view.splat(-1.0),
         },
     }
@@ -264,7 +262,7 @@ pub(super) fn mean_reading<S: Simd, const ONE: bool>(
         view,
         members,
         #[inline(always)]
-        |member| reading(view, what, member),
+        |member| reading(view, what, Body::One(member)),
     )
 }
 
@@ -300,13 +298,8 @@ pub(super) fn somebody<S: Simd, const ONE: bool>(view: &View<'_, S, ONE>, member
 
 /// A field of one agent less that of another.
 #[inline(always)]
-fn apart<S: Simd, const ONE: bool>(
-    view: &View<'_, S, ONE>,
-    field: &[Lanes],
-    a: usize,
-    b: usize,
-) -> Vector<S> {
-    view.load(field, a) - view.load(field, b)
+fn apart<S: Simd, const ONE: bool>(view: &View<'_, S, ONE>, field: &[Lanes], a: Body, b: Body) -> Vector<S> {
+    view.read(field, a) - view.read(field, b)
 }
 
 /// Seconds until two bodies touch if both keep their velocity. Touching discs: 0. Else the first root of
@@ -314,8 +307,8 @@ fn apart<S: Simd, const ONE: bool>(
 #[inline(always)]
 pub(super) fn time_to_collision<S: Simd, const ONE: bool>(
     view: &View<'_, S, ONE>,
-    a: usize,
-    b: usize,
+    a: Body,
+    b: Body,
 ) -> Vector<S> {
     let state = view.state;
     let (zero, never) = (view.splat(0.0), view.splat(f64::INFINITY));
@@ -325,7 +318,7 @@ pub(super) fn time_to_collision<S: Simd, const ONE: bool>(
         apart(view, &state.vx, a, b),
         apart(view, &state.vy, a, b),
     );
-    let (ra, rb) = (view.load(&state.radius, a), view.load(&state.radius, b));
+    let (ra, rb) = (view.read(&state.radius, a), view.read(&state.radius, b));
     let (squared, reach) = (px * px + py * py, ra + rb);
     let (speed, along, beyond) = (vx * vx + vy * vy, px * vx + py * vy, squared - reach * reach);
     let root = along * along - speed * beyond;
@@ -334,5 +327,5 @@ pub(super) fn time_to_collision<S: Simd, const ONE: bool>(
     // A NaN is neither approaching nor receding: it stays NaN.
     let time = (along.simd_ge(zero) | root.simd_lt(zero)).select(never, time);
     let time = (squared.sqrt() - ra - rb).simd_le(zero).select(zero, time);
-    widen(view.simd, view.present(a) & view.present(b)).select(time, never)
+    widen(view.simd, view.shows(a) & view.shows(b)).select(time, never)
 }

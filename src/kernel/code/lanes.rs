@@ -56,7 +56,31 @@ pub(super) fn by_lane_of_two<S: Simd>(
     a
 }
 
-/// A state as eight trials, or as its only trial in all lanes (`ONE`).
+/// Who is read.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Body {
+    /// An agent; in a state of one trial the same in every lane.
+    One(usize),
+    /// In a state of one trial, an agent of each lane: those of a block.
+    Block(usize),
+    /// In a state of one trial, an agent of each lane.
+    Eight([u32; LANES]),
+}
+
+impl Body {
+    /// The agent of a lane, in a state of one trial.
+    #[inline(always)]
+    pub(super) fn agent(self, lane: usize) -> usize {
+        match self {
+            Self::One(agent) => agent,
+            Self::Block(block) => block * LANES + lane,
+            Self::Eight(agents) => agents[lane] as usize,
+        }
+    }
+}
+
+/// A state as eight trials, or as its only trial in all lanes (`ONE`): the same of it in each, or what eight of its
+/// agents have.
 #[derive(Clone, Copy)]
 pub(super) struct View<'a, S: Simd, const ONE: bool> {
     pub(super) simd: S,
@@ -89,6 +113,19 @@ impl<'a, S: Simd, const ONE: bool> View<'a, S, ONE> {
         if ONE { self.splat(field[agent / LANES].0[agent % LANES]) } else { self.register(&field[agent]) }
     }
 
+    /// A field of whoever is read.
+    #[inline(always)]
+    pub(super) fn read(&self, field: &[Lanes], body: Body) -> Vector<S> {
+        match body {
+            Body::One(agent) => self.load(field, agent),
+            Body::Block(block) => self.register(&field[block]),
+            Body::Eight(agents) => {
+                let of = |agent: u32| field[agent as usize / LANES].0[agent as usize % LANES];
+                self.register(&Lanes(agents.map(of)))
+            }
+        }
+    }
+
     /// The lanes in which an agent is in the scene.
     #[inline(always)]
     pub(super) fn present(&self, agent: usize) -> Mask {
@@ -98,6 +135,24 @@ impl<'a, S: Simd, const ONE: bool> View<'a, S, ONE> {
             Mask::ALL
         } else {
             Mask::NONE
+        }
+    }
+
+    /// The lanes in which whoever is read is in the scene.
+    #[inline(always)]
+    pub(super) fn shows(&self, body: Body) -> Mask {
+        match body {
+            Body::One(agent) => self.present(agent),
+            Body::Block(block) => self.state.present[block],
+            Body::Eight(agents) => {
+                let mut here = Mask::NONE;
+                for (lane, agent) in agents.into_iter().enumerate() {
+                    if !self.present(agent as usize).is_empty() {
+                        here |= Mask::lane(lane);
+                    }
+                }
+                here
+            }
         }
     }
 }

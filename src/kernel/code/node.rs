@@ -185,6 +185,18 @@ impl Node {
         self.clone().operands_mut().into_iter().map(|id| *id).collect()
     }
 
+    /// Whether it can be computed for eight running agents of one trial at once: it walks over no crowd from which
+    /// one of them is left out.
+    pub(super) const fn is_lanewise(&self) -> bool {
+        match self {
+            Self::Loop(..) => false,
+            Self::Mean(_, crowd) | Self::Spread(crowd, ..) | Self::Somebody(crowd) => {
+                !matches!(crowd.except, Some(Who::Running(_)))
+            }
+            _ => true,
+        }
+    }
+
     /// The agents that it names itself, not through its operands.
     fn agents(&self) -> Vec<Who> {
         let (first, second) = match *self {

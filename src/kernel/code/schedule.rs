@@ -31,6 +31,8 @@ pub(super) struct Loop {
     pub(super) start: usize,
     /// First instruction after the loop.
     pub(super) exit: usize,
+    /// Whether eight members of one trial can be taken at once.
+    pub(super) lanewise: bool,
 }
 
 /// Linear code.
@@ -95,8 +97,22 @@ fn emit(graph: &Graph, roots: &[Id], level: u32, out: &mut Schedule) {
                 let register = out.registers[body as usize];
                 out.instructions.push(Instruction::Enter(number as u32));
                 let start = out.instructions.len();
-                out.loops.push(Loop { join, crowd, var, body: register, into, count, start, exit: start });
+                let info = Loop {
+                    join,
+                    crowd,
+                    var,
+                    body: register,
+                    into,
+                    count,
+                    start,
+                    exit: start,
+                    lanewise: false,
+                };
+                out.loops.push(info);
                 emit(graph, &[body], var + 1, out);
+                let inside = &out.instructions[start..];
+                out.loops[number].lanewise =
+                    inside.iter().all(|one| matches!(one, Instruction::Do(_, node) if node.is_lanewise()));
                 out.instructions.push(Instruction::Leave(number as u32));
                 out.loops[number].exit = out.instructions.len();
             }

@@ -152,7 +152,7 @@ fn within_reach_of_surface(
     (x, v): (Vec2, Vec2),
     h: f64,
 ) -> bool {
-    let (_, distance) = program.forces.surfaces[surface as usize].nearest_to(x);
+    let (_, distance) = program.forces.surfaces.at(surface).nearest_to(x);
     distance < radius + length(v) * h
 }
 

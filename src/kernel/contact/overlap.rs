@@ -126,8 +126,8 @@ impl Touches {
     pub(super) fn find_at_walls<S: Simd>(&mut self, simd: S, program: &Program, x: &[Vec2], t: f64) {
         for k in 0..self.count {
             let (eight, lane) = (&mut self.blocks[k / LANES], k % LANES);
-            let surface = &program.forces.surfaces[eight.b[lane] as usize];
-            let (normal, distance) = surface.nearest_to(x[eight.a[lane] as usize]);
+            let at = x[eight.a[lane] as usize];
+            let (normal, distance) = program.forces.surfaces.felt_at(eight.b[lane], at);
             eight.nx.0[lane] = normal.x;
             eight.ny.0[lane] = normal.y;
             eight.gap.0[lane] = eight.distance.0[lane] - distance;

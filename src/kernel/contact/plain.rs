@@ -150,7 +150,7 @@ fn plainly(contacts: &Contacts, program: &Program, state: &mut State, moved: &mu
                 ));
             }
             for &(i, surface) in &walls {
-                let (normal, distance) = program.forces.surfaces[surface as usize].nearest_to(x[i as usize]);
+                let (normal, distance) = program.forces.surfaces.felt_at(surface, x[i as usize]);
                 let k = (of(&state.k1, i), of(&state.k2, i));
                 overlaps.push(((i, None, inverse(i)), normal, radius(i) - distance, k));
             }

@@ -1,8 +1,10 @@
 //! The machine that runs linear code: one pass, no recursion, all lanes at once.
 
+mod eight;
+
 use super::arithmetic::{apply, combine};
 use super::crowd::{self, Members, Probe};
-use super::lanes::{Vector, View, by_lane, by_lane_of_two, greater, lesser, narrow, widen};
+use super::lanes::{Body, Vector, View, by_lane, by_lane_of_two, greater, lesser, narrow, widen};
 use super::node::{Crowd, Id, Join, Measure, Node};
 use super::schedule::{Instruction, Loop};
 use super::vicinity::{Asker, Vicinity};
@@ -28,6 +30,9 @@ struct Machine<'a, S: Simd, const ONE: bool> {
     numbers: &'a mut [Lanes],
     truths: &'a mut [Mask],
     frames: &'a mut [Frame],
+    /// The running agent of which eight are taken at once, and who they are. In one large crowd only; all registers of the
+    /// loop hold what each of them has, all others the same in every lane.
+    eight: Option<(u32, Body)>,
     /// One for each list, where the lanes are those of one large crowd.
     vicinities: &'a mut [Vicinity],
     /// Number of the state.
@@ -48,6 +53,7 @@ pub(super) fn execute<S: Simd, const ONE: bool>(
         numbers: &mut readings.numbers,
         truths: &mut readings.truths,
         frames: &mut readings.frames,
+        eight: None,
         vicinities: &mut readings.vicinities,
         number: readings.number,
     };
@@ -66,7 +72,8 @@ pub(super) fn execute<S: Simd, const ONE: bool>(
             }
             Instruction::Leave(number) => {
                 let info = &code.schedule.loops[*number as usize];
-                let settled = machine.join(info);
+                let settled =
+                    if ONE && info.lanewise { machine.join_eight(info) } else { machine.join(info) };
                 at = if !settled && machine.advance(info) { info.start } else { machine.finish(info) };
             }
         }
@@ -126,6 +133,9 @@ impl<'a, S: Simd, const ONE: bool> Machine<'a, S, ONE> {
     /// Goes to the next member that is present in some lane.
     #[inline(always)]
     fn advance(&mut self, info: &Loop) -> bool {
+        if ONE && info.lanewise {
+            return self.advance_eight(info);
+        }
         let members = self.members(info.crowd);
         let mut next = self.frames[info.var as usize].next;
         let found = loop {
@@ -181,6 +191,7 @@ impl<'a, S: Simd, const ONE: bool> Machine<'a, S, ONE> {
     /// Ends a loop; where to go on.
     #[inline(always)]
     fn finish(&mut self, info: &Loop) -> usize {
+        self.eight = None;
         if info.join == Join::Fold(Fold::Mean) {
             self.put(info.into, self.number(info.into) / self.number(info.count));
         }
@@ -213,11 +224,11 @@ impl<'a, S: Simd, const ONE: bool> Machine<'a, S, ONE> {
                 Some(lanes) => view.register(lanes),
                 None => view.splat(f64::NAN),
             },
-            Node::Of(reading, who) => crowd::reading(&view, reading, self.who(who)),
+            Node::Of(reading, who) => crowd::reading(&view, reading, self.body(who)),
             Node::Distance(a, b) => {
-                let (a, b) = (self.who(a), self.who(b));
-                let (ax, bx) = (view.load(&state.x, a), view.load(&state.x, b));
-                let (ay, by) = (view.load(&state.y, a), view.load(&state.y, b));
+                let (a, b) = (self.body(a), self.body(b));
+                let (ax, bx) = (view.read(&state.x, a), view.read(&state.x, b));
+                let (ay, by) = (view.read(&state.y, a), view.read(&state.y, b));
                 distance(ax - bx, ay - by)
             }
             Node::Between([ax, ay, bx, by]) => {
@@ -233,10 +244,18 @@ impl<'a, S: Simd, const ONE: bool> Machine<'a, S, ONE> {
                 self.code.barriers.at(barrier).signed_distance(self.number(x), self.number(y))
             }
             Node::ToScene(x, y) => self.code.barriers.distance(self.number(x), self.number(y)),
-            Node::TimeToCollision(a, b) => crowd::time_to_collision(&view, self.who(a), self.who(b)),
+            Node::TimeToCollision(a, b) => crowd::time_to_collision(&view, self.body(a), self.body(b)),
             Node::Mean(reading, crowd) => crowd::mean_reading(&view, self.members(crowd), reading),
             Node::Spread(crowd, x, y) => {
                 crowd::spread(&view, self.members(crowd), self.number(x), self.number(y))
+            }
+            Node::Nearest(who, crowd, measure) if ONE && self.eight.is_some() => {
+                let mut found = view.splat(f64::INFINITY);
+                self.one_by_one(
+                    #[inline(always)]
+                    |this, lane| found[lane] = this.nearest(this.who(who), crowd, measure)[lane],
+                );
+                found
             }
             Node::Nearest(who, crowd, measure) => self.nearest(self.who(who), crowd, measure),
             Node::Apply(function, a) => apply_all(function, self.number(a)),
@@ -301,11 +320,11 @@ impl<'a, S: Simd, const ONE: bool> Machine<'a, S, ONE> {
             Node::And(ref all) => all.iter().fold(Mask::ALL, |mask, &id| mask & self.truth(id)),
             Node::Or(ref all) => all.iter().fold(Mask::NONE, |mask, &id| mask | self.truth(id)),
             Node::Inside(who, region) => {
-                let who = self.who(who);
-                let (x, y) = (view.load(&view.state.x, who), view.load(&view.state.y, who));
+                let who = self.body(who);
+                let (x, y) = (view.read(&view.state.x, who), view.read(&view.state.y, who));
                 narrow(self.code.regions[region as usize].contains(x, y))
             }
-            Node::Present(who) => view.present(self.who(who)),
+            Node::Present(who) => view.shows(self.body(who)),
             Node::Entered(source, number) => {
                 let entered = view.state.queues.has_entered(source as usize, number);
                 match ONE {
@@ -323,7 +342,20 @@ impl<'a, S: Simd, const ONE: bool> Machine<'a, S, ONE> {
                     let holds = compare_all(test, nearest, self.number(bound));
                     return if wanted { holds } else { !holds };
                 }
-                self.all_far(self.who(who), crowd, measure, (test, wanted), self.number(bound))
+                let bound = self.number(bound);
+                if ONE && self.eight.is_some() {
+                    let mut far = Mask::NONE;
+                    self.one_by_one(
+                        #[inline(always)]
+                        |this, lane| {
+                            let bound = view.splat(bound[lane]);
+                            let all = this.all_far(this.who(who), crowd, measure, (test, wanted), bound);
+                            far |= all & Mask::lane(lane);
+                        },
+                    );
+                    return far;
+                }
+                self.all_far(self.who(who), crowd, measure, (test, wanted), bound)
             }
             _ => Mask::NONE,
         }
