@@ -11,6 +11,7 @@
 )]
 
 use smc::base::random::{Purpose, Stream, TrialKey};
+use smc::stats::calibration::{Boundary, Table};
 use smc::stats::ranking::{Allocation, Booleans, Each, Race};
 use smc::stats::{
     AnyEstimator, Estimator, Evidence, Massart, Okamoto, Outcome, Plan, Spending, Sprt, Test, TwoSprt,
@@ -91,7 +92,7 @@ fn estimates() {
         Okamoto::new(0.01, 0.05),
         Massart::new(0.01, 0.05, 0.001),
         Spending::new(0.01, 0.05),
-        AnyEstimator::within(0.01, 0.05, smc::stats::calibration::Patience::ENDLESS),
+        AnyEstimator::within(0.01, 0.05),
     ) else {
         return;
     };
@@ -213,10 +214,32 @@ fn time() {
     }
 }
 
+/// Proofs of the rows of the table with small half-widths, which take from seconds to minutes each.
+fn proofs() {
+    println!("\nproofs of rows of the table");
+    println!("| epsilon | delta | gamma | most trials | proven | seconds |");
+    for row in Table::ROWS.into_iter().filter(|row| row.epsilon < 0.01) {
+        let started = Instant::now();
+        let boundary = Boundary::new(row.epsilon, row.gamma);
+        let proven = boundary.as_ref().is_some_and(|boundary| boundary.proves(row.delta));
+        println!(
+            "| {} | {} | {} | {} | {proven} | {:.1} |",
+            row.epsilon,
+            row.delta,
+            row.gamma,
+            boundary.map_or(0, |boundary| boundary.limit()),
+            started.elapsed().as_secs_f64()
+        );
+    }
+}
+
 fn main() {
     let wanted: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
     let parts: [(&str, fn()); 4] =
         [("time", time), ("tests", tests), ("ranking", ranking), ("estimates", estimates)];
+    if wanted.iter().any(|w| w == "proofs") {
+        proofs();
+    }
     for (name, part) in parts {
         if wanted.is_empty() || wanted.iter().any(|w| w == name) {
             part();

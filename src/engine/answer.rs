@@ -97,12 +97,6 @@ impl Answers<'_> {
         result.stopped_by = stop;
         result.replay = self.replay(query, "--max-trials", counts.trials);
         result.elapsed_s = inquiry.seconds;
-        if inquiry.procedure.is_unproven() {
-            result.warnings.push(
-                "there was no time to prove the level of its procedure; `by spending(…)` needs no proof"
-                    .to_owned(),
-            );
-        }
         let subject_words = measured_words(query, measure, inquiry.tally.clipped);
         let mut beside = match query.ask {
             Ask::Check { beside, .. } => beside,

@@ -59,18 +59,17 @@ pub(super) fn of(ask: &Ask, procedure: Option<&Procedure>) -> Method {
             (Estimator::Default { epsilon, delta }, MeasureKind::Probability) => {
                 let name = match procedure {
                     Some(Procedure::Probability(p)) => match p.readings().0 {
-                        AnyEstimator::Calibrated(c) if c.is_proven() => {
-                            return named(
-                                "calibrated",
-                                &[("epsilon", epsilon), ("delta", delta), ("gamma", c.gamma())],
-                            );
+                        AnyEstimator::Calibrated(c) => {
+                            // Where it was stopped before its level mattered, none was looked for.
+                            let gamma = c.gamma().map(|gamma| ("gamma", gamma));
+                            let asked = [("epsilon", epsilon), ("delta", delta)];
+                            let numbers: Vec<_> = asked.into_iter().chain(gamma).collect();
+                            return named("calibrated", &numbers);
                         }
                         AnyEstimator::Spending(spending) => {
                             let looks = ("looks", spending.looks().len() as f64);
                             return named("spending", &[("epsilon", epsilon), ("delta", delta), looks]);
                         }
-                        // Time was up before its level was known, and nothing was sampled.
-                        AnyEstimator::Calibrated(_) => "calibrated",
                         _ => "okamoto",
                     },
                     _ => "calibrated",

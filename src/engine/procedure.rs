@@ -5,12 +5,12 @@ use super::cell::{Cell, Reading};
 use super::fault::Fault;
 use super::outcome::{Distribution, Histogram, Interval, Quantile, Step};
 use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Test};
-use crate::stats::calibration::Patience;
+use crate::stats::calibration::Level;
 use crate::stats::quantile::Sample;
 use crate::stats::test::Verdict as TestVerdict;
 use crate::stats::{
-    self, AnyEstimator, AnyTest, Coverage, Decision, Defaults, EstimatorReadings, Evidence, FixedSize, Gbas,
-    Massart, Mean, Okamoto, Outcome, Plan, Spending, Sprt, Statement, TestReadings, ThreeWay, TwoSprt,
+    self, AnyEstimator, AnyTest, Coverage, Decision, EstimatorReadings, Evidence, FixedSize, Gbas, Massart,
+    Mean, Okamoto, Outcome, Plan, Spending, Sprt, Statement, TestReadings, ThreeWay, TwoSprt,
 };
 use stats::Estimator as _;
 use stats::Test as _;
@@ -65,16 +65,10 @@ pub(super) fn value(cell: &Cell) -> Option<f64> {
 
 impl Procedure {
     /// The procedure of a check or an estimate. `seed` addresses what a procedure draws for itself.
-    pub(super) fn new(
-        ask: &Ask,
-        seed: u64,
-        (defaults, patience): (&mut Defaults, Patience<'_>),
-    ) -> Result<Self, Fault> {
+    pub(super) fn new(ask: &Ask, seed: u64) -> Result<Self, Fault> {
         match ask {
             Ask::Check { measure, threshold, test, .. } => Self::test(measure, *threshold, test),
-            Ask::Estimate { measure, estimator } => {
-                Self::estimate(measure, estimator, seed, (defaults, patience))
-            }
+            Ask::Estimate { measure, estimator } => Self::estimate(measure, estimator, seed),
             Ask::Compare { .. } | Ask::Rank { .. } => Err(Fault::Unsuitable),
         }
     }
@@ -105,16 +99,11 @@ impl Procedure {
         Ok(Self::Test(Box::new(TestReadings::new(test))))
     }
 
-    fn estimate(
-        measure: &Measure,
-        estimator: &Estimator,
-        seed: u64,
-        (defaults, patience): (&mut Defaults, Patience<'_>),
-    ) -> Result<Self, Fault> {
+    fn estimate(measure: &Measure, estimator: &Estimator, seed: u64) -> Result<Self, Fault> {
         match (&measure.kind, *estimator) {
             (MeasureKind::Probability, estimator) => {
                 let estimator = match estimator {
-                    Estimator::Default { epsilon, delta } => defaults.within(epsilon, delta, patience)?,
+                    Estimator::Default { epsilon, delta } => AnyEstimator::within(epsilon, delta)?,
                     Estimator::Okamoto { epsilon, delta } => {
                         AnyEstimator::Okamoto(Okamoto::new(epsilon, delta)?)
                     }
@@ -204,10 +193,28 @@ impl Procedure {
         }
     }
 
-    /// Whether time ended the proof of its level, so that nothing could be sampled.
-    pub(super) fn is_unproven(&self) -> bool {
-        matches!(self, Self::Probability(e)
-            if matches!(e.readings().0, AnyEstimator::Calibrated(one) if !one.is_proven()))
+    /// Half-width and error of the level that it has to know before it can read more.
+    pub(super) fn waits_for(&self) -> Option<(f64, f64)> {
+        match self {
+            Self::Probability(e) if e.waits() => match e.readings().0 {
+                AnyEstimator::Calibrated(one) => Some(one.asked()),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    /// What it has read so far, with what is now known of its level.
+    pub(super) fn settled(&self, level: Level) -> Result<Option<Self>, Fault> {
+        let Self::Probability(readings) = self else { return Ok(None) };
+        let mut readings = readings.clone();
+        readings.settle(level)?;
+        Ok(Some(Self::Probability(readings)))
+    }
+
+    /// Whether it has stopped.
+    pub(super) fn is_finished(&self) -> bool {
+        matches!(self, Self::Probability(readings) if readings.finished())
     }
 
     /// Whether it is over without having come to what was asked: at its own largest number of trials.

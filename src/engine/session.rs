@@ -18,8 +18,7 @@ use super::watch::{Outlook, Watch};
 use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Query, Study, World};
 use crate::kernel::start;
 use crate::model::Scenario;
-use crate::stats::Defaults;
-use crate::stats::calibration::Patience;
+use crate::stats::Levels;
 
 /// What the command line adds to a study.
 pub struct Call<'c> {
@@ -87,8 +86,9 @@ pub fn run(
     }
     let mut results: Vec<Option<QueryResult>> = asked.iter().map(|_| None).collect();
     let mut failure = None;
+    let mut levels = Levels::default();
     for group in groups {
-        let (found, broken) = session.answer(group, executor, watch)?;
+        let (found, broken) = session.answer(group, (executor, &mut levels), watch)?;
         for (k, result) in found {
             results[k] = Some(result);
         }
@@ -298,7 +298,6 @@ impl<'a> Session<'a> {
     {
         let mut groups = Vec::new();
         let mut taken = vec![false; asked.len()];
-        let mut defaults = Defaults::default();
         for (at, &query) in asked.iter().enumerate() {
             if taken[at] {
                 continue;
@@ -320,7 +319,7 @@ impl<'a> Session<'a> {
                     }
                     let inquiries = together
                         .iter()
-                        .map(|&k| self.inquiry(asked[k], &mut defaults).map_err(refused(asked[k])))
+                        .map(|&k| self.inquiry(asked[k]).map_err(refused(asked[k])))
                         .collect::<Result<_, _>>()?;
                     (together, Sampling::Survey(Survey::new(self.subject(world)?, inquiries, self.call.seed)))
                 }
@@ -334,21 +333,18 @@ impl<'a> Session<'a> {
         Ok(groups)
     }
 
-    fn inquiry<'q>(&self, query: &'q Query, defaults: &mut Defaults) -> Result<Inquiry<'q>, Fault> {
+    fn inquiry<'q>(&self, query: &'q Query) -> Result<Inquiry<'q>, Fault> {
         let (Ask::Check { measure, .. } | Ask::Estimate { measure, .. }) = &query.ask else {
             return Err(Fault::Unsuitable);
         };
-        // The procedure never depends on the time that there is. Whoever ends a proof, or finds that its time is up, ends
-        // the sampling too.
-        let go_on = || !self.budget.must_stop();
-        let patience = Patience { go_on: &go_on };
         Ok(Inquiry {
             query,
             column: measure.target.column,
             range: range(measure),
-            procedure: Procedure::new(&query.ask, self.call.seed, (defaults, patience))?,
+            procedure: Procedure::new(&query.ask, self.call.seed)?,
             tally: Tally::default(),
             glimpse: Glimpse::default(),
+            waits: false,
             stop: None,
             seconds: 0.0,
         })
@@ -393,7 +389,7 @@ impl<'a> Session<'a> {
     fn answer(
         &self,
         group: Group<'_>,
-        executor: &dyn Executor,
+        (executor, levels): (&dyn Executor, &mut Levels),
         watch: &dyn Watch,
     ) -> Result<Answered, Fault> {
         let Group { mut places, sampling } = group;
@@ -401,7 +397,7 @@ impl<'a> Session<'a> {
         let mut broken = None;
         let results = match sampling {
             Sampling::Survey(mut survey) => {
-                if let Some(Broken { index, fault }) = survey.run(executor, self.budget, watch)? {
+                if let Some(Broken { index, fault }) = survey.run((executor, levels), self.budget, watch)? {
                     broken = Some(flaw(fault)?);
                     // Those that had stopped before that trial do not know of it.
                     let mut decided = survey.inquiries.iter().map(|inquiry| inquiry.stopped_before(index));

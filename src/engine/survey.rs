@@ -1,7 +1,8 @@
 //! Checks and estimates of one world: all of them read the same trials, each until it stops.
 //!
 //! Trials are run in rounds. A round is consumed trial by trial in index order, and every query looks after
-//! each trial, so the size of rounds leaves no trace in a result.
+//! each trial, so the size of rounds leaves no trace in a result. A procedure whose level takes a proof reads as far as
+//! no level could stop it; the proofs come when the others have stopped.
 
 use super::budget::Budget;
 use super::cell::{Cell, Item, Reading};
@@ -15,6 +16,8 @@ use super::subject::Subject;
 use super::tally::Tally;
 use super::watch::{Forecast, Watch};
 use crate::compile::study::{Ask, Query};
+use crate::stats::Levels;
+use crate::stats::calibration::Patience;
 
 /// Largest round.
 pub(super) const LARGEST_ROUND: u64 = 16_384;
@@ -33,6 +36,8 @@ pub(super) struct Inquiry<'q> {
     pub(super) tally: Tally,
     /// What it has read so far, for forecasts.
     pub(super) glimpse: Glimpse,
+    /// Whether it has to know more of its procedure before it can read more.
+    pub(super) waits: bool,
     /// Why it stopped.
     pub(super) stop: Option<Stop>,
     /// Seconds from the start of the survey to its stop.
@@ -56,6 +61,11 @@ pub(super) struct Broken {
 }
 
 impl Inquiry<'_> {
+    /// Whether it reads on.
+    const fn is_open(&self) -> bool {
+        self.stop.is_none() && !self.waits
+    }
+
     /// Whether it had stopped before a trial. Whoever stops later in the same round is one who would have seen it in a
     /// smaller round, so that only this leaves no trace of the size of rounds.
     pub(super) fn stopped_before(&self, index: u64) -> bool {
@@ -108,17 +118,58 @@ impl<'q> Survey<'q> {
     /// Runs until each inquiry has stopped, or up to a trial in which the model is wrong.
     pub(super) fn run(
         &mut self,
-        executor: &dyn Executor,
+        (executor, levels): (&dyn Executor, &mut Levels),
         budget: &Budget,
         watch: &dyn Watch,
     ) -> Result<Option<Broken>, Fault> {
         let started = budget.elapsed();
-        let mut next = 0u64;
-        let mut items = Vec::new();
         if budget.max_trials == 0 {
             self.inquiries.iter_mut().for_each(|inquiry| inquiry.stop = Some(Stop::Cap));
         }
-        while self.inquiries.iter().any(|i| i.stop.is_none()) {
+        let mut broken = self.rounds((executor, started), 0, budget, watch)?;
+        // Proofs come when nobody reads on without one, so that none of them keeps others from their trials.
+        for k in 0..self.inquiries.len() {
+            if broken.is_some() || !self.inquiries[k].waits {
+                continue;
+            }
+            let Some(procedure) = prove(&self.inquiries[k].procedure, levels, budget)? else {
+                close(&mut self.inquiries, budget);
+                break;
+            };
+            let inquiry = &mut self.inquiries[k];
+            let read = inquiry.tally.counts.trials;
+            let before = std::mem::replace(&mut inquiry.procedure, procedure);
+            inquiry.waits = false;
+            if inquiry.procedure.is_finished() {
+                inquiry.stop = Some(inquiry.reason());
+                inquiry.seconds = budget.elapsed() - started;
+                continue;
+            }
+            broken = self.rounds((executor, started), read, budget, watch)?;
+            let inquiry = &mut self.inquiries[k];
+            if inquiry.tally.counts.trials == read {
+                // Time was up: it says what it would have said without the proof.
+                inquiry.procedure = before;
+            }
+        }
+        let seconds = budget.elapsed() - started;
+        for inquiry in self.inquiries.iter_mut().filter(|i| i.seconds == 0.0) {
+            inquiry.seconds = seconds;
+        }
+        Ok(broken)
+    }
+
+    /// Rounds from a trial on, until nobody reads on.
+    fn rounds(
+        &mut self,
+        (executor, started): (&dyn Executor, f64),
+        first: u64,
+        budget: &Budget,
+        watch: &dyn Watch,
+    ) -> Result<Option<Broken>, Fault> {
+        let mut next = first;
+        let mut items = Vec::new();
+        while self.inquiries.iter().any(Inquiry::is_open) {
             if budget.must_stop() {
                 close(&mut self.inquiries, budget);
                 break;
@@ -149,14 +200,10 @@ impl<'q> Survey<'q> {
                 }
             }
             self.job.reuse(cells);
-            if let Some(inquiry) = self.inquiries.iter().find(|i| i.stop.is_none()) {
+            if let Some(inquiry) = self.inquiries.iter().find(|i| i.is_open()) {
                 let expected = forecast::inquiry(&inquiry.query.ask, &inquiry.procedure, &inquiry.glimpse);
                 watch.consumed(&inquiry.query.text, next, expected.map(|n| n.max(next)));
             }
-        }
-        let seconds = budget.elapsed() - started;
-        for inquiry in self.inquiries.iter_mut().filter(|i| i.seconds == 0.0) {
-            inquiry.seconds = seconds;
         }
         Ok(None)
     }
@@ -168,7 +215,7 @@ impl<'q> Survey<'q> {
         // What follows an unfinished trial is not looked at: outcomes count in index order.
         let ready = &items[..cells.ready().min(items.len())];
         let mut faulty: Option<usize> = None;
-        for inquiry in self.inquiries.iter_mut().filter(|i| i.stop.is_none()) {
+        for inquiry in self.inquiries.iter_mut().filter(|i| i.is_open()) {
             if let Some(place) = self.job.columns.iter().position(|c| *c == inquiry.column) {
                 match inquiry.read(ready, cells.column(place), budget.max_trials) {
                     Ok(stop) => inquiry.stop = stop,
@@ -183,7 +230,7 @@ impl<'q> Survey<'q> {
             return Err(items[at]);
         }
         // Nobody needs what was not finished, if all have stopped before it.
-        Ok(ready.len() == items.len() || self.inquiries.iter().all(|i| i.stop.is_some()))
+        Ok(ready.len() == items.len() || !self.inquiries.iter().any(Inquiry::is_open))
     }
 }
 
@@ -211,6 +258,9 @@ impl Inquiry<'_> {
         }
         self.count(items[..consumed].iter().map(|item| item.index).zip(cells));
         let capped = self.tally.counts.trials >= most;
+        // At the limit nothing more would be read with a level.
+        self.waits = !capped && self.procedure.waits_for().is_some();
+        let finished = finished && self.procedure.waits_for().is_none();
         Ok(if finished { Some(self.reason()) } else { capped.then_some(Stop::Cap) })
     }
 
@@ -253,7 +303,7 @@ impl Inquiry<'_> {
 
 /// Columns that somebody still reads.
 fn columns(inquiries: &[Inquiry<'_>]) -> Vec<usize> {
-    let mut columns: Vec<usize> = inquiries.iter().filter(|i| i.stop.is_none()).map(|i| i.column).collect();
+    let mut columns: Vec<usize> = inquiries.iter().filter(|i| i.is_open()).map(|i| i.column).collect();
     columns.sort_unstable();
     columns.dedup();
     columns
@@ -263,14 +313,26 @@ fn columns(inquiries: &[Inquiry<'_>]) -> Vec<usize> {
 fn close(inquiries: &mut [Inquiry<'_>], budget: &Budget) {
     let stop = if budget.is_interrupted() { Stop::Interrupt } else { Stop::Deadline };
     for inquiry in inquiries.iter_mut().filter(|i| i.stop.is_none()) {
+        inquiry.waits = false;
         inquiry.stop = Some(stop);
+    }
+}
+
+/// The procedure with its level, proven if it was not known; `None` if there is no time for that. Which level it is
+/// never depends on the time.
+fn prove(procedure: &Procedure, levels: &mut Levels, budget: &Budget) -> Result<Option<Procedure>, Fault> {
+    let Some((epsilon, delta)) = procedure.waits_for() else { return Err(Fault::Unsuitable) };
+    let go_on = || !budget.must_stop();
+    match levels.find(epsilon, delta, Patience { go_on: &go_on }) {
+        Some(level) => procedure.settled(level),
+        None => Ok(None),
     }
 }
 
 /// How many trials the next round has: enough to keep all lanes busy, few enough to waste little once the
 /// last query has stopped.
 fn round(inquiries: &[Inquiry<'_>], consumed: u64, width: u64, budget: &Budget) -> u64 {
-    let open = || inquiries.iter().filter(|i| i.stop.is_none());
+    let open = || inquiries.iter().filter(|i| i.is_open());
     let left = |inquiry: &Inquiry<'_>| {
         let limit = inquiry.procedure.limit().unwrap_or(u64::MAX).min(budget.max_trials);
         limit.saturating_sub(consumed)

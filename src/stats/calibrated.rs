@@ -2,12 +2,13 @@
 //! enough, where gamma is such that the whole procedure misses with probability at most delta.
 //!
 //! At gamma = delta the procedure misses more often than it says; how much smaller gamma must be is proven
-//! in `calibration`. Related: Frey, "Fixed-width sequential confidence intervals for a proportion",
+//! in `calibration`. The proof can wait: as long as the interval at gamma = delta is wide, so are those of all
+//! smaller levels, and the procedure goes on whatever its level is. Related: Frey, "Fixed-width sequential confidence intervals for a proportion",
 //! American Statistician 64 (2010).
 
 use super::invalid::{Invalid, probability, range};
 use super::width::Ahead;
-use super::{Counts, Coverage, Estimator, Interval, clopper_pearson, sequence};
+use super::{Counts, Coverage, Estimator, Interval, clopper_pearson, okamoto, sequence};
 
 /// Estimates P within a half-width.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,7 +20,12 @@ pub struct Calibrated {
     ahead: Ahead,
     counts: Counts,
     finished: bool,
-    proven: bool,
+    /// Whether the level still has to be found.
+    open: bool,
+    /// Whether nothing more is to be read before it is.
+    waits: bool,
+    /// Outcomes that were read before it was.
+    before: u64,
 }
 
 impl Calibrated {
@@ -37,24 +43,40 @@ impl Calibrated {
             ahead: Ahead::new(),
             counts: Counts::default(),
             finished: false,
-            proven: true,
+            open: false,
+            waits: false,
+            before: 0,
         })
     }
 
-    /// The same where time ended before its level was known: it has the interval that holds at all times, and never
-    /// stops by itself.
+    /// The same where the level is still to be found: reads outcomes as long as no level can stop it, then waits.
     pub fn without_level(epsilon: f64, delta: f64) -> Result<Self, Invalid> {
-        Ok(Self { proven: false, ..Self::at_level(epsilon, delta, delta)? })
+        Ok(Self { open: true, ..Self::at_level(epsilon, delta, delta)? })
     }
 
-    /// Whether its level is known.
-    pub const fn is_proven(&self) -> bool {
-        self.proven
+    /// The same at level `gamma`, after outcomes at which it cannot have stopped, but for the last.
+    pub(super) fn after(mut self, counts: Counts) -> Self {
+        self.counts = counts;
+        self.before = counts.trials();
+        self.finished = self.before >= self.limit
+            || (self.before > 0 && clopper_pearson::narrow(counts, self.gamma, 2.0 * self.epsilon));
+        self
     }
 
-    /// The level at which the intervals are formed.
-    pub const fn gamma(&self) -> f64 {
-        self.gamma
+    /// Half-width and error.
+    pub const fn asked(&self) -> (f64, f64) {
+        (self.epsilon, self.delta)
+    }
+
+    /// Whether its level still has to be found.
+    pub const fn is_open(&self) -> bool {
+        self.open
+    }
+
+    /// The level at which the intervals are formed, if what it has read depends on it.
+    pub fn gamma(&self) -> Option<f64> {
+        let used = !self.open && (self.finished || self.before == 0 || self.counts.trials() > self.before);
+        used.then_some(self.gamma)
     }
 }
 
@@ -63,13 +85,11 @@ impl Estimator for Calibrated {
     fn observe(&mut self, success: bool) -> bool {
         if !self.finished {
             self.counts.add(success);
-            if !self.proven {
-                return false;
-            }
             let (gamma, width) = (self.gamma, 2.0 * self.epsilon);
-            self.finished = self
+            let narrow = self
                 .ahead
                 .reached(self.counts, self.limit, |counts| clopper_pearson::narrow(counts, gamma, width));
+            *(if self.open { &mut self.waits } else { &mut self.finished }) = narrow;
         }
         self.finished
     }
@@ -94,7 +114,13 @@ impl Estimator for Calibrated {
     }
 
     fn limit(&self) -> Option<u64> {
-        self.proven.then_some(self.limit)
+        // Where no level can be proven, the least of two others is taken, and this is one of them.
+        Some(if self.open { okamoto::size(self.epsilon, self.delta) } else { self.limit })
+    }
+
+    #[inline]
+    fn waits(&self) -> bool {
+        self.waits
     }
 }
 
@@ -104,11 +130,31 @@ mod tests {
     use crate::base::random::{Purpose, Stream, TrialKey};
 
     #[test]
-    fn without_a_level_it_has_the_interval_of_all_times_and_never_stops() {
-        let mut estimator = Calibrated::without_level(0.05, 0.05).unwrap();
-        assert!((0..10_000u32).all(|k| !estimator.observe(k.is_multiple_of(4))));
-        assert_eq!(estimator.interval(), sequence::interval(estimator.counts(), 0.05));
-        assert!(estimator.limit().is_none() && !estimator.is_proven());
+    fn found_late_the_level_stops_it_where_it_would_have_stopped() {
+        for (epsilon, delta, gamma) in [(0.05, 0.05, 0.036), (0.1, 0.02, 0.012_8), (0.3, 0.1, 0.04)] {
+            for step in [2, 3, 7, 100_000] {
+                let outcome = |k: u64| k % step == 1;
+                let mut known = Calibrated::at_level(epsilon, delta, gamma).unwrap();
+                let mut late = Calibrated::without_level(epsilon, delta).unwrap();
+                let mut k = 0;
+                while !late.waits() {
+                    assert_eq!(late.interval(), sequence::interval(late.counts(), delta));
+                    assert!(!late.observe(outcome(k)) && late.gamma().is_none() && late.is_open());
+                    k += 1;
+                }
+                assert!(k < late.limit().unwrap());
+                let mut late = Calibrated::at_level(epsilon, delta, gamma).unwrap().after(late.counts());
+                assert!(late.finished() || late.gamma().is_none());
+                assert!((0..k).all(|k| !known.observe(outcome(k)) || k + 1 == late.counts().trials()));
+                while !late.finished() {
+                    let (outcome, before) = (outcome(k), known.finished());
+                    assert!(!before && late.observe(outcome) == known.observe(outcome));
+                    assert_eq!(late.gamma(), Some(gamma));
+                    k += 1;
+                }
+                assert_eq!((late.counts(), late.interval()), (known.counts(), known.interval()));
+            }
+        }
     }
 
     #[test]

@@ -45,8 +45,9 @@ pub struct Row {
 pub struct Table;
 
 impl Table {
-    /// All rows; `Boundary::proves` holds for each of them (a test).
-    pub const ROWS: [Row; 20] = [
+    /// All rows; `Boundary::proves` holds for each of them: a test for half-widths of 0.005 and more, the bench
+    /// `statistics -- proofs` for the smaller ones, whose proofs take up to minutes.
+    pub const ROWS: [Row; 26] = [
         Row { epsilon: 0.1, delta: 0.05, gamma: 0.033 },
         Row { epsilon: 0.05, delta: 0.05, gamma: 0.035 },
         Row { epsilon: 0.05, delta: 0.01, gamma: 0.006 },
@@ -67,6 +68,12 @@ impl Table {
         Row { epsilon: 0.005, delta: 0.05, gamma: 0.036 },
         Row { epsilon: 0.005, delta: 0.02, gamma: 0.012_8 },
         Row { epsilon: 0.005, delta: 0.01, gamma: 0.006_4 },
+        Row { epsilon: 0.004, delta: 0.05, gamma: 0.036 },
+        Row { epsilon: 0.004, delta: 0.01, gamma: 0.006_4 },
+        Row { epsilon: 0.003, delta: 0.05, gamma: 0.036 },
+        Row { epsilon: 0.003, delta: 0.01, gamma: 0.006_4 },
+        Row { epsilon: 0.002, delta: 0.05, gamma: 0.036 },
+        Row { epsilon: 0.002, delta: 0.01, gamma: 0.006_4 },
     ];
 
     /// The row of a half-width and an error, if there is one; 1 - 0.95 counts as 0.05.
@@ -95,38 +102,41 @@ impl Patience<'_> {
     pub const ENDLESS: Patience<'static> = Patience { go_on: &|| true };
 }
 
-/// What there is of a level.
+/// Whether there is a level.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Level {
     /// Proven.
     Proven(f64),
     /// Not worth a proof, or no level of the ladder can be proven.
     None,
-    /// There may be one; somebody ended the proof before it was known.
-    GivenUp,
 }
 
-/// The level for a half-width and an error: of the table, proven here and now, or of a row of a smaller error. That one
-/// spares a proof, which takes a second at half-widths near 0.01, where the errors are alike: at 0.8 of the error a
-/// few percent more trials are needed, at half of it a fifth more. (A list of estimates shares its error, and so asks
-/// for errors such as 0.05/3.)
-pub fn level(epsilon: f64, delta: f64, patience: Patience<'_>) -> Level {
+/// What is known of the level for a half-width and an error without a proof: that of the table, or of a row of a smaller
+/// error. That one spares a proof, which takes a second at half-widths near 0.01, where the errors are alike: at 0.8 of
+/// the error a few percent more trials are needed, at half of it a fifth more. (A list of estimates shares its error,
+/// and so asks for errors such as 0.05/3.) `None` where it takes a proof to know.
+pub fn known(epsilon: f64, delta: f64) -> Option<Level> {
     let alike = if epsilon < 0.02 { 0.5 } else { 0.8 };
     let below = Table::row_below(epsilon, delta);
-    let known = Table::row(epsilon, delta).or_else(|| below.filter(|row| row.delta >= alike * delta));
-    if let Some(row) = known {
-        return Level::Proven(row.gamma);
+    let row = Table::row(epsilon, delta).or_else(|| below.filter(|row| row.delta >= alike * delta));
+    if let Some(row) = row {
+        return Some(Level::Proven(row.gamma));
     }
-    let asked = math::at_most(delta, MOST_DELTA);
-    if is_affordable(epsilon, asked) {
-        if let Some(gamma) = calibrate(epsilon, asked, patience.go_on) {
-            return Level::Proven(gamma);
+    let affordable = is_affordable(epsilon, math::at_most(delta, MOST_DELTA));
+    (!affordable).then(|| below.map_or(Level::None, |row| Level::Proven(row.gamma)))
+}
+
+/// The level for a half-width and an error, proven here and now where it is not known; `None` if that is given up.
+pub fn level(epsilon: f64, delta: f64, patience: Patience<'_>) -> Option<Level> {
+    known(epsilon, delta).or_else(|| {
+        match calibrate(epsilon, math::at_most(delta, MOST_DELTA), patience.go_on) {
+            Some(gamma) => Some(Level::Proven(gamma)),
+            None if !(patience.go_on)() => None,
+            None => {
+                Some(Table::row_below(epsilon, delta).map_or(Level::None, |row| Level::Proven(row.gamma)))
+            }
         }
-        if !(patience.go_on)() {
-            return Level::GivenUp;
-        }
-    }
-    below.map_or(Level::None, |row| Level::Proven(row.gamma))
+    })
 }
 
 /// A point where the procedure can stop.

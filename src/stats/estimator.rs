@@ -79,6 +79,12 @@ pub trait Estimator {
 
     /// The number of trials after which it has surely stopped, if it has one.
     fn limit(&self) -> Option<u64>;
+
+    /// Whether it has to know more of itself before it can read more.
+    #[inline]
+    fn waits(&self) -> bool {
+        false
+    }
 }
 
 /// Any of the estimators.
@@ -104,21 +110,40 @@ impl AnyEstimator {
     /// (epsilon of 0.005 or more), else whichever of alpha spending and Okamoto has the smaller largest number
     /// of trials.
     ///
-    /// Which one it is depends on `epsilon` and `delta` alone. Where the proof is given up it has no level, and nothing
-    /// is to be sampled with it.
-    pub fn within(epsilon: f64, delta: f64, patience: Patience<'_>) -> Result<Self, Invalid> {
-        let (spending, okamoto) = (Spending::new(epsilon, delta)?, Okamoto::new(epsilon, delta)?);
-        let level = calibration::level(epsilon, delta, patience);
-        if level == Level::GivenUp {
-            return Ok(Self::Calibrated(Calibrated::without_level(epsilon, delta)?));
+    /// Which one it is depends on `epsilon` and `delta` alone. Where it takes a proof to know, that can wait: the
+    /// estimator reads outcomes up to where it `waits`, and goes on once the level is `settle`d.
+    pub fn within(epsilon: f64, delta: f64) -> Result<Self, Invalid> {
+        match calibration::known(epsilon, delta) {
+            Some(level) => Self::with(epsilon, delta, level, Counts::default()),
+            None => Ok(Self::Calibrated(Calibrated::without_level(epsilon, delta)?)),
         }
+    }
+
+    /// The default, if that is what there is of a level, after outcomes at which it cannot have stopped, but for the last.
+    fn with(epsilon: f64, delta: f64, level: Level, counts: Counts) -> Result<Self, Invalid> {
+        let (spending, okamoto) = (Spending::new(epsilon, delta)?, Okamoto::new(epsilon, delta)?);
         if let Level::Proven(gamma) = level {
             let calibrated = Calibrated::at_level(epsilon, delta, gamma)?;
             if calibrated.limit() <= okamoto.limit() {
-                return Ok(Self::Calibrated(calibrated));
+                return Ok(Self::Calibrated(calibrated.after(counts)));
             }
         }
-        Ok(if spending.limit() < okamoto.limit() { Self::Spending(spending) } else { Self::Okamoto(okamoto) })
+        Ok(if spending.limit() < okamoto.limit() {
+            Self::Spending(spending.after(counts))
+        } else {
+            Self::Okamoto(okamoto.after(counts))
+        })
+    }
+
+    /// Goes on with what is now known of its level.
+    fn settle(&mut self, level: Level) -> Result<(), Invalid> {
+        if let Self::Calibrated(open) = self
+            && open.is_open()
+        {
+            let (epsilon, delta) = open.asked();
+            *self = Self::with(epsilon, delta, level, open.counts())?;
+        }
+        Ok(())
     }
 
     fn inner(&self) -> &dyn Estimator {
@@ -174,28 +199,28 @@ impl Estimator for AnyEstimator {
     fn limit(&self) -> Option<u64> {
         self.inner().limit()
     }
+
+    #[inline]
+    fn waits(&self) -> bool {
+        matches!(self, Self::Calibrated(e) if e.waits())
+    }
 }
 
-/// Defaults that were made before, by half-width and error: the proof of a level takes seconds, and the points of a
-/// sweep ask for the same one.
+/// Levels that were proven before, by half-width and error: a proof takes seconds, and the points of a sweep ask for
+/// the same one.
 #[derive(Clone, Debug, Default)]
-pub struct Defaults(BTreeMap<(u64, u64), AnyEstimator>);
+pub struct Levels(BTreeMap<(u64, u64), Level>);
 
-impl Defaults {
-    /// The default for half-width `epsilon` and error `delta`, fresh.
-    pub fn within(
-        &mut self,
-        epsilon: f64,
-        delta: f64,
-        patience: Patience<'_>,
-    ) -> Result<AnyEstimator, Invalid> {
+impl Levels {
+    /// What there is of a level; `None` if the proof is given up.
+    pub fn find(&mut self, epsilon: f64, delta: f64, patience: Patience<'_>) -> Option<Level> {
         let key = (epsilon.to_bits(), delta.to_bits());
         if let Some(known) = self.0.get(&key) {
-            return Ok(known.clone());
+            return Some(*known);
         }
-        let made = AnyEstimator::within(epsilon, delta, patience)?;
-        self.0.insert(key, made.clone());
-        Ok(made)
+        let level = calibration::level(epsilon, delta, patience)?;
+        self.0.insert(key, level);
+        Some(level)
     }
 }
 
@@ -218,10 +243,10 @@ impl<E: Estimator + Clone> EstimatorReadings<E> {
         Self { pessimistic: estimator, optimistic: None, unresolved: 0, read: 0 }
     }
 
-    /// Reads the next outcome; true once both readings have stopped.
+    /// Reads the next outcome; true once both readings have stopped, or one waits.
     #[inline]
     pub fn observe(&mut self, outcome: Outcome) -> bool {
-        if self.finished() {
+        if self.finished() || self.waits() {
             return true;
         }
         self.read += 1;
@@ -232,10 +257,17 @@ impl<E: Estimator + Clone> EstimatorReadings<E> {
             }
         }
         let low = self.pessimistic.observe(outcome == Outcome::True);
-        match &mut self.optimistic {
+        let both = match &mut self.optimistic {
             None => low,
             Some(estimator) => estimator.observe(outcome != Outcome::False) && low,
-        }
+        };
+        both || self.waits()
+    }
+
+    /// Whether a reading has to know more of itself before more can be read.
+    #[inline]
+    pub fn waits(&self) -> bool {
+        self.pessimistic.waits() || self.optimistic.as_ref().is_some_and(Estimator::waits)
     }
 
     /// Whether both readings have stopped.
@@ -261,24 +293,71 @@ impl<E: Estimator + Clone> EstimatorReadings<E> {
     }
 }
 
+impl EstimatorReadings<AnyEstimator> {
+    /// Both readings go on with what is now known of their level. Fails as making the estimator does.
+    pub fn settle(&mut self, level: Level) -> Result<(), Invalid> {
+        self.pessimistic.settle(level)?;
+        self.optimistic.as_mut().map_or(Ok(()), |estimator| estimator.settle(level))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn the_default_takes_the_table_then_proves_then_falls_back() {
-        assert!(matches!(
-            AnyEstimator::within(0.01, 0.05, Patience::ENDLESS),
-            Ok(AnyEstimator::Calibrated(_))
-        ));
-        assert!(matches!(
-            AnyEstimator::within(0.08, 0.02, Patience::ENDLESS),
-            Ok(AnyEstimator::Calibrated(_))
-        ));
-        assert!(matches!(AnyEstimator::within(0.001, 0.05, Patience::ENDLESS), Ok(AnyEstimator::Okamoto(_))));
-        assert!(AnyEstimator::within(0.0, 0.05, Patience::ENDLESS).is_err());
-        assert!(AnyEstimator::within(0.6, 0.05, Patience::ENDLESS).is_err());
-        assert!(AnyEstimator::within(0.01, 1.0, Patience::ENDLESS).is_err());
+        let is_open = |made: Result<AnyEstimator, Invalid>| match made {
+            Ok(AnyEstimator::Calibrated(one)) => Some(one.is_open()),
+            _ => None,
+        };
+        assert_eq!(is_open(AnyEstimator::within(0.01, 0.05)), Some(false));
+        assert_eq!(is_open(AnyEstimator::within(0.08, 0.02)), Some(true));
+        assert!(matches!(AnyEstimator::within(0.001, 0.05), Ok(AnyEstimator::Okamoto(_))));
+        assert!(AnyEstimator::within(0.0, 0.05).is_err());
+        assert!(AnyEstimator::within(0.6, 0.05).is_err());
+        assert!(AnyEstimator::within(0.01, 1.0).is_err());
+    }
+
+    #[test]
+    fn both_readings_wait_and_go_on_together() {
+        let mut levels = Levels::default();
+        let level = levels.find(0.08, 0.02, Patience::ENDLESS).unwrap();
+        assert!(matches!(level, Level::Proven(gamma) if gamma < 0.02));
+        assert_eq!(levels.find(0.08, 0.02, Patience { go_on: &|| false }), Some(level));
+        assert_eq!(levels.find(0.08, 0.03, Patience { go_on: &|| false }), None);
+        let outcome = |k: u32| match k % 9 {
+            0 => Outcome::Unresolved,
+            1..4 => Outcome::True,
+            _ => Outcome::False,
+        };
+        let mut late = EstimatorReadings::new(AnyEstimator::within(0.08, 0.02).unwrap());
+        let known = AnyEstimator::with(0.08, 0.02, level, Counts::default()).unwrap();
+        let mut known = EstimatorReadings::new(known);
+        let mut k = 0;
+        while !late.observe(outcome(k)) {
+            k += 1;
+        }
+        assert!(late.waits() && !late.finished() && late.observe(Outcome::True));
+        assert_eq!(late.read().0, u64::from(k) + 1);
+        late.settle(level).unwrap();
+        assert!((0..k).all(|k| !known.observe(outcome(k))));
+        known.observe(outcome(k));
+        while !late.finished() {
+            k += 1;
+            assert_eq!(late.observe(outcome(k)), known.observe(outcome(k)));
+        }
+        assert_eq!((late.interval(), late.read()), (known.interval(), known.read()));
+        assert!(known.finished());
+    }
+
+    #[test]
+    fn no_level_is_taken_up_in_the_middle_too() {
+        let mut late = AnyEstimator::within(0.08, 0.02).unwrap();
+        assert!((0..100).all(|k| !late.observe(k % 2 == 0)));
+        late.settle(Level::None).unwrap();
+        assert!(matches!(late, AnyEstimator::Okamoto(_) | AnyEstimator::Spending(_)), "{late:?}");
+        assert_eq!(late.counts().trials(), 100);
     }
 
     #[test]

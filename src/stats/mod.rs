@@ -49,7 +49,7 @@ pub use counts::{Counts, Outcome};
 pub use cusum::Cusum;
 pub use difference::Difference;
 pub use eprocess::{Evidence, ThreeWay};
-pub use estimator::{AnyEstimator, Coverage, Defaults, Estimator, EstimatorReadings, Interval};
+pub use estimator::{AnyEstimator, Coverage, Estimator, EstimatorReadings, Interval, Levels};
 pub use gbas::Gbas;
 pub use histogram::Histogram;
 pub use invalid::Invalid;

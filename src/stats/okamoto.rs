@@ -25,6 +25,11 @@ impl Okamoto {
         probability("delta", delta)?;
         Ok(Self { epsilon, delta, size: size(epsilon, delta), counts: Counts::default() })
     }
+
+    /// The same after so many outcomes.
+    pub(super) fn after(self, counts: Counts) -> Self {
+        Self { counts, ..self }
+    }
 }
 
 impl Estimator for Okamoto {

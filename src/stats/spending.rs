@@ -41,6 +41,22 @@ impl Spending {
         &self.looks
     }
 
+    /// The same after outcomes at which it cannot have stopped, but for the last.
+    pub(super) fn after(mut self, counts: Counts) -> Self {
+        self.counts = counts;
+        self.taken = self.looks.partition_point(|look| *look < counts.trials());
+        self.look();
+        self
+    }
+
+    fn look(&mut self) {
+        if self.looks.get(self.taken) == Some(&self.counts.trials()) {
+            self.taken += 1;
+            self.finished = self.taken == self.looks.len()
+                || clopper_pearson::narrow(self.counts, self.level(), 2.0 * self.epsilon);
+        }
+    }
+
     fn level(&self) -> f64 {
         self.delta / self.looks.len() as f64
     }
@@ -66,11 +82,7 @@ impl Estimator for Spending {
     fn observe(&mut self, success: bool) -> bool {
         if !self.finished {
             self.counts.add(success);
-            if self.counts.trials() == self.looks[self.taken] {
-                self.taken += 1;
-                self.finished = self.taken == self.looks.len()
-                    || clopper_pearson::narrow(self.counts, self.level(), 2.0 * self.epsilon);
-            }
+            self.look();
         }
         self.finished
     }
@@ -111,6 +123,24 @@ mod tests {
             assert!(spending.looks().contains(&look), "{look} not in {:?}", spending.looks());
         }
         assert!((20_500..20_800).contains(&spending.limit().unwrap()), "{:?}", spending.limit());
+    }
+
+    #[test]
+    fn begun_in_the_middle_it_goes_on_as_from_the_start() {
+        let mut whole = Spending::new(0.05, 0.05).unwrap();
+        let looks = whole.looks().to_vec();
+        let mut n = 0u64;
+        while !whole.finished() {
+            for from in [looks[0] - 1, looks[1], looks[1] + 1] {
+                if from == n {
+                    let part = Spending::new(0.05, 0.05).unwrap().after(whole.counts());
+                    assert_eq!(part, whole);
+                }
+            }
+            whole.observe(n.is_multiple_of(3));
+            n += 1;
+        }
+        assert!(n > looks[1] + 1);
     }
 
     #[test]

@@ -34,6 +34,25 @@ fn errors_that_can_be_seen_are_found_before_a_trial() {
 }
 
 #[test]
+fn all_that_can_be_seen_is_told_at_once() {
+    // Two processes, of which one has copies; each command once, two variables of one command by themselves.
+    let scenario = "horizon = 9 steps\n\
+        process p[3] { var n: 0 .. 3 = 0\n var m: 0 .. 3 = 0\n when true -> { n = n + 1; m = m + 1 } }\n\
+        process q { var n: 0 .. 9 = 0\n when n < 5 -> n = n + 1\n when n == 3 -> n = 7\n\
+        when n == 7 -> n/14: n = 1 | n/21: n = 2 }\n";
+    let found = compiled(scenario, "").unwrap_err();
+    let times = |what: &str| found.matches(what).count();
+    assert_eq!((times("error["), times("error[E0901]"), times("error[E0903]")), (3, 1, 2), "{found}");
+    // What would follow an error is no error of its own: 7 is not reached but by way of one.
+    assert_eq!(times("E0902"), 0, "{found}");
+    // The starts are wrong, and a command too.
+    let scenario = "horizon = 5 steps\nprocess p { var n: 0 .. 3 = 4\n var on: bool = 1 m\n\
+        when n == 1 s -> on = 2 s }\n";
+    let found = compiled(scenario, "").unwrap_err();
+    assert_eq!(found.matches("error[").count(), 4, "{found}");
+}
+
+#[test]
 fn what_no_trial_reaches_is_no_error() {
     let late = "horizon = 3 steps\nprocess p { var n: 0 .. 3 = 0\n when true -> n = n + 1 }";
     assert!(compiled(late, "").is_ok());

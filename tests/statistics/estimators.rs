@@ -245,7 +245,7 @@ fn differences_are_covered_at_all_times() {
 #[test]
 #[ignore = "takes half a minute"]
 fn full_table() {
-    for row in Table::ROWS.into_iter().filter(|row| row.epsilon < 0.02) {
+    for row in Table::ROWS.into_iter().filter(|row| (0.005..0.02).contains(&row.epsilon)) {
         assert!(Boundary::new(row.epsilon, row.gamma).unwrap().proves(row.delta), "{row:?}");
     }
     assert_eq!(Boundary::new(0.01, 0.036).unwrap().limit(), 11_090);

@@ -19,6 +19,7 @@ use crate::syntax::ast::process::{self as ast, Domain as Written, ProcessDecl, P
 use crate::syntax::ast::{Expr, Item, LetDecl, ScenarioFile};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
+use reachable::Lines;
 use std::collections::BTreeMap;
 
 /// Most copies of a process.
@@ -183,24 +184,17 @@ impl<'a> Elaborator<'a> {
                     ));
                 }
                 let domain = Domain::Whole { low: low_end, high: high_end };
-                let initial = initial?;
-                let number = number(self, initial)?;
-                if !number.dimension.is_none() {
-                    return self.wrong_dimension(span, Dimension::NONE, number.dimension);
-                }
-                if !domain.contains(number.value) {
-                    return self.report(Diagnostic::error(
-                        "E0903",
-                        span,
-                        format!("`{}` holds whole numbers from {low_end} to {high_end}", var.name.name),
-                    ));
-                }
-                Ok((Dimension::NONE, domain, number.value))
+                // Whatever is wrong with the start, what the commands do with the variable can be checked.
+                let initial = initial
+                    .and_then(|initial| number(self, initial))
+                    .and_then(|number| self.initial(var, number, domain))
+                    .unwrap_or(low_end as f64);
+                Ok((Dimension::NONE, domain, initial))
             }
             Some(Written::Named(name)) => match name.name.as_str() {
                 "bool" => {
-                    let initial = initial?;
-                    truth(self, initial)
+                    let initial = initial.and_then(|initial| truth(self, initial));
+                    Ok(initial.unwrap_or((Dimension::NONE, Domain::Truth, 0.0)))
                 }
                 "real" => {
                     let initial = initial?;
@@ -225,6 +219,22 @@ impl<'a> Elaborator<'a> {
                     Ok((number.dimension, Domain::Real, number.value))
                 }
             },
+        }
+    }
+
+    /// The value at the start of a variable with a range.
+    fn initial(&mut self, var: &ast::VarDecl, number: Number, domain: Domain) -> Lowered<f64> {
+        let span = var.initial.span;
+        if !number.dimension.is_none() {
+            return self.wrong_dimension(span, Dimension::NONE, number.dimension);
+        }
+        match domain {
+            Domain::Whole { low, high } if !domain.contains(number.value) => self.report(Diagnostic::error(
+                "E0903",
+                span,
+                format!("`{}` holds whole numbers from {low} to {high}", var.name.name),
+            )),
+            _ => Ok(number.value),
         }
     }
 
@@ -255,7 +265,7 @@ impl<'a> Elaborator<'a> {
                         && let Ok(lowered) = self.command(at, copy, command, &locals)
                     {
                         commands.push(lowered);
-                        places.push(command.span);
+                        places.push(Lines::of(command));
                     }
                 }
                 self.one_kind(decl, &commands);
@@ -270,7 +280,8 @@ impl<'a> Elaborator<'a> {
         if !self.failed() {
             self.check_reachable(&out, &spans);
         }
-        self.origins.commands = spans;
+        let of_commands = |lines: Vec<Lines>| lines.into_iter().map(|one| one.command).collect();
+        self.origins.commands = spans.into_iter().map(of_commands).collect();
         out
     }
 

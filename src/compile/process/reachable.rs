@@ -7,6 +7,7 @@
 use super::super::elaborator::Elaborator;
 use crate::model::process::wrong_weights;
 use crate::model::{Command, Domain, Process, Processes, Timing, Variable};
+use crate::syntax::ast::process as ast;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::collections::BTreeSet;
@@ -20,6 +21,22 @@ const MOST_VALUES: usize = 1 << 22;
 /// Most values of variables of all successors.
 const MOST_WRITTEN: usize = 1 << 24;
 
+/// Where a command and its updates are written.
+pub(super) struct Lines {
+    pub(super) command: Span,
+    /// Of each branch.
+    updates: Vec<Vec<Span>>,
+}
+
+impl Lines {
+    pub(super) fn of(command: &ast::Command) -> Self {
+        let updates = |branch: &ast::Branch| {
+            branch.updates.iter().map(|update| update.target.span.to(update.value.span)).collect()
+        };
+        Self { command: command.span, updates: command.branches.iter().map(updates).collect() }
+    }
+}
+
 /// What is wrong, and where it is written.
 struct Wrong {
     code: &'static str,
@@ -28,17 +45,28 @@ struct Wrong {
     hint: Option<&'static str>,
 }
 
-/// Why a walk ended early.
-enum End {
-    /// Too many states, or they depend on more than variables.
-    Unknown,
-    /// An error.
-    Wrong(Wrong),
+/// There are too many states, or they depend on more than variables.
+struct Unknown;
+
+/// What is wrong, each thing where it was met first.
+struct Findings<'p> {
+    variables: &'p [Variable],
+    /// Code and place of what was found: the copies of a process share them.
+    known: BTreeSet<(&'static str, u32, u32)>,
+    list: Vec<Diagnostic>,
+}
+
+impl Findings<'_> {
+    fn add(&mut self, wrong: Wrong, state: &[i64]) {
+        if self.known.insert((wrong.code, wrong.span.start, wrong.span.end)) {
+            self.list.push(wrong.diagnostic(self.variables, state));
+        }
+    }
 }
 
 impl Elaborator<'_> {
-    /// Reports what goes wrong in some state that can be reached.
-    pub(super) fn check_reachable(&mut self, processes: &Processes, spans: &[Vec<Span>]) {
+    /// Reports what goes wrong in some state that can be reached. A trial ends there: what could follow is not looked at.
+    pub(super) fn check_reachable(&mut self, processes: &Processes, lines: &[Vec<Lines>]) {
         if processes.variables.iter().any(|v| v.domain.values().is_none()) {
             return;
         }
@@ -48,43 +76,55 @@ impl Elaborator<'_> {
         if commands().any(|c| matches!(c.timing, Timing::Delay(_)) || (!jumps && c.timing != Timing::Step)) {
             return;
         }
-        let initial: Vec<i64> = processes.variables.iter().map(|v| v.initial as i64).collect();
-        let mut known = BTreeSet::from([initial.clone()]);
-        let mut front = vec![initial];
-        let mut made = 0;
-        for _ in 0..self.horizon.0 {
-            let mut next_front = Vec::new();
-            for state in std::mem::take(&mut front) {
-                let found = if jumps {
-                    jumped(processes, spans, &state)
-                } else {
-                    successors(processes, spans, &state)
-                };
-                let successors = match found {
-                    Ok(successors) => successors,
-                    Err(End::Unknown) => return,
-                    Err(End::Wrong(wrong)) => {
-                        return self.note(wrong.diagnostic(&processes.variables, &state));
-                    }
-                };
-                made += successors.len();
-                for next in successors {
-                    if !known.contains(&next) {
-                        known.insert(next.clone());
-                        next_front.push(next);
-                    }
-                }
-                let values = |states: usize| states.saturating_mul(processes.variables.len());
-                let many = known.len() > MOST_STATES || made > MOST_SUCCESSORS;
-                if many || values(known.len()) > MOST_VALUES || values(made) > MOST_WRITTEN {
-                    return;
+        let mut findings =
+            Findings { variables: &processes.variables, known: BTreeSet::new(), list: Vec::new() };
+        walk(processes, lines, jumps, self.horizon.0, &mut findings);
+        for found in findings.list {
+            self.note(found);
+        }
+    }
+}
+
+/// Walks through the states that can be reached in so many steps, breadth first.
+fn walk(processes: &Processes, lines: &[Vec<Lines>], jumps: bool, steps: u64, findings: &mut Findings<'_>) {
+    let initial: Vec<i64> = processes.variables.iter().map(|v| v.initial as i64).collect();
+    let mut known = BTreeSet::from([initial.clone()]);
+    let mut front = vec![initial];
+    let mut made = 0;
+    for _ in 0..steps {
+        let mut next_front = Vec::new();
+        for state in std::mem::take(&mut front) {
+            let mut wrong = Vec::new();
+            let successors = if jumps {
+                jumped(processes, lines, &state, &mut wrong)
+            } else {
+                successors(processes, lines, &state, &mut wrong)
+            };
+            let ends = !wrong.is_empty();
+            for wrong in wrong {
+                findings.add(wrong, &state);
+            }
+            let Ok(successors) = successors else { return };
+            if ends {
+                continue;
+            }
+            made += successors.len();
+            for next in successors {
+                if !known.contains(&next) {
+                    known.insert(next.clone());
+                    next_front.push(next);
                 }
             }
-            if next_front.is_empty() {
+            let values = |states: usize| states.saturating_mul(processes.variables.len());
+            let many = known.len() > MOST_STATES || made > MOST_SUCCESSORS;
+            if many || values(known.len()) > MOST_VALUES || values(made) > MOST_WRITTEN {
                 return;
             }
-            front = next_front;
         }
+        if next_front.is_empty() {
+            return;
+        }
+        front = next_front;
     }
 }
 
@@ -115,12 +155,21 @@ fn shown(variables: &[Variable], state: &[i64]) -> String {
 /// Changed variables of one way that a process can take.
 type Change = Vec<(usize, i64)>;
 
-/// The states that can follow.
-fn successors(processes: &Processes, spans: &[Vec<Span>], state: &[i64]) -> Result<Vec<Vec<i64>>, End> {
+/// The states that can follow, if nothing is wrong.
+fn successors(
+    processes: &Processes,
+    lines: &[Vec<Lines>],
+    state: &[i64],
+    wrong: &mut Vec<Wrong>,
+) -> Result<Vec<Vec<i64>>, Unknown> {
     let values: Vec<f64> = state.iter().map(|value| *value as f64).collect();
     let mut joint: Vec<Vec<i64>> = vec![state.to_vec()];
-    for (process, spans) in processes.list.iter().zip(spans) {
-        let changes = changes(process, spans, &processes.variables, &values)?;
+    for (process, lines) in processes.list.iter().zip(lines) {
+        let changes = changes((process, lines), &processes.variables, &values, wrong)?;
+        if !wrong.is_empty() {
+            // Nothing follows; what the others do is looked at.
+            continue;
+        }
         if let [only] = changes.as_slice() {
             for after in &mut joint {
                 for &(variable, value) in only {
@@ -131,7 +180,7 @@ fn successors(processes: &Processes, spans: &[Vec<Span>], state: &[i64]) -> Resu
         }
         let ways = joint.len().saturating_mul(changes.len());
         if ways > MOST_SUCCESSORS || ways.saturating_mul(state.len()) > MOST_VALUES {
-            return Err(End::Unknown);
+            return Err(Unknown);
         }
         joint = joint
             .iter()
@@ -150,31 +199,35 @@ fn successors(processes: &Processes, spans: &[Vec<Span>], state: &[i64]) -> Resu
 }
 
 /// The states that can follow where processes jump one at a time.
-fn jumped(processes: &Processes, spans: &[Vec<Span>], state: &[i64]) -> Result<Vec<Vec<i64>>, End> {
+fn jumped(
+    processes: &Processes,
+    lines: &[Vec<Lines>],
+    state: &[i64],
+    wrong: &mut Vec<Wrong>,
+) -> Result<Vec<Vec<i64>>, Unknown> {
     let values: Vec<f64> = state.iter().map(|value| *value as f64).collect();
     let mut changes = Vec::new();
-    for (process, spans) in processes.list.iter().zip(spans) {
-        for (command, span) in process.commands.iter().zip(spans) {
+    for (process, lines) in processes.list.iter().zip(lines) {
+        for (command, lines) in process.commands.iter().zip(lines) {
             let Timing::Rate(rate) = &command.timing else { continue };
-            if !command.guard.evaluate(&values).ok_or(End::Unknown)? {
+            if !command.guard.evaluate(&values).ok_or(Unknown)? {
                 continue;
             }
-            let rate = rate.evaluate(&values).ok_or(End::Unknown)?;
+            let rate = rate.evaluate(&values).ok_or(Unknown)?;
             if !(rate >= 0.0 && rate.is_finite()) {
-                return Err(End::Wrong(Wrong {
+                wrong.push(Wrong {
                     code: "E0904",
-                    span: *span,
+                    span: lines.command,
                     what: format!("the rate of this command would be {rate} /s"),
                     hint: Some("a rate is a finite number, not negative; 0 disables the command"),
-                }));
-            }
-            if rate > 0.0 {
-                branches(command, *span, &processes.variables, &values, &mut changes)?;
+                });
+            } else if rate > 0.0 {
+                branches((command, lines), &processes.variables, &values, (&mut changes, wrong))?;
             }
         }
     }
     if changes.len().saturating_mul(state.len()) > MOST_VALUES {
-        return Err(End::Unknown);
+        return Err(Unknown);
     }
     let after = changes.iter().map(|change| {
         let mut after = state.to_vec();
@@ -188,64 +241,64 @@ fn jumped(processes: &Processes, spans: &[Vec<Span>], state: &[i64]) -> Result<V
 
 /// What one process can do at a step.
 fn changes(
-    process: &Process,
-    spans: &[Span],
+    (process, lines): (&Process, &[Lines]),
     variables: &[Variable],
     values: &[f64],
-) -> Result<Vec<Change>, End> {
+    wrong: &mut Vec<Wrong>,
+) -> Result<Vec<Change>, Unknown> {
     let mut enabled = Vec::new();
-    for (command, span) in process.commands.iter().zip(spans) {
-        if command.guard.evaluate(values).ok_or(End::Unknown)? {
-            enabled.push((command, *span));
+    for (command, lines) in process.commands.iter().zip(lines) {
+        if command.guard.evaluate(values).ok_or(Unknown)? {
+            enabled.push((command, lines));
         }
     }
     if let [_, (_, second), ..] = enabled.as_slice()
         && !process.choose
     {
-        return Err(End::Wrong(Wrong {
+        wrong.push(Wrong {
             code: "E0901",
-            span: *second,
+            span: second.command,
             what: format!("another command of `{}` is enabled together with this one", process.name),
             hint: Some("`choose` in the process makes each of them equally likely"),
-        }));
+        });
     }
     if enabled.is_empty() {
         return Ok(vec![Vec::new()]);
     }
     let mut all = Vec::new();
-    for (command, span) in enabled {
-        branches(command, span, variables, values, &mut all)?;
+    for (command, lines) in enabled {
+        branches((command, lines), variables, values, (&mut all, wrong))?;
     }
     Ok(all)
 }
 
 fn branches(
-    command: &Command,
-    span: Span,
+    (command, lines): (&Command, &Lines),
     variables: &[Variable],
     values: &[f64],
-    all: &mut Vec<Change>,
-) -> Result<(), End> {
+    (all, wrong): (&mut Vec<Change>, &mut Vec<Wrong>),
+) -> Result<(), Unknown> {
     let weights: Option<Vec<f64>> = command.branches.iter().map(|b| b.weight.evaluate(values)).collect();
-    let weights = weights.ok_or(End::Unknown)?;
+    let weights = weights.ok_or(Unknown)?;
     if let Some(what) = wrong_weights(&weights) {
-        return Err(End::Wrong(Wrong { code: "E0902", span, what, hint: None }));
+        wrong.push(Wrong { code: "E0902", span: lines.command, what, hint: None });
+        return Ok(());
     }
-    for (branch, weight) in command.branches.iter().zip(weights) {
+    for ((branch, updates), weight) in command.branches.iter().zip(&lines.updates).zip(weights) {
         if weight == 0.0 {
             continue;
         }
         let mut change = Vec::with_capacity(branch.updates.len());
-        for (id, value) in &branch.updates {
-            let value = value.evaluate(values).ok_or(End::Unknown)?;
+        for ((id, value), span) in branch.updates.iter().zip(updates) {
+            let value = value.evaluate(values).ok_or(Unknown)?;
             let variable = &variables[id.0 as usize];
             if !variable.domain.contains(value) {
-                return Err(End::Wrong(Wrong {
+                wrong.push(Wrong {
                     code: "E0903",
-                    span,
+                    span: *span,
                     what: format!("`{}` would become {value}, outside its range", variable.name),
                     hint: Some("a guard can keep it inside"),
-                }));
+                });
             }
             change.push((id.0 as usize, value as i64));
         }
