@@ -114,7 +114,8 @@ fn the_procedure_comes_from_the_property_alone() {
     let late = (free["trials"].as_u64().unwrap() - 1).to_string();
     for most in ["0", "5", "200", late.as_str()] {
         let mut capped = result(&["--max-trials", most])["method"].take();
-        if capped["gamma"].is_null() {
+        if capped["name"] == "default" {
+            capped["name"] = free["method"]["name"].clone();
             capped["gamma"] = free["method"]["gamma"].clone();
         } else {
             assert_eq!(most, late);
@@ -123,6 +124,28 @@ fn the_procedure_comes_from_the_property_alone() {
     }
     of(PROVEN, &["--max-trials", "200"]);
     of(PROVEN, &["--max-trials", &late]);
+    // Where few trials do, the level may end it at the trial at which it waits: at a budget of so many, too.
+    for (within, most) in
+        [("0.3", "5"), ("0.35", "4"), ("0.4", "3"), ("0.25", "9"), ("0.1 confidence 99.99 %", "9")]
+    {
+        let queries = format!(
+            "property never = F<=1 s (min(distance(user, a) for a in crowd) < -1 m)\nestimate P(never) within {within}\n"
+        );
+        of(&queries, &["--max-trials", most]);
+        let place = Place::new(&[("a.scn", SMALL), ("a.bltl", &queries)]);
+        let result = |words: &[&str]| {
+            let call = ["check", "a.scn", "a.bltl", "-q", "--format", "json"];
+            let mut said = place.call(&[&call[..], words].concat()).json();
+            timeless(&mut said);
+            said["results"][0].clone()
+        };
+        let free = result(&[]);
+        let trials = free["trials"].to_string();
+        let capped = result(&["--max-trials", &trials]);
+        for field in ["method", "trials", "low", "high", "stopped_by"] {
+            assert_eq!(capped[field], free[field], "{field} within {within}");
+        }
+    }
     for time in ["200ms", "300ms", "400ms"] {
         of(PROVEN, &["--timeout", time]);
     }

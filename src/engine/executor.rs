@@ -115,7 +115,7 @@ impl<'s> Job<'s> {
         Self { subject, columns, seed, workers, room, steps: AtomicU64::new(0) }
     }
 
-    /// Goes on with fewer columns.
+    /// Goes on with other columns.
     pub fn narrow(&mut self, columns: Vec<usize>) {
         if self.columns != columns {
             self.columns = columns;

@@ -60,11 +60,12 @@ pub(super) fn of(ask: &Ask, procedure: Option<&Procedure>) -> Method {
                 let name = match procedure {
                     Some(Procedure::Probability(p)) => match p.readings().0 {
                         AnyEstimator::Calibrated(c) => {
-                            // Where it was stopped before its level mattered, none was looked for.
-                            let gamma = c.gamma().map(|gamma| ("gamma", gamma));
                             let asked = [("epsilon", epsilon), ("delta", delta)];
-                            let numbers: Vec<_> = asked.into_iter().chain(gamma).collect();
-                            return named("calibrated", &numbers);
+                            let Some(gamma) = c.gamma() else {
+                                // It was stopped before it mattered which procedure it is.
+                                return named("default", &asked);
+                            };
+                            return named("calibrated", &[&asked[..], &[("gamma", gamma)]].concat());
                         }
                         AnyEstimator::Spending(spending) => {
                             let looks = ("looks", spending.looks().len() as f64);

@@ -162,7 +162,7 @@ impl Procedure {
                     // The interval holds at all times at once, so it may be looked at after every trial.
                     Some(theta) => {
                         let interval = mean.interval();
-                        finished || interval.low > *theta || interval.high < *theta
+                        finished || interval.low > *theta || interval.high < *theta || mean.splits(*theta)
                     }
                 }
             }
@@ -202,6 +202,11 @@ impl Procedure {
             },
             _ => None,
         }
+    }
+
+    /// Whether, where it waits, it may turn out to have stopped.
+    pub(super) fn may_have_stopped(&self) -> bool {
+        matches!(self, Self::Probability(readings) if readings.may_have_stopped())
     }
 
     /// What it has read so far, with what is now known of its level.
@@ -251,7 +256,11 @@ impl Procedure {
 
     /// Whether the readings of unresolved trials disagree.
     pub(super) fn split(&self) -> bool {
-        matches!(self, Self::Test(test) if matches!(test.verdict(), Some(TestVerdict::Split(..))))
+        match self {
+            Self::Test(test) => matches!(test.verdict(), Some(TestVerdict::Split(..))),
+            Self::Mean { mean, threshold: Some(theta), .. } => mean.splits(*theta),
+            _ => false,
+        }
     }
 
     /// Whether the interval is wider than was asked for, as that of both readings of unresolved trials can be.
@@ -317,12 +326,7 @@ impl Procedure {
             Self::Mean { mean, .. } => {
                 let interval = mean.interval();
                 let (low, high) = mean.estimate();
-                let coverage = if mean.finished() && mean.is_fixed() {
-                    Coverage::FixedSize
-                } else {
-                    Coverage::TimeUniform
-                };
-                Some((around(0.5 * (low + high), interval), coverage, interval.error))
+                Some((around(0.5 * (low + high), interval), interval.coverage, interval.error))
             }
             Self::Quantile { sample, level, delta, band } => {
                 // Where somebody or the clock ended it before its number of trials, it holds at all times.

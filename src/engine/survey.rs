@@ -126,30 +126,16 @@ impl<'q> Survey<'q> {
         if budget.max_trials == 0 {
             self.inquiries.iter_mut().for_each(|inquiry| inquiry.stop = Some(Stop::Cap));
         }
-        let mut broken = self.rounds((executor, started), 0, budget, watch)?;
+        let mut broken = self.rounds((executor, started), 0..u64::MAX, budget, watch)?;
         // Proofs come when nobody reads on without one, so that none of them keeps others from their trials.
         for k in 0..self.inquiries.len() {
-            if broken.is_some() || !self.inquiries[k].waits {
+            if !self.inquiries[k].waits {
                 continue;
             }
-            let Some(procedure) = prove(&self.inquiries[k].procedure, levels, budget)? else {
-                close(&mut self.inquiries, budget);
-                break;
-            };
-            let inquiry = &mut self.inquiries[k];
-            let read = inquiry.tally.counts.trials;
-            let before = std::mem::replace(&mut inquiry.procedure, procedure);
-            inquiry.waits = false;
-            if inquiry.procedure.is_finished() {
-                inquiry.stop = Some(inquiry.reason());
-                inquiry.seconds = budget.elapsed() - started;
-                continue;
-            }
-            broken = self.rounds((executor, started), read, budget, watch)?;
-            let inquiry = &mut self.inquiries[k];
-            if inquiry.tally.counts.trials == read {
-                // Time was up: it says what it would have said without the proof.
-                inquiry.procedure = before;
+            // Who stops before the trial in which the model is wrong does not know of it.
+            let end = broken.as_ref().map_or(u64::MAX, |broken| broken.index);
+            if let Some(found) = self.go_on((executor, started), (k, end), levels, (budget, watch))? {
+                broken = Some(found);
             }
         }
         let seconds = budget.elapsed() - started;
@@ -159,17 +145,56 @@ impl<'q> Survey<'q> {
         Ok(broken)
     }
 
-    /// Rounds from a trial on, until nobody reads on.
+    /// Proves the level for which an inquiry waits, and reads on, up to a trial.
+    fn go_on(
+        &mut self,
+        (executor, started): (&dyn Executor, f64),
+        (k, end): (usize, u64),
+        levels: &mut Levels,
+        (budget, watch): (&Budget, &dyn Watch),
+    ) -> Result<Option<Broken>, Fault> {
+        let inquiry = &mut self.inquiries[k];
+        let read = inquiry.tally.counts.trials;
+        let capped = read >= budget.max_trials;
+        let settled = prove(&inquiry.procedure, levels, budget)?;
+        inquiry.waits = false;
+        inquiry.stop = match &settled {
+            Some(procedure) if procedure.is_finished() => Some(Stop::Width),
+            _ if capped => Some(Stop::Cap),
+            _ => ended(budget),
+        };
+        let Some(procedure) = settled.filter(|one| one.is_finished() || inquiry.stop.is_none()) else {
+            return Ok(None);
+        };
+        let before = std::mem::replace(&mut inquiry.procedure, procedure);
+        if inquiry.stop.is_some() {
+            inquiry.stop = Some(inquiry.reason());
+            inquiry.seconds = budget.elapsed() - started;
+            return Ok(None);
+        }
+        let broken = self.rounds((executor, started), read..end, budget, watch)?;
+        let inquiry = &mut self.inquiries[k];
+        if inquiry.stop.is_none() {
+            // It comes to the trial in which the model is wrong, and has no result.
+            inquiry.waits = true;
+        } else if inquiry.tally.counts.trials == read {
+            // Time was up: it says what it would have said without the proof.
+            inquiry.procedure = before;
+        }
+        Ok(broken)
+    }
+
+    /// Rounds over trials, until nobody reads on.
     fn rounds(
         &mut self,
         (executor, started): (&dyn Executor, f64),
-        first: u64,
+        trials: std::ops::Range<u64>,
         budget: &Budget,
         watch: &dyn Watch,
     ) -> Result<Option<Broken>, Fault> {
-        let mut next = first;
+        let mut next = trials.start;
         let mut items = Vec::new();
-        while self.inquiries.iter().any(Inquiry::is_open) {
+        while next < trials.end && self.inquiries.iter().any(Inquiry::is_open) {
             if budget.must_stop() {
                 close(&mut self.inquiries, budget);
                 break;
@@ -183,7 +208,8 @@ impl<'q> Survey<'q> {
                     self.job.narrow(columns(&self.inquiries));
                     let width = executor.width(&self.job) as u64;
                     items.clear();
-                    items.extend(Item::row(next, round(&self.inquiries, next, width, budget)));
+                    let size = round(&self.inquiries, next, width, budget);
+                    items.extend(Item::row(next, size.min(trials.end - next)));
                     executor.run(&self.job, &items, budget)?
                 }
             };
@@ -258,10 +284,14 @@ impl Inquiry<'_> {
         }
         self.count(items[..consumed].iter().map(|item| item.index).zip(cells));
         let capped = self.tally.counts.trials >= most;
-        // At the limit nothing more would be read with a level.
-        self.waits = !capped && self.procedure.waits_for().is_some();
-        let finished = finished && self.procedure.waits_for().is_none();
-        Ok(if finished { Some(self.reason()) } else { capped.then_some(Stop::Cap) })
+        let waits = self.procedure.waits_for().is_some();
+        // At the limit nothing more would be read with a level: it matters only if it has stopped here.
+        self.waits = waits && (!capped || self.procedure.may_have_stopped());
+        Ok(if finished && !waits {
+            Some(self.reason())
+        } else {
+            (capped && !self.waits).then_some(Stop::Cap)
+        })
     }
 
     /// Counts trials with their indices.
@@ -286,12 +316,12 @@ impl Inquiry<'_> {
     fn reason(&self) -> Stop {
         match &self.procedure {
             procedure if procedure.is_capped() => Stop::Cap,
+            procedure if procedure.split() => Stop::Unresolved,
             // A plan whose answer is forced stops before its end.
             procedure if procedure.is_planned() => {
                 let all = procedure.limit().is_none_or(|size| self.tally.counts.trials >= size);
                 if all { Stop::Plan } else { Stop::Boundary }
             }
-            procedure if procedure.split() => Stop::Unresolved,
             procedure if self.tally.counts.unresolved > 0 && procedure.is_wide(&self.query.ask) => {
                 Stop::Unresolved
             }
@@ -312,17 +342,24 @@ fn columns(inquiries: &[Inquiry<'_>]) -> Vec<usize> {
 /// Time is up, or somebody interrupted: what is known stays known.
 fn close(inquiries: &mut [Inquiry<'_>], budget: &Budget) {
     let stop = if budget.is_interrupted() { Stop::Interrupt } else { Stop::Deadline };
-    for inquiry in inquiries.iter_mut().filter(|i| i.stop.is_none()) {
-        inquiry.waits = false;
+    for inquiry in inquiries.iter_mut().filter(|i| i.is_open()) {
         inquiry.stop = Some(stop);
     }
 }
 
+/// Why nothing more is read, if time is up or somebody interrupted.
+fn ended(budget: &Budget) -> Option<Stop> {
+    let late = budget.is_over().then_some(Stop::Deadline);
+    if budget.is_interrupted() { Some(Stop::Interrupt) } else { late }
+}
+
 /// The procedure with its level, proven if it was not known; `None` if there is no time for that. Which level it is
-/// never depends on the time.
+/// never depends on the time. Nor does whether it has stopped where it waits: then it is proven in any case, which is
+/// soon done, for it takes few trials.
 fn prove(procedure: &Procedure, levels: &mut Levels, budget: &Budget) -> Result<Option<Procedure>, Fault> {
     let Some((epsilon, delta)) = procedure.waits_for() else { return Err(Fault::Unsuitable) };
-    let go_on = || !budget.must_stop();
+    let may_have_stopped = procedure.may_have_stopped();
+    let go_on = || may_have_stopped || !budget.must_stop();
     match levels.find(epsilon, delta, Patience { go_on: &go_on }) {
         Some(level) => procedure.settled(level),
         None => Ok(None),

@@ -8,7 +8,7 @@
 use super::barrier::{Nearest, Surface};
 use super::nearby::Nearby;
 use super::vector::{Doubles, Part};
-use crate::base::geometry::{Bounds, Segment, Vec2};
+use crate::base::geometry::{Bounds, Segment, Vec2, cross};
 use crate::base::lanes::Mask;
 use crate::model::Barrier;
 use fearless_simd::Simd;
@@ -158,20 +158,46 @@ fn meeting(own: &Surface, other: &Surface) -> Option<Bounds> {
         // A disc.
         return Some(shared);
     }
-    let around = |s: &Segment| Bounds { low: s.a.inf(&s.b), high: s.a.sup(&s.b) };
     let meets = |s: &Segment| overlap(&around(s), &shared).is_some();
-    let others: Vec<Bounds> = other.edges().filter(meets).map(|s| around(&s)).collect();
+    let others: Vec<Segment> = other.edges().filter(meets).collect();
     let within = |p: Vec2| other.nearest_to(p).1 <= 0.0;
     let mut meeting = None;
     for piece in own.edges().filter(meets) {
-        let here = around(&piece);
         let hidden = within(piece.a) || within(piece.b);
-        let whole = hidden.then(|| overlap(&here, &other.bounds)).flatten();
-        for shared in others.iter().filter_map(|other| overlap(&here, other)).chain(whole) {
+        let whole = hidden.then(|| overlap(&around(&piece), &other.bounds)).flatten();
+        for shared in others.iter().filter_map(|other| close(&piece, other)).chain(whole) {
             meeting = Some(hull(meeting, shared));
         }
     }
     meeting
+}
+
+fn around(s: &Segment) -> Bounds {
+    Bounds { low: s.a.inf(&s.b), high: s.a.sup(&s.b) }
+}
+
+/// A rectangle around all points of a piece that are as near to another one as `ON`.
+fn close(piece: &Segment, other: &Segment) -> Option<Bounds> {
+    let shared = overlap(&around(piece), &around(other))?;
+    // The share of the piece on which the line through the other one is near; of parallels all or nothing.
+    let (along, across) = (piece.b - piece.a, other.b - other.a);
+    let length = across.norm();
+    if length == 0.0 || along.norm() == 0.0 {
+        return Some(shared);
+    }
+    let reach = 2.0 * ON * length + 1e-9 * (length + along.norm()) * (piece.a.norm() + other.a.norm() + 1.0);
+    let (from, slope) = (cross(across, piece.a - other.a), cross(across, along));
+    let (mut first, mut last) = (0.0, 1.0);
+    if slope.abs() > 1e-12 * length * along.norm() {
+        let ends = [(-reach - from) / slope, (reach - from) / slope];
+        let (low, high) = if ends[0] < ends[1] { (ends[0], ends[1]) } else { (ends[1], ends[0]) };
+        first = if low > first { low } else { first };
+        last = if high < last { high } else { last };
+    } else if from.abs() > reach {
+        return None;
+    }
+    let near = Segment::new(piece.a + along * first, piece.a + along * last);
+    if first <= last { overlap(&around(&near), &shared) } else { None }
 }
 
 #[cfg(test)]
@@ -299,6 +325,23 @@ mod tests {
         assert_eq!(felt(&[first.clone(), gap], p(1.005, 1.0)).len(), 2);
         for place in places() {
             assert_eq!(felt(&[first.clone(), first.clone()], place).len(), 1);
+        }
+    }
+
+    #[test]
+    fn pieces_that_do_not_meet_have_no_joint_and_those_that_do_a_small_one() {
+        let turn = |at: Vec2| rotated(at, 0.5);
+        let row = |k: i32, upright: bool| {
+            let (a, b) = (p(-60.0, f64::from(k)), p(60.0, f64::from(k)));
+            let flip = |at: Vec2| if upright { p(at.y, at.x) } else { at };
+            wall(&[turn(flip(a)), turn(flip(b))])
+        };
+        let apart: Vec<Barrier> = (0..40).map(|k| row(k, false)).collect();
+        assert!(Surfaces::new(&apart).joints.iter().all(Vec::is_empty));
+        let grid: Vec<Barrier> = (0..20).map(|k| row(k / 2, k % 2 == 0)).collect();
+        for joints in Surfaces::new(&grid).joints {
+            assert_eq!(joints.len(), 10);
+            assert!(joints.iter().all(|joint| (joint.around.high - joint.around.low).norm() < 0.02));
         }
     }
 

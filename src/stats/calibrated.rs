@@ -8,7 +8,7 @@
 
 use super::invalid::{Invalid, probability, range};
 use super::width::Ahead;
-use super::{Counts, Coverage, Estimator, Interval, clopper_pearson, okamoto, sequence};
+use super::{Counts, Coverage, Estimator, Interval, calibration, clopper_pearson, okamoto, sequence};
 
 /// Estimates P within a half-width.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,6 +66,15 @@ impl Calibrated {
     /// Half-width and error.
     pub const fn asked(&self) -> (f64, f64) {
         (self.epsilon, self.delta)
+    }
+
+    /// Whether it waits, and may turn out to have stopped with its last outcome: at few trials the largest level that
+    /// can be proven may have come to its stop, too.
+    pub(super) fn may_have_stopped(&self) -> bool {
+        let largest = calibration::LARGEST_SHARE * self.delta;
+        self.waits
+            && (self.counts.trials() >= self.limit
+                || clopper_pearson::narrow(self.counts, largest, 2.0 * self.epsilon))
     }
 
     /// Whether its level still has to be found.

@@ -294,6 +294,12 @@ impl<E: Estimator + Clone> EstimatorReadings<E> {
 }
 
 impl EstimatorReadings<AnyEstimator> {
+    /// Whether a reading that waits may turn out to have stopped with its last outcome.
+    pub fn may_have_stopped(&self) -> bool {
+        let may = |one: &AnyEstimator| matches!(one, AnyEstimator::Calibrated(one) if one.may_have_stopped());
+        may(&self.pessimistic) || self.optimistic.as_ref().is_some_and(may)
+    }
+
     /// Both readings go on with what is now known of their level. Fails as making the estimator does.
     pub fn settle(&mut self, level: Level) -> Result<(), Invalid> {
         self.pessimistic.settle(level)?;
@@ -313,7 +319,7 @@ mod tests {
         };
         assert_eq!(is_open(AnyEstimator::within(0.01, 0.05)), Some(false));
         assert_eq!(is_open(AnyEstimator::within(0.08, 0.02)), Some(true));
-        assert!(matches!(AnyEstimator::within(0.001, 0.05), Ok(AnyEstimator::Okamoto(_))));
+        assert!(matches!(AnyEstimator::within(0.0015, 0.05), Ok(AnyEstimator::Okamoto(_))));
         assert!(AnyEstimator::within(0.0, 0.05).is_err());
         assert!(AnyEstimator::within(0.6, 0.05).is_err());
         assert!(AnyEstimator::within(0.01, 1.0).is_err());

@@ -214,7 +214,18 @@ impl Mean {
         (of(&self.lower), of(self.upper.as_ref().unwrap_or(&self.lower)))
     }
 
-    /// The interval; before the stop it holds at all times, with a fixed number of trials as well.
+    /// Whether how unresolved trials are read decides on which side of `theta` the mean is: each reading is on its own.
+    /// Holds at all times.
+    pub fn splits(&self, theta: f64) -> bool {
+        let scaled = (theta - self.low) / (self.high - self.low);
+        let beyond = |sequence: &Sequence, sign: f64| {
+            let (centre, radius) = sequence.interval();
+            sign * (centre - scaled) > radius
+        };
+        self.upper.as_ref().is_some_and(|upper| beyond(&self.lower, -1.0) && beyond(upper, 1.0))
+    }
+
+    /// The interval. It holds at all times, but at the end of a fixed number of trials at that one, where it is narrower.
     pub fn interval(&self) -> Interval {
         let one = |sequence: &Sequence| {
             let (centre, radius) = sequence.interval();
@@ -236,7 +247,11 @@ impl Mean {
                 low: scale(low),
                 high: scale(high),
                 error: self.delta,
-                coverage: if sequence.finished { Coverage::Sequential } else { Coverage::TimeUniform },
+                coverage: if sequence.finished && self.is_fixed() {
+                    Coverage::FixedSize
+                } else {
+                    Coverage::TimeUniform
+                },
             }
         };
         let lower = one(&self.lower);

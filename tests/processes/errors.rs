@@ -45,6 +45,10 @@ fn all_that_can_be_seen_is_told_at_once() {
     assert_eq!((times("error["), times("error[E0901]"), times("error[E0903]")), (3, 1, 2), "{found}");
     // What would follow an error is no error of its own: 7 is not reached but by way of one.
     assert_eq!(times("E0902"), 0, "{found}");
+    // A trial ends on one of two ways; what is wrong on the other is told, too.
+    let scenario = "horizon = 5 steps\nprocess p { var n: 0 .. 3 = 0\n var m: 0 .. 3 = 0\n\
+        when m == 0 -> 1/2: n = n + 5 | 1/2: m = 1\n when m == 1 -> m = m + 4 }\n";
+    assert_eq!(compiled(scenario, "").unwrap_err().matches("error[E0903]").count(), 2);
     // The starts are wrong, and a command too.
     let scenario = "horizon = 5 steps\nprocess p { var n: 0 .. 3 = 4\n var on: bool = 1 m\n\
         when n == 1 s -> on = 2 s }\n";
@@ -80,6 +84,29 @@ fn errors_that_show_while_running_name_trial_time_and_state() {
         assert_eq!(smc::report::exit_code(run).code(), 2);
     }
     assert_eq!(runs[0].failure, runs[1].failure);
+}
+
+/// A level that is proven late is as one that is known: whoever stops before the trial with the error has a result.
+#[test]
+fn who_waits_for_a_proof_keeps_what_was_decided_before_an_error() {
+    let scenario = "horizon = 9 steps\nprocess t { var t: 0 .. 3 = 0\n when t < 3 -> t = t + 1 }\n\
+        process p[13] { var b: 0 .. 1 = 0\n when true -> 1/2: b = 0 | 1/2: b = 1 }\n\
+        process z { var u: 0 .. 3 = 0\n when t.t == 2 -> 1/500: u = u + 9 | 499/500: u = 0 }\n\
+        process d { var s: 0 .. 1 = 0\n when t.t == 0 -> 1/100: s = 1 | 99/100: s = 0 }\n";
+    let counts = |width: &str| {
+        let queries =
+            format!("estimate P(F<=#1 d.s == 1) within {width}\nestimate P(X<=#7 p[1].b == 1) within 0.02\n");
+        let study = compiled(scenario, &queries).unwrap();
+        let runs = [1, 2].map(|threads| answered(&study, 3, threads));
+        assert_eq!(runs[0].failure, runs[1].failure);
+        let Some(Failure::Model(_)) = &runs[0].failure else { panic!("{:?}", runs[0].failure) };
+        runs[0].results.iter().map(|one| (one.index, one.counts.trials)).collect::<Vec<_>>()
+    };
+    // In the table, proven, and with more trials than there are before the error.
+    let (known, proven) = (counts("0.05"), counts("0.08"));
+    assert_eq!((known.len(), proven.len()), (1, 1), "{known:?} {proven:?}");
+    assert!(proven[0].1 < known[0].1, "{known:?} {proven:?}");
+    assert_eq!(counts("0.0011"), []);
 }
 
 #[test]

@@ -198,7 +198,8 @@ fn okamoto_on_each_arm() {
     let mut each = Each::new(9, 0.1, 0.05, 64).unwrap();
     assert_eq!(each.size(), 1178);
     let means = [0.9, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1, 0.88];
-    assert_eq!(each.choice(None).gap, 1.0);
+    assert_eq!((each.choice(None).gap, each.choice(None).open.len()), (1.0, 8));
+    let mut at_some_time = false;
     while !each.finished() {
         for share in each.next_round().to_vec() {
             let outcomes: Vec<Outcome> = (share.from..share.to)
@@ -206,7 +207,12 @@ fn okamoto_on_each_arm() {
                 .collect();
             each.feed(share.arm, &outcomes).unwrap();
         }
+        // At any time there is a gap, and who is surely worse is known.
+        let choice = each.choice(None);
+        assert!(choice.gap >= 0.9 - means[choice.arm] && (choice.arm == 0 || choice.arm == 8));
+        at_some_time |= !each.finished() && choice.gap < 0.25 && !choice.open.contains(&7);
     }
+    assert!(at_some_time);
     let choice = each.choice(None);
     assert!(choice.arm == 0 || choice.arm == 8);
     assert!(choice.gap <= 0.1 + 1e-12);

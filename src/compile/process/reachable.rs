@@ -65,7 +65,8 @@ impl Findings<'_> {
 }
 
 impl Elaborator<'_> {
-    /// Reports what goes wrong in some state that can be reached. A trial ends there: what could follow is not looked at.
+    /// Reports what goes wrong in some state that can be reached. On that way a trial ends: what could follow is not
+    /// looked at.
     pub(super) fn check_reachable(&mut self, processes: &Processes, lines: &[Vec<Lines>]) {
         if processes.variables.iter().any(|v| v.domain.values().is_none()) {
             return;
@@ -100,14 +101,10 @@ fn walk(processes: &Processes, lines: &[Vec<Lines>], jumps: bool, steps: u64, fi
             } else {
                 successors(processes, lines, &state, &mut wrong)
             };
-            let ends = !wrong.is_empty();
             for wrong in wrong {
                 findings.add(wrong, &state);
             }
             let Ok(successors) = successors else { return };
-            if ends {
-                continue;
-            }
             made += successors.len();
             for next in successors {
                 if !known.contains(&next) {
@@ -155,7 +152,7 @@ fn shown(variables: &[Variable], state: &[i64]) -> String {
 /// Changed variables of one way that a process can take.
 type Change = Vec<(usize, i64)>;
 
-/// The states that can follow, if nothing is wrong.
+/// The states that can follow: none by ways on which a trial ends.
 fn successors(
     processes: &Processes,
     lines: &[Vec<Lines>],
@@ -163,13 +160,12 @@ fn successors(
     wrong: &mut Vec<Wrong>,
 ) -> Result<Vec<Vec<i64>>, Unknown> {
     let values: Vec<f64> = state.iter().map(|value| *value as f64).collect();
-    let mut joint: Vec<Vec<i64>> = vec![state.to_vec()];
+    let mut ways = Vec::new();
     for (process, lines) in processes.list.iter().zip(lines) {
-        let changes = changes((process, lines), &processes.variables, &values, wrong)?;
-        if !wrong.is_empty() {
-            // Nothing follows; what the others do is looked at.
-            continue;
-        }
+        ways.push(changes((process, lines), &processes.variables, &values, wrong)?);
+    }
+    let mut joint: Vec<Vec<i64>> = vec![state.to_vec()];
+    for changes in ways {
         if let [only] = changes.as_slice() {
             for after in &mut joint {
                 for &(variable, value) in only {
@@ -206,7 +202,7 @@ fn jumped(
     wrong: &mut Vec<Wrong>,
 ) -> Result<Vec<Vec<i64>>, Unknown> {
     let values: Vec<f64> = state.iter().map(|value| *value as f64).collect();
-    let mut changes = Vec::new();
+    let (mut changes, mut ends) = (Vec::new(), false);
     for (process, lines) in processes.list.iter().zip(lines) {
         for (command, lines) in process.commands.iter().zip(lines) {
             let Timing::Rate(rate) = &command.timing else { continue };
@@ -221,10 +217,14 @@ fn jumped(
                     what: format!("the rate of this command would be {rate} /s"),
                     hint: Some("a rate is a finite number, not negative; 0 disables the command"),
                 });
+                ends = true;
             } else if rate > 0.0 {
                 branches((command, lines), &processes.variables, &values, (&mut changes, wrong))?;
             }
         }
+    }
+    if ends {
+        return Ok(Vec::new());
     }
     if changes.len().saturating_mul(state.len()) > MOST_VALUES {
         return Err(Unknown);
@@ -239,7 +239,7 @@ fn jumped(
     Ok(after.collect())
 }
 
-/// What one process can do at a step.
+/// What one process can do at a step; nothing where a trial ends by an error whatever is drawn.
 fn changes(
     (process, lines): (&Process, &[Lines]),
     variables: &[Variable],
@@ -266,8 +266,12 @@ fn changes(
         return Ok(vec![Vec::new()]);
     }
     let mut all = Vec::new();
+    let is_clear = process.choose || enabled.len() == 1;
     for (command, lines) in enabled {
         branches((command, lines), variables, values, (&mut all, wrong))?;
+    }
+    if !is_clear {
+        all.clear();
     }
     Ok(all)
 }
@@ -289,6 +293,7 @@ fn branches(
             continue;
         }
         let mut change = Vec::with_capacity(branch.updates.len());
+        let before = wrong.len();
         for ((id, value), span) in branch.updates.iter().zip(updates) {
             let value = value.evaluate(values).ok_or(Unknown)?;
             let variable = &variables[id.0 as usize];
@@ -302,7 +307,9 @@ fn branches(
             }
             change.push((id.0 as usize, value as i64));
         }
-        all.push(change);
+        if wrong.len() == before {
+            all.push(change);
+        }
     }
     Ok(())
 }

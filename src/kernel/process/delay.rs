@@ -17,25 +17,32 @@ pub(in crate::kernel) fn delay(trial: TrialKey, entity: u32, number: u32, law: &
 /// and what is due then happens in the state of then. Sums of doubles miss that by a unit in the last place; one that is as
 /// near to a whole number of nanoseconds as that is taken for it. Only `+ - * /`, so the same everywhere.
 /// So is one that is near a tick of the clock, where states are looked at and bounds end: 1 s / 3 is no decimal, and its
-/// sums go astray a little more each time.
+/// sums go astray a little more each time. Never by more than a hundred-millionth of the delay: what is due at once is due
+/// now, and a short delay after a long time is not lost.
 pub(in crate::kernel) fn after(now: f64, wait: f64, clock: Clock) -> f64 {
     /// A few units in the last place.
     const ROUNDING: f64 = 4.0 * f64::EPSILON;
     /// What the sum of thousands of delays may be off.
     const ASTRAY: f64 = 1e-12;
+    /// What a delay may be off, besides.
+    const OF_DELAY: f64 = 1e-8;
     let due = now + wait;
+    let is_near = |time: f64, share: f64| {
+        let off = (time - due).abs();
+        off <= due * share && off <= wait * OF_DELAY
+    };
     if let Clock::Stepped(length) | Clock::Jumps(length) = clock {
         let ticks = (due * length.denominator() as f64 / length.numerator() as f64 + 0.5).floor();
         // Ticks that are nearer to each other than that tell nothing.
         if ticks < 1e11 {
             let tick = clock.seconds(Tick(ticks as u64));
-            if (tick - due).abs() <= due * ASTRAY {
+            if is_near(tick, ASTRAY) {
                 return tick;
             }
         }
     }
     let nearest = (due * 1e9 + 0.5).floor() / 1e9;
-    if (nearest - due).abs() <= due * ROUNDING { nearest } else { due }
+    if is_near(nearest, ROUNDING) { nearest } else { due }
 }
 
 #[cfg(test)]
@@ -79,6 +86,33 @@ mod tests {
                 now = after(now, length.to_f64(), whole);
                 assert!(k % parts != 0 || now == (k / parts) as f64, "{k} times 1/{parts}");
             }
+        }
+    }
+
+    #[test]
+    fn time_goes_on_by_every_delay() {
+        let clocks =
+            [Clock::Steps, Clock::Jumps(Decimal::ONE), Clock::Stepped(Decimal::ratio(1, 50).unwrap())];
+        let mut now = 0.37;
+        while now < 1e12 {
+            for clock in clocks {
+                assert_eq!(after(now, 0.0, clock), now);
+                for wait in [1e-7, 4e-7, 0.003, 0.1, 1.0 / 3.0, 1.0, 700.0] {
+                    let due = after(now, wait, clock);
+                    assert!(
+                        (due - now - wait).abs() <= 1.1e-8 * wait + 2.0 * f64::EPSILON * due,
+                        "{now} {wait}"
+                    );
+                    assert!(due > now || now + wait == now, "{now} {wait}");
+                }
+                // Exactly on a second, and next to it.
+                let second = now.floor() + 1.0;
+                for start in [second, second.next_up(), second.next_down()] {
+                    assert_eq!(after(start, 0.0, clock), start);
+                    assert!(after(start, 4e-7, clock) > start || start + 4e-7 == start);
+                }
+            }
+            now *= 1.37;
         }
     }
 

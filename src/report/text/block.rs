@@ -122,6 +122,8 @@ pub(super) fn method(text: &mut String, result: &QueryResult, palette: Palette) 
     }
     let shown = |(name, value): &(String, f64)| match name.as_str() {
         "alpha" | "beta" | "delta" => format!("{name} = {}", plain(at_most(*value))),
+        // As it was written: rounded it may be another test, or none.
+        "theta" if result.unit.is_empty() => format!("{name} = {value}"),
         // These are in the unit of what is measured.
         "theta" | "epsilon" if !result.unit.is_empty() => {
             format!("{name} = {} {}", plain(*value), result.unit)

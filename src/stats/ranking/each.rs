@@ -3,12 +3,14 @@
 use super::{Choice, Share};
 use crate::base::math;
 use crate::stats::invalid::{Invalid, probability, range};
-use crate::stats::{Counts, Outcome};
+use crate::stats::{Counts, Outcome, sequence};
 
 /// The same fixed number of trials for every arm.
 #[derive(Clone, Debug)]
 pub struct Each {
     epsilon: f64,
+    /// Error of each arm.
+    delta: f64,
     size: u64,
     word: u64,
     /// Successes and trials of each arm with unresolved ones as failures, and unresolved ones.
@@ -31,6 +33,7 @@ impl Each {
         probability("delta", delta)?;
         let mut each = Self {
             epsilon,
+            delta: delta / arms as f64,
             size: size(arms, epsilon, delta),
             word,
             arms: vec![(Counts::default(), 0); arms],
@@ -99,8 +102,23 @@ impl Each {
         (counts.successes as f64 / n, (counts.successes + unresolved) as f64 / n)
     }
 
-    /// The choice; its gap is 1 before the end, because the bound holds at the fixed number only. Unresolved
-    /// trials count against the chosen arm and for its rivals, and widen the gap.
+    /// Where the probability of an arm lies. At the end within epsilon / 2 of the shares; before, in the interval of the
+    /// confidence sequence, which holds at all times.
+    fn ends(&self, arm: usize) -> (f64, f64) {
+        if self.finished() {
+            let (low, high) = self.shares(arm);
+            return (low - 0.5 * self.epsilon, high + 0.5 * self.epsilon);
+        }
+        let (counts, unresolved) = self.arms[arm];
+        let reading = |unresolved: u64| {
+            let (successes, failures) = (counts.successes + unresolved, counts.failures - unresolved);
+            sequence::interval(Counts { successes, failures }, self.delta)
+        };
+        (reading(0).low, reading(unresolved).high)
+    }
+
+    /// The choice, with a gap that holds at any time. Unresolved trials count against the chosen arm and for its rivals,
+    /// and widen the gap.
     pub fn choice(&self, deviations: Option<&[f64]>) -> Choice {
         let k = self.arms.len();
         let middle = |arm: usize| {
@@ -113,18 +131,15 @@ impl Each {
                 leader = arm;
             }
         }
-        // Every share is within epsilon / 2 of its probability, so a share this far below the best possible
-        // one of the others is within that plus epsilon.
+        let ends: Vec<(f64, f64)> = (0..k).map(|arm| self.ends(arm)).collect();
+        // At the end no more than epsilon is claimed, however far the others are behind.
+        let least = if self.finished() { self.epsilon } else { 0.0 };
         let gap_of = |arm: usize| {
-            let mut behind = 0.0;
-            for rival in (0..k).filter(|rival| *rival != arm) {
-                behind = math::at_least(behind, self.shares(rival).1 - self.shares(arm).0);
-            }
-            math::at_most(behind + self.epsilon, 1.0)
+            let rivals = (0..k).filter(|rival| *rival != arm);
+            let gap = rivals.map(|rival| ends[rival].1 - ends[arm].0).fold(least, math::at_least);
+            math::at_most(gap, 1.0)
         };
-        let finished = self.finished();
-        let certified: Vec<usize> =
-            (0..k).filter(|arm| finished && gap_of(*arm) <= self.epsilon + 1e-12).collect();
+        let certified: Vec<usize> = (0..k).filter(|arm| gap_of(*arm) <= self.epsilon + 1e-12).collect();
         let mut arm = leader;
         if let Some(deviations) = deviations {
             let of = |arm: usize| deviations.get(arm).copied().unwrap_or(f64::INFINITY);
@@ -134,11 +149,7 @@ impl Each {
                 }
             }
         }
-        let open = (0..k)
-            .filter(|other| {
-                *other != arm && (!finished || self.shares(*other).1 + self.epsilon > self.shares(leader).0)
-            })
-            .collect();
-        Choice { arm, gap: if finished { gap_of(arm) } else { 1.0 }, open, certified }
+        let open = (0..k).filter(|other| *other != arm && ends[*other].1 > ends[leader].0).collect();
+        Choice { arm, gap: gap_of(arm), open, certified }
     }
 }
