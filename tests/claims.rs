@@ -246,6 +246,9 @@ estimate P(F<=10 s p.over) within 0.0035
         (&results[3]["method"]["name"], number(&results[3]["method"], "trials")),
         (&"okamoto".into(), 150_567.0)
     );
+    // As it is told, it could be written.
+    let fewest = "estimate P(F (gambler.wealth >= 6)) by splitting(replicas = 50, runs = 3)\n";
+    assert_eq!(number(&run(GAMBLER, fewest, &[])[0]["method"], "plain"), 100.0);
 }
 
 #[test]

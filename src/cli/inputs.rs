@@ -175,6 +175,23 @@ fn find(path: &str, scenario: &str, data: &[PathBuf]) -> Result<PathBuf, String>
     ))
 }
 
+/// What is wrong with a file. Where nothing would be if it were read as a file of the other language, that is all there is
+/// to say.
+fn misplaced(
+    mut diagnostics: Vec<Diagnostic>,
+    source: &Source,
+    other: impl Fn(&Source) -> Vec<Diagnostic>,
+    hint: &str,
+) -> Vec<Diagnostic> {
+    let is_error = |d: &Diagnostic| d.severity == Severity::Error;
+    if let Some(first) = diagnostics.iter().position(is_error)
+        && !other(source).iter().any(is_error)
+    {
+        return vec![diagnostics.swap_remove(first).hint(hint)];
+    }
+    diagnostics
+}
+
 /// Reads, parses and compiles what a call names.
 pub(super) fn load(model: &Model, properties: &[String]) -> Inputs {
     load_from(Shelf::Files, model, properties)
@@ -196,7 +213,9 @@ pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> I
             Some(source) => {
                 let (file, diagnostics) = parse_scenario(&source);
                 scenario = file;
-                reader.diagnostics.extend(diagnostics);
+                let other = |source: &Source| parse_properties(source).1;
+                let hint = "these are properties; the scenario comes first, and properties after it";
+                reader.diagnostics.extend(misplaced(diagnostics, &source, other, hint));
             }
             None => complete = false,
         }
@@ -205,7 +224,9 @@ pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> I
                 Some(source) => {
                     let (file, diagnostics) = parse_properties(&source);
                     parsed.push(file);
-                    reader.diagnostics.extend(diagnostics);
+                    let other = |source: &Source| parse_scenario(source).1;
+                    let hint = "this is a scenario; it comes first, and properties after it";
+                    reader.diagnostics.extend(misplaced(diagnostics, &source, other, hint));
                 }
                 None => complete = false,
             }

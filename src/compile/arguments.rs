@@ -1,7 +1,7 @@
 //! The named arguments of a procedure: `sprt(alpha = 0.01, indifference = 0.02)`.
 
-use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
+use super::measures::Sketch;
 use super::nearest::nearest;
 use crate::syntax::ast::{Clauses, Method};
 use crate::syntax::diagnostic::Diagnostic;
@@ -23,12 +23,12 @@ impl<const N: usize> Arguments<'_, N> {
 }
 
 impl Elaborator<'_> {
-    /// The arguments of a method; all are pure numbers but `epsilon`, which is in the dimension of the measure.
+    /// The arguments of a method; all are pure numbers but `epsilon`, which is in the unit of the measure.
     pub(super) fn arguments<'m, const N: usize>(
         &mut self,
         (clauses, method): (&Clauses, &'m Method),
         names: [&str; N],
-        dimension: Dimension,
+        sketch: Sketch,
         locals: &Locals,
     ) -> Arguments<'m, N> {
         let mut values = [None; N];
@@ -67,8 +67,8 @@ impl Elaborator<'_> {
                 failed = true;
                 continue;
             }
-            let dimension = if names[at] == "epsilon" { dimension } else { Dimension::NONE };
-            match self.number_of(&argument.value, dimension, locals) {
+            let sketch = if names[at] == "epsilon" { sketch } else { Sketch::PROBABILITY };
+            match self.number_in(&argument.value, sketch, locals) {
                 Ok(number) => values[at] = Some((number.value, argument.value.span)),
                 Err(_) => failed = true,
             }

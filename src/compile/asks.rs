@@ -1,9 +1,9 @@
 //! Checks, comparisons and rankings: claims, thresholds, tests, sides, options.
 
-use super::dimension::Dimension;
-use super::elaborator::{Locals, Lowered, Reported};
+use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::families::Allowance;
-use super::measures::Observed;
+use super::measures::{Observed, Sketch, What};
+use super::number::Number;
 use super::queries::Compiler;
 use super::study::{Ask, Measure, MeasureKind, Ranking, Target};
 use super::symbols::ScopeId;
@@ -27,44 +27,33 @@ impl<'a> Compiler<'a> {
         scope: ScopeId,
     ) -> Lowered<(Ask, bool)> {
         let locals = Locals::of(scope);
-        let observed = self.sites[site].elaborator.measure(measure, scope);
-        let dimension = match (observed.as_ref().map(|o| &o.kind), &measure.kind) {
-            (Ok(MeasureKind::Expectation { dimension, .. } | MeasureKind::Quantile { dimension, .. }), _) => {
-                *dimension
-            }
-            (_, ast::MeasureKind::Probability) => Dimension::NONE,
-            // Without a metric nobody knows the unit of the threshold.
-            _ => return Err(Reported),
-        };
         let elaborator = &mut self.sites[site].elaborator;
-        let bound = elaborator.number_of(threshold, dimension, &locals)?;
+        // What is wrong with the measure, the threshold and the procedure is said at once.
+        let (observed, sketch) = elaborator.measure(measure, scope);
+        let bound = elaborator.threshold(threshold, sketch, &locals);
         let allowance = Allowance { family, claims: 1 };
-        if matches!(measure.kind, ast::MeasureKind::Probability) && (bound.value <= 0.0 || bound.value >= 1.0)
-        {
-            let theta = bound.value;
-            let hint = if theta > 1.0 && theta <= 100.0 {
-                format!("a share is written with its sign: `{theta} %`")
-            } else {
-                let near = if theta <= 0.0 { "`<= 0.001`" } else { "`>= 0.999`" };
-                format!(
-                    "that something is certain or impossible cannot be decided by sampling; ask for {near}"
-                )
-            };
-            let error = Diagnostic::error(
-                "E0601",
-                threshold.span,
-                format!("a probability is compared with a number between 0 and 1, not with {theta}"),
-            );
-            return elaborator.report(error.hint(hint));
-        }
+        let confidence = elaborator.delta(clauses, &locals);
+        let width = elaborator.no_width(clauses, sketch.what);
+        let test = match (sketch.what, &clauses.by) {
+            (What::Expectation, None) => confidence.map(|stated| super::study::Test::Interval {
+                delta: allowance.error(stated, super::methods::DEFAULT_ALPHA),
+            }),
+            (What::Expectation, Some(method)) => {
+                let said = "a check of an expectation has one procedure only";
+                elaborator.report(Diagnostic::error("E0603", method.span, said))
+            }
+            (What::Quantile, _) => elaborator.test(clauses, sketch.level, threshold.span, allowance, &locals),
+            (What::Probability, _) => {
+                let theta = bound.ok().map(|bound| bound.value);
+                elaborator.test(clauses, theta, threshold.span, allowance, &locals)
+            }
+        };
+        width?;
+        let (bound, test) = (bound?, test?);
         // Where a confidence is stated, or comes from a family, it is also that of the interval.
-        let beside = allowance.error(elaborator.delta(clauses, &locals)?, super::methods::DEFAULT_DELTA);
+        let beside = allowance.error(confidence?, super::methods::DEFAULT_DELTA);
         let mut at_least = matches!(relation, BinaryOp::AtLeast | BinaryOp::Greater);
         let or_equal = matches!(relation, BinaryOp::AtLeast | BinaryOp::AtMost);
-        if observed.is_err() && matches!(measure.kind, ast::MeasureKind::Probability) {
-            // What is wrong with the procedure is said beside what is wrong with the formula.
-            let _ = elaborator.test(clauses, bound.value, threshold.span, allowance, &locals);
-        }
         let Observed { column, kind, unbounded } = observed?;
         let (column, kind, theta) = match kind {
             // A quantile is at most x exactly if P(metric <= x) is at least its level. It is below x if
@@ -76,29 +65,6 @@ impl<'a> Compiler<'a> {
                 (below, MeasureKind::Probability, level)
             }
             kind => (column, kind, bound.value),
-        };
-        let test = match &kind {
-            MeasureKind::Expectation { range, .. } => {
-                if let Some(method) = &clauses.by {
-                    let error = Diagnostic::error(
-                        "E0603",
-                        method.span,
-                        "a check of an expectation has one procedure only",
-                    );
-                    return elaborator.report(error);
-                }
-                if theta <= range.0 || theta >= range.1 {
-                    let error = Diagnostic::error(
-                        "E0601",
-                        threshold.span,
-                        "this threshold lies outside the range of the metric",
-                    );
-                    return elaborator.report(error);
-                }
-                let stated = elaborator.delta(clauses, &locals)?;
-                super::study::Test::Interval { delta: allowance.error(stated, super::methods::DEFAULT_ALPHA) }
-            }
-            _ => elaborator.test(clauses, theta, threshold.span, allowance, &locals)?,
         };
         let column = self.column(site, column);
         let measure = Measure { target: Target { world: site, column }, kind };
@@ -118,27 +84,34 @@ impl<'a> Compiler<'a> {
         // What `under` sets at the end of the query holds for both sides.
         let common = self.sites[site].settings.clone();
         let sides = (self.under(first, scope, site, &common), self.under(second, scope, site, &common));
-        let ((one, first_settings), (two, second_settings)) = (sides.0?, sides.1?);
-        let (a, unbounded) = self.measured(one, measure, scope)?;
-        let (b, _) = self.measured(two, measure, scope)?;
-        let settings = [first_settings, second_settings];
-        let elaborator = &mut self.sites[site].elaborator;
-        let dimension = match &a.kind {
-            MeasureKind::Probability => Dimension::NONE,
-            MeasureKind::Expectation { .. } if a.kind != b.kind => {
-                return elaborator.report(unlike(measure, [&a.kind, &b.kind], &settings));
-            }
-            MeasureKind::Expectation { dimension, .. } => *dimension,
-            MeasureKind::Quantile { .. } => {
-                let error = Diagnostic::error("E0607", measure.span, "quantiles cannot be compared directly")
-                    .hint("compare `P(metric <= bound)`, or estimate both");
-                return elaborator.report(error);
-            }
+        // Where one side cannot be set up, the other one stands for both.
+        let (one, two) = match &sides {
+            (Ok((one, _)), Ok((two, _))) => (*one, *two),
+            (Ok((one, _)), Err(_)) => (*one, *one),
+            (Err(_), Ok((two, _))) => (*two, *two),
+            (Err(_), Err(_)) => return Err(Reported),
         };
+        let ((a, sketch), (b, _)) = (self.measured(one, measure, scope), self.measured(two, measure, scope));
+        let elaborator = &mut self.sites[site].elaborator;
         let allowance = Allowance { family, claims: 1 };
-        let locals = Locals::of(scope);
-        let (within, delta) =
-            elaborator.comparison_clauses(clauses, &a.kind, dimension, allowance, &locals)?;
+        let quantile = sketch.what == What::Quantile;
+        let comparable = if quantile {
+            let error = Diagnostic::error("E0607", measure.span, "quantiles cannot be compared directly")
+                .hint("compare `P(metric <= bound)`, or estimate both");
+            elaborator.report(error)
+        } else {
+            Ok(())
+        };
+        let clauses = elaborator.comparison_clauses(clauses, sketch, allowance, &Locals::of(scope));
+        let (Ok((_, first_settings)), Ok((_, second_settings))) = sides else { return Err(Reported) };
+        let settings = [first_settings, second_settings];
+        let ((a, unbounded), (b, _)) = (a?, b?);
+        comparable?;
+        if matches!(a.kind, MeasureKind::Expectation { .. }) && a.kind != b.kind {
+            let error = unlike(measure, [&a.kind, &b.kind], &settings);
+            return self.sites[site].elaborator.report(error);
+        }
+        let (within, delta) = clauses?;
         Ok((Ask::Compare { first: a, second: b, settings, within, delta }, unbounded, one))
     }
 
@@ -154,35 +127,45 @@ impl<'a> Compiler<'a> {
         scope: ScopeId,
     ) -> Lowered<(Ask, bool)> {
         let locals = Locals::of(scope);
-        let measured = self.measured(site, measure, scope);
+        let (measured, sketch) = self.measured(site, measure, scope);
+        let moves = self.moves(site, what, agent, &locals);
         let elaborator = &mut self.sites[site].elaborator;
-        if what.name != "moves" {
-            let error =
-                Diagnostic::error("E0606", what.span, format!("`{}` cannot be ranked here", what.name))
-                    .hint("write `rank moves of …`");
-            return elaborator.report(error);
-        }
-        let typed = elaborator.lower(agent, &locals)?;
-        let Who::Agent(id) = elaborator.as_agent(typed, agent.span)? else { return Err(Reported) };
-        let (measured, unbounded) = measured?;
-        let dimension = match &measured.kind {
-            MeasureKind::Probability => Dimension::NONE,
-            MeasureKind::Expectation { dimension, .. } => *dimension,
-            MeasureKind::Quantile { .. } => {
-                let error = Diagnostic::error("E0607", measure.span, "moves are ranked by `P(…)` or `E(…)`");
-                return elaborator.report(error);
-            }
+        let rankable = if sketch.what == What::Quantile {
+            let error = Diagnostic::error("E0607", measure.span, "moves are ranked by `P(…)` or `E(…)`");
+            elaborator.report(error)
+        } else {
+            Ok(())
         };
+        // In which unit a loss would be is not known then.
+        let known = if rankable.is_ok() { sketch } else { Sketch { dimension: None, ..sketch } };
         let allowance = Allowance { family, claims: 1 };
-        let (epsilon, delta, ranking) =
-            elaborator.ranking(clauses, (&measured.kind, measure.span), dimension, allowance, &locals)?;
-        if let (Ranking::Okamoto, MeasureKind::Expectation { .. }, Some(method)) =
-            (ranking, &measured.kind, &clauses.by)
+        let procedure = elaborator.ranking(clauses, (known, measure.span), allowance, &locals);
+        if let (Ok((.., Ranking::Okamoto)), What::Expectation, Some(method)) =
+            (&procedure, sketch.what, &clauses.by)
         {
             let error = Diagnostic::error("E0607", method.span, "`okamoto` ranks moves by `P(…)` only")
                 .hint("the default ranks by `E(…)` too, and needs fewer trials");
             return elaborator.report(error);
         }
+        rankable?;
+        let ((measure, unbounded), moves, (epsilon, delta, ranking)) = (measured?, moves?, procedure?);
+        Ok((Ask::Rank { moves, measure, epsilon, delta, ranking }, unbounded))
+    }
+
+    /// The number of the moves that are ranked.
+    fn moves(&mut self, site: usize, what: &ast::Ident, agent: &Expr, locals: &Locals) -> Lowered<usize> {
+        let elaborator = &mut self.sites[site].elaborator;
+        let wanted = if what.name == "moves" {
+            Ok(())
+        } else {
+            let error =
+                Diagnostic::error("E0606", what.span, format!("`{}` cannot be ranked here", what.name))
+                    .hint("write `rank moves of …`");
+            elaborator.report(error)
+        };
+        let typed = elaborator.lower(agent, locals)?;
+        let Who::Agent(id) = elaborator.as_agent(typed, agent.span)? else { return Err(Reported) };
+        wanted?;
         let Some(scenario) = &self.sites[site].scenario else { return Err(Reported) };
         let Some(moves) = scenario.moves.iter().position(|m| m.agent == id) else {
             // One that could not be declared was reported.
@@ -203,7 +186,40 @@ impl<'a> Compiler<'a> {
             let said = format!("a ranking is of at most {MOST_OPTIONS} options, and these are {options}");
             return self.sites[site].elaborator.report(Diagnostic::error("E0606", agent.span, said));
         }
-        Ok((Ask::Rank { moves, measure: measured, epsilon, delta, ranking }, unbounded))
+        Ok(moves)
+    }
+}
+
+impl Elaborator<'_> {
+    /// What a measure is compared with: a number in its unit, between 0 and 1 if it is a probability and within the range
+    /// of an expectation.
+    fn threshold(&mut self, threshold: &Expr, sketch: Sketch, locals: &Locals) -> Lowered<Number> {
+        // Without a metric nobody knows the unit of the threshold.
+        let bound = self.number_in(threshold, sketch, locals)?;
+        let theta = bound.value;
+        if sketch.what == What::Probability && (theta <= 0.0 || theta >= 1.0) {
+            let hint = if theta > 1.0 && theta <= 100.0 {
+                format!("a share is written with its sign: `{theta} %`")
+            } else {
+                let near = if theta <= 0.0 { "`<= 0.001`" } else { "`>= 0.999`" };
+                format!(
+                    "that something is certain or impossible cannot be decided by sampling; ask for {near}"
+                )
+            };
+            let error = Diagnostic::error(
+                "E0601",
+                threshold.span,
+                format!("a probability is compared with a number between 0 and 1, not with {theta}"),
+            );
+            return self.report(error.hint(hint));
+        }
+        if let Some((low, high)) = sketch.range
+            && (theta <= low || theta >= high)
+        {
+            let said = "this threshold lies outside the range of the metric";
+            return self.report(Diagnostic::error("E0601", threshold.span, said));
+        }
+        Ok(bound)
     }
 }
 

@@ -3,7 +3,7 @@
 
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Lowered};
-use super::study::MeasureKind;
+use super::measures::{Sketch, What};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
@@ -40,16 +40,15 @@ impl Elaborator<'_> {
     }
 
     /// A half width, in the unit of the measure, must be a legal part of what the measure ranges over.
-    pub(super) fn width(
-        &mut self,
-        (epsilon, at): (f64, Span),
-        kind: &MeasureKind,
-        widest: f64,
-    ) -> Lowered<f64> {
-        let (range, dimension) = match kind {
-            MeasureKind::Probability => (1.0, Dimension::NONE),
-            MeasureKind::Expectation { range, dimension } => (range.1 - range.0, *dimension),
-            MeasureKind::Quantile { .. } => return Ok(epsilon),
+    pub(super) fn width(&mut self, (epsilon, at): (f64, Span), sketch: Sketch, widest: f64) -> Lowered<f64> {
+        let (range, dimension) = match sketch {
+            Sketch { what: What::Probability, .. } => (1.0, Dimension::NONE),
+            Sketch { what: What::Expectation, range: Some(range), dimension: Some(dimension), .. } => {
+                (range.1 - range.0, dimension)
+            }
+            // Of what nobody knows no part is asked.
+            _ if epsilon > 0.0 || sketch.what == What::Quantile => return Ok(epsilon),
+            _ => return self.report(Diagnostic::error("E0604", at, "a width must be positive")),
         };
         let part = epsilon / range;
         if (NARROWEST..=widest).contains(&part) {

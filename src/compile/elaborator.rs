@@ -11,6 +11,7 @@ use super::process::Declared;
 use super::study::Origins;
 use super::study::Texts;
 use super::symbols::{Scope, ScopeId};
+use super::told::Told;
 use super::typed::Typed;
 use crate::base::decimal::Decimal;
 use crate::base::geometry::{Shape, Vec2};
@@ -145,8 +146,8 @@ pub(super) struct Elaborator<'a> {
     pub(super) broken: BTreeSet<(ScopeId, String)>,
     /// Parts of the files that were not read to their end: what is wrong with them was said.
     pub(super) cut: Vec<Span>,
-    /// Whether the scenario has no clock that can be told; then errors of times say nothing.
-    pub(super) timeless: bool,
+    /// What is known of the clock: errors of times that need more say nothing.
+    pub(super) told: Told,
     /// Nodes lowered so far.
     pub(super) nodes: u64,
 }
@@ -193,7 +194,7 @@ impl<'a> Elaborator<'a> {
             outermost: Span::default(),
             broken: BTreeSet::new(),
             cut: Vec::new(),
-            timeless: false,
+            told: Told::Whole,
             nodes: 0,
         }
     }
@@ -206,8 +207,7 @@ impl<'a> Elaborator<'a> {
 
     /// Notes an error or warning, each place once.
     pub(super) fn note(&mut self, diagnostic: Diagnostic) {
-        // Without a clock no bound can be judged.
-        if self.timeless && matches!(diagnostic.code, "E0501" | "E0502" | "E0503" | "E0507" | "E0508") {
+        if self.told < Told::needed(diagnostic.code) {
             return;
         }
         if diagnostic.place.as_ref().is_some_and(|place| self.is_cut(place.span)) {

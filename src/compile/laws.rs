@@ -120,11 +120,16 @@ impl Elaborator<'_> {
         dimension: Dimension,
         locals: &Locals,
     ) -> Lowered<Family> {
-        let Some(factor) = drawn.factor else {
+        // Several factors are one: `2 * lognormal(1, 0.1) * 1 m/s`.
+        let joined = drawn.factors.iter().copied().cloned().reduce(|first, second| Expr {
+            span: first.span.to(second.span),
+            kind: ExprKind::Binary(BinaryOp::Times, Box::new(first), Box::new(second)),
+        });
+        let Some(factor) = joined else {
             return self.own_family(drawn, span, dimension, locals);
         };
         let family = self.own_family(drawn, span, Dimension::NONE, locals);
-        let by = self.number_of(factor, dimension, locals);
+        let by = self.number_of(&factor, dimension, locals);
         let (family, by) = (family?, by?);
         self.validated(family.clone(), (f64::NEG_INFINITY, f64::INFINITY), Dimension::NONE, span)?;
         if !(by.value > 0.0 && by.value.is_finite()) {
@@ -205,29 +210,31 @@ impl Elaborator<'_> {
     }
 }
 
-/// A distribution as written: `poisson(4)`, `poisson(4) * 1 s`.
+/// A distribution as written: `poisson(4)`, `poisson(4) * 1 s`, `2 * poisson(4) * 1 s`.
 pub(super) struct Drawn<'e> {
     name: &'e str,
     arguments: &'e [Expr],
-    /// What it is multiplied by.
-    factor: Option<&'e Expr>,
+    /// What it is multiplied by, in the order of writing.
+    factors: Vec<&'e Expr>,
 }
 
 /// A distribution, or a multiple of one.
 pub(super) fn distribution(expr: &Expr) -> Option<Drawn<'_>> {
     match &expr.kind {
         ExprKind::Call { function, arguments } if DISTRIBUTIONS.contains(&function.name.as_str()) => {
-            Some(Drawn { name: &function.name, arguments, factor: None })
+            Some(Drawn { name: &function.name, arguments, factors: Vec::new() })
         }
-        ExprKind::Binary(BinaryOp::Times, left, right) => {
-            let (drawn, factor) = match (distribution(left), distribution(right)) {
-                (Some(drawn), None) => (drawn, right),
-                (None, Some(drawn)) => (drawn, left),
-                _ => return None,
-            };
-            // One factor is enough for a unit.
-            drawn.factor.is_none().then_some(Drawn { factor: Some(factor), ..drawn })
-        }
+        ExprKind::Binary(BinaryOp::Times, left, right) => match (distribution(left), distribution(right)) {
+            (Some(mut drawn), None) => {
+                drawn.factors.push(right);
+                Some(drawn)
+            }
+            (None, Some(mut drawn)) => {
+                drawn.factors.insert(0, left);
+                Some(drawn)
+            }
+            _ => None,
+        },
         _ => None,
     }
 }

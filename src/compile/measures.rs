@@ -1,9 +1,11 @@
 //! Measures: what is asked of the distribution of traces.
 
 use super::dimension::Dimension;
-use super::elaborator::{Elaborator, Locals, Lowered};
+use super::elaborator::{Elaborator, Locals, Lowered, Reported};
+use super::number::Number;
 use super::study::{Column, MeasureKind, Root, Sought};
 use super::symbols::{Meaning, ScopeId};
+use super::told::Told;
 use super::typed::Typed;
 use crate::base::tick::Clock;
 use crate::logic::{
@@ -24,7 +26,46 @@ pub(super) struct Observed {
     pub(super) unbounded: bool,
 }
 
+/// What a measure asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum What {
+    Probability,
+    Expectation,
+    Quantile,
+}
+
+/// What is known of a measure of which something may be wrong: the rest of its query is judged by that, and by nothing
+/// that only follows from what is wrong.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sketch {
+    pub(super) what: What,
+    /// Of its values, and so of thresholds and widths.
+    pub(super) dimension: Option<Dimension>,
+    /// Of an expectation.
+    pub(super) range: Option<(f64, f64)>,
+    /// Of a quantile.
+    pub(super) level: Option<f64>,
+}
+
+impl Sketch {
+    /// Of a probability everything is known.
+    pub(super) const PROBABILITY: Self =
+        Self { what: What::Probability, dimension: Some(Dimension::NONE), range: None, level: None };
+
+    fn of(what: What, dimension: Option<Dimension>) -> Self {
+        Self { what, dimension, range: None, level: None }
+    }
+}
+
 impl Elaborator<'_> {
+    /// A number in the dimension of a measure; of any where nobody knows that.
+    pub(super) fn number_in(&mut self, expr: &Expr, sketch: Sketch, locals: &Locals) -> Lowered<Number> {
+        match sketch.dimension {
+            Some(dimension) => self.number_of(expr, dimension, locals),
+            None => self.number(expr, locals),
+        }
+    }
+
     /// A formula asked at the start of a trace.
     pub(super) fn formula_column(&mut self, body: &Expr, scope: ScopeId) -> Lowered<(Column, bool)> {
         self.temporal = true;
@@ -154,84 +195,118 @@ impl Elaborator<'_> {
                 (None, Some(formula)) => (formula, left, relation.flipped()),
                 _ => return None,
             };
-        Some(self.robustness_of(formula, scope).and_then(|(node, dimension, unbounded)| {
-            let bound = self.number_of(bound, dimension, &Locals::of(scope))?.value;
+        let robust = self.robustness_of(formula, scope);
+        let dimension = robust.as_ref().ok().map(|(_, dimension, _)| *dimension);
+        let bound = self.number_in(bound, Sketch::of(What::Expectation, dimension), &Locals::of(scope));
+        Some(robust.and_then(|(node, _, unbounded)| {
+            let bound = bound?.value;
             let text = self.text(body.span);
             Ok((Column { root: Root::Robustness(node, Sought::Compared(relation, bound)), text }, unbounded))
         }))
     }
 
-    /// A measure; a quantile or expectation has the dimension of its metric.
-    pub(super) fn measure(&mut self, measure: &ast::Measure, scope: ScopeId) -> Lowered<Observed> {
-        if let (Some((low, _)), ast::MeasureKind::Probability | ast::MeasureKind::Quantile(_)) =
-            (&measure.range, &measure.kind)
-        {
-            let error = Diagnostic::error("E0605", low.span, "only an expectation needs a range");
-            return self.report(error);
-        }
-        match &measure.kind {
+    /// A measure, and what is known of it where something is wrong with it; a quantile or expectation has the dimension of
+    /// its metric.
+    pub(super) fn measure(&mut self, measure: &ast::Measure, scope: ScopeId) -> (Lowered<Observed>, Sketch) {
+        let (observed, sketch) = match &measure.kind {
             ast::MeasureKind::Probability => {
-                let (column, unbounded) = match self.robust_enough(&measure.body, scope) {
-                    Some(robust) => robust?,
-                    None => self.formula_column(&measure.body, scope)?,
+                let formula = match self.robust_enough(&measure.body, scope) {
+                    Some(robust) => robust,
+                    None => self.formula_column(&measure.body, scope),
                 };
-                Ok(Observed { column, kind: MeasureKind::Probability, unbounded })
-            }
-            ast::MeasureKind::Expectation => {
-                let (root, dimension, unbounded) = self.metric_root(&measure.body, scope)?;
-                let Some((low, high)) = &measure.range else {
-                    let error = Diagnostic::error(
-                        "E0605",
-                        measure.span,
-                        "an expectation needs the range of its metric",
-                    )
-                    .hint(format!(
-                        "write `E(…) in lo .. hi` in {}; values beyond are clipped and counted",
-                        unit_hint(dimension)
-                    ));
-                    return self.report(error);
-                };
-                let locals = Locals::of(scope);
-                // One after the other: what is wrong with both ends is said once.
-                let least = self.number_of(low, dimension, &locals)?.value;
-                let range = (least, self.number_of(high, dimension, &locals)?.value);
-                if range.0 >= range.1 {
-                    return self.report(Diagnostic::error(
-                        "E0605",
-                        low.span.to(high.span),
-                        "this range is empty",
-                    ));
-                }
-                let root = match root {
-                    Root::Robustness(node, _) => Root::Robustness(node, Sought::Clipped(range.0, range.1)),
-                    root => root,
-                };
-                let text = self.text(measure.body.span);
-                Ok(Observed {
-                    column: Column { root, text },
-                    kind: MeasureKind::Expectation { range, dimension },
+                let observed = formula.map(|(column, unbounded)| Observed {
+                    column,
+                    kind: MeasureKind::Probability,
                     unbounded,
-                })
+                });
+                (observed, Sketch::PROBABILITY)
             }
-            ast::MeasureKind::Quantile(level) => {
-                let number = self.number_of(level, Dimension::NONE, &Locals::of(scope));
-                let (root, dimension, unbounded) = self.metric_root(&measure.body, scope)?;
-                let number = number?;
-                if number.value <= 0.0 || number.value >= 1.0 {
-                    return self.report(Diagnostic::error(
-                        "E0601",
-                        level.span,
-                        "the level of a quantile lies between 0 and 1",
-                    ));
-                }
-                let text = self.text(measure.body.span);
-                Ok(Observed {
-                    column: Column { root, text },
-                    kind: MeasureKind::Quantile { level: number.value, dimension },
-                    unbounded,
-                })
+            ast::MeasureKind::Expectation => self.expectation(measure, scope),
+            ast::MeasureKind::Quantile(level) => self.quantile(measure, level, scope),
+        };
+        match &measure.range {
+            Some((low, _)) if !matches!(measure.kind, ast::MeasureKind::Expectation) => {
+                let error = Diagnostic::error("E0605", low.span, "only an expectation needs a range");
+                (self.report(error), sketch)
             }
+            _ => (observed, sketch),
         }
+    }
+
+    fn expectation(&mut self, measure: &ast::Measure, scope: ScopeId) -> (Lowered<Observed>, Sketch) {
+        let metric = self.metric_root(&measure.body, scope);
+        let dimension = metric.as_ref().ok().map(|(_, dimension, _)| *dimension);
+        let sketch = Sketch::of(What::Expectation, dimension);
+        let range = match &measure.range {
+            Some((low, high)) => self.range((low, high), sketch, &Locals::of(scope)),
+            // What is no number is perhaps meant as a formula, which has no range.
+            None if metric.is_err() && self.is_refused_as_a_whole(&measure.body) => Err(Reported),
+            None => {
+                let unit = dimension.map_or_else(String::new, |d| format!(" in {}", unit_hint(d)));
+                let error =
+                    Diagnostic::error("E0605", measure.span, "an expectation needs the range of its metric")
+                        .hint(format!(
+                            "write `E(…) in lo .. hi`{unit}; values beyond are clipped and counted"
+                        ));
+                self.report(error)
+            }
+        };
+        let sketch = Sketch { range: range.ok().filter(|_| dimension.is_some()), ..sketch };
+        let text = self.text(measure.body.span);
+        let observed = metric.and_then(|(root, dimension, unbounded)| {
+            let range = range?;
+            let root = match root {
+                Root::Robustness(node, _) => Root::Robustness(node, Sought::Clipped(range.0, range.1)),
+                root => root,
+            };
+            let kind = MeasureKind::Expectation { range, dimension };
+            Ok(Observed { column: Column { root, text }, kind, unbounded })
+        });
+        (observed, sketch)
+    }
+
+    /// The range of an expectation.
+    fn range(&mut self, (low, high): (&Expr, &Expr), sketch: Sketch, locals: &Locals) -> Lowered<(f64, f64)> {
+        let Ok(least) = self.number_in(low, sketch, locals) else {
+            // That its unit is wrong as well need not be said.
+            let _ = self.number(high, locals);
+            return Err(Reported);
+        };
+        let most = self.number_in(high, sketch, locals)?;
+        if least.dimension == most.dimension && least.value >= most.value {
+            return self.report(Diagnostic::error("E0605", low.span.to(high.span), "this range is empty"));
+        }
+        Ok((least.value, most.value))
+    }
+
+    /// Whether it was said of an expression that it is of another kind than what is wanted.
+    fn is_refused_as_a_whole(&self, body: &Expr) -> bool {
+        let at = |d: &Diagnostic| d.place.as_ref().map(|place| place.span);
+        self.diagnostics.iter().any(|d| d.code == "E0305" && at(d) == Some(body.span))
+    }
+
+    fn quantile(
+        &mut self,
+        measure: &ast::Measure,
+        level: &Expr,
+        scope: ScopeId,
+    ) -> (Lowered<Observed>, Sketch) {
+        let number = self.number_of(level, Dimension::NONE, &Locals::of(scope)).and_then(|number| {
+            if number.value > 0.0 && number.value < 1.0 {
+                return Ok(number.value);
+            }
+            let said = "the level of a quantile lies between 0 and 1";
+            self.report(Diagnostic::error("E0601", level.span, said))
+        });
+        let metric = self.metric_root(&measure.body, scope);
+        let dimension = metric.as_ref().ok().map(|(_, dimension, _)| *dimension);
+        let sketch = Sketch { level: number.ok(), ..Sketch::of(What::Quantile, dimension) };
+        let text = self.text(measure.body.span);
+        let observed = metric.and_then(|(root, dimension, unbounded)| {
+            let kind = MeasureKind::Quantile { level: number?, dimension };
+            Ok(Observed { column: Column { root, text }, kind, unbounded })
+        });
+        (observed, sketch)
     }
 
     /// `metric <= bound` or `metric < bound` as a formula, for checks of quantiles.
@@ -283,6 +358,8 @@ impl Elaborator<'_> {
                 let error = Diagnostic::error("E0509", span, reason.to_string());
                 self.report(error.hint("a longer step, shorter windows, or fewer of them in one another"))
             }
+            // How far the horizon is nobody knows.
+            Some(Invalid::BeyondHorizon { .. }) if self.told < Told::Whole => Ok(()),
             Some(reason @ Invalid::BeyondHorizon { .. }) => {
                 self.report(Diagnostic::error("E0502", span, reason.to_string()))
             }
@@ -299,7 +376,7 @@ impl Elaborator<'_> {
             Ok(reach) => reach,
             Err(reason) => return self.report(Diagnostic::error("E0504", span, reason.to_string())),
         };
-        if reach.ticks <= self.horizon.0 {
+        if reach.ticks <= self.horizon.0 || self.told < Told::Whole {
             return Ok(reach.unbounded);
         }
         let (needed, horizon) = (self.duration(reach.ticks), self.duration(self.horizon.0));

@@ -5,8 +5,9 @@ use super::bounds::WIDEST;
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered};
 use super::families::Allowance;
+use super::measures::{Sketch, What};
 use super::nearest::nearest;
-use super::study::{Estimator, MeasureKind, Ranking, Splitting, Test};
+use super::study::{Estimator, Splitting, Test};
 use crate::syntax::ast::{Clauses, Expr, Method};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -22,9 +23,20 @@ pub const DEFAULT_LOSS: f64 = 0.02;
 /// Trials of an expectation, a quantile or a comparison that names no half width.
 pub const PLANNED_TRIALS: u64 = 1000;
 
+/// Fewest plain trials beside splitting.
+const LEAST_PLAIN: u64 = 100;
+
 /// Both, where neither failed: what is wrong with each is said before this is asked.
-fn both<A, B>(a: Lowered<A>, b: Lowered<B>) -> Lowered<(A, B)> {
+pub(super) fn both<A, B>(a: Lowered<A>, b: Lowered<B>) -> Lowered<(A, B)> {
     Ok((a?, b?))
+}
+
+/// The width that a query states, if it does, and where.
+pub(super) type Stated = Lowered<Option<(f64, Span)>>;
+
+/// The width of `within`.
+pub(super) fn stated(clauses: &Clauses, within: Lowered<Option<f64>>) -> Stated {
+    within.map(|within| clauses.within.as_ref().zip(within).map(|(expr, width)| (width, expr.span)))
 }
 
 impl Elaborator<'_> {
@@ -51,16 +63,21 @@ impl Elaborator<'_> {
         Ok(exact.map_or(1.0 - number.value, crate::base::decimal::Decimal::to_f64))
     }
 
-    fn within(&mut self, clauses: &Clauses, dimension: Dimension, locals: &Locals) -> Lowered<Option<f64>> {
+    pub(super) fn within(
+        &mut self,
+        clauses: &Clauses,
+        sketch: Sketch,
+        locals: &Locals,
+    ) -> Lowered<Option<f64>> {
         let Some(expr) = &clauses.within else { return Ok(None) };
-        let number = self.number_of(expr, dimension, locals)?;
+        let number = self.number_in(expr, sketch, locals)?;
         if number.value <= 0.0 {
             return self.report(Diagnostic::error("E0604", expr.span, "`within` must be positive"));
         }
         Ok(Some(number.value))
     }
 
-    fn unknown_method<T>(&mut self, method: &Method, known: &[&str]) -> Lowered<T> {
+    pub(super) fn unknown_method<T>(&mut self, method: &Method, known: &[&str]) -> Lowered<T> {
         let name = &method.name.name;
         let error =
             Diagnostic::error("E0603", method.name.span, format!("there is no procedure `{name}` for this"));
@@ -69,29 +86,50 @@ impl Elaborator<'_> {
         self.report(error.hint(hint))
     }
 
-    /// The test of a check with its threshold.
+    /// That a check states no width.
+    pub(super) fn no_width(&mut self, clauses: &Clauses, what: What) -> Lowered<()> {
+        let Some(within) = &clauses.within else { return Ok(()) };
+        let error = Diagnostic::error("E0607", within.span, "a check has no `within`");
+        self.report(if what == What::Expectation {
+            error.hint("it ends as soon as the interval of the mean lies on one side of the threshold")
+        } else {
+            error.hint("for an indifference region write `by sprt(indifference = 0.01)`")
+        })
+    }
+
+    /// The test of a check with its threshold, if that is one.
     pub(super) fn test(
         &mut self,
         clauses: &Clauses,
-        threshold: f64,
+        threshold: Option<f64>,
         at: Span,
         allowance: Allowance,
         locals: &Locals,
     ) -> Lowered<Test> {
-        if let Some(within) = &clauses.within {
-            let error = Diagnostic::error("E0607", within.span, "a check has no `within`")
-                .hint("for an indifference region write `by sprt(indifference = 0.01)`");
-            return self.report(error);
-        }
-        let error = allowance.error(self.delta(clauses, locals)?, DEFAULT_ALPHA);
-        let Some(method) = &clauses.by else { return Ok(Test::EProcess { alpha: error, beta: error }) };
+        let confidence = self.delta(clauses, locals);
+        let error = allowance.error(confidence.unwrap_or(None), DEFAULT_ALPHA);
+        let test = match &clauses.by {
+            None => Ok(Test::EProcess { alpha: error, beta: error }),
+            Some(method) => self.test_by((clauses, method), (threshold, at), error, locals),
+        };
+        confidence?;
+        test
+    }
+
+    fn test_by(
+        &mut self,
+        (clauses, method): (&Clauses, &Method),
+        (threshold, at): (Option<f64>, Span),
+        error: f64,
+        locals: &Locals,
+    ) -> Lowered<Test> {
         let name = method.name.name.as_str();
         match name {
             "sprt" | "sprt2" | "plan" => {
                 let arguments = self.arguments(
                     (clauses, method),
                     ["alpha", "beta", "indifference"],
-                    Dimension::NONE,
+                    Sketch::PROBABILITY,
                     locals,
                 );
                 let alpha = self.error_of(arguments.values[0], error, "alpha");
@@ -117,7 +155,8 @@ impl Elaborator<'_> {
                 })
             }
             "eprocess" => {
-                let arguments = self.arguments((clauses, method), ["alpha", "beta"], Dimension::NONE, locals);
+                let arguments =
+                    self.arguments((clauses, method), ["alpha", "beta"], Sketch::PROBABILITY, locals);
                 let alpha = self.error_of(arguments.values[0], error, "alpha");
                 let beta = self.error_of(arguments.values[1], error, "beta");
                 let (alpha, beta) = both(alpha, beta)?;
@@ -126,7 +165,7 @@ impl Elaborator<'_> {
             }
             "three_way" => {
                 let arguments =
-                    self.arguments((clauses, method), ["alpha", "indifference"], Dimension::NONE, locals);
+                    self.arguments((clauses, method), ["alpha", "indifference"], Sketch::PROBABILITY, locals);
                 let alpha = self.error_of(arguments.values[0], error, "alpha");
                 let region = self.region(&arguments, 1, threshold, at);
                 let (alpha, (indifference, _)) = both(alpha, region)?;
@@ -143,18 +182,20 @@ impl Elaborator<'_> {
         &mut self,
         arguments: &Arguments<'_, N>,
         argument: usize,
-        theta: f64,
+        theta: Option<f64>,
         at: Span,
     ) -> Lowered<(f64, Span)> {
         let (indifference, span) = self.required(arguments, argument, "indifference")?;
-        let (low, high) = (theta - indifference, theta + indifference);
-        if indifference > 0.0 && low > 0.0 && high < 1.0 && low < theta && theta < high {
-            return Ok((indifference, span));
-        }
         if indifference <= 0.0 {
             let error =
                 Diagnostic::error("E0602", span, format!("`indifference` is {indifference}, but is above 0"));
             return self.report(error.hint("leave the region out: the default test needs none"));
+        }
+        // Around what is no threshold nothing is asked of it.
+        let Some(theta) = theta else { return Ok((indifference, span)) };
+        let (low, high) = (theta - indifference, theta + indifference);
+        if low > 0.0 && high < 1.0 && low < theta && theta < high {
+            return Ok((indifference, span));
         }
         let round = |x: f64| (x * 1e12).round() / 1e12;
         let error = Diagnostic::error(
@@ -171,45 +212,59 @@ impl Elaborator<'_> {
     pub(super) fn estimator(
         &mut self,
         clauses: &Clauses,
-        kind: &MeasureKind,
+        sketch: Sketch,
         allowance: Allowance,
         locals: &Locals,
     ) -> Lowered<Estimator> {
-        let dimension = match kind {
-            MeasureKind::Probability => Dimension::NONE,
-            MeasureKind::Expectation { dimension, .. } | MeasureKind::Quantile { dimension, .. } => {
-                *dimension
-            }
-        };
-        let within = self.within(clauses, dimension, locals);
+        let within = self.within(clauses, sketch, locals);
         let confidence = self.delta(clauses, locals);
-        if let (Ok(Some(epsilon)), Some(expr), None) = (&within, &clauses.within, &clauses.by)
-            && confidence.is_err()
-        {
-            let _ = self.width((*epsilon, expr.span), kind, WIDEST);
-        }
-        let (within, confidence) = both(within, confidence)?;
-        let delta = allowance.error(confidence, DEFAULT_DELTA);
-        let quantile = matches!(kind, MeasureKind::Quantile { .. });
-        if let (true, Some(expr)) = (quantile, &clauses.within) {
-            let error =
-                Diagnostic::error("E0607", expr.span, "a quantile takes a number of trials, not a width")
-                    .hint(
-                        "write `by fixed(trials = 2000)`; the interval follows from the order of the values",
-                    );
-            return self.report(error);
-        }
-        let probability = matches!(kind, MeasureKind::Probability);
-        let Some(method) = &clauses.by else {
-            if let (Some(expr), Some(epsilon)) = (&clauses.within, within) {
-                self.width((epsilon, expr.span), kind, WIDEST)?;
+        let delta = allowance.error(confidence.unwrap_or(None), DEFAULT_DELTA);
+        let quantile = sketch.what == What::Quantile;
+        let misplaced = match &clauses.within {
+            Some(expr) if quantile => {
+                let error =
+                    Diagnostic::error("E0607", expr.span, "a quantile takes a number of trials, not a width");
+                self.report(error.hint(
+                    "write `by fixed(trials = 2000)`; the interval follows from the order of the values",
+                ))
             }
-            return Ok(match (within, probability) {
-                (Some(epsilon), _) => Estimator::Default { epsilon, delta },
-                (None, true) => Estimator::Default { epsilon: DEFAULT_EPSILON, delta },
-                (None, false) => Estimator::Fixed { trials: PLANNED_TRIALS, delta },
-            });
+            _ => Ok(()),
         };
+        let estimator = match &clauses.by {
+            Some(method) => self.estimator_by((clauses, method), sketch, (within, delta), allowance, locals),
+            None => self.default_estimator(clauses, sketch, (within, delta)),
+        };
+        confidence?;
+        misplaced?;
+        estimator
+    }
+
+    fn default_estimator(
+        &mut self,
+        clauses: &Clauses,
+        sketch: Sketch,
+        (within, delta): (Lowered<Option<f64>>, f64),
+    ) -> Lowered<Estimator> {
+        let within = within?;
+        if let (Some(expr), Some(epsilon)) = (&clauses.within, within) {
+            self.width((epsilon, expr.span), sketch, WIDEST)?;
+        }
+        Ok(match (within, sketch.what) {
+            (Some(epsilon), _) => Estimator::Default { epsilon, delta },
+            (None, What::Probability) => Estimator::Default { epsilon: DEFAULT_EPSILON, delta },
+            (None, _) => Estimator::Fixed { trials: PLANNED_TRIALS, delta },
+        })
+    }
+
+    fn estimator_by(
+        &mut self,
+        (clauses, method): (&Clauses, &Method),
+        sketch: Sketch,
+        (within, delta): (Lowered<Option<f64>>, f64),
+        allowance: Allowance,
+        locals: &Locals,
+    ) -> Lowered<Estimator> {
+        let (probability, quantile) = (sketch.what == What::Probability, sketch.what == What::Quantile);
         let name = method.name.name.as_str();
         let of_trials = match name {
             "fixed" => true,
@@ -219,38 +274,13 @@ impl Elaborator<'_> {
             _ => false,
         };
         if of_trials {
-            if let Some(expr) = &clauses.within {
-                let said = "a number of trials that is fixed promises no width";
-                let error = Diagnostic::error("E0607", expr.span, said);
-                return self.report(
-                    error.hint("leave out `by` and the trials follow from the width, or leave out `within`"),
-                );
-            }
-            let arguments = self.arguments((clauses, method), ["trials", "delta"], Dimension::NONE, locals);
-            let trials = self.required(&arguments, 0, "trials");
-            let delta = self.claimed(arguments.values[1], delta, allowance);
-            let ((trials, span), delta) = both(trials, delta)?;
-            arguments.sound()?;
-            // The values of a quantile are kept.
-            let most = if quantile { 1e9 } else { 1e12 };
-            if trials < 1.0 || trials.fract() != 0.0 || trials > most {
-                return self.report(Diagnostic::error(
-                    "E0604",
-                    span,
-                    format!("`trials` must be a whole number from 1 to {most:e}"),
-                ));
-            }
-            let trials = trials as u64;
-            return Ok(match name {
-                "dkw" => Estimator::Band { trials, delta },
-                _ => Estimator::Fixed { trials, delta },
-            });
+            return self.of_trials((clauses, method), sketch, delta, allowance, locals);
         }
         if probability && (name == "splitting" || name == "fixed_effort") {
             return self.splitting(clauses, method, (delta, allowance), locals);
         }
-        let known: &[&str] = if probability {
-            &[
+        let known: &[&str] = match sketch.what {
+            What::Probability => &[
                 "okamoto",
                 "massart",
                 "spending",
@@ -259,19 +289,16 @@ impl Elaborator<'_> {
                 "gbas",
                 "splitting",
                 "fixed_effort",
-            ]
-        } else if quantile {
-            &["fixed", "dkw"]
-        } else {
-            &["okamoto", "fixed"]
+            ],
+            What::Quantile => &["fixed", "dkw"],
+            What::Expectation => &["okamoto", "fixed"],
         };
         if !known.contains(&name) {
             return self.unknown_method(method, known);
         }
-        let arguments = self.arguments((clauses, method), ["epsilon", "delta"], dimension, locals);
+        let arguments = self.arguments((clauses, method), ["epsilon", "delta"], sketch, locals);
         let delta = self.claimed(arguments.values[1], delta, allowance);
-        let width = self.width_of(clauses, within, &arguments);
-        let Some((epsilon, span)) = width? else {
+        let Some((epsilon, span)) = self.width_of(clauses, within, &arguments)? else {
             delta?;
             arguments.sound()?;
             let error = Diagnostic::error("E0604", method.span, format!("`{name}` needs `epsilon`"));
@@ -284,7 +311,7 @@ impl Elaborator<'_> {
                 return self.report(Diagnostic::error("E0604", span, said));
             }
         } else {
-            self.width((epsilon, span), kind, WIDEST)?;
+            self.width((epsilon, span), sketch, WIDEST)?;
         }
         let delta = delta?;
         arguments.sound()?;
@@ -296,6 +323,46 @@ impl Elaborator<'_> {
         })
     }
 
+    /// A number of trials that is fixed beforehand.
+    fn of_trials(
+        &mut self,
+        (clauses, method): (&Clauses, &Method),
+        sketch: Sketch,
+        delta: f64,
+        allowance: Allowance,
+        locals: &Locals,
+    ) -> Lowered<Estimator> {
+        let quantile = sketch.what == What::Quantile;
+        let misplaced = match &clauses.within {
+            Some(expr) if !quantile => {
+                let said = "a number of trials that is fixed promises no width";
+                let error = Diagnostic::error("E0607", expr.span, said);
+                self.report(
+                    error.hint("leave out `by` and the trials follow from the width, or leave out `within`"),
+                )
+            }
+            _ => Ok(()),
+        };
+        let arguments = self.arguments((clauses, method), ["trials", "delta"], sketch, locals);
+        // The values of a quantile are kept.
+        let most = if quantile { 1e9 } else { 1e12 };
+        let trials = self.required(&arguments, 0, "trials").and_then(|(trials, span)| {
+            if trials >= 1.0 && trials.fract() == 0.0 && trials <= most {
+                return Ok(trials as u64);
+            }
+            let said = format!("`trials` must be a whole number from 1 to {most:e}");
+            self.report(Diagnostic::error("E0604", span, said))
+        });
+        let delta = self.claimed(arguments.values[1], delta, allowance);
+        let (trials, delta) = both(trials, delta)?;
+        arguments.sound()?;
+        misplaced?;
+        Ok(match method.name.name.as_str() {
+            "dkw" => Estimator::Band { trials, delta },
+            _ => Estimator::Fixed { trials, delta },
+        })
+    }
+
     /// Importance splitting; the column of its level is not known yet.
     fn splitting(
         &mut self,
@@ -304,25 +371,31 @@ impl Elaborator<'_> {
         (delta, allowance): (f64, Allowance),
         locals: &Locals,
     ) -> Lowered<Estimator> {
-        if let Some(within) = &clauses.within {
-            let error = Diagnostic::error("E0607", within.span, "splitting promises no width").hint(
-                "choose the number of `replicas` and of `runs`; the interval follows from how they scatter",
-            );
-            return self.report(error);
-        }
+        let misplaced = match &clauses.within {
+            Some(within) => {
+                let error = Diagnostic::error("E0607", within.span, "splitting promises no width").hint(
+                    "choose the number of `replicas` and of `runs`; the interval follows from how they scatter",
+                );
+                self.report(error)
+            }
+            None => Ok(()),
+        };
         let adaptive = method.name.name == "splitting";
-        let arguments = self.arguments(
-            (clauses, method),
-            ["replicas", "runs", "plain", "delta", "kill"],
-            Dimension::NONE,
-            locals,
-        );
-        let replicas = self.whole_in(arguments.values[0], "replicas", (10, 1_000_000), 1000)?;
-        let runs = self.whole_in(arguments.values[1], "runs", (2, 1000), 20)?;
-        let plain = self.whole_in(arguments.values[2], "plain", (100, 1_000_000_000), replicas * runs / 2)?;
-        let delta = self.claimed(arguments.values[3], delta, allowance)?;
-        let kill = self.whole_in(arguments.values[4], "kill", (1, replicas - 1), (replicas / 10).max(1))?;
+        let names = ["replicas", "runs", "plain", "delta", "kill"];
+        let arguments = self.arguments((clauses, method), names, Sketch::PROBABILITY, locals);
+        let [replicas, runs, plain, _, kill] = arguments.values;
+        let replicas = self.whole_in(replicas, "replicas", (10, 1_000_000), 1000);
+        let runs = self.whole_in(runs, "runs", (2, 1000), 20);
+        // Of what is wrong follows no default and no bound.
+        let (paths, times) = (replicas.unwrap_or(1_000_000), runs.unwrap_or(1000));
+        let plain =
+            self.whole_in(plain, "plain", (LEAST_PLAIN, 1_000_000_000), (paths * times / 2).max(LEAST_PLAIN));
+        let delta = self.claimed(arguments.values[3], delta, allowance);
+        let kill = self.whole_in(kill, "kill", (1, paths - 1), (paths / 10).max(1));
+        let ((replicas, runs), (plain, kill)) = both(both(replicas, runs), both(plain, kill))?;
+        let delta = delta?;
         arguments.sound()?;
+        misplaced?;
         Ok(Estimator::Splitting(Splitting { adaptive, replicas, runs, kill, plain, delta, level: 0 }))
     }
 
@@ -347,91 +420,32 @@ impl Elaborator<'_> {
         }
     }
 
-    /// Half width, if any, and error of a comparison.
-    pub(super) fn comparison_clauses(
-        &mut self,
-        clauses: &Clauses,
-        kind: &MeasureKind,
-        dimension: Dimension,
-        allowance: Allowance,
-        locals: &Locals,
-    ) -> Lowered<(Option<f64>, f64)> {
-        if let Some(method) = &clauses.by {
-            return self.report(Diagnostic::error(
-                "E0603",
-                method.span,
-                "a comparison has one procedure only",
-            ));
-        }
-        let within = self.within(clauses, dimension, locals)?;
-        if let (Some(expr), Some(epsilon)) = (&clauses.within, within) {
-            // The difference ranges over twice as much.
-            self.width((epsilon, expr.span), kind, 2.0 * WIDEST)?;
-        }
-        let delta = allowance.error(self.delta(clauses, locals)?, DEFAULT_DELTA);
-        Ok((within, delta))
-    }
-
-    /// Loss, error and procedure of a ranking by a measure.
-    pub(super) fn ranking(
-        &mut self,
-        clauses: &Clauses,
-        (kind, measured): (&MeasureKind, Span),
-        dimension: Dimension,
-        allowance: Allowance,
-        locals: &Locals,
-    ) -> Lowered<(f64, f64, Ranking)> {
-        let within = self.within(clauses, dimension, locals)?;
-        let delta = allowance.error(self.delta(clauses, locals)?, DEFAULT_DELTA);
-        let mut width = clauses.within.as_ref().zip(within).map(|(expr, loss)| (loss, expr.span));
-        let mut procedure = (Ranking::Betting, delta);
-        if let Some(method) = &clauses.by {
-            let ranking = match method.name.name.as_str() {
-                "okamoto" => Ranking::Okamoto,
-                "betting" => Ranking::Betting,
-                "one_challenger" => Ranking::OneChallenger,
-                _ => return self.unknown_method(method, &["betting", "one_challenger", "okamoto"]),
-            };
-            let arguments = self.arguments((clauses, method), ["epsilon", "delta"], dimension, locals);
-            procedure = (ranking, self.claimed(arguments.values[1], delta, allowance)?);
-            width = self.width_of(clauses, within, &arguments)?;
-            arguments.sound()?;
-        }
-        let (epsilon, at) = match width {
-            Some(found) => found,
-            // What does not matter in metres nobody knows but who asks.
-            None if !dimension.is_none() => {
-                let error = Diagnostic::error("E0604", measured, "how much worse may a choice be?");
-                return self
-                    .report(error.hint(format!("say what does not matter, in {dimension}: `within …`")));
-            }
-            None => (DEFAULT_LOSS, measured),
-        };
-        let epsilon = self.width((epsilon, at), kind, 2.0 * WIDEST)?;
-        Ok((epsilon, procedure.1, procedure.0))
-    }
-
     /// The error that a procedure states, as far as it is for one claim.
-    fn claimed(&mut self, value: Option<(f64, Span)>, default: f64, allowance: Allowance) -> Lowered<f64> {
+    pub(super) fn claimed(
+        &mut self,
+        value: Option<(f64, Span)>,
+        default: f64,
+        allowance: Allowance,
+    ) -> Lowered<f64> {
         let stated = self.error_of(value, default, "delta")?;
         Ok(if value.is_some() { allowance.of(stated) } else { stated })
     }
 
     /// The width that a query names, by `within` or by `epsilon` and not by both, and where.
-    fn width_of<const N: usize>(
+    pub(super) fn width_of<const N: usize>(
         &mut self,
         clauses: &Clauses,
-        within: Option<f64>,
+        within: Lowered<Option<f64>>,
         arguments: &Arguments<'_, N>,
-    ) -> Lowered<Option<(f64, Span)>> {
-        match (arguments.values[0], clauses.within.as_ref().zip(within)) {
+    ) -> Stated {
+        match (arguments.values[0], &clauses.within) {
             (Some((_, span)), Some(_)) => self.report(Diagnostic::error(
                 "E0604",
                 span,
                 "the width is given twice: by `within` and by `epsilon`",
             )),
             (Some(found), None) => Ok(Some(found)),
-            (None, within) => Ok(within.map(|(expr, epsilon)| (epsilon, expr.span))),
+            (None, _) => stated(clauses, within),
         }
     }
 }

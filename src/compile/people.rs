@@ -6,7 +6,7 @@ use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::kinds::Kind;
 use super::laws::value_span;
 use super::places::Written;
-use super::symbols::{Meaning, unknown};
+use super::symbols::{Entry, Meaning, unknown};
 use crate::base::geometry::Vec2;
 use crate::base::random::name_hash;
 use crate::model::{Agent, AgentId, Body, Group, Law, Particle, Position, Route, Start, TOP_SPEED, Who};
@@ -191,12 +191,13 @@ impl<'a> Elaborator<'a> {
         let (Ok(count), Ok(body), Ok(start), Ok(route), (Ok(attraction), Ok(repulsion), Ok(friction))) =
             (count, body, start, route, forces)
         else {
-            self.define_empty(&decl.name, true, with);
+            self.define_empty(&decl.name, decl.particle.is_none(), with);
             return;
         };
         if let Some(span) = decl.particle {
             if count == 0 {
                 self.note(Diagnostic::error("E0402", span, "a body stands for at least one person"));
+                self.define_empty(&decl.name, false, with);
                 return;
             }
             let size = (count as f64).sqrt();
@@ -210,7 +211,7 @@ impl<'a> Elaborator<'a> {
             let Ok(members) = self.people(&decl.name, 1, false, people, |_| {
                 (Arc::new(body.clone()), start.clone(), route.clone())
             }) else {
-                self.define_empty(&decl.name, true, with);
+                self.define_empty(&decl.name, false, with);
                 return;
             };
             people.agents[members[0].0 as usize].particle = Some(particle);
@@ -339,7 +340,7 @@ impl<'a> Elaborator<'a> {
         required: bool,
     ) -> Lowered<Start> {
         let position = match fields.iter().find(|f| f.name.name == "at") {
-            Some(field) => self.position(&field.value, people),
+            Some(field) => self.position(name, &field.value, people),
             None if required => {
                 let error =
                     Diagnostic::error("E0209", name.span, format!("where does `{}` start?", name.name))
@@ -382,38 +383,42 @@ impl<'a> Elaborator<'a> {
         Ok(velocity)
     }
 
-    fn position(&mut self, value: &Value, people: &People) -> Lowered<Position> {
+    /// An error where nobody of a name is there yet to start near, by where the names stand.
+    fn declared_before(&mut self, of: &Ident, agent: &Expr) -> Lowered<()> {
+        let whose = if let ExprKind::Index(base, _) = &agent.kind { &**base } else { agent };
+        let ExprKind::Name(name) = &whose.kind else { return Ok(()) };
+        let Some(Entry { span, meaning: Meaning::Declared }) = self.scopes[0].get(name) else {
+            return Ok(());
+        };
+        let (title, hint) = if *span == of.span {
+            (format!("`{name}` cannot start near itself"), "start near somebody else, or at a place")
+        } else if span.start > of.span.start {
+            let hint = "an agent near another one is declared after it";
+            ("this agent is declared later".to_owned(), hint)
+        } else {
+            // All others that stand before are known.
+            (format!("who comes by `{name}` is not there yet"), "start near an agent, or at a place")
+        };
+        self.report(Diagnostic::error("E0403", agent.span, title).hint(hint))
+    }
+
+    /// The start of who is declared by a name.
+    fn position(&mut self, of: &Ident, value: &Value, people: &People) -> Lowered<Position> {
         match value {
             Value::UniformIn(shape) => self.shape(shape, &Locals::default()).map(Position::Within),
             Value::Near { agent, within } => {
                 let distance = self.number_of(within, Dimension::LENGTH, &Locals::default());
-                let later = |this: &mut Self| {
-                    this.report(
-                        Diagnostic::error("E0403", agent.span, "this agent is declared later")
-                            .hint("an agent near another one is declared after it"),
-                    )
-                };
-                let whose = match &agent.kind {
-                    ExprKind::Index(base, _) => &base.kind,
-                    kind => kind,
-                };
-                if let ExprKind::Name(name) = whose
-                    && matches!(self.find(name, 0), Some((_, Meaning::Declared)))
-                {
-                    return later(self);
-                }
+                self.declared_before(of, agent)?;
                 let typed = self.lower(agent, &Locals::default())?;
                 let Who::Agent(id) = self.as_agent(typed, agent.span)? else { return Err(Reported) };
                 let distance = distance?;
                 if distance.value <= 0.0 {
-                    return self.report(Diagnostic::error(
-                        "E0405",
-                        within.span,
-                        "this distance must be positive",
-                    ));
+                    let error = Diagnostic::error("E0405", within.span, "this distance must be positive");
+                    return self.report(error);
                 }
-                if id.0 as usize >= people.agents.len() {
-                    return later(self);
+                // Who could not be declared stands nowhere; that is said already.
+                if self.undeclared.contains(&id) || id.0 as usize >= people.agents.len() {
+                    return Err(Reported);
                 }
                 Ok(Position::Near { agent: id, within: distance.value })
             }

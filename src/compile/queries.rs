@@ -3,7 +3,7 @@
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::families::{self, Allowance};
 use super::files::Files;
-use super::measures::Observed;
+use super::measures::{Observed, Sketch};
 use super::number::Number;
 use super::settings::Setting;
 use super::study::{Ask, Column, Estimator, Measure, Query, Study, Target, World};
@@ -155,16 +155,9 @@ impl<'a> Compiler<'a> {
                         if elaborator.scopes[number + 1]
                             .get(&name.name)
                             .is_none_or(|declared| declared.span != name.span) => {}
-                    PropertyItem::Property { name, .. } => {
-                        let body = Expr { kind: ast::ExprKind::Name(name.name.clone()), span: name.span };
-                        let declared = self.input.properties[number].items.iter().find_map(|i| match i {
-                            PropertyItem::Property { name: n, formula } if n.name == name.name => {
-                                Some(formula)
-                            }
-                            _ => None,
-                        });
-                        let place = declared.map_or(name.span, |f| f.span);
-                        if elaborator.formula_column(&Expr { span: place, ..body }, number + 1).is_err() {
+                    PropertyItem::Property { name, formula } => {
+                        let body = Expr { kind: ast::ExprKind::Name(name.name.clone()), span: formula.span };
+                        if elaborator.formula_column(&body, number + 1).is_err() {
                             // What is wrong with it was said: what it is a part of says no more.
                             elaborator.broken.insert((number + 1, name.name.clone()));
                         }
@@ -289,16 +282,19 @@ impl<'a> Compiler<'a> {
         Ok((self.site(settings), described))
     }
 
-    /// A measure lowered in a world, and whether it ranges up to the horizon.
+    /// A measure lowered in a world, and whether it ranges up to the horizon; and what is known of it in any case.
     pub(super) fn measured(
         &mut self,
         site: usize,
         measure: &ast::Measure,
         scope: ScopeId,
-    ) -> Lowered<(Measure, bool)> {
-        let Observed { column, kind, unbounded } = self.sites[site].elaborator.measure(measure, scope)?;
-        let column = self.column(site, column);
-        Ok((Measure { target: Target { world: site, column }, kind }, unbounded))
+    ) -> (Lowered<(Measure, bool)>, Sketch) {
+        let (observed, sketch) = self.sites[site].elaborator.measure(measure, scope);
+        let measured = observed.map(|Observed { column, kind, unbounded }| {
+            let column = self.column(site, column);
+            (Measure { target: Target { world: site, column }, kind }, unbounded)
+        });
+        (measured, sketch)
     }
 
     /// The number of a column, shared with an equal one.
@@ -336,19 +332,11 @@ impl<'a> Compiler<'a> {
                 let allowance = Allowance { family, claims: families::claims(measures, clauses) };
                 let mut failed = false;
                 for measure in measures {
-                    let Ok((measured, unbounded)) = self.measured(site, measure, scope) else {
-                        if matches!(measure.kind, ast::MeasureKind::Probability) {
-                            // What is wrong with the procedure is said beside what is wrong with the formula.
-                            let elaborator = &mut self.sites[site].elaborator;
-                            let kind = super::study::MeasureKind::Probability;
-                            let _ = elaborator.estimator(clauses, &kind, allowance, &locals);
-                        }
-                        failed = true;
-                        continue;
-                    };
+                    // What is wrong with the procedure is said beside what is wrong with the measure.
+                    let (measured, sketch) = self.measured(site, measure, scope);
                     let elaborator = &mut self.sites[site].elaborator;
-                    let Ok(mut estimator) = elaborator.estimator(clauses, &measured.kind, allowance, &locals)
-                    else {
+                    let estimator = elaborator.estimator(clauses, sketch, allowance, &locals);
+                    let (Ok((measured, unbounded)), Ok(mut estimator)) = (measured, estimator) else {
                         failed = true;
                         continue;
                     };
@@ -434,7 +422,9 @@ impl<'a> Compiler<'a> {
                     || diagnostic.place.is_none() && values.is_empty() && !diagnostics.contains(diagnostic)
                 {
                     let mut diagnostic = diagnostic.clone();
-                    if !values.is_empty() && diagnostic.severity == Severity::Error {
+                    if !values.is_empty()
+                        && (diagnostic.severity == Severity::Error || diagnostic.code == "W0501")
+                    {
                         diagnostic.title = format!("{} (with {})", diagnostic.title, values.join(", "));
                     }
                     diagnostics.push(diagnostic);

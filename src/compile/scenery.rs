@@ -4,11 +4,12 @@ use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered};
 use super::files::Files;
 use super::filter;
+use super::lower::{DISTRIBUTIONS, FUNCTIONS};
 use super::symbols::Meaning;
 use crate::base::geometry::{Polygon, Segment, Shape, Vec2};
 use crate::data::geometry::{Feature, Geometry, PropertyValue, Select, read_wkt, select_geojson};
 use crate::model::{Barrier, BarrierId, Obstacle, Region, RegionId};
-use crate::syntax::ast::{Expr, Ident, SceneItem, ShapeExpr, Text};
+use crate::syntax::ast::{Expr, ExprKind, Ident, SceneItem, ShapeExpr, Text};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::collections::BTreeSet;
@@ -108,8 +109,8 @@ impl<'a> Elaborator<'a> {
     }
 
     fn wall(&mut self, points: &[Expr], span: Span) -> Lowered<Vec<Segment>> {
-        let corners: Vec<_> =
-            points.iter().map(|p| self.point_of(p, Dimension::LENGTH, &Locals::default())).collect();
+        let corner = |(k, point)| if k == 0 { self.first_corner(point) } else { self.corner(point) };
+        let corners: Vec<_> = points.iter().enumerate().map(corner).collect();
         let corners: Vec<Vec2> = corners.into_iter().collect::<Lowered<_>>()?;
         if corners.windows(2).all(|pair| pair[0] == pair[1]) {
             return self.report(Diagnostic::error("E0401", span, "this wall has no length"));
@@ -119,6 +120,27 @@ impl<'a> Elaborator<'a> {
             .filter(|pair| pair[0] != pair[1])
             .map(|pair| Segment::new(pair[0], pair[1]))
             .collect())
+    }
+
+    fn corner(&mut self, point: &Expr) -> Lowered<Vec2> {
+        self.point_of(point, Dimension::LENGTH, &Locals::default())
+    }
+
+    /// Where a wall begins. `wall south (0, 0) -- …` lacks a colon: it reads as a call.
+    fn first_corner(&mut self, point: &Expr) -> Lowered<Vec2> {
+        if let ExprKind::Call { function, arguments } = &point.kind
+            && arguments.len() == 2
+            && self.find(&function.name, 0).is_none()
+            && !FUNCTIONS.into_iter().chain(DISTRIBUTIONS).any(|known| known == function.name)
+        {
+            let name = &function.name;
+            let error = Diagnostic::error("E0203", function.span, format!("unknown function `{name}`"));
+            return self.report(error.hint(format!(
+                "a name is followed by `:`: `wall {name}: {}`",
+                self.text(Span { start: function.span.end, ..point.span },)
+            )));
+        }
+        self.corner(point)
     }
 
     /// A shape as written.

@@ -126,7 +126,7 @@ impl<'a> Elaborator<'a> {
                 let step = self.number(by, &locals)?;
                 let unit = Self::unit_of_default(default).and_then(|unit| dimension::resolve(unit).ok());
                 if !step.dimension.is_none() && step.dimension != first.dimension {
-                    return self.wrong_dimension(setting.span, first.dimension, step.dimension);
+                    return self.wrong_dimension(by.span, first.dimension, step.dimension);
                 }
                 let step = match unit {
                     Some(unit) if step.dimension.is_none() => {
@@ -137,7 +137,7 @@ impl<'a> Elaborator<'a> {
                 if step.value <= 0.0 || last.value < first.value {
                     let error = Diagnostic::error(
                         "E0405",
-                        setting.span,
+                        if step.value <= 0.0 { by.span } else { to.span },
                         "a sweep goes up from its first to its last value by a positive step",
                     );
                     return self.report(error);

@@ -10,6 +10,7 @@ use super::elaborator::{Elaborator, Locals, Lowered};
 use super::laws::{truncate, value_span};
 use super::people::People;
 use super::symbols::Meaning;
+use super::told::Told;
 use crate::base::math;
 use crate::model::{Family, Law, Route, Source};
 use crate::syntax::ast::process::SourceDecl;
@@ -38,7 +39,7 @@ impl<'a> Elaborator<'a> {
         let body = kind.and_then(|kind| self.body(&kind, &decl.kind));
         let places = match (&every, &limit) {
             // Without a clock nobody knows how many come.
-            (Ok(_), Ok(_)) if self.timeless => Err(super::elaborator::Reported),
+            (Ok(_), Ok(_)) if self.told < Told::Whole => Err(super::elaborator::Reported),
             (Ok(every), Ok(limit)) => self.places(decl, &rest, every, *limit),
             (Err(reported), _) | (_, Err(reported)) => Err(*reported),
         };
@@ -200,7 +201,7 @@ impl Times {
                 return Self::Exponential(*mean);
             }
             // These are not drawn in the order of their size.
-            Law::Random { family: Family::Choice(options), low, high } => {
+            Law::Random { family: Family::Choice(options) | Family::Multiple { options, .. }, low, high } => {
                 let kept = options.iter().filter(|(value, _)| low <= value && value <= high);
                 let mass: f64 = kept.clone().map(|(_, weight)| weight).sum();
                 return Self::Listed(kept.map(|(value, weight)| (*value, weight / mass)).collect());

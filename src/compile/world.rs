@@ -8,6 +8,7 @@ use super::number::Number;
 use super::people::People;
 use super::process::Declared;
 use super::symbols::Meaning;
+use super::told::{self, Told};
 use crate::base::decimal::Decimal;
 use crate::base::tick::{Clock, Tick};
 use crate::model::{BehaviourId, Moves, Scenario};
@@ -119,8 +120,9 @@ impl<'a> Elaborator<'a> {
     }
 
     fn build(&mut self, file: &'a ScenarioFile, files: &Files) -> Lowered<Scenario> {
-        let clock = self.settle_clock(file);
-        self.timeless = clock.is_err();
+        let mut told = if told::is_stepped(file) { Told::Stepped } else { Told::Nothing };
+        let clock = self.settle_clock(file, &mut told);
+        self.told = if told == Told::Nothing && clock.is_ok() { Told::Whole } else { told };
         let variables = self.settle_variables();
         for item in &file.items {
             if let Item::Tracks { name, format, path } = item {
@@ -240,10 +242,12 @@ impl<'a> Elaborator<'a> {
         self.lower(&expr, &Locals::of(0))
     }
 
-    fn settle_clock(&mut self, file: &'a ScenarioFile) -> Lowered<()> {
+    /// Settles the clock; of one with steps of a length it is also told how much of it is sure.
+    fn settle_clock(&mut self, file: &'a ScenarioFile, told: &mut Told) -> Lowered<()> {
         let mut found: [Option<(&crate::syntax::ast::Expr, Span)>; 2] = [None, None];
         // What a slip of the pen was probably meant to set.
         let mut meant = [false; 2];
+        let mut sure = [true; 2];
         let mut failed = false;
         for item in &file.items {
             let Item::Setting { name, value } = item else { continue };
@@ -276,6 +280,7 @@ impl<'a> Elaborator<'a> {
                 self.note(error);
                 failed = true;
             }
+            sure[slot] &= found[slot].is_none() && !self.is_cut(value.span);
             found[slot] = Some((value, name.span));
         }
         if file.items.is_empty() {
@@ -289,14 +294,8 @@ impl<'a> Elaborator<'a> {
         let start = self.sources.first().map(|source| Span::new(source.id, 0, 0));
         let place = title.or(start).unwrap_or_default();
         let mut missing = Vec::new();
-        let bodies = file.items.iter().any(|item| {
-            matches!(
-                item,
-                Item::Agents(_) | Item::Group(_) | Item::Source(_) | Item::Moves(_) | Item::Scene(_)
-            )
-        });
         // Processes alone need no step: they have their own, or rates.
-        let free = step.is_none() && !self.processes.is_empty() && !bodies;
+        let free = step.is_none() && !self.processes.is_empty() && !told::has_bodies(file);
         if !free {
             // Should the step or the horizon be wrong: bounds in seconds still make sense.
             self.clock = Clock::Stepped(Decimal::ONE);
@@ -330,15 +329,15 @@ impl<'a> Elaborator<'a> {
             return Err(Reported);
         };
         let length = self.number_of(step, Dimension::TIME, &Locals::of(0));
-        if length.is_err()
+        let sure_step = sure[1] && !meant[1];
+        if (length.is_err() || !sure_step)
             && let Some((horizon, _)) = horizon
             && !self.text(horizon.span).contains("step")
         {
             // What is wrong with the horizon is said too.
             let _ = self.number_of(horizon, Dimension::TIME, &Locals::of(0));
         }
-        let (length, Some((horizon, _))) = (length?, horizon) else { return Err(Reported) };
-        let Some(exact) = length.exact.filter(|e| !e.is_zero() && !e.is_negative()) else {
+        let Some(exact) = length?.exact.filter(|e| !e.is_zero() && !e.is_negative()) else {
             return self.report(Diagnostic::error(
                 "E0505",
                 step.span,
@@ -346,7 +345,17 @@ impl<'a> Elaborator<'a> {
             ));
         };
         self.clock = Clock::Stepped(exact);
-        self.settle_horizon(horizon, failed)
+        if !sure_step {
+            return Err(Reported);
+        }
+        *told = Told::Step;
+        let Some((horizon, _)) = horizon else { return Err(Reported) };
+        let settled = self.settle_horizon(horizon, failed);
+        // It was found, though something else is wrong.
+        if sure[0] && !meant[0] && self.horizon > Tick(0) {
+            *told = Told::Whole;
+        }
+        settled
     }
 
     /// Continuous time up to a horizon.

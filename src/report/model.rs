@@ -10,6 +10,11 @@ use crate::engine::at_most;
 use crate::model::{Agent, AgentId, Family, Goal, Law, Leg, Obstacle, Position, Route, Scenario};
 use std::fmt::Write;
 
+/// Longest list of values that is shown in full.
+const MOST_LISTED: usize = 16;
+/// How many values of a longer one are shown.
+const FEW_LISTED: usize = 8;
+
 /// Everything that was understood.
 pub fn describe(study: &Study) -> String {
     let mut out = String::new();
@@ -267,31 +272,46 @@ fn shape(shape: &Shape) -> String {
 
 /// A law as one would write it.
 pub fn law(law: &Law, unit: &str) -> String {
-    let with = |value: f64| if unit.is_empty() { number(value) } else { format!("{} {unit}", number(value)) };
+    let with = |value: f64| in_unit(value, unit);
     match law {
         Law::Constant(value) => with(*value),
         Law::Random { family, low, high } => {
-            let name = match family {
-                Family::Normal { mean, sd } => format!("normal({}, {})", with(*mean), with(*sd)),
-                Family::LogNormal { mean, sd } => format!("lognormal({}, {})", with(*mean), with(*sd)),
-                Family::Uniform { low, high } => format!("uniform({}, {})", with(*low), with(*high)),
-                Family::UniformInt { low, high } => format!("uniform_int({low}, {high})"),
-                Family::Exponential { mean } => format!("exponential({})", with(*mean)),
-                Family::Poisson { mean } => format!("poisson({})", number(*mean)),
-                Family::Bernoulli { p } => format!("bernoulli({})", number(*p)),
-                Family::Beta { mean, sd } => format!("beta({}, {})", with(*mean), with(*sd)),
-                Family::Gamma { mean, sd } => format!("gamma({}, {})", with(*mean), with(*sd)),
-                Family::Weibull { mean, sd } => format!("weibull({}, {})", with(*mean), with(*sd)),
-                Family::Choice(values) => {
-                    let values: Vec<String> = values.iter().map(|(value, _)| with(*value)).collect();
-                    format!("choice({})", values.join(", "))
-                }
-            };
+            let name = self::family(family, unit);
             if low.is_finite() && high.is_finite() {
                 format!("{name} in {} .. {}", with(*low), with(*high))
             } else {
                 name
             }
+        }
+    }
+}
+
+fn in_unit(value: f64, unit: &str) -> String {
+    if unit.is_empty() { number(value) } else { format!("{} {unit}", number(value)) }
+}
+
+/// A family as one would write it. Of a long list the first values stand for all.
+fn family(family: &Family, unit: &str) -> String {
+    let with = |value: f64| in_unit(value, unit);
+    match family {
+        Family::Normal { mean, sd } => format!("normal({}, {})", with(*mean), with(*sd)),
+        Family::LogNormal { mean, sd } => format!("lognormal({}, {})", with(*mean), with(*sd)),
+        Family::Uniform { low, high } => format!("uniform({}, {})", with(*low), with(*high)),
+        Family::UniformInt { low, high } => format!("uniform_int({low}, {high})"),
+        Family::Exponential { mean } => format!("exponential({})", with(*mean)),
+        Family::Poisson { mean } => format!("poisson({})", number(*mean)),
+        Family::Bernoulli { p } => format!("bernoulli({})", number(*p)),
+        Family::Beta { mean, sd } => format!("beta({}, {})", with(*mean), with(*sd)),
+        Family::Gamma { mean, sd } => format!("gamma({}, {})", with(*mean), with(*sd)),
+        Family::Weibull { mean, sd } => format!("weibull({}, {})", with(*mean), with(*sd)),
+        Family::Multiple { of, by, .. } => format!("{} * {}", self::family(of, ""), with(*by)),
+        Family::Choice(options) => {
+            let listed = if options.len() > MOST_LISTED { FEW_LISTED } else { options.len() };
+            let mut values: Vec<String> = options[..listed].iter().map(|(value, _)| with(*value)).collect();
+            if listed < options.len() {
+                values.push(format!("… of {} values", options.len()));
+            }
+            format!("choice({})", values.join(", "))
         }
     }
 }
@@ -384,5 +404,27 @@ fn procedure(ask: &Ask) -> String {
             };
             format!("best within {}, error {}: {how}", number(*epsilon), at_most(*delta))
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A law as it was written, whatever it is drawn as.
+    #[test]
+    fn laws_are_shown_as_they_were_written() {
+        let free = |family| Law::Random { family, low: f64::NEG_INFINITY, high: f64::INFINITY };
+        let shown = |family: &Family, by: f64, unit| law(&free(family.scaled(by).unwrap()), unit);
+        assert_eq!(shown(&Family::Bernoulli { p: 0.1 }, 1.0, "m/s"), "bernoulli(0.1) * 1 m/s");
+        assert_eq!(shown(&Family::Poisson { mean: 4.0 }, 0.5, "s"), "poisson(4) * 0.5 s");
+        assert_eq!(shown(&Family::UniformInt { low: 1, high: 6 }, 2.0, ""), "uniform_int(1, 6) * 2");
+        assert_eq!(shown(&Family::LogNormal { mean: 1.0, sd: 0.1 }, 2.0, "s"), "lognormal(2 s, 0.2 s)");
+        let cut =
+            Law::Random { family: Family::Poisson { mean: 4.0 }.scaled(1.0).unwrap(), low: 1.0, high: 9.0 };
+        assert_eq!(law(&cut, "s"), "poisson(4) * 1 s in 1 s .. 9 s");
+        let list = |n: u32| Family::Choice((1..=n).map(|k| (f64::from(k), 1.0 / f64::from(n))).collect());
+        assert_eq!(law(&free(list(3)), "m"), "choice(1 m, 2 m, 3 m)");
+        assert_eq!(law(&free(list(40)), ""), "choice(1, 2, 3, 4, 5, 6, 7, 8, … of 40 values)");
     }
 }

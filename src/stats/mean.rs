@@ -20,6 +20,8 @@ struct Sequence {
     /// Trials, their sum, and the sum of squared deviations from the running means.
     n: u64,
     sum: f64,
+    /// Least and largest value so far, in the unit of the metric.
+    ends: (f64, f64),
     squares: f64,
     /// Sums of bets, of bets times values, and of the variance terms.
     bets: f64,
@@ -35,6 +37,7 @@ impl Sequence {
             aim: aim.map(|n| n as f64),
             n: 0,
             sum: 0.0,
+            ends: (f64::INFINITY, f64::NEG_INFINITY),
             squares: 0.0,
             bets: 0.0,
             weighted: 0.0,
@@ -43,7 +46,8 @@ impl Sequence {
         }
     }
 
-    fn push(&mut self, x: f64) {
+    fn push(&mut self, x: f64, value: f64) {
+        self.ends = (math::at_most(self.ends.0, value), math::at_least(self.ends.1, value));
         let before = self.n as f64;
         let t = before + 1.0;
         // One pseudo-observation: mean 1/2, variance 1/4.
@@ -164,23 +168,24 @@ impl Mean {
                 self.upper = Some(self.lower.clone());
             }
         }
-        let scaled = value.map(|x| {
-            if x < self.low || x > self.high {
+        let (low, high) = (self.low, self.high);
+        let clipped = value.map(|x| {
+            if x < low || x > high {
                 self.clipped += 1;
             }
-            (math::at_most(math::at_least(x, self.low), self.high) - self.low) / (self.high - self.low)
+            math::at_most(math::at_least(x, low), high)
         });
         let (epsilon, limit) = (self.epsilon, self.limit);
         let step = |sequence: &mut Sequence, x: f64| {
             if !sequence.finished {
-                sequence.push(x);
+                sequence.push((x - low) / (high - low), x);
                 sequence.finished =
                     sequence.n >= limit || epsilon.is_some_and(|e| sequence.interval().1 <= e);
             }
         };
-        step(&mut self.lower, scaled.unwrap_or(0.0));
+        step(&mut self.lower, clipped.unwrap_or(low));
         if let Some(upper) = &mut self.upper {
-            step(upper, scaled.unwrap_or(1.0));
+            step(upper, clipped.unwrap_or(high));
         }
         self.finished()
     }
@@ -209,7 +214,9 @@ impl Mean {
     pub fn estimate(&self) -> (f64, f64) {
         let of = |s: &Sequence| {
             let mean = if s.n == 0 { 0.5 } else { s.sum / s.n as f64 };
-            self.low + (self.high - self.low) * mean
+            let mean = self.low + (self.high - self.low) * mean;
+            // A mean lies among its values, however it is rounded: that of one value, again and again, is this value.
+            if s.n == 0 { mean } else { math::at_most(math::at_least(mean, s.ends.0), s.ends.1) }
         };
         (of(&self.lower), of(self.upper.as_ref().unwrap_or(&self.lower)))
     }
@@ -241,8 +248,16 @@ impl Mean {
                     (math::at_least(low, mean - reach), math::at_most(high, mean + reach))
                 };
             }
-            let scale =
-                |x: f64| self.low + (self.high - self.low) * math::at_most(math::at_least(x, 0.0), 1.0);
+            // The ends of the range are meant exactly.
+            let scale = |x: f64| {
+                if x <= 0.0 {
+                    self.low
+                } else if x >= 1.0 {
+                    self.high
+                } else {
+                    self.low + (self.high - self.low) * x
+                }
+            };
             Interval {
                 low: scale(low),
                 high: scale(high),
@@ -271,6 +286,25 @@ mod tests {
         assert!(interval.holds(15.0) && interval.half_width() <= 0.6 + 1e-9);
         assert!(mean.read().0 < 1200, "{:?}", mean.read());
         assert_eq!(mean.limit(), 26_492);
+    }
+
+    #[test]
+    fn the_mean_of_one_value_is_this_value() {
+        for (low, high, value) in
+            [(0.0, 3.0, 1.0), (0.0, 60.0, 0.1), (-0.7, 0.1, 0.1), (0.1, 0.7, 0.7), (0.1, 0.7, 0.3)]
+        {
+            for mut mean in [
+                Mean::within(low, high, 0.02 * (high - low), 0.05).unwrap(),
+                Mean::planned(low, high, 0.05 * (high - low), 0.05).unwrap(),
+                Mean::fixed(low, high, 1000, 0.05).unwrap(),
+            ] {
+                while !mean.observe(Some(value)) {
+                    assert_eq!(mean.estimate(), (value, value));
+                }
+                assert_eq!(mean.estimate(), (value, value));
+                assert!(mean.interval().holds(value), "{value} in {:?}", mean.interval());
+            }
+        }
     }
 
     #[test]

@@ -161,6 +161,13 @@ fn warnings_point_at_families_that_are_left_and_formulas_that_never_change() {
     );
     assert_eq!(said.err.matches("warning[W0601]: this query leaves the family").count(), 2, "{}", said.err);
     assert_eq!(said.err.matches("warning[W0501]: this is always the same").count(), 1, "{}", said.err);
+    // In a sweep with the point of which it is said.
+    let said = checked(
+        "check P(F<=1 s (contact(user) | density > 0.15 /m^2)) >= 0.5\n",
+        &["--set", "density=0.1..0.2 by 0.1"],
+    );
+    let warning = "warning[W0501]: this is always the same (with density = 0.2 /m^2)";
+    assert_eq!(said.err.matches(warning).count(), 1, "{}", said.err);
 }
 
 #[test]

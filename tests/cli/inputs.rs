@@ -225,3 +225,35 @@ fn a_property_file_on_standard_input_is_blamed_as_one() {
     let said = Place::new(&[]).fed(&["fmt", "-"], "property a = X true\ncheck P(a) > 0.5 wthin\n");
     assert!(said.err.contains(":2:18"), "{}", said.err);
 }
+
+#[test]
+fn files_in_the_wrong_order_are_named_as_such() {
+    let place =
+        Place::new(&[("a.scn", SMALL), ("a.bltl", "property p = contact(user)\ncheck P(p) >= 0.5\n")]);
+    let said = place.call(&["check", "a.bltl", "a.scn"]);
+    assert_eq!((said.code, said.err.matches("error[").count()), (Some(2), 2), "{}", said.err);
+    for hint in ["these are properties; the scenario comes first", "this is a scenario; it comes first"] {
+        assert!(said.err.contains(hint), "{}", said.err);
+    }
+    // What is wrong in either language is no matter of order.
+    place.write("b.scn", SMALL.replace("horizon = 4 s", "horizon 4 s").as_bytes());
+    let said = place.call(&["check", "b.scn", "a.bltl"]);
+    assert!(said.code == Some(2) && !said.err.contains("comes first"), "{}", said.err);
+}
+
+#[test]
+fn multiples_of_distributions_are_shown_as_they_were_written() {
+    let kinds = "kind slow: adult { speed = bernoulli(10 %) * 1 m/s }\n\
+                 kind quick: adult { speed = 2 * lognormal(1, 0.1) * 1 m/s }\n\
+                 agent a: slow { at = (1, 0.5) }\nagent b: quick { at = (1, 2.5) }\n";
+    let place = Place::new(&[("a.scn", &format!("{SMALL}{kinds}"))]);
+    let said = place.call(&["show", "a.scn"]);
+    assert_eq!((said.code, said.err.as_str()), (Some(0), ""));
+    for law in ["speed bernoulli(0.1) * 1 m/s,", "speed lognormal(2 m/s, 0.2 m/s),"] {
+        assert!(said.out.contains(law), "{}", said.out);
+    }
+    // Several factors are one, of the wrong unit too.
+    place.write("b.scn", format!("{SMALL}{}", kinds.replace("* 1 m/s }\n", "* 1 m }\n")).as_bytes());
+    let said = place.call(&["show", "b.scn"]);
+    assert_eq!((said.code, said.err.matches("error[E0303]").count()), (Some(2), 2), "{}", said.err);
+}

@@ -163,6 +163,29 @@ fn a_rank_that_is_killed_changes_no_result() {
     }
 }
 
+/// Nobody is gone, and nobody works.
+#[cfg(target_os = "linux")]
+#[test]
+fn ranks_that_all_fall_silent_change_no_result() {
+    let place = place(LONG);
+    let alone = report(&place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "json"]).out);
+    for ranks in [1, 3] {
+        let (child, there) = at_work(&place, &["--timeout", "60s"], ranks);
+        for pid in &there {
+            signal("-STOP", &pid.to_string());
+        }
+        let output = child.wait_with_output().unwrap();
+        let mut led = report(&String::from_utf8_lossy(&output.stdout));
+        let warnings = std::mem::replace(&mut led["warnings"], alone["warnings"].clone());
+        assert_eq!(led, alone, "{ranks} ranks");
+        let warnings: Vec<&str> = warnings.as_array().unwrap().iter().filter_map(Value::as_str).collect();
+        assert_eq!(warnings.len(), ranks, "{warnings:?}");
+        let told = |one: &&str| one.contains("answers no more; this process ran its trials");
+        assert!(warnings.iter().all(told), "{warnings:?}");
+        soon("all ranks are over", || there.iter().all(|pid| status(*pid).is_none()));
+    }
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn no_rank_outlives_its_head() {

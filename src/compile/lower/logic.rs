@@ -63,7 +63,8 @@ impl Elaborator<'_> {
             // `a => b` is `a => (!a | b)`: where the guard is false, nobody misses what the rest lacks.
             b.0 = Typed::Truth(any(negated(when.clone()), then.clone()));
         }
-        let (a, b) = (self.as_formula(a.0, a.1)?, self.as_formula(b.0, b.1)?);
+        let sides = (self.as_formula(a.0, a.1), self.as_formula(b.0, b.1));
+        let (a, b) = (sides.0?, sides.1?);
         Ok(Typed::Formula(match op {
             BinaryOp::And => self.node(Node::And(vec![a, b])),
             BinaryOp::Or => self.node(Node::Or(vec![a, b])),
@@ -130,8 +131,8 @@ impl Elaborator<'_> {
             _ => {}
         }
         if matches!(a, Typed::Term(..)) || matches!(b, Typed::Term(..)) {
-            let (a, da) = self.as_term(a, left.span)?;
-            let (b, db) = self.as_term(b, right.span)?;
+            let sides = (self.as_term(a, left.span), self.as_term(b, right.span));
+            let ((a, da), (b, db)) = (sides.0?, sides.1?);
             if da != db {
                 return self.wrong_dimension(right.span, da, db);
             }
@@ -143,8 +144,8 @@ impl Elaborator<'_> {
             let text = self.text(span);
             return Ok(Typed::Formula(self.comparison((relation(comparison(op)), a, b), text, da)));
         }
-        let (a, da) = self.as_num(a, left.span)?;
-        let (b, db) = self.as_num(b, right.span)?;
+        let sides = (self.as_num(a, left.span), self.as_num(b, right.span));
+        let ((a, da), (b, db)) = (sides.0?, sides.1?);
         if da != db {
             return self.wrong_dimension(right.span, da, db);
         }

@@ -10,7 +10,7 @@ mod quantifier;
 mod tally;
 mod temporal;
 
-pub(super) use builtin::DISTRIBUTIONS;
+pub(super) use builtin::{DISTRIBUTIONS, FUNCTIONS};
 pub(super) use logic::relation;
 
 use super::dimension::{self, Dimension};

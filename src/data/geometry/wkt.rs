@@ -8,6 +8,20 @@ use wkt::types::{Coord, LineString, Polygon};
 
 /// Deepest nesting of parentheses; beyond it the text is refused before it is parsed.
 const DEEPEST: usize = 64;
+/// What stands within parentheses beside numbers.
+const WORDS: [&str; 11] = [
+    "point",
+    "linestring",
+    "polygon",
+    "multipoint",
+    "multilinestring",
+    "multipolygon",
+    "geometrycollection",
+    "empty",
+    "z",
+    "m",
+    "zm",
+];
 
 /// Reads all geometries, as features without name and properties. Empty ones are passed over.
 ///
@@ -26,7 +40,20 @@ pub fn read_wkt(text: &str) -> Result<Vec<Feature>, Vec<GeometryError>> {
             continue;
         }
         match piece.text.parse::<Wkt<f64>>() {
-            Err(message) => fail(format!("this is no WKT: {}", lower_case_start(message))),
+            Err(message) => match no_number(piece.text) {
+                Some(at) => {
+                    let word = words(&piece.text[at..]).next().map_or("", |(_, word)| word);
+                    let (line, column) = after((piece.line, piece.column), &piece.text[..at]);
+                    let message = format!("this is no WKT: `{word}` is no number");
+                    errors.push(GeometryError {
+                        line: Some(line),
+                        column: Some(column),
+                        feature: None,
+                        message,
+                    });
+                }
+                None => fail(format!("this is no WKT: {}", lower_case_start(message))),
+            },
             Ok(shape) => flatten(&shape, &mut |part| match part {
                 Ok(shape) => found.push(Feature { name: String::new(), properties: Vec::new(), shape }),
                 Err(message) => fail(message),
@@ -52,14 +79,35 @@ fn parting(c: char) -> bool {
     c.is_whitespace() || c == ',' || c == ';'
 }
 
+/// Line and column after some text.
+fn after((line, column): (usize, usize), passed: &str) -> (usize, usize) {
+    let fresh = passed.rfind('\n').map(|k| &passed[k + 1..]);
+    let column = fresh.map_or(column, |_| 1) + fresh.unwrap_or(passed).chars().count();
+    (line + passed.matches('\n').count(), column)
+}
+
+/// Words between blanks, commas and parentheses, and where they begin.
+fn words(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    let ends = |c: char| parting(c) || c == '(' || c == ')';
+    text.split(ends)
+        .filter(|word| !word.is_empty())
+        .map(|word| (word.as_ptr() as usize - text.as_ptr() as usize, word))
+}
+
+/// Where within its parentheses a geometry has something that is neither a number nor a word of this language.
+fn no_number(text: &str) -> Option<usize> {
+    let open = text.find('(')?;
+    let known = |word: &str| WORDS.iter().any(|known| known.eq_ignore_ascii_case(word));
+    let (at, _) = words(&text[open..]).find(|(_, word)| word.parse::<f64>().is_err() && !known(word))?;
+    Some(open + at)
+}
+
 /// Cuts the text after every closing parenthesis of the outermost level and after `EMPTY` there.
 fn pieces(text: &str) -> Vec<Piece<'_>> {
     let mut found = Vec::new();
     let (mut rest, mut line, mut column) = (text, 1, 1);
     let mut pass = |passed: &str| {
-        line += passed.matches('\n').count();
-        let fresh = passed.rfind('\n').map(|k| &passed[k + 1..]);
-        column = fresh.map_or(column, |_| 1) + fresh.unwrap_or(passed).chars().count();
+        (line, column) = after((line, column), passed);
         (line, column)
     };
     loop {
@@ -160,10 +208,12 @@ mod tests {
 
     #[test]
     fn every_fault_has_its_place() {
-        let text = "POINT (1 2)\n  POINT (1 oops)\nPOLYGON ((0 0, 1 1, 0 0)) POINT (1e999 0)\nSRID";
+        let text = "POINT (1 2)\n  POINT (1 oops)\nPOLYGON ((0 0, 1 1, 0 0)) POINT (1e999 0)\nLINESTRING (0 0,\n 3 x) SRID";
         let errors = read_wkt(text).unwrap_err();
         let places: Vec<_> = errors.iter().map(|e| (e.line.unwrap(), e.column.unwrap())).collect();
-        assert_eq!(places, [(2, 3), (3, 1), (3, 27), (4, 1)]);
+        assert_eq!(places, [(2, 12), (3, 1), (3, 27), (5, 4), (5, 7)]);
+        assert_eq!(errors[0].message, "this is no WKT: `oops` is no number");
+        assert_eq!(errors[3].message, "this is no WKT: `x` is no number");
         assert_eq!(errors[1].message, "the outline has fewer than three corners");
         assert_eq!(errors[2].message, "the point (inf, 0) is not finite");
     }

@@ -4,6 +4,7 @@ use super::Traffic;
 use super::line::{Event, Line, Orders, open};
 use super::message::{Answer, Greeting, Lease, MOST_ITEMS, Order, Reply, print};
 use super::round::Round;
+use crate::base::math;
 use crate::compile::Study;
 use crate::engine::budget::Budget;
 use crate::engine::fault::Fault;
@@ -26,6 +27,8 @@ const GRACE: f64 = 0.1;
 const LOOK: f64 = 0.02;
 /// A lease this old, and older than several like it take, is leased to a second rank that has nothing to do, s.
 const OVERDUE: f64 = 2.0;
+/// Longest that ranks which all stand still are waited for because they were slow before, s.
+const PATIENT: f64 = 120.0;
 /// Most cells of a lease, where it has more than the lanes of a rank.
 const MOST_CELLS: usize = 1 << 16;
 
@@ -49,6 +52,13 @@ struct Held {
     void: bool,
 }
 
+impl Held {
+    /// Whether it is out for so long, and for several times as long as it should take.
+    fn late(&self, patience: f64) -> bool {
+        self.since.elapsed().as_secs_f64() > math::at_least(patience, 4.0 * self.expected)
+    }
+}
+
 /// What is known of a rank.
 struct Rank {
     /// Where it is told what to do; `None` once it is gone.
@@ -63,6 +73,14 @@ struct Rank {
 impl Rank {
     fn works(&self) -> bool {
         self.ready && self.orders.is_some()
+    }
+
+    /// Whether it works, and neither hangs nor has kept what it must answer next for longer than that should take, and
+    /// than one has patience.
+    fn lives(&self, patience: f64) -> bool {
+        self.works()
+            && !self.hangs()
+            && self.held.front().is_none_or(|held| held.void || !held.late(patience))
     }
 
     /// Whether it was told to leave a lease and has not done so for long.
@@ -83,6 +101,8 @@ pub(super) struct Desk {
     next: u64,
     /// A world, and the seconds of one of its trials in the last lease that came back.
     pace: Option<(usize, f64)>,
+    /// How long ranks that all stand still are waited for, s: longer once one that was given up turned out to be slow.
+    patience: f64,
     pub(super) traffic: Traffic,
 }
 
@@ -100,7 +120,16 @@ impl Desk {
             Ok(Rank { orders: Some(orders), ready: false, held: VecDeque::new(), why: String::new() })
         };
         let ranks = lines.into_iter().enumerate().map(greet).collect::<Result<_, Fault>>()?;
-        Ok(Self { ranks, events, print, each, next: 0, pace: None, traffic: Traffic::default() })
+        Ok(Self {
+            ranks,
+            events,
+            print,
+            each,
+            next: 0,
+            pace: None,
+            patience: OVERDUE,
+            traffic: Traffic::default(),
+        })
     }
 
     /// Waits until each rank is ready or gone.
@@ -160,7 +189,7 @@ impl Desk {
             if round.open == 0 {
                 break End::Over;
             }
-            if !able || !self.ranks.iter().any(|rank| rank.works() && !rank.hangs()) {
+            if !able || !self.ranks.iter().any(|rank| rank.lives(self.patience)) {
                 break End::Alone;
             }
             if budget.must_stop() {
@@ -245,17 +274,14 @@ impl Desk {
         self.pace.filter(|(world, _)| *world == round.world).map(|(_, seconds)| seconds * size as f64)
     }
 
-    /// A lease that one rank has had for long.
+    /// A lease that whoever has it has had for long.
     fn overdue(&self, round: &Round<'_, '_>) -> Option<Range<usize>> {
         let out: Vec<&Held> =
             self.ranks.iter().flat_map(|rank| &rank.held).filter(|held| !held.void).collect();
-        let alone = |held: &&&Held| out.iter().filter(|other| other.places == held.places).count() == 1;
-        let late = |held: &&&Held| held.since.elapsed().as_secs_f64() > OVERDUE.max(4.0 * held.expected);
-        out.iter()
-            .filter(late)
-            .filter(alone)
-            .map(|held| held.places.clone())
-            .find(|places| round.is_open(places))
+        let late = |held: &&&Held| {
+            out.iter().filter(|other| other.places == held.places).all(|other| other.late(OVERDUE))
+        };
+        out.iter().filter(late).map(|held| held.places.clone()).find(|places| round.is_open(places))
     }
 
     #[allow(
@@ -311,7 +337,13 @@ impl Desk {
 
     /// The lease of this number, if it is the one that the rank has to answer next.
     fn answered(&mut self, rank: usize, number: u64) -> Option<Held> {
-        self.ranks[rank].held.pop_front_if(|held| held.number == number)
+        let held = self.ranks[rank].held.pop_front_if(|held| held.number == number)?;
+        if held.void {
+            // It was slow, not silent.
+            let took = held.since.elapsed().as_secs_f64();
+            self.patience = math::at_least(self.patience, math::at_most(4.0 * took, PATIENT));
+        }
+        Some(held)
     }
 
     /// A lease was answered.
@@ -351,18 +383,19 @@ impl Desk {
 
     /// What went wrong, in words.
     pub(super) fn warnings(&self) -> Vec<String> {
-        let (all, left) = (self.ranks.len(), self.ranks.iter().filter(|rank| rank.works()).count());
+        let all = self.ranks.len();
+        let left = self.ranks.iter().any(|rank| rank.works() && !rank.hangs());
+        let others = if left { "others" } else { "this process" };
         let mut warnings = Vec::new();
         for (k, rank) in self.ranks.iter().enumerate() {
             if rank.orders.is_none() {
-                let others = if left == 0 { "this process" } else { "others" };
                 warnings.push(format!(
                     "rank {} of {all} was lost ({}); {others} ran its trials",
                     k + 1,
                     rank.why
                 ));
             } else if rank.hangs() {
-                warnings.push(format!("rank {} of {all} answers no more; others ran its trials", k + 1));
+                warnings.push(format!("rank {} of {all} answers no more; {others} ran its trials", k + 1));
             } else if !rank.ready {
                 warnings.push(format!("rank {} of {all} never answered; it ran no trial", k + 1));
             }

@@ -21,7 +21,7 @@ pub(super) fn cdf(family: &Family, x: f64) -> f64 {
                 1.0
             }
         }
-        Family::Choice(options) => {
+        Family::Choice(options) | Family::Multiple { options, .. } => {
             options.iter().filter(|(value, _)| *value <= x).map(|(_, weight)| weight).sum()
         }
         _ => f64::NAN,
@@ -34,7 +34,7 @@ pub(super) fn quantile(family: &Family, p: f64) -> f64 {
         Family::UniformInt { low, high } => whole_number(*low, *high, p),
         Family::Poisson { mean } => poisson_quantile(*mean, p),
         Family::Bernoulli { p: success } => f64::from(p > 1.0 - success),
-        Family::Choice(options) => {
+        Family::Choice(options) | Family::Multiple { options, .. } => {
             let mut sorted: Vec<(f64, f64)> = options.clone();
             sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
             pick(&sorted, p)

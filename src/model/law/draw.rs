@@ -57,7 +57,9 @@ fn kept(family: &Family, low: f64, high: f64) -> Vec<(f64, f64)> {
     let inside = |(value, _): &(f64, f64)| low <= *value && *value <= high;
     match family {
         Family::Bernoulli { p } => [(0.0, 1.0 - p), (1.0, *p)].into_iter().filter(inside).collect(),
-        Family::Choice(options) => options.iter().copied().filter(inside).collect(),
+        Family::Choice(options) | Family::Multiple { options, .. } => {
+            options.iter().copied().filter(inside).collect()
+        }
         _ => Vec::new(),
     }
 }
@@ -210,12 +212,14 @@ impl Law {
                 let (low, high) = (math::at_least(first, *low), math::at_most(last, *high));
                 match family {
                     Family::UniformInt { .. } | Family::Poisson { .. } => (low.ceil(), high.floor()),
-                    Family::Bernoulli { .. } | Family::Choice(_) => kept(family, low, high)
-                        .iter()
-                        .filter(|(_, weight)| *weight > 0.0)
-                        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (value, _)| {
-                            (math::at_most(low, *value), math::at_least(high, *value))
-                        }),
+                    Family::Bernoulli { .. } | Family::Choice(_) | Family::Multiple { .. } => {
+                        kept(family, low, high).iter().filter(|(_, weight)| *weight > 0.0).fold(
+                            (f64::INFINITY, f64::NEG_INFINITY),
+                            |(low, high), (value, _)| {
+                                (math::at_most(low, *value), math::at_least(high, *value))
+                            },
+                        )
+                    }
                     _ => (low, high),
                 }
             }

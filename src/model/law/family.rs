@@ -73,7 +73,8 @@ impl Shape {
             Family::UniformInt { .. }
             | Family::Poisson { .. }
             | Family::Bernoulli { .. }
-            | Family::Choice(_) => return None,
+            | Family::Choice(_)
+            | Family::Multiple { .. } => return None,
         };
         Some(shape)
     }
@@ -201,7 +202,9 @@ impl Family {
             Self::Uniform { low, high } => 0.5 * low + 0.5 * high,
             Self::UniformInt { low, high } => 0.5 * *low as f64 + 0.5 * *high as f64,
             Self::Bernoulli { p } => *p,
-            Self::Choice(options) => options.iter().map(|(value, weight)| value * weight).sum(),
+            Self::Choice(options) | Self::Multiple { options, .. } => {
+                options.iter().map(|(value, weight)| value * weight).sum()
+            }
         }
     }
 
@@ -227,7 +230,7 @@ impl Family {
             Self::Uniform { low, high } => (*low, *high),
             Self::UniformInt { low, high } => (*low as f64, *high as f64),
             Self::Bernoulli { p } => (f64::from(*p >= 1.0), f64::from(*p > 0.0)),
-            Self::Choice(options) => options
+            Self::Choice(options) | Self::Multiple { options, .. } => options
                 .iter()
                 .filter(|(_, weight)| *weight > 0.0)
                 .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (value, _)| {

@@ -100,6 +100,15 @@ pub enum Family {
         /// Values and their probabilities.
         Vec<(f64, f64)>,
     ),
+    /// A multiple of a family of whole numbers, drawn as a choice.
+    Multiple {
+        /// The family.
+        of: Box<Self>,
+        /// What its values are multiplied by.
+        by: f64,
+        /// The products and their probabilities.
+        options: Vec<(f64, f64)>,
+    },
 }
 
 impl Law {

@@ -106,7 +106,7 @@ impl Family {
                 }
                 Ok(())
             }
-            Self::Choice(options) => {
+            Self::Choice(options) | Self::Multiple { options, .. } => {
                 if options.is_empty() {
                     return Err("a choice needs at least one value".to_owned());
                 }

@@ -32,8 +32,8 @@ Right:\n\
         code: "E0403",
         title: "near an agent that is declared later",
         text: "\
-People are placed in the order of their declarations, so that one can only be placed near somebody who is there\n\
-already.\n\
+People are placed in the order of their declarations, so that one can only be placed near somebody else who is\n\
+there already. Who comes in by a source is not.\n\
 \n\
 Wrong:\n\
 \x20   agent guard: adult { at = near user within 2 m }\n\

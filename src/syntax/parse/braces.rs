@@ -23,6 +23,9 @@ const MOST_TURNED: usize = 50;
 /// Most ways to mend one slip that are tried, and most texts in all.
 const MOST_WAYS: usize = 24;
 const MOST_TRIES: usize = 40;
+/// Most bytes of texts that are tried, those with a turned brace apart from the rest: of a long text fewer are. A
+/// mebibyte takes less than a second.
+const MOST_BYTES: usize = 1 << 20;
 
 /// A line that has tokens.
 struct Line<'t> {
@@ -319,12 +322,24 @@ pub(super) fn mend(source: &Source, errors: &dyn Fn(&str, Vec<Diagnostic>) -> us
     }
     let mut best: Option<(usize, Vec<Slip>, Vec<Change>)> = None;
     let tries = std::cell::Cell::new(0_usize);
-    // One brace that is turned the wrong way is two that do not pair up.
+    let affordable = MOST_BYTES / text.len().max(1);
+    let most = MOST_TRIES.min(affordable);
+    // One brace that is turned the wrong way is two that do not pair up; where the layout is right then, it is the one.
+    let mut turns: Vec<(usize, Mended)> = Vec::new();
     for slip in turned(&lines) {
-        let (slips, chosen) = (vec![slip], changes(text, &lines, slip));
-        let mended = changed(text, &chosen).filter(|mended| pairs_up(&self::lines(mended)));
-        if mended.is_some_and(|mended| errors(&mended, Vec::new()) == 0) {
-            return Some(Mended { text: changed(text, &chosen)?, errors: said(source, &slips, &chosen) });
+        let chosen = changes(text, &lines, slip);
+        let Some(mended) = changed(text, &chosen) else { continue };
+        let after = self::lines(&mended);
+        if pairs_up(&after) {
+            let crooked = slips(&after, false).len();
+            let errors = said(source, &[slip], &chosen);
+            turns.push((crooked, Mended { text: mended, errors }));
+        }
+    }
+    turns.sort_by_key(|(crooked, _)| *crooked);
+    for (_, mended) in turns.into_iter().take(affordable) {
+        if errors(&mended.text, Vec::new()) == 0 {
+            return Some(mended);
         }
     }
     // On a tie, what closes within a line is the slip.
@@ -340,7 +355,7 @@ pub(super) fn mend(source: &Source, errors: &dyn Fn(&str, Vec<Diagnostic>) -> us
         };
         let cost = |chosen: &[Change]| {
             tries.set(tries.get() + 1);
-            if tries.get() > MOST_TRIES {
+            if tries.get() > most {
                 return usize::MAX;
             }
             let mended = changed(text, chosen).filter(|mended| pairs_up(&self::lines(mended)));
@@ -349,7 +364,8 @@ pub(super) fn mend(source: &Source, errors: &dyn Fn(&str, Vec<Diagnostic>) -> us
         let mut least = cost(&chosen);
         for (place, ways) in ways.iter().enumerate() {
             for way in ways.iter().take(MOST_WAYS).skip(1) {
-                if least <= ONE || tries.get() >= MOST_TRIES {
+                // One is left for the likeliest ways of the other reading.
+                if least <= ONE || tries.get() + usize::from(!closes_inside) >= most {
                     break;
                 }
                 let mut other = chosen.clone();
@@ -386,4 +402,60 @@ fn turned(lines: &[Line<'_>]) -> Vec<Slip> {
 /// The errors that slips are.
 fn said(source: &Source, slips: &[Slip], chosen: &[Change]) -> Vec<Diagnostic> {
     slips.iter().zip(chosen).map(|(slip, change)| error(source, *slip, change)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::syntax::source::SourceId;
+    use std::cell::Cell;
+
+    /// How often a text is weighed, as if it always had several errors.
+    fn tries(text: &str) -> usize {
+        let count = Cell::new(0);
+        let weigh = |_: &str, _: Vec<Diagnostic>| {
+            count.set(count.get() + 1);
+            5 * ONE
+        };
+        mend(&Source::new(SourceId(0), "a.scn", text), &weigh);
+        count.get()
+    }
+
+    /// Blocks, some of which lack their closing brace, among many that do not.
+    fn blocks(whole: usize, broken: usize) -> String {
+        let block = "kind k: sfm {\n  mass = 80 kg\n  radius = 0.3 m\n}\n";
+        let lacking = "kind k: sfm {\n  mass = 80 kg\n  radius = 0.3 m\n";
+        format!("{}{}", lacking.repeat(broken), block.repeat(whole))
+    }
+
+    #[test]
+    fn the_longer_a_text_the_fewer_are_tried() {
+        for broken in [1, 3, 8] {
+            let short = tries(&blocks(20, broken));
+            assert!((1..=MOST_TRIES).contains(&short), "{short}");
+            let long = blocks(2_400, broken);
+            assert!(long.len() < LONGEST);
+            let count = tries(&long);
+            assert!(count >= 2 && count * long.len() <= MOST_BYTES, "{count} of {}", long.len());
+        }
+        assert!(tries(&blocks(20, 8)) > MOST_BYTES / LONGEST, "a short one has all its tries");
+        // Braces that may be turned the wrong way are tried apart from the rest.
+        let turned = format!("kind k: sfm {{ mass = 80 kg {{\n{}", blocks(2_400, 0));
+        let count = tries(&turned);
+        assert!(count > MOST_BYTES / turned.len() && count * turned.len() <= 2 * MOST_BYTES, "{count}");
+    }
+
+    #[test]
+    fn a_turned_brace_far_below_in_a_long_text_is_found_by_the_layout() {
+        let block = format!("kind k: sfm {{\n  mass = 80 kg // {}\n}}\n", "x".repeat(3_000));
+        let text = format!("{}kind k: sfm {{\n  mass = 80 kg\n{{\n", block.repeat(40));
+        let at = text.rfind('{').unwrap();
+        let weigh = |mended: &str, _: Vec<Diagnostic>| {
+            if mended.as_bytes()[at] == b'}' { 0 } else { ONE }
+        };
+        let source = Source::new(SourceId(0), "a.scn", text.as_str());
+        let mended = mend(&source, &weigh).unwrap();
+        assert_eq!(&mended.text[at..=at], "}");
+        assert_eq!(mended.errors.len(), 1);
+    }
 }

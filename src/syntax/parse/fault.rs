@@ -200,6 +200,9 @@ impl Builder<'_> {
         }
         if let Some(word) = Self::meant(&fault) {
             diagnostic = diagnostic.hint(format!("did you mean `{word}`?"));
+        } else if closes && fault.found == "at" {
+            diagnostic = diagnostic
+                .hint("`… at end` and `… at 5 s` stand in `E(…)` and `Q(…)`, around the whole metric");
         }
         diagnostic
     }

@@ -88,18 +88,19 @@ fn mended<T>(
     if count(&plain.1) == 0 {
         return plain;
     }
-    let read = |text: &str, slips: Vec<Diagnostic>| {
-        let (built, said) = parse(source, text, rule, build);
+    let joined = |said: Vec<Diagnostic>, slips: Vec<Diagnostic>| {
         let mut said = braces::together(source, said, slips);
         order(source, &mut said);
-        (built, said)
+        said
     };
     let weigh = |text: &str, slips: Vec<Diagnostic>| {
-        let hidden = count(&parse(source, text, rule, build).1).min(braces::ONE - 1);
-        count(&read(text, slips).1) * braces::ONE + hidden
+        let said = parse(source, text, rule, build).1;
+        let hidden = count(&said).min(braces::ONE - 1);
+        count(&joined(said, slips)) * braces::ONE + hidden
     };
     let Some(mended) = braces::mend(source, &weigh) else { return plain };
-    let (built, said) = read(&mended.text, mended.errors);
+    let (built, said) = parse(source, &mended.text, rule, build);
+    let said = joined(said, mended.errors);
     if count(&said) <= count(&plain.1) { (built, said) } else { plain }
 }
 

@@ -1,0 +1,243 @@
+//! What could not be read, and which errors come of it.
+
+use super::{DIMENSION, UNKNOWN, has_word, leading_word, lines, within, word, words};
+use crate::compile::dimension;
+use crate::compile::queries::Input;
+use crate::compile::told::is_stepped;
+use crate::syntax::diagnostic::{Diagnostic, Severity};
+use crate::syntax::source::{Source, SourceId, Span};
+use std::collections::BTreeSet;
+
+/// Codes of names that are not there, or of what needs one.
+const NAMES: [&str; 8] = ["E0201", "E0203", "E0205", "E0208", "E0209", "E0210", "E0505", "E0606"];
+/// Those among them whose place is the name itself.
+const PLACED_AT_NAME: [&str; 5] = ["E0201", "E0203", "E0208", "E0210", "E0606"];
+/// Codes of a clock that has or lacks steps: a process that was not read may have had rates.
+const CLOCKS: [&str; 3] = ["E0503", "E0507", "E0508"];
+/// Codes of brackets that do not pair up.
+const BRACKETS: [&str; 6] = ["E0102", "E0103", "E0104", "E0105", "E0106", "E0107"];
+/// Codes of a file that was not read at all, or not from here on.
+const TOO_DEEP: &str = "E0106";
+const COMMENT: &str = "E0104";
+/// Code of moves without an option.
+const NO_OPTIONS: &str = "E0406";
+/// Code of an agent that nothing advises.
+const NO_MOVES: &str = "E0606";
+/// Code of people who start inside an obstacle.
+const INSIDE: &str = "E0409";
+/// Codes after which the rest of a line is anybody's guess, besides those of brackets.
+const DERAILS: [&str; 2] = ["E0101", "E0112"];
+/// Words that start a declaration with a name.
+const DECLARES: [&str; 20] = [
+    "agent",
+    "agents",
+    "behaviour",
+    "const",
+    "group",
+    "kind",
+    "label",
+    "let",
+    "obstacle",
+    "param",
+    "point",
+    "process",
+    "property",
+    "region",
+    "source",
+    "state",
+    "tracks",
+    "var",
+    "wall",
+    "on",
+];
+/// Words that start what has no name of its own.
+const NAMELESS: [&str; 13] = [
+    "after", "check", "choose", "compare", "estimate", "family", "heading", "import", "moves", "rank",
+    "scene", "stop", "when",
+];
+/// Words that start a part of a scene.
+const SCENERY: [&str; 5] = ["import", "obstacle", "point", "region", "wall"];
+/// Words that start what has no part in a clock, and words that have.
+const TIMELESS: [&str; 5] = ["const", "kind", "let", "param", "tracks"];
+const TIMES: [&str; 6] = ["after", "at", "horizon", "process", "step", "when"];
+
+/// What could not be read.
+#[allow(clippy::struct_excessive_bools, reason = "each answers a question of its own")]
+pub(super) struct Broken<'i> {
+    sources: &'i [Source],
+    /// Texts that were skipped, and their words.
+    lost: Vec<Span>,
+    swallowed: BTreeSet<&'i str>,
+    /// Names whose declarations were not read, or not to their end.
+    suspects: BTreeSet<&'i str>,
+    /// Names that were set, perhaps in a declaration whose first word is missing.
+    set: BTreeSet<&'i str>,
+    /// Whether any name may have been declared in what was not read.
+    any_name: bool,
+    /// Whether moves, parts of the scene, or what the clock comes of were not read.
+    moves: bool,
+    scenery: bool,
+    clock: bool,
+    /// Sources with errors, and the lines that say no more since they could not be read.
+    with_errors: BTreeSet<SourceId>,
+    derailed: BTreeSet<(SourceId, usize)>,
+    /// All lines with an error.
+    faulty: BTreeSet<(SourceId, usize)>,
+}
+
+impl<'i> Broken<'i> {
+    pub(super) fn of(said: &[Diagnostic], input: &Input<'i>) -> Self {
+        let files = input.properties.iter();
+        let lost = input.scenario.lost.iter().chain(files.clone().flat_map(|file| &file.lost));
+        let cut = input.scenario.cut.iter().chain(files.flat_map(|file| &file.cut));
+        let mut broken = Self {
+            sources: input.sources,
+            lost: lost.clone().copied().collect(),
+            swallowed: BTreeSet::new(),
+            suspects: BTreeSet::new(),
+            set: BTreeSet::new(),
+            any_name: false,
+            moves: false,
+            scenery: false,
+            clock: false,
+            with_errors: BTreeSet::new(),
+            derailed: BTreeSet::new(),
+            faulty: BTreeSet::new(),
+        };
+        for one in said.iter().filter(|one| one.severity == Severity::Error) {
+            let Some(place) = &one.place else { continue };
+            broken.with_errors.insert(place.span.source);
+            broken.faulty.extend(broken.line_of(place.span));
+            broken.swallow(one, place.span);
+            // What stands first in its line is missed by the one before, but for a bracket.
+            let derails = DERAILS.contains(&one.code) && !broken.starts_line(place.span);
+            if derails || BRACKETS.contains(&one.code) {
+                broken.derailed.extend(broken.line_of(place.span));
+                broken.add(place.span.source, lines(input.sources, place.span).unwrap_or_default());
+            }
+        }
+        for span in lost.clone() {
+            broken.swallowed.extend(words(word(input.sources, *span).unwrap_or_default()));
+        }
+        for span in lost.chain(cut) {
+            broken.add(span.source, word(input.sources, *span).unwrap_or_default());
+        }
+        // Of a scenario without times in seconds the processes decide which clock it has.
+        broken.clock &= !is_stepped(input.scenario);
+        broken
+    }
+
+    /// What an error of brackets or comments says of the names around it. Where braces did not pair up, declarations may
+    /// have gone into the wrong block, and what a line declares whose brackets are amiss may be misspelt by just these; who
+    /// asks declares nothing.
+    fn swallow(&mut self, one: &Diagnostic, place: Span) {
+        let bracket = BRACKETS.contains(&one.code) && place.source == SourceId(0);
+        let braces = one.title.contains("`{`") || one.title.contains("`}`");
+        let (first, _) = leading_word(lines(self.sources, place).unwrap_or_default());
+        let declares = BRACKETS.contains(&one.code) && DECLARES.contains(&first);
+        self.any_name |= bracket && braces || declares || one.code == TOO_DEEP;
+        self.clock |= bracket;
+        if one.code == COMMENT
+            && let Some(source) = self.sources.iter().find(|source| source.id == place.source)
+        {
+            self.swallowed.extend(words(&source.text[place.start as usize..]));
+        }
+    }
+
+    /// A text that was not read, or not to its end.
+    fn add(&mut self, source: SourceId, text: &'i str) {
+        let (first, rest) = leading_word(text);
+        let (second, _) = leading_word(rest);
+        self.moves |= ["moves", "heading", "stop"].iter().any(|word| has_word(text, word));
+        self.scenery |= SCENERY.contains(&first);
+        let times = !TIMELESS.contains(&first) || TIMES.iter().any(|word| has_word(text, word));
+        self.clock |= source == SourceId(0) && times;
+        if DECLARES.contains(&first) {
+            self.any_name |= second.is_empty();
+            self.suspects.extend(Some(second).filter(|name| !name.is_empty()));
+        } else if rest.trim_start().starts_with('=') {
+            self.set.insert(first);
+        } else if !NAMELESS.contains(&first) {
+            // The first word is misspelt, and a name follows.
+            self.suspects.extend(Some(second).filter(|name| !name.is_empty()));
+        }
+    }
+
+    fn is_broken(&self, source: SourceId) -> bool {
+        self.with_errors.contains(&source)
+    }
+
+    /// Whether a place is the first of its line.
+    fn starts_line(&self, span: Span) -> bool {
+        let before = Span { start: 0, end: span.start, ..span };
+        let text = word(self.sources, before).unwrap_or_default();
+        text[text.rfind('\n').map_or(0, |newline| newline + 1)..].trim().is_empty()
+    }
+
+    /// The line in which a place starts.
+    fn line_of(&self, span: Span) -> Option<(SourceId, usize)> {
+        let source = self.sources.iter().find(|source| source.id == span.source)?;
+        Some((span.source, source.line_column(span.start).0))
+    }
+
+    /// The name that is set to what stands at a place: `density = 0.2 /m^2`.
+    fn set_by(&self, place: Span) -> Option<&'i str> {
+        let before = word(self.sources, Span { start: 0, end: place.start, ..place })?;
+        words(before.trim_end().strip_suffix('=')?).next_back()
+    }
+
+    /// Whether some line of a place has an error.
+    fn covers_an_error(&self, place: Span) -> bool {
+        let end = Span { start: place.end, ..place };
+        let (Some(first), Some(last)) = (self.line_of(place), self.line_of(end)) else { return false };
+        self.faulty.range(first..=last).next().is_some()
+    }
+
+    /// Whether a name may have been declared where it stands in what was skipped.
+    fn may_declare(&self, place: Span) -> bool {
+        let Some(text) = word(self.sources, place) else { return true };
+        let (name, _) = leading_word(text);
+        self.any_name
+            || self.suspects.contains(name)
+            || self.set.contains(name)
+            || self.swallowed.contains(name)
+            || name.is_empty() && !self.lost.is_empty()
+    }
+
+    pub(super) fn is_own(&self, one: &Diagnostic) -> bool {
+        let scenario = self.is_broken(SourceId(0));
+        let Some(place) = one.place.as_ref().map(|place| place.span) else {
+            return !(scenario && NAMES.contains(&one.code));
+        };
+        if !scenario && !self.is_broken(place.source) {
+            return true;
+        }
+        let text = word(self.sources, place).unwrap_or_default();
+        // A line that could not be read says no more.
+        let of_line = self.line_of(place).is_some_and(|line| self.derailed.contains(&line));
+        let of_clock = self.clock
+            && (CLOCKS.contains(&one.code) || one.code == DIMENSION && one.title.contains("(steps)"));
+        let of_options = one.code == NO_OPTIONS && self.lost.iter().any(|part| within(*part, place));
+        let of_moves = one.code == NO_MOVES && one.title.contains("no moves") && self.moves;
+        let of_scenery = one.code == INSIDE && self.scenery;
+        let of_name =
+            NAMES.contains(&one.code) && (!PLACED_AT_NAME.contains(&one.code) || self.may_declare(place));
+        let unit = UNKNOWN.contains(&one.code) && dimension::unit(text).is_some();
+        // What is at a name, not what stands beside it.
+        let of_suspect =
+            (one.code.starts_with("E03") || one.code.starts_with("E09") || UNKNOWN.contains(&one.code))
+                && (words(text).any(|name| self.suspects.contains(name))
+                    || self.set_by(place).is_some_and(|name| self.suspects.contains(name)));
+        // A command of several lines is judged as a whole.
+        let of_part = one.code.starts_with("E09") && self.covers_an_error(place);
+        !(of_clock
+            || of_options
+            || of_moves
+            || of_scenery
+            || of_name
+            || of_suspect
+            || of_part
+            || of_line
+            || unit)
+    }
+}

@@ -1,0 +1,286 @@
+//! Errors that follow from others: said once, or not at all.
+//!
+//! What the parser could not read is missing from the tree. A name declared there is then unknown, a process that had
+//! rates seems to have none, moves have no options: those errors would only confuse, and go away with the first one.
+//! Nor is it told at each of its uses that a name is unknown.
+
+mod broken;
+
+use super::queries::Input;
+use crate::syntax::ast::{Expr, ExprKind, Ident, Item, PropertyItem};
+use crate::syntax::diagnostic::{Diagnostic, Label, Severity};
+use crate::syntax::source::{Source, SourceId, Span};
+use broken::Broken;
+use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Bound::{Excluded, Included};
+use std::ops::RangeInclusive;
+
+/// Code of what a declaration lacks.
+const LACKING: &str = "E0209";
+/// Code of a field that nobody knows.
+const UNKNOWN_FIELD: &str = "E0207";
+/// Code of a wrong dimension.
+const DIMENSION: &str = "E0303";
+/// Code of a name that is used before it can be known.
+const EARLY: &str = "E0205";
+/// Codes of unknown names, told once.
+const UNKNOWN: [&str; 4] = ["E0201", "E0203", "E0208", "E0210"];
+/// Most further places that are marked.
+const MOST_MARKS: usize = 3;
+
+/// What compilation found, less what follows from what the parser had said of the same texts.
+pub fn own_errors(found: Vec<Diagnostic>, said: &[Diagnostic], input: &Input<'_>) -> Vec<Diagnostic> {
+    let broken = Broken::of(said, input);
+    let fails = |all: &[Diagnostic]| all.iter().any(|one| one.severity == Severity::Error);
+    let own: Vec<Diagnostic> = found.iter().filter(|one| broken.is_own(one)).cloned().collect();
+    let own = once_a_name(at_declarations(less_what_follows(own, input.sources), input), input.sources);
+    // Nothing is refused without a word.
+    if fails(&found) && !fails(&own) && !fails(said) { found } else { own }
+}
+
+/// Errors less those that follow from the one before: of what stands right after it or is compared with it, of a name
+/// that was set without being declared, and of a field that is missing since it is misspelt.
+fn less_what_follows(mut found: Vec<Diagnostic>, sources: &[Source]) -> Vec<Diagnostic> {
+    let place = |one: &Diagnostic| one.place.as_ref().map(|place| place.span);
+    let settings: BTreeSet<&str> = found
+        .iter()
+        .filter(|one| one.code == UNKNOWN_FIELD)
+        .filter_map(|one| word(sources, place(one)?))
+        .collect();
+    let mut ends: BTreeSet<(SourceId, u32)> = BTreeSet::new();
+    let mut starts: BTreeMap<(SourceId, u32), &'static str> = BTreeMap::new();
+    for one in &found {
+        let Some(span) = place(one) else { continue };
+        ends.insert((span.source, span.end));
+        starts.entry((span.source, span.start)).or_insert(one.code);
+    }
+    let follows = |one: &Diagnostic| {
+        let Some(span) = place(one) else { return false };
+        let beside = || {
+            let before = word(sources, Span { start: 0, end: span.start, ..span }).unwrap_or_default();
+            gaps(before).any(|gap| {
+                let (from, to) = (*gap.start() as u32, *gap.end() as u32);
+                ends.range((span.source, from)..=(span.source, to)).next().is_some()
+            })
+        };
+        let of_setting = || word(sources, span).is_some_and(|name| settings.contains(name));
+        let misspelt = || {
+            let after = (Excluded((span.source, span.start)), Included((span.source, u32::MAX)));
+            starts.range(after).next().is_some_and(|(_, code)| *code == UNKNOWN_FIELD)
+        };
+        one.severity == Severity::Error
+            && (UNKNOWN.contains(&one.code) && (beside() || of_setting())
+                || one.code == LACKING && misspelt())
+    };
+    let broken = found.iter().any(|one| {
+        one.severity == Severity::Error && place(one).is_some_and(|span| span.source == SourceId(0))
+    });
+    let follows = |one: &Diagnostic| {
+        // Who could not be declared is not known yet, either.
+        let early = broken && one.code == EARLY && place(one).is_some_and(|span| span.source != SourceId(0));
+        early || follows(one)
+    };
+    let gone: Vec<bool> = found.iter().map(follows).collect();
+    let mut gone = gone.into_iter();
+    found.retain(|_| !gone.next().unwrap_or(false));
+    found
+}
+
+/// Where something before may end that the end of a text is compared with, or stands right after, in the same line:
+/// the places in which blanks, or blanks around an operator, are all that follows.
+fn gaps(text: &str) -> impl Iterator<Item = RangeInclusive<usize>> {
+    let blank = |text: &str| text.trim_end_matches(|c: char| c.is_whitespace() && c != '\n').len();
+    let plain = blank(text);
+    let behind = ["==", "!=", "/", "*"].into_iter().filter_map(move |operator| {
+        let before = text[..plain].strip_suffix(operator)?;
+        Some(blank(before)..=before.len())
+    });
+    std::iter::once(plain..=text.len()).chain(behind)
+}
+
+/// A constant or parameter that is a bare number.
+struct Bare<'i> {
+    name: &'i str,
+    value: Span,
+}
+
+/// Of a bare number that is used as a quantity its declaration lacks the unit, not each of its uses.
+fn at_declarations(found: Vec<Diagnostic>, input: &Input<'_>) -> Vec<Diagnostic> {
+    let bare = |name: &'_ Ident, value: &'_ Expr| {
+        matches!(&value.kind, ExprKind::Quantity(quantity) if quantity.unit.is_none())
+            .then_some(value.span)
+            .map(|value| (name.span, value))
+    };
+    let of_scenario = input.scenario.items.iter().filter_map(|item| match item {
+        Item::Const { name, value } | Item::Param { name, value, .. } => bare(name, value),
+        _ => None,
+    });
+    let of_properties = input.properties.iter().flat_map(|file| &file.items).filter_map(|item| match item {
+        PropertyItem::Const { name, value } => bare(name, value),
+        _ => None,
+    });
+    let declared: Vec<Bare<'_>> = of_scenario
+        .chain(of_properties)
+        .filter_map(|(name, value)| Some(Bare { name: word(input.sources, name)?, value }))
+        .collect();
+    let mut kept: Vec<Diagnostic> = Vec::new();
+    let mut told_at: BTreeMap<Span, usize> = BTreeMap::new();
+    for one in found {
+        let blamed = blamed(&one, &declared, input.sources);
+        let Some((bare, wanted, place)) = blamed else {
+            if let Some(place) = one.place.as_ref().filter(|_| one.code == DIMENSION) {
+                told_at.entry(place.span).or_insert(kept.len());
+            }
+            kept.push(one);
+            continue;
+        };
+        let before = told_at.get(&bare.value).and_then(|at| kept.get_mut(*at));
+        let use_of = Label { span: place, text: format!("used as {wanted}") };
+        if let Some(before) = before {
+            if before.related.len() < MOST_MARKS {
+                before.related.push(use_of);
+            }
+            continue;
+        }
+        let title = format!("`{}` is a pure number, but is used as {wanted}", bare.name);
+        let mut moved = Diagnostic::error(DIMENSION, bare.value, title);
+        let number = word(input.sources, bare.value).unwrap_or_default();
+        if let Some((_, unit)) = wanted.split_once('(') {
+            moved = moved.hint(format!("write its unit: `{number} {}`", unit.trim_end_matches(')')));
+        }
+        moved.related.push(use_of);
+        told_at.insert(bare.value, kept.len());
+        kept.push(moved);
+    }
+    kept
+}
+
+/// The bare number that an error of dimensions comes of, what it is used as, and where.
+fn blamed<'b, 'd>(
+    one: &'d Diagnostic,
+    declared: &'b [Bare<'b>],
+    sources: &[Source],
+) -> Option<(&'b Bare<'b>, &'d str, Span)> {
+    let wanted = one.title.strip_prefix("expected ")?.strip_suffix(", found a pure number")?;
+    let place = one.place.as_ref().filter(|_| one.code == DIMENSION)?.span;
+    let text = word(sources, place)?;
+    let mut named = declared.iter().filter(|bare| has_word(text, bare.name));
+    // A call may make a pure number of anything.
+    let first = named.next().filter(|_| !text.contains('('))?;
+    named.next().is_none().then_some((first, wanted, place))
+}
+
+/// Tells of an unknown name where it stands first, and marks where it stands again.
+fn once_a_name(found: Vec<Diagnostic>, sources: &[Source]) -> Vec<Diagnostic> {
+    let mut kept: Vec<Diagnostic> = Vec::new();
+    let mut again: Vec<Vec<Span>> = Vec::new();
+    let mut first: BTreeMap<&str, usize> = BTreeMap::new();
+    for one in found {
+        let place = one.place.as_ref().filter(|_| UNKNOWN.contains(&one.code)).map(|place| place.span);
+        let name = place.and_then(|span| Some((leading_word(word(sources, span)?).0, span)));
+        if let Some((name, span)) = name.filter(|(name, _)| !name.is_empty()) {
+            match first.entry(name) {
+                Entry::Occupied(before) => {
+                    again[*before.get()].push(span);
+                    continue;
+                }
+                Entry::Vacant(none) => {
+                    none.insert(kept.len());
+                }
+            }
+        }
+        kept.push(one);
+        again.push(Vec::new());
+    }
+    for (one, again) in kept.iter_mut().zip(again) {
+        let more = again.len().saturating_sub(MOST_MARKS);
+        for (k, span) in again.into_iter().take(MOST_MARKS).enumerate() {
+            let last = k + 1 == MOST_MARKS && more > 0;
+            let text = if last { format!("here too, and {more} more times") } else { "here too".to_owned() };
+            one.related.push(Label { span, text });
+        }
+    }
+    kept
+}
+
+/// The name at the start of a text, and what follows.
+fn leading_word(text: &str) -> (&str, &str) {
+    let text = text.trim_start();
+    let starts = text.starts_with(|c: char| c.is_alphabetic() || c == '_');
+    let end = text.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(text.len());
+    if starts { text.split_at(end) } else { ("", text) }
+}
+
+/// The words of a text.
+fn words(text: &str) -> impl DoubleEndedIterator<Item = &str> {
+    text.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|word| !word.is_empty())
+}
+
+/// The lines of a place.
+fn lines(sources: &[Source], span: Span) -> Option<&str> {
+    let text = &sources.iter().find(|source| source.id == span.source)?.text;
+    let from = text.get(..span.start as usize)?.rfind('\n').map_or(0, |newline| newline + 1);
+    let rest = text.get(span.end as usize..)?;
+    let to = span.end as usize + rest.find('\n').unwrap_or(rest.len());
+    text.get(from..to)
+}
+
+/// Whether a place lies in another one.
+fn within(place: Span, whole: Span) -> bool {
+    place.source == whole.source && whole.start <= place.start && place.end <= whole.end
+}
+
+/// The text of a place.
+fn word(sources: &[Source], span: Span) -> Option<&str> {
+    let source = sources.iter().find(|source| source.id == span.source)?;
+    source.text.get(span.start as usize..span.end as usize)
+}
+
+/// Whether a name stands in a text as a word of its own.
+fn has_word(text: &str, name: &str) -> bool {
+    let inside = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_');
+    let name = name.trim();
+    name.is_empty()
+        || text.match_indices(name).any(|(at, _)| {
+            !inside(text[..at].chars().next_back()) && !inside(text[at + name.len()..].chars().next())
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gaps_are_where_something_beside_may_end() {
+        for text in [
+            "a == ", "a==", "a  \t", "a /", "a", "a\n", "a\n* ", "a *\n", "a =", "é != ", "", " ", "ab /  * ",
+        ] {
+            let beside = |between: &str| {
+                ["", "==", "!=", "/", "*"].contains(&between.trim()) && !between.contains('\n')
+            };
+            let ends = (0..=text.len()).filter(|&at| text.get(at..).is_some_and(beside));
+            let mut found: Vec<usize> =
+                gaps(text).flatten().filter(|&at| text.is_char_boundary(at)).collect();
+            found.sort_unstable();
+            assert_eq!(found, ends.collect::<Vec<_>>(), "{text:?}");
+        }
+    }
+
+    #[test]
+    fn many_unknown_names_are_told_once_each_in_their_order() {
+        let names: Vec<String> = (0..20_000).map(|k| format!("n{}", k % 15_000)).collect();
+        let text = names.join(" + ");
+        let sources = [Source::new(SourceId(0), "a.scn", text.as_str())];
+        let mut at = 0;
+        let found = names.iter().map(|name| {
+            let span = Span::new(SourceId(0), at, at + name.len());
+            at += name.len() + 3;
+            Diagnostic::error("E0201", span, format!("unknown name `{name}`"))
+        });
+        let told = once_a_name(less_what_follows(found.collect(), &sources), &sources);
+        assert_eq!(told.len(), 15_000);
+        assert!((0..15_000).all(|k| told[k].title == format!("unknown name `n{k}`")));
+        assert!((0..15_000).all(|k| told[k].related.len() == usize::from(k < 5_000)));
+    }
+}

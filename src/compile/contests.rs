@@ -1,0 +1,106 @@
+//! Clauses of comparisons and rankings: width, error and procedure.
+
+use super::bounds::WIDEST;
+use super::elaborator::{Elaborator, Locals, Lowered, Reported};
+use super::families::Allowance;
+use super::measures::Sketch;
+use super::methods::{DEFAULT_DELTA, DEFAULT_LOSS, Stated, both, stated};
+use super::study::Ranking;
+use crate::syntax::ast::{Clauses, Method};
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+
+impl Elaborator<'_> {
+    /// Half width, if any, and error of a comparison.
+    pub(super) fn comparison_clauses(
+        &mut self,
+        clauses: &Clauses,
+        sketch: Sketch,
+        allowance: Allowance,
+        locals: &Locals,
+    ) -> Lowered<(Option<f64>, f64)> {
+        let procedure = match &clauses.by {
+            Some(method) => {
+                let said = "a comparison has one procedure only";
+                self.report(Diagnostic::error("E0603", method.span, said))
+            }
+            None => Ok(()),
+        };
+        let within = self.within(clauses, sketch, locals);
+        let width = match (&clauses.within, within) {
+            // The difference ranges over twice as much.
+            (Some(expr), Ok(Some(epsilon))) => {
+                self.width((epsilon, expr.span), sketch, 2.0 * WIDEST).map(Some)
+            }
+            (_, within) => within,
+        };
+        let delta = self.delta(clauses, locals);
+        procedure?;
+        Ok((width?, allowance.error(delta?, DEFAULT_DELTA)))
+    }
+
+    /// Loss, error and procedure of a ranking by a measure.
+    pub(super) fn ranking(
+        &mut self,
+        clauses: &Clauses,
+        (sketch, measured): (Sketch, Span),
+        allowance: Allowance,
+        locals: &Locals,
+    ) -> Lowered<(f64, f64, Ranking)> {
+        let within = self.within(clauses, sketch, locals);
+        let confidence = self.delta(clauses, locals);
+        let delta = allowance.error(confidence.unwrap_or(None), DEFAULT_DELTA);
+        let (procedure, width) = match &clauses.by {
+            None => (Ok((Ranking::Betting, delta)), stated(clauses, within)),
+            Some(method) => self.ranking_by((clauses, method), sketch, (within, delta), allowance, locals),
+        };
+        let epsilon = width.and_then(|width| self.loss(width, sketch, measured));
+        let (ranking, delta) = procedure?;
+        confidence?;
+        Ok((epsilon?, delta, ranking))
+    }
+
+    /// The procedure of a ranking and its error, and the width that is stated.
+    fn ranking_by(
+        &mut self,
+        (clauses, method): (&Clauses, &Method),
+        sketch: Sketch,
+        (within, delta): (Lowered<Option<f64>>, f64),
+        allowance: Allowance,
+        locals: &Locals,
+    ) -> (Lowered<(Ranking, f64)>, Stated) {
+        let ranking = match method.name.name.as_str() {
+            "okamoto" => Ok(Ranking::Okamoto),
+            "betting" => Ok(Ranking::Betting),
+            "one_challenger" => Ok(Ranking::OneChallenger),
+            _ => self.unknown_method(method, &["betting", "one_challenger", "okamoto"]),
+        };
+        if ranking.is_err() && !method.arguments.is_empty() {
+            // What an unknown procedure takes nobody knows, the width among it.
+            let width = if clauses.within.is_some() { stated(clauses, within) } else { Err(Reported) };
+            return (Err(Reported), width);
+        }
+        let arguments = self.arguments((clauses, method), ["epsilon", "delta"], sketch, locals);
+        let delta = self.claimed(arguments.values[1], delta, allowance);
+        let (width, sound) = (self.width_of(clauses, within, &arguments), arguments.sound());
+        // What lacks is perhaps what is misspelt.
+        let width = width.and_then(|width| if width.is_none() { sound.map(|()| width) } else { Ok(width) });
+        (both(ranking, delta).and_then(|found| sound.map(|()| found)), width)
+    }
+
+    /// How much worse than the best a choice may be.
+    fn loss(&mut self, width: Option<(f64, Span)>, sketch: Sketch, measured: Span) -> Lowered<f64> {
+        let (epsilon, at) = match (width, sketch.dimension) {
+            (Some(found), _) => found,
+            // What does not matter in metres nobody knows but who asks.
+            (None, Some(dimension)) if !dimension.is_none() => {
+                let error = Diagnostic::error("E0604", measured, "how much worse may a choice be?");
+                return self
+                    .report(error.hint(format!("say what does not matter, in {dimension}: `within …`")));
+            }
+            (None, Some(_)) => (DEFAULT_LOSS, measured),
+            (None, None) => return Err(Reported),
+        };
+        self.width((epsilon, at), sketch, 2.0 * WIDEST)
+    }
+}

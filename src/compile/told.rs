@@ -1,0 +1,41 @@
+//! What is known of the clock of a scenario that has errors: an error of a time is told as far as it is sure.
+
+use crate::syntax::ast::{Item, ScenarioFile};
+
+/// What is known of a clock.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Told {
+    /// Nothing, not even whether there are steps.
+    Nothing,
+    /// That there are steps of a fixed length in seconds.
+    Stepped,
+    /// The length of a step.
+    Step,
+    /// All of it, the horizon too.
+    Whole,
+}
+
+impl Told {
+    /// What has to be known before an error with this code says anything.
+    pub(super) fn needed(code: &str) -> Self {
+        match code {
+            "E0502" => Self::Whole,
+            "E0501" => Self::Step,
+            "E0503" | "E0507" | "E0508" => Self::Stepped,
+            _ => Self::Nothing,
+        }
+    }
+}
+
+/// Whether a scenario has bodies, which move by steps.
+pub(super) fn has_bodies(file: &ScenarioFile) -> bool {
+    file.items.iter().any(|item| {
+        matches!(item, Item::Agents(_) | Item::Group(_) | Item::Source(_) | Item::Moves(_) | Item::Scene(_))
+    })
+}
+
+/// Whether a scenario has steps of a fixed length in seconds, whatever its processes are.
+pub(super) fn is_stepped(file: &ScenarioFile) -> bool {
+    let sets = |item: &Item| matches!(item, Item::Setting { name, .. } if name.name == "step");
+    has_bodies(file) || file.items.iter().any(sets)
+}
