@@ -9,7 +9,7 @@ use super::contact::Contacts;
 use super::forces::{Forces, REACH};
 use super::nearby::amply_around;
 use super::program::Program;
-use super::social::{Sum, Term, cohesion, decay, repel};
+use super::social::{Sum, Term, cohesion, decay, is_in_reach, repel};
 use super::state::State;
 use super::vector::{Doubles, Part, larger, parts};
 use crate::base::geometry::{Bounds, Vec2};
@@ -356,8 +356,11 @@ impl Lanewise {
                     if touching.any_true() {
                         contacts.push_wall(i as u32, k, part.bits(touching));
                     }
-                    let felt = forces.surfaces.felt(k, part, (x, y), &nearest);
-                    let f = a * decay(part, (r - felt) * rate);
+                    let mut power = gap * rate;
+                    if is_in_reach(part, power) {
+                        power = (r - forces.surfaces.felt(k, part, (x, y), &nearest)) * rate;
+                    }
+                    let f = a * decay(part, power);
                     fx += f * nearest.nx;
                     fy += f * nearest.ny;
                 }

@@ -77,6 +77,12 @@ pub(super) fn repel<S: Simd, const SHARED: bool>(
     (e * one.towards(dx, dy, q), e2 * other.away(dx, dy, q))
 }
 
+/// Whether `decay` of some lane is above zero.
+#[inline(always)]
+pub(super) fn is_in_reach<S: Simd>(part: Part<S>, power: Doubles<S>) -> bool {
+    power.simd_gt(part.c(-REACH * LOG2_E)).any_true()
+}
+
 /// 2^power, zero beyond the reach (and where an agent is absent: there the gap is minus infinity).
 #[inline(always)]
 pub(super) fn decay<S: Simd>(part: Part<S>, power: Doubles<S>) -> Doubles<S> {

@@ -5,6 +5,7 @@ use super::diagnostic::{Diagnostic, Label, Severity};
 use super::source::Source;
 use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use std::ops::Range;
 
 /// Renders diagnostics, each followed by an empty line. `color`: with ANSI colours.
 pub fn render(diagnostics: &[Diagnostic], sources: &[Source], color: bool) -> String {
@@ -33,12 +34,14 @@ fn group<'a>(diagnostic: &'a Diagnostic, sources: &'a [Source]) -> Group<'a> {
             let (here, elsewhere): (Vec<_>, Vec<_>) =
                 rest.into_iter().partition(|label| label.span.source == id);
             if let Some(source) = sources.iter().find(|source| source.id == id) {
-                let mut snippet = Snippet::source(source.text.as_str()).path(source.name.as_str());
-                if let Some(label) = primary {
-                    snippet = snippet.annotation(annotation(AnnotationKind::Primary, label, source));
-                }
-                for label in here {
-                    snippet = snippet.annotation(annotation(AnnotationKind::Context, label, source));
+                let window = window(source, primary.into_iter().chain(here.iter().copied()));
+                let (line, _) = source.line_column(window.start as u32);
+                let mut snippet =
+                    Snippet::source(&source.text[window.clone()]).line_start(line).path(source.name.as_str());
+                let kinds = primary.map(|label| (AnnotationKind::Primary, label)).into_iter();
+                let others = here.into_iter().map(|label| (AnnotationKind::Context, label));
+                for (kind, label) in kinds.chain(others) {
+                    snippet = snippet.annotation(annotation(kind, label, source, window.start));
                 }
                 group = group.element(snippet);
             }
@@ -52,14 +55,31 @@ fn group<'a>(diagnostic: &'a Diagnostic, sources: &'a [Source]) -> Group<'a> {
     group
 }
 
+/// The lines of some labels and one more on either side: all that is shown. The renderer reads what it is given from end to
+/// end, and of a long text that would be much for each of thousands of errors.
+fn window<'a>(source: &Source, labels: impl Iterator<Item = &'a Label>) -> Range<usize> {
+    let (mut low, mut high) = (source.text.len(), 0);
+    for label in labels {
+        let end = floor(&source.text, label.span.end as usize);
+        low = low.min(floor(&source.text, label.span.start as usize)).min(end);
+        high = high.max(end);
+    }
+    let line = |at: usize| source.text[..at].rfind('\n');
+    let start = line(low).and_then(line).map_or(0, |newline| newline + 1);
+    let newline = |from: usize| source.text[from..].find('\n').map(|at| from + at + 1);
+    let end = newline(high).and_then(newline).unwrap_or(source.text.len());
+    start..end
+}
+
 fn annotation<'a>(
     kind: AnnotationKind,
     label: &'a Label,
     source: &Source,
+    from: usize,
 ) -> annotate_snippets::Annotation<'a> {
     let end = floor(&source.text, label.span.end as usize);
     let start = floor(&source.text, label.span.start as usize).min(end);
-    let annotation = kind.span(start..end);
+    let annotation = kind.span(start - from..end - from);
     if label.text.is_empty() { annotation } else { annotation.label(label.text.as_str()) }
 }
 

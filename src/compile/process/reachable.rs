@@ -164,6 +164,10 @@ fn successors(
     for (process, lines) in processes.list.iter().zip(lines) {
         ways.push(changes((process, lines), &processes.variables, &values, wrong)?);
     }
+    // Whatever the others do, the trial ends.
+    if ways.iter().any(Vec::is_empty) {
+        return Ok(Vec::new());
+    }
     let mut joint: Vec<Vec<i64>> = vec![state.to_vec()];
     for changes in ways {
         if let [only] = changes.as_slice() {

@@ -5,7 +5,7 @@ use super::grid::Grid;
 use crate::base::lanes::{LANES, Mask};
 use crate::kernel::contact::Contacts;
 use crate::kernel::forces::Forces;
-use crate::kernel::social::decay;
+use crate::kernel::social::{decay, is_in_reach};
 use crate::kernel::vector::{Part, parts};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -56,9 +56,12 @@ impl Cells {
         for lane in part.bits(gap.simd_gt(part.c(-forces.margin))).iter() {
             contacts.push_wall(self.agent[k + lane], index, Mask::lane(0));
         }
-        let felt = forces.surfaces.felt(index, part, (x, y), &nearest);
         let rate = part.slice(&self.term.rate[eight.clone()]);
-        let f = part.slice(&self.a[eight.clone()]) * decay(part, (r - felt) * rate);
+        let mut power = gap * rate;
+        if is_in_reach(part, power) {
+            power = (r - forces.surfaces.felt(index, part, (x, y), &nearest)) * rate;
+        }
+        let f = part.slice(&self.a[eight.clone()]) * decay(part, power);
         part.take(f * -nearest.nx, &mut self.fx[eight.clone()]);
         part.take(f * -nearest.ny, &mut self.fy[eight]);
     }
