@@ -84,12 +84,12 @@ impl<'a> Compiler<'a> {
         // What `under` sets at the end of the query holds for both sides.
         let common = self.sites[site].settings.clone();
         let sides = (self.under(first, scope, site, &common), self.under(second, scope, site, &common));
-        // Where one side cannot be set up, the other one stands for both.
+        // Where one side cannot be set up, the other one stands for both; where neither can, what they have in common.
         let (one, two) = match &sides {
             (Ok((one, _)), Ok((two, _))) => (*one, *two),
             (Ok((one, _)), Err(_)) => (*one, *one),
             (Err(_), Ok((two, _))) => (*two, *two),
-            (Err(_), Err(_)) => return Err(Reported),
+            (Err(_), Err(_)) => (site, site),
         };
         let ((a, sketch), (b, _)) = (self.measured(one, measure, scope), self.measured(two, measure, scope));
         let elaborator = &mut self.sites[site].elaborator;

@@ -318,7 +318,10 @@ impl<'a> Compiler<'a> {
         let clauses = &query.clauses;
         let locals = Locals::of(scope);
         let text = self.sites[base].elaborator.text(query.span);
-        let (site, own) = self.under(&clauses.under, scope, base, point)?;
+        // Where what it sets is wrong, the world of the call stands in, so that this hides nothing else that is wrong.
+        let under = self.under(&clauses.under, scope, base, point);
+        let unset = under.is_err();
+        let (site, own) = under.unwrap_or_else(|Reported| (base, Vec::new()));
         // What a query sets itself takes the place of what a sweep sets.
         let swept = settings.iter().filter(|(name, _)| own.iter().all(|(mine, _)| mine != name));
         let settings: Vec<_> = swept.cloned().chain(own.iter().cloned()).collect();
@@ -383,7 +386,7 @@ impl<'a> Compiler<'a> {
                 self.push(query.span, text, settings, property_name(measure), ask, unbounded, site);
             }
         }
-        Ok(())
+        if unset { Err(Reported) } else { Ok(()) }
     }
 
     fn push(
