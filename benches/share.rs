@@ -1,7 +1,8 @@
 //! Share of a trial's time that is spent in watching it: reading atoms and signals, and the monitors.
 //!
-//! `cargo bench --bench share`. The corridor with all its properties, and with each of its columns alone; one
-//! core; best of several rounds; what reading the clock itself takes is taken off.
+//! `cargo bench --bench share`, or with words of what is wanted (`-- corridor`, `-- contacts`). The corridor with all its properties, and with each of its columns alone, eight trials at
+//! once; then one trial of a large crowd, of whom everybody is asked in each state. One core; best of several rounds; what
+//! reading the clock itself takes is taken off.
 
 #![allow(
     missing_docs,
@@ -10,37 +11,80 @@
     reason = "a bench reads the clock and prints"
 )]
 
-use smc::base::lanes::Mask;
+use smc::base::lanes::{LANES, Mask};
 use smc::base::random::TrialKey;
 use smc::compile::{Files, Input, compile};
 use smc::engine::Subject;
-use smc::kernel::{Readings, Scratch, State, dynamics, start};
+use smc::kernel::{Layout, Readings, Scratch, State, dynamics, start};
 use smc::logic::Monitor;
 use smc::syntax::parse::{parse_properties, parse_scenario};
 use smc::syntax::source::{Source, SourceId};
 use std::time::Instant;
 
-const STEPS: usize = 500;
-const ROUNDS: u64 = 40;
+/// People who go one way, 0.7 a square metre.
+const CROWD: &str = "
+scenario \"Crowd\"
+horizon = 10 s
+step = 0.01 s
+kind adult: sfm preset helbing2000 { noise = 0.05 m/s }
+scene {
+  region all: rect (0, 0) .. (SIDE, SIDE)
+  region far: rect (1000, 0) .. (1001, 400)
+}
+agents z[PEOPLE]: adult { at = uniform in all  route = far }
+";
+
+/// What is asked of everybody; none of it ends a trial.
+const EVERYBODY: [(&str, &str); 4] = [
+    ("speeds", "estimate P(F<=8 s (exists a in z: speed(a) > 10 m/s))"),
+    ("contacts of each", "estimate P(F<=8 s (count(a in z: contact(a)) > 1000000))"),
+    ("who comes near", "estimate P(F<=8 s (exists a in z: clearance(a) < -1 m))"),
+    ("least clearance", "estimate P(F<=8 s (min(clearance(a) for a in z) < -10 m))"),
+];
 
 fn main() {
-    let scenario = Source::new(SourceId(0), "corridor.scn", include_str!("../models/corridor.scn"));
-    let property = Source::new(SourceId(1), "corridor.bltl", include_str!("../properties/corridor.bltl"));
+    let clock = clock();
+    println!("reading the clock takes {:.0} ns", clock * 1e9);
+    let (model, asked) =
+        (include_str!("../models/corridor.scn"), include_str!("../properties/corridor.bltl"));
+    let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with("--")).collect();
+    let is_wanted = |name: &str| words.is_empty() || words.iter().any(|word| name.contains(word.as_str()));
+    if let Some(corridor) = subject(model, asked).filter(|_| is_wanted("corridor")) {
+        println!("corridor, 18 agents, per step of eight lanes:");
+        let all: Vec<usize> = (0..corridor.columns.len()).collect();
+        measure(&corridor, &all, (500, 40), clock);
+        for &column in &all {
+            measure(&corridor, &[column], (500, 40), clock);
+        }
+    }
+    for (people, rounds) in [(2000_u32, 10), (20_000, 3)] {
+        let side = (f64::from(people) / 0.7).sqrt();
+        let crowd = CROWD.replace("PEOPLE", &people.to_string()).replace("SIDE", &side.to_string());
+        println!("{people} people, per step of one trial:");
+        for (name, question) in EVERYBODY {
+            if let Some(crowd) = subject(&crowd, question).filter(|_| is_wanted(name)) {
+                print!("{name}: ");
+                measure(&crowd, &[0], (100, rounds), clock);
+            }
+        }
+    }
+}
+
+fn subject(scenario: &str, properties: &str) -> Option<Subject> {
+    let scenario = Source::new(SourceId(0), "watched.scn", scenario);
+    let properties = Source::new(SourceId(1), "watched.bltl", properties);
     let (model, _) = parse_scenario(&scenario);
-    let (questions, _) = parse_properties(&property);
-    let sources = [scenario, property];
+    let (questions, _) = parse_properties(&properties);
+    let sources = [scenario, properties];
     let files = Files::default();
     let input =
         Input { sources: &sources, scenario: &model, properties: &[questions], files: &files, settings: &[] };
-    let Some(study) = compile(&input).0 else { return println!("the corridor does not compile") };
-    let subject = Subject::new(&study.worlds[0]);
-    let all: Vec<usize> = (0..subject.columns.len()).collect();
-    let clock = clock();
-    println!("per step of eight lanes, 18 agents; reading the clock takes {:.0} ns:", clock * 1e9);
-    measure(&subject, &all, clock);
-    for &column in &all {
-        measure(&subject, &[column], clock);
-    }
+    let (study, diagnostics) = compile(&input);
+    let Some(study) = study else {
+        println!("this does not compile: {diagnostics:?}");
+        return None;
+    };
+    Some(Subject::new(&study.worlds[0]))
 }
 
 /// Seconds that a look at the clock takes: the least of many.
@@ -55,17 +99,21 @@ fn clock() -> f64 {
     looks.fold(f64::INFINITY, f64::min)
 }
 
-fn measure(subject: &Subject, columns: &[usize], clock: f64) {
+fn measure(subject: &Subject, columns: &[usize], (steps, rounds): (usize, u64), clock: f64) {
     let code = subject.code(columns);
     let (mut moving, mut watching, mut deciding) = (f64::INFINITY, f64::INFINITY, f64::INFINITY);
-    for round in 0..ROUNDS {
+    for round in 0..rounds {
         let program = &subject.program;
         let mut state = State::new(program.layout, program.scenario.agents.len());
         let mut scratch = Scratch::new();
         let mut readings = Readings::default();
         let mut monitors: Vec<Monitor> = columns.iter().filter_map(|c| subject.monitor(*c).ok()).collect();
-        for lane in 0..8 {
-            let key = TrialKey { seed: 1, index: round * 8 + lane as u64, branch: 0 };
+        let lanes = match program.layout {
+            Layout::Trials => LANES,
+            Layout::Agents => 1,
+        };
+        for lane in 0..lanes {
+            let key = TrialKey { seed: 1, index: round * LANES as u64 + lane as u64, branch: 0 };
             if start::load(program, &mut state, lane, key, None).is_err() {
                 return println!("a trial cannot start");
             }
@@ -75,9 +123,9 @@ fn measure(subject: &Subject, columns: &[usize], clock: f64) {
         }
         dynamics::refresh(program, &mut state, &mut scratch, Mask::ALL);
         let (mut a, mut b, mut c) = (0.0, 0.0, 0.0);
-        for _ in 0..STEPS {
+        for _ in 0..steps {
             let begin = Instant::now();
-            code.run(program, &state, &mut readings);
+            code.run_close(program, &state, scratch.close(&state), &mut readings);
             let read = Instant::now();
             for monitor in &mut monitors {
                 let open = !monitor.decided();
@@ -95,7 +143,7 @@ fn measure(subject: &Subject, columns: &[usize], clock: f64) {
         watching = watching.min(b);
         deciding = deciding.min(c);
     }
-    let each = |seconds: f64| (seconds / STEPS as f64 - clock) * 1e9;
+    let each = |seconds: f64| (seconds / steps as f64 - clock) * 1e9;
     let (moving, watching, deciding) = (each(moving), each(watching), each(deciding));
     let share = 100.0 * (watching + deciding) / (moving + watching + deciding);
     println!(

@@ -153,8 +153,9 @@ impl Worker {
         let diverged = ((self.state.diverged | self.state.queues.full) & self.state.occupied) | faulty;
         let watched = self.state.occupied & !diverged;
         let mut touched = diverged;
+        let close = self.scratch.close(&self.state);
         for (sheet, readings) in self.sheets.iter_mut().zip(&mut self.readings) {
-            sheet.code.run(&subject.program, &self.state, readings);
+            sheet.code.run_close(&subject.program, &self.state, close, readings);
             // Without a value where one is needed, nothing more can be said.
             let lost = sheet.lost(readings, &self.state.ticks) & watched;
             for (k, observer) in sheet.observers.iter_mut().enumerate() {

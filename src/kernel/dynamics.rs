@@ -20,6 +20,7 @@
 
 use super::behaviour;
 use super::cells::Cells;
+use super::close::Close;
 use super::contact::Contacts;
 use super::drive;
 use super::lanewise::Lanewise;
@@ -49,6 +50,8 @@ pub struct Scratch {
     /// Positions at which `contacts` was made.
     seen_x: Vec<Lanes>,
     seen_y: Vec<Lanes>,
+    /// Trial and tick of the first lane then.
+    seen: Option<(TrialKey, u64)>,
     /// Slots that take part in the present step.
     moving: Vec<Mask>,
     /// Slots that contact has moved already.
@@ -79,11 +82,23 @@ impl Scratch {
             sums: Vec::new(),
             seen_x: Vec::new(),
             seen_y: Vec::new(),
+            seen: None,
             moving: Vec::new(),
             moved: Vec::new(),
             processes: process::Scratch::default(),
             behaviours: behaviour::Scratch::default(),
         }
+    }
+
+    /// Who may touch whom in a state of one large crowd, if that is the one that `refresh` or `step` left, and all places
+    /// are numbers.
+    pub fn close(&self, state: &State) -> Option<Close<'_>> {
+        let same = state.layout == Layout::Agents
+            && self.seen == Some((state.keys[0], state.ticks[0]))
+            && same_bits(&self.seen_x, &state.x)
+            && same_bits(&self.seen_y, &state.y);
+        let edge = self.cells.edge();
+        (same && edge > f64::NEG_INFINITY).then(|| Close { pairs: self.contacts.pairs(), edge })
     }
 }
 
@@ -176,13 +191,14 @@ fn slots(layout: Layout, lanes: Mask) -> Mask {
 
 #[inline(always)]
 fn find_forces<S: Simd>(simd: S, program: &Program, state: &State, scratch: &mut Scratch) {
-    let Scratch { lanewise, cells, contacts, sums, seen_x, seen_y, .. } = scratch;
+    let Scratch { lanewise, cells, contacts, sums, seen_x, seen_y, seen, .. } = scratch;
     match state.layout {
         Layout::Trials => lanewise.forces(simd, program, state, sums, contacts),
         Layout::Agents => cells.forces(simd, program, state, sums, contacts),
     }
     seen_x.clone_from(&state.x);
     seen_y.clone_from(&state.y);
+    *seen = Some((state.keys[0], state.ticks[0]));
 }
 
 #[inline(always)]

@@ -6,6 +6,7 @@
 mod barrier;
 pub mod behaviour;
 mod cells;
+mod close;
 pub mod code;
 mod contact;
 pub mod drive;
@@ -23,6 +24,7 @@ pub mod state;
 mod surfaces;
 mod vector;
 
+pub use close::Close;
 pub use code::{Code, Readings};
 pub use dynamics::{Scratch, jump, refresh, step};
 pub use program::Program;

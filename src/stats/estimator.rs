@@ -106,9 +106,8 @@ pub enum AnyEstimator {
 
 impl AnyEstimator {
     /// The default for half-width `epsilon` and error `delta`: calibrated sequential Clopper-Pearson where
-    /// the level, or that of a slightly smaller error, is in the proven table or can be proven in seconds
-    /// (epsilon of 0.005 or more), else whichever of alpha spending and Okamoto has the smaller largest number
-    /// of trials.
+    /// the level, or that of a slightly smaller error, is in the proven table or can be proven in seconds (Okamoto's
+    /// size is that small), else whichever of alpha spending and Okamoto has the smaller largest number of trials.
     ///
     /// Which one it is depends on `epsilon` and `delta` alone. Where it takes a proof to know, that can wait: the
     /// estimator reads outcomes up to where it `waits`, and goes on once the level is `settle`d.

@@ -5,7 +5,7 @@ use crate::{p, scenario};
 use proptest::prelude::*;
 use smc::base::geometry::Segment;
 use smc::base::lanes::{LANES, Mask};
-use smc::kernel::{Code, Layout, Program, Readings, State};
+use smc::kernel::{Code, Layout, Program, Readings, Scratch, State, dynamics};
 use smc::model::{
     AgentId, Arithmetic, Barrier, Bool, Comparison, Field, Fold, Num, Obstacle, Place, Scene, Set, Who,
 };
@@ -68,6 +68,9 @@ fn state(agents: usize, shape: Shape, bodies: Bodies, (seed, step): (u64, usize)
         let (x, y) = place(shape, seed, k, step);
         state.x[block].0[lane] = x;
         state.y[block].0[lane] = y;
+        for field in [&mut state.mass, &mut state.tau, &mut state.a, &mut state.b, &mut state.b2] {
+            field[block].0[lane] = 1.0;
+        }
         state.radius[block].0[lane] = match bodies {
             Bodies::Equal => 0.25,
             Bodies::Drawn => 0.2 + 0.1 * drawn(seed, k, 6),
@@ -132,6 +135,9 @@ fn questions(agents: usize) -> (Vec<Bool>, Vec<Num>) {
         Bool::Forall(all(None), Box::new(far(Comparison::Greater, &distance(), 0.3))),
         Bool::Forall(all(None), Box::new(far(Comparison::Greater, &distance(), -1.0))),
     ];
+    let nearest = || Num::Fold(Fold::Min, all(Some(me)), Box::new(fixed_first.clone()));
+    let sign = Num::Combine(Arithmetic::Multiply, Box::new(Num::Constant(-1.0)), Box::new(nearest()));
+    let turned = Num::Combine(Arithmetic::Min, Box::new(nearest()), Box::new(sign));
     let mut signals = vec![
         clearances(Fold::Min),
         clearances(Fold::Max),
@@ -139,9 +145,14 @@ fn questions(agents: usize) -> (Vec<Bool>, Vec<Num>) {
         Num::Count(all(None), Box::new(Bool::Contact(me))),
         Num::Count(all(None), Box::new(far(Comparison::AtLeast, &distance(), 0.75))),
         Num::Count(some.clone(), Box::new(far(Comparison::Greater, &fixed_first, 7.0))),
-        near(some, distance()),
+        near(some.clone(), distance()),
         near(all(Some(me)), distance()),
-        near(all(Some(me)), running_first),
+        near(all(Some(me)), running_first.clone()),
+        Num::Fold(Fold::Min, some.clone(), Box::new(Num::Clearance(me))),
+        Num::Fold(Fold::Min, all(Some(alone(7))), Box::new(Num::Clearance(me))),
+        Num::Fold(Fold::Min, all(None), Box::new(nearest())),
+        Num::Fold(Fold::Min, all(None), Box::new(Num::Fold(Fold::Min, some, Box::new(running_first)))),
+        Num::Fold(Fold::Min, all(None), Box::new(turned)),
     ];
     for k in [0, 50, 67, agents - 1] {
         atoms.push(Bool::Contact(alone(k)));
@@ -163,16 +174,27 @@ fn check(
     let mut program = Program::new(Arc::clone(&scenario));
     program.layout = Layout::Agents;
     let (atoms, signals) = questions(agents);
-    // Contacts beside clearances are read off them: they are asked alone, too.
+    // Contacts beside clearances are read off them: they are asked alone, too. And all with the pairs that the forces find.
     let codes =
         [Code::compile(&scenario, &atoms, &signals), Code::compile(&scenario, &atoms, &signals[3..4])];
-    let mut readings = [Readings::default(), Readings::default()];
+    let mut readings = [(); 2].map(|()| Readings::default());
+    let mut close_readings = [(); 2].map(|()| Readings::default());
+    let mut scratch = Scratch::new();
     for step in 0..3 {
-        let state = state(agents, shape, bodies, (seed, step), if step == 1 { odd } else { 0 });
-        let mut plain = Plain { scene: &scenario.scene, state: &state, trial: 0, running: Vec::new() };
+        let mut state = state(agents, shape, bodies, (seed, step), if step == 1 { odd } else { 0 });
         for (code, readings) in codes.iter().zip(&mut readings) {
             code.run(&program, &state, readings);
         }
+        dynamics::refresh(&program, &mut state, &mut scratch, Mask::lane(0));
+        let close = scratch.close(&state);
+        prop_assert!(close.is_some() || (step == 1 && odd > 0));
+        for ((code, readings), beside) in codes.iter().zip(&mut close_readings).zip(&readings) {
+            code.run_close(&program, &state, close, readings);
+            let bits = |all: &Readings| all.signals.iter().map(|one| one.0[0].to_bits()).collect::<Vec<_>>();
+            prop_assert_eq!(&readings.atoms, &beside.atoms, "step {}", step);
+            prop_assert_eq!(bits(readings), bits(beside), "step {}", step);
+        }
+        let mut plain = Plain { scene: &scenario.scene, state: &state, trial: 0, running: Vec::new() };
         for (k, atom) in atoms.iter().enumerate() {
             let wanted = plain.truth(atom).map(|bit| bit.0);
             prop_assert_eq!(Some(readings[0].atoms[k].has(0)), wanted, "atom {} step {}", k, step);

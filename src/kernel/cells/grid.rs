@@ -1,7 +1,7 @@
 //! How the plane is cut into strips and cells.
 
 use crate::base::geometry::{Bounds, Vec2};
-use crate::base::lanes::Lanes;
+use crate::base::lanes::{Lanes, Mask};
 use crate::kernel::forces::{Forces, REACH};
 use crate::kernel::state::State;
 use crate::kernel::vector::{Doubles, Part, larger, parts, smaller};
@@ -30,6 +30,8 @@ pub(super) struct Grid {
     per_height: f64,
     pub(super) columns: usize,
     pub(super) strips: usize,
+    /// Between two who cannot touch within a step is a gap of more than this, m, however it is rounded: see `Close`.
+    pub(super) edge: f64,
 }
 
 impl Grid {
@@ -89,6 +91,7 @@ pub(super) fn survey<S: Simd>(simd: S, forces: &Forces, state: &State) -> Grid {
     let mut low = (Lanes::splat(f64::INFINITY), Lanes::splat(f64::INFINITY));
     let mut high = (Lanes::splat(f64::NEG_INFINITY), Lanes::splat(f64::NEG_INFINITY));
     let (mut widest, mut farthest) = (Lanes::ZERO, Lanes::splat(forces.margin));
+    let mut odd = Mask::NONE;
     for part in parts(simd) {
         let (mut low_x, mut low_y) = (part.load(&low.0), part.load(&low.1));
         let (mut high_x, mut high_y) = (part.load(&high.0), part.load(&high.1));
@@ -100,7 +103,10 @@ pub(super) fn survey<S: Simd>(simd: S, forces: &Forces, state: &State) -> Grid {
             low_y = smaller::<S>(here.select(y, low_y), low_y);
             high_x = larger::<S>(here.select(x, high_x), high_x);
             high_y = larger::<S>(here.select(y, high_y), high_y);
-            wide = larger::<S>(here.select(part.load(&state.radius[block]), wide), wide);
+            let radius = part.load(&state.radius[block]);
+            wide = larger::<S>(here.select(radius, wide), wide);
+            // Zero times what is none or infinite is no number.
+            odd |= part.bits(here & !((x + y + radius) * part.c(0.0)).simd_eq(part.c(0.0)));
             let mut range = part.load(&state.b[block]);
             if forces.second {
                 range = larger::<S>(range, part.load(&state.b2[block]));
@@ -123,9 +129,21 @@ pub(super) fn survey<S: Simd>(simd: S, forces: &Forces, state: &State) -> Grid {
     let (x, y) = (least(low.0), least(low.1));
     let (wide, high) = (most(high.0) - x, most(high.1) - y);
     let slack = 1e-9 * (reach + wide + high);
-    let (columns, strips) = (1, 1);
-    let mut grid =
-        Grid { x, y, reach, beyond, slack, height: 1.0, per_width: 0.0, per_height: 0.0, columns, strips };
+    let edge = forces.margin - 1e-9 * (2.0 * widest + forces.margin);
+    let edge = if odd.is_empty() { edge } else { f64::NEG_INFINITY };
+    let mut grid = Grid {
+        x,
+        y,
+        reach,
+        beyond,
+        slack,
+        height: 1.0,
+        per_width: 0.0,
+        per_height: 0.0,
+        columns: 1,
+        strips: 1,
+        edge,
+    };
     if !(wide.is_finite() && high.is_finite() && reach.is_finite() && reach > 0.0) {
         // Nobody there, or somebody infinitely far away: one cell holds all.
         return Grid { x: 0.0, y: 0.0, slack: 0.0, ..grid };

@@ -61,9 +61,16 @@ pub(super) struct Cells {
     touches: Vec<Touch>,
     own: Vec<Sum>,
     room: Vec<u32>,
+    /// As in `Close`.
+    edge: f64,
 }
 
 impl Cells {
+    /// Between two who were not found near enough to touch is a gap of more than this, m.
+    pub(super) const fn edge(&self) -> f64 {
+        self.edge
+    }
+
     /// Forces at the present positions into `sums`, and who may touch whom into `contacts`.
     #[inline(always)]
     pub(super) fn forces<S: Simd>(
@@ -78,10 +85,12 @@ impl Cells {
         sums.clear();
         sums.resize(state.x.len(), Sum::default());
         contacts.clear();
+        self.edge = f64::NEG_INFINITY;
         if !state.occupied.has(0) {
             return;
         }
         let grid = survey(simd, forces, state);
+        self.edge = grid.edge;
         simd.vectorize(
             #[inline(always)]
             || self.sort(simd, &grid, forces, state),

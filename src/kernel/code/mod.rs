@@ -21,6 +21,7 @@ mod schedule;
 mod span;
 mod vicinity;
 
+use super::close::Close;
 use super::program::Program;
 use super::state::{Layout, State};
 use crate::base::lanes::{Lanes, Mask};
@@ -123,8 +124,28 @@ impl Code {
         self.read(program.layout, state, readings);
     }
 
+    /// The same, with what the kernel found out about who is close to whom in this state: the same bits, sooner.
+    pub fn run_close(
+        &self,
+        program: &Program,
+        state: &State,
+        close: Option<Close<'_>>,
+        readings: &mut Readings,
+    ) {
+        self.read_close(program.layout, (state, close), readings);
+    }
+
     /// Reads all lanes of a state in this layout.
     pub(super) fn read(&self, layout: Layout, state: &State, readings: &mut Readings) {
+        self.read_close(layout, (state, None), readings);
+    }
+
+    fn read_close(
+        &self,
+        layout: Layout,
+        (state, close): (&State, Option<Close<'_>>),
+        readings: &mut Readings,
+    ) {
         let known = readings.loaded.as_ref().is_some_and(|loaded| Arc::ptr_eq(loaded, &self.registers));
         if !known {
             readings.numbers.clone_from(&self.registers);
@@ -135,12 +156,12 @@ impl Code {
         }
         match layout {
             Layout::Trials => {
-                dispatch!(self.level, simd => machine::execute::<_, false>(simd, self, state, readings));
+                dispatch!(self.level, simd => machine::execute::<_, false>(simd, self, (state, None), readings));
             }
             Layout::Agents => {
                 readings.number += 1;
                 readings.vicinities.resize_with(self.lists.len(), Vicinity::default);
-                dispatch!(self.level, simd => machine::execute::<_, true>(simd, self, state, readings));
+                dispatch!(self.level, simd => machine::execute::<_, true>(simd, self, (state, close), readings));
             }
         }
         machine::collect(self, state, readings);

@@ -259,6 +259,19 @@ impl Graph {
         self.enter(Node::Constant(value.to_bits()))
     }
 
+    /// Whether a value is computed from another one, or is that.
+    pub(super) fn needs(&self, id: Id, other: Id) -> bool {
+        // Operands come before their users.
+        let mut open = vec![id];
+        while let Some(id) = open.pop() {
+            if id == other {
+                return true;
+            }
+            open.extend(self.nodes[id as usize].operands().into_iter().filter(|&operand| operand >= other));
+        }
+        false
+    }
+
     /// Whether a value depends on a running agent.
     pub(super) fn depends_on(&self, id: Id, var: u32) -> bool {
         self.free[id as usize].contains(&var)

@@ -2,6 +2,7 @@
 //! allow, operands before users, one register each.
 
 use super::node::{Crowd, Graph, Id, Join, Node};
+use crate::model::{Arithmetic, Fold, Who};
 
 /// An instruction.
 #[derive(Clone, Debug)]
@@ -33,6 +34,8 @@ pub(super) struct Loop {
     pub(super) exit: usize,
     /// Whether eight members of one trial can be taken at once.
     pub(super) lanewise: bool,
+    /// Register of a smallest measure in the body of which only the least of all members matters.
+    pub(super) least: Option<Id>,
 }
 
 /// Linear code.
@@ -107,6 +110,7 @@ fn emit(graph: &Graph, roots: &[Id], level: u32, out: &mut Schedule) {
                     start,
                     exit: start,
                     lanewise: false,
+                    least: least(graph, &node).map(|id| out.registers[id as usize]),
                 };
                 out.loops.push(info);
                 emit(graph, &[body], var + 1, out);
@@ -123,5 +127,28 @@ fn emit(graph: &Graph, roots: &[Id], level: u32, out: &mut Schedule) {
                 out.instructions.push(Instruction::Do(into, node));
             }
         }
+    }
+}
+
+/// The smallest measure around the running agent of a loop that joins the least, where the body is that measure, or
+/// nothing larger, for all members who are there: to raise it in somebody who has not the least changes nothing.
+fn least(graph: &Graph, node: &Node) -> Option<Id> {
+    let Node::Loop(Join::Fold(Fold::Min), Crowd { except: None, .. }, var, body) = *node else { return None };
+    let me = Who::Running(var);
+    // Who is not there is not among the members either.
+    let mut id = match graph.nodes[body as usize] {
+        Node::Select(here, id, _) if graph.nodes[here as usize] == Node::Present(me) => id,
+        _ => body,
+    };
+    // The walls, which are the same however far the others are.
+    if let Node::Combine(Arithmetic::Min, first, second) = graph.nodes[id as usize] {
+        if graph.needs(second, first) {
+            return None;
+        }
+        id = first;
+    }
+    match graph.nodes[id as usize] {
+        Node::Nearest(who, crowd, _) if who == me && crowd.except == Some(me) => Some(id),
+        _ => None,
     }
 }

@@ -62,6 +62,11 @@ impl Contacts {
         self.listed.is_empty()
     }
 
+    /// Pairs of the only trial.
+    pub(super) fn pairs(&self) -> &[(u32, u32)] {
+        &self.candidates[0].pairs
+    }
+
     /// Agents `i` and `j` may touch within a step in these lanes.
     #[inline]
     pub(super) fn push_pair(&mut self, i: u32, j: u32, lanes: Mask) {

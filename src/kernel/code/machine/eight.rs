@@ -3,13 +3,15 @@
 //! In a state of one trial every lane has the same; a loop whose body is `lanewise` gives each lane a member of its own
 //! instead. What the members say is joined one after the other, so that no bit depends on how many are taken at once.
 
-use super::super::lanes::{Body, greater, lesser};
-use super::super::node::Join;
+use super::super::crowd::Members;
+use super::super::lanes::{Body, Vector, greater, lesser, narrow};
+use super::super::node::{Crowd, Id, Join, Measure};
 use super::super::schedule::Loop;
+use super::super::vicinity::Question;
 use super::Machine;
 use crate::base::lanes::{LANES, Mask};
-use crate::model::{Fold, Who};
-use fearless_simd::Simd;
+use crate::model::{Comparison, Fold, Who};
+use fearless_simd::{Simd, prelude::*};
 
 impl<S: Simd, const ONE: bool> Machine<'_, S, ONE> {
     /// Whoever is read.
@@ -21,20 +23,24 @@ impl<S: Simd, const ONE: bool> Machine<'_, S, ONE> {
         }
     }
 
+    /// The block that the next eight members are, if they are one and all present.
+    #[inline(always)]
+    fn whole_block(&self, members: Members<'_>, next: usize) -> Option<usize> {
+        let eight = members.list.get(next..next + LANES)?;
+        // Lists ascend: eight members who end seven after the first are a block.
+        let (first, last) = (eight[0] as usize, eight[LANES - 1] as usize);
+        let block = first / LANES;
+        let whole = first.is_multiple_of(LANES) && last == first + LANES - 1;
+        let all = whole && members.except as usize / LANES != block;
+        if all && self.view.state.present[block] == Mask::ALL { Some(block) } else { None }
+    }
+
     /// Goes to the next eight members that are present, or to what is left of them.
     #[inline(always)]
     pub(super) fn advance_eight(&mut self, info: &Loop) -> bool {
         let members = self.members(info.crowd);
         let mut next = self.frames[info.var as usize].next;
-        let block = |next: usize| {
-            let eight = members.list.get(next..next + LANES)?;
-            let first = eight[0] as usize;
-            let follows =
-                |(k, member): (usize, &u32)| *member as usize == first + k && *member != members.except;
-            let whole = first.is_multiple_of(LANES) && eight.iter().enumerate().all(follows);
-            (whole && self.view.state.present[first / LANES] == Mask::ALL).then_some(first / LANES)
-        };
-        if let Some(block) = block(next) {
+        if let Some(block) = self.whole_block(members, next) {
             self.frames[info.var as usize].next = next + LANES;
             self.frames[info.var as usize].present = Mask::ALL;
             self.eight = Some((info.var, Body::Block(block)));
@@ -43,7 +49,9 @@ impl<S: Simd, const ONE: bool> Machine<'_, S, ONE> {
         let (mut eight, mut found) = ([0; LANES], 0);
         while let Some(&member) = members.list.get(next) {
             // What is left of a block is read by itself where whole ones follow.
-            let turn = found > 0 && (member as usize).is_multiple_of(LANES) && block(next).is_some();
+            let turn = found > 0
+                && (member as usize).is_multiple_of(LANES)
+                && self.whole_block(members, next).is_some();
             if found == LANES || turn {
                 break;
             }
@@ -99,6 +107,71 @@ impl<S: Simd, const ONE: bool> Machine<'_, S, ONE> {
             self.put(info.count, self.number(info.count) + f64::from(present.0.count_ones()));
         }
         false
+    }
+
+    /// The block of running agents who ask about a crowd without themselves, if they are a whole one.
+    #[inline(always)]
+    fn asking_block(&self, who: Who, crowd: Crowd) -> Option<usize> {
+        match (self.eight, who, crowd.except) {
+            (Some((var, Body::Block(block))), Who::Running(asks), Some(Who::Running(out)))
+                if asks == var && out == var =>
+            {
+                Some(block)
+            }
+            _ => None,
+        }
+    }
+
+    /// Smallest measures between a block of running agents and a crowd, if they are known. Where only the least of a loop
+    /// is wanted, perhaps something larger than that.
+    #[inline(always)]
+    pub(super) fn nearest_of_block(
+        &mut self,
+        into: Id,
+        who: Who,
+        crowd: Crowd,
+        measure: Measure,
+    ) -> Option<Vector<S>> {
+        let block = self.asking_block(who, crowd)?;
+        let around = self.around(crowd);
+        let vicinity = self.vicinities.get_mut(crowd.list as usize)?;
+        if !vicinity.is_asked_much(&around, LANES as u32) {
+            return None;
+        }
+        if let Some((wanted, askers)) = self.least
+            && wanted == into
+            && let Some(found) =
+                vicinity.nearest_of_block(&around, Question::LeastOf { measure, askers }, block)
+        {
+            return Some(self.view.register(found));
+        }
+        let found = vicinity.nearest_of_block(&around, Question::Nearest(measure), block)?;
+        let found = self.view.register(found);
+        if narrow(found.simd_eq(found)) == Mask::ALL { Some(found) } else { None }
+    }
+
+    /// The running agents of a block from which all of a crowd are far, if that is known and the bound the same for each.
+    #[inline(always)]
+    pub(super) fn all_far_of_block(
+        &mut self,
+        who: Who,
+        crowd: Crowd,
+        measure: Measure,
+        (test, wanted): (Comparison, bool),
+        bound: Vector<S>,
+    ) -> Option<Mask> {
+        let block = self.asking_block(who, crowd)?;
+        let first = bound[0];
+        if narrow(bound.simd_eq(self.view.splat(first))) != Mask::ALL {
+            return None;
+        }
+        let around = self.around(crowd);
+        let vicinity = self.vicinities.get_mut(crowd.list as usize)?;
+        if !vicinity.is_asked_much(&around, LANES as u32) {
+            return None;
+        }
+        let question = Question::AllFar { measure, test, wanted, bound: first.to_bits() };
+        vicinity.far_of_block(&around, question, block)
     }
 
     /// What `f` says of whoever is read, one after the other.

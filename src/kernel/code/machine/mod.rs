@@ -7,9 +7,10 @@ use super::crowd::{self, Members, Probe};
 use super::lanes::{Body, Vector, View, by_lane, by_lane_of_two, greater, lesser, narrow, widen};
 use super::node::{Crowd, Id, Join, Measure, Node};
 use super::schedule::{Instruction, Loop};
-use super::vicinity::{Asker, Vicinity};
+use super::vicinity::{Around, Asker, Vicinity};
 use super::{Code, Readings};
 use crate::base::lanes::{LANES, Lanes, Mask};
+use crate::kernel::close::Close;
 use crate::kernel::state::State;
 use crate::model::{Arithmetic, Comparison, Fold, Function, Who};
 use fearless_simd::{Simd, prelude::*};
@@ -37,6 +38,10 @@ struct Machine<'a, S: Simd, const ONE: bool> {
     vicinities: &'a mut [Vicinity],
     /// Number of the state.
     number: u64,
+    /// Who may touch whom in it, where that is known.
+    close: Option<Close<'a>>,
+    /// In a loop of which only the least of a number matters, the register of that number and the list of the loop.
+    least: Option<(Id, u32)>,
 }
 
 /// Runs the code; the registers are left with all values.
@@ -44,7 +49,7 @@ struct Machine<'a, S: Simd, const ONE: bool> {
 pub(super) fn execute<S: Simd, const ONE: bool>(
     simd: S,
     code: &Code,
-    state: &State,
+    (state, close): (&State, Option<Close<'_>>),
     readings: &mut Readings,
 ) {
     let mut machine = Machine::<S, ONE> {
@@ -56,6 +61,8 @@ pub(super) fn execute<S: Simd, const ONE: bool>(
         eight: None,
         vicinities: &mut readings.vicinities,
         number: readings.number,
+        close,
+        least: None,
     };
     let instructions = code.schedule.instructions.as_slice();
     let mut at = 0;
@@ -113,6 +120,7 @@ impl<'a, S: Simd, const ONE: bool> Machine<'a, S, ONE> {
     #[inline(always)]
     fn begin(&mut self, info: &Loop) {
         self.frames[info.var as usize].next = 0;
+        self.least = info.least.map(|register| (register, info.crowd.list));
         let start = match info.join {
             Join::Fold(Fold::Min) => f64::INFINITY,
             Join::Fold(Fold::Max) => f64::NEG_INFINITY,
@@ -191,7 +199,7 @@ impl<'a, S: Simd, const ONE: bool> Machine<'a, S, ONE> {
     /// Ends a loop; where to go on.
     #[inline(always)]
     fn finish(&mut self, info: &Loop) -> usize {
-        self.eight = None;
+        (self.eight, self.least) = (None, None);
         if info.join == Join::Fold(Fold::Mean) {
             self.put(info.into, self.number(info.into) / self.number(info.count));
         }
@@ -250,6 +258,10 @@ impl<'a, S: Simd, const ONE: bool> Machine<'a, S, ONE> {
                 crowd::spread(&view, self.members(crowd), self.number(x), self.number(y))
             }
             Node::Nearest(who, crowd, measure) if ONE && self.eight.is_some() => {
+                if let Some(found) = self.nearest_of_block(into, who, crowd, measure) {
+                    self.put(into, found);
+                    return;
+                }
                 let mut found = view.splat(f64::INFINITY);
                 self.one_by_one(
                     #[inline(always)]
@@ -269,14 +281,22 @@ impl<'a, S: Simd, const ONE: bool> Machine<'a, S, ONE> {
         self.put(into, value);
     }
 
+    /// What questions about a crowd are about.
+    #[inline(always)]
+    fn around(&self, crowd: Crowd) -> Around<'a> {
+        let Self { number, close, .. } = *self;
+        Around { number, state: self.view.state, lists: &self.code.lists, own: crowd.list, close }
+    }
+
     /// Smallest measure between a body and a crowd.
     #[inline(always)]
     fn nearest(&mut self, who: usize, crowd: Crowd, measure: Measure) -> Vector<S> {
-        let members = self.members(crowd);
+        let (members, around) = (self.members(crowd), self.around(crowd));
         if ONE
             && let Some(vicinity) = self.vicinities.get_mut(crowd.list as usize)
-            && vicinity.is_ready(self.number, self.view.state, members.list)
-            && let Some(found) = vicinity.nearest(&Asker::new(self.view.state, who, measure), members.except)
+            && vicinity.is_asked_much(&around, 1)
+            && let Some(found) =
+                vicinity.nearest(&around, &Asker::new(self.view.state, who, measure), members.except)
         {
             return self.view.splat(found);
         }
@@ -293,14 +313,14 @@ impl<'a, S: Simd, const ONE: bool> Machine<'a, S, ONE> {
         (test, wanted): (Comparison, bool),
         bound: Vector<S>,
     ) -> Mask {
-        let members = self.members(crowd);
+        let (members, around) = (self.members(crowd), self.around(crowd));
         if ONE
             && let Some(vicinity) = self.vicinities.get_mut(crowd.list as usize)
-            && vicinity.is_ready(self.number, self.view.state, members.list)
+            && vicinity.is_asked_much(&around, 1)
         {
             let asker = Asker::new(self.view.state, who, measure);
             // The lanes are all the same.
-            match vicinity.all_far(&asker, members.except, bound[0], (test, wanted)) {
+            match vicinity.all_far(&around, &asker, members.except, bound[0], (test, wanted)) {
                 Some(true) => return Mask::ALL,
                 Some(false) => return Mask::NONE,
                 None => {}
@@ -344,6 +364,9 @@ impl<'a, S: Simd, const ONE: bool> Machine<'a, S, ONE> {
                 }
                 let bound = self.number(bound);
                 if ONE && self.eight.is_some() {
+                    if let Some(far) = self.all_far_of_block(who, crowd, measure, (test, wanted), bound) {
+                        return far;
+                    }
                     let mut far = Mask::NONE;
                     self.one_by_one(
                         #[inline(always)]

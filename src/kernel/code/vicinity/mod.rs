@@ -5,21 +5,27 @@
 //! question looks only at the squares around a place, wider and wider until nobody outside can change the answer.
 //! The least of several gaps is one of them, and whether some gap is below a bound does not depend on the
 //! order either: both have the bits of a look at all, whose roundings are kept. Where most of the members ask the
-//! same in each state, `sweep` answers all of them at once.
+//! same in each state, `sweep` answers all of them at once. What can be read off the pairs that the forces found near enough
+//! to touch (`touching`) needs no search at all.
 //!
 //! Where a position or a radius is no number, or beyond reason, nothing is sorted: a look at all knows what that means.
 
+mod answers;
 mod sweep;
+mod touching;
 
 use super::crowd::MARGIN;
 use super::node::Measure;
 use crate::base::geometry::{Bounds, Vec2};
-use crate::base::lanes::{LANES, Lanes};
+use crate::base::lanes::{LANES, Lanes, Mask};
+use crate::kernel::close::Close;
 use crate::kernel::nearby::amply_around;
 use crate::kernel::state::State;
 use crate::model::Comparison;
+use answers::Answers;
 use std::ops::Range;
-use sweep::{Answers, Question};
+
+pub(super) use answers::Question;
 
 /// In a list of so many, a look at all is as fast.
 const FEW: usize = 32;
@@ -55,6 +61,27 @@ impl Asker {
     #[inline(always)]
     fn is_reasonable(&self) -> bool {
         self.at.x.abs() <= FARTHEST && self.at.y.abs() <= FARTHEST && self.radius.abs() <= FARTHEST
+    }
+}
+
+/// A state, and the members who are asked about.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Around<'a> {
+    /// Number of the state.
+    pub(super) number: u64,
+    pub(super) state: &'a State,
+    /// All lists of agents, and which of them holds the members.
+    pub(super) lists: &'a [Vec<u32>],
+    pub(super) own: u32,
+    /// Who may touch whom in this state, where that is known.
+    pub(super) close: Option<Close<'a>>,
+}
+
+impl<'a> Around<'a> {
+    /// The members.
+    #[inline(always)]
+    fn list(&self) -> &'a [u32] {
+        &self.lists[self.own as usize]
     }
 }
 
@@ -96,6 +123,8 @@ pub(super) struct Vicinity {
     far: Vec<f64>,
     /// What everybody asks.
     answers: Vec<Answers>,
+    /// Lists of agents as sets of each block, as far as they were needed.
+    sets: Vec<(u32, Vec<Mask>)>,
 }
 
 #[inline(always)]
@@ -104,26 +133,29 @@ fn of(field: &[Lanes], agent: usize) -> f64 {
 }
 
 impl Vicinity {
-    /// Whether a question about a state should be put to the squares; sorts the members where that is new.
+    /// Takes note of some more questions about a state. Whether they are so many that a look at all each is too much.
     #[inline(always)]
-    pub(super) fn is_ready(&mut self, number: u64, state: &State, list: &[u32]) -> bool {
-        if list.len() <= FEW {
+    pub(super) fn is_asked_much(&mut self, around: &Around<'_>, questions: u32) -> bool {
+        if around.list().len() <= FEW {
             return false;
         }
-        if self.state != number {
-            self.state = number;
+        if self.state != around.number {
+            self.state = around.number;
             self.asked = (0, self.asked.0);
             self.sorted = None;
             self.answers.iter_mut().for_each(Answers::forget);
         }
-        self.asked.0 = self.asked.0.saturating_add(1);
+        self.asked.0 = self.asked.0.saturating_add(questions);
+        self.asked.0 > FEW_QUESTIONS || self.asked.1 > FEW_QUESTIONS
+    }
+
+    /// Whether the members are sorted; sorts them where that is new.
+    #[inline(always)]
+    fn is_sorted(&mut self, around: &Around<'_>) -> bool {
         if let Some(sorted) = self.sorted {
             return sorted;
         }
-        if self.asked.0 <= FEW_QUESTIONS && self.asked.1 <= FEW_QUESTIONS {
-            return false;
-        }
-        let sorted = self.sort(state, list);
+        let sorted = self.sort(around.state, around.list());
         self.sorted = Some(sorted);
         sorted
     }
@@ -257,13 +289,13 @@ impl Vicinity {
     }
 
     /// Smallest measure from somebody to the members; infinite over nobody. `None` where only a look at all can tell.
-    pub(super) fn nearest(&mut self, asker: &Asker, except: u32) -> Option<f64> {
+    pub(super) fn nearest(&mut self, around: &Around<'_>, asker: &Asker, except: u32) -> Option<f64> {
         if except as usize == asker.agent
-            && let Some(found) = self.answer(Question::Nearest(asker.measure), asker.agent)
+            && let Some(found) = self.known_nearest(around, asker.measure, asker.agent)
         {
             return Some(found);
         }
-        asker.is_reasonable().then(|| self.search(asker, except))
+        (asker.is_reasonable() && self.is_sorted(around)).then(|| self.search(asker, except))
     }
 
     /// The same, of this one only.
@@ -305,6 +337,7 @@ impl Vicinity {
     /// away. `None` where only a look at all can tell.
     pub(super) fn all_far(
         &mut self,
+        around: &Around<'_>,
         asker: &Asker,
         except: u32,
         bound: f64,
@@ -316,9 +349,12 @@ impl Vicinity {
         }
         let question = Question::AllFar { measure, test, wanted, bound: bound.to_bits() };
         if except as usize == agent
-            && let Some(found) = self.answer(question, agent)
+            && let Some(far) = self.known_far(around, question, agent)
         {
-            return Some(found > 0.0);
+            return Some(far);
+        }
+        if !self.is_sorted(around) {
+            return None;
         }
         let reach = self.reach(measure, radius, bound);
         if reach < 0.0 {

@@ -3,14 +3,13 @@
 //! The squares are swept row by row; a square meets those after it, a few columns and rows on. For the nearest these are
 //! the next ones; who has nobody so near searches farther alone.
 
-use super::{Asker, Vicinity, square, value};
+use super::answers::All;
+use super::{Around, Asker, Question, Vicinity, square, value};
 use crate::base::geometry::Vec2;
+use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::kernel::code::node::Measure;
 use crate::model::Comparison;
 use std::ops::Range;
-
-/// Questions of everybody that are kept apart; others are answered one by one.
-const QUESTIONS: usize = 8;
 
 /// At most so many squares from one to another that are looked at: with more, one by one is as fast, since
 /// the first who is too near ends a look.
@@ -19,97 +18,35 @@ const FARTHEST_SQUARE: usize = 2;
 /// Of squares, what rounding may take off a distance, amply.
 const ROUNDING: f64 = 1e-6;
 
-/// What everybody may ask.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Question {
-    /// The smallest measure to the others.
-    Nearest(Measure),
-    /// Whether a comparison has the wanted value for all others; 1 where it has, else 0.
-    AllFar {
-        /// What is measured.
-        measure: Measure,
-        /// Its comparison with the bound.
-        test: Comparison,
-        /// The value it must have.
-        wanted: bool,
-        /// The bits of the bound.
-        bound: u64,
-    },
-}
-
-/// The answers to a question.
-#[derive(Clone, Debug)]
-pub(super) struct Answers {
-    question: Question,
-    /// How many asked it in this state, and in the one before.
-    asked: (u32, u32),
-    /// Whether all are answered for this state, if that was tried.
-    given: Option<bool>,
-    /// By agents; NaN for those who are no members or not there.
-    of: Vec<f64>,
-}
-
-impl Answers {
-    /// A new state.
-    pub(super) fn forget(&mut self) {
-        self.asked = (0, self.asked.0);
-        self.given = None;
-    }
-}
-
 impl Vicinity {
-    /// The answer for one who is left out of the members, where most members ask the same in every state.
-    #[inline(always)]
-    pub(super) fn answer(&mut self, question: Question, agent: usize) -> Option<f64> {
-        let place = match self.answers.iter().position(|answers| answers.question == question) {
-            Some(place) => place,
-            None => self.begin(question)?,
-        };
-        let answers = &mut self.answers[place];
-        answers.asked.0 = answers.asked.0.saturating_add(1);
-        let given = match answers.given {
-            Some(given) => given,
-            None => self.give(place),
-        };
-        if !given {
-            return None;
-        }
-        self.answers[place].of.get(agent).copied().filter(|answer| !answer.is_nan())
-    }
-
-    /// A place for a new question, if there is one: that of a question which nobody asks any more.
-    fn begin(&mut self, question: Question) -> Option<usize> {
-        let new = Answers { question, asked: (0, 0), given: None, of: Vec::new() };
-        if self.answers.len() < QUESTIONS {
-            self.answers.push(new);
-            return Some(self.answers.len() - 1);
-        }
-        let place = self.answers.iter().position(|answers| answers.asked == (0, 0))?;
-        self.answers[place] = new;
-        Some(place)
-    }
-
-    /// Answers everybody, if it pays.
-    fn give(&mut self, place: usize) -> bool {
-        let Answers { question, asked, .. } = self.answers[place];
-        if (asked.1 as usize) < self.here.len() / 2 {
-            return false;
-        }
-        let found = match question {
-            Question::Nearest(measure) => Some(self.nearest_of_each(measure)),
-            Question::AllFar { measure, test, wanted, bound } => {
-                self.all_far_of_each(measure, f64::from_bits(bound), (test, wanted))
+    /// Answers everybody; false where one by one is as fast.
+    pub(super) fn sweep(&mut self, around: &Around<'_>, question: Question, all: &mut All) -> bool {
+        let blocks = around.state.x.len();
+        match question {
+            Question::Nearest(measure) => {
+                let found = self.nearest_of_each(measure);
+                all.nearest.clear();
+                all.nearest.resize(blocks, Lanes::splat(f64::NAN));
+                for (&agent, found) in self.agent.iter().zip(found) {
+                    all.nearest[agent as usize / LANES].0[agent as usize % LANES] = found;
+                }
+                true
             }
-        };
-        let answers = &mut self.answers[place];
-        answers.given = Some(found.is_some());
-        let Some(found) = found else { return false };
-        answers.of.clear();
-        answers.of.resize(self.far.len(), f64::NAN);
-        for (&agent, found) in self.agent.iter().zip(found) {
-            answers.of[agent as usize] = found;
+            Question::AllFar { measure, test, wanted, bound } => {
+                let found = self.all_far_of_each(measure, f64::from_bits(bound), (test, wanted));
+                let Some(found) = found else { return false };
+                all.far.clear();
+                all.far.resize(blocks, (Mask::NONE, Mask::NONE));
+                for (&agent, far) in self.agent.iter().zip(found) {
+                    let (known, holds) = &mut all.far[agent as usize / LANES];
+                    let lane = Mask::lane(agent as usize % LANES);
+                    *known |= lane;
+                    *holds |= if far { lane } else { Mask::NONE };
+                }
+                true
+            }
+            Question::LeastOf { .. } => false,
         }
-        true
     }
 
     /// Calls `pair` with the places of all pairs at most `span` squares apart, once each, and the squared distance.
@@ -169,8 +106,8 @@ impl Vicinity {
         measure: Measure,
         bound: f64,
         (test, wanted): (Comparison, bool),
-    ) -> Option<Vec<f64>> {
-        let mut far = vec![1.0; self.agent.len()];
+    ) -> Option<Vec<bool>> {
+        let mut far = vec![true; self.agent.len()];
         let reach = self.reach(measure, self.widest, bound);
         if reach < 0.0 {
             return Some(far);
@@ -186,10 +123,10 @@ impl Vicinity {
             }
             let (distance, ra, rb) = (squared.sqrt(), self.radius[a], self.radius[b]);
             if test.of(value(measure, distance, ra, rb), bound) != wanted {
-                far[a] = 0.0;
+                far[a] = false;
             }
             if test.of(value(measure, distance, rb, ra), bound) != wanted {
-                far[b] = 0.0;
+                far[b] = false;
             }
         });
         Some(far)

@@ -1,0 +1,158 @@
+//! What everybody asks in each state: kept by blocks of agents, so that eight of them are told at once.
+
+use super::{Around, Vicinity};
+use crate::base::lanes::{LANES, Lanes, Mask};
+use crate::kernel::code::node::Measure;
+use crate::model::Comparison;
+
+/// Questions of everybody that are kept apart; others are answered one by one.
+const QUESTIONS: usize = 8;
+
+/// What everybody may ask.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::kernel::code) enum Question {
+    /// The smallest measure to the others.
+    Nearest(Measure),
+    /// The smallest measure to the others, or something larger than the smallest that anybody of a list of askers gets.
+    LeastOf {
+        /// What is measured.
+        measure: Measure,
+        /// The list.
+        askers: u32,
+    },
+    /// Whether a comparison has the wanted value for all others.
+    AllFar {
+        /// What is measured.
+        measure: Measure,
+        /// Its comparison with the bound.
+        test: Comparison,
+        /// The value it must have.
+        wanted: bool,
+        /// The bits of the bound.
+        bound: u64,
+    },
+}
+
+/// The answers to a question.
+#[derive(Clone, Debug)]
+pub(super) struct Answers {
+    pub(super) question: Question,
+    /// How many asked it in this state, and in the one before.
+    pub(super) asked: (u32, u32),
+    /// Whether all are answered for this state, if that was tried.
+    given: Option<bool>,
+    all: All,
+}
+
+/// Answers of all, by blocks of agents.
+#[derive(Clone, Debug, Default)]
+pub(super) struct All {
+    /// The smallest measures; no numbers for those who are no members or not there.
+    pub(super) nearest: Vec<Lanes>,
+    /// Who has an answer to whether, and for whom it holds.
+    pub(super) far: Vec<(Mask, Mask)>,
+}
+
+impl Answers {
+    /// A new state.
+    pub(super) fn forget(&mut self) {
+        self.asked = (0, self.asked.0);
+        self.given = None;
+    }
+}
+
+impl Vicinity {
+    /// The smallest measure of one who is left out of the members, where most members ask the same in every state.
+    #[inline(always)]
+    pub(super) fn known_nearest(
+        &mut self,
+        around: &Around<'_>,
+        measure: Measure,
+        agent: usize,
+    ) -> Option<f64> {
+        let all = self.answers(around, Question::Nearest(measure), 1)?;
+        all.nearest.get(agent / LANES).map(|block| block.0[agent % LANES]).filter(|answer| !answer.is_nan())
+    }
+
+    /// Whether it holds for one who is left out of the members, where most members ask the same in every state.
+    #[inline(always)]
+    pub(super) fn known_far(
+        &mut self,
+        around: &Around<'_>,
+        question: Question,
+        agent: usize,
+    ) -> Option<bool> {
+        let (known, far) = *self.answers(around, question, 1)?.far.get(agent / LANES)?;
+        known.has(agent % LANES).then(|| far.has(agent % LANES))
+    }
+
+    /// The smallest measures of a block of agents each of whom is left out of the members; no number for who has none.
+    #[inline(always)]
+    pub(in crate::kernel::code) fn nearest_of_block(
+        &mut self,
+        around: &Around<'_>,
+        question: Question,
+        block: usize,
+    ) -> Option<&Lanes> {
+        self.answers(around, question, LANES as u32)?.nearest.get(block)
+    }
+
+    /// For whom it holds of a block of agents each of whom is left out of the members, if all have an answer.
+    #[inline(always)]
+    pub(in crate::kernel::code) fn far_of_block(
+        &mut self,
+        around: &Around<'_>,
+        question: Question,
+        block: usize,
+    ) -> Option<Mask> {
+        let (known, far) = *self.answers(around, question, LANES as u32)?.far.get(block)?;
+        (known == Mask::ALL).then_some(far)
+    }
+
+    /// The answers to a question which some more agents ask, if all are answered.
+    #[inline(always)]
+    fn answers(&mut self, around: &Around<'_>, question: Question, agents: u32) -> Option<&All> {
+        let place = match self.answers.iter().position(|answers| answers.question == question) {
+            Some(place) => place,
+            None => self.begin(question)?,
+        };
+        let answers = &mut self.answers[place];
+        answers.asked.0 = answers.asked.0.saturating_add(agents);
+        let given = match answers.given {
+            Some(given) => given,
+            None => self.give(around, place),
+        };
+        if given { Some(&self.answers[place].all) } else { None }
+    }
+
+    /// A place for a new question, if there is one: that of a question which nobody asks any more.
+    fn begin(&mut self, question: Question) -> Option<usize> {
+        let new = Answers { question, asked: (0, 0), given: None, all: All::default() };
+        if self.answers.len() < QUESTIONS {
+            self.answers.push(new);
+            return Some(self.answers.len() - 1);
+        }
+        let place = self.answers.iter().position(|answers| answers.asked == (0, 0))?;
+        self.answers[place] = new;
+        Some(place)
+    }
+
+    /// Answers everybody, if it pays.
+    fn give(&mut self, around: &Around<'_>, place: usize) -> bool {
+        let Answers { question, asked, .. } = self.answers[place];
+        let mut all = std::mem::take(&mut self.answers[place].all);
+        let given = if self.touching(around, question, &mut all) {
+            Some(true)
+        } else if matches!(question, Question::LeastOf { .. }) || !self.is_sorted(around) {
+            Some(false)
+        } else if (asked.1 as usize) < self.here.len() / 2 {
+            // Perhaps more will ask.
+            None
+        } else {
+            Some(self.sweep(around, question, &mut all))
+        };
+        let answers = &mut self.answers[place];
+        (answers.all, answers.given) = (all, given);
+        given == Some(true)
+    }
+}
