@@ -41,6 +41,17 @@ pub(super) enum Measure {
     GapRunningFirst,
 }
 
+/// Which smallest measures may be given as something larger than they are, for nothing hangs on how large they are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Cut {
+    /// None.
+    Nowhere,
+    /// Those above the least that somebody of a list gets.
+    Least(u32),
+    /// Those above a bound, by its bits.
+    Above(u64),
+}
+
 /// How a loop joins the values of its body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Join {
@@ -259,17 +270,17 @@ impl Graph {
         self.enter(Node::Constant(value.to_bits()))
     }
 
-    /// Whether a value is computed from another one, or is that.
-    pub(super) fn needs(&self, id: Id, other: Id) -> bool {
+    /// In how many ways, at most 2, a value is computed from another one.
+    pub(super) fn ways(&self, value: Id, from: Id) -> u8 {
         // Operands come before their users.
-        let mut open = vec![id];
-        while let Some(id) = open.pop() {
-            if id == other {
-                return true;
-            }
-            open.extend(self.nodes[id as usize].operands().into_iter().filter(|&operand| operand >= other));
+        let mut ways = vec![0_u8; value as usize + 1];
+        for id in from..=value {
+            let of = |operand: Id| if operand < from { 0 } else { ways[operand as usize] };
+            let own = u8::from(id == from);
+            ways[id as usize] =
+                self.nodes[id as usize].operands().into_iter().map(of).fold(own, u8::saturating_add).min(2);
         }
-        false
+        ways[value as usize]
     }
 
     /// Whether a value depends on a running agent.

@@ -1,7 +1,7 @@
 //! From the graph of values to linear code: every value in the outermost loop that its running agents
 //! allow, operands before users, one register each.
 
-use super::node::{Crowd, Graph, Id, Join, Node};
+use super::node::{Crowd, Cut, Graph, Id, Join, Node};
 use crate::model::{Arithmetic, Fold, Who};
 
 /// An instruction.
@@ -34,8 +34,8 @@ pub(super) struct Loop {
     pub(super) exit: usize,
     /// Whether eight members of one trial can be taken at once.
     pub(super) lanewise: bool,
-    /// Register of a smallest measure in the body of which only the least of all members matters.
-    pub(super) least: Option<Id>,
+    /// Register of a smallest measure in the body, and which of its values may be larger than they are.
+    pub(super) cut: Option<(Id, Cut)>,
 }
 
 /// Linear code.
@@ -110,7 +110,7 @@ fn emit(graph: &Graph, roots: &[Id], level: u32, out: &mut Schedule) {
                     start,
                     exit: start,
                     lanewise: false,
-                    least: least(graph, &node).map(|id| out.registers[id as usize]),
+                    cut: cut(graph, &node).map(|(id, cut)| (out.registers[id as usize], cut)),
                 };
                 out.loops.push(info);
                 emit(graph, &[body], var + 1, out);
@@ -130,25 +130,64 @@ fn emit(graph: &Graph, roots: &[Id], level: u32, out: &mut Schedule) {
     }
 }
 
-/// The smallest measure around the running agent of a loop that joins the least, where the body is that measure, or
-/// nothing larger, for all members who are there: to raise it in somebody who has not the least changes nothing.
-fn least(graph: &Graph, node: &Node) -> Option<Id> {
-    let Node::Loop(Join::Fold(Fold::Min), Crowd { except: None, .. }, var, body) = *node else { return None };
+/// The smallest measure around the running agent of a loop of which nobody wants to know more than the least of all
+/// members, or whether it is above a bound: to raise it in others changes nothing.
+fn cut(graph: &Graph, node: &Node) -> Option<(Id, Cut)> {
+    let Node::Loop(join, crowd, var, body) = *node else { return None };
     let me = Who::Running(var);
+    let (value, cut) = if join == Join::Fold(Fold::Min) && crowd.except.is_none() {
+        (body, Cut::Least(crowd.list))
+    } else {
+        let (value, bound) = compared(graph, body, me)?;
+        (value, Cut::Above(bound))
+    };
+    let (id, other) = smallest(graph, value, me)?;
+    // Nothing else in the body needs it.
+    let alone = graph.ways(body, id) == 1 && other.is_none_or(|other| graph.ways(other, id) == 0);
+    alone.then_some((id, cut))
+}
+
+/// What a condition compares of the smallest measure around an agent with a number, and the bits of that.
+fn compared(graph: &Graph, condition: Id, me: Who) -> Option<(Id, u64)> {
+    let mut part = vec![false; condition as usize + 1];
+    part[condition as usize] = true;
+    // Operands come before their users.
+    for id in (0..part.len()).rev() {
+        if !part[id] {
+            continue;
+        }
+        match graph.nodes[id] {
+            Node::Not(a) => part[a as usize] = true,
+            Node::And(ref all) | Node::Or(ref all) => all.iter().for_each(|&a| part[a as usize] = true),
+            Node::Compare(_, a, b) => {
+                for (value, bound) in [(a, b), (b, a)] {
+                    if let Node::Constant(bits) = graph.nodes[bound as usize]
+                        && smallest(graph, value, me).is_some()
+                    {
+                        return Some((value, bits));
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+    None
+}
+
+/// The smallest measure around an agent that a value is for all who are there, or the lesser of that and something else.
+fn smallest(graph: &Graph, value: Id, me: Who) -> Option<(Id, Option<Id>)> {
     // Who is not there is not among the members either.
-    let mut id = match graph.nodes[body as usize] {
+    let mut id = match graph.nodes[value as usize] {
         Node::Select(here, id, _) if graph.nodes[here as usize] == Node::Present(me) => id,
-        _ => body,
+        _ => value,
     };
     // The walls, which are the same however far the others are.
+    let mut other = None;
     if let Node::Combine(Arithmetic::Min, first, second) = graph.nodes[id as usize] {
-        if graph.needs(second, first) {
-            return None;
-        }
-        id = first;
+        (id, other) = (first, Some(second));
     }
     match graph.nodes[id as usize] {
-        Node::Nearest(who, crowd, _) if who == me && crowd.except == Some(me) => Some(id),
+        Node::Nearest(who, crowd, _) if who == me && crowd.except == Some(me) => Some((id, other)),
         _ => None,
     }
 }

@@ -5,7 +5,7 @@
 
 use super::super::crowd::Members;
 use super::super::lanes::{Body, Vector, greater, lesser, narrow};
-use super::super::node::{Crowd, Id, Join, Measure};
+use super::super::node::{Crowd, Cut, Id, Join, Measure};
 use super::super::schedule::Loop;
 use super::super::vicinity::Question;
 use super::Machine;
@@ -122,8 +122,8 @@ impl<S: Simd, const ONE: bool> Machine<'_, S, ONE> {
         }
     }
 
-    /// Smallest measures between a block of running agents and a crowd, if they are known. Where only the least of a loop
-    /// is wanted, perhaps something larger than that.
+    /// Smallest measures between a block of running agents and a crowd, if they are known; where some may be larger than
+    /// they are, perhaps that.
     #[inline(always)]
     pub(super) fn nearest_of_block(
         &mut self,
@@ -138,16 +138,17 @@ impl<S: Simd, const ONE: bool> Machine<'_, S, ONE> {
         if !vicinity.is_asked_much(&around, LANES as u32) {
             return None;
         }
-        if let Some((wanted, askers)) = self.least
-            && wanted == into
-            && let Some(found) =
-                vicinity.nearest_of_block(&around, Question::LeastOf { measure, askers }, block)
-        {
-            return Some(self.view.register(found));
+        for cut in [self.cut.filter(|(cut, _)| *cut == into).map(|(_, cut)| cut), Some(Cut::Nowhere)] {
+            let Some(cut) = cut else { continue };
+            if let Some(found) = vicinity.nearest_of_block(&around, Question::Nearest { measure, cut }, block)
+            {
+                let found = self.view.register(found);
+                if narrow(found.simd_eq(found)) == Mask::ALL {
+                    return Some(found);
+                }
+            }
         }
-        let found = vicinity.nearest_of_block(&around, Question::Nearest(measure), block)?;
-        let found = self.view.register(found);
-        if narrow(found.simd_eq(found)) == Mask::ALL { Some(found) } else { None }
+        None
     }
 
     /// The running agents of a block from which all of a crowd are far, if that is known and the bound the same for each.

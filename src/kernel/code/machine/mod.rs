@@ -5,7 +5,7 @@ mod eight;
 use super::arithmetic::{apply, combine};
 use super::crowd::{self, Members, Probe};
 use super::lanes::{Body, Vector, View, by_lane, by_lane_of_two, greater, lesser, narrow, widen};
-use super::node::{Crowd, Id, Join, Measure, Node};
+use super::node::{Crowd, Cut, Id, Join, Measure, Node};
 use super::schedule::{Instruction, Loop};
 use super::vicinity::{Around, Asker, Vicinity};
 use super::{Code, Readings};
@@ -40,8 +40,8 @@ struct Machine<'a, S: Simd, const ONE: bool> {
     number: u64,
     /// Who may touch whom in it, where that is known.
     close: Option<Close<'a>>,
-    /// In a loop of which only the least of a number matters, the register of that number and the list of the loop.
-    least: Option<(Id, u32)>,
+    /// In a loop, the register of a smallest measure some of whose values may be larger than they are, and which.
+    cut: Option<(Id, Cut)>,
 }
 
 /// Runs the code; the registers are left with all values.
@@ -62,7 +62,7 @@ pub(super) fn execute<S: Simd, const ONE: bool>(
         vicinities: &mut readings.vicinities,
         number: readings.number,
         close,
-        least: None,
+        cut: None,
     };
     let instructions = code.schedule.instructions.as_slice();
     let mut at = 0;
@@ -120,7 +120,7 @@ impl<'a, S: Simd, const ONE: bool> Machine<'a, S, ONE> {
     #[inline(always)]
     fn begin(&mut self, info: &Loop) {
         self.frames[info.var as usize].next = 0;
-        self.least = info.least.map(|register| (register, info.crowd.list));
+        self.cut = info.cut;
         let start = match info.join {
             Join::Fold(Fold::Min) => f64::INFINITY,
             Join::Fold(Fold::Max) => f64::NEG_INFINITY,
@@ -199,7 +199,7 @@ impl<'a, S: Simd, const ONE: bool> Machine<'a, S, ONE> {
     /// Ends a loop; where to go on.
     #[inline(always)]
     fn finish(&mut self, info: &Loop) -> usize {
-        (self.eight, self.least) = (None, None);
+        (self.eight, self.cut) = (None, None);
         if info.join == Join::Fold(Fold::Mean) {
             self.put(info.into, self.number(info.into) / self.number(info.count));
         }

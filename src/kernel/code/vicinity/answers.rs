@@ -2,7 +2,7 @@
 
 use super::{Around, Vicinity};
 use crate::base::lanes::{LANES, Lanes, Mask};
-use crate::kernel::code::node::Measure;
+use crate::kernel::code::node::{Cut, Measure};
 use crate::model::Comparison;
 
 /// Questions of everybody that are kept apart; others are answered one by one.
@@ -11,14 +11,12 @@ const QUESTIONS: usize = 8;
 /// What everybody may ask.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::kernel::code) enum Question {
-    /// The smallest measure to the others.
-    Nearest(Measure),
-    /// The smallest measure to the others, or something larger than the smallest that anybody of a list of askers gets.
-    LeastOf {
+    /// The smallest measure to the others; where it is cut perhaps something larger.
+    Nearest {
         /// What is measured.
         measure: Measure,
-        /// The list.
-        askers: u32,
+        /// Where.
+        cut: Cut,
     },
     /// Whether a comparison has the wanted value for all others.
     AllFar {
@@ -70,7 +68,7 @@ impl Vicinity {
         measure: Measure,
         agent: usize,
     ) -> Option<f64> {
-        let all = self.answers(around, Question::Nearest(measure), 1)?;
+        let all = self.answers(around, Question::Nearest { measure, cut: Cut::Nowhere }, 1)?;
         all.nearest.get(agent / LANES).map(|block| block.0[agent % LANES]).filter(|answer| !answer.is_nan())
     }
 
@@ -143,13 +141,13 @@ impl Vicinity {
         let mut all = std::mem::take(&mut self.answers[place].all);
         let given = if self.touching(around, question, &mut all) {
             Some(true)
-        } else if matches!(question, Question::LeastOf { .. }) || !self.is_sorted(around) {
+        } else if self.here.is_empty() && !self.is_sorted(around) {
             Some(false)
         } else if (asked.1 as usize) < self.here.len() / 2 {
             // Perhaps more will ask.
             None
         } else {
-            Some(self.sweep(around, question, &mut all))
+            Some(self.listed(around, question, &mut all) || self.swept(around, question, &mut all))
         };
         let answers = &mut self.answers[place];
         (answers.all, answers.given) = (all, given);

@@ -6,11 +6,13 @@
 //! The least of several gaps is one of them, and whether some gap is below a bound does not depend on the
 //! order either: both have the bits of a look at all, whose roundings are kept. Where most of the members ask the
 //! same in each state, `sweep` answers all of them at once. What can be read off the pairs that the forces found near enough
-//! to touch (`touching`) needs no search at all.
+//! to touch (`touching`) needs no search at all, and what can be read off those who were close a while ago (`neighbours`)
+//! needs one only now and then.
 //!
 //! Where a position or a radius is no number, or beyond reason, nothing is sorted: a look at all knows what that means.
 
 mod answers;
+mod neighbours;
 mod sweep;
 mod touching;
 
@@ -23,6 +25,7 @@ use crate::kernel::nearby::amply_around;
 use crate::kernel::state::State;
 use crate::model::Comparison;
 use answers::Answers;
+use neighbours::Neighbours;
 use std::ops::Range;
 
 pub(super) use answers::Question;
@@ -123,6 +126,10 @@ pub(super) struct Vicinity {
     far: Vec<f64>,
     /// What everybody asks.
     answers: Vec<Answers>,
+    /// Members who were close a while ago, by gaps and by centres.
+    neighbours: [Neighbours; 2],
+    /// The least gap, and distance of centres, that was last seen, m.
+    least: [f64; 2],
     /// Lists of agents as sets of each block, as far as they were needed.
     sets: Vec<(u32, Vec<Mask>)>,
 }

@@ -7,7 +7,7 @@ use super::answers::All;
 use super::{Around, Asker, Question, Vicinity, square, value};
 use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Lanes, Mask};
-use crate::kernel::code::node::Measure;
+use crate::kernel::code::node::{Cut, Measure};
 use crate::model::Comparison;
 use std::ops::Range;
 
@@ -16,15 +16,23 @@ use std::ops::Range;
 const FARTHEST_SQUARE: usize = 2;
 
 /// Of squares, what rounding may take off a distance, amply.
-const ROUNDING: f64 = 1e-6;
+pub(super) const ROUNDING: f64 = 1e-6;
 
 impl Vicinity {
     /// Answers everybody; false where one by one is as fast.
-    pub(super) fn sweep(&mut self, around: &Around<'_>, question: Question, all: &mut All) -> bool {
+    pub(super) fn swept(&mut self, around: &Around<'_>, question: Question, all: &mut All) -> bool {
+        // Where it is cut it is asked again, in full.
+        if matches!(question, Question::Nearest { cut: Cut::Least(_) | Cut::Above(_), .. })
+            || !self.is_sorted(around)
+        {
+            return false;
+        }
         let blocks = around.state.x.len();
         match question {
-            Question::Nearest(measure) => {
+            Question::Nearest { measure, .. } => {
                 let found = self.nearest_of_each(measure);
+                let least = found.iter().fold(f64::INFINITY, |a, &b| if b < a { b } else { a });
+                self.least[usize::from(measure == Measure::Centres)] = least;
                 all.nearest.clear();
                 all.nearest.resize(blocks, Lanes::splat(f64::NAN));
                 for (&agent, found) in self.agent.iter().zip(found) {
@@ -45,13 +53,12 @@ impl Vicinity {
                 }
                 true
             }
-            Question::LeastOf { .. } => false,
         }
     }
 
     /// Calls `pair` with the places of all pairs at most `span` squares apart, once each, and the squared distance.
     #[inline(always)]
-    fn each_pair(&self, span: usize, mut pair: impl FnMut(usize, usize, f64)) {
+    pub(super) fn each_pair(&self, span: usize, mut pair: impl FnMut(usize, usize, f64)) {
         let (rows, columns) = (self.squares.rows, self.squares.columns);
         for row in 0..rows {
             for column in 0..columns {

@@ -1,52 +1,49 @@
-//! What can be read off the pairs who may touch, which the forces list anyhow: any other two are farther apart than an edge.
+//! What can be read off pairs who are close, where any other two are farther apart than an edge.
 //!
-//! Whether everybody's gap is above a bound, where the bound is no more than the edge; and the least gap of all,
-//! where that is: then no other two have it, however far they are apart.
+//! Whether everybody's measure is above a bound, and the smallest measures up to a bound, where that is no more than the
+//! edge; and the least of all, where that is: then no other two have it, however far they are apart. Such pairs the forces
+//! list anyhow, of those who may touch.
 
 use super::answers::All;
 use super::{Around, Asker, MARGIN, Question, Vicinity, square, value};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::kernel::close::Close;
-use crate::kernel::code::node::Measure;
+use crate::kernel::code::node::{Cut, Measure};
 use crate::kernel::state::State;
 
+/// Who is asked about whom.
+#[derive(Clone, Copy)]
+pub(super) struct Asked<'a> {
+    /// Those who have an answer.
+    known: &'a [Mask],
+    members: &'a [Mask],
+    /// Whose least is wanted, where that is.
+    askers: &'a [Mask],
+}
+
 impl Vicinity {
-    /// Answers everybody who is there; false where only a search can. Of centres that near nobody asks.
+    /// Answers everybody who is there, if the pairs who may touch can. Of centres that near nobody asks.
     pub(super) fn touching(&mut self, around: &Around<'_>, question: Question, all: &mut All) -> bool {
         let Some(close) = around.close else { return false };
-        let members = self.set(around, around.own);
-        match question {
-            Question::AllFar { measure, test, wanted, bound } if measure != Measure::Centres => {
-                let bound = f64::from_bits(bound);
-                if bound > close.edge {
-                    return false;
-                }
-                all.far.clear();
-                all.far.extend(around.state.present.iter().map(|&here| (here, here)));
-                let members = &self.sets[members].1;
-                each_gap(around.state, (close, bound), measure, members, |asker, gap| {
-                    if test.of(gap, bound) != wanted {
-                        all.far[asker / LANES].1 &= !Mask::lane(asker % LANES);
-                    }
-                });
-                true
-            }
-            Question::LeastOf { measure, askers } if measure != Measure::Centres => {
-                let askers = self.set(around, askers);
-                let (members, askers) = (&self.sets[members].1, &self.sets[askers].1);
-                let mut least = f64::INFINITY;
-                all.nearest.clear();
-                all.nearest.resize(around.state.x.len(), Lanes::splat(f64::INFINITY));
-                each_gap(around.state, (close, close.edge), measure, members, |asker, gap| {
-                    let (block, lane) = (asker / LANES, asker % LANES);
-                    let nearest = &mut all.nearest[block].0[lane];
-                    *nearest = if gap < *nearest { gap } else { *nearest };
-                    least = if gap < least && askers[block].has(lane) { gap } else { least };
-                });
-                least <= close.edge
-            }
-            _ => false,
+        if question.measure() == Measure::Centres {
+            return false;
         }
+        let places = self.sets(around, question);
+        let asked = self.asked(places, &around.state.present);
+        read_off(around.state, close, question, asked, all).is_some()
+    }
+
+    /// Where the sets of members, and of those whose least is wanted, are.
+    pub(super) fn sets(&mut self, around: &Around<'_>, question: Question) -> (usize, usize) {
+        let askers = match question {
+            Question::Nearest { cut: Cut::Least(askers), .. } => askers,
+            _ => around.own,
+        };
+        (self.set(around, around.own), self.set(around, askers))
+    }
+
+    pub(super) fn asked<'a>(&'a self, (members, askers): (usize, usize), known: &'a [Mask]) -> Asked<'a> {
+        Asked { known, members: &self.sets[members].1, askers: &self.sets[askers].1 }
     }
 
     /// Where a list is, as a set of each block of agents.
@@ -54,7 +51,7 @@ impl Vicinity {
         if let Some(known) = self.sets.iter().position(|(known, _)| *known == list) {
             return known;
         }
-        let mut set = vec![Mask::NONE; around.state.agents.div_ceil(LANES)];
+        let mut set = vec![Mask::NONE; around.state.x.len()];
         for &agent in &around.lists[list as usize] {
             set[agent as usize / LANES] |= Mask::lane(agent as usize % LANES);
         }
@@ -63,9 +60,68 @@ impl Vicinity {
     }
 }
 
-/// Calls `f` with each asker and the gap to each member who may touch them; perhaps not where the gap is above a bound.
+impl Question {
+    pub(super) const fn measure(&self) -> Measure {
+        match self {
+            Self::Nearest { measure, .. } | Self::AllFar { measure, .. } => *measure,
+        }
+    }
+}
+
+/// Answers all who are known, if the pairs can; gives what was searched up to: the bound, or the least.
+pub(super) fn read_off(
+    state: &State,
+    close: Close<'_>,
+    question: Question,
+    asked: Asked<'_>,
+    all: &mut All,
+) -> Option<f64> {
+    let reach = match question {
+        Question::AllFar { bound, .. } | Question::Nearest { cut: Cut::Above(bound), .. } => {
+            Some(f64::from_bits(bound)).filter(|bound| *bound <= close.edge)?
+        }
+        Question::Nearest { cut: Cut::Least(_), .. } => close.edge,
+        Question::Nearest { cut: Cut::Nowhere, .. } => return None,
+    };
+    let measure = question.measure();
+    if let Question::AllFar { test, wanted, .. } = question {
+        all.far.clear();
+        all.far.extend(asked.known.iter().map(|&known| (known, known)));
+        each(state, (close, reach), measure, asked.members, |asker, found| {
+            if test.of(found, reach) != wanted {
+                all.far[asker / LANES].1 &= !Mask::lane(asker % LANES);
+            }
+        });
+        return Some(reach);
+    }
+    let mut least = f64::INFINITY;
+    all.nearest.clear();
+    all.nearest.extend(asked.known.iter().map(|&known| start(known)));
+    each(state, (close, reach), measure, asked.members, |asker, found| {
+        let (block, lane) = (asker / LANES, asker % LANES);
+        let nearest = &mut all.nearest[block].0[lane];
+        *nearest = if found < *nearest { found } else { *nearest };
+        least = if found < least && asked.askers[block].has(lane) { found } else { least };
+    });
+    match question {
+        Question::Nearest { cut: Cut::Least(_), .. } => (least <= close.edge).then_some(least),
+        _ => Some(reach),
+    }
+}
+
+/// Nobody near is found yet of those who are known.
 #[inline(always)]
-fn each_gap(
+fn start(known: Mask) -> Lanes {
+    let mut start = Lanes::splat(f64::INFINITY);
+    for lane in (!known).iter() {
+        start.0[lane] = f64::NAN;
+    }
+    start
+}
+
+/// Calls `f` with each asker and what is measured to each member close to them; perhaps not where it is above a bound.
+#[inline(always)]
+fn each(
     state: &State,
     (close, bound): (Close<'_>, f64),
     measure: Measure,
