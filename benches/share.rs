@@ -35,11 +35,12 @@ agents z[PEOPLE]: adult { at = uniform in all  route = far }
 ";
 
 /// What is asked of everybody; none of it ends a trial.
-const EVERYBODY: [(&str, &str); 4] = [
+const EVERYBODY: [(&str, &str); 5] = [
     ("speeds", "estimate P(F<=8 s (exists a in z: speed(a) > 10 m/s))"),
     ("contacts of each", "estimate P(F<=8 s (count(a in z: contact(a)) > 1000000))"),
-    ("who comes near", "estimate P(F<=8 s (exists a in z: clearance(a) < -1 m))"),
+    ("who comes near", "estimate P(F<=8 s (count(a in z: clearance(a) < 0.3 m) > 1000000))"),
     ("least clearance", "estimate P(F<=8 s (min(clearance(a) for a in z) < -10 m))"),
+    ("mean clearance", "estimate P(F<=8 s (mean(clearance(a) for a in z) < -10 m))"),
 ];
 
 fn main() {

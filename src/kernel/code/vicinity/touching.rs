@@ -91,9 +91,11 @@ pub(super) fn read_off(
             if test.of(found, reach) != wanted {
                 all.far[asker / LANES].1 &= !Mask::lane(asker % LANES);
             }
+            reach
         });
         return Some(reach);
     }
+    let cut_at_least = matches!(question, Question::Nearest { cut: Cut::Least(_), .. });
     let mut least = f64::INFINITY;
     all.nearest.clear();
     all.nearest.extend(asked.known.iter().map(|&known| start(known)));
@@ -102,11 +104,9 @@ pub(super) fn read_off(
         let nearest = &mut all.nearest[block].0[lane];
         *nearest = if found < *nearest { found } else { *nearest };
         least = if found < least && asked.askers[block].has(lane) { found } else { least };
+        if cut_at_least && least < reach { least } else { reach }
     });
-    match question {
-        Question::Nearest { cut: Cut::Least(_), .. } => (least <= close.edge).then_some(least),
-        _ => Some(reach),
-    }
+    if cut_at_least { (least <= close.edge).then_some(least) } else { Some(reach) }
 }
 
 /// Nobody near is found yet of those who are known.
@@ -119,14 +119,15 @@ fn start(known: Mask) -> Lanes {
     start
 }
 
-/// Calls `f` with each asker and what is measured to each member close to them; perhaps not where it is above a bound.
+/// Calls `f` with each asker and what is measured to each member close to them; perhaps not where that is above a bound,
+/// of which `f` gives the next.
 #[inline(always)]
 fn each(
     state: &State,
-    (close, bound): (Close<'_>, f64),
+    (close, mut bound): (Close<'_>, f64),
     measure: Measure,
     members: &[Mask],
-    mut f: impl FnMut(usize, f64),
+    mut f: impl FnMut(usize, f64) -> f64,
 ) {
     for &(a, b) in close.pairs {
         let one = Asker::new(state, a as usize, measure);
@@ -140,7 +141,7 @@ fn each(
         let distance = squared.sqrt();
         for (asker, member) in [(one, other), (other, one)] {
             if members[member.agent / LANES].has(member.agent % LANES) {
-                f(asker.agent, value(measure, distance, asker.radius, member.radius));
+                bound = f(asker.agent, value(measure, distance, asker.radius, member.radius));
             }
         }
     }
