@@ -14,6 +14,7 @@ mod elaborator;
 mod families;
 mod files;
 mod filter;
+mod findings;
 mod interned;
 mod kinds;
 mod laws;

@@ -222,7 +222,7 @@ impl<'a> Compiler<'a> {
     }
 
     /// Values of the swept parameters in words.
-    fn described(
+    pub(super) fn described(
         &self,
         site: usize,
         point: &BTreeMap<String, Number>,
@@ -408,33 +408,7 @@ impl<'a> Compiler<'a> {
     }
 
     fn finish(self) -> (Option<Study>, Vec<Diagnostic>) {
-        let mut diagnostics: Vec<Diagnostic> = Vec::new();
-        for (at, site) in self.sites.iter().enumerate() {
-            // What is wrong with some values of parameters only says with which.
-            let names: Vec<&str> = site.settings.keys().map(String::as_str).collect();
-            let values = self.described(at, &site.settings, &names);
-            let values: Vec<String> =
-                values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
-            for diagnostic in &site.elaborator.diagnostics {
-                // The same place says the same thing once, whatever the parameter values.
-                let known = diagnostics.iter().any(|d| {
-                    d.code == diagnostic.code
-                        && d.place.as_ref().map(|p| p.span) == diagnostic.place.as_ref().map(|p| p.span)
-                });
-                if !known
-                    || diagnostic.place.is_none() && values.is_empty() && !diagnostics.contains(diagnostic)
-                {
-                    let mut diagnostic = diagnostic.clone();
-                    if !values.is_empty()
-                        && (diagnostic.severity == Severity::Error || diagnostic.code == "W0501")
-                    {
-                        diagnostic.title = format!("{} (with {})", diagnostic.title, values.join(", "));
-                    }
-                    diagnostics.push(diagnostic);
-                }
-            }
-        }
-        diagnostics.sort_by_key(|d| d.place.as_ref().map(|p| p.span));
+        let diagnostics = self.findings();
         // What was cut short is refused by the parser.
         let cut = self.sites.iter().any(|site| !site.elaborator.cut.is_empty());
         if cut || diagnostics.iter().any(|d| d.severity == Severity::Error) {

@@ -25,7 +25,7 @@ const DIMENSION: &str = "E0303";
 /// Code of a name that is used before it can be known.
 const EARLY: &str = "E0205";
 /// Codes of unknown names, told once.
-const UNKNOWN: [&str; 4] = ["E0201", "E0203", "E0208", "E0210"];
+pub(super) const UNKNOWN: [&str; 4] = ["E0201", "E0203", "E0208", "E0210"];
 /// Most further places that are marked.
 const MOST_MARKS: usize = 3;
 
