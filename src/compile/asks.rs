@@ -91,8 +91,12 @@ impl<'a> Compiler<'a> {
             (Err(_), Ok((two, _))) => (*two, *two),
             (Err(_), Err(_)) => (site, site),
         };
+        let before = self.sites[site].elaborator.diagnostics.len();
         let ((a, sketch), (b, _)) = (self.measured(one, measure, scope), self.measured(two, measure, scope));
         let elaborator = &mut self.sites[site].elaborator;
+        if sides.0.is_err() && sides.1.is_err() {
+            elaborator.keep_sure(before);
+        }
         let allowance = Allowance { family, claims: 1 };
         let quantile = sketch.what == What::Quantile;
         let comparable = if quantile {

@@ -1,81 +1,128 @@
 //! What was found in the worlds of a call: each place says the same thing once.
 
-use super::consequences::UNKNOWN;
+use super::consequences::{UNKNOWN, words};
+use super::dimension;
+use super::elaborator::Elaborator;
 use super::queries::Compiler;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use std::collections::BTreeMap;
 
-/// Most worlds that an error names.
+/// Codes of errors of queries that hang on no value, besides those of names, kinds and units.
+const VALUELESS: [&str; 3] = ["E0603", "E0606", "E0607"];
+/// The world in which nothing is set.
+const PLAIN: usize = 0;
+/// Most worlds that an error names, and most words in which it is said.
 const MOST_WORLDS: usize = 3;
 
-/// What was found at a place.
+/// What was found, in the same words.
 struct Finding {
     /// As in the first world.
     diagnostic: Diagnostic,
-    /// The values of parameters in the worlds in which it is found; none where nothing is set.
-    worlds: Vec<Option<String>>,
-    /// Whether it says the same in all of them.
-    alike: bool,
-}
-
-impl Finding {
-    /// With the worlds, of so many in which something is set, if it depends on them.
-    fn told(self, set: usize) -> Diagnostic {
-        let Self { mut diagnostic, worlds, alike } = self;
-        let depends = worlds.len() < set || set == 1 || !alike;
-        let says = diagnostic.severity == Severity::Error || diagnostic.code == "W0501";
-        if depends
-            && says
-            && !UNKNOWN.contains(&diagnostic.code)
-            && let Some(worlds) = worlds.into_iter().collect::<Option<Vec<String>>>()
-        {
-            diagnostic.title = format!("{} (with {})", diagnostic.title, some(&worlds));
-        }
-        diagnostic
-    }
+    /// The worlds in which it is found, ascending.
+    worlds: Vec<usize>,
+    /// How many more worlds say the same of the place in other words.
+    others: usize,
 }
 
 impl Compiler<'_> {
     /// What was found in all worlds. The same place says the same thing once, with the values of the parameters of which
-    /// that depends, as far as is known.
+    /// that depends, as far as is known; in other words, with other values, a few times.
     pub(super) fn findings(&self) -> Vec<Diagnostic> {
         let mut found: Vec<Finding> = Vec::new();
-        let mut places = BTreeMap::new();
-        for (at, site) in self.sites.iter().enumerate() {
-            let names: Vec<&str> = site.settings.keys().map(String::as_str).collect();
-            let values = self.described(at, &site.settings, &names);
-            let values: Vec<String> =
-                values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
-            let values = Some(values.join(", ")).filter(|values| !values.is_empty());
+        let mut places: BTreeMap<_, Vec<usize>> = BTreeMap::new();
+        for (world, site) in self.sites.iter().enumerate() {
             for diagnostic in &site.elaborator.diagnostics {
                 let place = diagnostic.place.as_ref().map(|place| place.span);
-                // Without a place and values, only the text tells one from another.
-                let text = (place.is_none() && values.is_none()).then(|| diagnostic.title.clone());
-                let known = *places.entry((diagnostic.code, place, text)).or_insert(found.len());
-                match found.get_mut(known) {
-                    Some(finding) if finding.worlds.last() == Some(&values) => {}
-                    Some(finding) => {
-                        finding.worlds.push(values.clone());
-                        finding.alike &= finding.diagnostic.title == diagnostic.title;
+                let known = places.entry((diagnostic.code, place)).or_default();
+                let same = known.iter().find(|at| found[**at].diagnostic.title == diagnostic.title);
+                match (same, known.last()) {
+                    (Some(&same), _) => {
+                        if found[same].worlds.last() != Some(&world) {
+                            found[same].worlds.push(world);
+                        }
                     }
-                    None => found.push(Finding {
-                        diagnostic: diagnostic.clone(),
-                        worlds: vec![values.clone()],
-                        alike: true,
-                    }),
+                    (None, Some(&last)) if place.is_some() && known.len() == MOST_WORLDS => {
+                        found[last].others += 1;
+                    }
+                    _ => {
+                        known.push(found.len());
+                        let diagnostic = diagnostic.clone();
+                        found.push(Finding { diagnostic, worlds: vec![world], others: 0 });
+                    }
                 }
             }
         }
-        let set = self.sites.iter().filter(|site| !site.settings.is_empty()).count();
-        let mut told: Vec<Diagnostic> = found.into_iter().map(|finding| finding.told(set)).collect();
+        let mut told: Vec<Diagnostic> = found.into_iter().map(|finding| self.told(finding)).collect();
         told.sort_by_key(|d| d.place.as_ref().map(|place| place.span));
         told
     }
+
+    /// A finding with its worlds, if it depends on them: if it is missing in one of the call, or, where it is found in
+    /// none of these, in one that queries set.
+    fn told(&self, finding: Finding) -> Diagnostic {
+        let Finding { mut diagnostic, worlds, others } = finding;
+        let says = diagnostic.severity == Severity::Error || diagnostic.code == "W0501";
+        let Some(first) = worlds.first().filter(|_| says) else { return diagnostic };
+        if others == 0 && self.sites[*first].elaborator.is_sure(&diagnostic) {
+            return diagnostic;
+        }
+        let is_base = |world: &usize| self.bases.contains(world);
+        let is_set = |world: &usize| !self.sites[*world].settings.is_empty();
+        if worlds == [PLAIN] && !is_base(&PLAIN) {
+            diagnostic.title.push_str(" (with the defaults)");
+            return diagnostic;
+        }
+        // What is so where nothing is set is so.
+        if !worlds.iter().all(is_set) {
+            return diagnostic;
+        }
+        let of_call = worlds.iter().any(is_base);
+        let all = 0..self.sites.len();
+        let asked: Vec<usize> = all
+            .filter(|world| if of_call { is_base(world) } else { is_set(world) && !is_base(world) })
+            .collect();
+        if asked.len() > 1 && asked.iter().all(|world| worlds.binary_search(world).is_ok()) {
+            return diagnostic;
+        }
+        let mut shown: Vec<String> =
+            worlds.iter().take(MOST_WORLDS).map(|world| self.values(*world)).collect();
+        let more = worlds.len().saturating_sub(MOST_WORLDS);
+        if more > 0 {
+            shown.push(format!("and {more} more"));
+        }
+        if others > 0 {
+            shown.push(format!("in other words with {others} more"));
+        }
+        diagnostic.title = format!("{} (with {})", diagnostic.title, shown.join("; "));
+        diagnostic
+    }
+
+    /// The values that are set in a world.
+    fn values(&self, world: usize) -> String {
+        let settings = &self.sites[world].settings;
+        let names: Vec<&str> = settings.keys().map(String::as_str).collect();
+        let values = self.described(world, settings, &names);
+        let values: Vec<String> = values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+        values.join(", ")
+    }
 }
 
-/// The first of some worlds, and how many more there are.
-fn some(worlds: &[String]) -> String {
-    let more = worlds.len().saturating_sub(MOST_WORLDS);
-    let shown = worlds[..worlds.len() - more].join("; ");
-    if more == 0 { shown } else { format!("{shown}; and {more} more") }
+impl Elaborator<'_> {
+    /// Of what was found from a number on, in a world that stands in for one that could not be set up, only what does not
+    /// hang on values: names, kinds and units, and numbers as they are written.
+    pub(super) fn keep_sure(&mut self, from: usize) {
+        let found = self.diagnostics.split_off(from.min(self.diagnostics.len()));
+        let sure: Vec<Diagnostic> = found.into_iter().filter(|one| self.is_sure(one)).collect();
+        self.diagnostics.extend(sure);
+    }
+
+    fn is_sure(&self, one: &Diagnostic) -> bool {
+        if UNKNOWN.contains(&one.code) || one.code.starts_with("E03") || VALUELESS.contains(&one.code) {
+            return true;
+        }
+        let Some(place) = &one.place else { return true };
+        let text = self.text(place.span);
+        let mut names = words(&text).filter(|word| !word.starts_with(|c: char| c.is_ascii_digit()));
+        names.all(|name| dimension::unit(name).is_some())
+    }
 }

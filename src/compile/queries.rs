@@ -13,7 +13,7 @@ use crate::model::Scenario;
 use crate::syntax::ast::{self, Binding, Expr, PropertyFile, PropertyItem, QueryKind, ScenarioFile};
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::source::{Source, Span};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// What a call hands over.
@@ -52,6 +52,8 @@ pub(super) struct Compiler<'a> {
     members: usize,
     /// The world of the values of `--set`, of a sweep the first.
     base: usize,
+    /// The worlds of all points of the call.
+    pub(super) bases: BTreeSet<usize>,
     /// Times that ticks of continuous time must measure, world by world.
     measured: BTreeMap<Key, Vec<Decimal>>,
 }
@@ -69,6 +71,7 @@ pub fn compile(input: &Input<'_>) -> (Option<Study>, Vec<Diagnostic>) {
             next_index: 0,
             members: 0,
             base: 0,
+            bases: BTreeSet::new(),
             measured: measured.clone(),
         };
         compiler.run();
@@ -112,6 +115,7 @@ impl<'a> Compiler<'a> {
         for (number, point) in points.iter().enumerate() {
             self.next_index = 0;
             let base = self.site(point.clone());
+            self.bases.insert(base);
             if number == 0 {
                 self.base = base;
             }
@@ -151,10 +155,13 @@ impl<'a> Compiler<'a> {
             for item in &file.items {
                 match item {
                     // A name that is taken stands for something else; that is said already.
-                    PropertyItem::Property { name, .. }
+                    PropertyItem::Property { name, formula }
                         if elaborator.scopes[number + 1]
                             .get(&name.name)
-                            .is_none_or(|declared| declared.span != name.span) => {}
+                            .is_none_or(|declared| declared.span != name.span) =>
+                    {
+                        let _ = elaborator.formula_column(formula, number + 1);
+                    }
                     PropertyItem::Property { name, formula } => {
                         let body = Expr { kind: ast::ExprKind::Name(name.name.clone()), span: formula.span };
                         if elaborator.formula_column(&body, number + 1).is_err() {
@@ -315,13 +322,30 @@ impl<'a> Compiler<'a> {
         settings: &[(String, String)],
         family: Option<f64>,
     ) -> Lowered<()> {
+        match self.under(&query.clauses.under, scope, base, point) {
+            Ok(world) => self.ask(query, scope, world, settings, family),
+            Err(Reported) => {
+                // The world of the call stands in, so that this hides nothing else that is surely wrong.
+                let before = self.sites[base].elaborator.diagnostics.len();
+                let asked = self.ask(query, scope, (base, Vec::new()), settings, family);
+                self.sites[base].elaborator.keep_sure(before);
+                asked.and(Err(Reported))
+            }
+        }
+    }
+
+    /// A query in a world, with what it sets itself.
+    fn ask(
+        &mut self,
+        query: &'a ast::Query,
+        scope: ScopeId,
+        (site, own): (usize, Vec<(String, String)>),
+        settings: &[(String, String)],
+        family: Option<f64>,
+    ) -> Lowered<()> {
         let clauses = &query.clauses;
         let locals = Locals::of(scope);
-        let text = self.sites[base].elaborator.text(query.span);
-        // Where what it sets is wrong, the world of the call stands in, so that this hides nothing else that is wrong.
-        let under = self.under(&clauses.under, scope, base, point);
-        let unset = under.is_err();
-        let (site, own) = under.unwrap_or_else(|Reported| (base, Vec::new()));
+        let text = self.sites[site].elaborator.text(query.span);
         // What a query sets itself takes the place of what a sweep sets.
         let swept = settings.iter().filter(|(name, _)| own.iter().all(|(mine, _)| mine != name));
         let settings: Vec<_> = swept.cloned().chain(own.iter().cloned()).collect();
@@ -386,7 +410,7 @@ impl<'a> Compiler<'a> {
                 self.push(query.span, text, settings, property_name(measure), ask, unbounded, site);
             }
         }
-        if unset { Err(Reported) } else { Ok(()) }
+        Ok(())
     }
 
     fn push(

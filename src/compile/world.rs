@@ -12,7 +12,7 @@ use super::told::{self, Told};
 use crate::base::decimal::Decimal;
 use crate::base::tick::{Clock, Tick};
 use crate::model::{BehaviourId, Moves, Scenario};
-use crate::syntax::ast::{Item, PropertyFile, PropertyItem, ScenarioFile};
+use crate::syntax::ast::{Expr, ExprKind, Ident, Item, PropertyFile, PropertyItem, ScenarioFile};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
 use std::collections::BTreeMap;
@@ -203,10 +203,10 @@ impl<'a> Elaborator<'a> {
         for item in &file.items {
             match item {
                 Item::Const { name, value } => {
-                    let _ = self.lower_declared(&name.name, value.span);
+                    let _ = self.lower_declared(name, value);
                 }
                 Item::Param { name, value, range } => {
-                    let declared = self.lower_declared(&name.name, value.span);
+                    let declared = self.lower_declared(name, value);
                     if let (Some((low, high)), Ok(super::typed::Typed::Number(number))) = (range, declared)
                         && let range_span = low.span.to(high.span)
                         && let Ok(low) = self.number_of(low, number.dimension, &locals)
@@ -228,7 +228,7 @@ impl<'a> Elaborator<'a> {
                 }
                 Item::Let(decl) if decl.arguments.is_empty() => {
                     self.temporal = true;
-                    let _ = self.lower_declared(&decl.name.name, decl.body.span);
+                    let _ = self.lower_declared(&decl.name, &decl.body);
                     self.temporal = false;
                 }
                 _ => {}
@@ -236,15 +236,18 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn lower_declared(&mut self, name: &str, span: Span) -> Lowered<super::typed::Typed> {
-        let expr =
-            crate::syntax::ast::Expr { kind: crate::syntax::ast::ExprKind::Name(name.to_owned()), span };
+    fn lower_declared(&mut self, name: &Ident, value: &Expr) -> Lowered<super::typed::Typed> {
+        if self.scopes[0].get(&name.name).is_some_and(|entry| entry.span != name.span) {
+            // The name is taken: it stands for something else.
+            return self.lower(value, &Locals::of(0));
+        }
+        let expr = Expr { kind: ExprKind::Name(name.name.clone()), span: value.span };
         self.lower(&expr, &Locals::of(0))
     }
 
     /// Settles the clock; of one with steps of a length it is also told how much of it is sure.
     fn settle_clock(&mut self, file: &'a ScenarioFile, told: &mut Told) -> Lowered<()> {
-        let mut found: [Option<(&crate::syntax::ast::Expr, Span)>; 2] = [None, None];
+        let mut found: [Option<(&Expr, Span)>; 2] = [None, None];
         // What a slip of the pen was probably meant to set.
         let mut meant = [false; 2];
         let mut sure = [true; 2];
@@ -359,7 +362,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// Continuous time up to a horizon.
-    fn settle_continuous(&mut self, horizon: &crate::syntax::ast::Expr, failed: bool) -> Lowered<()> {
+    fn settle_continuous(&mut self, horizon: &Expr, failed: bool) -> Lowered<()> {
         let end = self.number_of(horizon, Dimension::TIME, &Locals::of(0))?;
         if end.value <= 0.0 {
             return self.report(Diagnostic::error(
@@ -377,7 +380,7 @@ impl<'a> Elaborator<'a> {
         if failed { Err(Reported) } else { Ok(()) }
     }
 
-    fn settle_horizon(&mut self, horizon: &crate::syntax::ast::Expr, failed: bool) -> Lowered<()> {
+    fn settle_horizon(&mut self, horizon: &Expr, failed: bool) -> Lowered<()> {
         let end = self.time(horizon, &Locals::of(0))?;
         match end {
             Some(Tick(0)) => self.report(Diagnostic::error(

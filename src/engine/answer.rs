@@ -285,7 +285,7 @@ impl Answers<'_> {
         executor: &dyn Executor,
         watch: &dyn Watch,
     ) -> Result<QueryResult, Fault> {
-        let started = self.budget.elapsed();
+        let started = self.budget.elapsed() - contrast.ahead();
         let query = contrast.query();
         let Ask::Compare { first, second, settings, delta, .. } = &query.ask else {
             return Err(Fault::Unsuitable);
@@ -341,7 +341,7 @@ impl Answers<'_> {
         executor: &dyn Executor,
         watch: &dyn Watch,
     ) -> Result<QueryResult, Fault> {
-        let started = self.budget.elapsed();
+        let started = self.budget.elapsed() - contest.ahead();
         let query = contest.query();
         let Ask::Rank { moves, measure, delta, .. } = &query.ask else {
             return Err(Fault::Unsuitable);

@@ -155,6 +155,11 @@ impl<'s> Contrast<'s> {
         }
     }
 
+    /// Seconds that its first pairs have taken already.
+    pub(super) fn ahead(&self) -> f64 {
+        self.ahead.iter().flatten().map(|ahead| ahead.seconds).sum()
+    }
+
     /// Runs until the interval is narrow enough, or the pairs are spent.
     pub(super) fn run(
         mut self,

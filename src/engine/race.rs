@@ -230,6 +230,11 @@ impl<'s> Contest<'s> {
         })
     }
 
+    /// Seconds that its first round has taken already.
+    pub(super) fn ahead(&self) -> f64 {
+        self.ahead.as_ref().map_or(0.0, |ahead| ahead.seconds)
+    }
+
     /// Runs until the ranking is certified, or the budget is spent.
     pub(super) fn run(
         &mut self,

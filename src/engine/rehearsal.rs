@@ -20,7 +20,7 @@ pub(super) struct Rehearsal {
     /// What they yielded.
     pub(super) cells: Cells,
     /// How long they took, s.
-    seconds: f64,
+    pub(super) seconds: f64,
     /// Steps made.
     steps: u64,
 }

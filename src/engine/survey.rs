@@ -122,7 +122,8 @@ impl<'q> Survey<'q> {
         budget: &Budget,
         watch: &dyn Watch,
     ) -> Result<Option<Broken>, Fault> {
-        let started = budget.elapsed();
+        // The trials that were run ahead are its own.
+        let started = budget.elapsed() - self.ahead.as_ref().map_or(0.0, |ahead| ahead.seconds);
         if budget.max_trials == 0 {
             self.inquiries.iter_mut().for_each(|inquiry| inquiry.stop = Some(Stop::Cap));
         }

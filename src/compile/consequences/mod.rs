@@ -213,7 +213,7 @@ fn leading_word(text: &str) -> (&str, &str) {
 }
 
 /// The words of a text.
-fn words(text: &str) -> impl DoubleEndedIterator<Item = &str> {
+pub(super) fn words(text: &str) -> impl DoubleEndedIterator<Item = &str> {
     text.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|word| !word.is_empty())
 }
 

@@ -272,15 +272,22 @@ impl Graph {
 
     /// In how many ways, at most 2, a value is computed from another one.
     pub(super) fn ways(&self, value: Id, from: Id) -> u8 {
-        // Operands come before their users.
-        let mut ways = vec![0_u8; value as usize + 1];
-        for id in from..=value {
-            let of = |operand: Id| if operand < from { 0 } else { ways[operand as usize] };
-            let own = u8::from(id == from);
-            ways[id as usize] =
-                self.nodes[id as usize].operands().into_iter().map(of).fold(own, u8::saturating_add).min(2);
+        if value < from {
+            return 0;
         }
-        ways[value as usize]
+        // Operands come before their users.
+        let mut ways = vec![0_u8; (value - from) as usize + 1];
+        ways[(value - from) as usize] = 1;
+        for id in (from..=value).rev() {
+            let here = ways[(id - from) as usize];
+            if here > 0 && id > from {
+                for operand in self.nodes[id as usize].operands().into_iter().filter(|&one| one >= from) {
+                    let of = &mut ways[(operand - from) as usize];
+                    *of = (*of + here).min(2);
+                }
+            }
+        }
+        ways[0]
     }
 
     /// Whether a value depends on a running agent.

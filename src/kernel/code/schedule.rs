@@ -141,10 +141,9 @@ fn cut(graph: &Graph, node: &Node) -> Option<(Id, Cut)> {
         let (value, bound) = compared(graph, body, me)?;
         (value, Cut::Above(bound))
     };
-    let (id, other) = smallest(graph, value, me)?;
+    let id = smallest(graph, value, me)?;
     // Nothing else in the body needs it.
-    let alone = graph.ways(body, id) == 1 && other.is_none_or(|other| graph.ways(other, id) == 0);
-    alone.then_some((id, cut))
+    (graph.ways(body, id) == 1).then_some((id, cut))
 }
 
 /// What a condition compares of the smallest measure around an agent with a number, and the bits of that.
@@ -175,19 +174,18 @@ fn compared(graph: &Graph, condition: Id, me: Who) -> Option<(Id, u64)> {
 }
 
 /// The smallest measure around an agent that a value is for all who are there, or the lesser of that and something else.
-fn smallest(graph: &Graph, value: Id, me: Who) -> Option<(Id, Option<Id>)> {
+fn smallest(graph: &Graph, value: Id, me: Who) -> Option<Id> {
     // Who is not there is not among the members either.
     let mut id = match graph.nodes[value as usize] {
         Node::Select(here, id, _) if graph.nodes[here as usize] == Node::Present(me) => id,
         _ => value,
     };
-    // The walls, which are the same however far the others are.
-    let mut other = None;
-    if let Node::Combine(Arithmetic::Min, first, second) = graph.nodes[id as usize] {
-        (id, other) = (first, Some(second));
+    // The walls, which are the same however far the others are, stand second.
+    if let Node::Combine(Arithmetic::Min, first, _) = graph.nodes[id as usize] {
+        id = first;
     }
     match graph.nodes[id as usize] {
-        Node::Nearest(who, crowd, _) if who == me && crowd.except == Some(me) => Some((id, other)),
+        Node::Nearest(who, crowd, _) if who == me && crowd.except == Some(me) => Some(id),
         _ => None,
     }
 }

@@ -106,7 +106,9 @@ impl Neighbours {
         }
         let least = low.0.into_iter().fold(f64::INFINITY, |a, b| if b < a { b } else { a });
         let most = high.0.into_iter().fold(f64::NEG_INFINITY, |a, b| if b > a { b } else { a });
-        Some(if most > least { most - least } else { 0.0 })
+        // Each way is rounded as it is long.
+        let rounding = (least.abs() + most.abs()) * f64::EPSILON;
+        Some(if most >= least { most - least + rounding } else { 0.0 })
     }
 }
 

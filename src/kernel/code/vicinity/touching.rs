@@ -78,7 +78,8 @@ pub(super) fn read_off(
 ) -> Option<f64> {
     let reach = match question {
         Question::AllFar { bound, .. } | Question::Nearest { cut: Cut::Above(bound), .. } => {
-            Some(f64::from_bits(bound)).filter(|bound| *bound <= close.edge)?
+            // Nothing is below an edge that is not known.
+            Some(f64::from_bits(bound)).filter(|bound| f64::NEG_INFINITY < *bound && *bound <= close.edge)?
         }
         Question::Nearest { cut: Cut::Least(_), .. } => close.edge,
         Question::Nearest { cut: Cut::Nowhere, .. } => return None,
