@@ -9,6 +9,8 @@ use std::collections::BTreeMap;
 
 /// Codes of errors of queries that hang on no value, besides those of names, kinds and units.
 const VALUELESS: [&str; 3] = ["E0603", "E0606", "E0607"];
+/// Codes of numbers that hang on no other value where they are written as such.
+const WRITTEN: [&str; 6] = ["E0402", "E0405", "E0601", "E0602", "E0604", "E0605"];
 /// The world in which nothing is set.
 const PLAIN: usize = 0;
 /// Most worlds that an error names, and most words in which it is said.
@@ -35,14 +37,17 @@ impl Compiler<'_> {
                 let place = diagnostic.place.as_ref().map(|place| place.span);
                 let known = places.entry((diagnostic.code, place)).or_default();
                 let same = known.iter().find(|at| found[**at].diagnostic.title == diagnostic.title);
-                match (same, known.last()) {
+                let latest = known.iter().max_by_key(|at| found[**at].worlds.last());
+                match (same, latest) {
                     (Some(&same), _) => {
                         if found[same].worlds.last() != Some(&world) {
                             found[same].worlds.push(world);
                         }
                     }
-                    (None, Some(&last)) if place.is_some() && known.len() == MOST_WORLDS => {
-                        found[last].others += 1;
+                    // One thing at a place is enough, in one world.
+                    (None, Some(&last)) if place.is_some() && found[last].worlds.last() == Some(&world) => {}
+                    (None, Some(_)) if place.is_some() && known.len() == MOST_WORLDS => {
+                        found[known[MOST_WORLDS - 1]].others += 1;
                     }
                     _ => {
                         known.push(found.len());
@@ -61,14 +66,13 @@ impl Compiler<'_> {
     /// none of these, in one that queries set.
     fn told(&self, finding: Finding) -> Diagnostic {
         let Finding { mut diagnostic, worlds, others } = finding;
-        let says = diagnostic.severity == Severity::Error || diagnostic.code == "W0501";
-        let Some(first) = worlds.first().filter(|_| says) else { return diagnostic };
-        if others == 0 && self.sites[*first].elaborator.is_sure(&diagnostic) {
+        if diagnostic.severity != Severity::Error && diagnostic.code != "W0501" {
             return diagnostic;
         }
         let is_base = |world: &usize| self.bases.contains(world);
         let is_set = |world: &usize| !self.sites[*world].settings.is_empty();
-        if worlds == [PLAIN] && !is_base(&PLAIN) {
+        let is_sure = others == 0 && self.sites[worlds[0]].elaborator.is_sure(&diagnostic);
+        if worlds == [PLAIN] && !is_base(&PLAIN) && !is_sure {
             diagnostic.title.push_str(" (with the defaults)");
             return diagnostic;
         }
@@ -81,7 +85,8 @@ impl Compiler<'_> {
         let asked: Vec<usize> = all
             .filter(|world| if of_call { is_base(world) } else { is_set(world) && !is_base(world) })
             .collect();
-        if asked.len() > 1 && asked.iter().all(|world| worlds.binary_search(world).is_ok()) {
+        let everywhere = asked.iter().all(|world| worlds.binary_search(world).is_ok());
+        if everywhere && (asked.len() > 1 || is_sure) || UNKNOWN.contains(&diagnostic.code) {
             return diagnostic;
         }
         let mut shown: Vec<String> =
@@ -120,7 +125,7 @@ impl Elaborator<'_> {
         if UNKNOWN.contains(&one.code) || one.code.starts_with("E03") || VALUELESS.contains(&one.code) {
             return true;
         }
-        let Some(place) = &one.place else { return true };
+        let Some(place) = one.place.as_ref().filter(|_| WRITTEN.contains(&one.code)) else { return false };
         let text = self.text(place.span);
         let mut names = words(&text).filter(|word| !word.starts_with(|c: char| c.is_ascii_digit()));
         names.all(|name| dimension::unit(name).is_some())
