@@ -16,6 +16,7 @@ impl Builder<'_> {
             .or_else(|| self.slip_of_equals(fault))
             .or_else(|| self.slip_of_operator(fault))
             .or_else(|| self.slip_of_range(fault))
+            .or_else(|| self.slip_of_quantifier(fault))
             .or_else(|| self.slip_of_unit(fault))
             .or_else(|| self.slip_of_process(fault))
             .or_else(|| self.slip_of_time(fault))
@@ -261,6 +262,20 @@ impl Builder<'_> {
         Some(error.hint("as in `check E(m) in 0 .. 2 >= 1.5`; a probability needs none"))
     }
 
+    /// `foral a in crowd: …`
+    fn slip_of_quantifier(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
+        let rest = self.text[fault.at + fault.found.len()..].trim_start();
+        let ranges = rest.strip_prefix("in").is_some_and(|set| !set.starts_with(lexeme::starts_name));
+        if !ranges || !fault.found.starts_with(lexeme::starts_name) {
+            return None;
+        }
+        let (at, word) = lexeme::word_before(self.text, fault.at)?;
+        let meant = nouns::nearest(word, ["forall", "exists"].into_iter())?;
+        let place = Span::new(self.source.id, at, at + word.len());
+        let error = Diagnostic::error(code::UNEXPECTED, place, format!("there is no quantifier `{word}`"));
+        Some(error.hint(format!("did you mean `{meant}`?")))
+    }
+
     /// `3 metres`
     fn slip_of_unit(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
         if !fault.found.starts_with(lexeme::starts_name) {
@@ -317,6 +332,11 @@ impl Builder<'_> {
             let error =
                 Diagnostic::error(code::UNEXPECTED, place, format!("expected `,`, found `{}`", fault.found));
             return Some(error.hint(format!("write `{number}, {}`", fault.found)));
+        }
+        if fault.found == "with" && self.root != Rule::scenario_file {
+            let error =
+                Diagnostic::error(code::UNEXPECTED, place, "`with` stands between the sides of a `compare`");
+            return Some(error.hint("a query sets values of parameters by `under n = …`"));
         }
         let hint = match unit {
             Some(unit) => format!("did you mean `{number} {unit}`?"),
