@@ -48,6 +48,7 @@ impl Elaborator<'_> {
                     format!("`{}` has no argument `{}`", method.name.name, argument.name.name),
                 );
                 self.note(error.hint(hint));
+                let _ = self.number(&argument.value, locals);
                 failed = true;
                 continue;
             };

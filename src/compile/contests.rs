@@ -73,7 +73,7 @@ impl Elaborator<'_> {
             "okamoto" => Ok(Ranking::Okamoto),
             "betting" => Ok(Ranking::Betting),
             "one_challenger" => Ok(Ranking::OneChallenger),
-            _ => self.unknown_method(method, &["betting", "one_challenger", "okamoto"]),
+            _ => self.unknown_method(method, &["betting", "one_challenger", "okamoto"], locals),
         };
         if ranking.is_err() && !method.arguments.is_empty() {
             // What an unknown procedure takes nobody knows, the width among it.

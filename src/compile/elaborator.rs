@@ -46,8 +46,8 @@ const MOST_ATOMS: usize = 5_000;
 pub(super) struct Locals {
     /// Which table of names is looked up after the locals.
     pub(super) scope: ScopeId,
-    /// Bound names, innermost last.
-    pub(super) names: Vec<(String, Arc<Typed>)>,
+    /// Bound names, innermost last. `None`: nobody knows what it stands for, and nothing is said of what needs that.
+    pub(super) names: Vec<(String, Option<Arc<Typed>>)>,
     /// Number of enclosing folds over agents.
     pub(super) running: u32,
     /// The process, and which of its copies, whose names come next.
@@ -64,7 +64,12 @@ impl Locals {
 
     /// Binds a name, which hides others that are equal.
     pub(super) fn bind(&mut self, name: &str, value: Typed) {
-        self.names.push((name.to_owned(), Arc::new(value)));
+        self.names.push((name.to_owned(), Some(Arc::new(value))));
+    }
+
+    /// Binds a name of which nobody knows what it stands for.
+    pub(super) fn bind_unknown(&mut self, name: &str) {
+        self.names.push((name.to_owned(), None));
     }
 }
 

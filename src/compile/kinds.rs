@@ -86,7 +86,7 @@ impl Elaborator<'_> {
     }
 
     /// The parameters of a kind as it is declared.
-    fn own_kind(&mut self, decl: &KindDecl) -> Lowered<Kind> {
+    pub(super) fn own_kind(&mut self, decl: &KindDecl) -> Lowered<Kind> {
         let mut kind = self.kind(&decl.base);
         if let Some(preset) = &decl.preset {
             if PRESETS.iter().any(|p| p.name == preset.name) {
@@ -110,6 +110,7 @@ impl Elaborator<'_> {
             let known = PARAMETERS.iter().map(|(n, ..)| *n);
             let error = unknown("parameter", &field.name.name, field.name.span, "E0207", known);
             self.note(error);
+            self.look_at(&field.value, &Locals::default());
             kind = Err(Reported);
         }
         kind

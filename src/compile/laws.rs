@@ -61,7 +61,8 @@ impl Elaborator<'_> {
             Value::Truncated { law, low, high } => {
                 let ends = (self.number_of(low, dimension, locals), self.number_of(high, dimension, locals));
                 let Some(drawn) = distribution(law) else {
-                    if let ExprKind::Call { function, .. } = &law.kind {
+                    if let ExprKind::Call { function, arguments } = &law.kind {
+                        let _ = self.lower_all(arguments, locals);
                         let error = unknown(
                             "distribution",
                             &function.name,
@@ -87,6 +88,41 @@ impl Elaborator<'_> {
                 let error =
                     Diagnostic::error("E0305", value_span(other), "expected a number or a distribution");
                 self.report(error)
+            }
+        }
+    }
+
+    /// What a value is made of that nobody knows what to do with: what is wrong with that is said all the same.
+    pub(super) fn look_at(&mut self, value: &Value, locals: &Locals) {
+        match value {
+            Value::Plain(expr) => self.look_at_drawn(expr, locals),
+            Value::Truncated { law, low, high } => {
+                self.look_at_drawn(law, locals);
+                let _ = (self.lower(low, locals), self.lower(high, locals));
+            }
+            Value::UniformIn(shape) => {
+                let _ = self.shape(shape, locals);
+            }
+            Value::Near { agent, within } => {
+                let _ = (self.lower(agent, locals), self.lower(within, locals));
+            }
+            Value::Route(_) => {
+                let _ = self.route(value, locals);
+            }
+        }
+    }
+
+    /// A value, or the arguments of a distribution.
+    fn look_at_drawn(&mut self, expr: &Expr, locals: &Locals) {
+        match distribution(expr) {
+            Some(drawn) => {
+                let _ = self.lower_all(drawn.arguments, locals);
+                for factor in drawn.factors {
+                    let _ = self.lower(factor, locals);
+                }
+            }
+            None => {
+                let _ = self.lower(expr, locals);
             }
         }
     }

@@ -235,7 +235,7 @@ impl Elaborator<'_> {
 
     fn expectation(&mut self, measure: &ast::Measure, scope: ScopeId) -> (Lowered<Observed>, Sketch) {
         let metric = self.metric_root(&measure.body, scope);
-        let dimension = metric.as_ref().ok().map(|(_, dimension, _)| *dimension);
+        let dimension = self.dimension_of(&metric, &measure.body, scope);
         let sketch = Sketch::of(What::Expectation, dimension);
         let range = match &measure.range {
             Some((low, high)) => self.range((low, high), sketch, &Locals::of(scope)),
@@ -265,15 +265,35 @@ impl Elaborator<'_> {
         (observed, sketch)
     }
 
+    /// The dimension of a metric, also where something is wrong with it, as far as its form tells.
+    fn dimension_of(
+        &self,
+        metric: &Lowered<(Root, Dimension, bool)>,
+        body: &Expr,
+        scope: ScopeId,
+    ) -> Option<Dimension> {
+        match metric {
+            Ok((_, dimension, _)) => Some(*dimension),
+            Err(Reported) => self.gist(body, &Locals::of(scope)),
+        }
+    }
+
     /// The range of an expectation.
     fn range(&mut self, (low, high): (&Expr, &Expr), sketch: Sketch, locals: &Locals) -> Lowered<(f64, f64)> {
         let Ok(least) = self.number_in(low, sketch, locals) else {
-            // That its unit is wrong as well need not be said.
-            let _ = self.number(high, locals);
-            return Err(Reported);
+            // That the other end has the same wrong unit need not be said.
+            return match (self.number(low, locals), self.number(high, locals), sketch.dimension) {
+                (Ok(low), Ok(most), Some(dimension))
+                    if most.dimension != dimension && most.dimension != low.dimension =>
+                {
+                    self.wrong_dimension(high.span, dimension, most.dimension)
+                }
+                _ => Err(Reported),
+            };
         };
-        let most = self.number_in(high, sketch, locals)?;
-        if least.dimension == most.dimension && least.value >= most.value {
+        let expected = Sketch { dimension: Some(least.dimension), ..sketch };
+        let most = self.number_in(high, expected, locals)?;
+        if least.value >= most.value {
             return self.report(Diagnostic::error("E0605", low.span.to(high.span), "this range is empty"));
         }
         Ok((least.value, most.value))
@@ -299,7 +319,7 @@ impl Elaborator<'_> {
             self.report(Diagnostic::error("E0601", level.span, said))
         });
         let metric = self.metric_root(&measure.body, scope);
-        let dimension = metric.as_ref().ok().map(|(_, dimension, _)| *dimension);
+        let dimension = self.dimension_of(&metric, &measure.body, scope);
         let sketch = Sketch { level: number.ok(), ..Sketch::of(What::Quantile, dimension) };
         let text = self.text(measure.body.span);
         let observed = metric.and_then(|(root, dimension, unbounded)| {

@@ -77,7 +77,15 @@ impl Elaborator<'_> {
         Ok(Some(number.value))
     }
 
-    pub(super) fn unknown_method<T>(&mut self, method: &Method, known: &[&str]) -> Lowered<T> {
+    pub(super) fn unknown_method<T>(
+        &mut self,
+        method: &Method,
+        known: &[&str],
+        locals: &Locals,
+    ) -> Lowered<T> {
+        for argument in &method.arguments {
+            let _ = self.number(&argument.value, locals);
+        }
         let name = &method.name.name;
         let error =
             Diagnostic::error("E0603", method.name.span, format!("there is no procedure `{name}` for this"));
@@ -172,7 +180,7 @@ impl Elaborator<'_> {
                 arguments.sound()?;
                 Ok(Test::ThreeWay { alpha, indifference })
             }
-            _ => self.unknown_method(method, &["sprt", "sprt2", "plan", "eprocess", "three_way"]),
+            _ => self.unknown_method(method, &["sprt", "sprt2", "plan", "eprocess", "three_way"], locals),
         }
     }
 
@@ -294,7 +302,7 @@ impl Elaborator<'_> {
             What::Expectation => &["okamoto", "fixed"],
         };
         if !known.contains(&name) {
-            return self.unknown_method(method, known);
+            return self.unknown_method(method, known, locals);
         }
         let arguments = self.arguments((clauses, method), ["epsilon", "delta"], sketch, locals);
         let delta = self.claimed(arguments.values[1], delta, allowance);

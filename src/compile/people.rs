@@ -161,19 +161,13 @@ impl<'a> Elaborator<'a> {
         let field = |this: &mut Self, name: &str, dimension: Dimension, default: f64| -> Lowered<f64> {
             let Some(field) = rest.iter().find(|f| f.name.name == name) else { return Ok(default) };
             let Value::Plain(expr) = &field.value else {
-                return this.report(Diagnostic::error(
-                    "E0305",
-                    value_span(&field.value),
-                    "expected a number",
-                ));
+                let place = value_span(&field.value);
+                return this.report(Diagnostic::error("E0305", place, "expected a number"));
             };
             let number = this.number_of(expr, dimension, &Locals::default())?;
             if number.value < 0.0 {
-                return this.report(Diagnostic::error(
-                    "E0405",
-                    expr.span,
-                    format!("`{name}` cannot be negative"),
-                ));
+                let said = format!("`{name}` cannot be negative");
+                return this.report(Diagnostic::error("E0405", expr.span, said));
             }
             Ok(number.value)
         };
@@ -351,11 +345,10 @@ impl<'a> Elaborator<'a> {
         };
         let velocity = match fields.iter().find(|f| f.name.name == "velocity").map(|f| &f.value) {
             Some(Value::Plain(expr)) => self.velocity_of(expr),
-            Some(other) => self.report(Diagnostic::error(
-                "E0305",
-                value_span(other),
-                "expected a velocity such as `(1, 0) m/s`",
-            )),
+            Some(other) => {
+                let said = "expected a velocity such as `(1, 0) m/s`";
+                self.report(Diagnostic::error("E0305", value_span(other), said))
+            }
             None => Ok(Vec2::zeros()),
         };
         Ok(Start { position: position?, velocity: velocity? })
@@ -407,15 +400,17 @@ impl<'a> Elaborator<'a> {
         match value {
             Value::UniformIn(shape) => self.shape(shape, &Locals::default()).map(Position::Within),
             Value::Near { agent, within } => {
-                let distance = self.number_of(within, Dimension::LENGTH, &Locals::default());
+                let distance = match self.number_of(within, Dimension::LENGTH, &Locals::default()) {
+                    Ok(distance) if distance.value <= 0.0 => {
+                        let said = "this distance must be positive";
+                        self.report(Diagnostic::error("E0405", within.span, said))
+                    }
+                    distance => distance,
+                };
                 self.declared_before(of, agent)?;
                 let typed = self.lower(agent, &Locals::default())?;
                 let Who::Agent(id) = self.as_agent(typed, agent.span)? else { return Err(Reported) };
                 let distance = distance?;
-                if distance.value <= 0.0 {
-                    let error = Diagnostic::error("E0405", within.span, "this distance must be positive");
-                    return self.report(error);
-                }
                 // Who could not be declared stands nowhere; that is said already.
                 if self.undeclared.contains(&id) || id.0 as usize >= people.agents.len() {
                     return Err(Reported);
@@ -451,6 +446,7 @@ impl<'a> Elaborator<'a> {
                 let all = known.iter().copied().chain(super::presets::PARAMETERS.iter().map(|(n, ..)| *n));
                 let error = unknown("field", &field.name.name, field.name.span, "E0207", all);
                 self.note(error);
+                self.look_at(&field.value, &Locals::default());
             }
         }
     }

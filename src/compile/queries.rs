@@ -172,12 +172,12 @@ impl<'a> Compiler<'a> {
                     PropertyItem::Const { value, .. } => {
                         let _ = elaborator.number(value, &Locals::of(number + 1));
                     }
-                    PropertyItem::Let(decl) if decl.arguments.is_empty() => {
+                    PropertyItem::Let(decl) => {
                         elaborator.temporal = true;
-                        let _ = elaborator.lower(&decl.body, &Locals::of(number + 1));
+                        elaborator.look_into(decl, &Locals::of(number + 1));
                         elaborator.temporal = false;
                     }
-                    _ => {}
+                    PropertyItem::Family { .. } | PropertyItem::Query(_) => {}
                 }
             }
         }
@@ -271,6 +271,7 @@ impl<'a> Compiler<'a> {
                 continue;
             }
             if elaborator.param(&binding.name.name, binding.name.span).is_err() {
+                let _ = elaborator.number(&binding.value, &Locals::of(scope));
                 failed = true;
                 continue;
             }

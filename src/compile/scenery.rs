@@ -56,12 +56,15 @@ impl<'a> Elaborator<'a> {
     pub(super) fn settle_scene(&mut self, items: &'a [SceneItem], files: &Files, next: &mut usize) {
         for item in items {
             match item {
-                SceneItem::Region { name, .. } => {
-                    if let Some(Meaning::Region(id, _)) =
-                        self.scopes[0].get(&name.name).map(|e| e.meaning.clone())
-                        && let Ok(shape) = self.region_shape(id, name.span)
-                    {
-                        self.scene.regions[id.0 as usize].shape = shape;
+                SceneItem::Region { name, shape } => {
+                    let entry = self.scopes[0].get(&name.name).filter(|entry| entry.span == name.span);
+                    if let Some(Meaning::Region(id, _)) = entry.map(|entry| entry.meaning.clone()) {
+                        if let Ok(shape) = self.region_shape(id, name.span) {
+                            self.scene.regions[id.0 as usize].shape = shape;
+                        }
+                    } else {
+                        // The name is taken; what is wrong with the shape is said beside that.
+                        let _ = self.shape(shape, &Locals::default());
                     }
                 }
                 SceneItem::Wall { points, span, .. } => {
@@ -176,9 +179,10 @@ impl<'a> Elaborator<'a> {
                         points.iter().map(|p| this.point_of(p, Dimension::LENGTH, locals)).collect();
                     corners.into_iter().collect()
                 };
-                let outline = ring(self, outline)?;
+                let outline = ring(self, outline);
                 let holes: Vec<_> = holes.iter().map(|hole| ring(self, hole)).collect();
-                let polygon = Polygon { outline, holes: holes.into_iter().collect::<Lowered<_>>()? };
+                let polygon =
+                    Polygon { outline: outline?, holes: holes.into_iter().collect::<Lowered<_>>()? };
                 if polygon.outline.len() < 3 || polygon.holes.iter().any(|hole| hole.len() < 3) {
                     return self.report(Diagnostic::error(
                         "E0401",

@@ -76,9 +76,11 @@ impl<'a> Elaborator<'a> {
 
     /// The value that a parameter is set to. A bare number takes the unit of the default; a share (`50 %`) is none.
     pub(super) fn setting(&mut self, name: &str, value: &Expr, locals: &Locals) -> Lowered<Number> {
-        let (default, range) = self.param(name, value.span)?;
-        let declared = self.number(default, &Locals::of(0))?;
-        let mut number = self.number(value, locals)?;
+        let declared = self
+            .param(name, value.span)
+            .and_then(|(default, range)| Ok((default, range, self.number(default, &Locals::of(0))?)));
+        let number = self.number(value, locals);
+        let ((default, range, declared), mut number) = (declared?, number?);
         let bare = !matches!(&value.kind, ExprKind::Quantity(quantity) if quantity.unit.is_some());
         if bare && number.dimension.is_none() && !declared.dimension.is_none() {
             let unit = Self::unit_of_default(default).and_then(|unit| dimension::resolve(unit).ok());

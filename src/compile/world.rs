@@ -207,18 +207,8 @@ impl<'a> Elaborator<'a> {
                 }
                 Item::Param { name, value, range } => {
                     let declared = self.lower_declared(name, value);
-                    if let (Some((low, high)), Ok(super::typed::Typed::Number(number))) = (range, declared)
-                        && let range_span = low.span.to(high.span)
-                        && let Ok(low) = self.number_of(low, number.dimension, &locals)
-                        && let Ok(high) = self.number_of(high, number.dimension, &locals)
-                        && (number.value < low.value || number.value > high.value)
-                    {
-                        self.note(if low.value > high.value {
-                            Diagnostic::error("E0405", range_span, "this range is empty")
-                        } else {
-                            let text = format!("the default of `{}` lies outside its range", name.name);
-                            Diagnostic::error("E0405", value.span, text)
-                        });
+                    if let Some(range) = range {
+                        self.check_range(name, (declared, value), range);
                     }
                 }
                 Item::Kind(decl)
@@ -226,13 +216,44 @@ impl<'a> Elaborator<'a> {
                 {
                     let _ = self.kind(&decl.name);
                 }
-                Item::Let(decl) if decl.arguments.is_empty() => {
+                Item::Kind(decl) => {
+                    let _ = self.own_kind(decl);
+                }
+                Item::Let(decl) => {
                     self.temporal = true;
-                    let _ = self.lower_declared(&decl.name, &decl.body);
+                    if decl.arguments.is_empty() {
+                        let _ = self.lower_declared(&decl.name, &decl.body);
+                    } else {
+                        self.look_into(decl, &locals);
+                    }
                     self.temporal = false;
                 }
                 _ => {}
             }
+        }
+    }
+
+    /// The range of a parameter, and whether its default lies in it.
+    fn check_range(
+        &mut self,
+        name: &Ident,
+        (declared, value): (Lowered<super::typed::Typed>, &Expr),
+        (low, high): &(Expr, Expr),
+    ) {
+        let locals = Locals::of(0);
+        let Ok(super::typed::Typed::Number(number)) = declared else {
+            let _ = (self.number(low, &locals), self.number(high, &locals));
+            return;
+        };
+        let place = low.span.to(high.span);
+        let ends =
+            (self.number_of(low, number.dimension, &locals), self.number_of(high, number.dimension, &locals));
+        let (Ok(low), Ok(high)) = ends else { return };
+        if low.value > high.value {
+            self.note(Diagnostic::error("E0405", place, "this range is empty"));
+        } else if number.value < low.value || number.value > high.value {
+            let text = format!("the default of `{}` lies outside its range", name.name);
+            self.note(Diagnostic::error("E0405", value.span, text));
         }
     }
 

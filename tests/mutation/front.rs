@@ -9,13 +9,13 @@ use smc::syntax::render::render;
 use smc::syntax::source::{Source, SourceId};
 
 /// A scenario, the properties that go with it, and the files it names.
-struct Pair {
-    name: String,
-    texts: [String; 2],
-    files: Files,
+pub(super) struct Pair {
+    pub(super) name: String,
+    pub(super) texts: [String; 2],
+    pub(super) files: Files,
 }
 
-fn pairs() -> Vec<Pair> {
+pub(super) fn pairs() -> Vec<Pair> {
     let data = std::env::var("SMC_DATA").unwrap_or_else(|_| "../shared/data/eth-biwi".to_owned());
     let mut pairs = Vec::new();
     for entry in std::fs::read_dir("models").unwrap() {
@@ -44,7 +44,7 @@ fn pairs() -> Vec<Pair> {
 }
 
 /// The errors in a scenario and its properties.
-fn errors([scenario, properties]: [&str; 2], files: &Files) -> (Vec<Source>, Vec<Diagnostic>) {
+pub(super) fn errors([scenario, properties]: [&str; 2], files: &Files) -> (Vec<Source>, Vec<Diagnostic>) {
     let sources =
         vec![Source::new(SourceId(0), "a.scn", scenario), Source::new(SourceId(1), "a.bltl", properties)];
     let (tree, mut said) = parse_scenario(&sources[0]);

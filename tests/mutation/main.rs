@@ -6,6 +6,7 @@
 #![allow(clippy::print_stderr, reason = "a skipped test says so")]
 
 mod front;
+mod pairs;
 
 use proptest::prelude::*;
 use smc::syntax::diagnostic::{Diagnostic, Severity};

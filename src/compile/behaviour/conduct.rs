@@ -35,8 +35,10 @@ impl<'a> Elaborator<'a> {
         }
         for item in &decl.items {
             if let BehaviourItem::On(on) = item {
-                let choices = self.choices(&on.choices, on.span, locals, |name| name == "follow")?;
-                out.advice = choices;
+                match self.choices(&on.choices, on.span, locals, |name| name == "follow") {
+                    Ok(choices) => out.advice = choices,
+                    Err(reported) => failed = Some(reported),
+                }
             }
         }
         failed.map_or(Ok(out), Err)
@@ -59,15 +61,22 @@ impl<'a> Elaborator<'a> {
         lowered.into_iter().collect()
     }
 
-    /// Checks the names that the behaviour declares, as far as they have no arguments.
+    /// Checks the names that the behaviour declares.
     fn check_lets(&mut self, decl: &'a BehaviourDecl, locals: &Locals, variables: usize) -> Lowered<()> {
         let locals = with_own(locals, variables);
-        for found in lets(decl).filter(|found| found.arguments.is_empty()) {
-            if let Some(lowered) = self.lower_inside_behaviour(&found.name.name, found.name.span, &locals) {
-                lowered?;
-            }
+        let mut failed = None;
+        for found in lets(decl) {
+            let first = lets(decl).find(|first| first.name.name == found.name.name);
+            let taken = first.is_some_and(|first| first.name.span != found.name.span);
+            let lowered = if found.arguments.is_empty() && !taken {
+                self.lower_inside_behaviour(&found.name.name, found.name.span, &locals)
+            } else {
+                self.look_into(found, &locals);
+                None
+            };
+            failed = lowered.and_then(Lowered::err).or(failed);
         }
-        Ok(())
+        failed.map_or(Ok(()), Err)
     }
 
     fn mode(
@@ -82,7 +91,10 @@ impl<'a> Elaborator<'a> {
         let mut failed = None;
         for field in &state.fields {
             let lowered = match Parameter::of(&field.name.name) {
-                None if field.name.name != "route" => Err(Reported),
+                None if field.name.name != "route" => {
+                    self.look_at(&field.value, &with_own(locals, variables));
+                    Err(Reported)
+                }
                 None => self.route(&field.value, locals).map(|route| mode.route = Some(route)),
                 Some(parameter) => self
                     .amount(parameter, field, locals, variables)
@@ -163,30 +175,10 @@ impl<'a> Elaborator<'a> {
         locals: &Locals,
         what: impl Fn(&str) -> T,
     ) -> Lowered<Vec<(Num, T)>> {
-        let mut out = Vec::with_capacity(choices.len());
-        for choice in choices {
-            let weight = match &choice.weight {
-                None => Num::Constant(1.0),
-                Some(weight) => {
-                    let typed = self.lower(weight, locals)?;
-                    let (num, dimension) = self.as_num(typed, weight.span)?;
-                    if !dimension.is_none() {
-                        return self.wrong_dimension(weight.span, Dimension::NONE, dimension);
-                    }
-                    if !num.reads(&mut BTreeSet::new()) {
-                        let error = Diagnostic::error(
-                            "E0304",
-                            weight.span,
-                            "these probabilities cannot depend on where people are",
-                        )
-                        .hint("use `when` conditions, or several states");
-                        return self.report(error);
-                    }
-                    num
-                }
-            };
-            out.push((weight, what(&choice.target.name)));
-        }
+        let weights: Vec<_> = choices.iter().map(|choice| self.weight_of(choice, locals)).collect();
+        let weights = weights.into_iter().collect::<Lowered<Vec<Num>>>()?;
+        let targets = choices.iter().map(|choice| what(&choice.target.name));
+        let out: Vec<_> = weights.into_iter().zip(targets).collect();
         let known: Option<Vec<f64>> =
             out.iter().map(|(w, _)| if let Num::Constant(w) = w { Some(*w) } else { None }).collect();
         if let Some(wrong) = known.and_then(|known| wrong_weights(&known)) {
@@ -200,11 +192,30 @@ impl<'a> Elaborator<'a> {
     }
 }
 
+impl Elaborator<'_> {
+    /// The weight of one of several choices.
+    fn weight_of(&mut self, choice: &Choice, locals: &Locals) -> Lowered<Num> {
+        let Some(weight) = &choice.weight else { return Ok(Num::Constant(1.0)) };
+        let typed = self.lower(weight, locals)?;
+        let (num, dimension) = self.as_num(typed, weight.span)?;
+        if !dimension.is_none() {
+            return self.wrong_dimension(weight.span, Dimension::NONE, dimension);
+        }
+        if !num.reads(&mut BTreeSet::new()) {
+            let said = "these probabilities cannot depend on where people are";
+            let error = Diagnostic::error("E0304", weight.span, said)
+                .hint("use `when` conditions, or several states");
+            return self.report(error);
+        }
+        Ok(num)
+    }
+}
+
 /// The agent's own parameters, which the arguments and names of the behaviour hide, and names that see them.
 fn with_own(locals: &Locals, variables: usize) -> Locals {
     let own = Parameter::ALL.into_iter().enumerate().map(|(k, own)| {
         let value = Num::Variable(VariableId((variables + k) as u32));
-        (own.name().to_owned(), Arc::new(Typed::Num(value, dimension_of(own))))
+        (own.name().to_owned(), Some(Arc::new(Typed::Num(value, dimension_of(own)))))
     });
     let names: Vec<_> = own.chain(locals.names.iter().cloned()).collect();
     let behaviour = locals.behaviour.map(|(at, _)| (at, names.len()));

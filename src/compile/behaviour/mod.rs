@@ -142,6 +142,7 @@ impl<'a> Elaborator<'a> {
                         self.behaviours.iter().map(|decl| decl.name.name.as_str()).collect();
                     let error = unknown("behaviour", called, expr.span, "E0201", known.into_iter());
                     self.note(error);
+                    let _ = self.lower_all(arguments, &Locals::of(0));
                     continue;
                 }
             };
@@ -192,9 +193,8 @@ impl<'a> Elaborator<'a> {
         let elsewhere = |d: &Diagnostic| {
             d.severity == Severity::Error && d.place.as_ref().is_none_or(|place| !inside(place.span))
         };
-        if self.diagnostics.iter().any(elsewhere) {
-            return out;
-        }
+        let taken = self.diagnostics.iter().any(elsewhere);
+        let before = self.diagnostics.len();
         let withs = std::mem::take(&mut self.withs);
         for with in &withs {
             for &(id, arguments, written) in &with.behaviours {
@@ -204,6 +204,9 @@ impl<'a> Elaborator<'a> {
         }
         self.withs = withs;
         self.check_unused_behaviours(variables);
+        if taken {
+            self.keep_sure(before);
+        }
         for one in &out.attached {
             let leaves = |mode: &Mode| matches!(mode.route, Some(Route::Legs { then_leave: true, .. }));
             if one.conduct.states.iter().any(leaves) {
@@ -247,9 +250,15 @@ impl<'a> Elaborator<'a> {
             return self.arity(&decl.name, written.span, &wanted, arguments.len());
         }
         let mut locals = Locals::of(0);
+        let mut failed = false;
         for (name, argument) in decl.arguments.iter().zip(arguments) {
-            let value = self.lower(argument, &Locals::of(0))?;
-            locals.bind(&name.name, value);
+            match self.lower(argument, &Locals::of(0)) {
+                Ok(value) => locals.bind(&name.name, value),
+                Err(Reported) => {
+                    locals.bind_unknown(&name.name);
+                    failed = true;
+                }
+            }
         }
         locals.behaviour = Some((id.0, locals.names.len() + 1));
         let first = with.members.first().copied().unwrap_or(AgentId(0));
@@ -261,6 +270,9 @@ impl<'a> Elaborator<'a> {
             let _ = self.conditions(decl, &of(&locals, first));
         }
         let conduct = Arc::new(conduct?);
+        if failed {
+            return Err(Reported);
+        }
         let path = format!("{}.{}", with.name, decl.name.name);
         let entity = self.entities(people, &path, with.members.len() as u32, written.span)?;
         // Later people on the places of a source have numbers of their own.
@@ -277,7 +289,7 @@ impl<'a> Elaborator<'a> {
         Ok(out)
     }
 
-    /// Behaviours that nobody has are checked too, if they need no arguments.
+    /// Behaviours that nobody has are checked too; what hangs on their arguments is not.
     fn check_unused_behaviours(&mut self, variables: usize) {
         // Whoever would have one could have the others too.
         let having = self.having.clone();
@@ -285,9 +297,18 @@ impl<'a> Elaborator<'a> {
         for (k, decl) in self.behaviours.clone().into_iter().enumerate() {
             let id = BehaviourId(k as u32);
             let used = self.withs.iter().any(|with| with.behaviours.iter().any(|(known, ..)| *known == id));
-            if !used && decl.arguments.is_empty() && !self.agent_names.is_empty() {
-                let locals = Locals { behaviour: Some((id.0, 1)), ..Locals::of(0) };
-                let locals = of(&locals, AgentId(0));
+            if !used {
+                let mut locals = Locals::of(0);
+                for argument in &decl.arguments {
+                    locals.bind_unknown(&argument.name);
+                }
+                locals.behaviour = Some((id.0, locals.names.len() + 1));
+                let locals = if self.agent_names.is_empty() {
+                    locals.names.insert(0, ("self".to_owned(), None));
+                    locals
+                } else {
+                    of(&locals, AgentId(0))
+                };
                 let _: Result<_, Reported> = self.conduct(decl, &locals, variables);
                 let _: Result<_, Reported> = self.conditions(decl, &locals);
             }
@@ -299,7 +320,7 @@ impl<'a> Elaborator<'a> {
 /// Names as one agent sees them.
 fn of(locals: &Locals, agent: AgentId) -> Locals {
     let mut own = locals.clone();
-    own.names.insert(0, ("self".to_owned(), Arc::new(Typed::Agent(Who::Agent(agent)))));
+    own.names.insert(0, ("self".to_owned(), Some(Arc::new(Typed::Agent(Who::Agent(agent))))));
     own
 }
 

@@ -86,27 +86,37 @@ impl<'a> Elaborator<'a> {
         let (behaviour, who) = match self.lower(left, locals) {
             Ok(Typed::Mode { behaviour, who }) => (behaviour, who),
             Ok(_) => return None,
+            // Whoever has it, its states are known.
+            Err(reported) => {
+                self.state_of(decl, right).ok();
+                return Some(Err(reported));
+            }
+        };
+        let at = match self.state_of(decl, right) {
+            Ok(at) => at,
             Err(reported) => return Some(Err(reported)),
-        };
-        let names: Vec<&str> = states(decl).map(|state| state.name.name.as_str()).collect();
-        let ExprKind::Name(wanted) = &right.kind else {
-            let error = Diagnostic::error("E0305", right.span, "expected the name of a state").hint(format!(
-                "the states of `{}` are {}",
-                member.name,
-                names.join(", ")
-            ));
-            return Some(self.report(error));
-        };
-        let Some(at) = names.iter().position(|name| name == wanted) else {
-            let what = format!("state of `{}`", member.name);
-            let error = unknown(&what, wanted, right.span, "E0201", names.iter().copied());
-            let error = match &error.hint {
-                Some(_) => error,
-                None => error.hint(format!("its states are {}", names.join(", "))),
-            };
-            return Some(self.report(error));
         };
         let number = Box::new(Num::Of(Field::Mode(behaviour), who));
         Some(Ok(Typed::Truth(Bool::Compare(comparison, number, Box::new(Num::Constant(at as f64))))))
+    }
+
+    /// Which state of a behaviour is named.
+    fn state_of(&mut self, decl: &BehaviourDecl, named: &Expr) -> Lowered<usize> {
+        let (behaviour, states) = (&decl.name.name, states(decl).map(|state| state.name.name.as_str()));
+        let names: Vec<&str> = states.collect();
+        let ExprKind::Name(wanted) = &named.kind else {
+            let error = Diagnostic::error("E0305", named.span, "expected the name of a state")
+                .hint(format!("the states of `{behaviour}` are {}", names.join(", ")));
+            return self.report(error);
+        };
+        if let Some(at) = names.iter().position(|name| name == wanted) {
+            return Ok(at);
+        }
+        let what = format!("state of `{behaviour}`");
+        let error = unknown(&what, wanted, named.span, "E0201", names.iter().copied());
+        self.report(match &error.hint {
+            Some(_) => error,
+            None => error.hint(format!("its states are {}", names.join(", "))),
+        })
     }
 }

@@ -6,6 +6,7 @@
 
 mod broken;
 
+use super::dimension;
 use super::queries::Input;
 use crate::syntax::ast::{Expr, ExprKind, Ident, Item, PropertyItem};
 use crate::syntax::diagnostic::{Diagnostic, Label, Severity};
@@ -59,7 +60,9 @@ fn less_what_follows(mut found: Vec<Diagnostic>, sources: &[Source]) -> Vec<Diag
         let Some(span) = place(one) else { return false };
         let beside = || {
             let before = word(sources, Span { start: 0, end: span.start, ..span }).unwrap_or_default();
-            gaps(before).any(|gap| {
+            // `1 metre/s`: of a unit that is misspelt the rest reads as a name.
+            let unit = word(sources, span).is_some_and(|name| dimension::unit(name).is_some());
+            gaps(before, unit).any(|gap| {
                 let (from, to) = (*gap.start() as u32, *gap.end() as u32);
                 ends.range((span.source, from)..=(span.source, to)).next().is_some()
             })
@@ -87,12 +90,12 @@ fn less_what_follows(mut found: Vec<Diagnostic>, sources: &[Source]) -> Vec<Diag
     found
 }
 
-/// Where something before may end that the end of a text is compared with, or stands right after, in the same line:
-/// the places in which blanks, or blanks around an operator, are all that follows.
-fn gaps(text: &str) -> impl Iterator<Item = RangeInclusive<usize>> {
+/// Where something before may end that the end of a text stands right after, or is a factor of, in the same line: the
+/// places in which blanks, or blanks around an operator, are all that follows.
+fn gaps(text: &str, factor: bool) -> impl Iterator<Item = RangeInclusive<usize>> {
     let blank = |text: &str| text.trim_end_matches(|c: char| c.is_whitespace() && c != '\n').len();
     let plain = blank(text);
-    let behind = ["==", "!=", "/", "*"].into_iter().filter_map(move |operator| {
+    let behind = ["/", "*"].into_iter().filter(move |_| factor).filter_map(move |operator| {
         let before = text[..plain].strip_suffix(operator)?;
         Some(blank(before)..=before.len())
     });
@@ -256,14 +259,15 @@ mod tests {
         for text in [
             "a == ", "a==", "a  \t", "a /", "a", "a\n", "a\n* ", "a *\n", "a =", "é != ", "", " ", "ab /  * ",
         ] {
-            let beside = |between: &str| {
-                ["", "==", "!=", "/", "*"].contains(&between.trim()) && !between.contains('\n')
-            };
-            let ends = (0..=text.len()).filter(|&at| text.get(at..).is_some_and(beside));
-            let mut found: Vec<usize> =
-                gaps(text).flatten().filter(|&at| text.is_char_boundary(at)).collect();
-            found.sort_unstable();
-            assert_eq!(found, ends.collect::<Vec<_>>(), "{text:?}");
+            for factor in [false, true] {
+                let signs = if factor { &["", "/", "*"][..] } else { &[""] };
+                let beside = |between: &str| signs.contains(&between.trim()) && !between.contains('\n');
+                let ends = (0..=text.len()).filter(|&at| text.get(at..).is_some_and(beside));
+                let mut found: Vec<usize> =
+                    gaps(text, factor).flatten().filter(|&at| text.is_char_boundary(at)).collect();
+                found.sort_unstable();
+                assert_eq!(found, ends.collect::<Vec<_>>(), "{text:?}");
+            }
         }
     }
 

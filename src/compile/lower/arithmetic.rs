@@ -1,7 +1,7 @@
 //! Arithmetic, with dimensions.
 
 use super::super::dimension::{Dimension, describe};
-use super::super::elaborator::{Elaborator, Locals, Lowered};
+use super::super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::super::number::Number;
 use super::super::typed::Typed;
 use super::super::weight::Weight;
@@ -44,7 +44,13 @@ impl Elaborator<'_> {
             return self.lower_power(span, left, right, locals);
         }
         let sides = (self.lower(left, locals), self.lower(right, locals));
-        let (a, b) = (sides.0?, sides.1?);
+        let sum = matches!(op, BinaryOp::Plus | BinaryOp::Minus);
+        let (a, b) = match sides {
+            (Ok(a), Ok(b)) => (a, b),
+            (Err(_), Ok(found)) if sum => return self.misfit((left, None), (right, Some(&found)), locals),
+            (Ok(found), Err(_)) if sum => return self.misfit((left, Some(&found)), (right, None), locals),
+            _ => return Err(Reported),
+        };
         if let (Typed::Number(a), Typed::Number(b)) = (&a, &b) {
             return self.fold(span, op, *a, (*b, right.span)).map(Typed::Number);
         }
@@ -52,8 +58,8 @@ impl Elaborator<'_> {
             return self.lower_vector(op, (a, left.span), (b, right.span));
         }
         if matches!(a, Typed::Term(..)) || matches!(b, Typed::Term(..)) {
-            let (a, da) = self.as_term(a, left.span)?;
-            let (b, db) = self.as_term(b, right.span)?;
+            let sides = (self.as_term(a, left.span), self.as_term(b, right.span));
+            let ((a, da), (b, db)) = (sides.0?, sides.1?);
             let dimension = self.joined(span, op, da, db, right.span)?;
             let operation = match op {
                 BinaryOp::Plus => Operation::Add,
@@ -63,8 +69,8 @@ impl Elaborator<'_> {
             };
             return Ok(Typed::Term(self.term(Term::Combine(operation, a, b)), dimension));
         }
-        let (a, da) = self.as_num(a, left.span)?;
-        let (b, db) = self.as_num(b, right.span)?;
+        let sides = (self.as_num(a, left.span), self.as_num(b, right.span));
+        let ((a, da), (b, db)) = (sides.0?, sides.1?);
         let dimension = self.joined(span, op, da, db, right.span)?;
         Ok(Typed::Num(Num::Combine(arithmetic(op), Box::new(a), Box::new(b)), dimension))
     }
@@ -168,8 +174,8 @@ impl Elaborator<'_> {
     }
 
     fn lower_power(&mut self, span: Span, left: &Expr, right: &Expr, locals: &Locals) -> Lowered<Typed> {
-        let exponent = self.number_of(right, Dimension::NONE, locals)?;
-        let base = self.lower(left, locals)?;
+        let sides = (self.number_of(right, Dimension::NONE, locals), self.lower(left, locals));
+        let (exponent, base) = (sides.0?, sides.1?);
         let whole = exponent.as_whole().and_then(|n| i32::try_from(n).ok()).filter(|n| n.abs() <= 64);
         let power = |this: &mut Self, dimension: Dimension| -> Lowered<Dimension> {
             if dimension.is_none() {

@@ -1,7 +1,7 @@
 //! Functions: those declared with `let`, and the built-in ones.
 
 use super::super::dimension::Dimension;
-use super::super::elaborator::{Elaborator, Locals, Lowered};
+use super::super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::super::number::Number;
 use super::super::symbols::{Meaning, unknown};
 use super::super::typed::Typed;
@@ -99,7 +99,10 @@ impl Elaborator<'_> {
                     .collect();
                 known.extend(declared.iter().map(String::as_str));
                 let error = unknown("function", name, function.span, "E0203", known.into_iter());
-                self.report(error)
+                self.note(error);
+                // Whatever it is, its arguments are what they are.
+                let _ = self.lower_all(arguments, locals);
+                Err(Reported)
             }
         }
     }
@@ -321,10 +324,8 @@ impl Elaborator<'_> {
             return self.report(error);
         }
         let smallest = function.name == "min";
-        let mut values = Vec::with_capacity(arguments.len());
-        for argument in arguments {
-            values.push((self.lower(argument, locals)?, argument.span));
-        }
+        let places = arguments.iter().map(|argument| argument.span);
+        let values: Vec<_> = self.lower_all(arguments, locals)?.into_iter().zip(places).collect();
         let over_time = values.iter().any(|(typed, _)| matches!(typed, Typed::Term(..)));
         let mut joined: Option<(Typed, Dimension)> = None;
         for (typed, span) in values {
@@ -360,7 +361,7 @@ impl Elaborator<'_> {
             };
             joined = Some((both, dimension));
         }
-        joined.map(|(typed, _)| typed).ok_or(super::super::elaborator::Reported)
+        joined.map(|(typed, _)| typed).ok_or(Reported)
     }
 
     fn of_two(
@@ -385,7 +386,8 @@ impl Elaborator<'_> {
                     let length = (dx * dx + dy * dy).sqrt();
                     return self.computed(length, Dimension::LENGTH, &function.name, expr.span);
                 }
-                let (a, b) = (self.as_place(a, left.span)?, self.as_place(b, right.span)?);
+                let places = (self.as_place(a, left.span), self.as_place(b, right.span));
+                let (a, b) = (places.0?, places.1?);
                 let extended = |p: &Place| matches!(p, Place::Region(_) | Place::Barrier(_));
                 if extended(&a) && extended(&b) {
                     let error = Diagnostic::error(
@@ -398,13 +400,13 @@ impl Elaborator<'_> {
                 Ok(Typed::Num(Num::Distance(a, b), Dimension::LENGTH))
             }
             "time_to_collision" => {
-                let (a, b) = (self.as_agent(a, left.span)?, self.as_agent(b, right.span)?);
-                Ok(Typed::Num(Num::TimeToCollision(a, b), Dimension::TIME))
+                let agents = (self.as_agent(a, left.span), self.as_agent(b, right.span));
+                Ok(Typed::Num(Num::TimeToCollision(agents.0?, agents.1?), Dimension::TIME))
             }
             _ => {
                 let known = matches!((&a, &b), (Typed::Number(_), Typed::Number(_)));
-                let (a, da) = self.as_num(a, left.span)?;
-                let (b, db) = self.as_num(b, right.span)?;
+                let sides = (self.as_num(a, left.span), self.as_num(b, right.span));
+                let ((a, da), (b, db)) = (sides.0?, sides.1?);
                 if da != db {
                     return self.wrong_dimension(right.span, da, db);
                 }
@@ -432,16 +434,19 @@ impl Elaborator<'_> {
         locals: &Locals,
     ) -> Lowered<Typed> {
         self.note_margin(Dimension::LENGTH, expr.span);
-        let mut agents = Vec::new();
-        for argument in arguments {
+        if !matches!(arguments.len(), 1 | 2) {
+            return self.arity(function, expr.span, "1 or 2 arguments", arguments.len());
+        }
+        let mut agent = |argument: &Expr| {
             let typed = self.lower(argument, locals)?;
-            agents.push(self.as_agent(typed, argument.span)?);
-        }
-        match agents.as_slice() {
-            [one] => Ok(Typed::Truth(Bool::Contact(*one))),
-            [one, other] => Ok(Typed::Truth(Bool::Touching(*one, *other))),
-            _ => self.arity(function, expr.span, "1 or 2 arguments", arguments.len()),
-        }
+            self.as_agent(typed, argument.span)
+        };
+        let agents: Vec<_> = arguments.iter().map(&mut agent).collect();
+        let agents = agents.into_iter().collect::<Lowered<Vec<_>>>()?;
+        Ok(Typed::Truth(match agents[..] {
+            [one, other] => Bool::Touching(one, other),
+            _ => Bool::Contact(agents[0]),
+        }))
     }
 
     fn choice(
@@ -454,17 +459,17 @@ impl Elaborator<'_> {
         let [condition, yes, no] = arguments else {
             return self.arity(function, expr.span, "3 arguments", arguments.len());
         };
-        let typed = self.lower(condition, locals)?;
-        let truth = self.as_truth(typed, condition.span)?;
+        let truth = self.lower(condition, locals);
+        let truth = truth.and_then(|typed| self.as_truth(typed, condition.span));
         let sides = (self.lower(yes, locals), self.lower(no, locals));
-        let sides = (sides.0?, sides.1?);
+        let (truth, sides) = (truth?, (sides.0?, sides.1?));
         if let (Bool::Constant(holds), Typed::Number(a), Typed::Number(b)) = (&truth, &sides.0, &sides.1)
             && a.dimension == b.dimension
         {
             return Ok(Typed::Number(if *holds { *a } else { *b }));
         }
-        let (a, da) = self.as_num(sides.0, yes.span)?;
-        let (b, db) = self.as_num(sides.1, no.span)?;
+        let sides = (self.as_num(sides.0, yes.span), self.as_num(sides.1, no.span));
+        let ((a, da), (b, db)) = (sides.0?, sides.1?);
         if da != db {
             return self.wrong_dimension(no.span, da, db);
         }

@@ -105,7 +105,12 @@ impl Elaborator<'_> {
             let state = matches!((&left.kind, &right.kind), (ExprKind::Member(..), ExprKind::Name(_)));
             if a.is_err() && state { (a, Err(Reported)) } else { (a, this.lower(right, locals)) }
         });
-        let (a, b) = (sides.0?, sides.1?);
+        let (a, b) = match sides {
+            (Ok(a), Ok(b)) => (a, b),
+            (Err(_), Ok(found)) => return self.misfit((left, None), (right, Some(&found)), locals),
+            (Ok(found), Err(_)) => return self.misfit((left, Some(&found)), (right, None), locals),
+            (Err(reported), Err(_)) => return Err(reported),
+        };
         let margin = !matches!(op, BinaryOp::Equal | BinaryOp::Unequal);
         let whole = left.span.to(right.span);
         let a = if matches!(a, Typed::Infinity) { infinite(&b) } else { a };
@@ -158,6 +163,31 @@ impl Elaborator<'_> {
         Ok(Typed::Truth(Bool::Compare(comparison(op), Box::new(a), Box::new(b))))
     }
 
+    /// Something is wrong with one of two sides that ought to have one dimension. That they have not is told as well, as
+    /// far as the form of that side tells its dimension.
+    pub(super) fn misfit<T>(
+        &mut self,
+        (left, a): (&Expr, Option<&Typed>),
+        (right, b): (&Expr, Option<&Typed>),
+        locals: &Locals,
+    ) -> Lowered<T> {
+        let known = |typed: &Typed| match typed {
+            Typed::Number(number) => Some(number.dimension),
+            Typed::Num(_, dimension) | Typed::Term(_, dimension) => Some(*dimension),
+            _ => None,
+        };
+        let dimensions = (
+            a.map_or_else(|| self.gist(left, locals), known),
+            b.map_or_else(|| self.gist(right, locals), known),
+        );
+        match dimensions {
+            (Some(expected), Some(found)) if expected != found => {
+                self.wrong_dimension(right.span, expected, found)
+            }
+            _ => Err(Reported),
+        }
+    }
+
     /// Lowers numbers: conditions inside them (of a count, of an `if`) are no conditions of the formula.
     fn inside_a_number<T>(&mut self, lower: impl FnOnce(&mut Self) -> T) -> T {
         if let Some(margins) = &mut self.margins {
@@ -184,8 +214,13 @@ impl Elaborator<'_> {
         self.note_margin(Dimension::LENGTH, left.span.to(right.span));
         let sides = (self.lower(left, locals), self.lower(right, locals));
         let (who, region) = (sides.0?, sides.1?);
-        let Typed::Region(region) = region else { return self.mismatch(right.span, "a region", &region) };
-        match self.as_place(who, left.span)? {
+        let region = match region {
+            Typed::Region(region) => Ok(region),
+            found => self.mismatch(right.span, "a region", &found),
+        };
+        let place = self.as_place(who, left.span);
+        let region = region?;
+        match place? {
             Place::Agent(who) => Ok(Typed::Truth(Bool::In(who, region))),
             place @ (Place::Point(..) | Place::Centroid(_)) => {
                 let distance = Num::Distance(place, Place::Region(region));

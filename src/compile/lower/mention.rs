@@ -75,7 +75,9 @@ impl Search<'_, '_> {
         }
         let bound = names.locals.and_then(|l| l.names.iter().rev().find(|(bound, _)| bound == name));
         match bound {
-            Some((_, typed)) => matches!(**typed, Typed::Formula(_) | Typed::Term(..) | Typed::Tally(_)),
+            Some((_, typed)) => {
+                matches!(typed.as_deref(), Some(Typed::Formula(_) | Typed::Term(..) | Typed::Tally(_)))
+            }
             None => self.follow(name, names.scope),
         }
     }

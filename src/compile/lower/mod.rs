@@ -3,6 +3,7 @@
 mod arithmetic;
 mod builtin;
 mod call;
+mod gist;
 mod logic;
 mod mention;
 mod name;
@@ -31,6 +32,12 @@ impl Elaborator<'_> {
         let lowered = self.lower_kind(expr, locals);
         self.depth -= 1;
         lowered
+    }
+
+    /// What some expressions mean. What is wrong with each is said.
+    pub(super) fn lower_all(&mut self, exprs: &[Expr], locals: &Locals) -> Lowered<Vec<Typed>> {
+        let lowered: Vec<_> = exprs.iter().map(|expr| self.lower(expr, locals)).collect();
+        lowered.into_iter().collect()
     }
 
     fn lower_kind(&mut self, expr: &Expr, locals: &Locals) -> Lowered<Typed> {

@@ -27,6 +27,7 @@ impl<'a> Elaborator<'a> {
 
     pub(super) fn lower_name(&mut self, name: &str, span: Span, locals: &Locals) -> Lowered<Typed> {
         if let Some((_, typed)) = locals.names.iter().rev().find(|(bound, _)| bound == name) {
+            let typed = typed.as_ref().ok_or(Reported)?;
             self.count_copy(Weight::of(typed), span)?;
             return Ok((**typed).clone());
         }
@@ -246,8 +247,8 @@ impl<'a> Elaborator<'a> {
             };
             return self.arity(&decl.name, span, &wanted, arguments.len());
         }
-        for (name, argument) in decl.arguments.iter().zip(arguments) {
-            let value = self.lower(argument, locals)?;
+        let values = self.lower_all(arguments, locals)?;
+        for (name, value) in decl.arguments.iter().zip(values) {
             inner.bind(&name.name, value);
         }
         let before = self.diagnostics.len();
@@ -258,10 +259,22 @@ impl<'a> Elaborator<'a> {
         value
     }
 
+    /// What is wrong with a function whatever it is called with: nobody may call it.
+    pub(in crate::compile) fn look_into(&mut self, decl: &LetDecl, locals: &Locals) {
+        let mut inner = locals.clone();
+        for argument in &decl.arguments {
+            inner.bind_unknown(&argument.name);
+        }
+        let _ = self.lower(&decl.body, &inner);
+    }
+
     /// Adds to the errors inside a function, which were found since `before`, where and with what it was called.
     fn called(&mut self, before: usize, decl: &LetDecl, span: Span, inner: &Locals) {
-        let with: Vec<String> =
-            inner.names.iter().map(|(name, value)| format!("`{name}` is {}", value.noun())).collect();
+        let with: Vec<String> = inner
+            .names
+            .iter()
+            .filter_map(|(name, value)| Some(format!("`{name}` is {}", value.as_ref()?.noun())))
+            .collect();
         let body = decl.body.span;
         let inside =
             |place: Span| place.source == body.source && place.start >= body.start && place.end <= body.end;

@@ -3,7 +3,7 @@
 //! Over states they become loops of the kernel's code. Over formulas they are written out, member by
 //! member, because each member's formula is monitored on its own.
 
-use super::super::elaborator::{Elaborator, Locals, Lowered};
+use super::super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::super::typed::Typed;
 use crate::logic::{Node, NodeId, Operation, Term, TermId};
 use crate::model::{AgentId, Arithmetic, Bool, Fold, Num, Set, Who};
@@ -23,11 +23,19 @@ impl Elaborator<'_> {
         body: &Expr,
         locals: &Locals,
     ) -> Lowered<Typed> {
-        let members = self.lower(set, locals)?;
-        if let Typed::Processes(process) = members {
-            return self.lower_over_processes(quantifier, variable, process, body, locals);
-        }
-        let set = self.as_set(members, set.span)?;
+        let members = match self.lower(set, locals) {
+            Ok(Typed::Processes(process)) => {
+                return self.lower_over_processes(quantifier, variable, process, body, locals);
+            }
+            members => members.and_then(|members| self.as_set(members, set.span)),
+        };
+        let Ok(set) = members else {
+            // Whoever they are, what is said of each is looked at.
+            let mut inner = locals.clone();
+            inner.bind_unknown(&variable.name);
+            let _ = self.lower(body, &inner);
+            return Err(Reported);
+        };
         if self.temporal && self.mentions_time(body, locals, variable) {
             return self.write_out(span, quantifier, variable, &set, body, locals);
         }

@@ -60,7 +60,7 @@ impl<'a> Declared<'a> {
     }
 }
 
-impl<'a> Elaborator<'a> {
+impl Elaborator<'_> {
     /// Whether some command of the file has a rate or a delay.
     pub(super) fn has_timing(file: &ScenarioFile) -> bool {
         file.items.iter().any(|item| match item {
@@ -115,6 +115,9 @@ impl<'a> Elaborator<'a> {
                         .related(first, "first declared here")
                         .hint("rename one of them");
                 self.note(error);
+                if let ProcessItem::Var(var) = item {
+                    let _ = self.variable(var, &locals);
+                }
                 continue;
             }
             if let ProcessItem::Var(var) = item {
@@ -288,18 +291,15 @@ impl<'a> Elaborator<'a> {
     /// Names that nobody uses are checked too.
     fn check_names(&mut self, at: usize) {
         let locals = Locals { process: Some((at as u32, 0)), ..Locals::of(0) };
-        let names: Vec<Inside<'a>> = self.processes[at].names.values().copied().collect();
-        for inside in names {
-            match inside {
-                Inside::Let(decl) if decl.arguments.is_empty() => {
-                    let _ = self.lower(&decl.body, &locals);
-                }
-                Inside::Label(value) => {
+        for item in &self.processes[at].decl.items {
+            match item {
+                ProcessItem::Let(decl) => self.look_into(decl, &locals),
+                ProcessItem::Label { value, .. } => {
                     if let Ok(typed) = self.lower(value, &locals) {
                         let _ = self.as_truth(typed, value.span);
                     }
                 }
-                Inside::Let(_) | Inside::Variable(_) | Inside::Lost => {}
+                ProcessItem::Var(_) | ProcessItem::Command(_) | ProcessItem::Choose(_) => {}
             }
         }
     }
@@ -349,30 +349,37 @@ impl<'a> Elaborator<'a> {
     }
 
     fn branch(&mut self, at: usize, copy: u32, branch: &ast::Branch, locals: &Locals) -> Lowered<Branch> {
-        let weight = match &branch.weight {
-            None => Num::Constant(1.0),
-            Some(weight) => {
-                let typed = self.lower(weight, locals)?;
-                let (num, dimension) = self.as_num(typed, weight.span)?;
-                if !dimension.is_none() {
-                    return self.wrong_dimension(weight.span, Dimension::NONE, dimension);
-                }
-                num
-            }
-        };
+        let weight =
+            branch.weight.as_ref().map_or(Ok(Num::Constant(1.0)), |weight| self.weight(weight, locals));
         let mut updates: Vec<(VariableId, Num)> = Vec::new();
-        for update in &branch.updates {
-            let (id, value) = self.update(at, copy, update, locals)?;
-            if updates.iter().any(|(other, _)| *other == id) {
-                return self.report(Diagnostic::error(
+        let mut failed = false;
+        for (k, update) in branch.updates.iter().enumerate() {
+            let value = self.update(at, copy, update, locals);
+            if branch.updates[..k].iter().any(|other| other.target.name == update.target.name) {
+                self.note(Diagnostic::error(
                     "E0202",
                     update.target.span,
                     format!("`{}` is set twice in one branch", update.target.name),
                 ));
+                failed = true;
             }
-            updates.push((id, value));
+            match value {
+                Ok(value) => updates.push(value),
+                Err(Reported) => failed = true,
+            }
         }
-        Ok(Branch { weight, updates })
+        let weight = weight?;
+        if failed { Err(Reported) } else { Ok(Branch { weight, updates }) }
+    }
+
+    /// The weight of one of several branches.
+    fn weight(&mut self, weight: &Expr, locals: &Locals) -> Lowered<Num> {
+        let typed = self.lower(weight, locals)?;
+        let (num, dimension) = self.as_num(typed, weight.span)?;
+        if !dimension.is_none() {
+            return self.wrong_dimension(weight.span, Dimension::NONE, dimension);
+        }
+        Ok(num)
     }
 
     fn update(
@@ -382,6 +389,7 @@ impl<'a> Elaborator<'a> {
         update: &ast::Update,
         locals: &Locals,
     ) -> Lowered<(VariableId, Num)> {
+        let value = self.lower(&update.value, locals);
         let process = &self.processes[at];
         let Some(Inside::Variable(place)) = process.names.get(update.target.name.as_str()).copied() else {
             if let Some(Inside::Lost) = process.names.get(update.target.name.as_str()) {
@@ -399,7 +407,7 @@ impl<'a> Elaborator<'a> {
         };
         let (dimension, domain) = process.variables[place];
         let id = process.variable(copy, place);
-        let typed = self.lower(&update.value, locals)?;
+        let typed = value?;
         let span = update.value.span;
         if domain == Domain::Truth {
             let truth = self.as_truth(typed, span)?;

@@ -5,7 +5,7 @@ use crate::compile::elaborator::{Elaborator, Locals, Lowered, Reported};
 use crate::compile::symbols::unknown;
 use crate::compile::typed::Typed;
 use crate::model::{Bool, Comparison, Domain, Num};
-use crate::syntax::ast::{Expr, Ident, LetDecl};
+use crate::syntax::ast::{Expr, ExprKind, Ident, LetDecl};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
@@ -76,7 +76,11 @@ impl<'a> Elaborator<'a> {
         member: &Ident,
         locals: &Locals,
     ) -> Lowered<Typed> {
-        let (at, copy) = match self.lower(base, locals)? {
+        let lowered = self.lower(base, locals);
+        let Ok(lowered) = lowered else {
+            return self.member_of_anybody(base, member, locals);
+        };
+        let (at, copy) = match lowered {
             Typed::Process { process, copy } => (process, copy),
             Typed::Agent(who) => return self.lower_mode(who, base.span, member),
             Typed::Processes(_) => {
@@ -109,6 +113,23 @@ impl<'a> Elaborator<'a> {
                 self.report(error)
             }
         }
+    }
+
+    /// Of what a function is called with nobody knows more than that something must have such a member.
+    fn member_of_anybody(&mut self, base: &Expr, member: &Ident, locals: &Locals) -> Lowered<Typed> {
+        let ExprKind::Name(name) = &base.kind else { return Err(Reported) };
+        let bound = locals.names.iter().rev().find(|(bound, _)| bound == name);
+        if !matches!(bound, Some((_, None))) {
+            return Err(Reported);
+        }
+        let of_processes = self.processes.iter().flat_map(|process| process.names.keys().copied());
+        let of_people = self.behaviours.iter().map(|decl| decl.name.name.as_str());
+        let known: Vec<&str> = of_processes.chain(of_people).chain(["x", "y"]).collect();
+        if known.contains(&member.name.as_str()) {
+            return Err(Reported);
+        }
+        let error = unknown("name", &member.name, member.span, "E0201", known.into_iter());
+        self.report(error)
     }
 
     /// All copies of an array of processes.

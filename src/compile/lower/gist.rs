@@ -1,0 +1,132 @@
+//! The dimension of an expression in which something is wrong, as far as its form tells it: what it is compared with is
+//! judged by that. `distance(usr, door) < 2 kg` has two errors.
+
+use super::super::dimension::{self, Dimension};
+use super::super::elaborator::{Elaborator, Locals};
+use super::super::symbols::Meaning;
+use super::super::typed::Typed;
+use crate::model::Num;
+use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Quantifier, UnaryOp};
+
+/// How deep is looked.
+const DEEPEST: u32 = 32;
+/// How many names are followed: those that name others several times could go on and on.
+const MOST_NAMES: u32 = 32;
+
+impl Elaborator<'_> {
+    /// The dimension of what an expression is meant to be, if no more than its form is needed to tell.
+    pub(in crate::compile) fn gist(&self, expr: &Expr, locals: &Locals) -> Option<Dimension> {
+        Gist { elaborator: self, depth: 0, left: MOST_NAMES }.of(expr, locals)
+    }
+}
+
+struct Gist<'e, 'a> {
+    elaborator: &'e Elaborator<'a>,
+    depth: u32,
+    /// How many more names are followed.
+    left: u32,
+}
+
+impl Gist<'_, '_> {
+    fn of(&mut self, expr: &Expr, locals: &Locals) -> Option<Dimension> {
+        if self.depth > DEEPEST {
+            return None;
+        }
+        self.depth += 1;
+        let found = self.of_kind(&expr.kind, locals);
+        self.depth -= 1;
+        found
+    }
+
+    /// What a name stands for.
+    fn follow(&mut self, body: &Expr, locals: &Locals) -> Option<Dimension> {
+        self.left = self.left.checked_sub(1)?;
+        self.of(body, locals)
+    }
+
+    fn of_kind(&mut self, kind: &ExprKind, locals: &Locals) -> Option<Dimension> {
+        match kind {
+            ExprKind::Quantity(quantity) => match &quantity.unit {
+                Some(unit) => Some(dimension::resolve(unit).ok()?.dimension),
+                None => Some(Dimension::NONE),
+            },
+            ExprKind::Name(name) => self.of_name(name, locals),
+            ExprKind::Call { function, arguments } => self.of_call(&function.name, arguments, locals),
+            ExprKind::Unary(UnaryOp::Minus, operand) => self.of(operand, locals),
+            ExprKind::Binary(BinaryOp::Plus | BinaryOp::Minus, left, right) => {
+                // Where both are known and differ, just that is what is wrong.
+                match (self.of(left, locals), self.of(right, locals)) {
+                    (Some(a), Some(b)) => (a == b).then_some(a),
+                    (a, b) => a.or(b),
+                }
+            }
+            ExprKind::Binary(BinaryOp::Times, left, right) => {
+                self.of(left, locals)?.times(self.of(right, locals)?)
+            }
+            ExprKind::Binary(BinaryOp::Over, left, right) => {
+                self.of(left, locals)?.over(self.of(right, locals)?)
+            }
+            ExprKind::Quantified { quantifier: Quantifier::Count, .. } => Some(Dimension::NONE),
+            ExprKind::Quantified { quantifier: Quantifier::Fold(_), variable, body, .. } => {
+                let mut inner = locals.clone();
+                inner.bind_unknown(&variable.name);
+                self.of(body, &inner)
+            }
+            ExprKind::Window(_, _, body) | ExprKind::At(body, _) => self.of(body, locals),
+            _ => None,
+        }
+    }
+
+    fn of_name(&mut self, name: &str, locals: &Locals) -> Option<Dimension> {
+        if let Some((_, typed)) = locals.names.iter().rev().find(|(bound, _)| bound == name) {
+            return match typed.as_deref()? {
+                Typed::Number(number) => Some(number.dimension),
+                Typed::Num(_, dimension) | Typed::Term(_, dimension) => Some(*dimension),
+                _ => None,
+            };
+        }
+        if locals.process.is_some() || locals.behaviour.is_some() {
+            return None;
+        }
+        match self.elaborator.find(name, locals.scope) {
+            Some((scope, Meaning::Constant(value) | Meaning::Param { value, .. })) => {
+                self.follow(value, &Locals::of(scope))
+            }
+            Some((scope, Meaning::Let(decl))) if decl.arguments.is_empty() => {
+                self.follow(&decl.body, &Locals::of(scope))
+            }
+            None if name == "time" => Some(self.elaborator.time_dimension()),
+            _ => None,
+        }
+    }
+
+    fn of_call(&mut self, name: &str, arguments: &[Expr], locals: &Locals) -> Option<Dimension> {
+        if locals.process.is_none()
+            && locals.behaviour.is_none()
+            && let Some((scope, Meaning::Let(decl))) = self.elaborator.find(name, locals.scope)
+        {
+            let mut inner = Locals::of(scope);
+            for (name, argument) in decl.arguments.iter().zip(arguments) {
+                match self.of(argument, locals) {
+                    Some(dimension) => inner.bind(&name.name, Typed::Num(Num::Constant(0.0), dimension)),
+                    None => inner.bind_unknown(&name.name),
+                }
+            }
+            return self.follow(&decl.body, &inner);
+        }
+        match name {
+            "distance" | "radius" | "travelled" | "clearance" | "spread" => Some(Dimension::LENGTH),
+            "speed" | "driving_speed" => Some(Dimension::SPEED),
+            "heading" | "atan2" => Some(Dimension::ANGLE),
+            "mass" => Some(Dimension::MASS),
+            "area" => Some(Dimension::AREA),
+            "density" => Some(Dimension::DENSITY),
+            "time_to_collision" => Some(Dimension::TIME),
+            "time_until" => Some(self.elaborator.time_dimension()),
+            "count" | "sin" | "cos" | "exp" | "ln" | "floor" | "ceil" | "round" => Some(Dimension::NONE),
+            "abs" | "min" | "max" => arguments.iter().find_map(|argument| self.of(argument, locals)),
+            "if" => arguments.iter().skip(1).find_map(|argument| self.of(argument, locals)),
+            _ => None,
+        }
+    }
+}
