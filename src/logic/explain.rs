@@ -168,7 +168,9 @@ impl Demand<'_> {
                             }
                         }
                         false => {
-                            // The first fails, and the second at every state of the window until then.
+                            // The first fails, and the second at every state of the window until then. Nothing depends on
+                            // the first at the last state, but for the weak one.
+                            let fails = if *weak || fails < last { fails } else { u64::MAX };
                             self.ask(first.0, fails, fails.min(last));
                             self.ask(second.0, begin, fails.min(last));
                         }
@@ -236,6 +238,18 @@ mod tests {
                 Reason { leaf: q, value: false, from: Tick(0), to: Tick(2) }
             ]
         );
+    }
+
+    #[test]
+    fn an_until_does_not_depend_on_its_first_operand_at_the_last_state() {
+        let mut tree = Tree::default();
+        let p = tree.node(Node::Atom(AtomId(0)));
+        let q = tree.node(Node::Atom(AtomId(1)));
+        let root = tree.node(Node::Until(window(0, 3), p, q));
+        let never = |atom: AtomId, k| atom.0 == 0 && k < 3;
+        let found = explain(&tree, root, &recording(&never, &|_, _| 0.0, 4)).unwrap();
+        let reason = Reason { leaf: q, value: false, from: Tick(0), to: Tick(3) };
+        assert_eq!(found, Explanation { verdict: Some(false), reasons: vec![reason] });
     }
 
     #[test]

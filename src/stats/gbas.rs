@@ -98,7 +98,8 @@ impl Estimator for Gbas {
             let own = if self.cap.is_some() { (1.0 - CAP_SHARE) * self.delta } else { self.delta };
             let k = self.needed as f64;
             return Interval {
-                low: gamma_quantile(k, 0.5 * own) / self.sum,
+                // No probability is above 1, whatever the scheme says of one that is near it.
+                low: math::at_most(gamma_quantile(k, 0.5 * own) / self.sum, 1.0),
                 high: math::at_most(gamma_upper_quantile(k, 0.5 * own) / self.sum, 1.0),
                 error: self.delta,
                 coverage: Coverage::Sequential,
@@ -112,7 +113,10 @@ impl Estimator for Gbas {
     }
 
     fn estimate(&self) -> f64 {
-        if self.succeeded() { (self.needed as f64 - 1.0) / self.sum } else { self.counts.share() }
+        if !self.succeeded() {
+            return self.counts.share();
+        }
+        math::at_most((self.needed as f64 - 1.0) / self.sum, 1.0)
     }
 
     fn limit(&self) -> Option<u64> {
@@ -129,6 +133,16 @@ mod tests {
     fn sizes_of_the_reference() {
         for (epsilon, k) in [(0.5, 17), (0.2, 97), (0.1, 385), (0.05, 1537)] {
             assert_eq!(size(epsilon, 0.05), k);
+        }
+    }
+
+    #[test]
+    fn what_is_certain_is_never_more_than_that() {
+        for seed in 0..300 {
+            let mut gbas = Gbas::new(0.5, 0.1, None, seed).unwrap();
+            while !gbas.observe(true) {}
+            let Interval { low, high, .. } = gbas.interval();
+            assert!(low <= high && high <= 1.0 && gbas.estimate() <= 1.0, "seed {seed}: {low} {high}");
         }
     }
 

@@ -3,10 +3,13 @@
 pub mod polygon;
 pub mod segment;
 pub mod shape;
+mod sweep;
 
+pub(crate) use polygon::meeting_edges;
 pub use polygon::{HoleFault, Polygon};
 pub use segment::Segment;
 pub use shape::{Bounds, Shape};
+pub use sweep::sweep;
 
 /// A point or vector of the plane.
 pub type Vec2 = nalgebra::Vector2<f64>;

@@ -1,7 +1,7 @@
 //! A polygon with holes.
 
 use super::shape::Bounds;
-use super::{Segment, Shape, Vec2, cross};
+use super::{Segment, Shape, Vec2, cross, sweep};
 
 /// A simple outline and the holes in it. Rings are closed implicitly; their sense does not matter.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,7 +60,17 @@ fn crosses(a: &Segment, b: &Segment) -> bool {
 }
 
 fn rings_cross(first: &[Vec2], second: &[Vec2]) -> bool {
-    ring_segments(first).any(|a| ring_segments(second).any(|b| crosses(&a, &b)))
+    let edges: Vec<Segment> = ring_segments(first).chain(ring_segments(second)).collect();
+    let of_first = |k: usize| k < first.len();
+    sweep(&edges, |i, j| of_first(i) != of_first(j) && crosses(&edges[i], &edges[j])).is_some()
+}
+
+/// Two edges of a ring that meet and are no neighbours, which share a corner, by their numbers.
+pub(crate) fn meeting_edges(ring: &[Vec2]) -> Option<(usize, usize)> {
+    let edges: Vec<Segment> = ring_segments(ring).collect();
+    let n = edges.len();
+    let neighbours = |i: usize, j: usize| (i + 1) % n == j || (j + 1) % n == i;
+    sweep(&edges, |i, j| !neighbours(i, j) && edges[i].meets(&edges[j]))
 }
 
 /// Corners, middles of the edges and a point inside: where they lie tells how two rings that do not cross lie.
@@ -153,17 +163,14 @@ impl Polygon {
 
     /// Whether no two edges of one ring cross. Neighbours share a corner and do not count.
     pub fn is_simple(&self) -> bool {
-        std::iter::once(&self.outline).chain(&self.holes).all(|ring| {
-            let edges: Vec<_> = ring_segments(ring).collect();
-            let n = edges.len();
-            (0..n).all(|i| (i + 2..n).all(|j| (i == 0 && j == n - 1) || !edges[i].meets(&edges[j])))
-        })
+        std::iter::once(&self.outline).chain(&self.holes).all(|ring| meeting_edges(ring).is_none())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     fn ring() -> Polygon {
         let mut p = Polygon::rectangle(Vec2::new(0.0, 0.0), Vec2::new(4.0, 4.0));
@@ -206,5 +213,20 @@ mod tests {
         let p = |x: f64, y: f64| Vec2::new(x, y);
         assert!(!Polygon::new(vec![p(0., 0.), p(2., 2.), p(2., 0.), p(0., 2.)]).is_simple());
         assert!(ring().is_simple());
+    }
+
+    proptest! {
+        #[test]
+        fn edges_that_meet_are_those_of_a_look_at_all_pairs(
+            corners in prop::collection::vec((0_i8..6, 0_i8..6), 3..9),
+        ) {
+            let points: Vec<Vec2> =
+                corners.iter().map(|&(x, y)| Vec2::new(f64::from(x), f64::from(y))).collect();
+            let edges: Vec<Segment> = ring_segments(&points).collect();
+            let n = edges.len();
+            let plain = (0..n)
+                .all(|i| (i + 2..n).all(|j| (i == 0 && j == n - 1) || !edges[i].meets(&edges[j])));
+            prop_assert_eq!(Polygon::new(points).is_simple(), plain);
+        }
     }
 }

@@ -26,13 +26,18 @@ pub(super) fn invert(ln_p: f64, start: f64, bracket: (f64, f64), f: impl Fn(f64)
             low = u;
         }
         let mut next = u - excess * math::exp(ln_cdf - ln_density);
+        let least = 4.0 * f64::EPSILON * math::at_least(u.abs(), 0.25);
+        // So near the root rounding may place it on the other side of an end.
+        if (next - u).abs() <= least {
+            return next;
+        }
         // A comparison with NaN is false, so that a step that is not a number bisects too.
         if !(next > low && next < high) {
             next = 0.5 * (low + high);
         }
         let step = (next - u).abs();
         u = next;
-        if step <= 4.0 * f64::EPSILON * math::at_least(u.abs(), 0.25) {
+        if step <= least {
             return u;
         }
     }

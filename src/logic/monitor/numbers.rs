@@ -176,10 +176,17 @@ pub(super) fn step(cell: &mut Cell, before: &[Cell], cx: &Context) {
         Machine::FoldLate { aggregation, child, width: None, .. } => {
             cell.track.begin(now, !cell.live, cell.need);
             let mut position = now;
+            // The least and the largest do not depend on the order of states: each window is the next one and a state more.
+            let joins = matches!(aggregation, Aggregation::Min | Aggregation::Max);
+            let mut joined = Lanes::splat(identity(*aggregation));
             while cx.ending & cell.track.open(position, now) != 0 {
                 let fresh = cx.ending & cell.track.open(position, now);
+                if joins {
+                    joined = gather(*aggregation, number(before, *child, position), joined);
+                }
                 if fresh & cell.track.needed(position) != 0 {
-                    let value = fold(*aggregation, before, *child, position, now);
+                    let value =
+                        if joins { joined } else { fold(*aggregation, before, *child, position, now) };
                     cell.numbers.store(position, fresh, value);
                 }
                 cell.track.settle(position, now, fresh, 0);

@@ -5,6 +5,10 @@ use super::{Family, Law};
 
 /// The relative spreads for which the shape of a Weibull law is found.
 const WEIBULL_SPREAD: (f64, f64) = (0.000_2, 1e4);
+/// Those for which draws of a gamma law keep their digits: shapes of 1e-6 to 1e14.
+const GAMMA_SPREAD: (f64, f64) = (1e-7, 1e3);
+/// The largest of a lognormal law: of more, the mean is what no trial ever draws.
+const LOGNORMAL_SPREAD: f64 = 1e6;
 /// Poisson means beyond this are a mistake of units, and slow.
 const POISSON_LIMIT: f64 = 1e9;
 
@@ -28,6 +32,18 @@ fn positive(name: &str, value: f64) -> Result<(), String> {
     Ok(())
 }
 
+/// A standard deviation that is zero or within some multiples of the mean.
+fn spread_within(sd: f64, mean: f64, (least, most): (f64, f64)) -> Result<(), String> {
+    if sd == 0.0 || (least * mean..=most * mean).contains(&sd) {
+        return Ok(());
+    }
+    Err(if sd > most * mean {
+        format!("standard deviation {sd} is more than {most} times the mean {mean}")
+    } else {
+        format!("standard deviation {sd} is not between {least} and {most} times the mean {mean}")
+    })
+}
+
 impl Family {
     /// Whether the parameters make a distribution; else why not, naming the number.
     pub fn validate(&self) -> Result<(), String> {
@@ -38,26 +54,18 @@ impl Family {
             }
             Self::LogNormal { mean, sd } => {
                 positive("mean", *mean)?;
-                spread(*sd)
+                spread(*sd)?;
+                spread_within(*sd, *mean, (0.0, LOGNORMAL_SPREAD))
             }
             Self::Gamma { mean, sd } => {
                 positive("mean", *mean)?;
                 spread(*sd)?;
-                if *sd > 1e3 * mean {
-                    return Err(format!("standard deviation {sd} is more than 1000 times the mean {mean}"));
-                }
-                Ok(())
+                spread_within(*sd, *mean, GAMMA_SPREAD)
             }
             Self::Weibull { mean, sd } => {
                 positive("mean", *mean)?;
                 spread(*sd)?;
-                let (least, most) = WEIBULL_SPREAD;
-                if *sd != 0.0 && !(least * mean..=most * mean).contains(sd) {
-                    return Err(format!(
-                        "standard deviation {sd} is not between {least} and {most} times the mean {mean}"
-                    ));
-                }
-                Ok(())
+                spread_within(*sd, *mean, WEIBULL_SPREAD)
             }
             Self::Beta { mean, sd } => {
                 finite("mean", *mean)?;
