@@ -249,6 +249,30 @@ fn someone_far_away_or_nobody_at_all_does_no_harm() {
 }
 
 #[test]
+fn a_crowd_is_no_slower_for_someone_far_away() {
+    let people: Vec<_> = (0..1_600)
+        .map(|k| person(p(f64::from(k % 40) * 0.9 + 0.001 * f64::from(k % 7), f64::from(k / 40) * 0.9)))
+        .collect();
+    let near = crowd(people.clone(), "0.01");
+    let mut far = crowd(people, "0.01");
+    for k in 0..8 {
+        far.people.push(person(p(1e6 * f64::from(k), 1e6)));
+    }
+    let time = |scene: &Crowd| {
+        let mut run = scene.start(Layout::Agents);
+        let start = std::time::Instant::now();
+        run.steps(20);
+        (start.elapsed().as_secs_f64(), run)
+    };
+    let ((alone, first), (beside, second)) = (time(&near), time(&far));
+    for k in 0..1_600 {
+        assert!((first.force(k) - second.force(k)).norm() < 1e-6, "{k}");
+    }
+    // All in one cell would take a hundred times as long.
+    assert!(beside < 12.0 * alone + 0.2, "{beside} s, {alone} s");
+}
+
+#[test]
 fn two_at_the_same_place_get_a_finite_force() {
     for layout in [Layout::Trials, Layout::Agents] {
         let mut run = crowd(vec![person(p(1.0, 1.0)), person(p(1.0, 1.0))], "0.01").start(layout);

@@ -147,7 +147,11 @@ pub fn step(program: &Program, state: &mut State, scratch: &mut Scratch) {
     if program.behaviours.turn(program, state, &scratch.behaviours) {
         scratch.lanewise.forget();
     }
-    drive::steer(program, state);
+    drive::steer_at(scratch.level, program, state);
+    // Who comes to a place that is left in this step has not made it.
+    for (moving, &here) in scratch.moving.iter_mut().zip(&state.present) {
+        *moving &= here;
+    }
     // Who comes in has other radii and ranges than who had the place before.
     if program.arrivals.step(program, state) {
         scratch.lanewise.forget();

@@ -9,19 +9,16 @@
 //! compression, which is contact (and counted once).
 
 use super::noise;
+use super::pace::fastest;
 use super::surfaces::Surfaces;
-use crate::base::math::{at_least, at_most};
-use crate::model::{Amount, Body, Law, Parameter, Scenario, TOP_SPEED};
+use crate::base::math::at_least;
+use crate::model::{Body, Law, Parameter, Scenario};
 
 /// Range of the social force beyond touching distance, in units of B.
 pub const REACH: f64 = 16.0;
 
 /// The largest approach that contact candidates foresee at least, m/s.
 const APPROACH: f64 = 5.0;
-/// Share of draws from a law without an upper end that are slower than its fastest.
-const NEARLY_ALL: f64 = 1.0 - 1e-9;
-/// Standard deviations of the noise that are foreseen.
-const DEVIATIONS: f64 = 6.0;
 
 /// A body of several persons.
 #[derive(Clone, Copy, Debug)]
@@ -65,41 +62,6 @@ pub struct Forces {
 fn shared_constant(scenario: &Scenario, of: impl Fn(&Body) -> &Law) -> Option<f64> {
     let first = of(&scenario.agents.first()?.body).constant()?;
     scenario.agents.iter().all(|agent| of(&agent.body).constant() == Some(first)).then_some(first)
-}
-
-/// The largest value of a law, or nearly.
-fn most(law: &Law) -> f64 {
-    match law.bounds() {
-        (_, high) if high.is_finite() => high,
-        _ => match law {
-            Law::Random { family, .. } => family.quantile(NEARLY_ALL),
-            Law::Constant(value) => *value,
-        },
-    }
-}
-
-/// How fast anybody goes, or nearly, m/s: nobody may step over a wall or a body. What a behaviour computes is taken for
-/// twice the own speed at most; beyond the top speed a trial ends anyhow.
-fn fastest(scenario: &Scenario) -> f64 {
-    let mut speed = 0.0;
-    for agent in &scenario.agents {
-        let own = most(&agent.body.speed) + DEVIATIONS * most(&agent.body.noise);
-        speed = at_least(speed, at_least(own, agent.start.velocity.norm()));
-    }
-    let own = speed;
-    let modes = scenario.behaviours.attached.iter().flat_map(|one| &one.conduct.states);
-    for (parameter, amount) in modes.flat_map(|mode| &mode.changes) {
-        if *parameter == Parameter::Speed {
-            speed = at_least(
-                speed,
-                match amount {
-                    Amount::Drawn(law) => most(law),
-                    Amount::Computed(_) => 2.0 * own,
-                },
-            );
-        }
-    }
-    at_most(speed, TOP_SPEED)
 }
 
 impl Forces {

@@ -16,6 +16,7 @@ pub mod forces;
 mod lanewise;
 mod nearby;
 mod noise;
+mod pace;
 pub mod process;
 pub mod program;
 mod social;

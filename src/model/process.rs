@@ -36,6 +36,14 @@ impl Domain {
         }
     }
 
+    /// A value as it is kept: of what is whole there is one zero.
+    pub fn kept(self, value: f64) -> f64 {
+        match self {
+            Self::Whole { .. } | Self::Truth => value + 0.0,
+            Self::Real => value,
+        }
+    }
+
     /// Smallest value and number of values, where they are finitely many.
     pub fn values(self) -> Option<(f64, u64)> {
         match self {

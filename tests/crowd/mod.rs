@@ -234,8 +234,25 @@ pub(crate) fn bits_of(state: &State, lane: usize) -> Vec<u64> {
         &state.decay,
         &state.kick,
         &state.push,
+        &state.speed,
+        &state.radius,
+        &state.mass,
+        &state.tau,
+        &state.a,
+        &state.b,
+        &state.lambda,
+        &state.a2,
+        &state.b2,
+        &state.lambda2,
+        &state.k1,
+        &state.k2,
+        &state.noise,
     ];
-    let mut bits = vec![state.ticks[lane]];
+    let mut bits = vec![state.ticks[lane], u64::from(state.diverged.has(lane))];
+    for agent in 0..state.agents {
+        let slot = state.slot(agent, lane);
+        bits.push(u64::from(state.present[slot.block].has(slot.lane)));
+    }
     for field in fields {
         for agent in 0..state.agents {
             let slot = state.slot(agent, lane);

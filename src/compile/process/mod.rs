@@ -237,7 +237,7 @@ impl Elaborator<'_> {
                 span,
                 format!("`{}` holds whole numbers from {low} to {high}", var.name.name),
             )),
-            _ => Ok(number.value),
+            _ => Ok(domain.kept(number.value)),
         }
     }
 

@@ -204,7 +204,7 @@ impl Behaviours {
             conduct.modes.first().is_some_and(conduct::Mode::changes_something)
         });
         if changed {
-            self.apply(program, state, agent, lane, |_| true);
+            self.apply(program, state, (agent, lane), true, |_| true);
         }
     }
 
@@ -323,7 +323,7 @@ impl Behaviours {
             let changing = |at: usize| scratch.changing[at].has(lane);
             let first = self.machines_of(agent).find(|&at| changing(at));
             if first == Some(at as usize) && !state.faulty.has(trial) {
-                ranges |= self.apply(program, state, agent, trial, changing);
+                ranges |= self.apply(program, state, (agent, trial), false, changing);
             }
         }
         ranges
@@ -357,13 +357,13 @@ impl Behaviours {
     }
 
     /// Gives an agent the parameters and the route that its behaviours want now. What those set that have just
-    /// `turned` is computed; what others set stays as it was. Whether a range changed.
+    /// `turned` is computed; what others set stays as it was. `comes`: who has just been placed. Whether a range changed.
     fn apply(
         &self,
         program: &Program,
         state: &mut State,
-        agent: usize,
-        trial: usize,
+        (agent, trial): (usize, usize),
+        comes: bool,
         turned: impl Fn(usize) -> bool,
     ) -> bool {
         let slot = state.slot(agent, trial);
@@ -416,7 +416,7 @@ impl Behaviours {
         let home = if present == OWN_ROUTE { drive::halt(program, state, slot) } else { home };
         state.behaviours.detours[slot.block][slot.lane] = (route, home);
         let (from, round) = if route == OWN_ROUTE { (home, 0) } else { (Halt::before(route), round) };
-        drive::divert(program, state, slot, from, round);
+        drive::divert(program, state, slot, (from, round), comes);
         ranges
     }
 }

@@ -150,8 +150,15 @@ pub(super) fn survey<S: Simd>(simd: S, forces: &Forces, state: &State) -> Grid {
     }
     let mut height = reach;
     let mut width = reach / CELLS_PER_REACH;
-    // Someone far away must not make millions of empty cells.
+    // Someone far away must make neither millions of empty cells nor one of all the others: where there would be too many
+    // cells they are laid where nearly all are, and whoever is beyond is in one at the rim.
     let most_cells = 16.0 * state.agents as f64 + 64.0;
+    let (mut wide, mut high) = (wide, high);
+    if (wide / width + 1.0) * (high / height + 1.0) > most_cells
+        && let (Some((left, right)), Some((bottom, top))) = (middle(state, &state.x), middle(state, &state.y))
+    {
+        (grid.x, grid.y, wide, high) = (left, bottom, right - left, top - bottom);
+    }
     while (wide / width + 1.0) * (high / height + 1.0) > most_cells {
         height *= 2.0;
         width *= 2.0;
@@ -162,6 +169,18 @@ pub(super) fn survey<S: Simd>(simd: S, forces: &Forces, state: &State) -> Grid {
     grid.columns = (wide * grid.per_width) as usize + 1;
     grid.strips = (high * grid.per_height) as usize + 1;
     grid
+}
+
+/// Between which coordinates all but a hundredth at either end are, if anybody is there.
+#[cold]
+fn middle(state: &State, coordinates: &[Lanes]) -> Option<(f64, f64)> {
+    let of_block =
+        |(lanes, &here): (&Lanes, &Mask)| here.iter().map(|lane| lanes.0[lane]).collect::<Vec<_>>();
+    let all = coordinates.iter().zip(&state.present).flat_map(of_block);
+    let mut all: Vec<f64> = all.filter(|coordinate| coordinate.is_finite()).collect();
+    let last = all.len().checked_sub(1)?;
+    let mut at = |place: usize| *all.select_nth_unstable_by(place, f64::total_cmp).1;
+    Some((at(last / 100), at(last - last / 100)))
 }
 
 /// Which of `count` whole intervals from 0 on, as the low bits of doubles.

@@ -24,7 +24,7 @@ impl Terms {
         self.rate[padding].fill(1.0);
     }
 
-    /// Takes over what an agent has: A, lambda, and the desired direction, for `finish`.
+    /// Takes over what an agent has: lambda, B, and the desired direction, for `finish`.
     #[inline(always)]
     fn put(&mut self, at: usize, lambda: f64, b: f64, e: (f64, f64)) {
         self.even[at] = lambda;

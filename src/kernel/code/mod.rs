@@ -50,6 +50,8 @@ pub struct Code {
     unresolved: Option<Id>,
     /// Where each atom and each signal has no value, if they can lack one.
     open: (Vec<Option<Id>>, Vec<Option<Id>>),
+    /// Whether it asks who is near somebody.
+    asks_who_is_near: bool,
     /// Numerator and denominator of the step in seconds.
     step: (f64, f64),
     level: Level,
@@ -105,6 +107,11 @@ impl Code {
             signals: signals.iter().map(register).collect(),
             unresolved: unresolved.map(|id| schedule.registers[id as usize]),
             open: (atoms.iter().map(missing).collect(), signals.iter().map(missing).collect()),
+            asks_who_is_near: lowering
+                .graph
+                .nodes
+                .iter()
+                .any(|node| matches!(node, Node::Nearest(..) | Node::AllFar { .. })),
             registers: Arc::new(registers),
             lists: lowering.lists.all,
             regions: scenario.scene.regions.iter().map(|region| Ground::region(&region.shape)).collect(),
@@ -165,6 +172,11 @@ impl Code {
             }
         }
         machine::collect(self, state, readings);
+    }
+
+    /// Whether it has use for what the kernel found out about who is close to whom.
+    pub const fn asks_who_is_near(&self) -> bool {
+        self.asks_who_is_near
     }
 
     /// Whether some atom or signal can lack a value: a mean or centroid of a set that may be empty.

@@ -61,7 +61,7 @@ pub(super) struct Throng {
     /// Place of each body, m.
     pub(super) x: Vec<Vec2>,
     pub(super) motions: Vec<Motion>,
-    /// Pairs of hot clusters, in turns, and bodies of hot clusters at walls; perhaps others too.
+    /// Pairs of hot clusters, in turns, and bodies of hot clusters at walls.
     pub(super) hot_pairs: Touches,
     pub(super) hot_walls: Touches,
     /// How many clusters those are from.

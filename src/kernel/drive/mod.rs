@@ -43,9 +43,15 @@ pub(super) fn halt(program: &Program, state: &State, slot: Slot) -> Halt {
     Halt { stage: way.stage, left: pausing.then(|| way.until.saturating_sub(tick)) }
 }
 
-/// Sends someone along a route from a stage of it on, the `round`-th time.
-pub(super) fn divert(program: &Program, state: &mut State, slot: Slot, from: Halt, round: u32) {
-    Person::new(program, state, slot.block, slot.lane).divert(from, round);
+/// Sends someone, who perhaps just `comes`, along a route from a stage of it on, the `round`-th time.
+pub(super) fn divert(
+    program: &Program,
+    state: &mut State,
+    slot: Slot,
+    (from, round): (Halt, u32),
+    comes: bool,
+) {
+    Person::new(program, state, slot.block, slot.lane).divert(from, round, comes);
 }
 
 /// Someone's driving speed has changed.
@@ -56,7 +62,12 @@ pub(super) fn renew(program: &Program, state: &mut State, slot: Slot) {
 /// Updates driving direction, driving speed and presence of all agents in all occupied lanes. To be called
 /// once a step, with the new positions and the ticks that belong to them.
 pub fn steer(program: &Program, state: &mut State) {
-    dispatch!(Level::new(), simd => steer_all(simd, program, state));
+    steer_at(Level::new(), program, state);
+}
+
+/// The same with vectors of a level.
+pub(super) fn steer_at(level: Level, program: &Program, state: &mut State) {
+    dispatch!(level, simd => steer_all(simd, program, state));
 }
 
 #[inline(always)]

@@ -256,14 +256,21 @@ impl<'a> Person<'a> {
         self.keep();
     }
 
-    /// Goes on along another route. A pause that had begun there lasts only what was left of it.
-    pub(super) fn divert(mut self, from: Halt, round: u32) {
+    /// Goes on along another route. A pause that had begun there lasts only what was left of it. Who just `comes` does not
+    /// leave in the same state.
+    pub(super) fn divert(mut self, from: Halt, round: u32, comes: bool) {
         self.way.round = round;
         self.enter(from.stage);
         if let Some(left) = from.left {
             self.way.until = self.tick().saturating_add(left);
         }
-        self.step();
+        if comes {
+            self.proceed();
+            self.follow();
+            self.keep();
+        } else {
+            self.step();
+        }
     }
 
     /// Takes over a speed that has changed.

@@ -150,7 +150,7 @@ impl Commands {
             .map(|update| {
                 let value = readings.signals[update.signal].0[lane];
                 if update.domain.contains(value) {
-                    Ok((update.variable, value))
+                    Ok((update.variable, update.domain.kept(value)))
                 } else {
                     Err(Fault::Range { variable: update.variable, value })
                 }
@@ -248,7 +248,7 @@ fn write(
         for lane in lanes.iter() {
             let value = values.0[lane];
             if update.domain.contains(value) {
-                next[update.variable as usize].0[lane] = value;
+                next[update.variable as usize].0[lane] = update.domain.kept(value);
             } else {
                 fault(lane, Fault::Range { variable: update.variable, value });
             }

@@ -8,7 +8,7 @@
 mod chain;
 mod clocks;
 mod commands;
-mod delay;
+pub(super) mod delay;
 mod draws;
 mod embedded;
 mod fault;

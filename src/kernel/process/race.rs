@@ -198,7 +198,7 @@ impl Race {
             if !update.domain.contains(value) {
                 return Err(Fault::Range { variable: update.variable, value });
             }
-            values.push((update.variable, value));
+            values.push((update.variable, update.domain.kept(value)));
         }
         Ok(values)
     }
@@ -219,7 +219,8 @@ impl Race {
             }
         }
         for update in updates {
-            variables[update.variable as usize].0[lane] = readings.signals[update.signal].0[lane];
+            let value = readings.signals[update.signal].0[lane];
+            variables[update.variable as usize].0[lane] = update.domain.kept(value);
         }
         Ok(())
     }

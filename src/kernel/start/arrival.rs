@@ -14,6 +14,7 @@ use super::{body::Parameters, enter};
 use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::random::{Purpose, Stream, TrialKey};
+use crate::kernel::process::delay::after;
 use crate::kernel::program::Program;
 use crate::kernel::state::{Layout, State};
 use crate::model::law::Ready;
@@ -239,7 +240,8 @@ impl Arrivals {
                 return came;
             }
             *arrived += 1;
-            state.queues.next[source].0[lane] += door.interval(key, *arrived);
+            let next = &mut state.queues.next[source].0[lane];
+            *next = after(*next, door.interval(key, *arrived), program.scenario.clock);
         }
         while state.queues.entered[source][lane] < state.queues.arrived[source][lane] {
             let number = state.queues.entered[source][lane];

@@ -12,6 +12,9 @@ const SWEEPS: u32 = 300;
 /// How far apart pushed bodies come to rest, m: far above rounding, far below what anyone sees.
 const CLEARANCE: f64 = 1e-6;
 
+/// What rounding may do to a distance, as a part of it.
+const ROUNDING: f64 = 1e-12;
+
 /// Share of an overlap that one body gives way, if the other can move too.
 const SHARE: f64 = 0.6;
 
@@ -27,6 +30,14 @@ pub(super) enum Room<'a> {
 }
 
 impl Room<'_> {
+    /// Whether a place is farther from another body than it may be, by more than rounding.
+    fn is_left(self, crowd: &Crowd, p: Vec2) -> bool {
+        match self {
+            Self::Near { anchor, within } => (p - crowd.positions[anchor]).norm() > within * (1.0 + ROUNDING),
+            Self::Fixed | Self::Within(_) => false,
+        }
+    }
+
     fn nearest(self, crowd: &Crowd, p: Vec2) -> Vec2 {
         match self {
             Self::Fixed => p,
@@ -52,6 +63,8 @@ pub(super) fn relax(crowd: &mut Crowd, rooms: &[Room<'_>], ground: Ground<'_>) {
             let push = push(crowd, rooms, ground, body, sweep);
             let length = push.norm();
             if length == 0.0 {
+                // Whom it is to be near may have been pushed away.
+                moved |= room.is_left(crowd, at) && draw_in(crowd, *room, ground, body);
                 continue;
             }
             moved = true;
@@ -66,6 +79,22 @@ pub(super) fn relax(crowd: &mut Crowd, rooms: &[Room<'_>], ground: Ground<'_>) {
             return;
         }
     }
+    for (body, room) in rooms.iter().enumerate() {
+        if room.is_left(crowd, crowd.positions[body]) {
+            draw_in(crowd, *room, ground, body);
+        }
+    }
+}
+
+/// Brings a body back to where it may be; whether it could.
+fn draw_in(crowd: &mut Crowd, room: Room<'_>, ground: Ground<'_>, body: usize) -> bool {
+    let at = crowd.positions[body];
+    let to = room.nearest(crowd, at);
+    let free = !crosses_wall(ground, at, to);
+    if free {
+        crowd.shift(body, to);
+    }
+    free
 }
 
 /// The way out of all overlaps of a body; zero without any.
