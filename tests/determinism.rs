@@ -153,7 +153,9 @@ fn t16_neither_threads_nor_rounds_nor_sleep_leave_a_trace() {
     for (threads, width, state) in [(1, 1, 1), (2, 1000, 2), (3, 7, 3), (8, 64, 4)] {
         let restless =
             Restless { threads: Threads::new(Some(threads)).unwrap(), width, state: AtomicU64::new(state) };
-        for (found, plain) in results(&study, &restless).iter().zip(&plain) {
+        let found = results(&study, &restless);
+        assert_eq!(found.len(), plain.len());
+        for (found, plain) in found.iter().zip(&plain) {
             assert_eq!(found, plain, "{threads} threads, rounds of {width}: {}", plain.query);
         }
     }
@@ -194,6 +196,26 @@ fn which_results_an_error_of_the_model_leaves_does_not_depend_on_rounds() {
             let left: Vec<u64> = found.results.iter().map(|result| result.counts.trials).collect();
             assert_eq!(left, [10, 1, 2], "{threads} threads, rounds of {width}");
         }
+    }
+}
+
+#[test]
+fn a_proof_lets_nobody_else_read_trials_twice() {
+    let model = WRONG.replace("> 85", "> 92");
+    let checks: String = (300..600).map(|k| format!("check P(F<=#20 (p[1].s >= 11)) >= 0.{k}\n")).collect();
+    // The estimate waits for the proof of its level when the others have come to the trial in which the model is wrong.
+    let (with, _sources) = study(&model, &format!("estimate P(F<=#2 (p[1].s == 1)) within 0.03\n{checks}"));
+    let (without, _sources) = study(&model, &checks);
+    for seed in [2, 3, 7] {
+        let threads = Threads::new(Some(1)).unwrap();
+        let (with, without) = (whole(&with, seed, &threads), whole(&without, seed, &threads));
+        assert!(with.failure.is_some() && without.failure.is_some(), "seed {seed}");
+        let checks = with.results.iter().filter(|result| result.verdict.is_some());
+        let said = |result: &QueryResult| (result.query.clone(), result.verdict, result.counts.trials);
+        let (with, without): (Vec<_>, Vec<_>) =
+            (checks.map(said).collect(), without.results.iter().map(said).collect());
+        assert!(with.len() > 200, "seed {seed}: {}", with.len());
+        assert_eq!(with, without, "seed {seed}");
     }
 }
 
@@ -301,7 +323,9 @@ fn t16_neither_ranks_nor_their_loss_leave_a_trace() {
     {
         let lines = lost.iter().zip(1..).map(|(lost, state)| rank(&study, state, *lost)).collect();
         let ranks = head(&study, lines).unwrap();
-        for (found, plain) in results(&study, &ranks).iter().zip(&plain) {
+        let found = results(&study, &ranks);
+        assert_eq!(found.len(), plain.len());
+        for (found, plain) in found.iter().zip(&plain) {
             assert_eq!(found, plain, "ranks that are lost after {lost:?}: {}", plain.query);
         }
         let (traffic, gone) = (ranks.traffic(), lost.iter().filter(|lost| **lost != never).count());

@@ -47,6 +47,8 @@ struct Walk<'p> {
     jumps: u64,
     /// Trials that ended before their time.
     notes: Vec<String>,
+    /// Whether the model was wrong in one of them.
+    is_wrong: bool,
 }
 
 impl<'p> Walk<'p> {
@@ -63,6 +65,7 @@ impl<'p> Walk<'p> {
             running: false,
             jumps: 0,
             notes: Vec::new(),
+            is_wrong: false,
         }
     }
 
@@ -108,6 +111,7 @@ impl<'p> Walk<'p> {
             }
             if let Some(fault) = self.state.faults[0].filter(|_| !self.state.faulty.is_empty()) {
                 let what = fault.describe(&self.program.scenario);
+                self.is_wrong = true;
                 self.notes.push(format!("trial {} ends in an error of the model: {what}", self.trial));
                 self.running = false;
                 self.trial += 1;
@@ -134,7 +138,8 @@ impl<'p> Walk<'p> {
                 continue;
             }
             dynamics::step(self.program, &mut self.state, &mut self.scratch);
-            if self.state.ticks[0].is_multiple_of(self.arguments.every) {
+            // A step in which the model is wrong leads to no state.
+            if self.state.faulty.is_empty() && self.state.ticks[0].is_multiple_of(self.arguments.every) {
                 return true;
             }
         }
@@ -209,17 +214,30 @@ fn modes<'p>(program: &'p Program, state: &State, slot: Slot) -> Vec<&'p str> {
         .collect()
 }
 
-/// The option of a name.
+/// The option of a name, with whose it is where several people have one of that name: `stop`, `user: stop`.
 fn option(scenario: &Scenario, name: &str) -> Result<(usize, usize), (String, String)> {
     let wanted = name.trim();
-    for (declaration, moves) in scenario.moves.iter().enumerate() {
-        if let Some(at) = moves.options.iter().position(|(label, _)| label == wanted) {
-            return Ok((declaration, at));
-        }
+    let all = || {
+        let declarations = scenario.moves.iter().enumerate();
+        declarations
+            .flat_map(|(declaration, moves)| (0..moves.options.len()).map(move |at| (declaration, at)))
+    };
+    if let Some(found) = all().find(|of| scenario.move_name(*of).as_deref() == Some(wanted)) {
+        return Ok(found);
     }
-    let labels: Vec<&str> =
-        scenario.moves.iter().flat_map(|m| m.options.iter().map(|(l, _)| l.as_str())).collect();
-    let hint = match nearest(wanted, labels.iter().copied()) {
+    let label = |(declaration, at): (usize, usize)| scenario.moves[declaration].options[at].0.as_str();
+    let same: Vec<String> = all()
+        .filter(|of| label(*of) == wanted)
+        .filter_map(|of| Some(format!("`{}`", scenario.move_name(of)?)))
+        .collect();
+    if !same.is_empty() {
+        return Err((
+            format!("several people have a move `{wanted}`"),
+            format!("say whose: {}", same.join(", ")),
+        ));
+    }
+    let labels: Vec<String> = all().filter_map(|of| scenario.move_name(of)).collect();
+    let hint = match nearest(wanted, labels.iter().map(String::as_str)) {
         _ if labels.is_empty() => "the scenario declares no moves".to_owned(),
         // Of numbers that differ, none is meant more than another.
         Some(near) if !wanted.contains(|c: char| c.is_ascii_digit()) => format!("did you mean `{near}`?"),
@@ -301,6 +319,8 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
         say(&format!("warning: {note}\n"));
     }
     match written {
+        // As a check of the same trial would.
+        Ok(_) if walk.is_wrong => Exit::Wrong,
         Ok(_) => Exit::Success,
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Exit::Success,
         Err(error) => {

@@ -1,6 +1,6 @@
 //! Answers: what a procedure has found, put into words and numbers.
 
-use super::budget::Budget;
+use super::budget::{Budget, DEFAULT_TRIALS};
 use super::cause;
 use super::cell::Item;
 use super::contrast::Contrast;
@@ -17,9 +17,12 @@ use super::tally::Tally;
 use super::watch::Watch;
 use super::witness;
 use super::words;
-use crate::compile::study::{Ask, Measure, MeasureKind, Query, Root};
+use crate::compile::study::{Ask, Measure, MeasureKind, Query, Root, Sought};
 use crate::logic::{Term, TermId, Tree};
 use crate::stats::{Coverage, Decision};
+
+/// The option that ends queries after so many trials.
+const MAX_TRIALS: &str = "--max-trials";
 
 fn unit(measure: &Measure) -> String {
     match measure.kind {
@@ -73,6 +76,10 @@ impl Answers<'_> {
         for (name, value) in &query.point {
             words.push_str(&format!(" --set '{name}={value}'"));
         }
+        // In a ranking of which a round was cut, how many trials there are in all does not tell which.
+        if limit != MAX_TRIALS && self.budget.max_trials != DEFAULT_TRIALS {
+            words.push_str(&format!(" {MAX_TRIALS} {}", self.budget.max_trials));
+        }
         format!("{words} --only {} --seed {} {limit} {trials}", query.index, self.call.seed)
     }
 
@@ -95,7 +102,7 @@ impl Answers<'_> {
         result.method = method::of(&query.ask, Some(&inquiry.procedure));
         result.unit = unit(measure);
         result.stopped_by = stop;
-        result.replay = self.replay(query, "--max-trials", counts.trials);
+        result.replay = self.replay(query, MAX_TRIALS, counts.trials);
         result.elapsed_s = inquiry.seconds;
         let subject_words = measured_words(query, measure, inquiry.tally.clipped);
         let mut beside = match query.ask {
@@ -145,7 +152,7 @@ impl Answers<'_> {
             }
         }
         if let Ask::Check { at_least, threshold, .. } = &query.ask {
-            result.of = words::asked(&query.text).map(|event| format!("P({event})"));
+            result.of = query.said.event.as_ref().map(|event| format!("P({event})"));
             result.against = result.of.is_some() && !*at_least;
             let decision = inquiry.procedure.decision();
             result.verdict = Some(match decision {
@@ -155,7 +162,7 @@ impl Answers<'_> {
                 Some(Decision::Within) | None => Verdict::Undecided,
             });
             result.certifies = match inquiry.procedure.statement() {
-                Some(statement) => words::quantile(&query.text, *threshold, &statement)
+                Some(statement) => words::quantile(&query.said, *threshold, &statement)
                     .unwrap_or_else(|| words::statement(&subject_words, &statement, &result.unit)),
                 None if !says_something(&query.ask, result.low, result.high) => String::new(),
                 None => format!(
@@ -171,11 +178,16 @@ impl Answers<'_> {
                 );
             }
         }
-        result.distribution = inquiry.procedure.distribution().filter(|_| counts.unresolved < counts.trials);
+        // Of a robustness outside its range no more is known than that: trials ended there.
+        let column = subject.columns[measure.target.column];
+        let cut = inquiry.tally.clipped > 0 && matches!(column, Root::Robustness(_, Sought::Clipped(..)));
+        let known = counts.unresolved < counts.trials && !cut;
+        result.distribution = inquiry.procedure.distribution().filter(|_| known);
         Self::tell(&mut result, subject, &inquiry.tally, measure.target.column);
         self.lament_one(&mut result, subject, &inquiry.tally, measure.target.column);
         let picks = match (&measure.kind, kind) {
             (MeasureKind::Probability, _) | (_, Kind::Check) => witness::sides(&inquiry.tally),
+            _ if cut => Vec::new(),
             _ => witness::extremes(&inquiry.tally),
         };
         result.witnesses = self.witnesses(&result, subject, measure.target.column, None, &picks);
@@ -266,7 +278,8 @@ impl Answers<'_> {
             (all, some) => format!("{some} of {all} trials are unresolved"),
         };
         let shown = first.map_or(String::new(), |first| {
-            let why = cause::unresolved(first.subject, first.column, first.item, self.call.seed);
+            let why =
+                cause::unresolved(first.subject, first.column, first.item, (self.call.seed, self.budget));
             let index = first.item.index;
             let mut command = self.call.simulate_with(&first.settings, index);
             if let Some(label) = witness::label(first.subject, first.item.advice) {
@@ -304,7 +317,7 @@ impl Answers<'_> {
             result.interval = words::interval(gap.interval.coverage, gap.interval.error);
         }
         result.stopped_by = gap.stop;
-        result.replay = self.replay(query, "--max-trials", gap.pairs);
+        result.replay = self.replay(query, MAX_TRIALS, gap.pairs);
         let joined = total(&gap.sides);
         Self::tell(&mut result, subject, &joined, first.target.column);
         let lost = (0..2).find_map(|side| {
@@ -418,11 +431,11 @@ fn says_something(ask: &Ask, low: f64, high: f64) -> bool {
 /// is known of the clipped metric alone, and is said of that.
 fn measured_words(query: &Query, measure: &Measure, clipped: u64) -> String {
     match &measure.kind {
-        MeasureKind::Probability => words::measured(&query.text, 'P'),
-        MeasureKind::Quantile { .. } => words::measured(&query.text, 'Q'),
+        MeasureKind::Probability => words::decided(&query.said),
+        MeasureKind::Quantile { .. } => query.said.measure.clone(),
         MeasureKind::Expectation { range, dimension } => {
-            let said = words::measured(&query.text, 'E');
-            if clipped == 0 { said } else { words::clipped(&said, *range, &dimension.to_string()) }
+            let said = &query.said.measure;
+            if clipped == 0 { said.clone() } else { words::clipped(said, *range, &dimension.to_string()) }
         }
     }
 }

@@ -1,6 +1,7 @@
 //! What decided a trial: the atom, comparison or number, and the agents in it.
 
 use super::budget::Budget;
+use super::instance::{instantiate_bool, instantiate_num};
 use super::subject::Subject;
 use super::words;
 use crate::base::tick::{Clock, Tick};
@@ -9,39 +10,61 @@ use crate::logic::{
     AtomId, Node, NodeId, Reason, Recording, SignalId, Source, Term, TermId, critical, explain, sides,
     sources,
 };
-use crate::model::{AgentId, Bool, Num, Place, Scenario, Set, VariableId, Who};
+use crate::model::{AgentId, Bool, Num, Scenario, Set, VariableId, Who};
 use std::collections::BTreeSet;
 
-/// Truth values and numbers of the states of one trial.
+/// Most truth values and numbers that are kept of a trial.
+const MOST_KEPT: usize = 1 << 27;
+
+/// Truth values and numbers of the states of one trial, state by state.
 #[derive(Default)]
 pub(super) struct Record {
-    atoms: Vec<Vec<bool>>,
-    signals: Vec<Vec<f64>>,
+    atoms: Vec<bool>,
+    signals: Vec<f64>,
+    /// Atoms and signals of a state.
+    width: (usize, usize),
+    states: usize,
+    full: bool,
 }
 
 impl Record {
-    /// Keeps what was read of lane 0.
+    /// Keeps what was read of lane 0, as long as there is room.
     pub(super) fn push(&mut self, readings: &Readings) {
-        self.atoms.push(readings.atoms.iter().map(|mask| mask.has(0)).collect());
-        self.signals.push(readings.signals.iter().map(|lanes| lanes.0[0]).collect());
+        self.full |= self.atoms.len() + 8 * self.signals.len() > MOST_KEPT;
+        if self.full {
+            return;
+        }
+        self.width = (readings.atoms.len(), readings.signals.len());
+        self.atoms.extend(readings.atoms.iter().map(|mask| mask.has(0)));
+        self.signals.extend(readings.signals.iter().map(|lanes| lanes.0[0]));
+        self.states += 1;
+    }
+
+    /// Whether the trial is longer than what is kept: then nothing tells what decided it.
+    pub(super) const fn is_full(&self) -> bool {
+        self.full
     }
 }
 
 /// How many agents are named at most.
 const NAMED: usize = 3;
+/// How many are asked about at once.
+const AT_ONCE: usize = 4096;
 
 impl Record {
     /// Calls `look` with the record in the form that `logic` reads.
     fn read<T>(&self, subject: &Subject, budget: &Budget, look: impl FnOnce(&Recording<'_>) -> T) -> T {
+        let (atoms, signals) = self.width;
+        let place = |width: usize, at: u64, one: u32| at as usize * width + one as usize;
         let atoms =
-            |atom: AtomId, at: u64| self.atoms.get(at as usize).is_some_and(|row| row[atom.0 as usize]);
+            |atom: AtomId, at: u64| self.atoms.get(place(atoms, at, atom.0)).is_some_and(|holds| *holds);
         let signals = |signal: SignalId, at: u64| {
-            self.signals.get(at as usize).map_or(f64::NAN, |row| row[signal.0 as usize])
+            self.signals.get(place(signals, at, signal.0)).copied().unwrap_or(f64::NAN)
         };
         look(&Recording {
             atoms: &atoms,
             signals: &signals,
-            seen: self.atoms.len() as u64,
+            seen: self.states as u64,
             horizon: subject.horizon,
             clock: subject.program.scenario.clock,
             stop: &|| budget.is_late(),
@@ -282,11 +305,31 @@ struct Search<'s> {
 
 impl Search<'_> {
     fn holds(&self, atom: &Bool) -> bool {
+        self.which(std::slice::from_ref(atom)).first().is_some_and(|holds| *holds)
+    }
+
+    /// Which of some conditions hold: asked at once, so that who is near whom is sought once.
+    fn which(&self, atoms: &[Bool]) -> Vec<bool> {
         let scenario: &Scenario = &self.subject.program.scenario;
-        let code = Code::compile(scenario, std::slice::from_ref(atom), &[]);
+        let code = Code::compile(scenario, atoms, &[]);
         let mut readings = Readings::default();
         code.run(&self.subject.program, self.state, &mut readings);
-        readings.atoms.first().is_some_and(|mask| mask.has(0))
+        readings.atoms.iter().map(|mask| mask.has(0)).collect()
+    }
+
+    /// The members of a list of whom a condition has a truth value, the first few, with what it is of each.
+    fn those(&self, members: &[AgentId], truth: bool, of: impl Fn(AgentId) -> Bool) -> Vec<(AgentId, Bool)> {
+        let mut found = Vec::new();
+        for some in members.chunks(AT_ONCE) {
+            let conditions: Vec<Bool> = some.iter().map(|id| of(*id)).collect();
+            let which = self.which(&conditions);
+            let all = some.iter().zip(conditions).zip(which);
+            found.extend(all.filter(|(_, holds)| *holds == truth).map(|((id, one), _)| (*id, one)));
+            if found.len() >= NAMED {
+                break;
+            }
+        }
+        found
     }
 
     fn name(&mut self, id: AgentId) {
@@ -345,14 +388,12 @@ impl Search<'_> {
                 if matches!(atom, Bool::Forall(..)) == truth {
                     return;
                 }
-                for id in self.members(set) {
-                    let one = instantiate_bool(body, 0, id);
-                    if self.holds(&one) == truth {
-                        self.name(id);
-                        self.walk(&one, truth);
-                        if self.found.len() >= NAMED {
-                            return;
-                        }
+                let members = self.members(set);
+                for (id, one) in self.those(&members, truth, |id| instantiate_bool(body, 0, id)) {
+                    self.name(id);
+                    self.walk(&one, truth);
+                    if self.found.len() >= NAMED {
+                        return;
                     }
                 }
             }
@@ -364,10 +405,11 @@ impl Search<'_> {
             Bool::Contact(Who::Agent(id)) => {
                 let id = *id;
                 self.name(id);
-                for other in 0..self.subject.program.scenario.agents.len() as u32 {
-                    let other = AgentId(other);
-                    if truth && other != id && self.holds(&Bool::Touching(Who::Agent(id), Who::Agent(other)))
-                    {
+                if truth {
+                    let all = (0..self.subject.program.scenario.agents.len() as u32).map(AgentId);
+                    let others: Vec<AgentId> = all.filter(|other| *other != id).collect();
+                    let touches = |other| Bool::Touching(Who::Agent(id), Who::Agent(other));
+                    for (other, _) in self.those(&others, true, touches) {
                         self.name(other);
                     }
                 }
@@ -391,8 +433,9 @@ impl Search<'_> {
             Num::Apply(_, a) | Num::If(_, a, _) => self.extremum(a),
             // Those who were counted.
             Num::Count(set, body) if !matches!(**body, Bool::Constant(_)) => {
-                for id in self.members(set) {
-                    if self.found.len() < NAMED && self.holds(&instantiate_bool(body, 0, id)) {
+                let members = self.members(set);
+                for (id, _) in self.those(&members, true, |id| instantiate_bool(body, 0, id)) {
+                    if self.found.len() < NAMED {
                         self.name(id);
                     }
                 }
@@ -419,69 +462,5 @@ impl Search<'_> {
         if let Some(best) = best {
             self.name(members[best]);
         }
-    }
-}
-
-/// The running agent of `depth` becomes a fixed one; deeper ones move up a place.
-fn who(who: Who, depth: u32, id: AgentId) -> Who {
-    match who {
-        Who::Running(n) if n == depth => Who::Agent(id),
-        Who::Running(n) if n > depth => Who::Running(n - 1),
-        other => other,
-    }
-}
-
-fn set(from: &Set, depth: u32, id: AgentId) -> Set {
-    Set { members: from.members.clone(), except: from.except.map(|w| who(w, depth, id)) }
-}
-
-fn place(from: &Place, depth: u32, id: AgentId) -> Place {
-    match from {
-        Place::Agent(w) => Place::Agent(who(*w, depth, id)),
-        Place::Point(x, y) => {
-            Place::Point(Box::new(instantiate_num(x, depth, id)), Box::new(instantiate_num(y, depth, id)))
-        }
-        Place::Centroid(s) => Place::Centroid(set(s, depth, id)),
-        Place::Region(_) | Place::Barrier(_) => from.clone(),
-    }
-}
-
-fn instantiate_num(num: &Num, depth: u32, id: AgentId) -> Num {
-    let n = |inner: &Num| Box::new(instantiate_num(inner, depth, id));
-    let b = |inner: &Bool| Box::new(instantiate_bool(inner, depth, id));
-    match num {
-        Num::Constant(_) | Num::Time | Num::Variable(_) => num.clone(),
-        Num::Of(field, w) => Num::Of(*field, who(*w, depth, id)),
-        Num::Coordinate(axis, p) => Num::Coordinate(*axis, place(p, depth, id)),
-        Num::MeanVelocity(axis, s) => Num::MeanVelocity(*axis, set(s, depth, id)),
-        Num::Distance(p, q) => Num::Distance(place(p, depth, id), place(q, depth, id)),
-        Num::Depth(p, region) => Num::Depth(place(p, depth, id), *region),
-        Num::Clearance(w) => Num::Clearance(who(*w, depth, id)),
-        Num::TimeToCollision(v, w) => Num::TimeToCollision(who(*v, depth, id), who(*w, depth, id)),
-        Num::Spread(s) => Num::Spread(set(s, depth, id)),
-        Num::Apply(function, x) => Num::Apply(*function, n(x)),
-        Num::Combine(op, x, y) => Num::Combine(*op, n(x), n(y)),
-        Num::Fold(fold, s, body) => Num::Fold(*fold, set(s, depth, id), n(body)),
-        Num::Count(s, body) => Num::Count(set(s, depth, id), b(body)),
-        Num::If(c, x, y) => Num::If(b(c), n(x), n(y)),
-    }
-}
-
-fn instantiate_bool(truth: &Bool, depth: u32, id: AgentId) -> Bool {
-    let n = |inner: &Num| Box::new(instantiate_num(inner, depth, id));
-    let b = |inner: &Bool| instantiate_bool(inner, depth, id);
-    match truth {
-        Bool::Constant(_) => truth.clone(),
-        Bool::Compare(op, x, y) => Bool::Compare(*op, n(x), n(y)),
-        Bool::Not(inner) => Bool::Not(Box::new(b(inner))),
-        Bool::And(list) => Bool::And(list.iter().map(b).collect()),
-        Bool::Or(list) => Bool::Or(list.iter().map(b).collect()),
-        Bool::Iff(x, y) => Bool::Iff(Box::new(b(x)), Box::new(b(y))),
-        Bool::In(w, region) => Bool::In(who(*w, depth, id), *region),
-        Bool::Present(w) => Bool::Present(who(*w, depth, id)),
-        Bool::Contact(w) => Bool::Contact(who(*w, depth, id)),
-        Bool::Touching(v, w) => Bool::Touching(who(*v, depth, id), who(*w, depth, id)),
-        Bool::Forall(s, body) => Bool::Forall(set(s, depth, id), Box::new(b(body))),
-        Bool::Exists(s, body) => Bool::Exists(set(s, depth, id), Box::new(b(body))),
     }
 }

@@ -1,5 +1,6 @@
 //! Why a trial is unresolved: it is run again up to there, and what stopped it is said, with what helps.
 
+use super::budget::Budget;
 use super::cell::{Item, Reading};
 use super::onlooker::Onlooker;
 use super::subject::{Subject, lost};
@@ -13,10 +14,17 @@ use crate::logic::Needs;
 use crate::model::{Scenario, TOP_SPEED};
 
 /// Most jumps that are made again to see why a trial is unresolved.
-const JUMPS_AGAIN: u64 = 1 << 20;
+const JUMPS_AGAIN: u64 = 1 << 24;
+/// Jumps between looks at the clock.
+const JUMPS_BETWEEN_LOOKS: u64 = 1 << 12;
 
 /// What stopped a trial before a column was decided, and what helps against it; empty where nothing did.
-pub(super) fn unresolved(subject: &Subject, column: usize, item: Item, seed: u64) -> String {
+pub(super) fn unresolved(
+    subject: &Subject,
+    column: usize,
+    item: Item,
+    (seed, budget): (u64, &Budget),
+) -> String {
     let program = &subject.program;
     let scenario = &program.scenario;
     let (mut state, mut scratch) = (State::new(program.layout, scenario.agents.len()), Scratch::new());
@@ -25,7 +33,7 @@ pub(super) fn unresolved(subject: &Subject, column: usize, item: Item, seed: u64
         return format!("it cannot start: {}", no_start(scenario, fault));
     }
     if scenario.clock.is_jumps() {
-        return in_continuous_time(subject, column, &mut state, &mut scratch);
+        return in_continuous_time(subject, column, (&mut state, &mut scratch), budget);
     }
     let lane = Mask::lane(0);
     dynamics::refresh(program, &mut state, &mut scratch, lane);
@@ -62,7 +70,7 @@ pub(super) fn unresolved(subject: &Subject, column: usize, item: Item, seed: u64
                 _ => String::new(),
             };
         }
-        if state.ticks[0] >= subject.horizon.0 {
+        if state.ticks[0] >= subject.horizon.0 || budget.is_late() {
             return String::new();
         }
         dynamics::step(program, &mut state, &mut scratch);
@@ -156,12 +164,20 @@ fn nobody(subject: &Subject, (column, needs): (usize, &Needs), state: &State, ti
 }
 
 /// In continuous time only what has to be remembered, and the number of jumps, can leave a trial unresolved.
-fn in_continuous_time(subject: &Subject, column: usize, state: &mut State, scratch: &mut Scratch) -> String {
+fn in_continuous_time(
+    subject: &Subject,
+    column: usize,
+    (state, scratch): (&mut State, &mut Scratch),
+    budget: &Budget,
+) -> String {
     let view = subject.view(&[column]);
     let Ok(mut monitor) = Onlooker::of(subject, column) else { return String::new() };
     let mut sight = Sight::default();
     let enough = subject.most_jumps.min(JUMPS_AGAIN);
     while state.clocks.jumps[0] < enough {
+        if state.clocks.jumps[0].is_multiple_of(JUMPS_BETWEEN_LOOKS) && budget.is_late() {
+            return String::new();
+        }
         view.look(state, &mut sight);
         let (atoms, signals) = view.of(state, &mut sight, 0);
         let now = state.clocks.now[0];
@@ -180,6 +196,9 @@ fn in_continuous_time(subject: &Subject, column: usize, state: &mut State, scrat
             ),
             _ => String::new(),
         };
+    }
+    if enough < subject.most_jumps {
+        return format!("what it is was not found in its first {enough} jumps");
     }
     let time = words::quantity(state.clocks.now[0], "s");
     let busiest = subject.program.processes.busiest(state, 0).and_then(|(process, rate)| {

@@ -11,6 +11,7 @@ mod fault;
 pub mod finding;
 mod flaw;
 mod forecast;
+mod instance;
 mod jumper;
 mod leaper;
 mod method;

@@ -258,8 +258,6 @@ pub enum Stop {
     Deadline,
     /// Somebody interrupted it.
     Interrupt,
-    /// A trial failed.
-    Error,
 }
 
 impl Stop {
@@ -273,7 +271,6 @@ impl Stop {
             Self::Cap => "cap",
             Self::Deadline => "deadline",
             Self::Interrupt => "interrupt",
-            Self::Error => "error",
         }
     }
 }

@@ -127,11 +127,12 @@ impl Procedure {
                 let mean = match estimator {
                     Estimator::Fixed { trials, delta } => Mean::fixed(*low, *high, trials, delta)?,
                     Estimator::Okamoto { epsilon, delta } => Mean::planned(*low, *high, epsilon, delta)?,
-                    Estimator::Default { epsilon, delta }
-                    | Estimator::Massart { epsilon, delta }
-                    | Estimator::Spending { epsilon, delta }
-                    | Estimator::Relative { epsilon, delta } => Mean::within(*low, *high, epsilon, delta)?,
-                    Estimator::Splitting(_) | Estimator::Band { .. } => return Err(Fault::Unsuitable),
+                    Estimator::Default { epsilon, delta } => Mean::within(*low, *high, epsilon, delta)?,
+                    Estimator::Massart { .. }
+                    | Estimator::Spending { .. }
+                    | Estimator::Relative { .. }
+                    | Estimator::Splitting(_)
+                    | Estimator::Band { .. } => return Err(Fault::Unsuitable),
                 };
                 Ok(Self::Mean { mean: Box::new(mean), threshold: None, values: Vec::new() })
             }

@@ -345,6 +345,7 @@ impl<'a> Session<'a> {
             tally: Tally::default(),
             glimpse: Glimpse::default(),
             waits: false,
+            lost: false,
             stop: None,
             seconds: 0.0,
         })

@@ -38,6 +38,8 @@ pub(super) struct Inquiry<'q> {
     pub(super) glimpse: Glimpse,
     /// Whether it has to know more of its procedure before it can read more.
     pub(super) waits: bool,
+    /// Whether it came to a trial in which the model is wrong: it reads no more and has no result.
+    pub(super) lost: bool,
     /// Why it stopped.
     pub(super) stop: Option<Stop>,
     /// Seconds from the start of the survey to its stop.
@@ -63,7 +65,7 @@ pub(super) struct Broken {
 impl Inquiry<'_> {
     /// Whether it reads on.
     const fn is_open(&self) -> bool {
-        self.stop.is_none() && !self.waits
+        self.stop.is_none() && !self.waits && !self.lost
     }
 
     /// Whether it had stopped before a trial. Whoever stops later in the same round is one who would have seen it in a
@@ -91,8 +93,8 @@ impl<'q> Survey<'q> {
         budget: &Budget,
     ) -> Result<Vec<Forecast>, Fault> {
         let width = executor.width(&self.job) as u64;
-        let size =
-            Rehearsal::size(width).min(round(&self.inquiries, 0, width, budget)).min(budget.max_trials);
+        // As many on every machine, whatever a round would be.
+        let size = Rehearsal::size(width).min(most(&self.inquiries, 0, budget).max(1)).min(budget.max_trials);
         let rehearsal = Rehearsal::run(&self.job, Item::run(0, size), executor, budget)?;
         let seconds = rehearsal.seconds_per_trial(self.job.subject.most_steps());
         let forecast = |inquiry: &Inquiry<'_>| {
@@ -176,8 +178,8 @@ impl<'q> Survey<'q> {
         let broken = self.rounds((executor, started), read..end, budget, watch)?;
         let inquiry = &mut self.inquiries[k];
         if inquiry.stop.is_none() {
-            // It comes to the trial in which the model is wrong, and has no result.
-            inquiry.waits = true;
+            // It comes to the trial in which the model is wrong.
+            inquiry.lost = true;
         } else if inquiry.tally.counts.trials == read {
             // Time was up: it says what it would have said without the proof.
             inquiry.procedure = before;
@@ -222,6 +224,7 @@ impl<'q> Survey<'q> {
                     break;
                 }
                 Err(item) => {
+                    self.inquiries.iter_mut().filter(|i| i.is_open()).for_each(|i| i.lost = true);
                     let fault = super::trial::fault(self.job.subject, item, self.job.seed);
                     return Ok(Some(Broken { index: item.index, fault }));
                 }
@@ -367,16 +370,23 @@ fn prove(procedure: &Procedure, levels: &mut Levels, budget: &Budget) -> Result<
     }
 }
 
+/// How many trials an inquiry reads at most from here on.
+fn left(inquiry: &Inquiry<'_>, consumed: u64, budget: &Budget) -> u64 {
+    inquiry.procedure.limit().unwrap_or(u64::MAX).min(budget.max_trials).saturating_sub(consumed)
+}
+
+/// How many trials anybody reads at most from here on.
+fn most(inquiries: &[Inquiry<'_>], consumed: u64, budget: &Budget) -> u64 {
+    let open = inquiries.iter().filter(|inquiry| inquiry.is_open());
+    open.map(|inquiry| left(inquiry, consumed, budget)).max().unwrap_or(0)
+}
+
 /// How many trials the next round has: enough to keep all lanes busy, few enough to waste little once the
 /// last query has stopped.
 fn round(inquiries: &[Inquiry<'_>], consumed: u64, width: u64, budget: &Budget) -> u64 {
-    let open = || inquiries.iter().filter(|i| i.is_open());
-    let left = |inquiry: &Inquiry<'_>| {
-        let limit = inquiry.procedure.limit().unwrap_or(u64::MAX).min(budget.max_trials);
-        limit.saturating_sub(consumed)
-    };
-    let sure = open().filter(|i| i.procedure.is_planned()).map(left).max().unwrap_or(0);
-    let most = open().map(left).max().unwrap_or(0);
+    let planned = inquiries.iter().filter(|i| i.is_open() && i.procedure.is_planned());
+    let sure = planned.map(|inquiry| left(inquiry, consumed, budget)).max().unwrap_or(0);
+    let most = most(inquiries, consumed, budget);
     let size = (consumed / 8).max(2 * width).max(sure.min(consumed.max(8 * width)));
     // With a deadline rounds stay short, so that little is thrown away at its end.
     let size = if budget.has_deadline() { size.min(consumed.max(2 * width)) } else { size };

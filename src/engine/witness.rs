@@ -43,11 +43,9 @@ pub(super) fn find(
     picks.iter().filter_map(one).collect()
 }
 
-/// The name of a suggested move.
-pub(super) fn label(subject: &Subject, advice: Option<(usize, usize)>) -> Option<&str> {
-    let (declaration, option) = advice?;
-    let moves = subject.program.scenario.moves.get(declaration)?;
-    moves.options.get(option).map(|(label, _)| label.as_str())
+/// The name of a suggested move, as `smc simulate` takes it.
+pub(super) fn label(subject: &Subject, advice: Option<(usize, usize)>) -> Option<String> {
+    subject.program.scenario.move_name(advice?)
 }
 
 /// Runs one trial again and says what decided it; `dimension` is the unit of a metric. None where the time is over.
@@ -104,6 +102,12 @@ fn witness(
     };
     let now = Tick(state.ticks[0]);
     let (value, at, what) = match (subject.columns[column], &observer) {
+        (Root::Formula(_), Observer::Formula(monitor)) if record.is_full() => {
+            (None, Tick(monitor.decided_at()[0]), String::new())
+        }
+        (Root::Metric(_), Observer::Metric(monitor)) if record.is_full() => {
+            (Some(monitor.value().0[0]), Tick(monitor.decided_at()[0]), String::new())
+        }
         (Root::Formula(root), Observer::Formula(monitor)) => {
             (None, Tick(monitor.decided_at()[0]), blame::truth(subject, root, (&record, budget), state_at))
         }
@@ -112,6 +116,10 @@ fn witness(
                 Reading::Value(value) => Some(value),
                 _ => None,
             };
+            if record.is_full() {
+                let time = program.scenario.clock.seconds(now);
+                return Some(Witness { shows, trial, value, time, unit, what: String::new(), command });
+            }
             let (at, what) = blame::margin(subject, root, (value, dimension), (&record, budget), state_at);
             (value, at.unwrap_or(now), what)
         }

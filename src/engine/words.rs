@@ -1,5 +1,6 @@
 //! Certified statements in words.
 
+use crate::compile::study::Said;
 use crate::stats::{Claim, Coverage, Statement};
 
 /// Largest number that is written with an exponent, for the many zeros it would begin with.
@@ -102,58 +103,28 @@ fn three_digits(value: f64, round: impl Fn(f64) -> f64) -> f64 {
     if scaled < 100.0 || (scaled - scaled.round()).abs() < 1e-9 { value } else { round(scaled) / scale }
 }
 
-/// The measure of a query as one would say it: `P(safe)`. The check of a quantile is decided as one of a
-/// probability, and is said as that: `check Q(0.9, m) <= 15 s` is about `P(m <= 15 s)`.
-pub(super) fn measured(query: &str, letter: char) -> String {
-    let at = |letter: char| query.find(&format!("{letter}("));
-    let Some(from) = at(letter).or_else(|| at('Q')) else { return "the measure".to_owned() };
-    let text = &query[from..];
-    let end = closing(text).unwrap_or(text.len());
-    let measure = &text[..end];
-    if letter != 'P' || !measure.starts_with("Q(") {
-        return measure.to_owned();
-    }
-    let metric =
-        measure.split_once(',').map_or(measure, |(_, rest)| rest.strip_suffix(')').unwrap_or(rest)).trim();
-    let rest = text[end..].trim_start();
-    // `Q <= x` and `Q > x` are about P(metric <= x), `Q < x` and `Q >= x` about P(metric < x).
-    let greater = rest.starts_with(['>', '≥']);
-    let or_equal = rest.starts_with(['≤', '≥']) || rest.get(1..).is_some_and(|rest| rest.starts_with('='));
-    let relation = if greater == or_equal { "<" } else { "<=" };
-    let bound = rest.trim_start_matches(['<', '>', '=', '≤', '≥']).trim_start();
-    let stop =
-        [" by ", " under ", " confidence ", " within "].iter().filter_map(|word| bound.find(word)).min();
-    format!("P({metric} {relation} {})", bound[..stop.unwrap_or(bound.len())].trim())
-}
-
-/// The event that the check of a quantile is decided by, `m < 3 m` for `check Q(0.5, m) >= 3 m`; `None` of other checks.
-pub(super) fn asked(query: &str) -> Option<String> {
-    let rest = query.trim_start().strip_prefix("check")?;
-    if !rest.trim_start().starts_with('Q') {
-        return None;
-    }
-    Some(measured(query, 'P').strip_prefix("P(")?.strip_suffix(')')?.to_owned())
+/// What a query is about as it is decided: the check of a quantile, `check Q(0.9, m) <= 15 s`, as `P(m <= 15 s)`.
+pub(super) fn decided(said: &Said) -> String {
+    said.event.as_ref().map_or_else(|| said.measure.clone(), |event| format!("P({event})"))
 }
 
 /// What the decided check of a quantile certifies, if that is about the level it asks for: the claim about the
 /// quantile, and the probability that it follows from.
-pub(super) fn quantile(query: &str, level: f64, said: &Statement) -> Option<String> {
-    let event = asked(query)?;
-    let (at, sign) =
-        event.rfind(" <= ").map(|at| (at, " <= ")).or_else(|| Some((event.rfind(" < ")?, " < ")))?;
-    let bound = &event[at + sign.len()..];
+pub(super) fn quantile(said: &Said, level: f64, statement: &Statement) -> Option<String> {
+    let event = said.event.as_ref()?;
     // P(m <= x) > q makes the q-quantile at most x, and P(m < x) < q makes it at least x.
-    let (relation, beyond) = match (said.claim, sign) {
-        (Claim::Above(theta), _) if theta == level => (sign.trim(), ">"),
-        (Claim::Below(theta), " <= ") if theta == level => (">", "<"),
+    let (relation, beyond) = match (statement.claim, event.relation) {
+        (Claim::Above(theta), relation) if theta == level => (relation, ">"),
+        (Claim::Below(theta), "<=") if theta == level => (">", "<"),
         (Claim::Below(theta), _) if theta == level => (">=", "<"),
         _ => return None,
     };
     Some(format!(
-        "{} {relation} {bound}, since P({event}) {beyond} {}, error at most {}",
-        measured(query, 'Q'),
+        "{} {relation} {}, since P({event}) {beyond} {}, error at most {}",
+        said.measure,
+        event.bound,
         number(level),
-        error(said.error)
+        error(statement.error)
     ))
 }
 
@@ -161,20 +132,6 @@ pub(super) fn quantile(query: &str, level: f64, said: &Statement) -> Option<Stri
 pub(super) fn clipped(said: &str, (low, high): (f64, f64), unit: &str) -> String {
     let inner = said.strip_suffix(')').unwrap_or(said);
     format!("{inner}, clipped to {} .. {})", quantity(low, unit), quantity(high, unit))
-}
-
-/// One past the parenthesis that closes the first one.
-fn closing(text: &str) -> Option<usize> {
-    let mut depth = 0usize;
-    for (at, c) in text.char_indices() {
-        match c {
-            '(' => depth += 1,
-            ')' if depth == 1 => return Some(at + 1),
-            ')' => depth = depth.saturating_sub(1),
-            _ => {}
-        }
-    }
-    None
 }
 
 /// A probability of error in three digits, rounded upward.
@@ -231,43 +188,37 @@ pub(super) fn interval(coverage: Coverage, error: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn measures_are_said_as_they_are_decided() {
-        assert_eq!(measured("check P(a & (b)) >= 0.5", 'P'), "P(a & (b))");
-        assert_eq!(measured("check Q(0.9, f(a)) <= 15 s confidence 95 %", 'P'), "P(f(a) <= 15 s)");
-        assert_eq!(measured("check Q(0.9, f(a)) >= 15 s", 'P'), "P(f(a) < 15 s)");
-        assert_eq!(measured("check Q(0.9, f(a)) ≥ 15 s", 'P'), "P(f(a) < 15 s)");
-        assert_eq!(measured("check Q(0.9, f(a)) ≤ 15 s", 'P'), "P(f(a) <= 15 s)");
-        assert_eq!(measured("check Q(0.9, f(a)) < 15 s", 'P'), "P(f(a) < 15 s)");
-        assert_eq!(measured("check Q(0.9, f(a)) > 15 s", 'P'), "P(f(a) <= 15 s)");
-        assert_eq!(measured("estimate Q(0.9, f(a))", 'Q'), "Q(0.9, f(a))");
-    }
+    use crate::compile::study::Event;
 
     #[test]
     fn checks_of_quantiles_certify_quantiles() {
-        let said = |query: &str, claim| quantile(query, 0.9, &Statement { claim, error: 0.01 });
+        let of = |relation| Said {
+            measure: "Q(0.9, f(a))".to_owned(),
+            event: Some(Event { metric: "f(a)".to_owned(), relation, bound: "3 m".to_owned() }),
+        };
+        let said = |relation, claim| quantile(&of(relation), 0.9, &Statement { claim, error: 0.01 });
         let (above, below) = (Claim::Above(0.9), Claim::Below(0.9));
         assert_eq!(
-            said("check Q(0.9, f(a)) >= 3 m", below).unwrap(),
+            said("<", below).unwrap(),
             "Q(0.9, f(a)) >= 3 m, since P(f(a) < 3 m) < 0.9, error at most 0.01"
         );
         assert_eq!(
-            said("check Q(0.9, f(a)) >= 3 m", above).unwrap(),
+            said("<", above).unwrap(),
             "Q(0.9, f(a)) < 3 m, since P(f(a) < 3 m) > 0.9, error at most 0.01"
         );
         assert_eq!(
-            said("check Q(0.9, f(a)) <= 3 m", above).unwrap(),
+            said("<=", above).unwrap(),
             "Q(0.9, f(a)) <= 3 m, since P(f(a) <= 3 m) > 0.9, error at most 0.01"
         );
         assert_eq!(
-            said("check Q(0.9, f(a)) <= 3 m confidence 99 %", below).unwrap(),
+            said("<=", below).unwrap(),
             "Q(0.9, f(a)) > 3 m, since P(f(a) <= 3 m) < 0.9, error at most 0.01"
         );
         // An indifference region certifies another level.
-        assert_eq!(said("check Q(0.9, f(a)) <= 3 m", Claim::Above(0.88)), None);
-        assert_eq!(said("check P(F f(a)) <= 0.9", below), None);
-        assert_eq!(asked("check P(a) >= 0.5"), None);
+        assert_eq!(said("<=", Claim::Above(0.88)), None);
+        let plain = Said { measure: "P(a)".to_owned(), event: None };
+        assert_eq!(quantile(&plain, 0.9, &Statement { claim: below, error: 0.01 }), None);
+        assert_eq!((decided(&plain).as_str(), decided(&of("<")).as_str()), ("P(a)", "P(f(a) < 3 m)"));
     }
 
     #[test]

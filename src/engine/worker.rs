@@ -153,7 +153,8 @@ impl Worker {
         let diverged = ((self.state.diverged | self.state.queues.full) & self.state.occupied) | faulty;
         let watched = self.state.occupied & !diverged;
         let mut touched = diverged;
-        let close = self.scratch.close(&self.state);
+        let near = self.sheets.iter().any(|sheet| sheet.code.asks_who_is_near());
+        let close = if near { self.scratch.close(&self.state) } else { None };
         for (sheet, readings) in self.sheets.iter_mut().zip(&mut self.readings) {
             sheet.code.run_close(&subject.program, &self.state, close, readings);
             // Without a value where one is needed, nothing more can be said.

@@ -32,3 +32,18 @@ pub struct Scenario {
     /// Where people come in; their members are agents of the list above who are absent at first.
     pub sources: Vec<Source>,
 }
+
+impl Scenario {
+    /// The name by which an option of a declaration of moves is chosen: its own, `stop`, or with whose it is, `user: stop`,
+    /// where several people have one of that name.
+    pub fn move_name(&self, (declaration, option): (usize, usize)) -> Option<String> {
+        let moves = self.moves.get(declaration)?;
+        let (label, _) = moves.options.get(option)?;
+        let same =
+            |(k, other): (usize, &Moves)| k != declaration && other.options.iter().any(|(l, _)| l == label);
+        if !self.moves.iter().enumerate().any(same) {
+            return Some(label.clone());
+        }
+        Some(format!("{}: {label}", self.agents.get(moves.agent.0 as usize)?.name))
+    }
+}

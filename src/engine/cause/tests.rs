@@ -45,10 +45,10 @@ fn a_trial_of_too_many_jumps_is_unresolved_and_the_process_is_named() {
         assert_eq!((cell.reading, cell.steps), (Reading::Unresolved, 500));
     }
     let item = Item { index: 0, advice: None };
-    let words = unresolved(&subject, 0, item, 7);
+    let words = unresolved(&subject, 0, item, (7, &Budget::new(u64::MAX, None)));
     assert!(words.contains("500 times by 0.") && words.contains("most of them of `blinker["), "{words}");
     assert!(words.contains("at a rate of 1500 /s"), "{words}");
     // Enough jumps: nobody is to blame.
     subject.most_jumps = 100_000;
-    assert_eq!(unresolved(&subject, 0, item, 7), "");
+    assert_eq!(unresolved(&subject, 0, item, (7, &Budget::new(u64::MAX, None))), "");
 }

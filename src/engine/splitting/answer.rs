@@ -35,7 +35,7 @@ impl Answers<'_> {
         result.replay = self.replay(query, "--max-trials", counts.trials + found.paths);
         Self::tell(&mut result, subject, &found.plain, column);
         self.lament_one(&mut result, subject, &found.plain, column);
-        let name = words::measured(&query.text, 'P');
+        let name = words::decided(&query.said);
         // From above the only statement that holds without a condition is that of the plain trials.
         result.certifies = format!(
             "{name} <= {}, error at most {} (from the plain trials alone)",
