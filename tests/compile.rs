@@ -5,7 +5,7 @@
 use smc::base::geometry::Vec2;
 use smc::compile::study::Ask;
 use smc::compile::{Files, Input, Study, compile, requests};
-use smc::model::{AgentId, Bool, Move, Position, Who};
+use smc::model::{AgentId, Amount, Bool, Move, Num, Position, Who};
 use smc::syntax::diagnostic::Diagnostic;
 use smc::syntax::parse::{parse_properties, parse_scenario};
 use smc::syntax::render::render;
@@ -318,4 +318,68 @@ fn what_is_wrong_with_a_procedure_is_said_beside_a_wrong_formula() {
     both("check P(nobody in hall) >= 0.5 by nosuch(alpha = 0.1)", ["E0201", "E0603"]);
     both("estimate P(nobody in hall) confidence 10 %", ["E0201", "E0604"]);
     both("rank moves of somebody by P(F<=1 s (speed(me) > 1 s))", ["E0201", "E0303"]);
+}
+
+#[test]
+fn what_is_checked_though_nobody_uses_it_refuses_nothing_sound() {
+    // Names that stand for something else than the function of that name, in files, processes and behaviours.
+    let head = THREE.replace("agent me: adult {", "agent me: adult with b {");
+    for more in [
+        // An expression of the name of a built-in function hides it nowhere.
+        "let heading = 3 s\nlet f(a) = heading(a) < 1 rad\nbehaviour b { state s { after 1 s -> s } }\n",
+        "process p {\n var n: 0 .. 5 = 0\n let area(k) = k * 2\n let f(k) = area(k) < 3\n when f(n) -> n = n\n}\n\
+         behaviour b { state s { after 1 s -> s } }\n",
+        "let distance(a, b) = 3\n\
+         behaviour b { let near(a) = distance(self, a) < 4  state s { when near(me) -> t } state t { } }\n",
+        // A variable of a process has the name of a behaviour.
+        "process desk { var b: 0 .. 5 = 0  when b < 5 -> b = b + 1 }\nlet long(d) = d.b == 5\n\
+         behaviour b { state s { when contact(self) -> t } state t { } }\n",
+        // What conditions say hides no parameter of who has the behaviour.
+        "scene { region A: rect (0, 0) .. (2, 2) }\n\
+         behaviour b { let there = self in A  let at(x) = x in A  state s { when there & at(self) -> t } state t { } }\n",
+        // Nobody has it, and what it says of itself is sound.
+        "agents nobody[0]: adult with c { at = uniform in hall }\n\
+         behaviour c { let busy = self.c == on  state on { when busy -> off } state off { } }\n\
+         behaviour b { state s { after 1 s -> s } }\n",
+        // A process has a function of the name that another function calls.
+        "let f(x) = x\nprocess p { let f(x) = g(x)  var n: 0 .. 3 = 0  when f(n) < 2 -> n = n }\nlet g(x) = f(x)\n\
+         behaviour b { state s { after 1 s -> s } }\n",
+        // Names without arguments may be called.
+        "let now() = 2 s\nprocess p { var n: 0 .. 3 = 0  let top() = n + 1  when top() < 3 -> n = top() }\n\
+         behaviour b { let t() = now()  state s { after t() -> s } }\n",
+    ] {
+        let scenario = format!("{head}{more}");
+        let (study, found) =
+            compiled(&scenario, "estimate P(F<=1 s (forall a in crowd: F<=0.5 s (speed(a) > 0.1 m/s)))\n");
+        assert!(study.is_some() && !found.contains("error["), "{scenario}\n{found}");
+    }
+}
+
+#[test]
+fn names_of_a_behaviour_hide_the_own_parameters() {
+    let behaviour = "behaviour b { let speed = 0.25 m/s  state s { speed = speed } }\n";
+    let scenario = THREE.replace("agent me: adult {", "agent me: adult with b {") + behaviour;
+    let study = understood(&scenario, "estimate P(F<=1 s (speed(me) > 1 m/s))\n");
+    let conduct = &study.worlds[0].scenario.behaviours.attached[0].conduct;
+    let Amount::Computed(value) = &conduct.states[0].changes[0].1 else { panic!("{conduct:?}") };
+    assert_eq!(*value, Num::Constant(0.25));
+}
+
+#[test]
+fn doubled_functions_with_an_unknown_name_take_no_time() {
+    let chain = |last: &str, join: &str| {
+        let mut text = format!("let f0(x) = {last}\n");
+        for k in 1..60 {
+            let call = format!("f{}(x)", k - 1);
+            text += &format!("let f{k}(x) = {}\n", join.replace('@', &call));
+        }
+        text + "check P(F<=1 s (f59(1 m) > 1 m)) >= 0.5\n"
+    };
+    for (last, join) in
+        [("x", "g(@, @)"), ("x + y", "@ + @"), ("q(x)", "min(@, @)"), ("x + y", "if(@ > @, @, @)")]
+    {
+        let (study, found) = compiled(THREE, &chain(last, join));
+        assert!(study.is_none(), "{join}");
+        assert!(!found.contains("E0211") && found.matches("error[").count() <= 60, "{join}\n{found}");
+    }
 }

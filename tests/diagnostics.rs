@@ -7,6 +7,7 @@ use smc::syntax::diagnostic::Diagnostic;
 use smc::syntax::parse::{decode, parse_properties, parse_scenario, parse_value};
 use smc::syntax::render::render;
 use smc::syntax::source::{Source, SourceId};
+use std::time::{Duration, Instant};
 
 fn diagnostics(source: &Source) -> Vec<Diagnostic> {
     if source.name.ends_with(".scn") { parse_scenario(source).1 } else { parse_properties(source).1 }
@@ -59,5 +60,29 @@ fn values() {
     for text in ["", "0.8 /m^2 x", "3 +", "(1", "a = 3"] {
         let said = value(text).unwrap_err();
         assert_eq!(said.len(), 1, "{text}: {said:?}");
+    }
+}
+
+#[test]
+fn thousands_of_errors_are_told_in_seconds() {
+    let lines = |count: usize, line: &dyn Fn(usize) -> String| (0..count).map(line).collect::<String>();
+    let faults = lines(32_000, &|k| format!("const a{k} = 1 )\n"));
+    let strays = lines(16_000, &|k| format!("}}\nconst a{k} = 1\n"));
+    let fields = format!("agent a: b {{ {}}}\n", "x = 1 ".repeat(100_000));
+    let on_a_line =
+        format!("scene {{ {}}}\n", "wall a: (1, 2) -- (1 2) wall b: (1, 2) -- (1, 2) ".repeat(4_000));
+    let quotes = format!("const a = \"{}\n", "\\\"".repeat(32_000));
+    let braces = format!("const a = \"{}x\n", " } {".repeat(100_000));
+    for (text, count) in
+        [(faults, 32_000), (strays, 16_000), (fields, 0), (on_a_line, 4_000), (quotes, 1), (braces, 1)]
+    {
+        let source = Source::new(SourceId(0), "many.scn", text);
+        let start = Instant::now();
+        let said = diagnostics(&source);
+        render(&said, std::slice::from_ref(&source), false);
+        let took = start.elapsed();
+        assert_eq!(said.len(), count, "{}", &source.text[..40]);
+        // It is less than two; with work in proportion to the square of the errors it would be ten or more.
+        assert!(took < Duration::from_secs(6), "{took:?}: {}", &source.text[..40]);
     }
 }

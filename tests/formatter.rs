@@ -147,6 +147,10 @@ proptest! {
         prop_assert!(said.iter().all(|d| d.code.starts_with('W')), "{text}\n{said:?}");
         let once = format("r.bltl", &text);
         prop_assert_eq!(tree("r.bltl", &once), tree("r.bltl", &text), "{}\n{}", text, once);
+        for comment in ["/* c */", "// c"] {
+            let times = |text: &str| text.matches(comment).count();
+            prop_assert_eq!(times(&once), times(&text), "{}\n{}", text, once);
+        }
         prop_assert_eq!(format("r.bltl", &once), once);
     }
 }

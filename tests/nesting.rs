@@ -2,7 +2,7 @@
 
 #![allow(clippy::disallowed_methods, reason = "a test may read the clock")]
 
-use smc::syntax::parse::parse_properties;
+use smc::syntax::parse::{parse_properties, parse_scenario};
 use smc::syntax::print::format_properties;
 use smc::syntax::source::{Source, SourceId};
 use std::time::{Duration, Instant};
@@ -101,4 +101,33 @@ fn long_chains_are_refused_before_they_overflow_anything() {
         let (_, said) = parse_properties(&Source::new(SourceId(0), "long.bltl", text));
         assert!(said.is_empty());
     }
+}
+
+#[test]
+fn what_is_too_deep_after_a_slip_on_its_line_is_skipped_or_refused() {
+    let deep = format!("const b = {}1{}", "(".repeat(100_000), ")".repeat(100_000));
+    let told = move || {
+        for before in [
+            "\" ",
+            "\"\\",
+            "\" } ",
+            "const a = \"x\\\" ",
+            "kind k: sfm { mass = \" } ",
+            "$ \"x\" \" ",
+            "\"\u{A0}} ",
+            "/* \" */ ",
+            "{ { { \"x\" } } } ",
+            "} ) ] ",
+            "' ",
+        ] {
+            let source = Source::new(SourceId(0), "deep.scn", format!("{before}{deep}\n"));
+            for said in [parse_scenario(&source).1, parse_properties(&source).1] {
+                assert!(!said.is_empty(), "{before}");
+                // Nothing but the limit ends a parse: the stack would end it elsewhere on another machine.
+                assert!(said.iter().all(|said| said.title != "unexpected `(`"), "{before}");
+            }
+        }
+    };
+    // As large as that of the program: there the grammar gets deeper than what comes after it.
+    std::thread::Builder::new().stack_size(256 << 20).spawn(told).unwrap().join().unwrap();
 }

@@ -349,6 +349,43 @@ fn junit() {
     insta::assert_snapshot!(render(&run(), Format::Junit, Palette::PLAIN));
 }
 
+/// A sweep comes point by point, with the queries of all files at each.
+#[test]
+fn junit_has_one_suite_for_each_file_of_a_sweep() {
+    let at = |index: usize, p: &str| QueryResult {
+        file: ["a.bltl", "b.bltl"][index].into(),
+        settings: vec![("p".into(), p.into())],
+        ..result(index, Kind::Estimate, "estimate P(safe)")
+    };
+    let results = vec![at(0, "0.2"), at(1, "0.2"), at(0, "0.5"), at(1, "0.5")];
+    let text = render(&Run { results, ..Run::default() }, Format::Junit, Palette::PLAIN);
+    let suites: Vec<&str> = text.lines().filter(|line| line.contains("<testsuite ")).collect();
+    assert_eq!(suites.len(), 2, "{text}");
+    for (suite, name) in suites.iter().zip(["a.bltl", "b.bltl"]) {
+        assert!(suite.contains(&format!("name=\"{name}\" tests=\"2\"")), "{suite}");
+    }
+}
+
+/// A time that does not come is told from a distance to nobody, alike in all reports.
+#[test]
+fn what_lies_above_a_histogram_has_one_name() {
+    let said = |query: &str, word: &str| {
+        let histogram = Histogram { low: 0.0, high: 1.0, counts: vec![1, 2], beyond: 349 };
+        let results = vec![QueryResult {
+            distribution: Some(Distribution { histogram: Some(histogram), ..Distribution::default() }),
+            ..result(0, Kind::Estimate, query)
+        }];
+        let run = Run { results, ..Run::default() };
+        for format in [Format::Text, Format::Html] {
+            let text = render(&run, format, Palette::PLAIN);
+            assert!(text.contains(&format!("349 {word}")), "{text}");
+        }
+    };
+    said("estimate E(time_until(user in exit)) in 0 s .. 9 s", "beyond the horizon");
+    said("estimate E(late) in 0 s .. 9 s", "infinite");
+    said("estimate E(distance(user, a) at end) in 0 m .. 9 m", "infinite");
+}
+
 #[test]
 fn junit_is_red_where_the_run_failed() {
     let failed = Run { failure: Some(Failure::Bug("\u{0}<&>".into())), ..Run::default() };

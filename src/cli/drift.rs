@@ -2,7 +2,7 @@
 
 use super::arguments::{Drift, DriftFormat};
 use super::complaint;
-use super::terminal::{Colors, print};
+use super::terminal::{Colors, print, print_to_reader};
 use crate::base::math;
 use crate::data::outcomes::{Column, Outcomes};
 use crate::report::ExitCode as Exit;
@@ -65,8 +65,8 @@ fn watch(arguments: &Drift) -> Result<bool, Diagnostic> {
         successes += u64::from(success);
         if cusum.observe(success) {
             alarms.push(cusum.read());
-            // At once: whoever listens may want to act.
-            print(&match arguments.format {
+            // At once: whoever listens may want to act. Where nobody does, nothing more is read.
+            let heard = print_to_reader(&match arguments.format {
                 DriftFormat::Text => {
                     format!("alarm after outcome {} (line {})\n", cusum.read(), outcomes.lines())
                 }
@@ -75,7 +75,7 @@ fn watch(arguments: &Drift) -> Result<bool, Diagnostic> {
                 }
             })
             .map_err(complaint::output)?;
-            if arguments.first {
+            if arguments.first || !heard {
                 break;
             }
         }

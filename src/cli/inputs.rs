@@ -272,7 +272,7 @@ pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> I
     }
     if let (Some(study), Some(last)) = (&study, properties.last())
         && study.queries.is_empty()
-        && let Some(source) = sources.iter().rfind(|source| source.name == *last)
+        && let Some(source) = sources.iter().rfind(|source| source.name == shown(last))
     {
         let warning = Diagnostic::warning("W0602", Span::new(source.id, 0, 0), "nothing is asked");
         diagnostics.push(warning.hint("add a query, as in `check P(safe) >= 0.9` or `estimate P(safe)`"));

@@ -8,6 +8,7 @@ use super::margin::Margins;
 use super::number::Number;
 use super::places::Written;
 use super::process::Declared;
+use super::said::without_comments;
 use super::study::Origins;
 use super::study::Texts;
 use super::symbols::{Scope, ScopeId};
@@ -17,8 +18,8 @@ use crate::base::decimal::Decimal;
 use crate::base::geometry::{Shape, Vec2};
 use crate::base::tick::{Clock, Tick};
 use crate::data::tracks::Recording;
-use crate::logic::{Node, NodeId, Relation, SignalId, Term, TermId, Tree};
-use crate::model::{AgentId, BehaviourId, Bool, Num, Scene, Who};
+use crate::logic::Tree;
+use crate::model::{AgentId, BehaviourId, Bool, Num, Scene};
 use crate::syntax::ast::{BehaviourDecl, Expr};
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::source::{Source, Span};
@@ -38,8 +39,6 @@ const DEEPEST: u32 = 1000;
 pub(super) const MOST_NODES: u64 = 4_000_000;
 /// After so many errors no unknown name is told which one it may mean.
 const MOST_LOOKED_FOR: usize = 100;
-/// How many conditions on states it may have.
-const MOST_ATOMS: usize = 5_000;
 
 /// Names of enclosing expressions: function arguments and quantified agents.
 #[derive(Clone, Debug, Default)]
@@ -48,6 +47,8 @@ pub(super) struct Locals {
     pub(super) scope: ScopeId,
     /// Bound names, innermost last. `None`: nobody knows what it stands for, and nothing is said of what needs that.
     pub(super) names: Vec<(String, Option<Arc<Typed>>)>,
+    /// Where the arguments of a function are written that is called.
+    pub(super) written: Vec<(String, Span)>,
     /// Number of enclosing folds over agents.
     pub(super) running: u32,
     /// The process, and which of its copies, whose names come next.
@@ -103,6 +104,10 @@ pub(super) struct Elaborator<'a> {
     pub(super) withs: Vec<With<'a>>,
     /// Who has which, one by one.
     pub(super) having: BTreeSet<(AgentId, BehaviourId)>,
+    /// Who was given a behaviour that nobody knows.
+    pub(super) strayed: BTreeSet<AgentId>,
+    /// Arguments of behaviours that nobody knows.
+    pub(super) stray: Vec<&'a [Expr]>,
     /// Names of the agents so far.
     pub(super) agent_names: Vec<String>,
     /// Where the starts of people are written.
@@ -134,9 +139,13 @@ pub(super) struct Elaborator<'a> {
     /// Numbers observed.
     pub(super) signals: Vec<Num>,
     /// Where nodes, terms, atoms and signals are.
-    known: [Interned; 4],
+    pub(super) known: [Interned; 4],
     /// How atoms, signals and comparisons were written.
     pub(super) texts: Texts,
+    /// Where a use of an argument stands, and where what it stands for is written, in the present call.
+    pub(super) aliases: BTreeMap<Span, Span>,
+    /// How often an unknown name was come upon.
+    pub(super) unknowns: u64,
     /// Names in circles that were reported.
     pub(super) circles: Vec<String>,
     /// What was found wrong.
@@ -175,6 +184,8 @@ impl<'a> Elaborator<'a> {
             behaviours: Vec::new(),
             withs: Vec::new(),
             having: BTreeSet::new(),
+            strayed: BTreeSet::new(),
+            stray: Vec::new(),
             agent_names: Vec::new(),
             places: Vec::new(),
             undeclared: BTreeSet::new(),
@@ -192,6 +203,8 @@ impl<'a> Elaborator<'a> {
             signals: Vec::new(),
             known: Default::default(),
             texts: Texts::default(),
+            aliases: BTreeMap::new(),
+            unknowns: 0,
             circles: Vec::new(),
             diagnostics: Vec::new(),
             margins: None,
@@ -230,6 +243,12 @@ impl<'a> Elaborator<'a> {
         self.cut.iter().any(holds)
     }
 
+    /// Whether an error of some code was found at a place: said once, it need not be looked for again.
+    pub(super) fn is_said(&self, code: &str, place: Span) -> bool {
+        let at = |one: &Diagnostic| one.place.as_ref().is_some_and(|label| label.span == place);
+        self.diagnostics.iter().any(|one| one.code == code && at(one))
+    }
+
     /// Whether an error was found.
     pub(super) fn failed(&self) -> bool {
         self.diagnostics.iter().any(|d| d.severity == Severity::Error)
@@ -240,10 +259,10 @@ impl<'a> Elaborator<'a> {
         self.diagnostics.len() < MOST_LOOKED_FOR
     }
 
-    /// The text of a span.
+    /// The text of a span in one line, without comments.
     pub(super) fn text(&self, span: Span) -> String {
         let text = self.sources.iter().find(|s| s.id == span.source).map_or("", |s| s.slice(span));
-        text.split_whitespace().collect::<Vec<_>>().join(" ")
+        without_comments(text).split_whitespace().collect::<Vec<_>>().join(" ")
     }
 
     /// Expected one thing, found another.
@@ -378,107 +397,8 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    /// A formula node, shared with equal ones.
-    pub(super) fn node(&mut self, node: Node) -> NodeId {
-        NodeId(self.known[0].place(&mut self.tree.nodes, node).0 as u32)
-    }
-
-    /// A numeric node, shared with equal ones.
-    pub(super) fn term(&mut self, term: Term) -> TermId {
-        TermId(self.known[1].place(&mut self.tree.terms, term).0 as u32)
-    }
-
-    /// The formula that reads a truth value of the present state.
-    pub(super) fn atom(&mut self, truth: Bool, span: Span) -> NodeId {
-        if let Bool::Constant(value) = truth {
-            return self.node(Node::Constant(value));
-        }
-        if self.atoms.len() >= MOST_ATOMS {
-            if !self.failed() {
-                let error = Diagnostic::error(
-                    "E0211",
-                    span,
-                    format!("this is written out into more than {MOST_ATOMS} conditions"),
-                )
-                .hint("quantifiers over formulas are written out for every agent; quantify over states where you can");
-                self.note(error);
-            }
-            return self.node(Node::Constant(false));
-        }
-        let (at, new) = self.known[2].place(&mut self.atoms, truth);
-        if new {
-            let text = bare(&self.text(span)).to_owned();
-            self.texts.atoms.push(text);
-        }
-        self.node(Node::Atom(crate::logic::AtomId(at as u32)))
-    }
-
-    /// Whether somebody is there, which nobody wrote: it is named for what it is.
-    pub(super) fn presence(&mut self, id: AgentId, span: Span) -> NodeId {
-        let node = self.atom(Bool::Present(Who::Agent(id)), span);
-        if let (Node::Atom(atom), Some(name)) =
-            (&self.tree.nodes[node.0 as usize], self.agent_names.get(id.0 as usize))
-            && let Some(text) = self.texts.atoms.get_mut(atom.0 as usize)
-        {
-            *text = format!("present({name})");
-            self.texts.implied.insert(atom.0);
-        }
-        node
-    }
-
-    /// A comparison of numbers over time.
-    pub(super) fn comparison(
-        &mut self,
-        (relation, a, b): (Relation, TermId, TermId),
-        text: String,
-        dimension: Dimension,
-    ) -> NodeId {
-        let node = self.node(Node::Compare(relation, a, b));
-        self.texts.comparisons.entry(node.0).or_insert((text, dimension));
-        node
-    }
-
-    /// The term that reads a number of the present state.
-    pub(super) fn signal(&mut self, num: Num, dimension: Dimension, span: Span) -> TermId {
-        if let Num::Constant(value) = num {
-            return self.term(Term::Constant(value));
-        }
-        let (at, new) = self.known[3].place(&mut self.signals, num);
-        if new {
-            let text = bare(&self.text(span)).to_owned();
-            self.texts.signals.push((text, dimension));
-        }
-        self.term(Term::Signal(SignalId(at as u32)))
-    }
-
     /// All agents of the scenario.
     pub(super) fn everyone(&self) -> std::sync::Arc<[AgentId]> {
         (0..self.agent_names.len() as u32).map(AgentId).collect()
-    }
-}
-
-/// A text without parentheses around the whole of it.
-fn bare(text: &str) -> &str {
-    let Some(inner) = text.strip_prefix('(').and_then(|t| t.strip_suffix(')')) else { return text };
-    let mut depth = 0i32;
-    for c in inner.chars() {
-        depth += i32::from(c == '(') - i32::from(c == ')');
-        if depth < 0 {
-            // The first parenthesis closes before the end: `(a) & (b)`.
-            return text;
-        }
-    }
-    bare(inner.trim())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::bare;
-
-    #[test]
-    fn only_parentheses_around_the_whole_go() {
-        assert_eq!(bare("((a > 1 m))"), "a > 1 m");
-        assert_eq!(bare("(a) & (b)"), "(a) & (b)");
-        assert_eq!(bare("f(a)"), "f(a)");
     }
 }

@@ -8,13 +8,15 @@ use crate::syntax::diagnostic::{Diagnostic, Severity};
 use std::collections::BTreeMap;
 
 /// Codes of errors of queries that hang on no value, besides those of names, kinds and units.
-const VALUELESS: [&str; 3] = ["E0603", "E0606", "E0607"];
+const VALUELESS: [&str; 4] = ["E0204", "E0603", "E0606", "E0607"];
 /// Codes of numbers that hang on no other value where they are written as such.
-const WRITTEN: [&str; 6] = ["E0402", "E0405", "E0601", "E0602", "E0604", "E0605"];
+const WRITTEN: [&str; 7] = ["E0402", "E0404", "E0405", "E0601", "E0602", "E0604", "E0605"];
 /// The world in which nothing is set.
 const PLAIN: usize = 0;
 /// Most worlds that an error names, and most words in which it is said.
 const MOST_WORLDS: usize = 3;
+/// Most calls that are shown of an error inside functions.
+const MOST_CALLS: usize = 4;
 
 /// What was found, in the same words.
 struct Finding {
@@ -44,8 +46,14 @@ impl Compiler<'_> {
                             found[same].worlds.push(world);
                         }
                     }
-                    // One thing at a place is enough, in one world.
-                    (None, Some(&last)) if place.is_some() && found[last].worlds.last() == Some(&world) => {}
+                    // One thing at a place is enough, in one world; where it is so in another call, that is shown.
+                    (None, Some(&last)) if place.is_some() && found[last].worlds.last() == Some(&world) => {
+                        let shown = &mut found[last].diagnostic.related;
+                        let more = diagnostic.related.iter().filter(|label| !shown.contains(label)).cloned();
+                        let room = MOST_CALLS.saturating_sub(shown.len());
+                        let more: Vec<_> = more.take(room).collect();
+                        shown.extend(more);
+                    }
                     (None, Some(_)) if place.is_some() && known.len() == MOST_WORLDS => {
                         found[known[MOST_WORLDS - 1]].others += 1;
                     }

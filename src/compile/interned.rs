@@ -12,11 +12,24 @@ pub(super) struct Interned {
 impl Interned {
     /// The place of an item in its list, and whether it is new there: then it has been added.
     pub(super) fn place<T: Hash + PartialEq>(&mut self, list: &mut Vec<T>, item: T) -> (usize, bool) {
+        self.place_said(list, item, "", |_| true)
+    }
+
+    /// The same of items that differ by how they are said, too; `is_said` tells whether that at a place is said so.
+    pub(super) fn place_said<T: Hash + PartialEq>(
+        &mut self,
+        list: &mut Vec<T>,
+        item: T,
+        text: &str,
+        is_said: impl Fn(usize) -> bool,
+    ) -> (usize, bool) {
         // The keys of this hasher are always the same.
         let mut hasher = DefaultHasher::new();
         item.hash(&mut hasher);
+        text.hash(&mut hasher);
         let places = self.places.entry(hasher.finish()).or_default();
-        if let Some(&known) = places.iter().find(|&&place| list.get(place as usize) == Some(&item)) {
+        let same = |place: usize| list.get(place) == Some(&item) && is_said(place);
+        if let Some(&known) = places.iter().find(|&&place| same(place as usize)) {
             return (known as usize, false);
         }
         places.push(list.len() as u32);

@@ -27,7 +27,8 @@ fn distance(a: &[char], b: &[char]) -> usize {
 /// The nearest of the known names, if it is near enough to be meant.
 pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let chars: Vec<char> = name.chars().take(LONGEST).collect();
-    let limit = (chars.len() / 3).max(1);
+    // Of one letter every other one would be near.
+    let limit = if chars.len() == 1 { 0 } else { (chars.len() / 3).max(1) };
     known
         .filter(|candidate| *candidate != name)
         // Each letter more or less is a change.
@@ -56,5 +57,7 @@ mod tests {
         assert_eq!(nearest("veloci", known.into_iter()), Some("velocity"));
         assert_eq!(nearest("veloc", known.into_iter()), None);
         assert_eq!(nearest("EXIT", known.into_iter()), Some("exit"));
+        assert_eq!(nearest("t", ["w", "T"].into_iter()), Some("T"));
+        assert_eq!(nearest("q", ["w", "p"].into_iter()), None);
     }
 }

@@ -132,13 +132,13 @@ impl<'a> Elaborator<'a> {
         self.only(&rest, &["at", "velocity", "route"]);
         let body = kind.and_then(|kind| self.body(&kind, &decl.kind));
         let (Ok(count), Ok(body), Ok(start), Ok(route)) = (count, body, start, route) else {
-            self.define_empty(&decl.name, decl.plural, with);
+            self.define_empty(&decl.name, decl.plural || decl.count.is_some(), with);
             return;
         };
         let Ok(members) = self.people(&decl.name, count, decl.plural, people, |_| {
             (Arc::new(body.clone()), start.clone(), route.clone())
         }) else {
-            self.define_empty(&decl.name, decl.plural, with);
+            self.define_empty(&decl.name, decl.plural || decl.count.is_some(), with);
             return;
         };
         people.written(&members, &rest, decl.name.span);
@@ -231,9 +231,8 @@ impl<'a> Elaborator<'a> {
     }
 
     pub(super) fn define_empty(&mut self, name: &Ident, plural: bool, with: With<'a>) {
-        // What follows can then speak of the name without further errors.
-        let id = AgentId(self.agent_names.len() as u32);
-        self.agent_names.push(name.name.clone());
+        // What follows can then speak of the name without further errors. Numbers of people begin at 0.
+        let id = AgentId(u32::MAX - self.undeclared.len() as u32);
         self.undeclared.insert(id);
         self.attach(with, &[id]);
         let meaning = if plural {
@@ -468,7 +467,7 @@ impl<'a> Elaborator<'a> {
         self.only(&rest, &["route"]);
         let base = kind.and_then(|kind| self.body(&kind, &decl.kind));
         let (Ok(found), Ok(base), Ok(route)) = (found, base, route) else {
-            self.define_empty(&decl.name, decl.plural, with);
+            self.define_empty(&decl.name, decl.plural || decl.count.is_some(), with);
             return;
         };
         let own_speed = decl.body.iter().any(|f| f.name.name == "speed");
@@ -481,7 +480,7 @@ impl<'a> Elaborator<'a> {
             }
             (Arc::new(body), Start { position: Position::Point(found[k].position), velocity }, route.clone())
         }) else {
-            self.define_empty(&decl.name, decl.plural, with);
+            self.define_empty(&decl.name, decl.plural || decl.count.is_some(), with);
             return;
         };
         people.written(&members, &[], recorded.span);

@@ -6,7 +6,7 @@ use super::files::Files;
 use super::measures::{Observed, Sketch};
 use super::number::Number;
 use super::settings::Setting;
-use super::study::{Ask, Column, Estimator, Measure, Query, Study, Target, World};
+use super::study::{Ask, Column, Estimator, Measure, Query, Said, Study, Target, World};
 use super::symbols::ScopeId;
 use crate::base::decimal::Decimal;
 use crate::model::Scenario;
@@ -354,7 +354,8 @@ impl<'a> Compiler<'a> {
             QueryKind::Check { measure, relation, threshold } => {
                 let ask = self.check(site, measure, *relation, threshold, clauses, family, scope);
                 let (ask, unbounded) = ask?;
-                self.push(query.span, text, settings, property_name(measure), ask, unbounded, site);
+                let said = self.sites[site].elaborator.said(measure, Some((*relation, threshold)));
+                self.push(query.span, (text, said), settings, property_name(measure), ask, unbounded, site);
             }
             QueryKind::Estimate(measures) => {
                 let allowance = Allowance { family, claims: families::claims(measures, clauses) };
@@ -387,9 +388,10 @@ impl<'a> Compiler<'a> {
                         _ => format!("estimate {}", elaborator.text(measure.span)),
                     };
                     let ask = Ask::Estimate { measure: measured, estimator };
+                    let said = elaborator.said(measure, None);
                     self.push(
                         query.span,
-                        single,
+                        (single, said),
                         settings.clone(),
                         property_name(measure),
                         ask,
@@ -404,11 +406,13 @@ impl<'a> Compiler<'a> {
             QueryKind::Compare { measure, first, second } => {
                 let sides = [first.as_slice(), second];
                 let (ask, unbounded, one) = self.compare(site, measure, sides, clauses, family, scope)?;
-                self.push(query.span, text, settings, property_name(measure), ask, unbounded, one);
+                let said = self.sites[one].elaborator.said(measure, None);
+                self.push(query.span, (text, said), settings, property_name(measure), ask, unbounded, one);
             }
             QueryKind::Rank { what, agent, measure } => {
                 let (ask, unbounded) = self.rank(site, what, agent, measure, clauses, family, scope)?;
-                self.push(query.span, text, settings, property_name(measure), ask, unbounded, site);
+                let said = self.sites[site].elaborator.said(measure, None);
+                self.push(query.span, (text, said), settings, property_name(measure), ask, unbounded, site);
             }
         }
         Ok(())
@@ -417,7 +421,7 @@ impl<'a> Compiler<'a> {
     fn push(
         &mut self,
         span: Span,
-        text: String,
+        (text, said): (String, Said),
         settings: Vec<(String, String)>,
         name: Option<String>,
         ask: Ask,
@@ -429,7 +433,7 @@ impl<'a> Compiler<'a> {
             unbounded.then(|| format!("the horizon of {}", elaborator.duration(elaborator.horizon.0)));
         let index = self.next_index;
         self.next_index += 1;
-        self.queries.push(Query { index, name, text, span, settings, point: Vec::new(), ask, within });
+        self.queries.push(Query { index, name, text, said, span, settings, point: Vec::new(), ask, within });
     }
 
     fn finish(self) -> (Option<Study>, Vec<Diagnostic>) {

@@ -131,7 +131,8 @@ impl<'a> Elaborator<'a> {
                     return self.wrong_dimension(by.span, first.dimension, step.dimension);
                 }
                 let step = match unit {
-                    Some(unit) if step.dimension.is_none() => {
+                    // A share without its sign is what it is, as a value is.
+                    Some(unit) if step.dimension.is_none() && !unit.dimension.is_none() => {
                         step.times(Number::literal(Decimal::ONE, &unit)).unwrap_or(step)
                     }
                     _ => Number { dimension: first.dimension, ..step },

@@ -126,6 +126,8 @@ pub struct Query {
     pub name: Option<String>,
     /// As written.
     pub text: String,
+    /// What it is about, as one would say it.
+    pub said: Said,
     /// Where.
     pub span: Span,
     /// Parameter values that hold for it alone (sweep, `under`).
@@ -137,6 +139,32 @@ pub struct Query {
     pub ask: Ask,
     /// Set where a formula or metric ranges up to the horizon: the horizon in words.
     pub within: Option<String>,
+}
+
+/// A measure as one would say it.
+#[derive(Clone, Debug, Default)]
+pub struct Said {
+    /// `P(safe)`
+    pub measure: String,
+    /// The event that the check of a quantile is decided by.
+    pub event: Option<Event>,
+}
+
+/// `metric <= bound`, or with `<`.
+#[derive(Clone, Debug)]
+pub struct Event {
+    /// What is compared.
+    pub metric: String,
+    /// `<=` or `<`.
+    pub relation: &'static str,
+    /// With what.
+    pub bound: String,
+}
+
+impl std::fmt::Display for Event {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} {} {}", self.metric, self.relation, self.bound)
+    }
 }
 
 /// What is asked.

@@ -173,6 +173,7 @@ impl<'a> Elaborator<'a> {
             }
         }
         self.check_unused(file);
+        self.check_titles(file);
         self.check_places(&people);
         clock?;
         if self.failed() {
@@ -195,6 +196,21 @@ impl<'a> Elaborator<'a> {
             behaviours,
             sources,
         })
+    }
+
+    /// A scenario has one title.
+    fn check_titles(&mut self, file: &ScenarioFile) {
+        let titles = file.items.iter().filter_map(|item| match item {
+            Item::Title(text) => Some(text.span),
+            _ => None,
+        });
+        let titles: Vec<Span> = titles.collect();
+        if let [first, others @ ..] = titles.as_slice() {
+            for other in others {
+                let error = Diagnostic::error("E0202", *other, "a scenario has one title");
+                self.note(error.related(*first, "first said here").hint("leave one of them out"));
+            }
+        }
     }
 
     /// What nobody uses is checked as well.

@@ -50,13 +50,13 @@ impl Outcomes {
         let fail = |what: String| Err(format!("line {}: {what}", self.lines));
         let cells = cells(line);
         let heads = self.place.is_none();
+        if self.column == Column::Line && cells.len() > 1 {
+            return fail("several columns: choose one with `--column`".to_owned());
+        }
         let place = match (&self.column, self.place) {
             (_, Some(place)) => place,
             (Column::Line, None) => {
                 self.place = Some(0);
-                if cells.len() > 1 {
-                    return fail("several columns: choose one with `--column`".to_owned());
-                }
                 0
             }
             (Column::Number(number), None) => {

@@ -80,6 +80,14 @@ fn transition(scenario: &Scenario, states: &[String], written: &[String], transi
 /// An expression over processes and own parameters.
 fn expression(scenario: &Scenario, num: &Num) -> String {
     let inner = |num: &Num| expression(scenario, num);
+    let side = |num: &Num| match num {
+        Num::Combine(operator, ..) if !matches!(operator, Arithmetic::Min | Arithmetic::Max) => {
+            format!("({})", inner(num))
+        }
+        Num::Apply(Function::Negate, _) => format!("({})", inner(num)),
+        Num::Constant(value) if *value < 0.0 => format!("({})", inner(num)),
+        num => inner(num),
+    };
     match num {
         Num::Constant(value) => number(*value),
         Num::Variable(id) => {
@@ -100,13 +108,9 @@ fn expression(scenario: &Scenario, num: &Num) -> String {
                 Arithmetic::Max => return format!("max({}, {})", inner(a), inner(b)),
                 Arithmetic::Atan2 | Arithmetic::Modulo | Arithmetic::Agree => return "…".to_owned(),
             };
-            let side = |num: &Num| match num {
-                Num::Combine(..) => format!("({})", inner(num)),
-                num => inner(num),
-            };
             format!("{} {sign} {}", side(a), side(b))
         }
-        Num::Apply(Function::Negate, a) => format!("-{}", inner(a)),
+        Num::Apply(Function::Negate, a) => format!("-{}", side(a)),
         _ => "…".to_owned(),
     }
 }

@@ -13,7 +13,7 @@ use std::time::Duration;
 pub fn render(run: &Run) -> String {
     let mut report = Report::new(format!("smc {}", run.scenario));
     report.set_time(seconds(run.elapsed_s));
-    for file in run.results.chunk_by(|a, b| a.file == b.file) {
+    for file in text::by_query(&run.results).chunk_by(|a, b| a.file == b.file) {
         let name = file.first().map_or("", |result| result.file.as_str());
         let mut suite = TestSuite::new(if name.is_empty() { run.scenario.as_str() } else { name });
         for (key, value) in

@@ -18,7 +18,9 @@ fn formats_agree() {
     assert_eq!(lines.len(), 2 * 2 * 4, "two trials, two states, four people");
     let json = place.call(&[&["simulate", "a.scn", "--format", "json"], &words[..]].concat()).json();
     let columns = json["columns"].as_array().unwrap();
-    for (row, line) in json["rows"].as_array().unwrap().iter().zip(&lines) {
+    let table = json["rows"].as_array().unwrap();
+    assert_eq!(table.len(), lines.len());
+    for (row, line) in table.iter().zip(&lines) {
         for (k, column) in columns.iter().enumerate() {
             assert_eq!(row[k], line[column.as_str().unwrap()]);
         }
@@ -274,6 +276,15 @@ estimate P(late) by fixed(trials = 12)
     assert_eq!(json["results"][0]["witnesses"][0]["what"], "none of those it asks about is there");
     let warnings = json["results"][0]["warnings"].to_string();
     assert!(warnings.contains("nobody was there") && !warnings.contains("implications"), "{warnings}");
+}
+
+#[test]
+fn show_keeps_what_a_minus_is_about() {
+    let text = "horizon = 2 s\nstep = 0.1 s\nkind adult: sfm preset helbing2000\n\
+        behaviour wary { state a { speed = -(0.1 m/s - speed) * 0.5 } }\n\
+        agent me: adult with wary { at = (0, 0) }\n";
+    let said = Place::new(&[("a.scn", text)]).call(&["show", "a.scn"]).out;
+    assert!(said.contains("        a: speed = (-(0.1 - speed)) * 0.5\n"), "{said}");
 }
 
 #[test]

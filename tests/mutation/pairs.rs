@@ -102,7 +102,7 @@ fn hangs_on(text: &str, first: &Slip, second: &Slip) -> bool {
 
 #[test]
 fn no_slip_hides_another() {
-    let (mut asked, mut hidden) = (0_u32, Vec::new());
+    let (mut asked, mut hidden, mut more) = (0_u32, Vec::new(), 0_u32);
     for pair in pairs() {
         let slips = slips(&pair);
         for (k, first) in slips.iter().enumerate() {
@@ -116,6 +116,7 @@ fn no_slip_hides_another() {
                 let (texts, places) = with_slips(&pair, &[first, second]);
                 let (sources, found) = errors([&texts[0], &texts[1]], &pair.files);
                 asked += 1;
+                more += u32::from(found.len() > 2);
                 if !places.iter().all(|place| told(&found, place)) {
                     let line = |place: &(usize, Range<usize>)| {
                         let text = &texts[place.0];
@@ -135,5 +136,7 @@ fn no_slip_hides_another() {
             }
         }
     }
+    // Nor do two slips make a third error, but for a few.
+    assert!(more * 50 < asked, "{more} of {asked}");
     assert!(hidden.len() as u32 * 100 < asked, "{} of {asked}\n{}", hidden.len(), hidden.join("\n"));
 }

@@ -10,7 +10,7 @@ use crate::compile::typed::Typed;
 use crate::model::process::wrong_weights;
 use crate::model::{Amount, Bool, Conduct, Law, Mode, Num, Parameter, Transition, Trigger, VariableId};
 use crate::syntax::ast::process::{BehaviourDecl, BehaviourItem, Choice, StateDecl};
-use crate::syntax::ast::{Field, Value};
+use crate::syntax::ast::{Field, LetDecl, Value};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::collections::BTreeSet;
@@ -63,20 +63,35 @@ impl<'a> Elaborator<'a> {
 
     /// Checks the names that the behaviour declares.
     fn check_lets(&mut self, decl: &'a BehaviourDecl, locals: &Locals, variables: usize) -> Lowered<()> {
-        let locals = with_own(locals, variables);
         let mut failed = None;
         for found in lets(decl) {
-            let first = lets(decl).find(|first| first.name.name == found.name.name);
-            let taken = first.is_some_and(|first| first.name.span != found.name.span);
-            let lowered = if found.arguments.is_empty() && !taken {
-                self.lower_inside_behaviour(&found.name.name, found.name.span, &locals)
-            } else {
-                self.look_into(found, &locals);
-                None
-            };
-            failed = lowered.and_then(Lowered::err).or(failed);
+            let before = self.diagnostics.len();
+            let mut lowered = self.check_let(decl, found, &self.with_own(locals, variables));
+            // A condition sees no own parameters: what they hide is sound where it is used by conditions only.
+            if lowered.is_err() {
+                let said = self.diagnostics.split_off(before);
+                lowered = self.check_let(decl, found, locals);
+                if lowered.is_err() {
+                    self.diagnostics.truncate(before);
+                    self.diagnostics.extend(said);
+                }
+            }
+            failed = lowered.err().or(failed);
         }
         failed.map_or(Ok(()), Err)
+    }
+
+    /// One name that the behaviour declares; one that is declared twice is seen by its first declaration.
+    fn check_let(&mut self, decl: &'a BehaviourDecl, found: &'a LetDecl, locals: &Locals) -> Lowered<()> {
+        let first = lets(decl).find(|first| first.name.name == found.name.name);
+        let is_first = first.is_some_and(|first| first.name.span == found.name.span);
+        if found.arguments.is_empty() && is_first {
+            let lowered = self.lower_inside_behaviour(&found.name.name, found.name.span, locals);
+            return lowered.map_or(Ok(()), |lowered| lowered.map(|_| ()));
+        }
+        let before = self.diagnostics.len();
+        self.look_into(found, locals);
+        if self.diagnostics.len() > before { Err(Reported) } else { Ok(()) }
     }
 
     fn mode(
@@ -92,7 +107,7 @@ impl<'a> Elaborator<'a> {
         for field in &state.fields {
             let lowered = match Parameter::of(&field.name.name) {
                 None if field.name.name != "route" => {
-                    self.look_at(&field.value, &with_own(locals, variables));
+                    self.look_at(&field.value, &self.with_own(locals, variables));
                     Err(Reported)
                 }
                 None => self.route(&field.value, locals).map(|route| mode.route = Some(route)),
@@ -142,7 +157,7 @@ impl<'a> Elaborator<'a> {
                 };
             }
         };
-        let typed = self.lower(expr, &with_own(locals, variables))?;
+        let typed = self.lower(expr, &self.with_own(locals, variables))?;
         let (value, found) = self.as_num(typed, span)?;
         if found != dimension {
             return self.wrong_dimension(span, dimension, found);
@@ -193,6 +208,18 @@ impl<'a> Elaborator<'a> {
 }
 
 impl Elaborator<'_> {
+    /// The agent's own parameters, which the arguments and names of the behaviour hide, and names that see them.
+    fn with_own(&self, locals: &Locals, variables: usize) -> Locals {
+        let own = Parameter::ALL.into_iter().enumerate().map(|(k, own)| {
+            let value = Num::Variable(VariableId((variables + k) as u32));
+            (own.name().to_owned(), Some(Arc::new(Typed::Num(value, dimension_of(own)))))
+        });
+        let own = own.filter(|(name, _)| !self.is_inside(name, locals));
+        let names: Vec<_> = own.chain(locals.names.iter().cloned()).collect();
+        let behaviour = locals.behaviour.map(|(at, _)| (at, names.len()));
+        Locals { names, behaviour, ..locals.clone() }
+    }
+
     /// The weight of one of several choices.
     fn weight_of(&mut self, choice: &Choice, locals: &Locals) -> Lowered<Num> {
         let Some(weight) = &choice.weight else { return Ok(Num::Constant(1.0)) };
@@ -209,17 +236,6 @@ impl Elaborator<'_> {
         }
         Ok(num)
     }
-}
-
-/// The agent's own parameters, which the arguments and names of the behaviour hide, and names that see them.
-fn with_own(locals: &Locals, variables: usize) -> Locals {
-    let own = Parameter::ALL.into_iter().enumerate().map(|(k, own)| {
-        let value = Num::Variable(VariableId((variables + k) as u32));
-        (own.name().to_owned(), Some(Arc::new(Typed::Num(value, dimension_of(own)))))
-    });
-    let names: Vec<_> = own.chain(locals.names.iter().cloned()).collect();
-    let behaviour = locals.behaviour.map(|(at, _)| (at, names.len()));
-    Locals { names, behaviour, ..locals.clone() }
 }
 
 /// The dimension of a parameter.

@@ -30,6 +30,8 @@ pub(super) struct With<'a> {
     /// Name of the declaration.
     name: String,
     members: Vec<AgentId>,
+    /// Whether it names a behaviour that nobody knows.
+    strays: bool,
     /// Of a source: how many may come.
     pub(super) most: u32,
 }
@@ -48,6 +50,7 @@ impl<'a> Elaborator<'a> {
     /// Declares a behaviour and checks what needs no arguments: names of states, fields and events.
     pub(super) fn declare_behaviour(&mut self, decl: &'a BehaviourDecl) {
         self.behaviours.push(decl);
+        self.check_arguments(&decl.arguments);
         let mut seen: BTreeMap<&str, &Ident> = BTreeMap::new();
         let names: Vec<&str> = states(decl).map(|state| state.name.name.as_str()).collect();
         for item in &decl.items {
@@ -119,6 +122,7 @@ impl<'a> Elaborator<'a> {
     /// The behaviours that a declaration names after `with`. Errors are noted.
     pub(super) fn with(&mut self, name: &Ident, with: &'a [Expr]) -> With<'a> {
         let mut behaviours: Vec<(BehaviourId, &'a [Expr], &'a Expr)> = Vec::new();
+        let mut strays = false;
         for expr in with {
             let (called, arguments): (&str, &'a [Expr]) = match &expr.kind {
                 ExprKind::Name(called) => (called, &[]),
@@ -142,7 +146,8 @@ impl<'a> Elaborator<'a> {
                         self.behaviours.iter().map(|decl| decl.name.name.as_str()).collect();
                     let error = unknown("behaviour", called, expr.span, "E0201", known.into_iter());
                     self.note(error);
-                    let _ = self.lower_all(arguments, &Locals::of(0));
+                    self.stray.push(arguments);
+                    strays = true;
                     continue;
                 }
             };
@@ -158,12 +163,15 @@ impl<'a> Elaborator<'a> {
             }
             behaviours.push((id, arguments, expr));
         }
-        With { behaviours, name: name.name.clone(), members: Vec::new(), most: 0 }
+        With { behaviours, name: name.name.clone(), members: Vec::new(), strays, most: 0 }
     }
 
     /// Gives behaviours to the members of a declaration.
     pub(super) fn attach(&mut self, mut with: With<'a>, members: &[AgentId]) {
         with.members = members.to_vec();
+        if with.strays {
+            self.strayed.extend(members);
+        }
         for (behaviour, ..) in &with.behaviours {
             self.having.extend(members.iter().map(|member| (*member, *behaviour)));
         }
@@ -195,6 +203,9 @@ impl<'a> Elaborator<'a> {
         };
         let taken = self.diagnostics.iter().any(elsewhere);
         let before = self.diagnostics.len();
+        for arguments in std::mem::take(&mut self.stray) {
+            let _ = self.lower_all(arguments, &Locals::of(0));
+        }
         let withs = std::mem::take(&mut self.withs);
         for with in &withs {
             for &(id, arguments, written) in &with.behaviours {
@@ -263,11 +274,18 @@ impl<'a> Elaborator<'a> {
         locals.behaviour = Some((id.0, locals.names.len() + 1));
         let first = with.members.first().copied().unwrap_or(AgentId(0));
         self.attached_at = (!arguments.is_empty()).then_some(written.span);
+        let having = with.members.is_empty().then(|| self.having.clone());
+        if having.is_some() {
+            self.stand_in();
+        }
         let conduct = self.conduct(decl, &of(&locals, first), variables);
         self.attached_at = None;
         if conduct.is_err() {
             // What is wrong with its conditions is said too.
             let _ = self.conditions(decl, &of(&locals, first));
+        }
+        if let Some(having) = having {
+            self.having = having;
         }
         let conduct = Arc::new(conduct?);
         if failed {
@@ -289,11 +307,16 @@ impl<'a> Elaborator<'a> {
         Ok(out)
     }
 
+    /// Lets the first agent stand in for anybody, who may have any behaviour.
+    pub(super) fn stand_in(&mut self) {
+        self.having.extend((0..self.behaviours.len()).map(|k| (AgentId(0), BehaviourId(k as u32))));
+    }
+
     /// Behaviours that nobody has are checked too; what hangs on their arguments is not.
     fn check_unused_behaviours(&mut self, variables: usize) {
         // Whoever would have one could have the others too.
         let having = self.having.clone();
-        self.having.extend((0..self.behaviours.len()).map(|k| (AgentId(0), BehaviourId(k as u32))));
+        self.stand_in();
         for (k, decl) in self.behaviours.clone().into_iter().enumerate() {
             let id = BehaviourId(k as u32);
             let used = self.withs.iter().any(|with| with.behaviours.iter().any(|(known, ..)| *known == id));

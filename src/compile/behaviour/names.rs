@@ -1,7 +1,7 @@
 //! States of behaviours in expressions: `user.phone == looking`.
 
 use super::{lets, states};
-use crate::compile::elaborator::{Elaborator, Locals, Lowered};
+use crate::compile::elaborator::{Elaborator, Locals, Lowered, Reported};
 use crate::compile::symbols::unknown;
 use crate::compile::typed::Typed;
 use crate::model::{BehaviourId, Bool, Comparison, Field, Num, Who};
@@ -19,6 +19,20 @@ impl<'a> Elaborator<'a> {
         let names = locals.names.get(..seen)?.to_vec();
         let inner = Locals { names, running: locals.running, behaviour: locals.behaviour, ..Locals::of(0) };
         Some((found, inner, format!("{}.{name}", decl.name.name)))
+    }
+
+    /// Whether the process or behaviour around the present place declares a name.
+    pub(in crate::compile) fn is_inside(&self, name: &str, locals: &Locals) -> bool {
+        self.names_inside(locals).iter().any(|inside| inside == name)
+            || self.inside_behaviour(name, locals).is_some()
+    }
+
+    /// Whether what the process or behaviour around the present place declares by a name has no arguments.
+    pub(in crate::compile) fn is_without_arguments(&self, name: &str, locals: &Locals) -> bool {
+        match self.inside_behaviour(name, locals) {
+            Some((decl, ..)) => decl.arguments.is_empty(),
+            None => self.function_inside(name, locals).is_none(),
+        }
     }
 
     /// A name inside a behaviour, if it has it.
@@ -65,6 +79,10 @@ impl<'a> Elaborator<'a> {
         if let Who::Agent(agent) = who
             && !self.has_behaviour(agent, behaviour)
         {
+            // What it was given instead nobody knows.
+            if self.strayed.contains(&agent) {
+                return Err(Reported);
+            }
             let text = format!("`{}` has no behaviour `{}`", self.text(base), member.name);
             let error = Diagnostic::error("E0201", member.span, text)
                 .hint(format!("give it one: `agent … : … with {}`", member.name));
@@ -86,9 +104,11 @@ impl<'a> Elaborator<'a> {
         let (behaviour, who) = match self.lower(left, locals) {
             Ok(Typed::Mode { behaviour, who }) => (behaviour, who),
             Ok(_) => return None,
-            // Whoever has it, its states are known.
+            // Whoever has it, its states are known; but a process may have a variable of that name.
             Err(reported) => {
-                self.state_of(decl, right).ok();
+                if !self.is_of_processes(&member.name) {
+                    let _ = self.state_of(decl, right);
+                }
                 return Some(Err(reported));
             }
         };

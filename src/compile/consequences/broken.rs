@@ -1,6 +1,6 @@
 //! What could not be read, and which errors come of it.
 
-use super::{DIMENSION, UNKNOWN, has_word, leading_word, lines, within, word, words};
+use super::{DIMENSION, UNKNOWN, bare, has_word, leading_word, lines, within, word, words};
 use crate::compile::dimension;
 use crate::compile::queries::Input;
 use crate::compile::told::is_stepped;
@@ -196,7 +196,7 @@ impl<'i> Broken<'i> {
     /// Whether a name may have been declared where it stands in what was skipped.
     fn may_declare(&self, place: Span) -> bool {
         let Some(text) = word(self.sources, place) else { return true };
-        let (name, _) = leading_word(text);
+        let (name, _) = leading_word(bare(text));
         self.any_name
             || self.suspects.contains(name)
             || self.set.contains(name)

@@ -14,7 +14,6 @@ use crate::syntax::source::{Source, SourceId, Span};
 use broken::Broken;
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
-use std::ops::Bound::{Excluded, Included};
 use std::ops::RangeInclusive;
 
 /// Code of what a declaration lacks.
@@ -69,8 +68,11 @@ fn less_what_follows(mut found: Vec<Diagnostic>, sources: &[Source]) -> Vec<Diag
         };
         let of_setting = || word(sources, span).is_some_and(|name| settings.contains(name));
         let misspelt = || {
-            let after = (Excluded((span.source, span.start)), Included((span.source, u32::MAX)));
-            starts.range(after).next().is_some_and(|(_, code)| *code == UNKNOWN_FIELD)
+            let source = sources.iter().find(|source| source.id == span.source);
+            let block = source.and_then(|source| source.text.get(span.end as usize..)).map_or(0, block_end);
+            let within = span.start..=span.end.saturating_add(block as u32);
+            let fields = starts.range((span.source, *within.start())..=(span.source, *within.end()));
+            fields.into_iter().any(|(_, code)| *code == UNKNOWN_FIELD)
         };
         one.severity == Severity::Error
             && (UNKNOWN.contains(&one.code) && (beside() || of_setting())
@@ -181,7 +183,7 @@ fn once_a_name(found: Vec<Diagnostic>, sources: &[Source]) -> Vec<Diagnostic> {
     let mut first: BTreeMap<&str, usize> = BTreeMap::new();
     for one in found {
         let place = one.place.as_ref().filter(|_| UNKNOWN.contains(&one.code)).map(|place| place.span);
-        let name = place.and_then(|span| Some((leading_word(word(sources, span)?).0, span)));
+        let name = place.and_then(|span| Some((leading_word(bare(word(sources, span)?)).0, span)));
         if let Some((name, span)) = name.filter(|(name, _)| !name.is_empty()) {
             match first.entry(name) {
                 Entry::Occupied(before) => {
@@ -205,6 +207,25 @@ fn once_a_name(found: Vec<Diagnostic>, sources: &[Source]) -> Vec<Diagnostic> {
         }
     }
     kept
+}
+
+/// Where the first block of a text ends.
+fn block_end(text: &str) -> usize {
+    let mut depth = 0u32;
+    for (at, c) in text.char_indices() {
+        match c {
+            '{' => depth += 1,
+            '}' if depth <= 1 => return at,
+            '}' => depth -= 1,
+            _ => {}
+        }
+    }
+    text.len()
+}
+
+/// A name in parentheses without them.
+fn bare(text: &str) -> &str {
+    text.trim_start_matches(|c: char| c.is_whitespace() || c == '(')
 }
 
 /// The name at the start of a text, and what follows.

@@ -9,7 +9,7 @@ use super::super::weight::Weight;
 use super::builtin::{DISTRIBUTIONS, FUNCTIONS};
 use super::coordinates;
 use crate::base::math;
-use crate::logic::{Operation, Term};
+use crate::logic::Term;
 use crate::model::{Arithmetic, Axis, Bool, Field, Function, Num, Place, Set, Who};
 use crate::syntax::ast::{Expr, Ident};
 use crate::syntax::diagnostic::Diagnostic;
@@ -23,6 +23,10 @@ impl Elaborator<'_> {
         arguments: &[Expr],
         locals: &Locals,
     ) -> Lowered<Typed> {
+        // `now()` of a name without arguments is the name.
+        if arguments.is_empty() && self.is_named(&function.name, locals) {
+            return self.lower_name(&function.name, function.span, locals);
+        }
         if let Some(decl) = self.function_inside(&function.name, locals) {
             return self.lower_let((0, decl), expr.span, arguments, locals);
         }
@@ -88,6 +92,10 @@ impl Elaborator<'_> {
                 self.of_one(function, argument, locals)
             }
             name => {
+                self.unknowns += 1;
+                if self.is_said("E0203", function.span) {
+                    return Err(Reported);
+                }
                 let mut known: Vec<&str> = FUNCTIONS.into_iter().chain(DISTRIBUTIONS).collect();
                 let declared: Vec<String> = [locals.scope, 0]
                     .iter()
@@ -105,6 +113,15 @@ impl Elaborator<'_> {
                 Err(Reported)
             }
         }
+    }
+
+    /// Whether a name stands for an expression without arguments.
+    fn is_named(&self, name: &str, locals: &Locals) -> bool {
+        if self.is_inside(name, locals) {
+            return self.is_without_arguments(name, locals);
+        }
+        let found = self.find(name, locals.scope);
+        matches!(found, Some((_, Meaning::Let(decl))) if decl.arguments.is_empty())
     }
 
     /// Functions of one agent, set, region or point.
@@ -304,66 +321,6 @@ impl Elaborator<'_> {
         Ok(Typed::Number(Number { value, exact, dimension }))
     }
 
-    fn extremum(
-        &mut self,
-        expr: &Expr,
-        function: &Ident,
-        arguments: &[Expr],
-        locals: &Locals,
-    ) -> Lowered<Typed> {
-        if arguments.len() < 2 {
-            let error = Diagnostic::error(
-                "E0204",
-                expr.span,
-                format!("`{}` joins at least two values", function.name),
-            )
-            .hint(format!(
-                "over a set write `{0}(… for a in crowd)`, over time `{0}<=10 s (…)`",
-                function.name
-            ));
-            return self.report(error);
-        }
-        let smallest = function.name == "min";
-        let places = arguments.iter().map(|argument| argument.span);
-        let values: Vec<_> = self.lower_all(arguments, locals)?.into_iter().zip(places).collect();
-        let over_time = values.iter().any(|(typed, _)| matches!(typed, Typed::Term(..)));
-        let mut joined: Option<(Typed, Dimension)> = None;
-        for (typed, span) in values {
-            let next = if over_time {
-                let (term, dimension) = self.as_term(typed, span)?;
-                (Typed::Term(term, dimension), dimension)
-            } else if let Typed::Number(number) = typed {
-                (Typed::Number(number), number.dimension)
-            } else {
-                let (num, dimension) = self.as_num(typed, span)?;
-                (Typed::Num(num, dimension), dimension)
-            };
-            let Some((so_far, dimension)) = joined else {
-                joined = Some(next);
-                continue;
-            };
-            if dimension != next.1 {
-                return self.wrong_dimension(span, dimension, next.1);
-            }
-            let both = match (so_far, next.0) {
-                (Typed::Term(a, _), Typed::Term(b, _)) => {
-                    let operation = if smallest { Operation::Min } else { Operation::Max };
-                    Typed::Term(self.term(Term::Combine(operation, a, b)), dimension)
-                }
-                (Typed::Number(a), Typed::Number(b)) => {
-                    Typed::Number(if (a.value <= b.value) == smallest { a } else { b })
-                }
-                (a, b) => {
-                    let (a, b) = (self.as_num(a, span)?.0, self.as_num(b, span)?.0);
-                    let op = if smallest { Arithmetic::Min } else { Arithmetic::Max };
-                    Typed::Num(Num::Combine(op, Box::new(a), Box::new(b)), dimension)
-                }
-            };
-            joined = Some((both, dimension));
-        }
-        joined.map(|(typed, _)| typed).ok_or(Reported)
-    }
-
     fn of_two(
         &mut self,
         expr: &Expr,
@@ -447,33 +404,6 @@ impl Elaborator<'_> {
             [one, other] => Bool::Touching(one, other),
             _ => Bool::Contact(agents[0]),
         }))
-    }
-
-    fn choice(
-        &mut self,
-        expr: &Expr,
-        function: &Ident,
-        arguments: &[Expr],
-        locals: &Locals,
-    ) -> Lowered<Typed> {
-        let [condition, yes, no] = arguments else {
-            return self.arity(function, expr.span, "3 arguments", arguments.len());
-        };
-        let truth = self.lower(condition, locals);
-        let truth = truth.and_then(|typed| self.as_truth(typed, condition.span));
-        let sides = (self.lower(yes, locals), self.lower(no, locals));
-        let (truth, sides) = (truth?, (sides.0?, sides.1?));
-        if let (Bool::Constant(holds), Typed::Number(a), Typed::Number(b)) = (&truth, &sides.0, &sides.1)
-            && a.dimension == b.dimension
-        {
-            return Ok(Typed::Number(if *holds { *a } else { *b }));
-        }
-        let sides = (self.as_num(sides.0, yes.span), self.as_num(sides.1, no.span));
-        let ((a, da), (b, db)) = (sides.0?, sides.1?);
-        if da != db {
-            return self.wrong_dimension(no.span, da, db);
-        }
-        Ok(Typed::Num(Num::If(Box::new(truth), Box::new(a), Box::new(b)), da))
     }
 }
 

@@ -8,22 +8,21 @@ use super::super::typed::Typed;
 use crate::model::Num;
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Quantifier, UnaryOp};
 
-/// How deep is looked.
+/// How deep is looked, and at how many parts: names that name others several times could go on and on.
 const DEEPEST: u32 = 32;
-/// How many names are followed: those that name others several times could go on and on.
-const MOST_NAMES: u32 = 32;
+const MOST_PARTS: u32 = 300;
 
 impl Elaborator<'_> {
     /// The dimension of what an expression is meant to be, if no more than its form is needed to tell.
     pub(in crate::compile) fn gist(&self, expr: &Expr, locals: &Locals) -> Option<Dimension> {
-        Gist { elaborator: self, depth: 0, left: MOST_NAMES }.of(expr, locals)
+        Gist { elaborator: self, depth: 0, left: MOST_PARTS }.of(expr, locals)
     }
 }
 
 struct Gist<'e, 'a> {
     elaborator: &'e Elaborator<'a>,
     depth: u32,
-    /// How many more names are followed.
+    /// How many more parts are looked at.
     left: u32,
 }
 
@@ -32,16 +31,11 @@ impl Gist<'_, '_> {
         if self.depth > DEEPEST {
             return None;
         }
+        self.left = self.left.checked_sub(1)?;
         self.depth += 1;
         let found = self.of_kind(&expr.kind, locals);
         self.depth -= 1;
         found
-    }
-
-    /// What a name stands for.
-    fn follow(&mut self, body: &Expr, locals: &Locals) -> Option<Dimension> {
-        self.left = self.left.checked_sub(1)?;
-        self.of(body, locals)
     }
 
     fn of_kind(&mut self, kind: &ExprKind, locals: &Locals) -> Option<Dimension> {
@@ -54,11 +48,7 @@ impl Gist<'_, '_> {
             ExprKind::Call { function, arguments } => self.of_call(&function.name, arguments, locals),
             ExprKind::Unary(UnaryOp::Minus, operand) => self.of(operand, locals),
             ExprKind::Binary(BinaryOp::Plus | BinaryOp::Minus, left, right) => {
-                // Where both are known and differ, just that is what is wrong.
-                match (self.of(left, locals), self.of(right, locals)) {
-                    (Some(a), Some(b)) => (a == b).then_some(a),
-                    (a, b) => a.or(b),
-                }
+                self.joined([&**left, right], locals)
             }
             ExprKind::Binary(BinaryOp::Times, left, right) => {
                 self.of(left, locals)?.times(self.of(right, locals)?)
@@ -77,6 +67,17 @@ impl Gist<'_, '_> {
         }
     }
 
+    /// What all of some expressions are meant to be. Where two are known and differ, just that is what is wrong.
+    fn joined<'x>(
+        &mut self,
+        exprs: impl IntoIterator<Item = &'x Expr>,
+        locals: &Locals,
+    ) -> Option<Dimension> {
+        let mut known = exprs.into_iter().filter_map(|expr| self.of(expr, locals));
+        let first = known.next()?;
+        known.all(|other| other == first).then_some(first)
+    }
+
     fn of_name(&mut self, name: &str, locals: &Locals) -> Option<Dimension> {
         if let Some((_, typed)) = locals.names.iter().rev().find(|(bound, _)| bound == name) {
             return match typed.as_deref()? {
@@ -85,15 +86,15 @@ impl Gist<'_, '_> {
                 _ => None,
             };
         }
-        if locals.process.is_some() || locals.behaviour.is_some() {
+        if self.elaborator.is_inside(name, locals) {
             return None;
         }
         match self.elaborator.find(name, locals.scope) {
             Some((scope, Meaning::Constant(value) | Meaning::Param { value, .. })) => {
-                self.follow(value, &Locals::of(scope))
+                self.of(value, &Locals::of(scope))
             }
             Some((scope, Meaning::Let(decl))) if decl.arguments.is_empty() => {
-                self.follow(&decl.body, &Locals::of(scope))
+                self.of(&decl.body, &Locals::of(scope))
             }
             None if name == "time" => Some(self.elaborator.time_dimension()),
             _ => None,
@@ -101,10 +102,15 @@ impl Gist<'_, '_> {
     }
 
     fn of_call(&mut self, name: &str, arguments: &[Expr], locals: &Locals) -> Option<Dimension> {
-        if locals.process.is_none()
-            && locals.behaviour.is_none()
-            && let Some((scope, Meaning::Let(decl))) = self.elaborator.find(name, locals.scope)
+        if self.elaborator.is_inside(name, locals) {
+            return None;
+        }
+        if let Some((scope, Meaning::Let(decl))) = self.elaborator.find(name, locals.scope)
+            && !decl.arguments.is_empty()
         {
+            if decl.arguments.len() != arguments.len() {
+                return None;
+            }
             let mut inner = Locals::of(scope);
             for (name, argument) in decl.arguments.iter().zip(arguments) {
                 match self.of(argument, locals) {
@@ -112,20 +118,20 @@ impl Gist<'_, '_> {
                     None => inner.bind_unknown(&name.name),
                 }
             }
-            return self.follow(&decl.body, &inner);
+            return self.of(&decl.body, &inner);
         }
-        match name {
-            "distance" | "radius" | "travelled" | "clearance" | "spread" => Some(Dimension::LENGTH),
-            "speed" | "driving_speed" => Some(Dimension::SPEED),
-            "heading" | "atan2" => Some(Dimension::ANGLE),
-            "mass" => Some(Dimension::MASS),
-            "area" => Some(Dimension::AREA),
-            "density" => Some(Dimension::DENSITY),
-            "time_to_collision" => Some(Dimension::TIME),
-            "time_until" => Some(self.elaborator.time_dimension()),
-            "count" | "sin" | "cos" | "exp" | "ln" | "floor" | "ceil" | "round" => Some(Dimension::NONE),
-            "abs" | "min" | "max" => arguments.iter().find_map(|argument| self.of(argument, locals)),
-            "if" => arguments.iter().skip(1).find_map(|argument| self.of(argument, locals)),
+        match (name, arguments.len()) {
+            ("radius" | "travelled" | "clearance" | "spread", 1) | ("distance", 2) => Some(Dimension::LENGTH),
+            ("speed" | "driving_speed", 1) => Some(Dimension::SPEED),
+            ("heading", 1) | ("atan2", 2) => Some(Dimension::ANGLE),
+            ("mass", 1) => Some(Dimension::MASS),
+            ("area", 1) => Some(Dimension::AREA),
+            ("density", 1) => Some(Dimension::DENSITY),
+            ("time_to_collision", 2) => Some(Dimension::TIME),
+            ("time_until", 1) => Some(self.elaborator.time_dimension()),
+            ("count" | "sin" | "cos" | "exp" | "ln" | "floor" | "ceil" | "round", 1) => Some(Dimension::NONE),
+            ("abs", 1) | ("min" | "max", 2..) => self.joined(arguments, locals),
+            ("if", 3) => self.joined(&arguments[1..], locals),
             _ => None,
         }
     }

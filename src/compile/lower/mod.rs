@@ -8,6 +8,7 @@ mod logic;
 mod mention;
 mod name;
 mod quantifier;
+mod select;
 mod tally;
 mod temporal;
 

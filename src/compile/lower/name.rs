@@ -5,7 +5,7 @@ use super::super::symbols::{Meaning, ScopeId, unknown};
 use super::super::typed::Typed;
 use super::super::weight::Weight;
 use crate::model::{Set, Who};
-use crate::syntax::ast::{Expr, LetDecl};
+use crate::syntax::ast::{Expr, Ident, LetDecl};
 use crate::syntax::diagnostic::{Diagnostic, Label};
 use crate::syntax::source::Span;
 
@@ -28,6 +28,9 @@ impl<'a> Elaborator<'a> {
     pub(super) fn lower_name(&mut self, name: &str, span: Span, locals: &Locals) -> Lowered<Typed> {
         if let Some((_, typed)) = locals.names.iter().rev().find(|(bound, _)| bound == name) {
             let typed = typed.as_ref().ok_or(Reported)?;
+            if let Some((_, meant)) = locals.written.iter().rev().find(|(bound, _)| bound == name) {
+                self.aliases.insert(span, *meant);
+            }
             self.count_copy(Weight::of(typed), span)?;
             return Ok((**typed).clone());
         }
@@ -84,6 +87,10 @@ impl<'a> Elaborator<'a> {
                 let inner = Locals { running: locals.running, ..Locals::of(scope) };
                 self.expand_once(scope, name, span, |this| this.lower(&decl.body, &inner))
             }
+            Meaning::Property(_) if !self.temporal => {
+                let text = format!("`{name}` is a property, and a number is needed here");
+                self.report(Diagnostic::error("E0305", span, text))
+            }
             Meaning::Property(formula) => {
                 let inner = Locals { running: locals.running, ..Locals::of(scope) };
                 self.expand_once(scope, name, span, |this| match this.lower(formula, &inner)? {
@@ -122,6 +129,10 @@ impl<'a> Elaborator<'a> {
     }
 
     fn unknown_name(&mut self, name: &str, span: Span, locals: &Locals) -> Lowered<Typed> {
+        self.unknowns += 1;
+        if self.is_said("E0201", span) {
+            return Err(Reported);
+        }
         let mut known: Vec<String> = Vec::new();
         if self.looks_for_names() {
             known.extend(locals.names.iter().map(|(n, _)| n.clone()));
@@ -176,6 +187,7 @@ impl<'a> Elaborator<'a> {
         compute: impl FnOnce(&mut Self) -> Lowered<Typed>,
     ) -> Lowered<Typed> {
         if self.broken.contains(&(scope, name.to_owned())) {
+            self.unknowns += 1;
             return Err(Reported);
         }
         if self.expanding.iter().any(|(s, n)| *s == scope && n == name) {
@@ -227,7 +239,9 @@ impl<'a> Elaborator<'a> {
         if self.function_inside(&decl.name.name, locals).is_some() {
             inner.process = locals.process;
         }
-        let path = decl.name.name.clone();
+        let name = &decl.name.name;
+        let path =
+            inner.process.and_then(|(at, _)| self.inside_path(at, name)).unwrap_or_else(|| name.clone());
         self.lower_function(decl, (inner, path), span, arguments, locals)
     }
 
@@ -248,13 +262,20 @@ impl<'a> Elaborator<'a> {
             return self.arity(&decl.name, span, &wanted, arguments.len());
         }
         let values = self.lower_all(arguments, locals)?;
-        for (name, value) in decl.arguments.iter().zip(values) {
+        for ((name, value), argument) in decl.arguments.iter().zip(values).zip(arguments) {
             inner.bind(&name.name, value);
+            inner.written.push((name.name.clone(), argument.span));
         }
-        let before = self.diagnostics.len();
+        let (before, unknowns) = (self.diagnostics.len(), self.unknowns);
         let value = self.expand(inner.scope, &path, span, |this| this.lower(&decl.body, &inner));
-        if value.is_err() && !inner.names.is_empty() {
-            self.called(before, decl, span, &inner);
+        if value.is_err() {
+            // With an unknown name in it nothing comes of any other call.
+            if self.unknowns > unknowns {
+                self.broken.insert((inner.scope, path));
+            }
+            if !inner.names.is_empty() {
+                self.called(before, decl, span, &inner);
+            }
         }
         value
     }
@@ -265,7 +286,19 @@ impl<'a> Elaborator<'a> {
         for argument in &decl.arguments {
             inner.bind_unknown(&argument.name);
         }
+        self.check_arguments(&decl.arguments);
         let _ = self.lower(&decl.body, &inner);
+    }
+
+    /// That no two arguments of a function or behaviour have one name.
+    pub(in crate::compile) fn check_arguments(&mut self, arguments: &[Ident]) {
+        for (k, argument) in arguments.iter().enumerate() {
+            if let Some(first) = arguments[..k].iter().find(|first| first.name == argument.name) {
+                let text = format!("`{}` is an argument twice", argument.name);
+                let error = Diagnostic::error("E0202", argument.span, text);
+                self.note(error.related(first.span, "first here").hint("rename one of them"));
+            }
+        }
     }
 
     /// Adds to the errors inside a function, which were found since `before`, where and with what it was called.
@@ -292,7 +325,11 @@ impl<'a> Elaborator<'a> {
 
     /// `crowd[3]`; members count from 1.
     pub(super) fn lower_index(&mut self, base: &Expr, index: &Expr, locals: &Locals) -> Lowered<Typed> {
-        let set = match self.lower(base, locals)? {
+        let lowered = self.lower(base, locals);
+        if lowered.is_err() {
+            let _ = self.number(index, locals);
+        }
+        let set = match lowered? {
             Typed::Agents { set, particle: false } => set,
             Typed::Processes(process) => return self.lower_copy(process, base, index, locals),
             Typed::Agents { particle: true, .. } => {

@@ -210,7 +210,11 @@ impl Elaborator<'_> {
             // Over nobody the body is read for anybody: what is wrong in it is reported, and a fold needs its unit.
             let mut inner = locals.clone();
             inner.bind(&variable.name, Typed::Agent(Who::Agent(AgentId(0))));
-            let typed = self.lower(body, &inner)?;
+            let having = self.having.clone();
+            self.stand_in();
+            let typed = self.lower(body, &inner);
+            self.having = having;
+            let typed = typed?;
             if let Quantifier::Fold(aggregate) = quantifier {
                 let (_, dimension) = self.as_term(typed, body.span)?;
                 return Ok(Typed::Term(self.fold_of_nobody(aggregate), dimension));

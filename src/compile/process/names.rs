@@ -60,6 +60,17 @@ impl<'a> Elaborator<'a> {
         process.into_iter().flat_map(|p| p.names.keys().map(|name| (*name).to_owned())).collect()
     }
 
+    /// The path of a name that a process declares.
+    pub(in crate::compile) fn inside_path(&self, at: u32, name: &str) -> Option<String> {
+        let process = self.processes.get(at as usize)?;
+        Some(format!("{}.{name}", process.decl.name.name))
+    }
+
+    /// Whether some process declares a name.
+    pub(in crate::compile) fn is_of_processes(&self, name: &str) -> bool {
+        self.processes.iter().any(|process| process.names.contains_key(name))
+    }
+
     /// A function declared inside the process around the present place.
     pub(in crate::compile) fn function_inside(&self, name: &str, locals: &Locals) -> Option<&'a LetDecl> {
         let (at, _) = locals.process?;
@@ -129,7 +140,10 @@ impl<'a> Elaborator<'a> {
             return Err(Reported);
         }
         let error = unknown("name", &member.name, member.span, "E0201", known.into_iter());
-        self.report(error)
+        self.report(match &error.hint {
+            Some(_) => error,
+            None => error.hint("numbers of agents are functions: `speed(user)`"),
+        })
     }
 
     /// All copies of an array of processes.

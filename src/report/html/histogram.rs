@@ -9,8 +9,9 @@ const WIDTH: f64 = 520.0;
 const HEIGHT: f64 = 120.0;
 const MARGIN: f64 = 10.0;
 
-/// The bars, each with its range and count as a tooltip; empty without bins.
-pub(super) fn bars(histogram: &Histogram, unit: &str) -> String {
+/// The bars, each with its range and count as a tooltip; empty without bins. `endless` is what the values above
+/// all bins are.
+pub(super) fn bars(histogram: &Histogram, unit: &str, endless: &str) -> String {
     let most = histogram.counts.iter().copied().max().unwrap_or(0);
     if most == 0 {
         return String::new();
@@ -51,7 +52,7 @@ pub(super) fn bars(histogram: &Histogram, unit: &str) -> String {
     }
     svg.push_str("</svg>\n");
     if histogram.beyond > 0 {
-        let _ = writeln!(svg, "<p class=\"faint\">{} beyond the horizon</p>", count(histogram.beyond));
+        let _ = writeln!(svg, "<p class=\"faint\">{} {endless}</p>", count(histogram.beyond));
     }
     svg
 }
@@ -63,9 +64,9 @@ mod tests {
     #[test]
     fn one_bar_per_bin() {
         let histogram = Histogram { low: 0.0, high: 2.0, counts: vec![1, 0, 4, 2], beyond: 3 };
-        let svg = bars(&histogram, "m");
+        let svg = bars(&histogram, "m", "infinite");
         assert_eq!(svg.matches("<rect").count(), 4);
-        assert!(svg.contains("<title>1 to 1.5 m: 4</title>") && svg.contains("3 beyond the horizon"));
-        assert_eq!(bars(&Histogram { counts: vec![0, 0], ..histogram }, ""), "");
+        assert!(svg.contains("<title>1 to 1.5 m: 4</title>") && svg.contains("3 infinite"));
+        assert_eq!(bars(&Histogram { counts: vec![0, 0], ..histogram }, "", "infinite"), "");
     }
 }

@@ -4,7 +4,7 @@ mod chart;
 mod histogram;
 
 use super::number::{count, counted, duration};
-use super::{certified, one_line, settings, text};
+use super::{certified, endless, one_line, settings, text};
 use crate::engine::outcome::{Interval, QueryResult, Run, Status, Verdict, Witness};
 use chart::{Mark, Tone};
 use std::fmt::Write as _;
@@ -133,7 +133,7 @@ fn facts(page: &mut String, result: &QueryResult, swept: bool) {
     }
     let _ = writeln!(page, "<p class=\"faint\">{head}{}</p>", escape(&text::trials(result)));
     if let Some(histogram) = result.distribution.as_ref().and_then(|d| d.histogram.as_ref()) {
-        page.push_str(&histogram::bars(histogram, &result.unit));
+        page.push_str(&histogram::bars(histogram, &result.unit, endless(result)));
     }
     for warning in &result.warnings {
         let _ = writeln!(page, "<p class=\"warning\">{head}{}</p>", escape(warning));

@@ -199,7 +199,6 @@ pub(super) fn cause(result: &QueryResult) -> &'static str {
         Stop::Cap => "stopped at the largest number of trials",
         Stop::Deadline => "stopped when time was up",
         Stop::Interrupt => "interrupted",
-        Stop::Error => "stopped by an error",
     }
 }
 

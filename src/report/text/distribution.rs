@@ -2,6 +2,7 @@
 
 use super::block;
 use crate::engine::outcome::{Distribution, Histogram, QueryResult};
+use crate::report::endless;
 use crate::report::number::{brief, count, interval, plain};
 use crate::report::palette::{Paint, Palette};
 
@@ -29,10 +30,7 @@ pub(super) fn write(text: &mut String, result: &QueryResult, found: &Distributio
         let bars = palette.paint(Paint::Neutral, &bars(histogram));
         let mut said = format!("{}{unit} {bars} {}{unit}", brief(histogram.low), brief(histogram.high));
         if histogram.beyond > 0 {
-            // Only a time that does not come lies beyond the horizon; a distance to nobody is infinite.
-            let time = result.censored.is_some() || result.query.contains("time_until");
-            let word = if time { "beyond the horizon" } else { "infinite" };
-            said = format!("{said}, {} {word}", count(histogram.beyond));
+            said = format!("{said}, {} {}", count(histogram.beyond), endless(result));
         }
         if let Some(band) = found.band {
             said = format!("{said}, distribution function to ± {}", plain((band * 1000.0).ceil() / 1000.0));

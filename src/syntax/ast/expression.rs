@@ -155,7 +155,7 @@ pub enum Bound {
 /// When a metric is read.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Moment {
-    /// `at end`: the last state before the horizon.
+    /// `at end`: the state at the horizon.
     End,
     /// `at 5 s`
     Time(Box<Expr>),

@@ -81,7 +81,7 @@ pub enum QueryKind {
     },
     /// `rank moves of user by P(safe)`
     Rank {
-        /// `moves` or `paths`.
+        /// `moves`; compilation refuses any other word.
         what: Ident,
         /// Whose.
         agent: Expr,
@@ -112,7 +112,7 @@ pub struct Measure {
     pub span: Span,
 }
 
-/// Probability, expectation, quantile, robustness.
+/// Probability, expectation, quantile; a robustness is a metric inside of them.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MeasureKind {
     /// `P(φ)`

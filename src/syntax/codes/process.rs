@@ -136,8 +136,8 @@ A state of a behaviour computes a parameter while a trial runs, and its value is
 negative speed, a relaxation time of zero. The error names the trial and the value.\n\
 \n\
 Wrong:\n\
-\x20   state wary { speed = distance(self, user) * 1 /s - 1 m/s }\n\
+\x20   state wary { speed = speed - 1 m/s }\n\
 Right:\n\
-\x20   state wary { speed = max(0 m/s, distance(self, user) * 1 /s - 1 m/s) }",
+\x20   state wary { speed = max(0 m/s, speed - 1 m/s) }",
     },
 ];

@@ -34,7 +34,8 @@ Right:\n\
         title: "no such procedure here",
         text: "\
 Each kind of query has procedures of its own. For a check: sprt, sprt2, plan, eprocess, three_way. For an estimate of\n\
-a probability: okamoto, massart, spending, clopper_pearson, fixed, gbas. Without `by` the default is used.\n\
+a probability: okamoto, massart, spending, clopper_pearson, fixed, gbas, splitting, fixed_effort; of an expectation:\n\
+okamoto, fixed; of a quantile: fixed, dkw. For a ranking: betting, one_challenger, okamoto. Without `by` the default is used.\n\
 \n\
 Wrong:\n\
 \x20   estimate P(safe) by sprt(indifference = 0.01)\n\
@@ -76,6 +77,7 @@ Wrong:\n\
 \x20   agent user: adult { at = (1, 2) }\n\
 \x20   rank moves of user by P(safe)\n\
 Right:\n\
+\x20   agent user: adult { at = (1, 2) }\n\
 \x20   moves user for 2 s { heading from -60 deg to 60 deg by 15 deg  stop }\n\
 \x20   rank moves of user by P(safe)",
     },
@@ -97,7 +99,7 @@ Right:\n\
         text: "\
 Robustness is how far comparisons are from changing. `<`, `<=`, `>`, `>=`, contacts and regions have a margin; `==`,\n\
 `!=` and truth values of processes say only yes or no, and sums and means over time are not compared state by state.\n\
-A formula needs steps, and something with a margin in it.\n\
+A formula needs something with a margin in it.\n\
 \n\
 Wrong:\n\
 \x20   estimate E(robustness(F<=9 steps (die.s == 7))) in -1 .. 1\n\
@@ -112,9 +114,9 @@ The robustness of `a & b` is the smaller of two margins, so that all margins nee
 each, and they become pure numbers.\n\
 \n\
 Wrong:\n\
-\x20   E(robustness(G<=5 s (speed(user) < 2 m/s & clearance(user) > 0.5 m))) in -1 m .. 1 m\n\
+\x20   estimate E(robustness(G<=5 s (speed(user) < 2 m/s & clearance(user) > 0.5 m))) in -1 m .. 1 m\n\
 Right:\n\
-\x20   E(robustness(G<=5 s (speed(user) / 1 m/s < 2 & clearance(user) / 0.5 m > 1))) in -1 .. 1",
+\x20   estimate E(robustness(G<=5 s (speed(user) / 1 m/s < 2 & clearance(user) / 0.5 m > 1))) in -1 .. 1",
     },
     Page {
         code: "W0601",

@@ -76,11 +76,11 @@ Right:\n\
 A block opened with `{`, or a bracket, runs into the next declaration or the end of the file. The other mark shows how far.\n\
 \n\
 Wrong:\n\
-\x20   kind adult: sfm { mass = 75 kg\n\
-\x20   agent user: adult\n\
+\x20   kind adult: sfm preset helbing2000 { mass = 75 kg\n\
+\x20   agent user: adult { at = (1, 2) }\n\
 Right:\n\
-\x20   kind adult: sfm { mass = 75 kg }\n\
-\x20   agent user: adult",
+\x20   kind adult: sfm preset helbing2000 { mass = 75 kg }\n\
+\x20   agent user: adult { at = (1, 2) }",
     },
     Page {
         code: STRAY,
@@ -229,7 +229,7 @@ Wrong:\n\
 \x20   property p = F<=0 s == 3\n\
 Right:\n\
 \x20   property p = F<=#0 s == 3\n\
-\x20   property p = F<=0 (s == 3)",
+\x20   property p = F<=#0 (s == 3)",
     },
     Page {
         code: WEIGHT,
@@ -330,9 +330,9 @@ Right:\n\
 `G<=2 s a => b` reads `(G<=2 s a) => b`. If the implication is to hold at every state, it needs parentheses.\n\
 \n\
 Probably wrong:\n\
-\x20   property p = G<=2 s contact(user) => slow\n\
+\x20   property p = G<=2 s user in exit => slow\n\
 Clear:\n\
-\x20   property p = G<=2 s (contact(user) => slow)",
+\x20   property p = G<=2 s (user in exit => slow)",
     },
     Page {
         code: POWER_OF_QUANTITY,

@@ -104,9 +104,11 @@ A window inside another one keeps the states for which its answer is still open.
 these are many, in each trial.\n\
 \n\
 Wrong:\n\
+\x20   horizon = 3 h\n\
 \x20   step = 1 ms\n\
 \x20   property p = G<=2 h (F<=1 h (queue.n == 0))\n\
 Right:\n\
+\x20   horizon = 3 h\n\
 \x20   step = 1 s\n\
 \x20   property p = G<=2 h (F<=1 h (queue.n == 0))",
     },

@@ -23,7 +23,7 @@ Right:\n\
 Powers of units are small whole numbers. Products and powers of expressions must keep within them.\n\
 \n\
 Wrong:\n\
-\x20   let huge = (1 m) ^ 60 * (1 m) ^ 60\n\
+\x20   let huge = (1 m) ^ 60 * (1 m) ^ 60 * (1 m) ^ 60\n\
 Right:\n\
 \x20   let area = (1 m) ^ 2",
     },

@@ -4,10 +4,12 @@
 //! (`None`) on one that is not there; nothing panics.
 
 use super::grammar::Rule;
+use super::nesting::Brackets;
 use crate::syntax::ast::{Ident, Text};
 use crate::syntax::codes::syntax as code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
+use std::cell::OnceCell;
 
 /// A piece of the text that a rule took.
 pub(in crate::syntax) type Pair<'i> = pest::iterators::Pair<'i, Rule>;
@@ -24,6 +26,8 @@ pub(super) struct Builder<'s> {
     pub(super) cut: Vec<Span>,
     /// Parts that could not be read.
     pub(super) lost: Vec<Span>,
+    /// The brackets of the text, once somebody asked for them.
+    pub(super) brackets: OnceCell<Brackets>,
 }
 
 /// Whether a pair is only a mark or keyword.

@@ -6,6 +6,7 @@
 
 use super::builder::{Builder, Pair, end_of};
 use super::grammar::{Grammar, Rule};
+use super::nesting::Brackets;
 use super::{lexeme, nesting, nouns};
 use crate::syntax::codes::syntax as code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -208,14 +209,13 @@ impl Builder<'_> {
     }
 
     fn closes_nothing(&self, fault: &Fault<'_>) -> bool {
-        let wanted = match fault.found {
-            ")" => '(',
-            "]" => '[',
-            _ => '{',
-        };
+        let within = || nesting::open_bracket(self.text, fault.from, fault.at).map(|(_, open)| open);
         // A block opens before its lines, other brackets within one.
-        let from = if wanted == '{' { 0 } else { fault.from };
-        nesting::open_bracket(self.text, from, fault.at).is_none_or(|(_, open)| open != wanted)
+        match fault.found {
+            ")" => within() != Some('('),
+            "]" => within() != Some('['),
+            _ => self.brackets.get_or_init(|| Brackets::of(self.text)).open_at(fault.at) != Some('{'),
+        }
     }
 
     /// The keyword that was probably meant.
@@ -256,19 +256,56 @@ fn starts_declaration(word: &str) -> bool {
     [Rule::item, Rule::property_item].iter().any(|&rule| nouns::words(rule).contains(&word))
 }
 
+/// Bytes that a strict rule is given at first.
+const FIRST: usize = 1 << 10;
+/// Tokens that a rule may look at behind the place of its failure; few look at more than three.
+const AHEAD: usize = 16;
+
 /// The farthest failure of a rule from a byte on, and what it would have taken there.
 fn failure(strict: Rule, text: &str, from: usize) -> Option<(usize, Vec<Rule>)> {
-    let error = Grammar::parse(strict, &text[from..]).err()?;
+    failure_within(strict, text, from, FIRST)
+}
+
+/// That failure, found in so many bytes or, where it lies near their end, in more: the errors of pest read all that
+/// follows them, and that would be the rest of the file for each of thousands.
+fn failure_within(strict: Rule, text: &str, from: usize, mut length: usize) -> Option<(usize, Vec<Rule>)> {
+    loop {
+        let end = text.floor_char_boundary(from.saturating_add(length));
+        let (at, failure) = match Grammar::parse(strict, &text[from..end]) {
+            Ok(mut taken) => (from + taken.next_back().map_or(0, |pair| pair.as_span().end()), None),
+            Err(error) => {
+                let (at, expected) = place_and_expected(error);
+                (from + at, Some(expected))
+            }
+        };
+        if end == text.len() || after_tokens(text, at, AHEAD) <= end {
+            // Blanks and comments may precede what could not be taken.
+            return failure.map(|expected| (at + lexeme::all_trivia(&text[at..]), expected));
+        }
+        length = length.saturating_mul(4);
+    }
+}
+
+/// Where an error of pest lies, and what could have stood there.
+fn place_and_expected(error: pest::error::Error<Rule>) -> (usize, Vec<Rule>) {
     let at = match error.location {
-        InputLocation::Pos(at) | InputLocation::Span((at, _)) => from + at,
+        InputLocation::Pos(at) | InputLocation::Span((at, _)) => at,
     };
-    // Blanks and comments may precede what could not be taken.
-    let at = at + lexeme::all_trivia(&text[at..]);
     let expected = match error.variant {
         ErrorVariant::ParsingError { positives, .. } => positives,
         ErrorVariant::CustomError { .. } => Vec::new(),
     };
-    Some((at, expected))
+    (at, expected)
+}
+
+/// The byte after so many tokens.
+fn after_tokens(text: &str, from: usize, count: usize) -> usize {
+    let mut at = from;
+    for _ in 0..count {
+        at += lexeme::all_trivia(&text[at..]);
+        at += lexeme::first(&text[at..]).len();
+    }
+    at
 }
 
 /// End of the last token from `from` on and before `end`: comments there are no tokens.
@@ -330,16 +367,54 @@ fn expected_nouns(expected: &[Rule]) -> String {
 
 impl Builder<'_> {
     /// The whole text was refused: only `parse_value` has no rule for what is bad.
-    pub(super) fn refused(&mut self, error: &pest::error::Error<Rule>) {
-        let at = match error.location {
-            InputLocation::Pos(at) | InputLocation::Span((at, _)) => at,
-        };
+    pub(super) fn refused(&mut self, error: pest::error::Error<Rule>) {
+        let (at, expected) = place_and_expected(error);
         let at = at + lexeme::all_trivia(&self.text[at..]);
-        let expected = match &error.variant {
-            ErrorVariant::ParsingError { positives, .. } => positives.clone(),
-            ErrorVariant::CustomError { .. } => Vec::new(),
-        };
         let diagnostic = self.describe(&Fault { at, found: "", expected, from: 0 });
         self.say(diagnostic);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_failure_is_the_same_however_little_of_the_text_is_read_first() {
+        let item = "kind k: sfm { mass = 80 kg; radius = 0.3 /* so */ m }";
+        let mut compared = 0;
+        for (strict, line) in [
+            (Rule::strict_item, item),
+            (Rule::strict_item, "process p[3] { var n: 0 .. 3 = 1 when n < 3 at 2 /s -> { n = n + 1 } }"),
+            (Rule::strict_item, "moves m for 2 s { heading from (1 + 2) deg to 20 deg by 5 deg stop }"),
+            (Rule::strict_item, "let f(x) = count(a in c: a.v > 3 m / (s * s)) + min(x, (1, 2) m) // no\n"),
+            (Rule::strict_field, "goal = wait 3 s in 0 s .. 9 s -> near (a + b) within 2 m then leave }"),
+            (Rule::strict_scene_item, "region r: polygon (1, 2) (3, 4) (5, 6) hole (1, 1) (2, 2) (1, 2) }"),
+            (Rule::strict_property_item, "property p = F[0 s, 3 s] (a.v > 1 m/s => G<=2 s !b) U (c & \"d\")"),
+            (Rule::strict_property_item, "check P(min<=3 s a.v > 2) >= 0.9 confidence 95 % under n = 3 by x"),
+        ] {
+            let tokens = |line: &str| {
+                let (mut at, mut ends) = (0, vec![0]);
+                while at < line.len() {
+                    at = after_tokens(line, at, 1);
+                    ends.push(at);
+                }
+                ends
+            };
+            for end in tokens(line) {
+                for stray in ["", " )", " =", " \"", " 7 7", " x y z", " /*", " ("] {
+                    for rest in ["", &line[end..], &format!("\n{}", format!("{line}\n").repeat(40))] {
+                        let text = format!("\n{}{stray}{rest}", &line[..end]);
+                        let whole = failure_within(strict, &text, 1, text.len());
+                        for first in [1, 7, 30, 100, 1_000] {
+                            let part = failure_within(strict, &text, 1, first);
+                            assert_eq!(part, whole, "{strict:?} {first} {text}");
+                            compared += 1;
+                        }
+                    }
+                }
+            }
+        }
+        assert!(compared > 10_000, "{compared}");
     }
 }

@@ -76,17 +76,30 @@ fn number(text: &str) -> &str {
     &text[..end]
 }
 
-/// A quoted text with its quotes, or up to the end of the line if it is not closed there.
+/// A quoted text with its quotes, or, if it is not closed on its line, that up to the braces, behind a blank, and the
+/// comment at its end. The grammar has the same as `open_text`.
 fn quoted(text: &str) -> &str {
     let mut escaped = false;
+    // Where the blanks and braces start that nothing else has followed yet, and those before a comment.
+    let (mut line_end, mut before_comment) = (None, None);
     for (at, c) in text.char_indices().skip(1) {
         match c {
-            '\n' => return text[..at].trim_end(),
+            '\n' => return &text[..before_comment.or(line_end).unwrap_or(at)],
             '"' if !escaped => return &text[..=at],
             _ => escaped = c == '\\' && !escaped,
         }
+        match c {
+            ' ' | '\t' | '\r' => line_end = line_end.or(Some(at)),
+            '{' | '}' if line_end.is_some() => {}
+            _ => {
+                if text[at..].starts_with("//") {
+                    before_comment = before_comment.or(line_end);
+                }
+                line_end = None;
+            }
+        }
     }
-    text
+    &text[..before_comment.or(line_end).unwrap_or(text.len())]
 }
 
 /// Whether what `first` gave is a quoted text without its closing quote.
@@ -106,4 +119,28 @@ pub(super) fn word_before(text: &str, at: usize) -> Option<(usize, &str)> {
         .rfind(|c: char| !continues_name(c) && c != '.')
         .map_or(0, |before| before + trimmed[before..].chars().next().map_or(1, char::len_utf8));
     (start < trimmed.len()).then(|| (start, &trimmed[start..]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::syntax::parse::grammar::{Grammar, Rule};
+    use pest::Parser;
+
+    #[test]
+    fn the_grammar_takes_as_much_of_a_quoted_text() {
+        let letters = ['"', '\\', ' ', '\r', '{', '}', '/', 'x', '\u{A0}', '\n'];
+        for code in 0..1_000_000_usize {
+            let text: String = (0..6)
+                .scan(code, |rest, _| {
+                    let letter = letters[*rest % letters.len()];
+                    *rest /= letters.len();
+                    Some(letter)
+                })
+                .collect();
+            let text = format!("\"{text}");
+            let taken = Grammar::parse(Rule::junk, &text).unwrap().as_str().len();
+            assert_eq!(first(&text).len(), taken, "{text:?}");
+        }
+    }
 }

@@ -32,6 +32,7 @@ use builder::Builder;
 use grammar::{Grammar, Rule};
 use nesting::Scan;
 use pest::Parser;
+use std::cell::OnceCell;
 use std::collections::BTreeSet;
 
 /// Reads bytes as a source text: UTF-8, not empty, below 4 GiB.
@@ -135,8 +136,15 @@ fn parse<T>(
     rule: Rule,
     build: impl FnOnce(&mut Builder<'_>, builder::Pair<'_>) -> T,
 ) -> (Option<T>, Vec<Diagnostic>) {
-    let mut builder =
-        Builder { source, text, root: rule, diagnostics: Vec::new(), cut: Vec::new(), lost: Vec::new() };
+    let mut builder = Builder {
+        source,
+        text,
+        root: rule,
+        diagnostics: Vec::new(),
+        cut: Vec::new(),
+        lost: Vec::new(),
+        brackets: OnceCell::new(),
+    };
     match nesting::scan(source, text) {
         Scan::Fine => {}
         Scan::TooDeep(diagnostic) => return (None, vec![diagnostic]),
@@ -150,7 +158,7 @@ fn parse<T>(
     let built = match Grammar::parse(rule, text) {
         Ok(mut pairs) => pairs.next().map(|file| build(&mut builder, file)),
         Err(error) => {
-            builder.refused(&error);
+            builder.refused(error);
             None
         }
     };

@@ -57,23 +57,58 @@ pub(super) fn scan(source: &Source, text: &str) -> Scan {
     Scan::Fine
 }
 
+/// The brackets of a text from a byte on, without those in comments and quoted texts.
+fn brackets(text: &str, from: usize) -> impl Iterator<Item = (usize, char)> {
+    let mut at = from;
+    std::iter::from_fn(move || {
+        while at < text.len() {
+            let rest = &text[at..];
+            if let Some(length) = lexeme::trivia(rest) {
+                at += length;
+                continue;
+            }
+            let (start, token) = (at, lexeme::first(rest));
+            at += token.len().max(1);
+            if matches!(token, "(" | "[" | "{" | ")" | "]" | "}") {
+                return token.chars().next().map(|bracket| (start, bracket));
+            }
+        }
+        None
+    })
+}
+
 /// The innermost bracket that is open at `until`, counted from `from`.
 pub(super) fn open_bracket(text: &str, from: usize, until: usize) -> Option<(usize, char)> {
     let mut open = Vec::new();
-    let mut at = from;
-    while at < until {
-        let rest = &text[at..];
-        if let Some(length) = lexeme::trivia(rest) {
-            at += length;
-            continue;
+    for (at, bracket) in brackets(text, from).take_while(|(at, _)| *at < until) {
+        match bracket {
+            '(' | '[' | '{' => open.push((at, bracket)),
+            _ => drop(open.pop()),
         }
-        let token = lexeme::first(rest);
-        match token {
-            "(" | "[" | "{" => open.push((at, token.chars().next()?)),
-            ")" | "]" | "}" => drop(open.pop()),
-            _ => {}
-        }
-        at += token.len().max(1);
     }
     open.pop()
+}
+
+/// Each bracket of a text and the innermost one that is open after it: thousands of brackets that close nothing are
+/// told with one scan.
+pub(super) struct Brackets(Vec<(usize, Option<char>)>);
+
+impl Brackets {
+    pub(super) fn of(text: &str) -> Self {
+        let mut open = Vec::new();
+        let after = brackets(text, 0).map(|(at, bracket)| {
+            match bracket {
+                '(' | '[' | '{' => open.push(bracket),
+                _ => drop(open.pop()),
+            }
+            (at, open.last().copied())
+        });
+        Self(after.collect())
+    }
+
+    /// The innermost bracket that is open at a byte, counted from the start of the text.
+    pub(super) fn open_at(&self, until: usize) -> Option<char> {
+        let before = self.0.partition_point(|(at, _)| *at < until);
+        self.0[..before].last().and_then(|(_, open)| *open)
+    }
 }

@@ -24,6 +24,9 @@ impl Builder<'_> {
 
     /// `let late = F<=2 s (…)` in a scenario, where `F` is a name like any other.
     fn slip_of_time(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
+        if !fault.after_value() || self.root != Rule::scenario_file {
+            return None;
+        }
         let line_start = self.text[..fault.at].rfind('\n').map_or(0, |at| at + 1);
         let line = &self.text[line_start..fault.at];
         let operator = ["<=", "≤", "["].iter().filter_map(|mark| {
@@ -35,9 +38,6 @@ impl Builder<'_> {
             alone.then_some((line_start + start, letter))
         });
         let (at, letter) = operator.max()?;
-        if !fault.after_value() || self.root != Rule::scenario_file {
-            return None;
-        }
         Some(
             Diagnostic::error(
                 code::UNEXPECTED,
@@ -177,13 +177,17 @@ impl Builder<'_> {
     pub(super) fn sets_a_unit(&mut self, setting: &Pair<'_>) -> bool {
         let (start, text) = (setting.as_span().start(), setting.as_str());
         let name = lexeme::first(text);
-        let line = self.text[..start].rfind('\n').map_or(0, |newline| newline + 1);
+        if !quantity::UNITS.contains(&name) {
+            return false;
+        }
         // The number may stand on the line before, where what is set here lost its name.
-        let before = self.text[..start].trim_end();
+        let before = self.text[..start].trim_end().len();
         let number = lexeme::word_before(self.text, start)
             .map(|(_, number)| number)
-            .filter(|number| number.starts_with(|c: char| c.is_ascii_digit()) && before.len() > line);
-        let (Some(number), true) = (number, quantity::UNITS.contains(&name)) else { return false };
+            .filter(|number| number.starts_with(|c: char| c.is_ascii_digit()))
+            .filter(|_| !self.text[before..start].contains('\n'));
+        let Some(number) = number else { return false };
+        let line = self.text[..start].rfind('\n').map_or(0, |newline| newline + 1);
         let equals = start + text.find('=').unwrap_or(0);
         let place = Span::new(self.source.id, equals, equals + 1);
         let error =

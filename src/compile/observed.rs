@@ -1,0 +1,131 @@
+//! What is observed of states: nodes of formulas and terms, atoms and signals, and how each was written.
+
+use super::dimension::Dimension;
+use super::elaborator::Elaborator;
+use crate::logic::{Node, NodeId, Relation, SignalId, Term, TermId};
+use crate::model::{AgentId, Bool, Num, Who};
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+
+/// Through how many functions an argument is followed to where it is written.
+const MOST_ALIASES: u32 = 32;
+/// How many conditions on states it may have.
+const MOST_ATOMS: usize = 5_000;
+
+impl Elaborator<'_> {
+    /// A formula node, shared with equal ones.
+    pub(super) fn node(&mut self, node: Node) -> NodeId {
+        NodeId(self.known[0].place(&mut self.tree.nodes, node).0 as u32)
+    }
+
+    /// A numeric node, shared with equal ones.
+    pub(super) fn term(&mut self, term: Term) -> TermId {
+        TermId(self.known[1].place(&mut self.tree.terms, term).0 as u32)
+    }
+
+    /// The formula that reads a truth value of the present state. Each way in which a query says it counts, so that it is
+    /// told in words of its own.
+    pub(super) fn atom(&mut self, truth: Bool, span: Span) -> NodeId {
+        let text = self.words(span);
+        self.atom_said(truth, span, text)
+    }
+
+    /// The text of a place; of an argument of a function, what it was called with.
+    fn words(&self, mut span: Span) -> String {
+        // An argument may be one of the function around, and so on.
+        for _ in 0..MOST_ALIASES {
+            let Some(meant) = self.aliases.get(&span) else { break };
+            span = *meant;
+        }
+        bare(&self.text(span)).to_owned()
+    }
+
+    fn atom_said(&mut self, truth: Bool, span: Span, text: String) -> NodeId {
+        if let Bool::Constant(value) = truth {
+            return self.node(Node::Constant(value));
+        }
+        if self.atoms.len() >= MOST_ATOMS {
+            if !self.failed() {
+                let error = Diagnostic::error(
+                    "E0211",
+                    span,
+                    format!("this is written out into more than {MOST_ATOMS} conditions"),
+                )
+                .hint("quantifiers over formulas are written out for every agent; quantify over states where you can");
+                self.note(error);
+            }
+            return self.node(Node::Constant(false));
+        }
+        let said = &self.texts.atoms;
+        let (at, new) =
+            self.known[2].place_said(&mut self.atoms, truth, &text, |at| said.get(at) == Some(&text));
+        if new {
+            self.texts.atoms.push(text);
+        }
+        self.node(Node::Atom(crate::logic::AtomId(at as u32)))
+    }
+
+    /// Whether somebody is there, which nobody wrote: it is named for what it is.
+    pub(super) fn presence(&mut self, id: AgentId, span: Span) -> NodeId {
+        let name = self.agent_names.get(id.0 as usize).map_or("", String::as_str);
+        let text = format!("present({name})");
+        let node = self.atom_said(Bool::Present(Who::Agent(id)), span, text);
+        if let Node::Atom(atom) = &self.tree.nodes[node.0 as usize] {
+            self.texts.implied.insert(atom.0);
+        }
+        node
+    }
+
+    /// A comparison of numbers over time.
+    pub(super) fn comparison(
+        &mut self,
+        (relation, a, b): (Relation, TermId, TermId),
+        text: String,
+        dimension: Dimension,
+    ) -> NodeId {
+        let node = self.node(Node::Compare(relation, a, b));
+        self.texts.comparisons.entry(node.0).or_insert((text, dimension));
+        node
+    }
+
+    /// The term that reads a number of the present state.
+    pub(super) fn signal(&mut self, num: Num, dimension: Dimension, span: Span) -> TermId {
+        if let Num::Constant(value) = num {
+            return self.term(Term::Constant(value));
+        }
+        let text = self.words(span);
+        let said = &self.texts.signals;
+        let same = |at: usize| said.get(at).is_some_and(|(known, _)| *known == text);
+        let (at, new) = self.known[3].place_said(&mut self.signals, num, &text, same);
+        if new {
+            self.texts.signals.push((text, dimension));
+        }
+        self.term(Term::Signal(SignalId(at as u32)))
+    }
+}
+
+/// A text without parentheses around the whole of it.
+fn bare(text: &str) -> &str {
+    let Some(inner) = text.strip_prefix('(').and_then(|t| t.strip_suffix(')')) else { return text };
+    let mut depth = 0i32;
+    for c in inner.chars() {
+        depth += i32::from(c == '(') - i32::from(c == ')');
+        if depth < 0 {
+            // The first parenthesis closes before the end: `(a) & (b)`.
+            return text;
+        }
+    }
+    bare(inner.trim())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::bare;
+
+    #[test]
+    fn only_parentheses_around_the_whole_go() {
+        assert_eq!(bare("((a > 1 m))"), "a > 1 m");
+        assert_eq!(bare("(a) & (b)"), "(a) & (b)");
+        assert_eq!(bare("f(a)"), "f(a)");
+    }
+}
