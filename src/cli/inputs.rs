@@ -5,7 +5,7 @@ use super::shelf::Shelf;
 use crate::base::fingerprint::Fingerprint;
 use crate::compile::{Files, Input, Setting, SettingValue, Study, compile, own_errors, requests};
 use crate::engine::outcome::{Finding, Spot};
-use crate::syntax::ast::ScenarioFile;
+use crate::syntax::ast::{Item, PropertyItem, ScenarioFile};
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::parse::{decode, parse_properties, parse_scenario, parse_value};
 use crate::syntax::source::{Source, SourceId, Span};
@@ -175,21 +175,37 @@ fn find(path: &str, scenario: &str, data: &[PathBuf]) -> Result<PathBuf, String>
     ))
 }
 
-/// What is wrong with a file. Where nothing would be if it were read as a file of the other language, that is all there is
-/// to say.
+/// What is wrong with a file. Where it is a file of the other language, that is all there is to say.
 fn misplaced(
     mut diagnostics: Vec<Diagnostic>,
     source: &Source,
-    other: impl Fn(&Source) -> Vec<Diagnostic>,
+    is_other: impl Fn(&Source) -> bool,
     hint: &str,
 ) -> Vec<Diagnostic> {
-    let is_error = |d: &Diagnostic| d.severity == Severity::Error;
     if let Some(first) = diagnostics.iter().position(is_error)
-        && !other(source).iter().any(is_error)
+        && is_other(source)
     {
         return vec![diagnostics.swap_remove(first).hint(hint)];
     }
     diagnostics
+}
+
+fn is_error(diagnostic: &Diagnostic) -> bool {
+    diagnostic.severity == Severity::Error
+}
+
+/// Whether a text is a scenario, with something in it that only scenarios have.
+fn is_scenario(source: &Source) -> bool {
+    let (file, said) = parse_scenario(source);
+    let shared = |item: &Item| matches!(item, Item::Const { .. } | Item::Let(_));
+    !said.iter().any(is_error) && !file.items.iter().all(shared)
+}
+
+/// Whether a text is one of properties, with something in it that only these have.
+fn is_of_properties(source: &Source) -> bool {
+    let (file, said) = parse_properties(source);
+    let shared = |item: &PropertyItem| matches!(item, PropertyItem::Const { .. } | PropertyItem::Let(_));
+    !said.iter().any(is_error) && !file.items.iter().all(shared)
 }
 
 /// Reads, parses and compiles what a call names.
@@ -213,9 +229,8 @@ pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> I
             Some(source) => {
                 let (file, diagnostics) = parse_scenario(&source);
                 scenario = file;
-                let other = |source: &Source| parse_properties(source).1;
                 let hint = "these are properties; the scenario comes first, and properties after it";
-                reader.diagnostics.extend(misplaced(diagnostics, &source, other, hint));
+                reader.diagnostics.extend(misplaced(diagnostics, &source, is_of_properties, hint));
             }
             None => complete = false,
         }
@@ -224,9 +239,8 @@ pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> I
                 Some(source) => {
                     let (file, diagnostics) = parse_properties(&source);
                     parsed.push(file);
-                    let other = |source: &Source| parse_scenario(source).1;
                     let hint = "this is a scenario; it comes first, and properties after it";
-                    reader.diagnostics.extend(misplaced(diagnostics, &source, other, hint));
+                    reader.diagnostics.extend(misplaced(diagnostics, &source, is_scenario, hint));
                 }
                 None => complete = false,
             }

@@ -369,6 +369,10 @@ impl<'a> Elaborator<'a> {
 
     /// One copy of an array of processes.
     fn lower_copy(&mut self, process: u32, base: &Expr, index: &Expr, locals: &Locals) -> Lowered<Typed> {
+        if self.processes.get(process as usize).is_some_and(|process| process.uncounted) {
+            let _ = self.number(index, locals);
+            return Ok(Typed::Process { process, copy: 0 });
+        }
         let count = self.copies(process).count();
         let copy = self.member(base, index, count, locals)? as u32;
         Ok(Typed::Process { process, copy })

@@ -43,6 +43,8 @@ pub(super) struct Declared<'a> {
     decl: &'a ProcessDecl,
     /// Number of copies, of an array.
     pub(super) copies: Option<u32>,
+    /// Whether that number is wrong, so that nobody knows it.
+    pub(super) uncounted: bool,
     /// First variable of the first copy.
     first: u32,
     /// Dimension and domain of each variable of a copy.
@@ -52,7 +54,7 @@ pub(super) struct Declared<'a> {
 
 impl<'a> Declared<'a> {
     pub(super) fn new(decl: &'a ProcessDecl) -> Self {
-        Self { decl, copies: None, first: 0, variables: Vec::new(), names: BTreeMap::new() }
+        Self { decl, copies: None, uncounted: false, first: 0, variables: Vec::new(), names: BTreeMap::new() }
     }
 
     fn variable(&self, copy: u32, place: usize) -> VariableId {
@@ -87,6 +89,7 @@ impl Elaborator<'_> {
         if let Some(count) = &decl.count {
             let number = self.number_of(count, Dimension::NONE, &locals);
             let whole = number.map(Number::as_whole);
+            self.processes[at].uncounted = !matches!(whole, Ok(Some(1..=MOST_COPIES)));
             self.processes[at].copies = Some(match whole {
                 Ok(Some(n @ 1..=MOST_COPIES)) => n as u32,
                 Err(Reported) => 1,

@@ -15,7 +15,13 @@ impl Builder<'_> {
         self.report_faults(&file);
         let items = Parts::of(file)
             .filter(|part| part.as_rule() == Rule::property_item)
-            .filter_map(|part| self.property_item(part.into_inner().next()?))
+            .filter_map(|part| {
+                let part = part.into_inner().next()?;
+                let span = self.span(&part);
+                let declares = matches!(part.as_rule(), Rule::let_decl | Rule::const_decl | Rule::property);
+                let item = self.property_item(part);
+                self.missed(item, declares, span)
+            })
             .collect();
         PropertyFile { items, cut: std::mem::take(&mut self.cut), lost: std::mem::take(&mut self.lost) }
     }

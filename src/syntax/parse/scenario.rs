@@ -3,15 +3,30 @@
 use super::builder::{Builder, Pair, Parts};
 use super::grammar::Rule;
 use crate::syntax::ast::{Item, LetDecl, MoveOption, MovesDecl, ScenarioFile};
+use crate::syntax::source::Span;
 
 impl Builder<'_> {
     pub(super) fn scenario_file(&mut self, file: Pair<'_>) -> ScenarioFile {
         self.report_faults(&file);
         let items = Parts::of(file)
             .filter(|part| part.as_rule() == Rule::item)
-            .filter_map(|part| self.item(part.into_inner().next()?))
+            .filter_map(|part| {
+                let part = part.into_inner().next()?;
+                let (span, said) = (self.span(&part), self.diagnostics.len());
+                let item = self.item(part);
+                let declares = self.diagnostics.len() > said;
+                self.missed(item, declares, span)
+            })
             .collect();
         ScenarioFile { items, cut: std::mem::take(&mut self.cut), lost: std::mem::take(&mut self.lost) }
+    }
+
+    /// An item; where one that declares something could not be made, what it declares is not missed where it is used.
+    pub(super) fn missed<T>(&mut self, item: Option<T>, declares: bool, span: Span) -> Option<T> {
+        if item.is_none() && declares {
+            self.lost.push(span);
+        }
+        item
     }
 
     fn item(&mut self, pair: Pair<'_>) -> Option<Item> {
