@@ -374,7 +374,7 @@ impl Elaborator<'_> {
         };
         match made {
             None => Ok(()),
-            Some(reason @ Invalid::TooLarge { .. }) => {
+            Some(reason @ (Invalid::TooLarge { .. } | Invalid::TooMany { .. })) => {
                 let error = Diagnostic::error("E0509", span, reason.to_string());
                 self.report(error.hint("a longer step, shorter windows, or fewer of them in one another"))
             }

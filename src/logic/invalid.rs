@@ -40,6 +40,16 @@ pub enum Invalid {
         /// Most stored states.
         limit: u64,
     },
+    /// Sums or means up to the horizon, at so many states that all of them, which come at once there, take too long.
+    #[error(
+        "sums of all states up to the horizon, at each state, add {needed} numbers, at most {limit} are possible"
+    )]
+    TooMany {
+        /// Numbers that are added.
+        needed: u64,
+        /// Most of them.
+        limit: u64,
+    },
     /// A horizon that no trial ever reaches.
     #[error("the horizon of {horizon} steps is longer than {limit} steps")]
     TooLong {

@@ -5,7 +5,9 @@ use crate::reference::Prefix;
 use proptest::prelude::*;
 use smc::base::lanes::{LANES, Mask};
 use smc::base::tick::{Clock, Tick};
-use smc::logic::{AtomId, Invalid, Monitor, Node, NodeId, Recording, Tree, explain};
+use smc::logic::{
+    Aggregation, AtomId, Invalid, Monitor, Node, NodeId, Recording, Relation, SignalId, Term, Tree, explain,
+};
 
 fn soon_after(tree: &mut Tree) -> (NodeId, NodeId) {
     let a = tree.node(Node::Atom(AtomId(0)));
@@ -110,6 +112,20 @@ fn deep_and_large_formulas_are_refused_not_run() {
     assert!(matches!(made.err(), Some(Invalid::TooLarge { .. })));
     let made = Monitor::formula(&tree, root, Tick(u64::MAX), Clock::Steps);
     assert!(matches!(made.err(), Some(Invalid::TooLong { .. })));
+
+    // Sums up to the horizon at every state come all at once there; the least of them in one pass.
+    let mut tree = Tree::default();
+    let x = tree.term(Term::Signal(SignalId(0)));
+    let zero = tree.term(Term::Constant(0.0));
+    let mut made = |aggregation, horizon| {
+        let joined = tree.term(Term::Window(aggregation, window(0, None), x));
+        let above = tree.node(Node::Compare(Relation::AtLeast, joined, zero));
+        let root = tree.node(Node::Globally(window(0, None), above));
+        Monitor::formula(&tree, root, Tick(horizon), Clock::Steps).err()
+    };
+    assert_eq!(made(Aggregation::Mean, 20_000), None);
+    assert!(matches!(made(Aggregation::Mean, 400_000), Some(Invalid::TooMany { .. })));
+    assert_eq!(made(Aggregation::Max, 400_000), None);
 }
 
 proptest! {

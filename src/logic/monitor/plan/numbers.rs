@@ -9,6 +9,9 @@ use crate::logic::monitor::cell::{Arithmetic, Machine, Place, Ref};
 use crate::logic::monitor::numbers::combine;
 use crate::logic::monitor::track::Numbers;
 
+/// Most numbers that are added when a trial comes to its horizon: about a second, in which nothing looks at the clock.
+const MOST_ADDED: u64 = 1 << 31;
+
 impl Builder<'_> {
     /// The value of a term that is the same everywhere; its operands have been looked at.
     pub(super) fn constant(&self, id: TermId) -> Option<f64> {
@@ -311,6 +314,11 @@ impl Builder<'_> {
                 half = self.combined_late(arithmetic, half, next, lo, hi);
             }
             return Ok(Made::Of(super::later(half, ahead)));
+        }
+        let (at, states) = (hi.saturating_sub(lo) + 1, self.horizon.saturating_sub(lo) + 1);
+        let needed = at.saturating_mul(states);
+        if smallest.is_none() && below.width.is_none() && needed > MOST_ADDED {
+            return Err(Invalid::TooMany { needed, limit: MOST_ADDED });
         }
         let in_order = self.facts[child.cell].in_order;
         let latency = match below.width {
