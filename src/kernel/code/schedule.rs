@@ -68,27 +68,48 @@ pub(super) fn schedule(graph: &Graph, roots: &[Id]) -> Schedule {
             _ => {}
         }
     }
-    emit(graph, roots, 0, &mut out);
+    emit(graph, roots, 0, &mut Visits::of(graph), &mut out);
     out
 }
 
-/// Appends all values that the roots need and that belong exactly `level` loops deep.
-fn emit(graph: &Graph, roots: &[Id], level: u32, out: &mut Schedule) {
-    let mut needed = vec![false; graph.nodes.len()];
-    for &root in roots {
-        needed[root as usize] = true;
+/// Which nodes were come upon in the present look.
+struct Visits {
+    looks: u32,
+    last: Vec<u32>,
+}
+
+impl Visits {
+    fn of(graph: &Graph) -> Self {
+        Self { looks: 0, last: vec![0; graph.nodes.len()] }
     }
-    for id in (0..graph.nodes.len()).rev() {
-        if needed[id] {
-            for operand in graph.nodes[id].operands() {
-                needed[operand as usize] = true;
+
+    /// The nodes that the roots need and that belong at least `level` loops deep, ascending: what belongs less deep,
+    /// and all that it needs, was computed before. Nothing else is looked at, so that many loops take no longer
+    /// than all they are made of.
+    fn needed(&mut self, graph: &Graph, roots: &[Id], level: u32) -> Vec<Id> {
+        self.looks += 1;
+        let mut found = Vec::new();
+        let mut open = roots.to_vec();
+        while let Some(id) = open.pop() {
+            let is_new = std::mem::replace(&mut self.last[id as usize], self.looks) != self.looks;
+            if is_new && graph.level(id) >= level {
+                found.push(id);
+                open.extend(graph.nodes[id as usize].operands());
             }
         }
+        found.sort_unstable();
+        found
     }
-    for (id, node) in graph.nodes.iter().enumerate() {
-        if !needed[id] || graph.level(id as Id) != level {
+}
+
+/// Appends all values that the roots need and that belong exactly `level` loops deep.
+fn emit(graph: &Graph, roots: &[Id], level: u32, visits: &mut Visits, out: &mut Schedule) {
+    for id in visits.needed(graph, roots, level) {
+        if graph.level(id) != level {
             continue;
         }
+        let id = id as usize;
+        let node = &graph.nodes[id];
         let mut node = node.clone();
         let into = out.registers[id];
         match node {
@@ -113,7 +134,7 @@ fn emit(graph: &Graph, roots: &[Id], level: u32, out: &mut Schedule) {
                     cut: cut(graph, &node).map(|(id, cut)| (out.registers[id as usize], cut)),
                 };
                 out.loops.push(info);
-                emit(graph, &[body], var + 1, out);
+                emit(graph, &[body], var + 1, visits, out);
                 let inside = &out.instructions[start..];
                 out.loops[number].lanewise =
                     inside.iter().all(|one| matches!(one, Instruction::Do(_, node) if node.is_lanewise()));

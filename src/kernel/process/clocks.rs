@@ -27,6 +27,8 @@ pub struct Clocks {
     pub jumps: [u64; LANES],
     /// How many of the last jumps were at the present time.
     pub(super) crowd: [u32; LANES],
+    /// Lanes in which more happened between two steps than is followed.
+    pub jammed: Mask,
     /// Lanes whose clocks have not been set yet.
     pub(super) fresh: Mask,
 }
@@ -54,6 +56,7 @@ impl Clocks {
         self.now[lane] = 0.0;
         self.jumps[lane] = 0;
         self.crowd[lane] = 0;
+        self.jammed &= !Mask::lane(lane);
         self.fresh |= Mask::lane(lane);
     }
 

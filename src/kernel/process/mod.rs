@@ -42,7 +42,7 @@ use table::Table;
 use timed::{Timed, is_timed};
 
 /// Most jumps between two steps; a trial that needs more is unresolved.
-const MOST_BETWEEN: u32 = 1 << 20;
+pub const MOST_BETWEEN: u32 = 1 << 20;
 
 /// One process.
 #[derive(Clone, Debug)]
@@ -308,4 +308,5 @@ fn ring(
         }
     }
     state.diverged |= lanes;
+    state.clocks.jammed |= lanes;
 }

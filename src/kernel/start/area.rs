@@ -2,7 +2,8 @@
 
 use super::arrival::Arrivals;
 use crate::base::geometry::{Bounds, Shape, Vec2};
-use crate::model::{AgentId, Law, Obstacle, Position, Scenario};
+use crate::kernel::nearby::Nearby;
+use crate::model::{AgentId, Barrier, Law, Obstacle, Position, Scenario};
 use std::f64::consts::PI;
 
 /// Discs that are thrown and pushed jam at about this share of an area.
@@ -33,29 +34,32 @@ fn mean_square(law: &Law) -> f64 {
 }
 
 /// The solids that reach into the surroundings of a shape. Walls take no area.
-fn solids<'a>(scenario: &'a Scenario, bounds: &Bounds) -> Vec<&'a Obstacle> {
-    let reaches = |obstacle: &&Obstacle| match obstacle {
-        Obstacle::Wall(_) => false,
-        Obstacle::Solid(shape) => {
-            let other = shape.bounds();
-            other.low.x < bounds.high.x
-                && other.high.x > bounds.low.x
-                && other.low.y < bounds.high.y
-                && other.high.y > bounds.low.y
-        }
+fn solids<'a>(scenario: &'a Scenario, bounds: &Bounds) -> Vec<&'a Shape> {
+    let solid = |barrier: &'a Barrier| match &barrier.obstacle {
+        Obstacle::Wall(_) => None,
+        Obstacle::Solid(shape) => Some(shape),
     };
-    scenario.scene.barriers.iter().map(|barrier| &barrier.obstacle).filter(reaches).collect()
+    let reaches = |shape: &&Shape| {
+        let other = shape.bounds();
+        other.low.x < bounds.high.x
+            && other.high.x > bounds.low.x
+            && other.low.y < bounds.high.y
+            && other.high.y > bounds.low.y
+    };
+    scenario.scene.barriers.iter().filter_map(solid).filter(reaches).collect()
 }
 
 /// Area of what lies within `reach` of the shape and in none of the solids, by a grid over `bounds`.
-fn free_area(shape: &Shape, reach: f64, bounds: &Bounds, solids: &[&Obstacle]) -> f64 {
+fn free_area(shape: &Shape, reach: f64, bounds: &Bounds, solids: &[&Shape]) -> f64 {
+    let nearby = Nearby::new(&solids.iter().map(|solid| solid.bounds()).collect::<Vec<_>>());
     let cell = (bounds.high - bounds.low) / f64::from(GRID);
     let mut count = 0u32;
     for row in 0..GRID {
         for column in 0..GRID {
             let place = Vec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5);
             let p = bounds.low + place.component_mul(&cell);
-            let free = || solids.iter().all(|solid| solid.distance(p) >= 0.0);
+            let outside = |solid: &u32| solids[*solid as usize].distance(p) >= 0.0;
+            let free = || nearby.within(p, 0.0).iter().all(outside);
             count += u32::from(shape.distance(p) <= reach && free());
         }
     }
@@ -87,8 +91,9 @@ pub fn check_area(scenario: &Scenario) -> Vec<Crowding> {
         let (around, bounds) = (Vec2::new(reach, reach), shape.bounds());
         let bounds = Bounds { low: bounds.low - around, high: bounds.high + around };
         let solids = solids(scenario, &bounds);
-        // The grid is needed only where it may be tight.
-        if solids.is_empty() && bodies <= JAMMED * shape.area() {
+        // The grid is needed only where it may be tight: no more is taken than all solids together have.
+        let taken: f64 = solids.iter().map(|solid| solid.area()).sum();
+        if bodies <= JAMMED * (shape.area() - taken) {
             continue;
         }
         let free = free_area(shape, reach, &bounds, &solids);

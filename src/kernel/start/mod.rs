@@ -67,6 +67,12 @@ pub enum Fault {
         /// Whom.
         agent: AgentId,
     },
+    /// By chance somebody is pushed farther from another than they may start, with a wall on the way back.
+    #[error("agent {} starts too far from another", agent.0)]
+    Far {
+        /// Whom.
+        agent: AgentId,
+    },
     /// Two are placed at one point.
     #[error("agents {} and {} are placed at one point", agents.0.0, agents.1.0)]
     Together {

@@ -213,6 +213,10 @@ pub(super) fn place(
     }
     if counts.pushed > 0 {
         relaxation::relax(&mut crowd, &rooms, ground);
+        let is_left = |body: &usize| rooms[*body].is_left(&crowd, crowd.positions[*body]);
+        if let Some(body) = (0..rooms.len()).find(is_left) {
+            return Err(Fault::Far { agent: AgentId(body as u32) });
+        }
     }
     shrink(&mut crowd, ground, &done, &mut counts)?;
     Ok(Placed { positions: crowd.positions, radii: crowd.radii, counts })

@@ -12,9 +12,6 @@ const SWEEPS: u32 = 300;
 /// How far apart pushed bodies come to rest, m: far above rounding, far below what anyone sees.
 const CLEARANCE: f64 = 1e-6;
 
-/// What rounding may do to a distance, as a part of it.
-const ROUNDING: f64 = 1e-12;
-
 /// Share of an overlap that one body gives way, if the other can move too.
 const SHARE: f64 = 0.6;
 
@@ -30,10 +27,10 @@ pub(super) enum Room<'a> {
 }
 
 impl Room<'_> {
-    /// Whether a place is farther from another body than it may be, by more than rounding.
-    fn is_left(self, crowd: &Crowd, p: Vec2) -> bool {
+    /// Whether a place is farther from another body than it may be, by more than anyone sees.
+    pub(super) fn is_left(self, crowd: &Crowd, p: Vec2) -> bool {
         match self {
-            Self::Near { anchor, within } => (p - crowd.positions[anchor]).norm() > within * (1.0 + ROUNDING),
+            Self::Near { anchor, within } => (p - crowd.positions[anchor]).norm() > within + CLEARANCE,
             Self::Fixed | Self::Within(_) => false,
         }
     }
@@ -51,7 +48,7 @@ impl Room<'_> {
     }
 }
 
-/// Moves bodies until none overlap, or for a fixed number of sweeps. Bodies without overlap stay.
+/// Moves bodies until none overlap and each is where it may be, or for a fixed number of sweeps. Others stay.
 pub(super) fn relax(crowd: &mut Crowd, rooms: &[Room<'_>], ground: Ground<'_>) {
     for sweep in 0..SWEEPS {
         let mut moved = false;
