@@ -144,6 +144,45 @@ fn a_witness_names_the_moment_and_the_condition_of_its_margin() {
     }
 }
 
+#[test]
+fn outside_of_its_range_a_margin_is_shown_as_it_is() {
+    let formula = "robustness(G<=3 s (distance(user, crowd[1]) > 2 m))";
+    let of = |range: &str| {
+        let properties = format!(
+            "check E({formula}) in {range} >= 0.02 m\n\
+             check P({formula} >= 0.1 m) >= 0.5\n\
+             rank moves of user by E({formula}) in {range} within 0.1 m\n"
+        );
+        results(&properties, &["--max-trials", "200"])
+    };
+    let (narrow, wide) = (of("-0.2 m .. 0.1 m"), of("-9 m .. 9 m"));
+    assert!(narrow[0]["clipped"].as_f64().unwrap() > 0.0 && wide[0]["clipped"] == 0.0, "{}", narrow[0]);
+    let fails = |found: &[Value]| {
+        let witnesses = found[0]["witnesses"].as_array().unwrap();
+        let first = witnesses.iter().find(|one| one["shows"] == "fails").unwrap();
+        (first["trial"].clone(), first["value"].clone(), first["time"].clone(), first["what"].clone())
+    };
+    assert_eq!(fails(&narrow).0, fails(&wide).0);
+    assert_eq!(fails(&narrow), fails(&wide));
+    // A probability has no unit, the margin has.
+    let what = narrow[1]["witnesses"][0]["what"].as_str().unwrap();
+    assert!(what.starts_with("margin ") && what.contains(" m, of `"), "{what}");
+    // Which option is lowest nobody knows where trials ended at the range.
+    assert!(narrow[2]["witnesses"].as_array().unwrap().is_empty(), "{}", narrow[2]);
+    assert_eq!(wide[2]["witnesses"].as_array().unwrap().len(), 2);
+}
+
+#[test]
+fn each_level_of_a_quantile_is_certified_by_its_own_name() {
+    let found =
+        results("estimate Q(0.25, 0.75, time_until(travelled(user) > 1 m)) by fixed(trials = 96)\n", &[]);
+    for (result, level) in found.iter().zip(["0.25", "0.75"]) {
+        let certifies = result["certifies"].as_str().unwrap();
+        let name = format!("Q({level}, time_until(travelled(user) > 1 m)) ");
+        assert!(certifies.starts_with(&name), "{certifies}");
+    }
+}
+
 /// Whether a point is in a region is a distance of zero; its margin is the depth, and so it is within a quantifier.
 #[test]
 fn points_of_all_have_the_depth_in_a_region_as_their_margin() {

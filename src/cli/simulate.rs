@@ -109,6 +109,13 @@ impl<'p> Walk<'p> {
                 }
                 continue;
             }
+            let later = clock.is_jumps() && self.state.clocks.now[0] > clock.seconds(Tick(self.last));
+            if later && !self.state.faulty.is_empty() {
+                // Wrong after what is asked for.
+                self.running = false;
+                self.trial += 1;
+                continue;
+            }
             if let Some(fault) = self.state.faults[0].filter(|_| !self.state.faulty.is_empty()) {
                 let what = fault.describe(&self.program.scenario);
                 self.is_wrong = true;
@@ -128,9 +135,9 @@ impl<'p> Walk<'p> {
                 if !self.state.diverged.is_empty() {
                     let time = self.program.scenario.clock.seconds(Tick(tick));
                     self.notes.push(format!(
-                        "trial {} diverged at {time} s: {}; a smaller step may help",
+                        "trial {} diverged at {time} s: {}",
                         self.trial,
-                        crate::engine::runaway(&self.program.scenario, &self.state)
+                        crate::engine::divergence(self.program, &self.state)
                     ));
                 }
                 self.running = false;

@@ -178,9 +178,7 @@ impl Answers<'_> {
                 );
             }
         }
-        // Of a robustness outside its range no more is known than that: trials ended there.
-        let column = subject.columns[measure.target.column];
-        let cut = inquiry.tally.clipped > 0 && matches!(column, Root::Robustness(_, Sought::Clipped(..)));
+        let cut = was_cut(subject, measure.target.column, &inquiry.tally);
         let known = counts.unresolved < counts.trials && !cut;
         result.distribution = inquiry.procedure.distribution().filter(|_| known);
         Self::tell(&mut result, subject, &inquiry.tally, measure.target.column);
@@ -393,9 +391,11 @@ impl Answers<'_> {
             result.interval =
                 format!("{}, all options jointly", words::interval(Coverage::TimeUniform, *delta));
             let arm = podium.choice.arm;
+            let tally = &podium.tallies[arm];
             let picks = match measure.kind {
-                MeasureKind::Probability => witness::sides(&podium.tallies[arm]),
-                _ => witness::extremes(&podium.tallies[arm]),
+                MeasureKind::Probability => witness::sides(tally),
+                _ if was_cut(subject, field.column, tally) => Vec::new(),
+                _ => witness::extremes(tally),
             };
             result.witnesses = self.witnesses(&result, subject, field.column, Some((*moves, arm)), &picks);
         }
@@ -403,6 +403,11 @@ impl Answers<'_> {
         result.elapsed_s = self.budget.elapsed() - started;
         Ok(result)
     }
+}
+
+/// Whether trials ended where a robustness left its range: of those no more is known than that.
+fn was_cut(subject: &Subject, column: usize, tally: &Tally) -> bool {
+    tally.clipped > 0 && matches!(subject.columns[column], Root::Robustness(_, Sought::Clipped(..)))
 }
 
 /// What a number can be: between 0 and 1, or in the declared range.

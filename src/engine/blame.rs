@@ -1,16 +1,16 @@
 //! What decided a trial: the atom, comparison or number, and the agents in it.
 
 use super::budget::Budget;
-use super::instance::{instantiate_bool, instantiate_num};
+use super::culprits::{NAMED, Search};
 use super::subject::Subject;
 use super::words;
 use crate::base::tick::{Clock, Tick};
-use crate::kernel::{Code, Readings, State};
+use crate::kernel::{Readings, State};
 use crate::logic::{
     AtomId, Node, NodeId, Reason, Recording, SignalId, Source, Term, TermId, critical, explain, sides,
     sources,
 };
-use crate::model::{AgentId, Bool, Num, Scenario, Set, VariableId, Who};
+use crate::model::{AgentId, Bool, Scenario, VariableId, Who};
 use std::collections::BTreeSet;
 
 /// Most truth values and numbers that are kept of a trial.
@@ -45,11 +45,6 @@ impl Record {
         self.full
     }
 }
-
-/// How many agents are named at most.
-const NAMED: usize = 3;
-/// How many are asked about at once.
-const AT_ONCE: usize = 4096;
 
 impl Record {
     /// Calls `look` with the record in the form that `logic` reads.
@@ -120,13 +115,16 @@ pub(super) fn number(
                 (Some(reason.to), format!("{text}, when {closing}"))
             }
             [Source::Signal { at, .. }] => {
-                let from = origin(subject, &found[0], false, &state_at);
+                let from = origin(subject, &found[0], false, (&state_at, recording.stop));
                 (Some(*at), format!("{text}, {from}"))
             }
             [] => (None, text),
             several => {
-                let list: Vec<String> =
-                    several.iter().take(NAMED).map(|s| origin(subject, s, true, &state_at)).collect();
+                let list: Vec<String> = several
+                    .iter()
+                    .take(NAMED)
+                    .map(|s| origin(subject, s, true, (&state_at, recording.stop)))
+                    .collect();
                 (None, format!("{text}: {}", list.join(" and ")))
             }
         }
@@ -145,25 +143,25 @@ pub(super) fn margin(
         let Some(found) = critical(&subject.tree, root, recording) else {
             return (None, value.map_or(String::new(), |value| words::brief(value, unit)));
         };
-        let shown = words::brief(value.unwrap_or(found.margin), unit);
-        let mut said = format!("margin {shown}");
-        if let Some((text, _)) =
-            subject.texts.comparisons.get(&found.leaf.0).filter(|(text, _)| !text.is_empty())
-        {
+        // All conditions have the unit of the margin, which a probability of it has not.
+        let condition = subject.texts.comparisons.get(&found.leaf.0);
+        let own = condition.map_or(String::new(), |(_, dimension)| dimension.to_string());
+        let unit = if unit.is_empty() { own.as_str() } else { unit };
+        let mut said = format!("margin {}", words::brief(value.unwrap_or(found.margin), unit));
+        if let Some((text, _)) = condition.filter(|(text, _)| !text.is_empty()) {
             said = format!("{said}, of `{text}`");
         }
         if let (Some(state), Node::Compare(_, x, y)) =
             (state_at(found.at), &subject.tree.nodes[found.leaf.0 as usize])
         {
-            let mut search = Search { subject, state: &state, found: Vec::new() };
+            let mut search = Search::of(subject, &state, recording.stop);
             for side in [x, y] {
                 if let Term::Signal(signal) = &subject.tree.terms[side.0 as usize] {
                     search.extremum(&subject.signals()[signal.0 as usize]);
                 }
             }
-            search.found.truncate(NAMED);
-            let found = search.found;
-            said.push_str(&names(subject, &found, Some(&state)));
+            let named = search.named();
+            said.push_str(&names(subject, &named, Some(&state)));
         }
         (Some(found.at), said)
     })
@@ -174,7 +172,7 @@ fn origin(
     subject: &Subject,
     source: &Source,
     full: bool,
-    state_at: &impl Fn(Tick) -> Option<State>,
+    (state_at, stop): (&impl Fn(Tick) -> Option<State>, &dyn Fn() -> bool),
 ) -> String {
     let Source::Signal { signal, at, value } = source else { return String::new() };
     let Some((text, dimension)) = subject.texts.signals.get(signal.0 as usize) else { return String::new() };
@@ -184,12 +182,11 @@ fn origin(
         format!("`{text}`")
     };
     if let Some(state) = state_at(*at) {
-        let mut search = Search { subject, state: &state, found: Vec::new() };
+        let mut search = Search::of(subject, &state, stop);
         let signal = &subject.signals()[signal.0 as usize];
         search.extremum(signal);
         search.name_members(text, |tell| signal.mentions(tell));
-        let found = search.found;
-        said.push_str(&names(subject, &found, Some(&state)));
+        said.push_str(&names(subject, &search.named(), Some(&state)));
     }
     said
 }
@@ -228,16 +225,16 @@ fn closing(
         }
         Node::Atom(atom) => {
             let Some(text) = subject.texts.atoms.get(atom.0 as usize) else { return String::new() };
-            let blamed =
-                |state: &State| blamed(subject, &subject.atoms()[atom.0 as usize], text, reason.value, state);
+            let condition = &subject.atoms()[atom.0 as usize];
+            let stop = recording.stop;
+            let blamed = |state: &State| blamed((subject, stop), condition, text, reason.value, state);
             let state = state_at(reason.to);
             let who = state.as_ref().map_or_else(Vec::new, blamed);
             let named = names(subject, &who, state.as_ref());
             if !named.is_empty() {
                 return format!("`{text}` {word}{named}");
             }
-            let of =
-                |state: &State| copies(subject, &subject.atoms()[atom.0 as usize], text, reason.value, state);
+            let of = |state: &State| copies((subject, stop), condition, text, reason.value, state);
             let copies = state.as_ref().map_or_else(Vec::new, of);
             let colon = if copies.is_empty() { "" } else { ": " };
             format!("`{text}` {word}{colon}{}", copies.join(", "))
@@ -246,8 +243,8 @@ fn closing(
             let Some((text, _)) = subject.texts.comparisons.get(&reason.leaf.0) else { return String::new() };
             let found = sides(&subject.tree, reason.leaf, reason.to, recording);
             let signals = found.iter().filter(|source| matches!(source, Source::Signal { .. }));
-            let list: Vec<String> =
-                signals.take(NAMED).map(|source| origin(subject, source, true, state_at)).collect();
+            let told = |source: &Source| origin(subject, source, true, (state_at, recording.stop));
+            let list: Vec<String> = signals.take(NAMED).map(told).collect();
             let because = if list.is_empty() { String::new() } else { format!(": {}", list.join(" and ")) };
             format!("`{text}` {word}{because}")
         }
@@ -256,18 +253,29 @@ fn closing(
 }
 
 /// The agents that make an atom true or false in a state.
-fn blamed(subject: &Subject, atom: &Bool, text: &str, truth: bool, state: &State) -> Vec<AgentId> {
-    let mut search = Search { subject, state, found: Vec::new() };
+fn blamed(
+    (subject, stop): (&Subject, &dyn Fn() -> bool),
+    atom: &Bool,
+    text: &str,
+    truth: bool,
+    state: &State,
+) -> Vec<AgentId> {
+    let mut search = Search::of(subject, state, stop);
     search.walk(atom, truth);
     search.name_members(text, |tell| atom.mentions(tell));
-    search.found.truncate(NAMED);
-    search.found
+    search.named()
 }
 
 /// The copies of processes that make an atom true or false in a state, where they are spoken of by a name that they
 /// share, as `a` in `forall a in sensor`.
-fn copies(subject: &Subject, atom: &Bool, text: &str, truth: bool, state: &State) -> Vec<String> {
-    let search = Search { subject, state, found: Vec::new() };
+fn copies(
+    (subject, stop): (&Subject, &dyn Fn() -> bool),
+    atom: &Bool,
+    text: &str,
+    truth: bool,
+    state: &State,
+) -> Vec<String> {
+    let search = Search::of(subject, state, stop);
     let (mut part, mut truth, mut narrowed) = (atom, truth, false);
     loop {
         part = match part {
@@ -295,172 +303,4 @@ fn copies(subject: &Subject, atom: &Bool, text: &str, truth: bool, state: &State
     found.dedup();
     // What depends on many of them is about none of them.
     if found.len() > 2 { Vec::new() } else { found }
-}
-
-struct Search<'s> {
-    subject: &'s Subject,
-    state: &'s State,
-    found: Vec<AgentId>,
-}
-
-impl Search<'_> {
-    fn holds(&self, atom: &Bool) -> bool {
-        self.which(std::slice::from_ref(atom)).first().is_some_and(|holds| *holds)
-    }
-
-    /// Which of some conditions hold: asked at once, so that who is near whom is sought once.
-    fn which(&self, atoms: &[Bool]) -> Vec<bool> {
-        let scenario: &Scenario = &self.subject.program.scenario;
-        let code = Code::compile(scenario, atoms, &[]);
-        let mut readings = Readings::default();
-        code.run(&self.subject.program, self.state, &mut readings);
-        readings.atoms.iter().map(|mask| mask.has(0)).collect()
-    }
-
-    /// The members of a list of whom a condition has a truth value, the first few, with what it is of each.
-    fn those(&self, members: &[AgentId], truth: bool, of: impl Fn(AgentId) -> Bool) -> Vec<(AgentId, Bool)> {
-        let mut found = Vec::new();
-        for some in members.chunks(AT_ONCE) {
-            let conditions: Vec<Bool> = some.iter().map(|id| of(*id)).collect();
-            let which = self.which(&conditions);
-            let all = some.iter().zip(conditions).zip(which);
-            found.extend(all.filter(|(_, holds)| *holds == truth).map(|((id, one), _)| (*id, one)));
-            if found.len() >= NAMED {
-                break;
-            }
-        }
-        found
-    }
-
-    fn name(&mut self, id: AgentId) {
-        if !self.found.contains(&id) {
-            self.found.push(id);
-        }
-    }
-
-    /// Names the members of sets that are spoken of by a name that they share, as `a` in `forall a in crowd`: those
-    /// whose own names do not stand in the text.
-    fn name_members(&mut self, text: &str, mentions: impl FnOnce(&mut dyn FnMut(AgentId))) {
-        let subject = self.subject;
-        let agents = &subject.program.scenario.agents;
-        mentions(&mut |id| {
-            let hidden = |name: &str| name.ends_with(']') && !text.contains(name);
-            if self.found.len() < NAMED && agents.get(id.0 as usize).is_some_and(|a| hidden(&a.name)) {
-                self.name(id);
-            }
-        });
-    }
-
-    /// Those of a set who are there: nobody else counts.
-    fn members(&self, set: &Set) -> Vec<AgentId> {
-        let out = match set.except {
-            Some(Who::Agent(id)) => Some(id),
-            _ => None,
-        };
-        let there = |id: AgentId| {
-            let slot = self.state.slot(id.0 as usize, 0);
-            self.state.present[slot.block].has(slot.lane)
-        };
-        set.members.iter().copied().filter(|id| Some(*id) != out && there(*id)).collect()
-    }
-
-    fn walk(&mut self, atom: &Bool, truth: bool) {
-        match atom {
-            Bool::Constant(_) => {}
-            Bool::Not(inner) => self.walk(inner, !truth),
-            Bool::And(list) | Bool::Or(list) => {
-                for part in list {
-                    if self.holds(part) == truth {
-                        self.walk(part, truth);
-                        // A false conjunct, or a true disjunct, is enough.
-                        if matches!(atom, Bool::And(_)) != truth {
-                            break;
-                        }
-                    }
-                }
-            }
-            Bool::Iff(a, b) => {
-                let first = self.holds(a);
-                self.walk(a, first);
-                self.walk(b, first == truth);
-            }
-            Bool::Forall(set, body) | Bool::Exists(set, body) => {
-                if matches!(atom, Bool::Forall(..)) == truth {
-                    return;
-                }
-                let members = self.members(set);
-                for (id, one) in self.those(&members, truth, |id| instantiate_bool(body, 0, id)) {
-                    self.name(id);
-                    self.walk(&one, truth);
-                    if self.found.len() >= NAMED {
-                        return;
-                    }
-                }
-            }
-            Bool::Compare(_, a, b) => {
-                self.extremum(a);
-                self.extremum(b);
-            }
-            Bool::In(Who::Agent(id), _) | Bool::Present(Who::Agent(id)) => self.name(*id),
-            Bool::Contact(Who::Agent(id)) => {
-                let id = *id;
-                self.name(id);
-                if truth {
-                    let all = (0..self.subject.program.scenario.agents.len() as u32).map(AgentId);
-                    let others: Vec<AgentId> = all.filter(|other| *other != id).collect();
-                    let touches = |other| Bool::Touching(Who::Agent(id), Who::Agent(other));
-                    for (other, _) in self.those(&others, true, touches) {
-                        self.name(other);
-                    }
-                }
-            }
-            Bool::Touching(Who::Agent(a), Who::Agent(b)) => {
-                self.name(*a);
-                self.name(*b);
-            }
-            Bool::In(..) | Bool::Present(_) | Bool::Contact(_) | Bool::Touching(..) => {}
-        }
-    }
-
-    /// The member with the smallest or largest value of a fold names itself.
-    fn extremum(&mut self, num: &Num) {
-        match num {
-            Num::Combine(_, a, b) => {
-                self.extremum(a);
-                self.extremum(b);
-            }
-            // The margin of who may not be there yet stands in a condition.
-            Num::Apply(_, a) | Num::If(_, a, _) => self.extremum(a),
-            // Those who were counted.
-            Num::Count(set, body) if !matches!(**body, Bool::Constant(_)) => {
-                let members = self.members(set);
-                for (id, _) in self.those(&members, true, |id| instantiate_bool(body, 0, id)) {
-                    if self.found.len() < NAMED {
-                        self.name(id);
-                    }
-                }
-            }
-            _ => {}
-        }
-        let Num::Fold(fold, set, body) = num else { return };
-        let smallest = match fold {
-            crate::model::Fold::Min => true,
-            crate::model::Fold::Max => false,
-            crate::model::Fold::Sum | crate::model::Fold::Mean => return,
-        };
-        let members = self.members(set);
-        let values: Vec<Num> = members.iter().map(|id| instantiate_num(body, 0, *id)).collect();
-        let code = Code::compile(&self.subject.program.scenario, &[], &values);
-        let mut readings = Readings::default();
-        code.run(&self.subject.program, self.state, &mut readings);
-        let value = |k: &usize| readings.signals[*k].0[0];
-        let best = (0..members.len()).min_by(|a, b| {
-            // What is not a number comes last, whatever sign the platform gives it.
-            let (one, other) = if smallest { (value(a), value(b)) } else { (value(b), value(a)) };
-            value(a).is_nan().cmp(&value(b).is_nan()).then(one.total_cmp(&other))
-        });
-        if let Some(best) = best {
-            self.name(members[best]);
-        }
-    }
 }

@@ -8,13 +8,11 @@ use super::words;
 use crate::base::lanes::Mask;
 use crate::base::random::TrialKey;
 use crate::base::tick::Tick;
-use crate::kernel::process::Sight;
-use crate::kernel::{Code, Readings, Scratch, State, dynamics, start};
+use crate::kernel::process::{self, Sight};
+use crate::kernel::{Code, Program, Readings, Scratch, State, dynamics, start};
 use crate::logic::Needs;
 use crate::model::{Scenario, TOP_SPEED};
 
-/// Most jumps that are made again to see why a trial is unresolved.
-const JUMPS_AGAIN: u64 = 1 << 24;
 /// Jumps between looks at the clock.
 const JUMPS_BETWEEN_LOOKS: u64 = 1 << 12;
 
@@ -54,7 +52,7 @@ pub(super) fn unresolved(
             return format!("{reason} (at {time})");
         }
         if !state.diverged.is_empty() {
-            return format!("it diverged at {time}: {}; a smaller step may help", runaway(scenario, &state));
+            return format!("it diverged at {time}: {}", divergence(program, &state));
         }
         code.run(program, &state, &mut readings);
         // As for a worker: only where something is looked at in this state that has no value.
@@ -77,8 +75,20 @@ pub(super) fn unresolved(
     }
 }
 
+/// Why a trial diverged, and what helps: somebody left every human speed, or a process jumps without end within a step.
+pub fn divergence(program: &Program, state: &State) -> String {
+    if state.clocks.jammed.has(0) {
+        let most = words::number(f64::from(process::MOST_BETWEEN));
+        let busiest = busiest(program, state);
+        return format!(
+            "more than {most} jumps between two steps{busiest}; lower rates or longer delays help"
+        );
+    }
+    format!("{}; a smaller step may help", runaway(&program.scenario, state))
+}
+
 /// Who left every human speed, with the speed.
-pub fn runaway(scenario: &Scenario, state: &State) -> String {
+fn runaway(scenario: &Scenario, state: &State) -> String {
     let speed = |agent: usize| {
         let slot = state.slot(agent, 0);
         let (vx, vy) = (state.vx[slot.block].0[slot.lane], state.vy[slot.block].0[slot.lane]);
@@ -121,6 +131,9 @@ pub fn no_start(scenario: &Scenario, fault: start::Fault) -> String {
         ),
         start::Fault::Nowhere { agent } => {
             format!("{} finds no place; give more room to start in", name(agent))
+        }
+        start::Fault::Far { agent } => {
+            format!("{} finds no place as near as it is to start; give more room to start in", name(agent))
         }
         start::Fault::Inside { agent } => format!(
             "{} finds no place but in an obstacle or on a wall; give more room to start in",
@@ -173,7 +186,7 @@ fn in_continuous_time(
     let view = subject.view(&[column]);
     let Ok(mut monitor) = Onlooker::of(subject, column) else { return String::new() };
     let mut sight = Sight::default();
-    let enough = subject.most_jumps.min(JUMPS_AGAIN);
+    let enough = subject.most_jumps.min(subject.jumps_again);
     while state.clocks.jumps[0] < enough {
         if state.clocks.jumps[0].is_multiple_of(JUMPS_BETWEEN_LOOKS) && budget.is_late() {
             return String::new();
@@ -197,19 +210,24 @@ fn in_continuous_time(
             _ => String::new(),
         };
     }
-    if enough < subject.most_jumps {
-        return format!("what it is was not found in its first {enough} jumps");
-    }
     let time = words::quantity(state.clocks.now[0], "s");
-    let busiest = subject.program.processes.busiest(state, 0).and_then(|(process, rate)| {
-        let name = &subject.program.scenario.processes.list.get(process as usize)?.name;
+    let busiest = busiest(&subject.program, state);
+    let said = if enough < subject.most_jumps {
+        "what it is was not found in the part that was run again"
+    } else {
+        "it jumps more often than can be followed"
+    };
+    format!("{said}: {enough} jumps by {time}{busiest}; a shorter horizon or lower rates help")
+}
+
+/// `, most of them of ‹process›, now at a rate of …`, or nothing where no process jumps by itself.
+fn busiest(program: &Program, state: &State) -> String {
+    let found = program.processes.busiest(state, 0).and_then(|(process, rate)| {
+        let name = &program.scenario.processes.list.get(process as usize)?.name;
         let rate = if rate > 0.0 { format!(", now at a rate of {rate} /s") } else { String::new() };
         Some(format!(", most of them of `{name}`{rate}"))
     });
-    format!(
-        "it jumps more often than can be followed: {enough} times by {time}{}; a shorter horizon or lower rates help",
-        busiest.unwrap_or_default()
-    )
+    found.unwrap_or_default()
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ pub mod budget;
 mod cause;
 pub mod cell;
 mod contrast;
+mod culprits;
 pub mod executor;
 mod fault;
 pub mod finding;
@@ -38,7 +39,7 @@ mod words;
 mod worker;
 
 pub use budget::Budget;
-pub use cause::{no_start, runaway};
+pub use cause::{divergence, no_start};
 pub use executor::{Executor, Threads};
 pub use fault::Fault;
 pub use flaw::Flaw;

@@ -13,8 +13,9 @@ use crate::logic::{
 use crate::model::{Bool, Num};
 use std::collections::BTreeSet;
 
-/// Most jumps of a trial.
+/// Most jumps of a trial, and most that are made again to see why one is unresolved.
 const MOST_JUMPS: u64 = 1 << 26;
+const JUMPS_AGAIN: u64 = 1 << 24;
 
 /// A world made ready to run.
 pub struct Subject {
@@ -34,6 +35,8 @@ pub struct Subject {
     pub origins: Origins,
     /// Most jumps of a trial in continuous time; one that needs more is unresolved.
     pub most_jumps: u64,
+    /// Most jumps that are made again to see why a trial is unresolved.
+    pub(super) jumps_again: u64,
     atoms: Vec<Bool>,
     signals: Vec<Num>,
 }
@@ -96,6 +99,7 @@ impl Subject {
             texts: world.texts.clone(),
             origins: world.origins.clone(),
             most_jumps: MOST_JUMPS,
+            jumps_again: JUMPS_AGAIN,
             atoms: world.atoms.clone(),
             signals: world.signals.clone(),
         }

@@ -13,7 +13,7 @@ use super::tally::Tally;
 use crate::base::lanes::Mask;
 use crate::base::random::TrialKey;
 use crate::base::tick::{Clock, Tick};
-use crate::compile::study::Root;
+use crate::compile::study::{Root, Sought};
 use crate::kernel::{Readings, Scratch, State, dynamics, start};
 
 /// The trials that show why a measure of truth values came out as it did.
@@ -70,6 +70,10 @@ fn witness(
     }
     let code = subject.code(&[column]);
     let mut observer = subject.observer(column).ok()?;
+    // Where a robustness leaves its range a trial ends; here it is shown what it is.
+    if let Observer::Robustness(_, sought @ Sought::Clipped(..)) = &mut observer {
+        *sought = Sought::Value;
+    }
     let mut state = State::new(program.layout, program.scenario.agents.len());
     let mut scratch = Scratch::new();
     let mut readings = Readings::default();

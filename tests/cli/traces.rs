@@ -278,6 +278,40 @@ estimate P(late) by fixed(trials = 12)
     assert!(warnings.contains("nobody was there") && !warnings.contains("implications"), "{warnings}");
 }
 
+/// The rate is wrong at 5 s.
+const LATE: &str = "scenario \"late\"\nhorizon = 20 s\n\
+process q { var n: 0 .. 9 = 0  var z: real = 1  when n < 9 after 5 s -> n = n + 1 }\n\
+process r { var x: 0 .. 1 = 0  when x == 0 & q.n == 1 at -1 /s * q.z -> x = 1 }\n";
+
+#[test]
+fn what_is_wrong_later_than_is_asked_for_is_not_told() {
+    let place =
+        Place::new(&[("a.scn", LATE), ("a.bltl", "estimate P(F<=2 s (q.n == 1)) by fixed(trials = 3)\n")]);
+    assert_eq!(place.call(&["check", "a.scn", "a.bltl", "-q"]).code, Some(0));
+    let before = place.call(&["simulate", "a.scn", "--until", "2"]);
+    assert_eq!((before.code, before.err.as_str()), (Some(0), ""), "{}", before.out);
+    let after = place.call(&["simulate", "a.scn", "--until", "6"]);
+    assert_eq!(after.code, Some(2));
+    assert!(after.err.contains("ends in an error of the model"), "{}", after.err);
+}
+
+#[test]
+fn jumps_without_end_between_two_steps_are_told_by_their_process() {
+    let model = "scenario \"fast\"\nhorizon = 1 s\nstep = 0.1 s\n\
+process blinker { var on = true  when on at 1e9 /s -> on = false  when !on at 1e9 /s -> on = true }\n\
+process slow { var n: 0 .. 5 = 0  when n < 5 at 1 /s -> n = n + 1 }\n";
+    let place = Place::new(&[
+        ("a.scn", model),
+        ("a.bltl", "estimate P(F<=0.5 s (slow.n == 1)) by fixed(trials = 1)\n"),
+    ]);
+    let said = place.call(&["simulate", "a.scn"]).err;
+    for part in ["diverged at 0.1 s: more than 1048576 jumps between two steps", "most of them of `blinker`"]
+    {
+        assert!(said.contains(part), "{said}");
+    }
+    assert!(!said.contains("somebody"), "{said}");
+}
+
 #[test]
 fn show_keeps_what_a_minus_is_about() {
     let text = "horizon = 2 s\nstep = 0.1 s\nkind adult: sfm preset helbing2000\n\

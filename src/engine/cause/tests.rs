@@ -46,8 +46,16 @@ fn a_trial_of_too_many_jumps_is_unresolved_and_the_process_is_named() {
     }
     let item = Item { index: 0, advice: None };
     let words = unresolved(&subject, 0, item, (7, &Budget::new(u64::MAX, None)));
-    assert!(words.contains("500 times by 0.") && words.contains("most of them of `blinker["), "{words}");
+    assert!(
+        words.contains("can be followed: 500 jumps by 0.") && words.contains("most of them of `blinker["),
+        "{words}"
+    );
     assert!(words.contains("at a rate of 1500 /s"), "{words}");
+    // Not so many are made again.
+    (subject.most_jumps, subject.jumps_again) = (900, 400);
+    let words = unresolved(&subject, 0, item, (7, &Budget::new(u64::MAX, None)));
+    assert!(words.contains("run again: 400 jumps by 0.") && words.contains("of `blinker["), "{words}");
+    subject.jumps_again = 1 << 20;
     // Enough jumps: nobody is to blame.
     subject.most_jumps = 100_000;
     assert_eq!(unresolved(&subject, 0, item, (7, &Budget::new(u64::MAX, None))), "");

@@ -316,7 +316,8 @@ impl Builder<'_> {
             return Ok(Made::Of(super::later(half, ahead)));
         }
         let (at, states) = (hi.saturating_sub(lo) + 1, self.horizon.saturating_sub(lo) + 1);
-        let needed = at.saturating_mul(states);
+        // The windows shrink from state to state.
+        let needed = at.saturating_mul(states.saturating_mul(2).saturating_sub(at.saturating_sub(1))) / 2;
         if smallest.is_none() && below.width.is_none() && needed > MOST_ADDED {
             return Err(Invalid::TooMany { needed, limit: MOST_ADDED });
         }

@@ -1,0 +1,213 @@
+//! Who made a condition true or false, or gave a number its value, in one state.
+
+use super::instance::{instantiate_bool, instantiate_num};
+use super::subject::Subject;
+use crate::kernel::{Code, Readings, State};
+use crate::model::{AgentId, Bool, Num, Scenario, Set, Who};
+
+/// How many agents are named at most.
+pub(super) const NAMED: usize = 3;
+/// How many are asked about at once, first and at most.
+const FIRST: usize = 64;
+const AT_ONCE: usize = 4096;
+
+/// Looks for them in a state.
+pub(super) struct Search<'s> {
+    subject: &'s Subject,
+    state: &'s State,
+    /// Whether the time is over.
+    stop: &'s dyn Fn() -> bool,
+    found: Vec<AgentId>,
+}
+
+impl<'s> Search<'s> {
+    /// Nobody found yet.
+    pub(super) fn of(subject: &'s Subject, state: &'s State, stop: &'s dyn Fn() -> bool) -> Self {
+        Self { subject, state, stop, found: Vec::new() }
+    }
+
+    /// The first few who were found.
+    pub(super) fn named(mut self) -> Vec<AgentId> {
+        self.found.truncate(NAMED);
+        self.found
+    }
+
+    /// Whether a condition of this state holds.
+    pub(super) fn holds(&self, atom: &Bool) -> bool {
+        self.which(std::slice::from_ref(atom)).first().is_some_and(|holds| *holds)
+    }
+
+    /// Which of some conditions hold: asked at once, so that who is near whom is sought once.
+    fn which(&self, atoms: &[Bool]) -> Vec<bool> {
+        let scenario: &Scenario = &self.subject.program.scenario;
+        let code = Code::compile(scenario, atoms, &[]);
+        let mut readings = Readings::default();
+        code.run(&self.subject.program, self.state, &mut readings);
+        readings.atoms.iter().map(|mask| mask.has(0)).collect()
+    }
+
+    /// The members of a list of whom a condition has a truth value, the first few, with what it is of each.
+    fn those(&self, members: &[AgentId], truth: bool, of: impl Fn(AgentId) -> Bool) -> Vec<(AgentId, Bool)> {
+        let mut found = Vec::new();
+        for some in in_chunks(members) {
+            let conditions: Vec<Bool> = some.iter().map(|id| of(*id)).collect();
+            let which = self.which(&conditions);
+            let all = some.iter().zip(conditions).zip(which);
+            found.extend(all.filter(|(_, holds)| *holds == truth).map(|((id, one), _)| (*id, one)));
+            if found.len() >= NAMED || (self.stop)() {
+                break;
+            }
+        }
+        found
+    }
+
+    fn name(&mut self, id: AgentId) {
+        if !self.found.contains(&id) {
+            self.found.push(id);
+        }
+    }
+
+    /// Names the members of sets that are spoken of by a name that they share, as `a` in `forall a in crowd`: those
+    /// whose own names do not stand in the text.
+    pub(super) fn name_members(&mut self, text: &str, mentions: impl FnOnce(&mut dyn FnMut(AgentId))) {
+        let subject = self.subject;
+        let agents = &subject.program.scenario.agents;
+        mentions(&mut |id| {
+            let hidden = |name: &str| name.ends_with(']') && !text.contains(name);
+            if self.found.len() < NAMED && agents.get(id.0 as usize).is_some_and(|a| hidden(&a.name)) {
+                self.name(id);
+            }
+        });
+    }
+
+    /// Those of a set who are there: nobody else counts.
+    fn members(&self, set: &Set) -> Vec<AgentId> {
+        let out = match set.except {
+            Some(Who::Agent(id)) => Some(id),
+            _ => None,
+        };
+        let there = |id: AgentId| {
+            let slot = self.state.slot(id.0 as usize, 0);
+            self.state.present[slot.block].has(slot.lane)
+        };
+        set.members.iter().copied().filter(|id| Some(*id) != out && there(*id)).collect()
+    }
+
+    /// The agents that make a condition true or false.
+    pub(super) fn walk(&mut self, atom: &Bool, truth: bool) {
+        match atom {
+            Bool::Constant(_) => {}
+            Bool::Not(inner) => self.walk(inner, !truth),
+            Bool::And(list) | Bool::Or(list) => {
+                for part in list {
+                    if self.holds(part) == truth {
+                        self.walk(part, truth);
+                        // A false conjunct, or a true disjunct, is enough.
+                        if matches!(atom, Bool::And(_)) != truth {
+                            break;
+                        }
+                    }
+                }
+            }
+            Bool::Iff(a, b) => {
+                let first = self.holds(a);
+                self.walk(a, first);
+                self.walk(b, first == truth);
+            }
+            Bool::Forall(set, body) | Bool::Exists(set, body) => {
+                if matches!(atom, Bool::Forall(..)) == truth {
+                    return;
+                }
+                let members = self.members(set);
+                for (id, one) in self.those(&members, truth, |id| instantiate_bool(body, 0, id)) {
+                    self.name(id);
+                    self.walk(&one, truth);
+                    if self.found.len() >= NAMED {
+                        return;
+                    }
+                }
+            }
+            Bool::Compare(_, a, b) => {
+                self.extremum(a);
+                self.extremum(b);
+            }
+            Bool::In(Who::Agent(id), _) | Bool::Present(Who::Agent(id)) => self.name(*id),
+            Bool::Contact(Who::Agent(id)) => {
+                let id = *id;
+                self.name(id);
+                if truth {
+                    let all = (0..self.subject.program.scenario.agents.len() as u32).map(AgentId);
+                    let others: Vec<AgentId> = all.filter(|other| *other != id).collect();
+                    let touches = |other| Bool::Touching(Who::Agent(id), Who::Agent(other));
+                    for (other, _) in self.those(&others, true, touches) {
+                        self.name(other);
+                    }
+                }
+            }
+            Bool::Touching(Who::Agent(a), Who::Agent(b)) => {
+                self.name(*a);
+                self.name(*b);
+            }
+            Bool::In(..) | Bool::Present(_) | Bool::Contact(_) | Bool::Touching(..) => {}
+        }
+    }
+
+    /// The member with the smallest or largest value of a fold names itself.
+    pub(super) fn extremum(&mut self, num: &Num) {
+        match num {
+            Num::Combine(_, a, b) => {
+                self.extremum(a);
+                self.extremum(b);
+            }
+            // The margin of who may not be there yet stands in a condition.
+            Num::Apply(_, a) | Num::If(_, a, _) => self.extremum(a),
+            // Those who were counted.
+            Num::Count(set, body) if !matches!(**body, Bool::Constant(_)) => {
+                let members = self.members(set);
+                for (id, _) in self.those(&members, true, |id| instantiate_bool(body, 0, id)) {
+                    if self.found.len() < NAMED {
+                        self.name(id);
+                    }
+                }
+            }
+            _ => {}
+        }
+        let Num::Fold(fold, set, body) = num else { return };
+        let smallest = match fold {
+            crate::model::Fold::Min => true,
+            crate::model::Fold::Max => false,
+            crate::model::Fold::Sum | crate::model::Fold::Mean => return,
+        };
+        let mut best: Option<(AgentId, f64)> = None;
+        for some in in_chunks(&self.members(set)) {
+            let values: Vec<Num> = some.iter().map(|id| instantiate_num(body, 0, *id)).collect();
+            let code = Code::compile(&self.subject.program.scenario, &[], &values);
+            let mut readings = Readings::default();
+            code.run(&self.subject.program, self.state, &mut readings);
+            for (id, value) in some.iter().zip(&readings.signals) {
+                let value = value.0[0];
+                let better = |best: f64| if smallest { value < best } else { value > best };
+                // What is not a number comes last.
+                let first = best.is_none_or(|(_, best)| better(best) || best.is_nan() && !value.is_nan());
+                best = if first { Some((*id, value)) } else { best };
+            }
+            if (self.stop)() {
+                return;
+            }
+        }
+        if let Some((best, _)) = best {
+            self.name(best);
+        }
+    }
+}
+
+/// Who is asked about at once: few at first, since the first may be enough.
+fn in_chunks(mut members: &[AgentId]) -> impl Iterator<Item = &[AgentId]> {
+    let mut most = FIRST;
+    std::iter::from_fn(move || {
+        let (some, rest) = members.split_at(most.min(members.len()));
+        members = rest;
+        most = AT_ONCE.min(8 * most);
+        (!some.is_empty()).then_some(some)
+    })
+}
