@@ -221,7 +221,7 @@ impl Elaborator<'_> {
             && (theta <= low || theta >= high)
         {
             let said = "this threshold lies outside the range of the metric";
-            return self.report(Diagnostic::error("E0601", threshold.span, said));
+            return self.report(Diagnostic::error("E0601", threshold.span, said).hanging());
         }
         Ok(bound)
     }
@@ -252,5 +252,6 @@ fn unlike(
         place,
         format!("the sides of a comparison need one range: it is {first}, but {second}"),
     )
+    .hanging()
     .hint("write a range that holds for both sides and depends on none of the parameters that differ")
 }

@@ -34,7 +34,7 @@ impl Elaborator<'_> {
                 } else {
                     "no number of trials excludes every error; 0.01 and 0.05 are usual"
                 };
-                self.report(error.hint(hint))
+                self.report(error.hanging().hint(hint))
             }
         }
     }

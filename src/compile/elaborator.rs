@@ -75,6 +75,7 @@ impl Locals {
 }
 
 /// The state of compilation.
+#[allow(clippy::struct_excessive_bools, reason = "each answers a question of its own")]
 pub(super) struct Elaborator<'a> {
     /// Sources, for texts.
     pub(super) sources: &'a [Source],
@@ -146,6 +147,10 @@ pub(super) struct Elaborator<'a> {
     pub(super) aliases: BTreeMap<Span, Span>,
     /// How often an unknown name was come upon.
     pub(super) unknowns: u64,
+    /// Whether the body of a function is looked at, whatever it is called with.
+    pub(super) looking: bool,
+    /// Functions that were followed from there.
+    pub(super) followed: BTreeSet<(ScopeId, String)>,
     /// Names in circles that were reported.
     pub(super) circles: Vec<String>,
     /// What was found wrong.
@@ -158,8 +163,12 @@ pub(super) struct Elaborator<'a> {
     outermost: Span,
     /// Names that were expanded in vain: what is wrong with them was said.
     pub(super) broken: BTreeSet<(ScopeId, String)>,
-    /// Parts of the files that were not read to their end: what is wrong with them was said.
+    /// Those among them that were not read to their end.
+    pub(super) unread: BTreeSet<(ScopeId, String)>,
+    /// Parts of the files that were not read to their end, ascending, none within another: what is wrong with them was said.
     pub(super) cut: Vec<Span>,
+    /// Whether parts of the files were not read at all, or not to their end.
+    pub(super) is_torn: bool,
     /// What is known of the clock: errors of times that need more say nothing.
     pub(super) told: Told,
     /// Nodes lowered so far.
@@ -205,13 +214,17 @@ impl<'a> Elaborator<'a> {
             texts: Texts::default(),
             aliases: BTreeMap::new(),
             unknowns: 0,
+            looking: false,
+            followed: BTreeSet::new(),
             circles: Vec::new(),
             diagnostics: Vec::new(),
             margins: None,
             depth: 0,
             outermost: Span::default(),
             broken: BTreeSet::new(),
+            unread: BTreeSet::new(),
             cut: Vec::new(),
+            is_torn: false,
             told: Told::Whole,
             nodes: 0,
         }
@@ -240,13 +253,23 @@ impl<'a> Elaborator<'a> {
     pub(super) fn is_cut(&self, place: Span) -> bool {
         let holds =
             |cut: &Span| cut.source == place.source && cut.start <= place.start && place.end <= cut.end;
-        self.cut.iter().any(holds)
+        // None holds another, so that the last that starts before ends last.
+        let before = self.cut.partition_point(|cut| (cut.source, cut.start) <= (place.source, place.start));
+        self.cut[..before].last().is_some_and(holds)
     }
 
     /// Whether an error of some code was found at a place: said once, it need not be looked for again.
     pub(super) fn is_said(&self, code: &str, place: Span) -> bool {
         let at = |one: &Diagnostic| one.place.as_ref().is_some_and(|label| label.span == place);
         self.diagnostics.iter().any(|one| one.code == code && at(one))
+    }
+
+    /// Forgets what was looked at in vain, where what was said of that is taken back: it would not be said again.
+    pub(super) fn forget_failures(&mut self) {
+        self.constants.retain(|_, value| value.is_ok());
+        self.broken.clone_from(&self.unread);
+        self.circles.clear();
+        self.followed.clear();
     }
 
     /// Whether an error was found.
@@ -385,6 +408,23 @@ impl<'a> Elaborator<'a> {
                 self.report(error)
             }
             found => self.mismatch(expr.span, "a number", &found),
+        }
+    }
+
+    /// That a constant is a number, a point or a truth value that is known now.
+    pub(super) fn check_constant(&mut self, lowered: Lowered<Typed>, value: &Expr) {
+        match lowered {
+            Ok(Typed::Number(_) | Typed::Point(..) | Typed::Infinity | Typed::Truth(Bool::Constant(_)))
+            | Err(Reported) => {}
+            Ok(found @ (Typed::Num(..) | Typed::Vector(..) | Typed::Term(..) | Typed::Truth(_))) => {
+                let error =
+                    Diagnostic::error("E0304", value.span, "this must be known before a trial starts")
+                        .label(format!("{} that changes during a trial", found.noun()));
+                self.note(error.hint("`let` names what changes"));
+            }
+            Ok(found) => {
+                let _: Lowered<()> = self.mismatch(value.span, "a number or a point", &found);
+            }
         }
     }
 

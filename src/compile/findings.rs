@@ -94,7 +94,7 @@ impl Compiler<'_> {
             .filter(|world| if of_call { is_base(world) } else { is_set(world) && !is_base(world) })
             .collect();
         let everywhere = asked.iter().all(|world| worlds.binary_search(world).is_ok());
-        if everywhere && (asked.len() > 1 || is_sure) || UNKNOWN.contains(&diagnostic.code) {
+        if everywhere && (of_call && asked.len() > 1 || is_sure) || UNKNOWN.contains(&diagnostic.code) {
             return diagnostic;
         }
         let mut shown: Vec<String> =
@@ -129,13 +129,18 @@ impl Elaborator<'_> {
         self.diagnostics.extend(sure);
     }
 
-    fn is_sure(&self, one: &Diagnostic) -> bool {
+    pub(super) fn is_sure(&self, one: &Diagnostic) -> bool {
+        if one.hangs {
+            return false;
+        }
         if UNKNOWN.contains(&one.code) || one.code.starts_with("E03") || VALUELESS.contains(&one.code) {
             return true;
         }
         let Some(place) = one.place.as_ref().filter(|_| WRITTEN.contains(&one.code)) else { return false };
         let text = self.text(place.span);
         let mut names = words(&text).filter(|word| !word.starts_with(|c: char| c.is_ascii_digit()));
-        names.all(|name| dimension::unit(name).is_some())
+        // A name may be called as a unit is.
+        let is_declared = |name: &str| self.scopes.iter().any(|scope| scope.get(name).is_some());
+        names.all(|name| dimension::unit(name).is_some() && !is_declared(name))
     }
 }

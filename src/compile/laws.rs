@@ -3,7 +3,7 @@
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered};
 use super::lower::DISTRIBUTIONS;
-use super::symbols::unknown;
+use super::symbols::{Meaning, unknown};
 use crate::model::{Family, Law};
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Value};
 use crate::syntax::diagnostic::Diagnostic;
@@ -122,7 +122,12 @@ impl Elaborator<'_> {
                 }
             }
             None => {
-                let _ = self.lower(expr, locals);
+                // `behaviour = phone`: what has no value may be just what was meant.
+                let named = |name: &String| self.find(name, locals.scope).map(|(_, meaning)| meaning);
+                let noun = if let ExprKind::Name(name) = &expr.kind { named(name) } else { None };
+                if !matches!(noun, Some(Meaning::Kind(_) | Meaning::Tracks(_) | Meaning::Behaviour(_))) {
+                    let _ = self.lower(expr, locals);
+                }
             }
         }
     }

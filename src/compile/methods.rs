@@ -211,6 +211,7 @@ impl Elaborator<'_> {
             span,
             format!("the indifference region {} to {} must lie inside (0, 1)", round(low), round(high)),
         )
+        .hanging()
         .related(at, "around this threshold")
         .hint("choose a smaller indifference, or leave the region out: the default test needs none");
         self.report(error)

@@ -27,7 +27,7 @@ impl Elaborator<'_> {
     /// told in words of its own.
     pub(super) fn atom(&mut self, truth: Bool, span: Span) -> NodeId {
         let text = self.words(span);
-        self.atom_said(truth, span, text)
+        self.atom_said(truth, span, text, false)
     }
 
     /// The text of a place; of an argument of a function, what it was called with.
@@ -40,7 +40,8 @@ impl Elaborator<'_> {
         bare(&self.text(span)).to_owned()
     }
 
-    fn atom_said(&mut self, truth: Bool, span: Span, text: String) -> NodeId {
+    /// One that nobody wrote is another than what somebody wrote in the same words.
+    fn atom_said(&mut self, truth: Bool, span: Span, text: String, implied: bool) -> NodeId {
         if let Bool::Constant(value) = truth {
             return self.node(Node::Constant(value));
         }
@@ -56,11 +57,14 @@ impl Elaborator<'_> {
             }
             return self.node(Node::Constant(false));
         }
-        let said = &self.texts.atoms;
-        let (at, new) =
-            self.known[2].place_said(&mut self.atoms, truth, &text, |at| said.get(at) == Some(&text));
+        let (said, unsaid) = (&self.texts.atoms, &self.texts.implied);
+        let same = |at: usize| said.get(at) == Some(&text) && unsaid.contains(&(at as u32)) == implied;
+        let (at, new) = self.known[2].place_said(&mut self.atoms, truth, &text, same);
         if new {
             self.texts.atoms.push(text);
+            if implied {
+                self.texts.implied.insert(at as u32);
+            }
         }
         self.node(Node::Atom(crate::logic::AtomId(at as u32)))
     }
@@ -69,11 +73,7 @@ impl Elaborator<'_> {
     pub(super) fn presence(&mut self, id: AgentId, span: Span) -> NodeId {
         let name = self.agent_names.get(id.0 as usize).map_or("", String::as_str);
         let text = format!("present({name})");
-        let node = self.atom_said(Bool::Present(Who::Agent(id)), span, text);
-        if let Node::Atom(atom) = &self.tree.nodes[node.0 as usize] {
-            self.texts.implied.insert(atom.0);
-        }
-        node
+        self.atom_said(Bool::Present(Who::Agent(id)), span, text, true)
     }
 
     /// A comparison of numbers over time.
@@ -83,8 +83,14 @@ impl Elaborator<'_> {
         text: String,
         dimension: Dimension,
     ) -> NodeId {
-        let node = self.node(Node::Compare(relation, a, b));
-        self.texts.comparisons.entry(node.0).or_insert((text, dimension));
+        let said = &self.texts.comparisons;
+        let same = |at: usize| said.get(&(at as u32)).is_some_and(|(known, _)| *known == text);
+        let nodes = &mut self.tree.nodes;
+        let (at, new) = self.known[0].place_said(nodes, Node::Compare(relation, a, b), &text, same);
+        let node = NodeId(at as u32);
+        if new {
+            self.texts.comparisons.insert(node.0, (text, dimension));
+        }
         node
     }
 

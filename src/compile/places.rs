@@ -114,7 +114,8 @@ impl Elaborator<'_> {
                     let first = if comes { id } else { *points.entry(key).or_insert(id) };
                     self.beside_barriers(agent, *p, comes, &barriers, span).or_else(|| {
                         let other = &people.agents[first.0 as usize];
-                        (first != id).then(|| together(other, agent, written(&people.places, first), span))
+                        (first != id && other.name != agent.name)
+                            .then(|| together(other, agent, written(&people.places, first), span))
                     })
                 }
                 // All of a declaration start alike.

@@ -170,7 +170,8 @@ impl<'a> Compiler<'a> {
                         }
                     }
                     PropertyItem::Const { value, .. } => {
-                        let _ = elaborator.number(value, &Locals::of(number + 1));
+                        let lowered = elaborator.lower(value, &Locals::of(number + 1));
+                        elaborator.check_constant(lowered, value);
                     }
                     PropertyItem::Let(decl) => {
                         elaborator.temporal = true;
@@ -327,9 +328,15 @@ impl<'a> Compiler<'a> {
             Ok(world) => self.ask(query, scope, world, settings, family),
             Err(Reported) => {
                 // The world of the call stands in, so that this hides nothing else that is surely wrong.
-                let before = self.sites[base].elaborator.diagnostics.len();
+                let before: Vec<usize> =
+                    self.sites.iter().map(|site| site.elaborator.diagnostics.len()).collect();
                 let asked = self.ask(query, scope, (base, Vec::new()), settings, family);
-                self.sites[base].elaborator.keep_sure(before);
+                // Sides of a comparison are set up from it.
+                for (site, before) in
+                    self.sites.iter_mut().zip(before.into_iter().chain(std::iter::repeat(0)))
+                {
+                    site.elaborator.keep_sure(before);
+                }
                 asked.and(Err(Reported))
             }
         }

@@ -15,12 +15,20 @@ impl Elaborator<'_> {
             MeasureKind::Expectation => 'E',
             MeasureKind::Quantile(_) => 'Q',
         };
+        let (levels, metric) = apart(inner);
         let event = bound.filter(|_| letter == 'Q').map(|(relation, bound)| Event {
-            metric: after_level(inner).to_owned(),
+            metric: metric.to_owned(),
             relation: if matches!(relation, BinaryOp::AtMost | BinaryOp::Greater) { "<=" } else { "<" },
             bound: self.text(bound.span),
         });
-        Said { measure: format!("{letter}({inner})"), event }
+        let measure = match &measure.kind {
+            // Of several levels this is one.
+            MeasureKind::Quantile(level) if at_depth_zero(levels, ',').next().is_some() => {
+                format!("Q({}, {metric})", self.text(level.span))
+            }
+            _ => format!("{letter}({inner})"),
+        };
+        Said { measure, event }
     }
 }
 
@@ -28,25 +36,26 @@ impl Elaborator<'_> {
 fn inside(text: &str) -> &str {
     let Some(open) = text.find('(') else { return text };
     let inner = &text[open + 1..];
-    let end = at_depth_zero(inner, ')').unwrap_or(inner.len());
+    let end = at_depth_zero(inner, ')').next().unwrap_or(inner.len());
     inner[..end].trim()
 }
 
-/// What follows the level of a quantile.
-fn after_level(inner: &str) -> &str {
-    at_depth_zero(inner, ',').map_or(inner, |comma| inner[comma + 1..].trim())
+/// The levels of a quantile, and what follows them: a metric has no comma outside of brackets.
+fn apart(inner: &str) -> (&str, &str) {
+    match at_depth_zero(inner, ',').last() {
+        Some(comma) => (inner[..comma].trim(), inner[comma + 1..].trim()),
+        None => ("", inner),
+    }
 }
 
-/// Where a character stands first outside of brackets that open in the text.
-fn at_depth_zero(text: &str, wanted: char) -> Option<usize> {
+/// Where a character stands outside of brackets that open in the text.
+fn at_depth_zero(text: &str, wanted: char) -> impl Iterator<Item = usize> {
     let mut depth = 0i32;
-    for (at, c) in text.char_indices() {
-        if c == wanted && depth == 0 {
-            return Some(at);
-        }
+    text.char_indices().filter_map(move |(at, c)| {
+        let found = c == wanted && depth == 0;
         depth += i32::from(matches!(c, '(' | '[')) - i32::from(matches!(c, ')' | ']'));
-    }
-    None
+        found.then_some(at)
+    })
 }
 
 /// A text without its comments, which end what follows them once lines are joined.
@@ -58,7 +67,7 @@ pub(super) fn without_comments(text: &str) -> String {
         let skipped = match rest {
             _ if quoted => 0,
             line if line.starts_with("//") => line.find('\n').unwrap_or(line.len()),
-            block if block.starts_with("/*") => block.find("*/").map_or(block.len(), |end| end + 2),
+            block if block.starts_with("/*") => block[2..].find("*/").map_or(block.len(), |end| end + 4),
             _ => 0,
         };
         if skipped > 0 {
@@ -81,8 +90,9 @@ mod tests {
     #[test]
     fn measures_are_taken_apart_by_their_brackets() {
         assert_eq!(inside("P (a & (b)) more"), "a & (b)");
-        assert_eq!(after_level("min(0.5, 0.9), f(a, b)"), "f(a, b)");
-        assert_eq!(after_level("0.5, f(a)"), "f(a)");
+        assert_eq!(apart("min(0.5, 0.9), f(a, b)"), ("min(0.5, 0.9)", "f(a, b)"));
+        assert_eq!(apart("0.5, 0.9, f(a)"), ("0.5, 0.9", "f(a)"));
+        assert_eq!(apart("f(a)"), ("", "f(a)"));
     }
 
     #[test]
@@ -90,5 +100,6 @@ mod tests {
         assert_eq!(without_comments("a // b\nc /* d */ e"), "a  \nc   e");
         assert_eq!(without_comments("\"http://a\" // b"), "\"http://a\"  ");
         assert_eq!(without_comments("a /* b"), "a  ");
+        assert_eq!(without_comments("a /*/ b */ c"), "a   c");
     }
 }

@@ -1,7 +1,7 @@
 //! Values of parameters from outside: `--set name=value`, sweeps, `under`.
 
 use super::dimension::{self, Dimension};
-use super::elaborator::{Elaborator, Locals, Lowered};
+use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::number::Number;
 use super::symbols::{Meaning, unknown};
 use crate::base::decimal::Decimal;
@@ -101,13 +101,18 @@ impl<'a> Elaborator<'a> {
                 self.number_of(high, declared.dimension, &Locals::of(0)),
             );
             let (low, high) = (ends.0?, ends.1?);
+            if low.value > high.value {
+                // Said where it is declared.
+                return Err(Reported);
+            }
             if number.value < low.value || number.value > high.value {
                 let shown = [low, high].map(|n| self.shown(default, n));
                 let error = Diagnostic::error(
                     "E0405",
                     value.span,
                     format!("`{name}` lies between {} and {}", shown[0], shown[1]),
-                );
+                )
+                .hanging();
                 return self.report(error);
             }
         }
@@ -120,12 +125,14 @@ impl<'a> Elaborator<'a> {
         match &setting.value {
             SettingValue::One(value) => Ok(vec![self.setting(&setting.name, value, &locals)?]),
             SettingValue::Sweep(from, to, by) => {
-                self.param(&setting.name, setting.span)?;
+                let Ok((default, _)) = self.param(&setting.name, setting.span) else {
+                    // What they are worth nobody knows; what is wrong with them is said.
+                    return self.lower_all([from, to, by], &locals).and(Err(Reported));
+                };
+                let step = self.number(by, &locals);
                 let ends =
                     (self.setting(&setting.name, from, &locals), self.setting(&setting.name, to, &locals));
-                let (first, last) = (ends.0?, ends.1?);
-                let (default, _) = self.param(&setting.name, setting.span)?;
-                let step = self.number(by, &locals)?;
+                let (first, last, step) = (ends.0?, ends.1?, step?);
                 let unit = Self::unit_of_default(default).and_then(|unit| dimension::resolve(unit).ok());
                 if !step.dimension.is_none() && step.dimension != first.dimension {
                     return self.wrong_dimension(by.span, first.dimension, step.dimension);

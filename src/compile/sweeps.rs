@@ -16,6 +16,7 @@ impl Compiler<'_> {
                 let error =
                     Diagnostic::error("E0210", setting.span, format!("`{}` is set twice", setting.name));
                 self.sites[plain].elaborator.note(error);
+                let _ = self.sites[plain].elaborator.points(setting);
                 continue;
             }
             seen.push(setting);

@@ -109,14 +109,30 @@ impl<'a> Elaborator<'a> {
 
     /// What names mean whose declarations were not read to their end is anybody's guess: no further error comes of them.
     fn set_aside(&mut self, scenario: &ScenarioFile, properties: &[PropertyFile]) {
+        let lost = scenario.lost.iter().chain(properties.iter().flat_map(|file| &file.lost));
+        self.is_torn = lost.count() > 0;
         self.cut.extend(&scenario.cut);
         self.cut.extend(properties.iter().flat_map(|file| &file.cut));
+        self.is_torn |= !self.cut.is_empty();
+        self.cut.sort_unstable();
+        // Of two of which one holds the other, that one; a shorter one that starts alike comes before it.
+        let mut cuts: Vec<Span> = Vec::with_capacity(self.cut.len());
+        for cut in self.cut.drain(..) {
+            let within = |other: &Span| other.source == cut.source && other.end >= cut.end;
+            if cuts.last().is_some_and(within) {
+                continue;
+            }
+            cuts.pop_if(|last| last.source == cut.source && last.start == cut.start);
+            cuts.push(cut);
+        }
+        self.cut = cuts;
         let mut broken = Vec::new();
         for (scope, names) in self.scopes.iter().enumerate() {
             let cut = names.entries().filter(|(_, entry)| self.is_cut(entry.span));
             broken.extend(cut.map(|(name, _)| (scope, name.to_owned())));
         }
         self.broken.extend(broken);
+        self.unread.clone_from(&self.broken);
     }
 
     fn build(&mut self, file: &'a ScenarioFile, files: &Files) -> Lowered<Scenario> {
@@ -219,7 +235,8 @@ impl<'a> Elaborator<'a> {
         for item in &file.items {
             match item {
                 Item::Const { name, value } => {
-                    let _ = self.lower_declared(name, value);
+                    let lowered = self.lower_declared(name, value);
+                    self.check_constant(lowered, value);
                 }
                 Item::Param { name, value, range } => {
                     let declared = self.lower_declared(name, value);
@@ -257,7 +274,9 @@ impl<'a> Elaborator<'a> {
         (low, high): &(Expr, Expr),
     ) {
         let locals = Locals::of(0);
-        let Ok(super::typed::Typed::Number(number)) = declared else {
+        // What it is set to is judged where that is done.
+        let default = declared.and_then(|_| self.number(value, &locals));
+        let Ok(number) = default else {
             let _ = (self.number(low, &locals), self.number(high, &locals));
             return;
         };
@@ -269,7 +288,7 @@ impl<'a> Elaborator<'a> {
             self.note(Diagnostic::error("E0405", place, "this range is empty"));
         } else if number.value < low.value || number.value > high.value {
             let text = format!("the default of `{}` lies outside its range", name.name);
-            self.note(Diagnostic::error("E0405", value.span, text));
+            self.note(Diagnostic::error("E0405", value.span, text).hanging());
         }
     }
 

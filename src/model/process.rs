@@ -129,7 +129,10 @@ pub fn wrong_weights(weights: &[f64]) -> Option<String> {
     Some(if weights.iter().any(|w| *w < 0.0) {
         "a probability is negative".to_owned()
     } else {
-        format!("these probabilities sum to {}, not to 1", weights.iter().sum::<f64>())
+        let sum: f64 = weights.iter().sum();
+        // `0.1 + 0.2` is shown as 0.3; what is farther from 1 than the slack stays so.
+        let shown = if sum < 1e3 { (sum * 1e12).round() / 1e12 } else { sum };
+        format!("these probabilities sum to {shown}, not to 1")
     })
 }
 

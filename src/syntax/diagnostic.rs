@@ -35,6 +35,8 @@ pub struct Diagnostic {
     pub related: Vec<Label>,
     /// What to do about it.
     pub hint: Option<String>,
+    /// Whether it hangs on more values than stand at its place: a threshold may lie outside of a range.
+    pub hangs: bool,
 }
 
 impl Diagnostic {
@@ -47,6 +49,7 @@ impl Diagnostic {
             place: Some(Label { span, text: String::new() }),
             related: Vec::new(),
             hint: None,
+            hangs: false,
         }
     }
 
@@ -64,7 +67,15 @@ impl Diagnostic {
             place: None,
             related: Vec::new(),
             hint: None,
+            hangs: false,
         }
+    }
+
+    /// What it says hangs on values that stand elsewhere.
+    #[must_use]
+    pub fn hanging(mut self) -> Self {
+        self.hangs = true;
+        self
     }
 
     /// Says something beside the mark.

@@ -70,6 +70,7 @@ impl<'a> Elaborator<'a> {
             // A condition sees no own parameters: what they hide is sound where it is used by conditions only.
             if lowered.is_err() {
                 let said = self.diagnostics.split_off(before);
+                self.forget_failures();
                 lowered = self.check_let(decl, found, locals);
                 if lowered.is_err() {
                     self.diagnostics.truncate(before);

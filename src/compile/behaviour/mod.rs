@@ -7,6 +7,7 @@ mod conduct;
 mod names;
 
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
+use super::lower::counted_arguments;
 use super::people::People;
 use super::symbols::{Meaning, unknown};
 use super::typed::Typed;
@@ -131,6 +132,7 @@ impl<'a> Elaborator<'a> {
                     let error = Diagnostic::error("E0305", expr.span, "expected a behaviour")
                         .hint("for example `with phone, heedful(0.8)`");
                     self.note(error);
+                    strays = true;
                     continue;
                 }
             };
@@ -139,6 +141,8 @@ impl<'a> Elaborator<'a> {
                 Some((_, other)) => {
                     let text = format!("expected a behaviour, `{called}` is {}", other.noun());
                     self.note(Diagnostic::error("E0206", expr.span, text));
+                    self.stray.push(arguments);
+                    strays = true;
                     continue;
                 }
                 None => {
@@ -192,11 +196,12 @@ impl<'a> Elaborator<'a> {
             out.declared.push(Behaviour { name: decl.name.name.clone(), states });
         }
         // Errors outside of behaviours may have taken away whom these speak of.
+        let declared: Vec<Span> = self.behaviours.iter().map(|decl| decl.span).collect();
         let inside = |place: Span| {
-            self.behaviours
-                .iter()
-                .map(|decl| decl.span)
-                .any(|span| span.source == place.source && span.start <= place.start && place.end <= span.end)
+            let holds = |span: &Span| {
+                span.source == place.source && span.start <= place.start && place.end <= span.end
+            };
+            declared.iter().any(holds)
         };
         let elsewhere = |d: &Diagnostic| {
             d.severity == Severity::Error && d.place.as_ref().is_none_or(|place| !inside(place.span))
@@ -209,14 +214,25 @@ impl<'a> Elaborator<'a> {
         let withs = std::mem::take(&mut self.withs);
         for with in &withs {
             for &(id, arguments, written) in &with.behaviours {
-                let attached = self.settle_one(with, id, (arguments, written), people, variables);
-                out.attached.extend(attached.unwrap_or_default());
+                match self.settle_one(with, id, (arguments, written), people, variables) {
+                    Ok(attached) => out.attached.extend(attached),
+                    // What failed was said; nobody goes without what they were given, without a word.
+                    Err(Reported) if self.failed() || self.is_torn => {}
+                    Err(Reported) => {
+                        let text = "what is wrong with this behaviour shows nowhere else";
+                        self.note(Diagnostic::error("E0305", written.span, text));
+                    }
+                }
             }
         }
         self.withs = withs;
         self.check_unused_behaviours(variables);
         if taken {
-            self.keep_sure(before);
+            // What stands elsewhere, as a constant that they use, hangs on nobody.
+            let found = self.diagnostics.split_off(before.min(self.diagnostics.len()));
+            let kept: Vec<Diagnostic> =
+                found.into_iter().filter(|one| elsewhere(one) || self.is_sure(one)).collect();
+            self.diagnostics.extend(kept);
         }
         for one in &out.attached {
             let leaves = |mode: &Mode| matches!(mode.route, Some(Route::Legs { then_leave: true, .. }));
@@ -253,16 +269,16 @@ impl<'a> Elaborator<'a> {
         variables: usize,
     ) -> Lowered<Vec<Attached>> {
         let decl = self.behaviours[id.0 as usize];
-        if arguments.len() != decl.arguments.len() {
-            let wanted = match decl.arguments.len() {
-                1 => "1 argument".to_owned(),
-                n => format!("{n} arguments"),
-            };
-            return self.arity(&decl.name, written.span, &wanted, arguments.len());
-        }
         let mut locals = Locals::of(0);
-        let mut failed = false;
-        for (name, argument) in decl.arguments.iter().zip(arguments) {
+        let mut failed = arguments.len() != decl.arguments.len();
+        if failed {
+            let wanted = counted_arguments(decl.arguments.len());
+            let _: Lowered<()> = self.arity(&decl.name, written.span, &wanted, (arguments, &locals));
+            // Which of them is missing nobody knows.
+            decl.arguments.iter().for_each(|name| locals.bind_unknown(&name.name));
+        }
+        let given = if failed { &[] } else { arguments };
+        for (name, argument) in decl.arguments.iter().zip(given) {
             match self.lower(argument, &Locals::of(0)) {
                 Ok(value) => locals.bind(&name.name, value),
                 Err(Reported) => {
@@ -280,7 +296,7 @@ impl<'a> Elaborator<'a> {
         }
         let conduct = self.conduct(decl, &of(&locals, first), variables);
         self.attached_at = None;
-        if conduct.is_err() {
+        if failed || conduct.is_err() {
             // What is wrong with its conditions is said too.
             let _ = self.conditions(decl, &of(&locals, first));
         }

@@ -2,6 +2,7 @@
 
 use super::{lets, states};
 use crate::compile::elaborator::{Elaborator, Locals, Lowered, Reported};
+use crate::compile::lower::counted_arguments;
 use crate::compile::symbols::unknown;
 use crate::compile::typed::Typed;
 use crate::model::{BehaviourId, Bool, Comparison, Field, Num, Who};
@@ -44,7 +45,7 @@ impl<'a> Elaborator<'a> {
     ) -> Option<Lowered<Typed>> {
         let (decl, inner, path) = self.inside_behaviour(name, locals)?;
         if !decl.arguments.is_empty() {
-            let text = format!("`{name}` is a function of {} arguments", decl.arguments.len());
+            let text = format!("`{name}` is a function of {}", counted_arguments(decl.arguments.len()));
             let error = Diagnostic::error("E0204", span, text).hint(format!("call it: `{name}(…)`"));
             return Some(self.report(error));
         }

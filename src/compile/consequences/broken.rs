@@ -27,6 +27,10 @@ const NO_MOVES: &str = "E0606";
 const INSIDE: &str = "E0409";
 /// Codes after which the rest of a line is anybody's guess, besides those of brackets.
 const DERAILS: [&str; 2] = ["E0101", "E0112"];
+/// Marks that follow the name of a declaration.
+const AFTER_NAME: [char; 4] = ['=', ':', '{', '['];
+/// Code of one sign of equality for another.
+const EQUALS: &str = "E0112";
 /// Words that start a declaration with a name.
 const DECLARES: [&str; 20] = [
     "agent",
@@ -67,6 +71,8 @@ pub(super) struct Broken<'i> {
     sources: &'i [Source],
     /// Texts that were skipped, and their words.
     lost: Vec<Span>,
+    /// Declarations that ended early.
+    cut: Vec<Span>,
     swallowed: BTreeSet<&'i str>,
     /// Names whose declarations were not read, or not to their end.
     suspects: BTreeSet<&'i str>,
@@ -93,6 +99,7 @@ impl<'i> Broken<'i> {
         let mut broken = Self {
             sources: input.sources,
             lost: lost.clone().copied().collect(),
+            cut: cut.clone().copied().collect(),
             swallowed: BTreeSet::new(),
             suspects: BTreeSet::new(),
             set: BTreeSet::new(),
@@ -110,7 +117,8 @@ impl<'i> Broken<'i> {
             broken.faulty.extend(broken.line_of(place.span));
             broken.swallow(one, place.span);
             // What stands first in its line is missed by the one before, but for a bracket.
-            let derails = DERAILS.contains(&one.code) && !broken.starts_line(place.span);
+            let derails =
+                DERAILS.contains(&one.code) && !broken.starts_line(place.span) && !broken.was_mended(one);
             if derails || BRACKETS.contains(&one.code) {
                 broken.derailed.extend(broken.line_of(place.span));
                 broken.add(place.span.source, lines(input.sources, place.span).unwrap_or_default());
@@ -133,8 +141,8 @@ impl<'i> Broken<'i> {
     fn swallow(&mut self, one: &Diagnostic, place: Span) {
         let bracket = BRACKETS.contains(&one.code) && place.source == SourceId(0);
         let braces = one.title.contains("`{`") || one.title.contains("`}`");
-        let (first, _) = leading_word(lines(self.sources, place).unwrap_or_default());
-        let declares = BRACKETS.contains(&one.code) && DECLARES.contains(&first);
+        let (first, rest) = leading_word(lines(self.sources, place).unwrap_or_default());
+        let declares = BRACKETS.contains(&one.code) && DECLARES.contains(&first) && !is_named(first, rest);
         self.any_name |= bracket && braces || declares || one.code == TOO_DEEP;
         self.clock |= bracket;
         if one.code == COMMENT
@@ -161,6 +169,12 @@ impl<'i> Broken<'i> {
             // The first word is misspelt, and a name follows.
             self.suspects.extend(Some(second).filter(|name| !name.is_empty()));
         }
+    }
+
+    /// Whether the parser took what stands there as it is meant: `==` for `=`.
+    fn was_mended(&self, one: &Diagnostic) -> bool {
+        let skipped = |place: Span| self.lost.iter().chain(&self.cut).any(|part| within(place, *part));
+        one.code == EQUALS && !one.place.as_ref().is_some_and(|place| skipped(place.span))
     }
 
     fn is_broken(&self, source: SourceId) -> bool {
@@ -240,4 +254,11 @@ impl<'i> Broken<'i> {
             || of_line
             || unit)
     }
+}
+
+/// Whether what follows the first word of a declaration is its name, whole.
+fn is_named(first: &str, rest: &str) -> bool {
+    let (name, after) = leading_word(rest);
+    let after = after.trim_start();
+    !name.is_empty() && (after.starts_with(AFTER_NAME) || first == "let" && after.starts_with('('))
 }

@@ -24,6 +24,8 @@ const UNKNOWN_FIELD: &str = "E0207";
 const DIMENSION: &str = "E0303";
 /// Code of a name that is used before it can be known.
 const EARLY: &str = "E0205";
+/// How that ends of a name that leads back to itself.
+const BY_ITSELF: &str = "by itself";
 /// Codes of unknown names, told once.
 pub(super) const UNKNOWN: [&str; 4] = ["E0201", "E0203", "E0208", "E0210"];
 /// Most further places that are marked.
@@ -83,7 +85,10 @@ fn less_what_follows(mut found: Vec<Diagnostic>, sources: &[Source]) -> Vec<Diag
     });
     let follows = |one: &Diagnostic| {
         // Who could not be declared is not known yet, either.
-        let early = broken && one.code == EARLY && place(one).is_some_and(|span| span.source != SourceId(0));
+        let early = broken
+            && one.code == EARLY
+            && !one.title.ends_with(BY_ITSELF)
+            && place(one).is_some_and(|span| span.source != SourceId(0));
         early || follows(one)
     };
     let gone: Vec<bool> = found.iter().map(follows).collect();
@@ -184,6 +189,8 @@ fn once_a_name(found: Vec<Diagnostic>, sources: &[Source]) -> Vec<Diagnostic> {
     for one in found {
         let place = one.place.as_ref().filter(|_| UNKNOWN.contains(&one.code)).map(|place| place.span);
         let name = place.and_then(|span| Some((leading_word(bare(word(sources, span)?)).0, span)));
+        // Of `--set` the value is the place.
+        let name = name.filter(|(name, _)| one.title.contains(&format!("`{name}`")));
         if let Some((name, span)) = name.filter(|(name, _)| !name.is_empty()) {
             match first.entry(name) {
                 Entry::Occupied(before) => {

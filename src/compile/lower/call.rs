@@ -51,7 +51,9 @@ impl Elaborator<'_> {
             "contact" => self.contact(expr, function, arguments, locals),
             "time_until" => {
                 let [formula] = arguments else {
-                    return self.arity(function, expr.span, "1 argument", arguments.len());
+                    let given = (arguments, locals);
+                    return self
+                        .inside_a_formula(|this| this.arity(function, expr.span, "1 argument", given));
                 };
                 if !self.temporal || locals.running > 0 {
                     let error = Diagnostic::error(
@@ -87,7 +89,7 @@ impl Elaborator<'_> {
             }
             name if FUNCTIONS.contains(&name) => {
                 let [argument] = arguments else {
-                    return self.arity(function, expr.span, "1 argument", arguments.len());
+                    return self.arity(function, expr.span, "1 argument", (arguments, locals));
                 };
                 self.of_one(function, argument, locals)
             }
@@ -96,13 +98,23 @@ impl Elaborator<'_> {
                 if self.is_said("E0203", function.span) {
                     return Err(Reported);
                 }
+                if let Some((_, meaning)) = self.find(name, locals.scope) {
+                    let hidden = self.scopes[0].get(name).is_some_and(|e| takes_arguments(&e.meaning));
+                    // That a name of the scenario was taken was said where that was done; and what is wrong with it
+                    // may be just that it lacks its arguments.
+                    if !hidden && self.lower_name(name, function.span, locals).is_ok() {
+                        let text = format!("`{name}` is {}, which takes no arguments", meaning.noun());
+                        self.note(Diagnostic::error("E0204", expr.span, text));
+                    }
+                    return self.lower_all(arguments, locals).and(Err(Reported));
+                }
                 let mut known: Vec<&str> = FUNCTIONS.into_iter().chain(DISTRIBUTIONS).collect();
                 let declared: Vec<String> = [locals.scope, 0]
                     .iter()
                     .filter(|_| self.looks_for_names())
                     .filter_map(|s| self.scopes.get(*s))
                     .flat_map(super::super::symbols::Scope::entries)
-                    .filter(|(_, e)| matches!(&e.meaning, Meaning::Let(d) if !d.arguments.is_empty()))
+                    .filter(|(_, e)| takes_arguments(&e.meaning))
                     .map(|(n, _)| n.to_owned())
                     .collect();
                 known.extend(declared.iter().map(String::as_str));
@@ -259,7 +271,7 @@ impl Elaborator<'_> {
         locals: &Locals,
     ) -> Lowered<Typed> {
         let [argument] = arguments else {
-            return self.arity(function, expr.span, "1 argument", arguments.len());
+            return self.arity(function, expr.span, "1 argument", (arguments, locals));
         };
         let typed = self.lower(argument, locals)?;
         if let (Typed::Term(term, dimension), "abs") = (&typed, function.name.as_str()) {
@@ -329,7 +341,7 @@ impl Elaborator<'_> {
         locals: &Locals,
     ) -> Lowered<Typed> {
         let [left, right] = arguments else {
-            return self.arity(function, expr.span, "2 arguments", arguments.len());
+            return self.arity(function, expr.span, "2 arguments", (arguments, locals));
         };
         let sides = (self.lower(left, locals), self.lower(right, locals));
         let (a, b) = (sides.0?, sides.1?);
@@ -392,7 +404,7 @@ impl Elaborator<'_> {
     ) -> Lowered<Typed> {
         self.note_margin(Dimension::LENGTH, expr.span);
         if !matches!(arguments.len(), 1 | 2) {
-            return self.arity(function, expr.span, "1 or 2 arguments", arguments.len());
+            return self.arity(function, expr.span, "1 or 2 arguments", (arguments, locals));
         }
         let mut agent = |argument: &Expr| {
             let typed = self.lower(argument, locals)?;
@@ -405,6 +417,11 @@ impl Elaborator<'_> {
             _ => Bool::Contact(agents[0]),
         }))
     }
+}
+
+/// Whether a name stands for a function.
+fn takes_arguments(meaning: &Meaning<'_>) -> bool {
+    matches!(meaning, Meaning::Let(decl) if !decl.arguments.is_empty())
 }
 
 fn mean_velocity(set: &Set) -> (Num, Num) {

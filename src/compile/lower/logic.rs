@@ -102,7 +102,8 @@ impl Elaborator<'_> {
         let sides = self.inside_a_number(|this| {
             let a = this.lower(left, locals);
             // `a.phone == looking` without such a behaviour: the state is unknown with it.
-            let state = matches!((&left.kind, &right.kind), (ExprKind::Member(..), ExprKind::Name(_)));
+            let state = matches!(op, BinaryOp::Equal | BinaryOp::Unequal)
+                && matches!((&left.kind, &right.kind), (ExprKind::Member(..), ExprKind::Name(_)));
             if a.is_err() && state { (a, Err(Reported)) } else { (a, this.lower(right, locals)) }
         });
         let (a, b) = match sides {

@@ -16,7 +16,7 @@ pub(super) use builtin::{DISTRIBUTIONS, FUNCTIONS};
 pub(super) use logic::relation;
 
 use super::dimension::{self, Dimension};
-use super::elaborator::{Elaborator, Locals, Lowered, MOST_NODES};
+use super::elaborator::{Elaborator, Locals, Lowered, MOST_NODES, Reported};
 use super::number::Number;
 use super::typed::Typed;
 use super::weight::Weight;
@@ -36,8 +36,12 @@ impl Elaborator<'_> {
     }
 
     /// What some expressions mean. What is wrong with each is said.
-    pub(super) fn lower_all(&mut self, exprs: &[Expr], locals: &Locals) -> Lowered<Vec<Typed>> {
-        let lowered: Vec<_> = exprs.iter().map(|expr| self.lower(expr, locals)).collect();
+    pub(in crate::compile) fn lower_all<'e>(
+        &mut self,
+        exprs: impl IntoIterator<Item = &'e Expr>,
+        locals: &Locals,
+    ) -> Lowered<Vec<Typed>> {
+        let lowered: Vec<_> = exprs.into_iter().map(|expr| self.lower(expr, locals)).collect();
         lowered.into_iter().collect()
     }
 
@@ -336,14 +340,15 @@ impl Elaborator<'_> {
         }
     }
 
-    /// Reports a wrong number of arguments.
-    pub(super) fn arity<T>(
+    /// Reports a wrong number of arguments. They are looked at all the same.
+    pub(in crate::compile) fn arity<T>(
         &mut self,
         function: &Ident,
         span: Span,
         wanted: &str,
-        found: usize,
+        (arguments, locals): (&[Expr], &Locals),
     ) -> Lowered<T> {
+        let found = arguments.len();
         let error = Diagnostic::error(
             "E0204",
             span,
@@ -353,8 +358,15 @@ impl Elaborator<'_> {
                 if found == 1 { "is" } else { "are" }
             ),
         );
-        self.report(error)
+        self.note(error);
+        let _ = self.lower_all(arguments, locals);
+        Err(Reported)
     }
+}
+
+/// Some number of arguments, as one says it.
+pub(in crate::compile) fn counted_arguments(count: usize) -> String {
+    format!("{count} argument{}", if count == 1 { "" } else { "s" })
 }
 
 /// The coordinates of an agent or centroid.

@@ -4,6 +4,7 @@ use super::super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::super::symbols::{Meaning, ScopeId, unknown};
 use super::super::typed::Typed;
 use super::super::weight::Weight;
+use super::counted_arguments;
 use crate::model::{Set, Who};
 use crate::syntax::ast::{Expr, Ident, LetDecl};
 use crate::syntax::diagnostic::{Diagnostic, Label};
@@ -75,11 +76,7 @@ impl<'a> Elaborator<'a> {
                     let error = Diagnostic::error(
                         "E0204",
                         span,
-                        format!(
-                            "`{name}` is a function of {} argument{}",
-                            decl.arguments.len(),
-                            if decl.arguments.len() == 1 { "" } else { "s" }
-                        ),
+                        format!("`{name}` is a function of {}", counted_arguments(decl.arguments.len())),
                     )
                     .hint(format!("call it: `{name}(…)`"));
                     return self.report(error);
@@ -255,13 +252,13 @@ impl<'a> Elaborator<'a> {
         locals: &Locals,
     ) -> Lowered<Typed> {
         if arguments.len() != decl.arguments.len() {
-            let wanted = match decl.arguments.len() {
-                1 => "1 argument".to_owned(),
-                n => format!("{n} arguments"),
-            };
-            return self.arity(&decl.name, span, &wanted, arguments.len());
+            let wanted = counted_arguments(decl.arguments.len());
+            return self.arity(&decl.name, span, &wanted, (arguments, locals));
         }
-        let values = self.lower_all(arguments, locals)?;
+        let Ok(values) = self.lower_all(arguments, locals) else {
+            self.follow(decl, (inner, path), span);
+            return Err(Reported);
+        };
         for ((name, value), argument) in decl.arguments.iter().zip(values).zip(arguments) {
             inner.bind(&name.name, value);
             inner.written.push((name.name.clone(), argument.span));
@@ -287,7 +284,26 @@ impl<'a> Elaborator<'a> {
             inner.bind_unknown(&argument.name);
         }
         self.check_arguments(&decl.arguments);
+        let around = std::mem::replace(&mut self.looking, true);
         let _ = self.lower(&decl.body, &inner);
+        self.looking = around;
+    }
+
+    /// Follows a call whose arguments nobody knows, each function once: it may lead back to itself.
+    fn follow(&mut self, decl: &LetDecl, (mut inner, path): (Locals, String), span: Span) {
+        if !self.looking {
+            return;
+        }
+        let key = (inner.scope, path.clone());
+        let _ = self.expand(inner.scope, &path, span, |this| {
+            if !this.followed.insert(key) {
+                return Err(Reported);
+            }
+            for argument in &decl.arguments {
+                inner.bind_unknown(&argument.name);
+            }
+            this.lower(&decl.body, &inner)
+        });
     }
 
     /// That no two arguments of a function or behaviour have one name.
@@ -347,6 +363,7 @@ impl<'a> Elaborator<'a> {
         if let [only] = set.members[..]
             && self.undeclared.contains(&only)
         {
+            let _ = self.number_of(index, Dimension::NONE, locals);
             return Ok(Typed::Agent(Who::Agent(only)));
         }
         let left_out = match set.except {
@@ -391,6 +408,7 @@ impl<'a> Elaborator<'a> {
                     format!("there is no member {} of `{}`", number.value, self.text(base.span)),
                 )
                 .hint(match count {
+                    0 => "it has no members".to_owned(),
                     1 => "it has 1 member, `[1]`".to_owned(),
                     count => format!("it has {count} members, counted from 1"),
                 });

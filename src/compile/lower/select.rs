@@ -77,7 +77,7 @@ impl Elaborator<'_> {
         locals: &Locals,
     ) -> Lowered<Typed> {
         let [condition, yes, no] = arguments else {
-            return self.arity(function, expr.span, "3 arguments", arguments.len());
+            return self.arity(function, expr.span, "3 arguments", (arguments, locals));
         };
         let truth = self.lower(condition, locals);
         let truth = truth.and_then(|typed| self.as_truth(typed, condition.span));

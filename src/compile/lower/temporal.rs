@@ -185,9 +185,12 @@ impl Elaborator<'_> {
             };
         }
         if number.dimension.is_none() {
-            let error = Diagnostic::error("E0503", span, "this bound needs a unit")
-                .hint("write `10 s`, or `#10` (`10 steps`) for a number of steps");
-            return self.report(error);
+            let hint = if self.clock.is_jumps() {
+                "write a time, as in `10 s`"
+            } else {
+                "write `10 s`, or `#10` (`10 steps`) for a number of steps"
+            };
+            return self.report(Diagnostic::error("E0503", span, "this bound needs a unit").hint(hint));
         }
         if number.dimension != Dimension::TIME {
             return self.wrong_dimension(span, Dimension::TIME, number.dimension);
@@ -202,7 +205,14 @@ impl Elaborator<'_> {
             }
         };
         let exact = number.exact.or_else(|| nearest_tick(number.value, step));
-        let found = exact.map(|time| self.clock.tick_at(time));
+        let found = match exact {
+            Some(time) => Some(self.clock.tick_at(time)),
+            // `pi * 1 s`
+            None => {
+                let below = (number.value / step.to_f64()).floor();
+                (below < 9e15).then(|| Err((Tick(below as u64), Tick(below as u64 + 1))))
+            }
+        };
         match found {
             Some(Ok(tick)) => Ok(tick),
             Some(Err((below, above))) if above.0 < u64::MAX => {

@@ -59,9 +59,10 @@ pub(super) fn same_sweep(a: &QueryResult, b: &QueryResult) -> bool {
     a.index == b.index && !a.settings.is_empty() && !b.settings.is_empty() && simple(a) && simple(b)
 }
 
-/// Whether a query has got any trials.
+/// Whether a query has got any trials, or needs none: one option is the best without.
 fn begun(result: &QueryResult) -> bool {
-    result.counts.trials > 0
+    let chosen = result.rank.as_ref().is_some_and(|rank| rank.choice.is_some());
+    result.counts.trials > 0 || chosen
 }
 
 /// Results query by query: a sweep comes point by point, with all queries at each.

@@ -48,6 +48,7 @@ pub(super) fn is_mark(rule: Rule) -> bool {
             | Rule::t_arrow
             | Rule::t_line
             | Rule::t_assign
+            | Rule::t_unequal
             | Rule::t_bar
     ) || super::nouns::keyword(rule).is_some()
 }

@@ -292,7 +292,10 @@ fn place_and_expected(error: pest::error::Error<Rule>) -> (usize, Vec<Rule>) {
         InputLocation::Pos(at) | InputLocation::Span((at, _)) => at,
     };
     let expected = match error.variant {
-        ErrorVariant::ParsingError { positives, .. } => positives,
+        ErrorVariant::ParsingError { mut positives, .. } => {
+            positives.retain(|rule| *rule != Rule::t_unequal);
+            positives
+        }
         ErrorVariant::CustomError { .. } => Vec::new(),
     };
     (at, expected)

@@ -156,7 +156,10 @@ fn parse<T>(
     let whole = text.len();
     let text = builder.text;
     let built = match Grammar::parse(rule, text) {
-        Ok(mut pairs) => pairs.next().map(|file| build(&mut builder, file)),
+        Ok(mut pairs) => pairs.next().map(|file| {
+            builder.report_unequal(&file);
+            build(&mut builder, file)
+        }),
         Err(error) => {
             builder.refused(error);
             None

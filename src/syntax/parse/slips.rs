@@ -114,6 +114,14 @@ impl Builder<'_> {
         )
     }
 
+    /// `speed == 1 m/s` where a field is set: the grammar takes it as it is meant.
+    pub(super) fn report_unequal(&mut self, file: &Pair<'_>) {
+        for pair in file.clone().into_inner().flatten().filter(|pair| pair.as_rule() == Rule::t_unequal) {
+            let error = unequal(self.span(&pair), "=", pair.as_str());
+            self.say(error);
+        }
+    }
+
     fn slip_of_equals(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
         let place = self.place(fault.at, fault.found);
         if fault.expected.contains(&Rule::relation) && matches!(fault.found, "=" | "==" | "=>" | "!=") {
@@ -124,21 +132,16 @@ impl Builder<'_> {
             };
             return Some(Diagnostic::error(code::EQUALS, place, title).hint(hint));
         }
-        if fault.found == ":=" {
+        if fault.found == ":=" && !fault.expected.contains(&Rule::t_assign) {
             return Some(
                 Diagnostic::error(code::EQUALS, place, "`:=` is not known").hint("`=` sets, `==` compares"),
             );
         }
-        if fault.found == "===" || fault.found == "==" && fault.expected.contains(&Rule::t_assign) {
+        if fault.found == "==="
+            || matches!(fault.found, "==" | ":=") && fault.expected.contains(&Rule::t_assign)
+        {
             let wanted = if fault.found == "===" { "==" } else { "=" };
-            return Some(
-                Diagnostic::error(
-                    code::EQUALS,
-                    place,
-                    format!("expected `{wanted}`, found `{}`", fault.found),
-                )
-                .hint("`=` sets, `==` compares"),
-            );
+            return Some(unequal(place, wanted, fault.found));
         }
         if fault.found != "=" || !fault.after_value() {
             return None;
@@ -373,4 +376,10 @@ impl Builder<'_> {
                 .hint(format!("write `var {} = …` or `let {} = …`", fault.found, fault.found)),
         )
     }
+}
+
+/// One sign of equality for another.
+fn unequal(place: Span, wanted: &str, found: &str) -> Diagnostic {
+    Diagnostic::error(code::EQUALS, place, format!("expected `{wanted}`, found `{found}`"))
+        .hint("`=` sets, `==` compares")
 }
