@@ -165,7 +165,7 @@ pub fn resolve(expression: &UnitExpr) -> Result<Unit, Diagnostic> {
     for factor in &expression.factors {
         let Some(unit) = unit(&factor.name.name) else {
             let mut error =
-                Diagnostic::error("E0301", factor.name.span, format!("unknown unit `{}`", factor.name.name));
+                Diagnostic::error("E0113", factor.name.span, format!("unknown unit `{}`", factor.name.name));
             if let Some(near) = super::nearest::nearest(&factor.name.name, UNITS.iter().copied()) {
                 error = error.hint(format!("did you mean `{near}`?"));
             }

@@ -65,6 +65,11 @@ impl Surface {
         edges.into_iter().flat_map(Edges::segments)
     }
 
+    /// Whether a place lies in a polygon.
+    pub(super) fn surrounds(&self, p: Vec2) -> bool {
+        matches!(&self.form, Form::Polygon(edges) if edges.surround(p))
+    }
+
     /// Squared distance from eight places to the rectangle around the surface.
     #[inline(always)]
     pub(super) fn squared_distance_to_bounds<S: Simd>(

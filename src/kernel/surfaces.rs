@@ -160,12 +160,16 @@ fn meeting(own: &Surface, other: &Surface) -> Option<Bounds> {
     }
     let meets = |s: &Segment| overlap(&around(s), &shared).is_some();
     let others: Vec<Segment> = other.edges().filter(meets).collect();
-    let within = |p: Vec2| other.nearest_to(p).1 <= 0.0;
+    // Two outlines of thousands of edges may lie on each other.
+    let nearby = Nearby::new(&others.iter().map(around).collect::<Vec<_>>());
+    let mut room = Vec::new();
     let mut meeting = None;
     for piece in own.edges().filter(meets) {
-        let hidden = within(piece.a) || within(piece.b);
+        let hidden = other.surrounds(piece.a) || other.surrounds(piece.b);
         let whole = hidden.then(|| overlap(&around(&piece), &other.bounds)).flatten();
-        for shared in others.iter().filter_map(|other| close(&piece, other)).chain(whole) {
+        let reach = overlap(&around(&piece), &around(&piece)).unwrap_or(shared);
+        let near = nearby.find(&reach, &mut room).iter().map(|&k| &others[k as usize]);
+        for shared in near.filter_map(|other| close(&piece, other)).chain(whole) {
             meeting = Some(hull(meeting, shared));
         }
     }

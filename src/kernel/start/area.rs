@@ -103,3 +103,32 @@ pub fn check_area(scenario: &Scenario) -> Vec<Crowding> {
     }
     out
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Blocks of 1 m every 4 m, 400 of them: a sixteenth of the plane.
+    fn blocks() -> Vec<Shape> {
+        let at = |k: u32| Vec2::new(f64::from(k % 20) * 4.0 + 1.0, f64::from(k / 20) * 4.0 + 1.0);
+        (0..400).map(|k| Shape::rectangle(at(k), at(k) + Vec2::new(1.0, 1.0))).collect()
+    }
+
+    #[test]
+    fn what_blocks_take_is_found_where_each_of_them_is() {
+        let blocks = blocks();
+        let solids: Vec<&Shape> = blocks.iter().collect();
+        let hall = Shape::rectangle(Vec2::new(0.0, 0.0), Vec2::new(80.0, 80.0));
+        let bounds = hall.bounds();
+        let free = free_area(&hall, 0.0, &bounds, &solids);
+        // The grid's points are half a metre apart and fall into each block alike.
+        assert!((free - 6_000.0).abs() < 1e-6, "{free}");
+        let cell = (bounds.high - bounds.low) / f64::from(GRID);
+        let points = (0..GRID * GRID).map(|k| {
+            let place = Vec2::new(f64::from(k % GRID) + 0.5, f64::from(k / GRID) + 0.5);
+            bounds.low + place.component_mul(&cell)
+        });
+        let all = points.filter(|p| solids.iter().all(|solid| solid.distance(*p) >= 0.0)).count();
+        assert_eq!(free, all as f64 * cell.x * cell.y);
+    }
+}

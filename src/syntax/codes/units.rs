@@ -5,18 +5,6 @@ use super::Page;
 /// The pages, by code.
 pub(super) const PAGES: &[Page] = &[
     Page {
-        code: "E0301",
-        title: "unknown unit",
-        text: "\
-Known are m, cm, mm, km, s, ms, min, h, kg, g, N, kN, deg, rad, Hz, %, step and steps, with powers, quotients and\n\
-products of them.\n\
-\n\
-Wrong:\n\
-\x20   mass = 75 kilos\n\
-Right:\n\
-\x20   mass = 75 kg",
-    },
-    Page {
         code: "E0302",
         title: "a unit is out of range",
         text: "\
