@@ -181,6 +181,18 @@ fn with_room(test: impl FnOnce() + Send + 'static) {
 }
 
 #[test]
+fn functions_through_hundreds_of_others_are_too_deep_only_for_who_calls_them() {
+    with_room(|| {
+        let chain: String = (1..=900).rev().map(|k| format!("let f{k}(a) = f{}(a) + 1 m\n", k - 1)).collect();
+        let scenario = format!("{THREE}{chain}let f0(a) = distance(a, me)\n");
+        understood(&scenario, "estimate P(f5(crowd[1]) > 6 m)");
+        refused(&scenario, "estimate P(f900(crowd[1]) > 6 m)", "E0211");
+        let circle = scenario.replace("let f0(a) = distance(a, me)", "let f0(a) = f3(a)");
+        refused(&circle, "", "E0205");
+    });
+}
+
+#[test]
 fn what_functions_repeat_grows_only_within_reason() {
     fn nested(times: usize, before: &str, inner: &str, after: &str) -> String {
         format!("{}{inner}{}", before.repeat(times), after.repeat(times))

@@ -15,6 +15,8 @@ use super::super::dimension::{self, Dimension};
 /// Names that stand for something unless they are declared.
 const BUILT_IN: [&str; 3] = ["time", "everyone", "pi"];
 
+/// Down to what depth calls are followed whose arguments nobody knows.
+const FOLLOWED: u32 = 400;
 /// Most calls that are shown of an error inside functions that call each other.
 const MOST_CALLS: usize = 4;
 
@@ -291,7 +293,8 @@ impl<'a> Elaborator<'a> {
 
     /// Follows a call whose arguments nobody knows, each function once: it may lead back to itself.
     fn follow(&mut self, decl: &LetDecl, (mut inner, path): (Locals, String), span: Span) {
-        if !self.looking {
+        // Functions through hundreds of others are too deep only if somebody calls them.
+        if !self.looking || self.depth > FOLLOWED {
             return;
         }
         let key = (inner.scope, path.clone());
