@@ -3,6 +3,7 @@
 #![allow(clippy::case_sensitive_file_extension_comparisons, reason = "names are given in lower case")]
 #![allow(clippy::disallowed_methods, reason = "a test reads its own files")]
 
+use smc::compile::{Files, Input, compile, own_errors};
 use smc::syntax::diagnostic::Diagnostic;
 use smc::syntax::parse::{decode, parse_properties, parse_scenario, parse_value};
 use smc::syntax::render::render;
@@ -63,26 +64,80 @@ fn values() {
     }
 }
 
+/// All that is said of two texts, one of them a scenario, with the time it took.
+fn told(scenario: &str, properties: &str) -> (usize, Duration) {
+    let sources =
+        [Source::new(SourceId(0), "many.scn", scenario), Source::new(SourceId(1), "many.bltl", properties)];
+    let start = Instant::now();
+    let (tree, mut said) = parse_scenario(&sources[0]);
+    let (asked, more) = parse_properties(&sources[1]);
+    said.extend(more);
+    let (files, asked) = (Files::default(), [asked]);
+    let input =
+        Input { sources: &sources, scenario: &tree, properties: &asked, files: &files, settings: &[] };
+    let own = own_errors(compile(&input).1, &said, &input);
+    said.extend(own);
+    render(&said, &sources, false);
+    (said.len(), start.elapsed())
+}
+
 #[test]
 fn thousands_of_errors_are_told_in_seconds() {
-    let lines = |count: usize, line: &dyn Fn(usize) -> String| (0..count).map(line).collect::<String>();
-    let faults = lines(32_000, &|k| format!("const a{k} = 1 )\n"));
-    let strays = lines(16_000, &|k| format!("}}\nconst a{k} = 1\n"));
-    let fields = format!("agent a: b {{ {}}}\n", "x = 1 ".repeat(100_000));
-    let on_a_line =
-        format!("scene {{ {}}}\n", "wall a: (1, 2) -- (1 2) wall b: (1, 2) -- (1, 2) ".repeat(4_000));
-    let quotes = format!("const a = \"{}\n", "\\\"".repeat(32_000));
-    let braces = format!("const a = \"{}x\n", " } {".repeat(100_000));
-    for (text, count) in
-        [(faults, 32_000), (strays, 16_000), (fields, 0), (on_a_line, 4_000), (quotes, 1), (braces, 1)]
-    {
-        let source = Source::new(SourceId(0), "many.scn", text);
-        let start = Instant::now();
-        let said = diagnostics(&source);
-        render(&said, std::slice::from_ref(&source), false);
-        let took = start.elapsed();
-        assert_eq!(said.len(), count, "{}", &source.text[..40]);
-        // It is less than two; with work in proportion to the square of the errors it would be ten or more.
-        assert!(took < Duration::from_secs(6), "{took:?}: {}", &source.text[..40]);
+    const CLOCK: &str = "horizon = 10 s\nprocess p { var n: 0 .. 5 = 0 when n < 5 at 1 /s -> n = n + 1 }\n";
+    type Write = Box<dyn Fn(usize) -> String>;
+    type Case = (Write, fn(usize) -> usize);
+    let parts = |before: &'static str, part: fn(usize) -> String, after: &'static str| -> Write {
+        Box::new(move |count| format!("{before}{}{after}", (0..count).map(part).collect::<String>()))
+    };
+    let scenarios: [Case; 13] = [
+        (parts(CLOCK, |k| format!("const a{k} = 1 )\n"), ""), |n| n),
+        (parts(CLOCK, |k| format!("}}\nconst a{k} = 1\n"), ""), |n| n),
+        (parts("agent a: b { ", |_| "x = 1 ".to_owned(), "}\n"), |n| n + 2),
+        (
+            parts(
+                "scene { ",
+                |_| "wall a: (1, 2) -- (1 2) wall b: (1, 2) -- (1, 2) ".to_owned(),
+                "}\nhorizon = 1 s\nstep = 1 s\n",
+            ),
+            |n| n,
+        ),
+        (parts("const a = \"", |_| "\\\"".to_owned(), "\n"), |_| 1),
+        (parts("const a = \"", |_| " } {".to_owned(), "x\n"), |_| 1),
+        // The rest is one line each, or points back at one place.
+        (parts(CLOCK, |k| format!("const a{k} = 1 ]; const b{k} = 1;"), "\n"), |_| 1),
+        (
+            parts(
+                "horizon = 1 s\nstep = 1 s\nbehaviour b { state s { ",
+                |k| format!("after 2 s x{k}; when true -> s;"),
+                "} }\n",
+            ),
+            |n| n,
+        ),
+        (parts(CLOCK, |k| format!("let a{k} = F<=2 s (3 > 2);"), "\n"), |n| n),
+        (parts(CLOCK, |k| format!("a{k} = 30 s = 2 s;"), "\n"), |n| n),
+        (parts("process q { ", |_| "when true -> n = 2 m = 3;".to_owned(), "}\nhorizon = #9\n"), |n| n),
+        (parts(CLOCK, |_| "const a = 1\n".to_owned(), ""), |n| n - 1),
+        (parts(CLOCK, |_| "const a = 1;".to_owned(), "\n"), |n| n - 1),
+    ];
+    let properties: [Case; 2] = [
+        (
+            parts("property a = F<=1 s (p.n == 3)\n", |_| "check P(a) >= 0.5 with n = 3; ".to_owned(), ""),
+            |n| n,
+        ),
+        (parts("", |k| format!("property a{k} = 0 < 1 < p.n; "), ""), |n| n),
+    ];
+    let both = scenarios.into_iter().map(|case| (true, case)).chain(properties.map(|case| (false, case)));
+    for (of_scenario, (write, errors)) in both {
+        let tell = |count: usize| {
+            let text = write(count);
+            let (said, took) = if of_scenario { told(&text, "let fine = 1\n") } else { told(CLOCK, &text) };
+            assert_eq!(said, errors(count), "{}", &text[..40]);
+            took
+        };
+        // Four times as much takes four times as long, and sixteen times with work in proportion to the square; another
+        // may have taken the processor for a while.
+        let ratio = || tell(8_000).as_secs_f64() / tell(2_000).as_secs_f64();
+        let least = (0..3).map(|_| ratio()).find(|ratio| *ratio < 9.0);
+        assert!(least.is_some(), "{}: {:?} {:?}", write(1), tell(2_000), tell(8_000));
     }
 }

@@ -375,8 +375,12 @@ impl Elaborator<'_> {
         match made {
             None => Ok(()),
             Some(reason @ (Invalid::TooLarge { .. } | Invalid::TooMany { .. })) => {
-                let error = Diagnostic::error("E0509", span, reason.to_string());
-                self.report(error.hint("a longer step, shorter windows, or fewer of them in one another"))
+                let hint = if matches!(reason, Invalid::TooMany { .. }) {
+                    "give the sum or mean a bound, or ask for it at fewer states"
+                } else {
+                    "a longer step, shorter windows, or fewer of them in one another"
+                };
+                self.report(Diagnostic::error("E0509", span, reason.to_string()).hint(hint))
             }
             // How far the horizon is nobody knows.
             Some(Invalid::BeyondHorizon { .. }) if self.told < Told::Whole => Ok(()),

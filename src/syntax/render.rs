@@ -15,13 +15,17 @@ pub fn render(diagnostics: &[Diagnostic], sources: &[Source], color: bool) -> St
     for diagnostic in diagnostics {
         let (group, cuts) = group(diagnostic, sources);
         let rendered = renderer.render(&[group]);
-        text.push_str(&cuts.iter().fold(rendered, |rendered, cut| cut.undone(rendered)));
+        if cuts.iter().all(|cut| cut.characters == 0) {
+            text.push_str(&rendered);
+        } else {
+            undone(&cuts, &rendered, &mut text);
+        }
         text.push_str("\n\n");
     }
     text
 }
 
-/// Characters that a line lost at its start before it was rendered.
+/// Characters that the line of a snippet lost at its start before it was rendered.
 struct Cut {
     /// What stands before the column of a place on that line.
     place: String,
@@ -29,14 +33,26 @@ struct Cut {
 }
 
 impl Cut {
-    /// Counts the column from the start of the line.
-    fn undone(&self, mut rendered: String) -> String {
-        let Some(from) = rendered.find(&self.place).map(|at| at + self.place.len()) else { return rendered };
-        let length = rendered[from..].bytes().take_while(u8::is_ascii_digit).count();
-        if let Ok(column) = rendered[from..from + length].parse::<usize>() {
-            rendered.replace_range(from..from + length, &(column + self.characters).to_string());
+    /// The line above the snippet with the column counted from the start of its line.
+    fn heading(&self, heading: &str) -> Option<String> {
+        let (before, rest) = heading.split_once(&self.place)?;
+        let length = rest.bytes().take_while(u8::is_ascii_digit).count();
+        let column = rest[..length].parse::<usize>().ok()? + self.characters;
+        Some(format!("{before}{}{column}{}", self.place, &rest[length..]))
+    }
+}
+
+/// Counts the columns above snippets from the starts of their lines: each snippet has its cut.
+fn undone(cuts: &[Cut], rendered: &str, text: &mut String) {
+    let mut cuts = cuts.iter();
+    for line in rendered.split_inclusive('\n') {
+        let mut mark = line.trim_start();
+        while let Some((_, behind)) = mark.strip_prefix("\x1b[").and_then(|color| color.split_once('m')) {
+            mark = behind;
         }
-        rendered
+        let is_heading = mark.starts_with("-->") || mark.starts_with(":::");
+        let heading = if is_heading { cuts.next().and_then(|cut| cut.heading(line)) } else { None };
+        text.push_str(heading.as_deref().unwrap_or(line));
     }
 }
 
@@ -50,17 +66,14 @@ fn group<'a>(diagnostic: &'a Diagnostic, sources: &'a [Source]) -> (Group<'a>, V
     let mut cuts = Vec::new();
     let mut rest: Vec<&Label> = diagnostic.related.iter().collect();
     if let Some(place) = &diagnostic.place {
-        // One snippet a source: that of the place first, then those of other files.
-        let mut of = Some((place.span.source, Some(place)));
-        while let Some((id, primary)) = of {
-            let (here, elsewhere): (Vec<_>, Vec<_>) =
-                rest.into_iter().partition(|label| label.span.source == id);
-            if let Some(source) = sources.iter().find(|source| source.id == id) {
+        // One snippet a source, and one for what lies far away in it: that of the place first, then those of others.
+        let mut of = Some((place, Some(place)));
+        while let Some((first, primary)) = of {
+            let (here, elsewhere) = near(first, rest);
+            if let Some(source) = sources.iter().find(|source| source.id == first.span.source) {
                 let window = window(source, primary.into_iter().chain(here.iter().copied()));
                 let (line, column) = source.line_column(window.start as u32);
-                if column > 1 {
-                    cuts.push(Cut { place: format!("{}:{line}:", source.name), characters: column - 1 });
-                }
+                cuts.push(Cut { place: format!("{}:{line}:", source.name), characters: column - 1 });
                 let mut snippet =
                     Snippet::source(&source.text[window.clone()]).line_start(line).path(source.name.as_str());
                 let kinds = primary.map(|label| (AnnotationKind::Primary, label)).into_iter();
@@ -70,7 +83,7 @@ fn group<'a>(diagnostic: &'a Diagnostic, sources: &'a [Source]) -> (Group<'a>, V
                 }
                 group = group.element(snippet);
             }
-            of = elsewhere.first().map(|label| (label.span.source, None));
+            of = elsewhere.first().map(|label| (*label, None));
             rest = elsewhere;
         }
     }
@@ -78,6 +91,32 @@ fn group<'a>(diagnostic: &'a Diagnostic, sources: &'a [Source]) -> (Group<'a>, V
         group = group.element(Level::HELP.message(hint.as_str()));
     }
     (group, cuts)
+}
+
+/// Bytes between two places that are shown apart.
+const FAR: u32 = 1 << 13;
+
+/// Those of some labels that are shown with the first one, and the others: the renderer reads all that stands between
+/// those which it shows together, and for thousands of errors that point back at one place that would be much.
+fn near<'a>(first: &Label, labels: Vec<&'a Label>) -> (Vec<&'a Label>, Vec<&'a Label>) {
+    let (mut low, mut high) = (first.span.start, first.span.end);
+    let (mut here, mut rest) = (Vec::new(), labels);
+    loop {
+        let is_near = |label: &&Label| {
+            label.span.source == first.span.source
+                && label.span.start <= high.saturating_add(FAR)
+                && low <= label.span.end.saturating_add(FAR)
+        };
+        let (found, others): (Vec<_>, Vec<_>) = rest.into_iter().partition(is_near);
+        rest = others;
+        if found.is_empty() {
+            return (here, rest);
+        }
+        for label in &found {
+            (low, high) = (low.min(label.span.start), high.max(label.span.end));
+        }
+        here.extend(found);
+    }
 }
 
 /// Bytes of a line on either side of what is marked there: more than fit on a line of output.
@@ -94,19 +133,20 @@ fn window<'a>(source: &Source, labels: impl Iterator<Item = &'a Label>) -> Range
         high = high.max(end);
     }
     let text = source.text.as_str();
-    let line = |at: usize| text[..at].rfind('\n');
-    let newline = |from: usize| text[from..].find('\n').map(|at| from + at + 1);
-    let mut start = line(low).and_then(line).map_or(0, |newline| newline + 1);
-    let mut end = newline(high).and_then(newline).unwrap_or(text.len());
+    let line = |at: usize| source.line_start(at as u32) as usize;
+    // One past the line break at the end of a line.
+    let next_line = |at: usize| (source.line_end(at as u32) as usize + 1).min(text.len());
+    let mut start = line(line(low).saturating_sub(1));
+    let mut end = next_line(next_line(high));
     if text.get(low..high).is_some_and(|marked| !marked.contains('\n')) {
         // Blanks at the start count as indentation: a line that is cut starts with something else.
-        let first = line(low).map_or(0, |newline| newline + 1);
+        let first = line(low);
         let left = floor(text, low.saturating_sub(AROUND)).max(first);
         if let Some(at) = text[first..left].rfind(|c: char| !c.is_whitespace()) {
             start = first + at;
         }
         let right = floor(text, high + AROUND);
-        if newline(high).is_none_or(|newline| right < newline) {
+        if right < next_line(high) {
             end = right;
         }
     }
@@ -167,6 +207,34 @@ mod tests {
         let diagnostic = Diagnostic::error("E0101", Span::new(SourceId(0), at, at + 1), "expected a time")
             .related(Span::new(SourceId(0), at + 4, at + 5), "a number");
         render(&[diagnostic], &[source], false)
+    }
+
+    #[test]
+    fn places_far_apart_are_shown_apart() {
+        let line = "const a = 1\n";
+        let many = |parted: usize, line: &str| {
+            let text = line.repeat(parted + 1);
+            let at = text.len() - line.len();
+            let source = Source::new(SourceId(0), "a.scn", text);
+            let name = |at: usize| Span::new(SourceId(0), at + 6, at + 7);
+            let diagnostic = Diagnostic::error("E0202", name(at), "`a` is declared twice")
+                .related(name(0), "first declared here")
+                .related(name(line.len()), "and here");
+            [false, true]
+                .map(|color| render(std::slice::from_ref(&diagnostic), std::slice::from_ref(&source), color))
+        };
+        let [plain, _] = many(100, line);
+        assert!(plain.contains("--> a.scn:101:7\n") && plain.contains("\n...\n"), "{plain}");
+        assert!(!plain.contains(":::"), "{plain}");
+        let [plain, color] = many(1_000, line);
+        assert!(plain.contains("--> a.scn:1001:7\n") && plain.contains("::: a.scn:1:7\n"), "{plain}");
+        assert!(plain.contains("first declared here") && plain.contains("and here"), "{plain}");
+        assert!(color.contains("a.scn:1001:7") && color.contains("a.scn:1:7"), "{color}");
+        // On one line, too.
+        for text in many(1_000, "const a = 1;") {
+            assert!(text.contains("a.scn:1:12007") && text.contains("a.scn:1:7"), "{text}");
+            assert!(text.contains("first declared here") && text.contains("and here"), "{text}");
+        }
     }
 
     #[test]

@@ -37,6 +37,16 @@ pub struct Source {
     /// The whole text.
     pub text: String,
     line_starts: Vec<u32>,
+    /// Characters before each block of bytes.
+    characters: Vec<u32>,
+}
+
+/// Bytes of a block.
+const BLOCK: usize = 1 << 10;
+
+/// How many characters start in some bytes.
+fn starts(bytes: &[u8]) -> u32 {
+    bytes.iter().filter(|byte| !matches!(byte, 0x80..=0xBF)).count() as u32
 }
 
 impl Source {
@@ -45,20 +55,73 @@ impl Source {
         let text = text.into();
         let line_starts =
             std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at as u32 + 1)).collect();
-        Self { id, name: name.into(), text, line_starts }
+        let blocks = text.as_bytes().chunks(BLOCK).scan(0, |before, block| {
+            let here = *before;
+            *before += starts(block);
+            Some(here)
+        });
+        let characters = blocks.collect();
+        Self { id, name: name.into(), text, line_starts, characters }
+    }
+
+    /// How many characters start before a byte.
+    fn characters_before(&self, byte: usize) -> usize {
+        let byte = byte.min(self.text.len());
+        // The end of the text may be the end of a block.
+        let block = (byte / BLOCK).min(self.characters.len().saturating_sub(1));
+        let before = self.characters.get(block).copied().unwrap_or(0);
+        (before + starts(&self.text.as_bytes()[block * BLOCK..byte])) as usize
+    }
+
+    /// The line of a byte, from 1.
+    pub fn line(&self, byte: u32) -> usize {
+        self.line_starts.partition_point(|&start| start <= byte).max(1)
+    }
+
+    /// The first byte of the line of a byte.
+    pub fn line_start(&self, byte: u32) -> u32 {
+        self.line_starts[self.line(byte) - 1]
+    }
+
+    /// The end of the line of a byte, before its line break.
+    pub fn line_end(&self, byte: u32) -> u32 {
+        self.line_starts.get(self.line(byte)).map_or(self.text.len() as u32, |next| next - 1)
     }
 
     /// Line and column of a byte, both from 1; the column counts characters.
     pub fn line_column(&self, byte: u32) -> (usize, usize) {
-        let line = self.line_starts.partition_point(|&start| start <= byte).max(1);
-        let start = self.line_starts[line - 1] as usize;
-        let end = (byte as usize).min(self.text.len());
-        let column = self.text.get(start..end).map_or(end.saturating_sub(start), |s| s.chars().count());
-        (line, column + 1)
+        let start = self.line_start(byte) as usize;
+        let column = self.characters_before(byte as usize) - self.characters_before(start);
+        (self.line(byte), column + 1)
     }
 
     /// The text of a span.
     pub fn slice(&self, span: Span) -> &str {
         self.text.get(span.start as usize..span.end as usize).unwrap_or("")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_count_characters_however_long_the_line() {
+        for (part, times) in [("aé→𝄞 ", 1_000), ("a", 2 * BLOCK), ("é\n", 3), ("", 1), ("ab\n→", 700)]
+        {
+            let source = Source::new(SourceId(0), "a.scn", part.repeat(times));
+            let (mut line, mut column) = (1, 1);
+            let ends = source.text.char_indices().map(|(at, c)| (at, Some(c)));
+            for (at, c) in ends.chain([(source.text.len(), None)]) {
+                let byte = at as u32;
+                assert_eq!(source.line_column(byte), (line, column), "{at} of {part:?}");
+                let rest = &source.text[at..];
+                assert_eq!(source.line_end(byte) as usize, at + rest.find('\n').unwrap_or(rest.len()));
+                let before = source.text[..at].rfind('\n').map_or(0, |newline| newline + 1);
+                assert_eq!(source.line_start(byte) as usize, before);
+                (line, column) = if c == Some('\n') { (line + 1, 1) } else { (line, column + 1) };
+            }
+            assert_eq!(source.line_column(u32::MAX), source.line_column(source.text.len() as u32));
+        }
     }
 }

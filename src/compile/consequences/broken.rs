@@ -1,11 +1,12 @@
 //! What could not be read, and which errors come of it.
 
-use super::{DIMENSION, UNKNOWN, bare, has_word, leading_word, lines, within, word, words};
+use super::{DIMENSION, UNKNOWN, bare, has_word, leading_word, lines, word, words};
 use crate::compile::dimension;
 use crate::compile::queries::Input;
 use crate::compile::told::is_stepped;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::source::{Source, SourceId, Span};
+use std::cmp::Reverse;
 use std::collections::BTreeSet;
 
 /// Codes of names that are not there, or of what needs one.
@@ -19,6 +20,8 @@ const BRACKETS: [&str; 6] = ["E0102", "E0103", "E0104", "E0105", "E0106", "E0107
 /// Codes of a file that was not read at all, or not from here on.
 const TOO_DEEP: &str = "E0106";
 const COMMENT: &str = "E0104";
+/// Code of a bracket that closes nothing.
+const STRAY: &str = "E0103";
 /// Code of moves without an option.
 const NO_OPTIONS: &str = "E0406";
 /// Code of an agent that nothing advises.
@@ -62,17 +65,50 @@ const NAMELESS: [&str; 13] = [
 /// Words that start a part of a scene.
 const SCENERY: [&str; 5] = ["import", "obstacle", "point", "region", "wall"];
 /// Words that start what has no part in a clock, and words that have.
-const TIMELESS: [&str; 5] = ["const", "kind", "let", "param", "tracks"];
+const TIMELESS: [&str; 11] =
+    ["const", "kind", "label", "let", "obstacle", "param", "point", "region", "tracks", "var", "wall"];
 const TIMES: [&str; 6] = ["after", "at", "horizon", "process", "step", "when"];
+
+/// Parts of sources by where they start, with the greatest end of a part up to there.
+struct Parts(Vec<(Span, u32)>);
+
+impl Parts {
+    fn of(parts: impl Iterator<Item = Span>) -> Self {
+        let mut parts: Vec<(Span, u32)> = parts.map(|part| (part, part.end)).collect();
+        parts.sort_unstable();
+        for k in 1..parts.len() {
+            if parts[k - 1].0.source == parts[k].0.source {
+                parts[k].1 = parts[k].1.max(parts[k - 1].1);
+            }
+        }
+        Self(parts)
+    }
+
+    /// Whether a place lies in one of them.
+    fn hold(&self, place: Span) -> bool {
+        let before =
+            self.0.partition_point(|(part, _)| (part.source, part.start) <= (place.source, place.start));
+        self.0[..before].last().is_some_and(|(part, end)| part.source == place.source && place.end <= *end)
+    }
+
+    /// Whether one of them lies in a place.
+    fn some_within(&self, place: Span) -> bool {
+        let from =
+            self.0.partition_point(|(part, _)| (part.source, part.start) < (place.source, place.start));
+        self.0[from..]
+            .iter()
+            .take_while(|(part, _)| part.source == place.source && part.start < place.end)
+            .any(|(part, _)| part.end <= place.end)
+    }
+}
 
 /// What could not be read.
 #[allow(clippy::struct_excessive_bools, reason = "each answers a question of its own")]
 pub(super) struct Broken<'i> {
     sources: &'i [Source],
-    /// Texts that were skipped, and their words.
-    lost: Vec<Span>,
-    /// Declarations that ended early.
-    cut: Vec<Span>,
+    /// Texts that were skipped or whose values could not be read, with declarations that ended early, and their words.
+    lost: Parts,
+    skipped: Parts,
     swallowed: BTreeSet<&'i str>,
     /// Names whose declarations were not read, or not to their end.
     suspects: BTreeSet<&'i str>,
@@ -98,8 +134,8 @@ impl<'i> Broken<'i> {
         let cut = input.scenario.cut.iter().chain(files.flat_map(|file| &file.cut));
         let mut broken = Self {
             sources: input.sources,
-            lost: lost.clone().copied().collect(),
-            cut: cut.clone().copied().collect(),
+            lost: Parts::of(lost.clone().copied()),
+            skipped: Parts::of(lost.clone().chain(cut.clone()).copied()),
             swallowed: BTreeSet::new(),
             suspects: BTreeSet::new(),
             set: BTreeSet::new(),
@@ -111,6 +147,7 @@ impl<'i> Broken<'i> {
             derailed: BTreeSet::new(),
             faulty: BTreeSet::new(),
         };
+        let mut texts: Vec<Span> = Vec::new();
         for one in said.iter().filter(|one| one.severity == Severity::Error) {
             let Some(place) = &one.place else { continue };
             broken.with_errors.insert(place.span.source);
@@ -121,14 +158,18 @@ impl<'i> Broken<'i> {
                 DERAILS.contains(&one.code) && !broken.starts_line(place.span) && !broken.was_mended(one);
             if derails || BRACKETS.contains(&one.code) {
                 broken.derailed.extend(broken.line_of(place.span));
-                broken.add(place.span.source, lines(input.sources, place.span).unwrap_or_default());
+                texts.extend(lines(input.sources, place.span));
             }
         }
         for span in lost.clone() {
             broken.swallowed.extend(words(word(input.sources, *span).unwrap_or_default()));
         }
-        for span in lost.chain(cut) {
-            broken.add(span.source, word(input.sources, *span).unwrap_or_default());
+        // Of texts that start alike the longest says all: each of thousands of errors on a line has that line.
+        texts.extend(lost.chain(cut));
+        texts.sort_by_key(|span| (span.source, span.start, Reverse(span.end)));
+        texts.dedup_by_key(|span| (span.source, span.start));
+        for span in texts {
+            broken.add(span.source, word(input.sources, span).unwrap_or_default());
         }
         // Of a scenario without times in seconds the processes decide which clock it has.
         broken.clock &= !is_stepped(input.scenario);
@@ -141,9 +182,11 @@ impl<'i> Broken<'i> {
     fn swallow(&mut self, one: &Diagnostic, place: Span) {
         let bracket = BRACKETS.contains(&one.code) && place.source == SourceId(0);
         let braces = one.title.contains("`{`") || one.title.contains("`}`");
-        let (first, rest) = leading_word(lines(self.sources, place).unwrap_or_default());
+        let line = lines(self.sources, place).and_then(|line| word(self.sources, line));
+        let (first, rest) = leading_word(line.unwrap_or_default());
         let declares = BRACKETS.contains(&one.code) && DECLARES.contains(&first) && !is_named(first, rest);
-        self.any_name |= bracket && braces || declares || one.code == TOO_DEEP;
+        let displaces = bracket && braces && !(one.code == STRAY && self.is_over(place));
+        self.any_name |= displaces || declares || one.code == TOO_DEEP;
         self.clock |= bracket;
         if one.code == COMMENT
             && let Some(source) = self.sources.iter().find(|source| source.id == place.source)
@@ -161,7 +204,9 @@ impl<'i> Broken<'i> {
         let times = !TIMELESS.contains(&first) || TIMES.iter().any(|word| has_word(text, word));
         self.clock |= source == SourceId(0) && times;
         if DECLARES.contains(&first) {
-            self.any_name |= second.is_empty();
+            // A wall may have no name.
+            let nameless = first == "wall" && rest.trim_start().starts_with('(');
+            self.any_name |= second.is_empty() && !nameless;
             self.suspects.extend(Some(second).filter(|name| !name.is_empty()));
         } else if rest.trim_start().starts_with('=') {
             self.set.insert(first);
@@ -173,8 +218,7 @@ impl<'i> Broken<'i> {
 
     /// Whether the parser took what stands there as it is meant: `==` for `=`.
     fn was_mended(&self, one: &Diagnostic) -> bool {
-        let skipped = |place: Span| self.lost.iter().chain(&self.cut).any(|part| within(place, *part));
-        one.code == EQUALS && !one.place.as_ref().is_some_and(|place| skipped(place.span))
+        one.code == EQUALS && !one.place.as_ref().is_some_and(|place| self.skipped.hold(place.span))
     }
 
     fn is_broken(&self, source: SourceId) -> bool {
@@ -183,15 +227,22 @@ impl<'i> Broken<'i> {
 
     /// Whether a place is the first of its line.
     fn starts_line(&self, span: Span) -> bool {
-        let before = Span { start: 0, end: span.start, ..span };
-        let text = word(self.sources, before).unwrap_or_default();
-        text[text.rfind('\n').map_or(0, |newline| newline + 1)..].trim().is_empty()
+        let line = lines(self.sources, span).map_or(span.start, |line| line.start);
+        let before = word(self.sources, Span { start: line, end: span.start, ..span });
+        before.unwrap_or_default().trim().is_empty()
+    }
+
+    /// Whether a brace that closes nothing is just one too many: one that starts a line may stand for a word.
+    fn is_over(&self, place: Span) -> bool {
+        let line = lines(self.sources, place).map_or(place.end, |line| line.end);
+        let behind = word(self.sources, Span { start: place.end, end: line, ..place });
+        !self.starts_line(place) || behind.unwrap_or_default().trim().is_empty()
     }
 
     /// The line in which a place starts.
     fn line_of(&self, span: Span) -> Option<(SourceId, usize)> {
         let source = self.sources.iter().find(|source| source.id == span.source)?;
-        Some((span.source, source.line_column(span.start).0))
+        Some((span.source, source.line(span.start)))
     }
 
     /// The name that is set to what stands at a place: `density = 0.2 /m^2`.
@@ -215,7 +266,7 @@ impl<'i> Broken<'i> {
             || self.suspects.contains(name)
             || self.set.contains(name)
             || self.swallowed.contains(name)
-            || name.is_empty() && !self.lost.is_empty()
+            || name.is_empty() && !self.lost.0.is_empty()
     }
 
     pub(super) fn is_own(&self, one: &Diagnostic) -> bool {
@@ -231,7 +282,7 @@ impl<'i> Broken<'i> {
         let of_line = self.line_of(place).is_some_and(|line| self.derailed.contains(&line));
         let of_clock = self.clock
             && (CLOCKS.contains(&one.code) || one.code == DIMENSION && one.title.contains("(steps)"));
-        let of_options = one.code == NO_OPTIONS && self.lost.iter().any(|part| within(*part, place));
+        let of_options = one.code == NO_OPTIONS && self.lost.some_within(place);
         let of_moves = one.code == NO_MOVES && one.title.contains("no moves") && self.moves;
         let of_scenery = one.code == INSIDE && self.scenery;
         let of_name =

@@ -249,17 +249,9 @@ pub(super) fn words(text: &str) -> impl DoubleEndedIterator<Item = &str> {
 }
 
 /// The lines of a place.
-fn lines(sources: &[Source], span: Span) -> Option<&str> {
-    let text = &sources.iter().find(|source| source.id == span.source)?.text;
-    let from = text.get(..span.start as usize)?.rfind('\n').map_or(0, |newline| newline + 1);
-    let rest = text.get(span.end as usize..)?;
-    let to = span.end as usize + rest.find('\n').unwrap_or(rest.len());
-    text.get(from..to)
-}
-
-/// Whether a place lies in another one.
-fn within(place: Span, whole: Span) -> bool {
-    place.source == whole.source && whole.start <= place.start && place.end <= whole.end
+fn lines(sources: &[Source], span: Span) -> Option<Span> {
+    let source = sources.iter().find(|source| source.id == span.source)?;
+    Some(Span { start: source.line_start(span.start), end: source.line_end(span.end), ..span })
 }
 
 /// The text of a place.

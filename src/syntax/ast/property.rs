@@ -10,7 +10,7 @@ pub struct PropertyFile {
     pub items: Vec<PropertyItem>,
     /// Parts that ended early, since what follows on their line could not be read; that was reported.
     pub cut: Vec<Span>,
-    /// Parts that could not be read; that was reported.
+    /// Parts that could not be read, and heads of those whose values could not; that was reported.
     pub lost: Vec<Span>,
 }
 

@@ -98,10 +98,11 @@ Right:\n\
     },
     Page {
         code: "E0509",
-        title: "this formula has to remember too much",
+        title: "this formula has to remember or to add up too much",
         text: "\
 A window inside another one keeps the states for which its answer is still open. With long windows and short steps\n\
-these are many, in each trial.\n\
+these are many, in each trial. A `sum<=∞` or `mean<=∞` ranges up to the horizon; asked at each state, all of\n\
+them end in the last one and are added up there: of more than 2^31 additions give it a bound, `mean<=10 s (queue.n)`.\n\
 \n\
 Wrong:\n\
 \x20   horizon = 3 h\n\

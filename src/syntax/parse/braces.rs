@@ -279,7 +279,7 @@ fn error(source: &Source, slip: Slip, change: &Change) -> Diagnostic {
 /// partner the grammar stumbles over what the brace left behind: one error is enough, and where both are about one
 /// brace, that of the grammar knows what should stand there.
 pub(super) fn together(source: &Source, said: Vec<Diagnostic>, slips: Vec<Diagnostic>) -> Vec<Diagnostic> {
-    let line = |byte: u32| source.line_column(byte).0;
+    let line = |byte: u32| source.line(byte);
     let start = |one: &Diagnostic| one.place.as_ref().map(|place| place.span.start);
     let bytes = |slip: &Diagnostic| {
         let related = slip.related.iter().map(|label| label.span.start);

@@ -24,10 +24,14 @@ pub(super) struct Builder<'s> {
     pub(super) diagnostics: Vec<Diagnostic>,
     /// Parts that ended early.
     pub(super) cut: Vec<Span>,
-    /// Parts that could not be read.
+    /// Parts that could not be read, and heads of those whose values could not.
     pub(super) lost: Vec<Span>,
     /// The brackets of the text, once somebody asked for them.
     pub(super) brackets: OnceCell<Brackets>,
+    /// Its arrows, once somebody asked for them: thousands of errors on a line look for one.
+    pub(super) arrows: OnceCell<Vec<usize>>,
+    /// The letters of temporal operators that it declares as names, once somebody asked for them.
+    pub(super) operators: OnceCell<String>,
 }
 
 /// Whether a pair is only a mark or keyword.
@@ -99,8 +103,36 @@ impl Builder<'_> {
         Span::new(self.source.id, pair.as_span().start(), end_of(pair))
     }
 
+    /// Whether an arrow stands before a byte in its line.
+    pub(super) fn follows_arrow(&self, at: usize) -> bool {
+        let arrows = self.arrows.get_or_init(|| self.text.match_indices("->").map(|(at, _)| at).collect());
+        let before = arrows.partition_point(|&arrow| arrow < at);
+        arrows[..before].last().is_some_and(|&arrow| arrow >= self.source.line_start(at as u32) as usize)
+    }
+
     pub(super) fn say(&mut self, diagnostic: Diagnostic) {
         self.diagnostics.push(diagnostic);
+    }
+
+    /// What is missed elsewhere if a part could not be made: from its start to the end of the name that it declares, of
+    /// what is set to the sign after it; of commands and moves, which have no names, their first word.
+    pub(super) fn head(&self, part: &Pair<'_>) -> Option<Span> {
+        let last = |inner: &Pair<'_>| match part.as_rule() {
+            Rule::setting => matches!(inner.as_rule(), Rule::t_assign | Rule::t_unequal),
+            Rule::command | Rule::heading | Rule::headings => true,
+            Rule::rank => false,
+            _ => inner.as_rule() == Rule::name,
+        };
+        let inner = part.clone().into_inner().find(last)?;
+        Some(Span { end: self.span(&inner).end, ..self.span(part) })
+    }
+
+    /// A part; where it could not be made for its values, its head is lost.
+    pub(super) fn missed<T>(&mut self, part: Option<T>, head: Option<Span>) -> Option<T> {
+        if part.is_none() {
+            self.lost.extend(head);
+        }
+        part
     }
 
     pub(super) fn ident(&self, pair: &Pair<'_>) -> Ident {

@@ -31,6 +31,11 @@ impl Fault<'_> {
     pub(super) fn after_value(&self) -> bool {
         self.expected.iter().any(|&rule| nouns::is_operator(rule))
     }
+
+    /// Whether a clause of a query could have stood there.
+    pub(super) fn takes_clauses(&self) -> bool {
+        self.expected.iter().any(|rule| matches!(rule, Rule::clause | Rule::under | Rule::kw_within))
+    }
 }
 
 /// The strict rule for what a bad part was meant to be.

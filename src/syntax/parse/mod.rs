@@ -4,6 +4,7 @@
 //! rest is returned.
 
 mod agents;
+mod bounds;
 mod braces;
 mod builder;
 pub(super) mod comments;
@@ -144,6 +145,8 @@ fn parse<T>(
         cut: Vec::new(),
         lost: Vec::new(),
         brackets: OnceCell::new(),
+        arrows: OnceCell::new(),
+        operators: OnceCell::new(),
     };
     match nesting::scan(source, text) {
         Scan::Fine => {}
@@ -190,7 +193,7 @@ fn order(source: &Source, diagnostics: &mut Vec<Diagnostic>) {
         let Some(place) = diagnostic.place.as_ref().filter(|_| diagnostic.severity == Severity::Error) else {
             return true;
         };
-        let line = source.line_column(place.span.start).0;
+        let line = source.line(place.span.start);
         errors.insert(line) || diagnostic.code != code::STRAY
     });
 }

@@ -19,7 +19,12 @@ impl Builder<'_> {
         let count = self.size(&mut parts)?;
         let items = parts
             .filter(|part| part.as_rule() == Rule::process_item)
-            .filter_map(|part| self.process_item(part.into_inner().next()?))
+            .filter_map(|part| {
+                let part = part.into_inner().next()?;
+                let head = self.head(&part);
+                let item = self.process_item(part);
+                self.missed(item, head)
+            })
             .collect();
         Some(ProcessDecl { name, count, items, span })
     }
@@ -114,7 +119,12 @@ impl Builder<'_> {
             parts.part(Rule::parameters).map(|parameters| self.parameters(parameters)).unwrap_or_default();
         let items = parts
             .filter(|part| part.as_rule() == Rule::behaviour_item)
-            .filter_map(|part| self.behaviour_item(part.into_inner().next()?))
+            .filter_map(|part| {
+                let part = part.into_inner().next()?;
+                let head = self.head(&part);
+                let item = self.behaviour_item(part);
+                self.missed(item, head)
+            })
             .collect();
         Some(BehaviourDecl { name, arguments, items, span })
     }

@@ -17,10 +17,9 @@ impl Builder<'_> {
             .filter(|part| part.as_rule() == Rule::property_item)
             .filter_map(|part| {
                 let part = part.into_inner().next()?;
-                let span = self.span(&part);
-                let declares = matches!(part.as_rule(), Rule::let_decl | Rule::const_decl | Rule::property);
+                let head = self.head(&part);
                 let item = self.property_item(part);
-                self.missed(item, declares, span)
+                self.missed(item, head)
             })
             .collect();
         PropertyFile { items, cut: std::mem::take(&mut self.cut), lost: std::mem::take(&mut self.lost) }

@@ -3,7 +3,6 @@
 use super::builder::{Builder, Pair, Parts};
 use super::grammar::Rule;
 use crate::syntax::ast::{Item, LetDecl, MoveOption, MovesDecl, ScenarioFile};
-use crate::syntax::source::Span;
 
 impl Builder<'_> {
     pub(super) fn scenario_file(&mut self, file: Pair<'_>) -> ScenarioFile {
@@ -12,21 +11,12 @@ impl Builder<'_> {
             .filter(|part| part.as_rule() == Rule::item)
             .filter_map(|part| {
                 let part = part.into_inner().next()?;
-                let (span, said) = (self.span(&part), self.diagnostics.len());
+                let head = self.head(&part);
                 let item = self.item(part);
-                let declares = self.diagnostics.len() > said;
-                self.missed(item, declares, span)
+                self.missed(item, head)
             })
             .collect();
         ScenarioFile { items, cut: std::mem::take(&mut self.cut), lost: std::mem::take(&mut self.lost) }
-    }
-
-    /// An item; where one that declares something could not be made, what it declares is not missed where it is used.
-    pub(super) fn missed<T>(&mut self, item: Option<T>, declares: bool, span: Span) -> Option<T> {
-        if item.is_none() && declares {
-            self.lost.push(span);
-        }
-        item
     }
 
     fn item(&mut self, pair: Pair<'_>) -> Option<Item> {
@@ -95,7 +85,12 @@ impl Builder<'_> {
         let duration = self.expr(parts.part(Rule::arith)?)?;
         let options = parts
             .filter(|part| part.as_rule() == Rule::move_option)
-            .filter_map(|part| self.move_option(part.into_inner().next()?))
+            .filter_map(|part| {
+                let part = part.into_inner().next()?;
+                let head = self.head(&part);
+                let option = self.move_option(part);
+                self.missed(option, head)
+            })
             .collect();
         Some(MovesDecl { agent, duration, options, span })
     }

@@ -9,7 +9,12 @@ impl Builder<'_> {
         self.report_faults(&pair);
         Parts::of(pair)
             .filter(|part| part.as_rule() == Rule::scene_item)
-            .filter_map(|part| self.scene_item(part.into_inner().next()?))
+            .filter_map(|part| {
+                let part = part.into_inner().next()?;
+                let head = self.head(&part);
+                let item = self.scene_item(part);
+                self.missed(item, head)
+            })
             .collect()
     }
 

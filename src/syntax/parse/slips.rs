@@ -13,39 +13,15 @@ impl Builder<'_> {
     pub(super) fn slip(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
         self.slip_in_text(fault)
             .or_else(|| self.slip_of_bound(fault))
+            .or_else(|| self.slip_of_bindings(fault))
             .or_else(|| self.slip_of_equals(fault))
             .or_else(|| self.slip_of_operator(fault))
             .or_else(|| self.slip_of_range(fault))
             .or_else(|| self.slip_of_quantifier(fault))
+            .or_else(|| self.slip_of_with(fault))
+            .or_else(|| self.slip_of_time(fault))
             .or_else(|| self.slip_of_unit(fault))
             .or_else(|| self.slip_of_process(fault))
-            .or_else(|| self.slip_of_time(fault))
-    }
-
-    /// `let late = F<=2 s (…)` in a scenario, where `F` is a name like any other.
-    fn slip_of_time(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
-        if !fault.after_value() || self.root != Rule::scenario_file {
-            return None;
-        }
-        let line_start = self.text[..fault.at].rfind('\n').map_or(0, |at| at + 1);
-        let line = &self.text[line_start..fault.at];
-        let operator = ["<=", "≤", "["].iter().filter_map(|mark| {
-            let at = line.rfind(mark)?;
-            let before = line[..at].trim_end();
-            let letter = before.chars().next_back().filter(|c| "FGXUWR".contains(*c))?;
-            let start = before.len() - letter.len_utf8();
-            let alone = !before[..start].ends_with(|c: char| c.is_alphanumeric() || c == '_');
-            alone.then_some((line_start + start, letter))
-        });
-        let (at, letter) = operator.max()?;
-        Some(
-            Diagnostic::error(
-                code::UNEXPECTED,
-                Span::new(self.source.id, at, at + letter.len_utf8()),
-                format!("`{letter}` looks ahead in time, which a scenario cannot"),
-            )
-            .hint("move this formula to a property file (`.bltl`)"),
-        )
     }
 
     fn slip_in_text(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
@@ -56,6 +32,11 @@ impl Builder<'_> {
                     .hint("close it with `\"`; a quote inside is written `\\\"`"),
             );
         }
+        // `3 % 2`, but not a number where the next line starts.
+        let before = self.text[..fault.at].trim_end_matches([' ', '\t']);
+        if fault.found.starts_with(|c: char| c.is_ascii_digit()) && before.ends_with('%') {
+            return Some(percent(self.place(before.len() - 1, "%")));
+        }
         let plain = match fault.found {
             "“" | "”" | "„" | "‘" | "’" | "'" => "\"",
             "–" | "−" | "—" => "-",
@@ -64,53 +45,13 @@ impl Builder<'_> {
             "→" => "->",
             "…" => "..",
             "%" if fault.after_value() => {
-                return Some(
-                    Diagnostic::error(code::CHARACTER, place, "`%` is the unit percent, no operator")
-                        .hint("there is no remainder; a share is written `95 %`"),
-                );
+                return Some(percent(place));
             }
             _ => return None,
         };
         Some(
             Diagnostic::error(code::CHARACTER, place, format!("unexpected {}", quote(fault.found)))
                 .hint(format!("write `{plain}`")),
-        )
-    }
-
-    /// `F<=0 s == 3`: the bound took the name for its unit; and `F<5 s p`.
-    fn slip_of_bound(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
-        let comparison = matches!(fault.found, "==" | "!=" | "<" | "<=" | ">" | ">=" | "≤" | "≥" | "≠");
-        let (unit_at, word) = lexeme::word_before(self.text, fault.at)?;
-        let place = self.place(fault.at, fault.found);
-        if comparison && matches!(word, "F" | "G" | "X" | "U" | "W" | "R") {
-            return Some(
-                Diagnostic::error(code::BOUND, place, format!("a bound of `{word}` is written with `<=`"))
-                    .hint(format!("write `{word}<=` and a time, or an interval: `{word}[1 s, 5 s]`")),
-            );
-        }
-        if !(comparison || matches!(fault.found, "+" | "*" | "/" | "^" | "-" | "in"))
-            || !quantity::UNITS.contains(&word)
-        {
-            return None;
-        }
-        let (number_at, number) = lexeme::word_before(self.text, unit_at)?;
-        let before = self.text[..number_at].trim_end();
-        let bounded = before.ends_with("<=") || before.ends_with('≤');
-        if !bounded || !number.starts_with(|c: char| c.is_ascii_digit()) {
-            return None;
-        }
-        let unit = Span::new(self.source.id, unit_at, unit_at + word.len());
-        Some(
-            Diagnostic::error(
-                code::BOUND_TOOK_NAME,
-                place,
-                format!("expected a formula, found {}", quote(fault.found)),
-            )
-            .related(unit, "read as the unit of the bound")
-            .hint(format!(
-                "write `#{number}` for so many steps, or parentheses: `({word} {} …)`",
-                fault.found
-            )),
         )
     }
 
@@ -148,7 +89,7 @@ impl Builder<'_> {
         }
         if let Some((start, word)) = lexeme::word_before(self.text, fault.at)
             && start > fault.from
-            && self.text[self.text[..start].rfind('\n').map_or(0, |at| at + 1)..start].trim().is_empty()
+            && self.text[fault.from..start].trim_end_matches([' ', '\t', '\r']).ends_with('\n')
         {
             let place = Span::new(self.source.id, start, start + word.len());
             return Some(
@@ -162,7 +103,7 @@ impl Builder<'_> {
         }
         if let Some((start, word)) = lexeme::word_before(self.text, fault.at)
             && let Some((_, word)) = word.rsplit_once('.')
-            && self.text[..start].rsplit('\n').next().is_some_and(|line| line.contains("->"))
+            && self.follows_arrow(start)
         {
             let error = Diagnostic::error(code::UNEXPECTED, place, "a process sets its own variables only");
             return Some(error.hint(format!(
@@ -190,7 +131,7 @@ impl Builder<'_> {
             .filter(|number| number.starts_with(|c: char| c.is_ascii_digit()))
             .filter(|_| !self.text[before..start].contains('\n'));
         let Some(number) = number else { return false };
-        let line = self.text[..start].rfind('\n').map_or(0, |newline| newline + 1);
+        let line = self.source.line_start(start as u32) as usize;
         let equals = start + text.find('=').unwrap_or(0);
         let place = Span::new(self.source.id, equals, equals + 1);
         let error =
@@ -283,6 +224,52 @@ impl Builder<'_> {
         Some(error.hint(format!("did you mean `{meant}`?")))
     }
 
+    /// `estimate P(p) with n = 3`
+    fn slip_of_with(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
+        if fault.found != "with" || !fault.takes_clauses() {
+            return None;
+        }
+        let place = self.place(fault.at, fault.found);
+        let error =
+            Diagnostic::error(code::UNEXPECTED, place, "`with` stands between the sides of a `compare`");
+        Some(error.hint("a query sets values of parameters by `under n = …`"))
+    }
+
+    /// `under n = 1 and m = 2`, `under n = 1 & m = 2`
+    fn slip_of_bindings(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
+        let compares = fault.expected.contains(&Rule::kw_with);
+        if !fault.expected.contains(&Rule::t_comma) || !(compares || fault.takes_clauses()) {
+            return None;
+        }
+        let (at, joined) = if fault.found == "=" {
+            // The operator was taken, and the name after it.
+            let (name, _) = lexeme::word_before(self.text, fault.at)?;
+            let before = self.text[..name].trim_end();
+            let joined = before.chars().next_back().filter(|c| matches!(c, '&' | '∧'))?;
+            let at = before.len() - joined.len_utf8();
+            (at, &before[at..])
+        } else {
+            let after = self.text[fault.at + fault.found.len()..].trim_start();
+            let name = lexeme::first(after);
+            let sets = after[name.len()..].trim_start();
+            let is_set = name.starts_with(lexeme::starts_name)
+                && sets.starts_with('=')
+                && !sets.starts_with("==")
+                && !sets.starts_with("=>");
+            if !is_set || !matches!(fault.found, "and" | "AND" | "&&") {
+                return None;
+            }
+            (fault.at, fault.found)
+        };
+        let title = format!("`{joined}` does not join what is set");
+        let hint = if compares {
+            "write `,` before more of this side, `with` before the other side"
+        } else {
+            "write `,`"
+        };
+        Some(Diagnostic::error(code::OPERATOR, self.place(at, joined), title).hint(hint))
+    }
+
     /// `3 metres`
     fn slip_of_unit(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
         if !fault.found.starts_with(lexeme::starts_name) {
@@ -327,6 +314,7 @@ impl Builder<'_> {
             super::nouns::nearest(fault.found, words).is_some()
         });
         if near_keyword
+            || fault.found == "with"
             || quantity::UNITS.contains(&fault.found)
             || unit.is_none() && !between.is_empty() && !fault.after_value()
         {
@@ -339,11 +327,6 @@ impl Builder<'_> {
             let error =
                 Diagnostic::error(code::UNEXPECTED, place, format!("expected `,`, found `{}`", fault.found));
             return Some(error.hint(format!("write `{number}, {}`", fault.found)));
-        }
-        if fault.found == "with" && self.root != Rule::scenario_file {
-            let error =
-                Diagnostic::error(code::UNEXPECTED, place, "`with` stands between the sides of a `compare`");
-            return Some(error.hint("a query sets values of parameters by `under n = …`"));
         }
         let hint = match unit {
             Some(unit) => format!("did you mean `{number} {unit}`?"),
@@ -366,8 +349,7 @@ impl Builder<'_> {
             return None;
         }
         let place = self.place(fault.at, fault.found);
-        let line = self.text[..fault.at].rsplit('\n').next().unwrap_or("");
-        if line.contains("->") {
+        if self.follows_arrow(fault.at) {
             let error = Diagnostic::error(code::UNEXPECTED, place, "several updates stand in braces");
             return Some(error.hint("as in `-> { a = 1; b = 2 }`"));
         }
@@ -376,6 +358,12 @@ impl Builder<'_> {
                 .hint(format!("write `var {} = …` or `let {} = …`", fault.found, fault.found)),
         )
     }
+}
+
+/// `n % 2`
+fn percent(place: Span) -> Diagnostic {
+    Diagnostic::error(code::CHARACTER, place, "`%` is the unit percent, no operator")
+        .hint("the remainder of a division is `modulo(n, 2)`; a share is written `95 %`")
 }
 
 /// One sign of equality for another.

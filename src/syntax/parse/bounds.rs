@@ -1,0 +1,124 @@
+//! Slips around operators that look ahead in time, and their bounds.
+
+use super::builder::Builder;
+use super::fault::{Fault, quote};
+use super::grammar::{Grammar, Rule};
+use super::{lexeme, quantity};
+use crate::syntax::codes::syntax as code;
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+use pest::Parser;
+
+/// The operators that look ahead.
+const OPERATORS: [char; 6] = ['F', 'G', 'X', 'U', 'W', 'R'];
+/// Words that a name follows which may stand in a value.
+const DECLARES: [&str; 6] = ["const", "label", "let", "param", "process", "var"];
+
+impl Builder<'_> {
+    /// `let late = F<=2 s (…)` in a scenario, where `F` is a name like any other.
+    pub(super) fn slip_of_time(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
+        if !fault.after_value() || self.root != Rule::scenario_file {
+            return None;
+        }
+        // Of thousands of declarations on a line each is looked through by itself.
+        let declaration = &self.text[fault.from..fault.at];
+        let line = declaration.rsplit('\n').next().unwrap_or(declaration);
+        let start = fault.at - line.len();
+        let operators = ["<=", "≤", "["].iter().filter_map(|mark| {
+            let at = line.rfind(mark)?;
+            let before = line[..at].trim_end();
+            let letter = before.chars().next_back().filter(|letter| OPERATORS.contains(letter))?;
+            let name = &before[..before.len() - letter.len_utf8()];
+            let alone = !name.ends_with(lexeme::continues_name);
+            (alone && is_bound(&line[at..], fault.found)).then_some((start + name.len(), letter))
+        });
+        let (at, letter) = operators.max().filter(|(_, letter)| !self.declares(*letter))?;
+        Some(
+            Diagnostic::error(
+                code::UNEXPECTED,
+                Span::new(self.source.id, at, at + letter.len_utf8()),
+                format!("`{letter}` looks ahead in time, which a scenario cannot"),
+            )
+            .hint("move this formula to a property file (`.bltl`)"),
+        )
+    }
+
+    /// Whether an operator is the name of something else in this text.
+    fn declares(&self, operator: char) -> bool {
+        self.operators.get_or_init(|| declared(self.text)).contains(operator)
+    }
+
+    /// `F<=0 s == 3`: the bound took the name for its unit; and `F<5 s p`.
+    pub(super) fn slip_of_bound(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
+        let comparison = matches!(fault.found, "==" | "!=" | "<" | "<=" | ">" | ">=" | "≤" | "≥" | "≠");
+        let (unit_at, word) = lexeme::word_before(self.text, fault.at)?;
+        let place = self.place(fault.at, fault.found);
+        if comparison && matches!(word, "F" | "G" | "X" | "U" | "W" | "R") {
+            return Some(
+                Diagnostic::error(code::BOUND, place, format!("a bound of `{word}` is written with `<=`"))
+                    .hint(format!("write `{word}<=` and a time, or an interval: `{word}[1 s, 5 s]`")),
+            );
+        }
+        if !(comparison || matches!(fault.found, "+" | "*" | "/" | "^" | "-" | "in"))
+            || !quantity::UNITS.contains(&word)
+        {
+            return None;
+        }
+        let (number_at, number) = lexeme::word_before(self.text, unit_at)?;
+        let before = self.text[..number_at].trim_end();
+        let mark = ["<=", "≤"].into_iter().find(|mark| before.ends_with(mark))?;
+        if !number.starts_with(|c: char| c.is_ascii_digit()) {
+            return None;
+        }
+        let unit = Span::new(self.source.id, unit_at, unit_at + word.len());
+        let operator = lexeme::word_before(self.text, before.len() - mark.len()).map_or("", |(_, word)| word);
+        let formula = format!("({word} {} …)", fault.found);
+        // With steps of a length a bare number is no bound.
+        let hint = if number.bytes().all(|byte| byte.is_ascii_digit()) {
+            format!("write the bound in steps, and parentheses: `{operator}{mark}#{number} {formula}`")
+        } else {
+            format!("write the bound with a unit, and parentheses: `{operator}{mark}{number} s {formula}`")
+        };
+        Some(
+            Diagnostic::error(
+                code::BOUND_TOOK_NAME,
+                place,
+                format!("expected a formula, found {}", quote(fault.found)),
+            )
+            .related(unit, "read as the unit of the bound")
+            .hint(hint),
+        )
+    }
+}
+
+/// Whether a text from `<=` or `[` on is the bound of an operator, up to what was found behind it: a scenario takes
+/// `F[1 s`, but no comma.
+fn is_bound(text: &str, found: &str) -> bool {
+    let (rule, text) = match text.strip_prefix('[') {
+        Some(first) if found == "," => (Rule::expr, first.trim()),
+        Some(_) => return false,
+        None => (Rule::bound, text.trim_end()),
+    };
+    let whole = |mut taken: pest::iterators::Pairs<'_, Rule>| {
+        taken.next().is_some_and(|pair| pair.as_span().end() == text.len())
+    };
+    Grammar::parse(rule, text).is_ok_and(whole)
+}
+
+/// The letters of operators that a text declares as names.
+fn declared(text: &str) -> String {
+    let (mut found, mut before, mut at) = (String::new(), "", 0);
+    while at < text.len() {
+        if let Some(length) = lexeme::trivia(&text[at..]) {
+            at += length;
+            continue;
+        }
+        let token = lexeme::first(&text[at..]);
+        if DECLARES.contains(&before) && token.len() == 1 && token.starts_with(OPERATORS) {
+            found.push_str(token);
+        }
+        before = token;
+        at += token.len().max(1);
+    }
+    found
+}
