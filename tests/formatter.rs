@@ -56,6 +56,35 @@ fn examples_keep_tree_and_comments_and_settle_at_once() {
     });
 }
 
+#[test]
+fn comments_may_stand_between_any_two_words() {
+    let mut tried = 0;
+    for entry in std::fs::read_dir("tests/languages").unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_str().unwrap();
+        let text = std::fs::read_to_string(&path).unwrap();
+        let plain = tree(name, &text);
+        let gaps: Vec<usize> = text.match_indices([' ', '{', '}']).map(|(at, _)| at).collect();
+        for (k, &at) in gaps.iter().enumerate() {
+            let comment = ["\n// one\n", " // one\n  // two\n", " /* one */ "][k % 3];
+            let commented = format!("{}{comment}{}", &text[..at], &text[at..]);
+            // In a text, a comment, or before a unit it is none.
+            let source = Source::new(SourceId(0), name, commented.as_str());
+            let formatted =
+                if name.ends_with(".scn") { format_scenario(&source) } else { format_properties(&source) };
+            if formatted.is_err() || tree(name, &commented) != plain {
+                continue;
+            }
+            tried += 1;
+            let once = format(name, &commented);
+            assert_eq!(tree(name, &once), plain, "{name}:\n{commented}\n{once}");
+            assert_eq!(format(name, &once), once, "{name}:\n{commented}");
+            assert_eq!(once.matches("one").count(), commented.matches("one").count(), "{once}");
+        }
+    }
+    assert!(tried > 500, "{tried}");
+}
+
 /// Random formulas as tokens; `~` is the blank between a number and its unit, where no comment may stand.
 fn formula() -> impl Strategy<Value = Vec<String>> {
     let leaf = proptest::sample::select(vec![

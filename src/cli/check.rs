@@ -290,9 +290,9 @@ fn locate(sources: &[Source], span: Span) -> (String, usize) {
 
 /// The call up to its options, as a shell would take it, with its sweeps or without them.
 fn command(verb: &str, arguments: &Check, sweeps: bool) -> String {
-    let mut words = vec!["smc".to_owned(), verb.to_owned(), quoted(&arguments.model.scenario)];
+    let mut words = vec!["smc".to_owned(), verb.to_owned(), named(&arguments.model.scenario)];
     if verb == "check" {
-        words.extend(arguments.properties.iter().map(|p| quoted(p)));
+        words.extend(arguments.properties.iter().map(|p| named(p)));
     }
     for set in &arguments.model.set {
         // A trial, or a query, belongs to one setting; that of a sweep is named with it.
@@ -306,6 +306,11 @@ fn command(verb: &str, arguments: &Check, sweeps: bool) -> String {
         words.push(quoted(&data.display().to_string()));
     }
     words.join(" ")
+}
+
+/// The name of a file as a shell would take it, and not for an option; `-` alone is the standard input.
+fn named(file: &str) -> String {
+    if file.len() > 1 && file.starts_with('-') { quoted(&format!("./{file}")) } else { quoted(file) }
 }
 
 /// A word as a shell would take it.
@@ -327,5 +332,6 @@ mod tests {
         assert_eq!(quoted("models/a.scn"), "models/a.scn");
         assert_eq!(quoted("a b"), "'a b'");
         assert_eq!(quoted("it's"), "'it'\\''s'");
+        assert_eq!([named("-"), named("-a b"), named("a-b")], ["-", "'./-a b'", "a-b"]);
     }
 }

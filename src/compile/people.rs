@@ -313,6 +313,10 @@ impl<'a> Elaborator<'a> {
                 expr.span,
                 format!("{n} agents are more than {MOST_AGENTS}"),
             )),
+            None if number.value > MOST_AGENTS as f64 && number.value.fract() == 0.0 => {
+                let text = format!("{} agents are more than {MOST_AGENTS}", number.value);
+                self.report(Diagnostic::error("E0402", expr.span, text))
+            }
             None => {
                 let error = Diagnostic::error(
                     "E0402",

@@ -3,6 +3,7 @@
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::files::Files;
+use super::lower::{BUILT_IN, FUNCTIONS, OPERATORS};
 use super::moments;
 use super::number::Number;
 use super::people::People;
@@ -35,6 +36,7 @@ impl<'a> Elaborator<'a> {
         this.declare(scenario);
         this.declare_properties(properties);
         this.set_aside(scenario, properties);
+        this.warn_of_meanings();
         let built = this.build(scenario, files).ok();
         (this, built)
     }
@@ -104,6 +106,28 @@ impl<'a> Elaborator<'a> {
                 }
             }
             self.scopes.push(scope);
+        }
+    }
+
+    /// Warns of names that mean something else, too.
+    fn warn_of_meanings(&mut self) {
+        let mut found = Vec::new();
+        for (number, scope) in self.scopes.iter().enumerate() {
+            for (name, entry) in scope.entries() {
+                let calls = matches!(&entry.meaning, Meaning::Let(decl) if !decl.arguments.is_empty());
+                let hint = if BUILT_IN.contains(&name) || calls && FUNCTIONS.contains(&name) {
+                    "what is built in by that name is hidden; choose another"
+                } else if number == 0 && OPERATORS.contains(&name) {
+                    "in property files this is an operator, so that nothing there can name it; choose another"
+                } else {
+                    continue;
+                };
+                let text = format!("the name `{name}` means something else, too");
+                found.push(Diagnostic::warning("W0201", entry.span, text).hint(hint));
+            }
+        }
+        for warning in found {
+            self.note(warning);
         }
     }
 

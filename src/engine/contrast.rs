@@ -62,6 +62,11 @@ fn round(consumed: u64, width: u64, seconds: f64, budget: &Budget) -> u64 {
     size.min(least.max(soon as u64))
 }
 
+/// The value of a cell within a range.
+fn clipped(cell: &Cell, (low, high): (f64, f64)) -> Option<f64> {
+    value(cell).map(|value| value.clamp(low, high))
+}
+
 /// A comparison on its way.
 pub(super) struct Contrast<'s> {
     query: &'s Query,
@@ -147,7 +152,7 @@ impl<'s> Contrast<'s> {
     /// What a cell counts for: 0 or 1, or the clipped value.
     fn score(&self, cell: &Cell) -> Option<f64> {
         match self.range {
-            Some((low, high)) => value(cell).map(|v| v.clamp(low, high)),
+            Some(range) => clipped(cell, range),
             None => match outcome(cell) {
                 stats::Outcome::Unresolved => None,
                 held => Some(f64::from(u8::from(held == stats::Outcome::True))),
@@ -214,10 +219,20 @@ impl<'s> Contrast<'s> {
                         mean.observe(value(cell));
                     }
                 }
-                let scores = self.score(a).zip(self.score(b));
-                let finished = match &mut self.procedure {
-                    Procedure::Probability(difference) => difference.observe(outcome(a), outcome(b)),
-                    Procedure::Expectation(mean) => mean.observe(scores.map(|(a, b)| a - b)),
+                let finished = match (&mut self.procedure, self.range) {
+                    (Procedure::Probability(difference), _) => difference.observe(outcome(a), outcome(b)),
+                    (Procedure::Expectation(mean), range) => {
+                        let range = range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+                        match (clipped(a, range), clipped(b, range)) {
+                            (Some(a), Some(b)) => mean.observe(Some(a - b)),
+                            // What is known of one side narrows the pair.
+                            (a, b) => {
+                                let ends = |side: Option<f64>| side.map_or(range, |value| (value, value));
+                                let (a, b) = (ends(a), ends(b));
+                                mean.observe_between((a.0 - b.1, a.1 - b.0))
+                            }
+                        }
+                    }
                 };
                 if finished && self.within.is_some() {
                     break 'sampling Stop::Width;

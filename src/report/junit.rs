@@ -16,10 +16,11 @@ pub fn render(run: &Run) -> String {
     for file in text::by_query(&run.results).chunk_by(|a, b| a.file == b.file) {
         let name = file.first().map_or("", |result| result.file.as_str());
         let mut suite = TestSuite::new(if name.is_empty() { run.scenario.as_str() } else { name });
-        for (key, value) in
-            [("seed", run.seed.to_string()), ("version", run.version.clone()), ("replay", run.replay.clone())]
-        {
-            suite.add_property((key, value.as_str()));
+        suite.add_property(("seed", run.seed.to_string().as_str()));
+        suite.add_property(("version", run.version.as_str()));
+        // An attribute holds no line breaks: each command is one property.
+        for command in run.replay.lines() {
+            suite.add_property(("replay", command));
         }
         suite.set_time(seconds(file.iter().map(|result| result.elapsed_s).sum()));
         for result in file {

@@ -148,10 +148,21 @@ impl Difference {
             && self.low.trials() >= self.next
         {
             self.next += 1 + self.next / 100;
-            self.finished = interval(self.low, self.delta).half_width() <= epsilon
-                && (self.unresolved == 0 || interval(self.high, self.delta).half_width() <= epsilon);
+            self.finished = self.is_narrow(epsilon);
         }
         self.finished
+    }
+
+    /// Whether the interval of both readings is so narrow, or each of them is and they lie too far apart for both: the
+    /// rest of the width, less than half of it, would take more than four times as many pairs.
+    fn is_narrow(&self, epsilon: f64) -> bool {
+        let low = interval(self.low, self.delta);
+        if self.unresolved == 0 || low.half_width() > epsilon {
+            return self.unresolved == 0 && low.half_width() <= epsilon;
+        }
+        let high = interval(self.high, self.delta);
+        let apart = self.high.mean() - self.low.mean();
+        low.hull(high).half_width() <= epsilon || (high.half_width() <= epsilon && apart > epsilon)
     }
 
     /// Whether it has stopped.
@@ -222,5 +233,24 @@ mod tests {
         let interval = difference.interval();
         assert!(interval.low < -0.1 && interval.high > 0.0);
         assert_eq!(difference.unresolved(), 100);
+    }
+
+    #[test]
+    fn a_few_unresolved_pairs_take_more_pairs_and_many_end_it() {
+        let run = |every: u32| {
+            let mut difference = Difference::new(0.05, Some(0.1)).unwrap();
+            let mut k = 0;
+            let outcome = |held: bool| if held { Outcome::True } else { Outcome::False };
+            loop {
+                k += 1;
+                let first = if k % every == 0 { Outcome::Unresolved } else { outcome(k % 2 == 0) };
+                if difference.observe(first, outcome(k % 3 == 0)) {
+                    return (k, difference.interval());
+                }
+            }
+        };
+        let (none, few, many) = (run(u32::MAX), run(40), run(3));
+        assert!(few.0 > none.0 && few.1.half_width() <= 0.1, "{few:?}");
+        assert!(many.1.half_width() > 0.16 && many.0 < 4 * none.0, "{many:?}");
     }
 }

@@ -27,7 +27,6 @@ struct Sequence {
     bets: f64,
     weighted: f64,
     variance: f64,
-    finished: bool,
 }
 
 impl Sequence {
@@ -42,7 +41,6 @@ impl Sequence {
             bets: 0.0,
             weighted: 0.0,
             variance: 0.0,
-            finished: false,
         }
     }
 
@@ -77,7 +75,8 @@ impl Sequence {
 /// Estimates the mean of a metric with a declared range.
 ///
 /// Values outside of the range are clipped and counted. Unresolved trials are read as the lower end of the
-/// range and as the upper end, each reading to its own stop, and the interval holds both.
+/// range and as the upper end; the interval holds both readings, and is as narrow as asked for once both together are,
+/// unless they lie so far apart that this is not worth it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mean {
     low: f64,
@@ -95,6 +94,7 @@ pub struct Mean {
     read: u64,
     unresolved: u64,
     clipped: u64,
+    finished: bool,
 }
 
 impl Mean {
@@ -152,47 +152,64 @@ impl Mean {
             read: 0,
             unresolved: 0,
             clipped: 0,
+            finished: false,
         })
     }
 
     /// Reads the next value, `None` (or NaN) if it is unresolved; true once finished.
     pub fn observe(&mut self, value: Option<f64>) -> bool {
-        if self.finished() {
-            return true;
+        match value.filter(|x| !x.is_nan()) {
+            Some(value) => {
+                self.clipped += u64::from(!self.finished && (value < self.low || value > self.high));
+                self.read_ends((value, value))
+            }
+            None => self.observe_between((self.low, self.high)),
         }
-        self.read += 1;
-        let value = value.filter(|x| !x.is_nan());
-        if value.is_none() {
+    }
+
+    /// Reads an unresolved value, of which it is known between which ends it lies; true once finished.
+    pub fn observe_between(&mut self, ends: (f64, f64)) -> bool {
+        if !self.finished {
             self.unresolved += 1;
             if self.upper.is_none() {
                 self.upper = Some(self.lower.clone());
             }
         }
-        let (low, high) = (self.low, self.high);
-        let clipped = value.map(|x| {
-            if x < low || x > high {
-                self.clipped += 1;
-            }
-            math::at_most(math::at_least(x, low), high)
-        });
-        let (epsilon, limit) = (self.epsilon, self.limit);
-        let step = |sequence: &mut Sequence, x: f64| {
-            if !sequence.finished {
-                sequence.push((x - low) / (high - low), x);
-                sequence.finished =
-                    sequence.n >= limit || epsilon.is_some_and(|e| sequence.interval().1 <= e);
-            }
-        };
-        step(&mut self.lower, clipped.unwrap_or(low));
-        if let Some(upper) = &mut self.upper {
-            step(upper, clipped.unwrap_or(high));
+        self.read_ends(ends)
+    }
+
+    fn read_ends(&mut self, ends: (f64, f64)) -> bool {
+        if self.finished {
+            return true;
         }
-        self.finished()
+        self.read += 1;
+        let (low, high) = (self.low, self.high);
+        let push = |sequence: &mut Sequence, x: f64| {
+            let x = math::at_most(math::at_least(x, low), high);
+            sequence.push((x - low) / (high - low), x);
+        };
+        push(&mut self.lower, ends.0);
+        if let Some(upper) = &mut self.upper {
+            push(upper, ends.1);
+        }
+        self.finished = self.lower.n >= self.limit || self.epsilon.is_some_and(|e| self.is_narrow(e));
+        self.finished
+    }
+
+    /// Whether the interval of both readings is so narrow, or each of them is and they lie too far apart for both.
+    fn is_narrow(&self, epsilon: f64) -> bool {
+        let (centre, radius) = self.lower.interval();
+        let Some(upper) = &self.upper else { return radius <= epsilon };
+        let (other, reach) = upper.interval();
+        let low = math::at_most(centre - radius, other - reach);
+        let high = math::at_least(centre + radius, other + reach);
+        let apart = (upper.sum - self.lower.sum) / upper.n as f64;
+        0.5 * (high - low) <= epsilon || (radius <= epsilon && reach <= epsilon && apart > epsilon)
     }
 
     /// Whether it has stopped.
-    pub fn finished(&self) -> bool {
-        self.lower.finished && self.upper.as_ref().is_none_or(|upper| upper.finished)
+    pub const fn finished(&self) -> bool {
+        self.finished
     }
 
     /// Whether the number of trials is fixed beforehand.
@@ -262,7 +279,7 @@ impl Mean {
                 low: scale(low),
                 high: scale(high),
                 error: self.delta,
-                coverage: if sequence.finished && self.is_fixed() {
+                coverage: if self.finished && self.is_fixed() {
                     Coverage::FixedSize
                 } else {
                     Coverage::TimeUniform
@@ -323,6 +340,37 @@ mod tests {
         assert_eq!(mean.read(), (1000, 100, 100));
         let interval = mean.interval();
         assert!(interval.low < 0.5 && interval.high > 0.6);
+    }
+
+    #[test]
+    fn a_few_unresolved_trials_take_more_trials_and_many_end_it() {
+        let run = |is_unresolved: fn(u32) -> bool| {
+            let mut mean = Mean::within(0.0, 4.0, 0.3, 0.05).unwrap();
+            let mut k = 0;
+            while !mean.observe((!is_unresolved(k)).then_some(1.0)) {
+                k += 1;
+            }
+            (mean.read().0, mean.interval())
+        };
+        let (none, few, many) = (run(|_| false), run(|k| k % 50 == 3), run(|k| k % 3 == 0));
+        assert!(few.0 > none.0 && few.1.half_width() <= 0.3 + 1e-12, "{few:?}");
+        // They lie 4/3 apart: no number of trials makes that less.
+        assert!(many.1.half_width() > 0.6 && many.0 < 1_000, "{many:?}");
+        assert!(many.1.low < 1.0 - 0.1 && many.1.high > 1.0 + 1.0);
+    }
+
+    #[test]
+    fn an_unresolved_value_lies_between_what_is_known() {
+        let mut mean = Mean::fixed(-4.0, 4.0, 100, 0.05).unwrap();
+        for k in 0..100 {
+            if k % 4 == 0 {
+                mean.observe_between((-3.0, 1.0))
+            } else {
+                mean.observe(Some(0.0))
+            };
+        }
+        assert_eq!(mean.estimate(), (-0.75, 0.25));
+        assert_eq!(mean.read(), (100, 25, 0));
     }
 
     /// As for a probability, whose values are 0 and 1: the same size and the same interval.

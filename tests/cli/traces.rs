@@ -278,6 +278,25 @@ estimate P(late) by fixed(trials = 12)
     assert!(warnings.contains("nobody was there") && !warnings.contains("implications"), "{warnings}");
 }
 
+#[test]
+fn who_has_nowhere_to_go_feels_the_same_all_around() {
+    let scenario = "horizon = 2 s\nstep = 0.01 s\n\
+kind p: sfm preset johansson2007 { noise = 0 m/s  radius = 0.25 m }\n\
+agent west: p { at = (0, 0) }\nagent east: p { at = (1, 0) }\n\
+agent south: p { at = (99, 0) }\nagent north: p { at = (99, 1) }\n";
+    let place = Place::new(&[("a.scn", scenario)]);
+    let rows = rows(&place, "a.scn", &["--every", "200"]);
+    let at = |name: &str| {
+        let row = rows.iter().rfind(|row| row["agent"] == name).unwrap();
+        (row["x"].as_f64().unwrap(), row["y"].as_f64().unwrap())
+    };
+    let ((west, _), (east, _)) = (at("west"), at("east"));
+    assert!(west < -0.05 && (west + east - 1.0).abs() < 1e-12, "{west} {east}");
+    // The same, turned by a right angle.
+    assert!((at("south").1 - west).abs() < 1e-12 && (at("north").1 - east).abs() < 1e-12);
+    assert_eq!((at("south").0, at("west").1), (99.0, 0.0));
+}
+
 /// The rate is wrong at 5 s.
 const LATE: &str = "scenario \"late\"\nhorizon = 20 s\n\
 process q { var n: 0 .. 9 = 0  var z: real = 1  when n < 9 after 5 s -> n = n + 1 }\n\

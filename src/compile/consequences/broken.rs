@@ -1,6 +1,8 @@
 //! What could not be read, and which errors come of it.
 
-use super::{DIMENSION, UNKNOWN, bare, has_word, leading_word, lines, word, words};
+use super::{
+    BY_ITSELF, DIMENSION, LACKING, UNKNOWN, bare, block_end, has_word, leading_word, lines, word, words,
+};
 use crate::compile::dimension;
 use crate::compile::queries::Input;
 use crate::compile::told::is_stepped;
@@ -269,6 +271,17 @@ impl<'i> Broken<'i> {
             || name.is_empty() && !self.lost.0.is_empty()
     }
 
+    /// Whether something in the block behind a name could not be read.
+    fn is_torn_behind(&self, place: Span) -> bool {
+        let source = self.sources.iter().find(|source| source.id == place.source);
+        let behind = source.and_then(|source| source.text.get(place.end as usize..)).unwrap_or_default();
+        let block = Span { end: place.end.saturating_add(block_end(behind) as u32), ..place };
+        self.any_name
+            || self.lost.some_within(block)
+            || self.skipped.some_within(block)
+            || self.skipped.hold(place)
+    }
+
     pub(super) fn is_own(&self, one: &Diagnostic) -> bool {
         let scenario = self.is_broken(SourceId(0));
         let Some(place) = one.place.as_ref().map(|place| place.span) else {
@@ -285,8 +298,13 @@ impl<'i> Broken<'i> {
         let of_options = one.code == NO_OPTIONS && self.lost.some_within(place);
         let of_moves = one.code == NO_MOVES && one.title.contains("no moves") && self.moves;
         let of_scenery = one.code == INSIDE && self.scenery;
-        let of_name =
-            NAMES.contains(&one.code) && (!PLACED_AT_NAME.contains(&one.code) || self.may_declare(place));
+        // No name that is missing makes a circle; only the scenario declares moves; a start stands with its agent.
+        let alone = one.title.ends_with(BY_ITSELF)
+            || one.code == NO_MOVES && !scenario
+            || one.code == LACKING && one.title.starts_with("where does") && !self.is_torn_behind(place);
+        let of_name = !alone
+            && NAMES.contains(&one.code)
+            && (!PLACED_AT_NAME.contains(&one.code) || self.may_declare(place));
         let unit = UNKNOWN.contains(&one.code) && dimension::unit(text).is_some();
         // What is at a name, not what stands beside it.
         let of_suspect =

@@ -59,3 +59,9 @@ pub(in crate::compile) const DISTRIBUTIONS: [&str; 11] = [
     "weibull",
     "choice",
 ];
+
+/// Names that stand for something unless they are declared.
+pub(in crate::compile) const BUILT_IN: [&str; 3] = ["time", "everyone", "pi"];
+
+/// Operators of property files that a scenario may use as names.
+pub(in crate::compile) const OPERATORS: [&str; 6] = ["F", "G", "X", "U", "W", "R"];

@@ -12,7 +12,7 @@ mod select;
 mod tally;
 mod temporal;
 
-pub(super) use builtin::{DISTRIBUTIONS, FUNCTIONS};
+pub(super) use builtin::{BUILT_IN, DISTRIBUTIONS, FUNCTIONS, OPERATORS};
 pub(super) use logic::relation;
 
 use super::dimension::{self, Dimension};

@@ -4,16 +4,13 @@ use super::super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::super::symbols::{Meaning, ScopeId, unknown};
 use super::super::typed::Typed;
 use super::super::weight::Weight;
-use super::counted_arguments;
+use super::{BUILT_IN, counted_arguments};
 use crate::model::{Set, Who};
 use crate::syntax::ast::{Expr, Ident, LetDecl};
 use crate::syntax::diagnostic::{Diagnostic, Label};
 use crate::syntax::source::Span;
 
 use super::super::dimension::{self, Dimension};
-
-/// Names that stand for something unless they are declared.
-const BUILT_IN: [&str; 3] = ["time", "everyone", "pi"];
 
 /// Down to what depth calls are followed whose arguments nobody knows.
 const FOLLOWED: u32 = 400;

@@ -216,8 +216,11 @@ impl Elaborator<'_> {
         match found {
             Some(Ok(tick)) => Ok(tick),
             Some(Err((below, above))) if above.0 < u64::MAX => {
+                // Of a step such as `1 s / 60` no number of seconds is a multiple.
                 let seconds = |tick: Tick| {
-                    format!("{} s", Decimal::whole(tick.0 as i64).mul(step).map_or(f64::NAN, Decimal::to_f64))
+                    let time = Decimal::whole(tick.0 as i64).mul(step).map_or(f64::NAN, Decimal::to_f64);
+                    let same = Decimal::parse(&time.to_string()).map(|time| self.clock.tick_at(time));
+                    if same == Some(Ok(tick)) { format!("{time} s") } else { format!("#{}", tick.0) }
                 };
                 let error =
                     Diagnostic::error("E0501", span, format!("this is no multiple of the step of {step} s"))

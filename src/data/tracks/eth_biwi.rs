@@ -18,6 +18,10 @@ const SECONDS_PER_ANNOTATION: f64 = 0.4;
 /// Frames between two annotations where nobody was seen twice, as at 25 frames per second.
 const DEFAULT_STRIDE: u32 = 10;
 
+/// So many metres tell how places and velocities belong together, and so far apart they do not.
+const ENOUGH: f64 = 20.0;
+const DOUBTFUL: f64 = 1.5;
+
 const NAMES: [&str; 8] = ["frame", "id", "x", "z", "y", "vx", "vz", "vy"];
 
 /// One good row of the table.
@@ -74,6 +78,13 @@ pub fn read_eth_biwi(text: &str) -> Result<Recording, Vec<LineError>> {
         })
         .collect();
     let stride = usual_stride(&people).unwrap_or(DEFAULT_STRIDE);
+    if let Some(seconds) = other_interval(&people, stride) {
+        let message = format!(
+            "the velocities in this file tell that its annotations are about {seconds:.2} s apart, and in this format they \
+             are {SECONDS_PER_ANNOTATION} s apart"
+        );
+        return Err(vec![LineError::whole(1, message)]);
+    }
     Ok(Recording::new(people, stride, SECONDS_PER_ANNOTATION / f64::from(stride)))
 }
 
@@ -142,6 +153,18 @@ fn usual_stride(people: &[Person]) -> Option<u32> {
         .map(|(stride, _)| stride)
 }
 
+/// Seconds between two annotations, if places and velocities together tell clearly that these are others.
+fn other_interval(people: &[Person], stride: u32) -> Option<f64> {
+    let (mut gone, mut told) = (0.0, 0.0);
+    for pair in people.iter().flat_map(|person| person.samples.windows(2)) {
+        let annotations = f64::from(pair[1].frame - pair[0].frame) / f64::from(stride);
+        gone += (pair[1].position - pair[0].position).norm();
+        told += 0.5 * (pair[0].velocity + pair[1].velocity).norm() * annotations * SECONDS_PER_ANNOTATION;
+    }
+    let clear = gone > ENOUGH && told > ENOUGH && !(1.0 / DOUBTFUL..DOUBTFUL).contains(&(gone / told));
+    clear.then(|| SECONDS_PER_ANNOTATION * gone / told)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -178,6 +201,21 @@ mod tests {
             ]
         );
         assert_eq!(read_eth_biwi(" \n").unwrap_err()[0].line, 1);
+    }
+
+    #[test]
+    fn other_intervals_are_told_by_the_velocities() {
+        let table = |frames: u32| -> String {
+            (0..40)
+                .map(|k| format!("{} 1 {} 0 0 1 0 0\n", k * frames, f64::from(k * frames) / 25.0))
+                .collect()
+        };
+        // At 25 frames per second, every tenth is what the format means, every twentieth is not.
+        let known =
+            (0..80).map(|k| format!("{} 1 {} 0 0 1 0 0\n", k * 10, f64::from(k) * 0.4)).collect::<String>();
+        assert!(read_eth_biwi(&known).is_ok());
+        let said = read_eth_biwi(&table(20)).unwrap_err();
+        assert!(said[0].message.contains("about 0.80 s apart"), "{said:?}");
     }
 
     #[test]

@@ -19,6 +19,9 @@ pub(super) const PASSING: f64 = 2.0;
 /// Squared length below which a vector has no direction.
 pub(super) const NO_LENGTH: f64 = 1e-24;
 
+/// What angles of advice are measured from where nobody knows a direction.
+const EAST: Vec2 = Vec2::new(1.0, 0.0);
+
 /// What one round of a detour adds to the number of a draw.
 const ROUND: u32 = 0x9E37_79B9;
 
@@ -236,7 +239,8 @@ impl<'a> Person<'a> {
             // Who goes on as recorded has the recorded speed as driving speed.
             self.state.speed[self.block].0[self.lane] = speed;
         }
-        let direction = towards.or(moving).unwrap_or_else(|| Vec2::new(1.0, 0.0));
+        // Who wants to go nowhere, and never did, looks nowhere: the social force is felt alike all around.
+        let direction = towards.or(moving).unwrap_or_else(Vec2::zeros);
         self.way.onward = (direction, moving.is_some());
         self.drive(Some(direction), 0.0);
         // Who starts at a goal goes on to the next; nobody leaves before the first step.
@@ -245,7 +249,7 @@ impl<'a> Person<'a> {
             && ticks > 0
         {
             self.head();
-            let ahead = self.direction();
+            let ahead = unit(self.direction()).unwrap_or(EAST);
             self.way.advice = match advice {
                 Move::Heading(angle) => rotated(ahead, angle),
                 Move::Stop => Vec2::zeros(),

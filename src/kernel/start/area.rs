@@ -58,7 +58,7 @@ fn free_area(shape: &Shape, reach: f64, bounds: &Bounds, solids: &[&Shape]) -> f
         for column in 0..GRID {
             let place = Vec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5);
             let p = bounds.low + place.component_mul(&cell);
-            let outside = |solid: &u32| solids[*solid as usize].distance(p) >= 0.0;
+            let outside = |solid: &u32| !solids[*solid as usize].contains(p);
             let free = || nearby.within(p, 0.0).iter().all(outside);
             count += u32::from(shape.distance(p) <= reach && free());
         }
@@ -128,7 +128,7 @@ mod tests {
             let place = Vec2::new(f64::from(k % GRID) + 0.5, f64::from(k / GRID) + 0.5);
             bounds.low + place.component_mul(&cell)
         });
-        let all = points.filter(|p| solids.iter().all(|solid| solid.distance(*p) >= 0.0)).count();
+        let all = points.filter(|p| !solids.iter().any(|solid| solid.contains(*p))).count();
         assert_eq!(free, all as f64 * cell.x * cell.y);
     }
 }

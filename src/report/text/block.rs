@@ -3,7 +3,7 @@
 use super::columns::{Cell, lines};
 use super::{compare, distribution, rank};
 use crate::engine::at_most;
-use crate::engine::outcome::{Interval, QueryResult, Rare, Shows, Stop, Verdict, Witness};
+use crate::engine::outcome::{Interval, Kind, QueryResult, Rare, Shows, Stop, Verdict, Witness};
 use crate::report::number::{count, counted, duration, interval, plain};
 use crate::report::palette::{Paint, Palette};
 use crate::report::{certified, one_line, settings};
@@ -194,7 +194,12 @@ pub(super) fn cause(result: &QueryResult) -> &'static str {
         Stop::Unresolved if counts.unresolved == counts.trials => {
             "stopped because all of them are unresolved"
         }
-        Stop::Unresolved => "stopped because unresolved trials keep it open, however many more there are",
+        Stop::Unresolved if result.kind == Kind::Check => {
+            "stopped because how unresolved trials are read decides, however many more there are"
+        }
+        Stop::Unresolved => {
+            "stopped when narrow enough in each reading of the unresolved trials, but not in both together"
+        }
         Stop::Plan => "as planned",
         Stop::Cap => "stopped at the largest number of trials",
         Stop::Deadline => "stopped when time was up",

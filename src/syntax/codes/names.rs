@@ -153,4 +153,16 @@ Wrong:\n\
 Right:\n\
 \x20   property p = G<=2 s !contact(crowd[1])",
     },
+    Page {
+        code: "W0201",
+        title: "a name means something else, too",
+        text: "\
+A name that is built in (`time`, `everyone`, `pi`, functions) may be declared; then it stands for what was declared. A scenario may\n\
+call something `F`, which in property files is an operator: nothing there can name it.\n\
+\n\
+Probably wrong:\n\
+\x20   param time = 3\n\
+Clear:\n\
+\x20   param patience = 3",
+    },
 ];

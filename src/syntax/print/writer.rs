@@ -57,7 +57,11 @@ impl Writer<'_> {
     fn block(&mut self, open: &Token, members: &[Vec<Node>], close: &Token) {
         // A break before the brace is not kept; comments there are.
         self.inline_comments(open.start);
-        if !self.glued {
+        // After a comment that has a line of its own nothing else fits there.
+        let commented = self.lines.last().is_some_and(|line| line.text.starts_with("//"));
+        if commented {
+            self.line(String::new(), false);
+        } else if !self.glued {
             self.push(" ");
         }
         self.push("{");
