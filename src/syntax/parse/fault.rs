@@ -206,7 +206,7 @@ impl Builder<'_> {
         }
         if let Some(word) = Self::meant(&fault) {
             diagnostic = diagnostic.hint(format!("did you mean `{word}`?"));
-        } else if closes && fault.found == "at" {
+        } else if fault.found == "at" && fault.after_value() && self.root != Rule::scenario_file {
             diagnostic = diagnostic
                 .hint("`… at end` and `… at 5 s` stand in `E(…)` and `Q(…)`, around the whole metric");
         }

@@ -16,7 +16,6 @@ impl Builder<'_> {
             .or_else(|| self.slip_of_bindings(fault))
             .or_else(|| self.slip_of_equals(fault))
             .or_else(|| self.slip_of_operator(fault))
-            .or_else(|| self.slip_of_moment(fault))
             .or_else(|| self.slip_of_range(fault))
             .or_else(|| self.slip_of_quantifier(fault))
             .or_else(|| self.slip_of_with(fault))
@@ -154,16 +153,6 @@ impl Builder<'_> {
         self.say(Diagnostic::error(code::UNEXPECTED, place, "expected a name, found `=`"));
         self.lost.push(Span::new(self.source.id, start, start + text.len()));
         true
-    }
-
-    /// `P(speed(a) at end < 1 m/s)`: a moment belongs to a whole measure.
-    fn slip_of_moment(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
-        (fault.found == "at" && fault.after_value() && self.root != Rule::scenario_file).then(|| {
-            let place = self.place(fault.at, fault.found);
-            Diagnostic::error(code::UNEXPECTED, place, "`at` reads the whole of an `E(…)` or `Q(…)` at a moment").hint(
-                "inside of formulas `X<=5 s (…)` asks a state, and `E(… at end)` has no other number beside it",
-            )
-        })
     }
 
     /// Operators of other languages.
