@@ -173,6 +173,28 @@ fn outside_of_its_range_a_margin_is_shown_as_it_is() {
 }
 
 #[test]
+fn beyond_the_end_of_a_trial_no_margin_is_told() {
+    let model = "scenario \"a\"\nhorizon = 5 s\nstep = 0.1 s\n\
+scene { region exit: rect (2, 0) .. (3, 4) }\nkind adult: sfm preset helbing2000\n\
+agents c[1]: adult { at = (0, 2)  route = exit then leave }\n";
+    let query = |range: &str| {
+        format!("check E(robustness(G<=4.9 s (mean(travelled(a) for a in c) < 1 m))) in {range} >= 0.9 m\n")
+    };
+    let place =
+        Place::new(&[("a.scn", model), ("a.bltl", &query("0 m .. 5 m")), ("b.bltl", &query("-5 m .. 5 m"))]);
+    let result = |file: &str| {
+        place.call(&["check", "a.scn", file, "-q", "--format", "json", "--max-trials", "40"]).json()["results"][0].clone()
+    };
+    // Nobody is there at the end: as far as the margin matters the trial has no end.
+    assert!(result("b.bltl")["unresolved"].as_u64().unwrap() > 0);
+    let found = result("a.bltl");
+    assert_eq!(found["unresolved"], 0, "{found}");
+    let witness = &found["witnesses"][0];
+    assert_eq!((&witness["shows"], &witness["value"]), (&"fails".into(), &Value::Null), "{witness}");
+    assert!(witness["what"].as_str().unwrap().contains("outside of its range"), "{witness}");
+}
+
+#[test]
 fn each_level_of_a_quantile_is_certified_by_its_own_name() {
     let found =
         results("estimate Q(0.25, 0.75, time_until(travelled(user) > 1 m)) by fixed(trials = 96)\n", &[]);

@@ -74,6 +74,12 @@ impl Locals {
     }
 }
 
+/// How many names were looked at in vain up to some moment.
+pub(super) struct Failures {
+    journal: usize,
+    circles: usize,
+}
+
 /// The state of compilation.
 #[allow(clippy::struct_excessive_bools, reason = "each answers a question of its own")]
 pub(super) struct Elaborator<'a> {
@@ -163,8 +169,8 @@ pub(super) struct Elaborator<'a> {
     outermost: Span,
     /// Names that were expanded in vain: what is wrong with them was said.
     pub(super) broken: BTreeSet<(ScopeId, String)>,
-    /// Those among them that were not read to their end.
-    pub(super) unread: BTreeSet<(ScopeId, String)>,
+    /// Names that were looked at in vain, in order.
+    pub(super) journal: Vec<(ScopeId, String)>,
     /// Parts of the files that were not read to their end, ascending, none within another: what is wrong with them was said.
     pub(super) cut: Vec<Span>,
     /// Whether parts of the files were not read at all, or not to their end.
@@ -222,7 +228,7 @@ impl<'a> Elaborator<'a> {
             depth: 0,
             outermost: Span::default(),
             broken: BTreeSet::new(),
-            unread: BTreeSet::new(),
+            journal: Vec::new(),
             cut: Vec::new(),
             is_torn: false,
             told: Told::Whole,
@@ -264,12 +270,27 @@ impl<'a> Elaborator<'a> {
         self.diagnostics.iter().any(|one| one.code == code && at(one))
     }
 
-    /// Forgets what was looked at in vain, where what was said of that is taken back: it would not be said again.
-    pub(super) fn forget_failures(&mut self) {
-        self.constants.retain(|_, value| value.is_ok());
-        self.broken.clone_from(&self.unread);
-        self.circles.clear();
-        self.followed.clear();
+    /// Where the present looks in vain end.
+    pub(super) fn failures(&self) -> Failures {
+        Failures { journal: self.journal.len(), circles: self.circles.len() }
+    }
+
+    /// Forgets what was looked at in vain since, where what was said of that is taken back: it would not be said again.
+    pub(super) fn forget_failures(&mut self, since: &Failures) {
+        for key in self.journal.split_off(since.journal) {
+            if self.constants.get(&key).is_some_and(Result::is_err) {
+                self.constants.remove(&key);
+            }
+            self.broken.remove(&key);
+            self.followed.remove(&key);
+        }
+        self.circles.truncate(since.circles);
+    }
+
+    /// Nothing comes of a name any more: what is wrong with it was said.
+    pub(super) fn give_up(&mut self, scope: ScopeId, name: String) {
+        self.journal.push((scope, name.clone()));
+        self.broken.insert((scope, name));
     }
 
     /// Whether an error was found.
@@ -411,20 +432,13 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    /// That a constant is a number, a point or a truth value that is known now.
+    /// That a constant of a property file changes not with the states of a trial.
     pub(super) fn check_constant(&mut self, lowered: Lowered<Typed>, value: &Expr) {
-        match lowered {
-            Ok(Typed::Number(_) | Typed::Point(..) | Typed::Infinity | Typed::Truth(Bool::Constant(_)))
-            | Err(Reported) => {}
-            Ok(found @ (Typed::Num(..) | Typed::Vector(..) | Typed::Term(..) | Typed::Truth(_))) => {
-                let error =
-                    Diagnostic::error("E0304", value.span, "this must be known before a trial starts")
-                        .label(format!("{} that changes during a trial", found.noun()));
-                self.note(error.hint("`let` names what changes"));
-            }
-            Ok(found) => {
-                let _: Lowered<()> = self.mismatch(value.span, "a number or a point", &found);
-            }
+        if let Ok(found @ (Typed::Num(..) | Typed::Term(..) | Typed::Formula(_) | Typed::Tally(_))) = lowered
+        {
+            let error = Diagnostic::error("E0304", value.span, "this must be known before a trial starts")
+                .label(format!("{} that changes during a trial", found.noun()));
+            self.note(error.hint("`let` names what changes"));
         }
     }
 

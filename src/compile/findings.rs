@@ -1,6 +1,6 @@
 //! What was found in the worlds of a call: each place says the same thing once.
 
-use super::consequences::{UNKNOWN, words};
+use super::consequences::{BY_ITSELF, UNKNOWN, words};
 use super::dimension;
 use super::elaborator::Elaborator;
 use super::queries::Compiler;
@@ -133,7 +133,12 @@ impl Elaborator<'_> {
         if one.hangs {
             return false;
         }
-        if UNKNOWN.contains(&one.code) || one.code.starts_with("E03") || VALUELESS.contains(&one.code) {
+        let is_circle = one.code == "E0205" && one.title.ends_with(BY_ITSELF);
+        if is_circle
+            || UNKNOWN.contains(&one.code)
+            || one.code.starts_with("E03")
+            || VALUELESS.contains(&one.code)
+        {
             return true;
         }
         let Some(place) = one.place.as_ref().filter(|_| WRITTEN.contains(&one.code)) else { return false };

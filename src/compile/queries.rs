@@ -170,7 +170,9 @@ impl<'a> Compiler<'a> {
                         }
                     }
                     PropertyItem::Const { value, .. } => {
+                        elaborator.temporal = true;
                         let lowered = elaborator.lower(value, &Locals::of(number + 1));
+                        elaborator.temporal = false;
                         elaborator.check_constant(lowered, value);
                     }
                     PropertyItem::Let(decl) => {
@@ -330,12 +332,20 @@ impl<'a> Compiler<'a> {
                 // The world of the call stands in, so that this hides nothing else that is surely wrong.
                 let before: Vec<usize> =
                     self.sites.iter().map(|site| site.elaborator.diagnostics.len()).collect();
+                let asked_before = self.queries.len();
                 let asked = self.ask(query, scope, (base, Vec::new()), settings, family);
-                // Sides of a comparison are set up from it.
-                for (site, before) in
-                    self.sites.iter_mut().zip(before.into_iter().chain(std::iter::repeat(0)))
-                {
+                // Sides of a comparison are set up from it; another query that asks for them sets up its own.
+                let mut sides = self.sites.split_off(before.len());
+                self.known.values_mut().for_each(|alike| alike.retain(|at| *at < before.len()));
+                self.queries.truncate(asked_before);
+                for (site, before) in self.sites.iter_mut().zip(before) {
                     site.elaborator.keep_sure(before);
+                }
+                for side in &mut sides {
+                    side.elaborator.keep_sure(0);
+                    for sure in side.elaborator.diagnostics.drain(..) {
+                        self.sites[base].elaborator.note(sure);
+                    }
                 }
                 asked.and(Err(Reported))
             }

@@ -118,7 +118,7 @@ impl<'a> Elaborator<'a> {
                 let hint = if BUILT_IN.contains(&name) || calls && FUNCTIONS.contains(&name) {
                     "what is built in by that name is hidden; choose another"
                 } else if number == 0 && OPERATORS.contains(&name) {
-                    "in property files this is an operator, so that nothing there can name it; choose another"
+                    "in property files this is an operator, so that no formula there can name it; choose another"
                 } else {
                     continue;
                 };
@@ -156,7 +156,6 @@ impl<'a> Elaborator<'a> {
             broken.extend(cut.map(|(name, _)| (scope, name.to_owned())));
         }
         self.broken.extend(broken);
-        self.unread.clone_from(&self.broken);
     }
 
     fn build(&mut self, file: &'a ScenarioFile, files: &Files) -> Lowered<Scenario> {
@@ -259,8 +258,7 @@ impl<'a> Elaborator<'a> {
         for item in &file.items {
             match item {
                 Item::Const { name, value } => {
-                    let lowered = self.lower_declared(name, value);
-                    self.check_constant(lowered, value);
+                    let _ = self.lower_declared(name, value);
                 }
                 Item::Param { name, value, range } => {
                     let declared = self.lower_declared(name, value);

@@ -8,7 +8,7 @@ use super::observer::Observer;
 use super::outcome::{Shows, Witness};
 use super::recall;
 use super::session::Call;
-use super::subject::Subject;
+use super::subject::{Subject, lost};
 use super::tally::Tally;
 use crate::base::lanes::Mask;
 use crate::base::random::TrialKey;
@@ -70,10 +70,13 @@ fn witness(
     }
     let code = subject.code(&[column]);
     let mut observer = subject.observer(column).ok()?;
-    // Where a robustness leaves its range a trial ends; here it is shown what it is.
+    // Where a robustness leaves its range a trial ends; here it is shown what it is, if the trial goes on so long.
+    let mut is_longer = false;
     if let Observer::Robustness(_, sought @ Sought::Clipped(..)) = &mut observer {
         *sought = Sought::Value;
+        is_longer = true;
     }
+    let needs = subject.needs(&[column]).ok()?;
     let mut state = State::new(program.layout, program.scenario.agents.len());
     let mut scratch = Scratch::new();
     let mut readings = Readings::default();
@@ -87,6 +90,17 @@ fn witness(
     let kept = if program.scenario.agents.len() <= LARGEST_KEPT { KEPT } else { 0 };
     loop {
         code.run(program, &state, &mut readings);
+        let queues = &state.queues;
+        let is_over = || {
+            let gone = subject.follows(column) && queues.reused.has(0);
+            let over = state.faulty | state.diverged | queues.full | lost(&needs, &readings, &state.ticks);
+            gone || over.has(0)
+        };
+        if is_longer && is_over() {
+            let time = program.scenario.clock.seconds(Tick(state.ticks[0]));
+            let what = "outside of its range, nobody knows how far: the trial ends here".to_owned();
+            return Some(Witness { shows, trial, value: None, time, unit, what, command });
+        }
         observer.observe(lane, &readings);
         record.push(&readings);
         if states.len() < kept {

@@ -76,7 +76,7 @@ impl Sequence {
 ///
 /// Values outside of the range are clipped and counted. Unresolved trials are read as the lower end of the
 /// range and as the upper end; the interval holds both readings, and is as narrow as asked for once both together are,
-/// unless they lie so far apart that this is not worth it.
+/// unless they lie so far apart that this is not worth it, or the largest number of trials comes before.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mean {
     low: f64,

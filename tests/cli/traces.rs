@@ -355,3 +355,13 @@ fn show_tells_of_behaviours_and_sources() {
         assert!(said.out.contains(line), "{line}\n{}", said.out);
     }
 }
+
+#[test]
+fn a_jam_is_told_of_who_jumps_then() {
+    let model = "scenario \"fast\"\nhorizon = 1 s\nstep = 0.1 s\n\
+process late { var on = false  when !on after 0.35 s -> on = true }\n\
+process early { var n = true  when n & !late.on at 3e6 /s -> n = false  when !n & !late.on at 3e6 /s -> n = true }\n\
+process blinker { var b = true  when b & late.on at 1e9 /s -> b = false  when !b & late.on at 1e9 /s -> b = true }\n";
+    let said = Place::new(&[("a.scn", model)]).call(&["simulate", "a.scn"]).err;
+    assert!(said.contains("at 0.4 s: more than 1048576 jumps") && said.contains("of `blinker`"), "{said}");
+}

@@ -65,12 +65,12 @@ impl<'a> Elaborator<'a> {
     fn check_lets(&mut self, decl: &'a BehaviourDecl, locals: &Locals, variables: usize) -> Lowered<()> {
         let mut failed = None;
         for found in lets(decl) {
-            let before = self.diagnostics.len();
+            let (before, failures) = (self.diagnostics.len(), self.failures());
             let mut lowered = self.check_let(decl, found, &self.with_own(locals, variables));
             // A condition sees no own parameters: what they hide is sound where it is used by conditions only.
             if lowered.is_err() {
                 let said = self.diagnostics.split_off(before);
-                self.forget_failures();
+                self.forget_failures(&failures);
                 lowered = self.check_let(decl, found, locals);
                 if lowered.is_err() {
                     self.diagnostics.truncate(before);

@@ -163,6 +163,7 @@ impl<'a> Elaborator<'a> {
                 )
                 .related(first.span, "first here");
                 self.note(error);
+                self.stray.push(arguments);
                 continue;
             }
             behaviours.push((id, arguments, expr));

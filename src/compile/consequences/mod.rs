@@ -25,7 +25,7 @@ const DIMENSION: &str = "E0303";
 /// Code of a name that is used before it can be known.
 const EARLY: &str = "E0205";
 /// How that ends of a name that leads back to itself.
-const BY_ITSELF: &str = "by itself";
+pub(super) const BY_ITSELF: &str = "by itself";
 /// Codes of unknown names, told once.
 pub(super) const UNKNOWN: [&str; 4] = ["E0201", "E0203", "E0208", "E0210"];
 /// Most further places that are marked.

@@ -170,6 +170,9 @@ impl<'a> Elaborator<'a> {
             return self.constants.get(&key).cloned().unwrap_or(Err(Reported));
         }
         let value = self.expand(scope, name, span, compute);
+        if value.is_err() {
+            self.journal.push(key.clone());
+        }
         self.constants.insert(key, value.clone());
         value
     }
@@ -218,7 +221,7 @@ impl<'a> Elaborator<'a> {
     ) -> Lowered<Typed> {
         let value = self.expand(scope, name, span, compute);
         if value.is_err() {
-            self.broken.insert((scope, name.to_owned()));
+            self.give_up(scope, name.to_owned());
         }
         value
     }
@@ -267,7 +270,7 @@ impl<'a> Elaborator<'a> {
         if value.is_err() {
             // With an unknown name in it nothing comes of any other call.
             if self.unknowns > unknowns {
-                self.broken.insert((inner.scope, path));
+                self.give_up(inner.scope, path);
             }
             if !inner.names.is_empty() {
                 self.called(before, decl, span, &inner);
@@ -296,9 +299,10 @@ impl<'a> Elaborator<'a> {
         }
         let key = (inner.scope, path.clone());
         let _ = self.expand(inner.scope, &path, span, |this| {
-            if !this.followed.insert(key) {
+            if !this.followed.insert(key.clone()) {
                 return Err(Reported);
             }
+            this.journal.push(key);
             for argument in &decl.arguments {
                 inner.bind_unknown(&argument.name);
             }

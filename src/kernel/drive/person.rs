@@ -192,7 +192,7 @@ impl<'a> Person<'a> {
         if matches!(stage.target, Target::Onward) {
             let (direction, moves) = self.way.onward;
             let speed = if moves { self.speed() } else { 0.0 };
-            self.drive(Some(direction), speed);
+            self.drive(moves.then_some(direction), speed);
             return;
         }
         let at = self.at();

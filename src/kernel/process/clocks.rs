@@ -29,6 +29,8 @@ pub struct Clocks {
     pub(super) crowd: [u32; LANES],
     /// Lanes in which more happened between two steps than is followed.
     pub jammed: Mask,
+    /// Of these the process that jumps most.
+    pub(super) jammer: [usize; LANES],
     /// Lanes whose clocks have not been set yet.
     pub(super) fresh: Mask,
 }
@@ -58,6 +60,24 @@ impl Clocks {
         self.crowd[lane] = 0;
         self.jammed &= !Mask::lane(lane);
         self.fresh |= Mask::lane(lane);
+    }
+
+    /// How often each process has begun to wait, lane by lane.
+    pub(super) fn waits(&self) -> Vec<[u64; LANES]> {
+        let both = self.races.iter().zip(&self.delays);
+        let sum = |races: &[u32; LANES], delays: &[u32; LANES]| {
+            std::array::from_fn(|lane| u64::from(races[lane]) + u64::from(delays[lane]))
+        };
+        both.map(|(races, delays)| sum(races, delays)).collect()
+    }
+
+    /// Remembers for some lanes which process has waited most often since.
+    pub(super) fn blame(&mut self, before: &[[u64; LANES]], lanes: Mask) {
+        let now = self.waits();
+        for lane in lanes.iter() {
+            let more = |k: &usize| (now[*k][lane] - before[*k][lane], std::cmp::Reverse(*k));
+            self.jammer[lane] = (0..now.len()).max_by_key(more).unwrap_or(0);
+        }
     }
 
     /// The clock that rings first in each lane, and when.

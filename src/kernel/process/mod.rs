@@ -43,6 +43,8 @@ use timed::{Timed, is_timed};
 
 /// Most jumps between two steps; a trial that needs more is unresolved.
 pub const MOST_BETWEEN: u32 = 1 << 20;
+/// Jumps after these from which it is told which process they are of.
+const JUMPS_OF_A_JAM: u32 = 1 << 8;
 
 /// One process.
 #[derive(Clone, Debug)]
@@ -309,4 +311,11 @@ fn ring(
     }
     state.diverged |= lanes;
     state.clocks.jammed |= lanes;
+    // Who does it shows in what would come next.
+    let before = state.clocks.waits();
+    for _ in 0..JUMPS_OF_A_JAM {
+        timed.ring(layout, state, readings, lanes & !state.faulty, until);
+    }
+    state.clocks.blame(&before, lanes);
+    state.faulty &= !lanes;
 }

@@ -246,8 +246,12 @@ impl Timed {
     pub(super) fn busiest(&self, state: &State, lane: usize) -> Option<(u32, f64)> {
         let clocks = &state.clocks;
         let waits = |k: usize| u64::from(clocks.races[k][lane]) + u64::from(clocks.delays[k][lane]);
-        let most = (0..self.racers.len()).max_by_key(|&k| (waits(k), std::cmp::Reverse(k)))?;
-        let racer = &self.racers[most];
+        let most = if clocks.jammed.has(lane) {
+            clocks.jammer[lane]
+        } else {
+            (0..self.racers.len()).max_by_key(|&k| (waits(k), std::cmp::Reverse(k)))?
+        };
+        let racer = self.racers.get(most)?;
         Some((racer.process, clocks.rate[racer.first].0[lane]))
     }
 

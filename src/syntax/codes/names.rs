@@ -158,7 +158,7 @@ Right:\n\
         title: "a name means something else, too",
         text: "\
 A name that is built in (`time`, `everyone`, `pi`, functions) may be declared; then it stands for what was declared. A\n\
-scenario may call something `F`, which in property files is an operator: nothing there can name it.\n\
+scenario may call something `F`, which in property files is an operator: no formula there can name it.\n\
 \n\
 Probably wrong:\n\
 \x20   param time = 3\n\

@@ -64,9 +64,15 @@ impl Builder<'_> {
             if let Some(strict) = strict_rule(rule) {
                 let start = part.as_span().start();
                 self.lost.push(Span::new(self.source.id, start, end_of(&part)));
-                // What follows a bad part on its line is a consequence of it.
-                let same_line = last_bad_end.is_some_and(|end: usize| !text[end..start].contains('\n'));
-                if !same_line {
+                // What follows a bad part on its line is a consequence of it, and what follows it elsewhere unless it starts
+                // a line as declarations do.
+                let follows = |end: usize| {
+                    !text[end..start].contains('\n')
+                        || rule == Rule::bad_item
+                            && self.source.line_start(start as u32) != start as u32
+                            && failure(Rule::scenario_start, text, start).is_some()
+                };
+                if !last_bad_end.is_some_and(follows) {
                     let fault = self.fault(strict, &part, before.as_ref());
                     if let Some(before) = &before
                         && fault.from == before.as_span().start()
