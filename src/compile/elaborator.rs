@@ -74,6 +74,17 @@ impl Locals {
     }
 }
 
+/// As what a name was looked at in vain.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Vain {
+    /// Its value is kept as an error.
+    Constant,
+    /// Nothing comes of it any more.
+    Name,
+    /// A function that was followed.
+    Call,
+}
+
 /// How many names were looked at in vain up to some moment.
 pub(super) struct Failures {
     journal: usize,
@@ -169,8 +180,8 @@ pub(super) struct Elaborator<'a> {
     outermost: Span,
     /// Names that were expanded in vain: what is wrong with them was said.
     pub(super) broken: BTreeSet<(ScopeId, String)>,
-    /// Names that were looked at in vain, in order.
-    pub(super) journal: Vec<(ScopeId, String)>,
+    /// What was looked at in vain, in order.
+    pub(super) journal: Vec<(Vain, (ScopeId, String))>,
     /// Parts of the files that were not read to their end, ascending, none within another: what is wrong with them was said.
     pub(super) cut: Vec<Span>,
     /// Whether parts of the files were not read at all, or not to their end.
@@ -277,20 +288,23 @@ impl<'a> Elaborator<'a> {
 
     /// Forgets what was looked at in vain since, where what was said of that is taken back: it would not be said again.
     pub(super) fn forget_failures(&mut self, since: &Failures) {
-        for key in self.journal.split_off(since.journal) {
-            if self.constants.get(&key).is_some_and(Result::is_err) {
-                self.constants.remove(&key);
+        for (vain, key) in self.journal.split_off(since.journal) {
+            match vain {
+                Vain::Constant => drop(self.constants.remove(&key)),
+                Vain::Name => drop(self.broken.remove(&key)),
+                Vain::Call => drop(self.followed.remove(&key)),
             }
-            self.broken.remove(&key);
-            self.followed.remove(&key);
         }
         self.circles.truncate(since.circles);
     }
 
     /// Nothing comes of a name any more: what is wrong with it was said.
     pub(super) fn give_up(&mut self, scope: ScopeId, name: String) {
-        self.journal.push((scope, name.clone()));
-        self.broken.insert((scope, name));
+        let key = (scope, name);
+        // What was not read to its end stays so.
+        if self.broken.insert(key.clone()) {
+            self.journal.push((Vain::Name, key));
+        }
     }
 
     /// Whether an error was found.

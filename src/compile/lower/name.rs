@@ -1,6 +1,6 @@
 //! Names and members of sets.
 
-use super::super::elaborator::{Elaborator, Locals, Lowered, Reported};
+use super::super::elaborator::{Elaborator, Locals, Lowered, Reported, Vain};
 use super::super::symbols::{Meaning, ScopeId, unknown};
 use super::super::typed::Typed;
 use super::super::weight::Weight;
@@ -171,7 +171,7 @@ impl<'a> Elaborator<'a> {
         }
         let value = self.expand(scope, name, span, compute);
         if value.is_err() {
-            self.journal.push(key.clone());
+            self.journal.push((Vain::Constant, key.clone()));
         }
         self.constants.insert(key, value.clone());
         value
@@ -302,7 +302,7 @@ impl<'a> Elaborator<'a> {
             if !this.followed.insert(key.clone()) {
                 return Err(Reported);
             }
-            this.journal.push(key);
+            this.journal.push((Vain::Call, key));
             for argument in &decl.arguments {
                 inner.bind_unknown(&argument.name);
             }
