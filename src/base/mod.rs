@@ -7,6 +7,7 @@ pub mod bytes;
 pub mod decimal;
 pub mod fingerprint;
 pub mod geometry;
+pub mod instant;
 pub mod lanes;
 #[allow(clippy::excessive_precision, reason = "coefficients stand as published")]
 pub mod math;

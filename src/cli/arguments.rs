@@ -95,7 +95,8 @@ pub(super) struct Check {
     /// Most trials of one ranking, over all its options.
     #[arg(long, value_name = "N")]
     pub(super) total_trials: Option<u64>,
-    /// Time for the whole call, such as `50ms`, `2s`, `5min`; no limit by default.
+    /// Time for the whole call, such as `50ms`, `2s`, `5min`; no limit by default. To show what decided a trial
+    /// may take a quarter of it more, at least 20 ms and at most a second.
     #[arg(long, value_parser = parse_duration)]
     pub(super) timeout: Option<std::time::Duration>,
     /// Format of the results on standard output.

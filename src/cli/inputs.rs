@@ -235,15 +235,12 @@ pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> I
             None => complete = false,
         }
         for name in properties {
-            match reader.source(name) {
-                Some(source) => {
-                    let (file, diagnostics) = parse_properties(&source);
-                    parsed.push(file);
-                    let hint = "this is a scenario; it comes first, and properties after it";
-                    reader.diagnostics.extend(misplaced(diagnostics, &source, is_scenario, hint));
-                }
-                None => complete = false,
-            }
+            // One that cannot be read was reported; the others are looked at without it.
+            let Some(source) = reader.source(name) else { continue };
+            let (file, diagnostics) = parse_properties(&source);
+            parsed.push(file);
+            let hint = "this is a scenario; it comes first, and properties after it";
+            reader.diagnostics.extend(misplaced(diagnostics, &source, is_scenario, hint));
         }
     }
     for directory in model.data.iter().filter(|directory| !directory.is_dir()) {

@@ -47,7 +47,7 @@ impl Elaborator<'_> {
                     argument.name.span,
                     format!("`{}` has no argument `{}`", method.name.name, argument.name.name),
                 );
-                self.note(error.hint(hint));
+                self.note(error.formal().hint(hint));
                 let _ = self.number(&argument.value, locals);
                 failed = true;
                 continue;
@@ -57,14 +57,14 @@ impl Elaborator<'_> {
             {
                 let text = format!("`{}` is given twice", argument.name.name);
                 let error = Diagnostic::error("E0604", argument.name.span, text);
-                self.note(error.related(first.name.span, "first given here"));
+                self.note(error.formal().related(first.name.span, "first given here"));
                 failed = true;
                 continue;
             }
             if let (Some(clause), "alpha" | "beta" | "delta") = (&clauses.confidence, names[at]) {
                 let text = format!("the error is given twice: by `confidence` and by `{}`", names[at]);
                 let error = Diagnostic::error("E0604", argument.name.span, text);
-                self.note(error.related(clause.span, "given here"));
+                self.note(error.formal().related(clause.span, "given here"));
                 failed = true;
                 continue;
             }
@@ -90,7 +90,7 @@ impl Elaborator<'_> {
                 let method = arguments.method;
                 let error =
                     Diagnostic::error("E0604", method.span, format!("`{}` needs `{name}`", method.name.name));
-                self.report(error)
+                self.report(error.formal())
             }
         }
     }

@@ -7,9 +7,10 @@ use super::number::Number;
 use super::queries::Compiler;
 use super::study::{Ask, Measure, MeasureKind, Ranking, Target};
 use super::symbols::ScopeId;
-use crate::model::Who;
+use crate::model::{AgentId, Who};
 use crate::syntax::ast::{self, BinaryOp, Binding, Clauses, Expr};
 use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
 
 /// Most options of a ranking.
 const MOST_OPTIONS: usize = 4096;
@@ -60,7 +61,8 @@ impl<'a> Compiler<'a> {
             // P(metric < x) is above its level, and not if that is below. So strictness goes with the side:
             // `<= x` and `> x` are settled by P(metric <= x), `< x` and `>= x` by P(metric < x).
             MeasureKind::Quantile { level, .. } => {
-                let below = elaborator.below(&column, at_least != or_equal, bound.value, bound.dimension);
+                let limit = (bound.value, threshold.span);
+                let below = elaborator.below(&column, at_least != or_equal, limit, bound.dimension)?;
                 at_least = !at_least;
                 (below, MeasureKind::Probability, level)
             }
@@ -81,6 +83,15 @@ impl<'a> Compiler<'a> {
         family: Option<f64>,
         scope: ScopeId,
     ) -> Lowered<(Ask, bool, usize)> {
+        for binding in first.iter().chain(second) {
+            if let Some(common) = clauses.under.iter().find(|common| common.name.name == binding.name.name) {
+                let text = format!("`{}` is set twice", binding.name.name);
+                let error = Diagnostic::error("E0210", binding.name.span, text)
+                    .related(common.name.span, "set here for both sides")
+                    .hint("leave one of them out");
+                self.sites[site].elaborator.note(error);
+            }
+        }
         // What `under` sets at the end of the query holds for both sides.
         let common = self.sites[site].settings.clone();
         let sides = (self.under(first, scope, site, &common), self.under(second, scope, site, &common));
@@ -91,11 +102,13 @@ impl<'a> Compiler<'a> {
             (Err(_), Ok((two, _))) => (*two, *two),
             (Err(_), Err(_)) => (site, site),
         };
-        let before = self.sites[site].elaborator.diagnostics.len();
+        let elaborator = &self.sites[site].elaborator;
+        let (before, failures) = (elaborator.diagnostics.len(), elaborator.failures());
         let ((a, sketch), (b, _)) = (self.measured(one, measure, scope), self.measured(two, measure, scope));
         let elaborator = &mut self.sites[site].elaborator;
         if sides.0.is_err() && sides.1.is_err() {
             elaborator.keep_sure(before);
+            elaborator.forget_but_circles(&failures);
         }
         let allowance = Allowance { family, claims: 1 };
         let quantile = sketch.what == What::Quantile;
@@ -170,21 +183,13 @@ impl<'a> Compiler<'a> {
         let typed = elaborator.lower(agent, locals)?;
         let Who::Agent(id) = elaborator.as_agent(typed, agent.span)? else { return Err(Reported) };
         wanted?;
+        let advised = &self.sites[site].elaborator.advised;
+        // With moves that are wrong nobody knows whose they are.
+        if advised.as_ref().is_some_and(|advised| !advised.contains(&id)) {
+            return self.sites[site].elaborator.without_moves(id, agent.span);
+        }
         let Some(scenario) = &self.sites[site].scenario else { return Err(Reported) };
-        let Some(moves) = scenario.moves.iter().position(|m| m.agent == id) else {
-            // One that could not be declared was reported.
-            let Some(agent_of) = scenario.agents.get(id.0 as usize) else { return Err(Reported) };
-            let name = agent_of.name.clone();
-            let error = Diagnostic::error(
-                "E0606",
-                agent.span,
-                format!("the scenario declares no moves of `{name}`"),
-            )
-            .hint(format!(
-                "for example `moves {name} for 2 s {{ heading from -60 deg to 60 deg by 15 deg  stop }}`"
-            ));
-            return self.sites[site].elaborator.report(error);
-        };
+        let Some(moves) = scenario.moves.iter().position(|m| m.agent == id) else { return Err(Reported) };
         let options = scenario.moves[moves].options.len();
         if options > MOST_OPTIONS {
             let said = format!("a ranking is of at most {MOST_OPTIONS} options, and these are {options}");
@@ -195,6 +200,27 @@ impl<'a> Compiler<'a> {
 }
 
 impl Elaborator<'_> {
+    /// That nothing advises somebody.
+    fn without_moves<T>(&mut self, id: AgentId, at: Span) -> Lowered<T> {
+        // One that could not be declared was reported.
+        let Some(name) = self.agent_names.get(id.0 as usize).filter(|_| !self.undeclared.contains(&id))
+        else {
+            return Err(Reported);
+        };
+        let name = name.clone();
+        // Moves are those of somebody who has a name alone.
+        let (alone, first) = if name.contains('[') {
+            ("robot", "moves are those of one agent, declared alone as `agent robot: …`; ")
+        } else {
+            (name.as_str(), "")
+        };
+        let hint = format!(
+            "{first}for example `moves {alone} for 2 s {{ heading from -60 deg to 60 deg by 15 deg  stop }}`"
+        );
+        let said = format!("the scenario declares no moves of `{name}`");
+        self.report(Diagnostic::error("E0606", at, said).hint(hint))
+    }
+
     /// What a measure is compared with: a number in its unit, between 0 and 1 if it is a probability and within the range
     /// of an expectation.
     fn threshold(&mut self, threshold: &Expr, sketch: Sketch, locals: &Locals) -> Lowered<Number> {
@@ -217,11 +243,11 @@ impl Elaborator<'_> {
             );
             return self.report(error.hint(hint));
         }
-        if let Some((low, high)) = sketch.range
+        if let Some(((low, high), range)) = sketch.range
             && (theta <= low || theta >= high)
         {
             let said = "this threshold lies outside the range of the metric";
-            return self.report(Diagnostic::error("E0601", threshold.span, said).hanging());
+            return self.report(Diagnostic::error("E0601", threshold.span, said).hanging_on(range));
         }
         Ok(bound)
     }
@@ -252,6 +278,5 @@ fn unlike(
         place,
         format!("the sides of a comparison need one range: it is {first}, but {second}"),
     )
-    .hanging()
     .hint("write a range that holds for both sides and depends on none of the parameters that differ")
 }

@@ -34,18 +34,18 @@ impl Elaborator<'_> {
                 } else {
                     "no number of trials excludes every error; 0.01 and 0.05 are usual"
                 };
-                self.report(error.hanging().hint(hint))
+                self.report(error.hint(hint))
             }
         }
     }
 
     /// A half width, in the unit of the measure, must be a legal part of what the measure ranges over.
     pub(super) fn width(&mut self, (epsilon, at): (f64, Span), sketch: Sketch, widest: f64) -> Lowered<f64> {
-        let (range, dimension) = match sketch {
-            Sketch { what: What::Probability, .. } => (1.0, Dimension::NONE),
-            Sketch { what: What::Expectation, range: Some(range), dimension: Some(dimension), .. } => {
-                (range.1 - range.0, dimension)
-            }
+        let (range, ranged, dimension) = match sketch {
+            Sketch { what: What::Probability, .. } => (1.0, None, Dimension::NONE),
+            Sketch {
+                what: What::Expectation, range: Some((range, at)), dimension: Some(dimension), ..
+            } => (range.1 - range.0, Some(at), dimension),
             // Of what nobody knows no part is asked.
             _ if epsilon > 0.0 || sketch.what == What::Quantile => return Ok(epsilon),
             _ => return self.report(Diagnostic::error("E0604", at, "a width must be positive")),
@@ -64,8 +64,8 @@ impl Elaborator<'_> {
         } else {
             ("above", widest * range, "every number would do: ask for a width that says something")
         };
-        let error =
-            Diagnostic::error("E0604", at, format!("a width of {epsilon}{unit} is {word} {end}{unit}"));
-        self.report(error.hint(hint))
+        let said = format!("a width of {epsilon}{unit} is {word} {end}{unit}");
+        let error = Diagnostic::error("E0604", at, said).hint(hint);
+        self.report(ranged.into_iter().fold(error, Diagnostic::hanging_on))
     }
 }

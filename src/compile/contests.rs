@@ -94,7 +94,7 @@ impl Elaborator<'_> {
             (Some(found), _) => found,
             // What does not matter in metres nobody knows but who asks.
             (None, Some(dimension)) if !dimension.is_none() => {
-                let error = Diagnostic::error("E0604", measured, "how much worse may a choice be?");
+                let error = Diagnostic::error("E0604", measured, "how much worse may a choice be?").formal();
                 return self
                     .report(error.hint(format!("say what does not matter, in {dimension}: `within …`")));
             }

@@ -2,6 +2,7 @@
 
 use super::behaviour::With;
 use super::dimension::{Dimension, describe};
+use super::failures::Vain;
 use super::interned::Interned;
 use super::kinds::Kind;
 use super::margin::Margins;
@@ -74,23 +75,6 @@ impl Locals {
     }
 }
 
-/// As what a name was looked at in vain.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Vain {
-    /// Its value is kept as an error.
-    Constant,
-    /// Nothing comes of it any more.
-    Name,
-    /// A function that was followed.
-    Call,
-}
-
-/// How many names were looked at in vain up to some moment.
-pub(super) struct Failures {
-    journal: usize,
-    circles: usize,
-}
-
 /// The state of compilation.
 #[allow(clippy::struct_excessive_bools, reason = "each answers a question of its own")]
 pub(super) struct Elaborator<'a> {
@@ -138,12 +122,16 @@ pub(super) struct Elaborator<'a> {
     pub(super) origins: Origins,
     /// Whether somebody may come in during a trial.
     pub(super) coming: bool,
+    /// Who has moves; `None` where some moves are wrong.
+    pub(super) advised: Option<BTreeSet<AgentId>>,
     /// Agents who come or leave during a trial.
     pub(super) passing: BTreeSet<AgentId>,
     /// The clock.
     pub(super) clock: Clock,
     /// Last tick.
     pub(super) horizon: Tick,
+    /// Where horizon and step are written.
+    pub(super) clock_at: Vec<Span>,
     /// Times that ticks of continuous time measure, as far as they can.
     pub(super) measured: Vec<Decimal>,
     /// Times that ticks of continuous time would have to measure too.
@@ -170,6 +158,8 @@ pub(super) struct Elaborator<'a> {
     pub(super) followed: BTreeSet<(ScopeId, String)>,
     /// Names in circles that were reported.
     pub(super) circles: Vec<String>,
+    /// Whether a parameter has a value outside of its range here.
+    pub(super) is_astray: bool,
     /// What was found wrong.
     pub(super) diagnostics: Vec<Diagnostic>,
     /// What is known of margins, while the formula of a robustness is lowered.
@@ -180,12 +170,14 @@ pub(super) struct Elaborator<'a> {
     outermost: Span,
     /// Names that were expanded in vain: what is wrong with them was said.
     pub(super) broken: BTreeSet<(ScopeId, String)>,
+    /// Names of which nobody knows which of two things they mean, or what.
+    pub(super) doubtful: BTreeSet<(ScopeId, String)>,
     /// What was looked at in vain, in order.
     pub(super) journal: Vec<(Vain, (ScopeId, String))>,
     /// Parts of the files that were not read to their end, ascending, none within another: what is wrong with them was said.
     pub(super) cut: Vec<Span>,
-    /// Whether parts of the files were not read at all, or not to their end.
-    pub(super) is_torn: bool,
+    /// Parts of the files that were not read at all, or not to their end.
+    pub(super) torn: Vec<Span>,
     /// What is known of the clock: errors of times that need more say nothing.
     pub(super) told: Told,
     /// Nodes lowered so far.
@@ -218,9 +210,11 @@ impl<'a> Elaborator<'a> {
             attached_at: None,
             origins: Origins::default(),
             coming: false,
+            advised: Some(BTreeSet::new()),
             passing: BTreeSet::new(),
             clock: Clock::Steps,
             horizon: Tick(0),
+            clock_at: Vec::new(),
             measured: Vec::new(),
             between: Vec::new(),
             temporal: false,
@@ -234,14 +228,16 @@ impl<'a> Elaborator<'a> {
             looking: false,
             followed: BTreeSet::new(),
             circles: Vec::new(),
+            is_astray: false,
             diagnostics: Vec::new(),
             margins: None,
             depth: 0,
             outermost: Span::default(),
             broken: BTreeSet::new(),
+            doubtful: BTreeSet::new(),
             journal: Vec::new(),
             cut: Vec::new(),
-            is_torn: false,
+            torn: Vec::new(),
             told: Told::Whole,
             nodes: 0,
         }
@@ -259,6 +255,9 @@ impl<'a> Elaborator<'a> {
             return;
         }
         if diagnostic.place.as_ref().is_some_and(|place| self.is_cut(place.span)) {
+            return;
+        }
+        if self.is_astray && diagnostic.severity == Severity::Error && !self.is_sure(&diagnostic) {
             return;
         }
         if !self.diagnostics.contains(&diagnostic) {
@@ -279,32 +278,6 @@ impl<'a> Elaborator<'a> {
     pub(super) fn is_said(&self, code: &str, place: Span) -> bool {
         let at = |one: &Diagnostic| one.place.as_ref().is_some_and(|label| label.span == place);
         self.diagnostics.iter().any(|one| one.code == code && at(one))
-    }
-
-    /// Where the present looks in vain end.
-    pub(super) fn failures(&self) -> Failures {
-        Failures { journal: self.journal.len(), circles: self.circles.len() }
-    }
-
-    /// Forgets what was looked at in vain since, where what was said of that is taken back: it would not be said again.
-    pub(super) fn forget_failures(&mut self, since: &Failures) {
-        for (vain, key) in self.journal.split_off(since.journal) {
-            match vain {
-                Vain::Constant => drop(self.constants.remove(&key)),
-                Vain::Name => drop(self.broken.remove(&key)),
-                Vain::Call => drop(self.followed.remove(&key)),
-            }
-        }
-        self.circles.truncate(since.circles);
-    }
-
-    /// Nothing comes of a name any more: what is wrong with it was said.
-    pub(super) fn give_up(&mut self, scope: ScopeId, name: String) {
-        let key = (scope, name);
-        // What was not read to its end stays so.
-        if self.broken.insert(key.clone()) {
-            self.journal.push((Vain::Name, key));
-        }
     }
 
     /// Whether an error was found.
@@ -346,10 +319,12 @@ impl<'a> Elaborator<'a> {
             // A unit belongs to a number or a point.
             let is_number = text.ends_with(|c: char| c.is_ascii_digit() || c == '.' || c == ')')
                 && text.starts_with(|c: char| !c.is_alphabetic() && c != '_');
+            // Nobody writes angles of people in radians.
+            let unit = if expected == Dimension::ANGLE { "deg".to_owned() } else { expected.to_string() };
             error = error.hint(if is_number {
-                format!("write the unit, as in `{text} {expected}`")
+                format!("write the unit, as in `{text} {unit}`")
             } else {
-                format!("write the unit where the number stands, or multiply: `{text} * 1 {expected}`")
+                format!("write the unit where the number stands, or multiply: `{text} * 1 {unit}`")
             });
         }
         self.report(error)
@@ -438,21 +413,15 @@ impl<'a> Elaborator<'a> {
         match self.lower(expr, locals)? {
             Typed::Number(number) => Ok(number),
             found @ (Typed::Num(..) | Typed::Term(..)) => {
+                let when = match &found {
+                    Typed::Num(num, _) if num.is_fixed() => "is computed in each",
+                    _ => "changes during a trial",
+                };
                 let error = Diagnostic::error("E0304", expr.span, "this must be known before a trial starts")
-                    .label(format!("{} that changes during a trial", found.noun()));
+                    .label(format!("{} that {when}", found.noun()));
                 self.report(error)
             }
             found => self.mismatch(expr.span, "a number", &found),
-        }
-    }
-
-    /// That a constant of a property file changes not with the states of a trial.
-    pub(super) fn check_constant(&mut self, lowered: Lowered<Typed>, value: &Expr) {
-        if let Ok(found @ (Typed::Num(..) | Typed::Term(..) | Typed::Formula(_) | Typed::Tally(_))) = lowered
-        {
-            let error = Diagnostic::error("E0304", value.span, "this must be known before a trial starts")
-                .label(format!("{} that changes during a trial", found.noun()));
-            self.note(error.hint("`let` names what changes"));
         }
     }
 

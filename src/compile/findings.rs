@@ -4,13 +4,15 @@ use super::consequences::{BY_ITSELF, UNKNOWN, words};
 use super::dimension;
 use super::elaborator::Elaborator;
 use super::queries::Compiler;
+use super::symbols::Meaning;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
-use std::collections::BTreeMap;
+use crate::syntax::source::Span;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Codes of errors of queries that hang on no value, besides those of names, kinds and units.
-const VALUELESS: [&str; 4] = ["E0204", "E0603", "E0606", "E0607"];
+const VALUELESS: [&str; 6] = ["E0204", "E0507", "E0508", "E0603", "E0606", "E0607"];
 /// Codes of numbers that hang on no other value where they are written as such.
-const WRITTEN: [&str; 7] = ["E0402", "E0404", "E0405", "E0601", "E0602", "E0604", "E0605"];
+const WRITTEN: [&str; 8] = ["E0402", "E0404", "E0405", "E0503", "E0601", "E0602", "E0604", "E0605"];
 /// The world in which nothing is set.
 const PLAIN: usize = 0;
 /// Most worlds that an error names, and most words in which it is said.
@@ -28,6 +30,18 @@ struct Finding {
     others: usize,
 }
 
+impl Finding {
+    /// Shows the calls of another one at the same place, too.
+    fn join(&mut self, other: &Diagnostic) {
+        let shown = &mut self.diagnostic.related;
+        for label in &other.related {
+            if shown.len() < MOST_CALLS && !shown.contains(label) {
+                shown.push(label.clone());
+            }
+        }
+    }
+}
+
 impl Compiler<'_> {
     /// What was found in all worlds. The same place says the same thing once, with the values of the parameters of which
     /// that depends, as far as is known; in other words, with other values, a few times.
@@ -42,17 +56,15 @@ impl Compiler<'_> {
                 let latest = known.iter().max_by_key(|at| found[**at].worlds.last());
                 match (same, latest) {
                     (Some(&same), _) => {
-                        if found[same].worlds.last() != Some(&world) {
+                        if found[same].worlds.last() == Some(&world) {
+                            found[same].join(diagnostic);
+                        } else {
                             found[same].worlds.push(world);
                         }
                     }
                     // One thing at a place is enough, in one world; where it is so in another call, that is shown.
                     (None, Some(&last)) if place.is_some() && found[last].worlds.last() == Some(&world) => {
-                        let shown = &mut found[last].diagnostic.related;
-                        let more = diagnostic.related.iter().filter(|label| !shown.contains(label)).cloned();
-                        let room = MOST_CALLS.saturating_sub(shown.len());
-                        let more: Vec<_> = more.take(room).collect();
-                        shown.extend(more);
+                        found[last].join(diagnostic);
                     }
                     (None, Some(_)) if place.is_some() && known.len() == MOST_WORLDS => {
                         found[known[MOST_WORLDS - 1]].others += 1;
@@ -77,10 +89,13 @@ impl Compiler<'_> {
         if diagnostic.severity != Severity::Error && diagnostic.code != "W0501" {
             return diagnostic;
         }
+        // What hangs on no value is so in all worlds in which that is asked.
+        if others == 0 && self.sites[worlds[0]].elaborator.is_sure(&diagnostic) {
+            return diagnostic;
+        }
         let is_base = |world: &usize| self.bases.contains(world);
         let is_set = |world: &usize| !self.sites[*world].settings.is_empty();
-        let is_sure = others == 0 && self.sites[worlds[0]].elaborator.is_sure(&diagnostic);
-        if worlds == [PLAIN] && !is_base(&PLAIN) && !is_sure {
+        if worlds == [PLAIN] && !is_base(&PLAIN) {
             diagnostic.title.push_str(" (with the defaults)");
             return diagnostic;
         }
@@ -94,7 +109,7 @@ impl Compiler<'_> {
             .filter(|world| if of_call { is_base(world) } else { is_set(world) && !is_base(world) })
             .collect();
         let everywhere = asked.iter().all(|world| worlds.binary_search(world).is_ok());
-        if everywhere && (of_call && asked.len() > 1 || is_sure) || UNKNOWN.contains(&diagnostic.code) {
+        if everywhere && of_call && asked.len() > 1 || UNKNOWN.contains(&diagnostic.code) {
             return diagnostic;
         }
         let mut shown: Vec<String> =
@@ -130,8 +145,11 @@ impl Elaborator<'_> {
     }
 
     pub(super) fn is_sure(&self, one: &Diagnostic) -> bool {
-        if one.hangs {
+        if one.hangs_on.iter().any(|value| self.hangs_on_parameters(*value)) {
             return false;
+        }
+        if one.is_formal {
+            return true;
         }
         let is_circle = one.code == "E0205" && one.title.ends_with(BY_ITSELF);
         if is_circle
@@ -141,8 +159,37 @@ impl Elaborator<'_> {
         {
             return true;
         }
-        let Some(place) = one.place.as_ref().filter(|_| WRITTEN.contains(&one.code)) else { return false };
-        let text = self.text(place.span);
+        WRITTEN.contains(&one.code) && one.place.as_ref().is_some_and(|place| self.is_literal(place.span))
+    }
+
+    /// Whether what is written somewhere hangs on a parameter, by whatever names.
+    pub(super) fn hangs_on_parameters(&self, place: Span) -> bool {
+        let (mut left, mut seen) = (vec![place], BTreeSet::new());
+        while let Some(place) = left.pop() {
+            if !seen.insert(place) {
+                continue;
+            }
+            let text = self.text(place);
+            let names: BTreeSet<&str> = words(&text).collect();
+            for entry in self.scopes.iter().flat_map(|scope| names.iter().filter_map(|name| scope.get(name)))
+            {
+                match &entry.meaning {
+                    Meaning::Param { .. } => return true,
+                    Meaning::Constant(value) | Meaning::Property(value) | Meaning::Point(value) => {
+                        left.push(value.span)
+                    }
+                    Meaning::Let(decl) => left.push(decl.body.span),
+                    Meaning::Region(_, shape) => left.push(super::laws::shape_span(shape)),
+                    _ => {}
+                }
+            }
+        }
+        false
+    }
+
+    /// Whether what is written somewhere is numbers and their units, which are the same in every world.
+    pub(super) fn is_literal(&self, place: Span) -> bool {
+        let text = self.text(place);
         let mut names = words(&text).filter(|word| !word.starts_with(|c: char| c.is_ascii_digit()));
         // A name may be called as a unit is.
         let is_declared = |name: &str| self.scopes.iter().any(|scope| scope.get(name).is_some());

@@ -56,6 +56,9 @@ impl Elaborator<'_> {
             return self.report(error);
         };
         let Meaning::Kind(decl) = meaning else {
+            if matches!(meaning, Meaning::Doubtful) {
+                return Err(Reported);
+            }
             let error = Diagnostic::error(
                 "E0206",
                 name.span,
@@ -71,7 +74,7 @@ impl Elaborator<'_> {
             return self.report(Diagnostic::error(
                 "E0205",
                 name.span,
-                format!("the kind `{}` starts from itself", name.name),
+                format!("the kind `{}` is defined by itself", name.name),
             ));
         }
         if let Some(known) = self.kinds.get(&name.name) {

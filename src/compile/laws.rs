@@ -40,11 +40,24 @@ pub(super) fn shape_span(shape: &crate::syntax::ast::ShapeExpr) -> Span {
 }
 
 /// How a time that must not be negative is mended.
-pub(super) fn truncate(error: Diagnostic, law: &Law) -> Diagnostic {
+pub(super) fn truncate(error: Diagnostic, law: &Law, text: &str) -> Diagnostic {
     match law.constant() {
         Some(_) => error,
-        None => error.hint("truncate the distribution: `… in 0 s .. 20 s`"),
+        None => {
+            let law_alone = text.split(" in ").next().unwrap_or_default();
+            error.hint(format!("cut it off, as in `{law_alone} in 0 s .. {} s`", cut(law.mean())))
+        }
     }
+}
+
+/// Where to cut a time so that its mean stays about what it is: as far above as 0 is below.
+fn cut(mean: f64) -> f64 {
+    if !(mean > 0.0 && mean.is_finite()) {
+        return 60.0;
+    }
+    let twice = 2.0 * mean;
+    let scale = 10f64.powf(2.0 - twice.log10().floor());
+    if scale.is_finite() { (twice * scale).ceil() / scale } else { twice }
 }
 
 impl Elaborator<'_> {

@@ -41,8 +41,8 @@ pub(super) struct Sketch {
     pub(super) what: What,
     /// Of its values, and so of thresholds and widths.
     pub(super) dimension: Option<Dimension>,
-    /// Of an expectation.
-    pub(super) range: Option<(f64, f64)>,
+    /// Of an expectation, and where it is written.
+    pub(super) range: Option<((f64, f64), Span)>,
     /// Of a quantile.
     pub(super) level: Option<f64>,
 }
@@ -251,7 +251,8 @@ impl Elaborator<'_> {
                 self.report(error)
             }
         };
-        let sketch = Sketch { range: range.ok().filter(|_| dimension.is_some()), ..sketch };
+        let written = measure.range.as_ref().map(|(low, high)| low.span.to(high.span));
+        let sketch = Sketch { range: range.ok().zip(written).filter(|_| dimension.is_some()), ..sketch };
         let text = self.text(measure.body.span);
         let observed = metric.and_then(|(root, dimension, unbounded)| {
             let range = range?;
@@ -334,9 +335,9 @@ impl Elaborator<'_> {
         &mut self,
         column: &Column,
         or_equal: bool,
-        bound: f64,
+        (bound, at): (f64, Span),
         dimension: Dimension,
-    ) -> Column {
+    ) -> Lowered<Column> {
         let relation = if or_equal { Relation::AtMost } else { Relation::Less };
         let sign = if or_equal { "<=" } else { "<" };
         let shown = if dimension.is_none() { bound.to_string() } else { format!("{bound} {dimension}") };
@@ -344,13 +345,15 @@ impl Elaborator<'_> {
         let term = match column.root {
             Root::Metric(term) => term,
             Root::Robustness(node, _) => {
-                return Column { root: Root::Robustness(node, Sought::Compared(relation, bound)), text };
+                let root = Root::Robustness(node, Sought::Compared(relation, bound));
+                return Ok(Column { root, text });
             }
-            Root::Formula(_) => return column.clone(),
+            Root::Formula(_) => return Ok(column.clone()),
         };
         let limit = self.term(Term::Constant(bound));
+        self.within_a_trial((term, limit), at)?;
         let node = self.comparison((relation, term, limit), text, dimension);
-        Column { root: Root::Formula(node), text: column.text.clone() }
+        Ok(Column { root: Root::Formula(node), text: column.text.clone() })
     }
 
     /// Whether there is a monitor for it.
@@ -409,11 +412,22 @@ impl Elaborator<'_> {
             span,
             format!("this looks {needed} ahead, but the horizon is {horizon}"),
         );
-        error = if reach.unbounded {
-            error.hint("an operator without a bound asks at every state up to the horizon, and the bounded one inside looks beyond; bound the outer one")
+        // One that begins beyond has no bounded one inside to blame.
+        let begins = match part {
+            Part::Node(node) => match &self.tree.nodes[node.0 as usize] {
+                Node::Finally(window, _) | Node::Globally(window, _) => window.from.0 >= reach.ticks,
+                _ => false,
+            },
+            Part::Term(_) => false,
+        };
+        error = if reach.unbounded && !begins {
+            error.hint("an operator without a bound, as `time_until` is, asks at every state up to the horizon, and the bounded one inside looks beyond; bound the outer one, or wait for what is so in one state")
         } else {
             error.hint(format!("set `horizon = {needed}` in the scenario, or shorten the bounds"))
         };
+        if !self.hangs_on_parameters(span) {
+            error = self.clock_at.iter().copied().fold(error.formal(), Diagnostic::hanging_on);
+        }
         self.report(error)
     }
 

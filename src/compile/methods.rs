@@ -211,7 +211,7 @@ impl Elaborator<'_> {
             span,
             format!("the indifference region {} to {} must lie inside (0, 1)", round(low), round(high)),
         )
-        .hanging()
+        .hanging_on(at)
         .related(at, "around this threshold")
         .hint("choose a smaller indifference, or leave the region out: the default test needs none");
         self.report(error)
@@ -311,7 +311,7 @@ impl Elaborator<'_> {
             delta?;
             arguments.sound()?;
             let error = Diagnostic::error("E0604", method.span, format!("`{name}` needs `epsilon`"));
-            return self.report(error);
+            return self.report(error.formal());
         };
         if name == "gbas" {
             // A relative error has no scale.
@@ -393,14 +393,16 @@ impl Elaborator<'_> {
         let names = ["replicas", "runs", "plain", "delta", "kill"];
         let arguments = self.arguments((clauses, method), names, Sketch::PROBABILITY, locals);
         let [replicas, runs, plain, _, kill] = arguments.values;
-        let replicas = self.whole_in(replicas, "replicas", (10, 1_000_000), 1000);
-        let runs = self.whole_in(runs, "runs", (2, 1000), 20);
+        // How many are killed is at most how many there are.
+        let of = replicas.map(|(_, span)| span);
+        let replicas = self.whole_in(replicas, "replicas", (10, 1_000_000), 1000, None);
+        let runs = self.whole_in(runs, "runs", (2, 1000), 20, None);
         // Of what is wrong follows no default and no bound.
         let (paths, times) = (replicas.unwrap_or(1_000_000), runs.unwrap_or(1000));
-        let plain =
-            self.whole_in(plain, "plain", (LEAST_PLAIN, 1_000_000_000), (paths * times / 2).max(LEAST_PLAIN));
+        let usual = (paths * times / 2).max(LEAST_PLAIN);
+        let plain = self.whole_in(plain, "plain", (LEAST_PLAIN, 1_000_000_000), usual, None);
         let delta = self.claimed(arguments.values[3], delta, allowance);
-        let kill = self.whole_in(kill, "kill", (1, paths - 1), (paths / 10).max(1));
+        let kill = self.whole_in(kill, "kill", (1, paths - 1), (paths / 10).max(1), of);
         let ((replicas, runs), (plain, kill)) = both(both(replicas, runs), both(plain, kill))?;
         let delta = delta?;
         arguments.sound()?;
@@ -415,17 +417,18 @@ impl Elaborator<'_> {
         name: &str,
         (low, high): (u64, u64),
         default: u64,
+        hangs_on: Option<Span>,
     ) -> Lowered<u64> {
         match value {
             None => Ok(default),
             Some((value, _)) if value.fract() == 0.0 && value >= low as f64 && value <= high as f64 => {
                 Ok(value as u64)
             }
-            Some((value, span)) => self.report(Diagnostic::error(
-                "E0604",
-                span,
-                format!("`{name}` is {value}, but is a whole number from {low} to {high}"),
-            )),
+            Some((value, span)) => {
+                let said = format!("`{name}` is {value}, but is a whole number from {low} to {high}");
+                let error = Diagnostic::error("E0604", span, said);
+                self.report(hangs_on.into_iter().fold(error, Diagnostic::hanging_on))
+            }
         }
     }
 
@@ -448,11 +451,10 @@ impl Elaborator<'_> {
         arguments: &Arguments<'_, N>,
     ) -> Stated {
         match (arguments.values[0], &clauses.within) {
-            (Some((_, span)), Some(_)) => self.report(Diagnostic::error(
-                "E0604",
-                span,
-                "the width is given twice: by `within` and by `epsilon`",
-            )),
+            (Some((_, span)), Some(_)) => {
+                let said = "the width is given twice: by `within` and by `epsilon`";
+                self.report(Diagnostic::error("E0604", span, said).formal())
+            }
             (Some(found), None) => Ok(Some(found)),
             (None, _) => stated(clauses, within),
         }

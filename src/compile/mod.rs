@@ -6,11 +6,14 @@
 mod arguments;
 mod asks;
 mod behaviour;
+mod bindings;
 mod bounds;
 mod consequences;
 mod contests;
 pub mod dimension;
+mod doubt;
 mod elaborator;
+mod failures;
 mod families;
 mod files;
 mod filter;

@@ -10,7 +10,7 @@ use super::study::{Ask, Column, Estimator, Measure, Query, Said, Study, Target, 
 use super::symbols::ScopeId;
 use crate::base::decimal::Decimal;
 use crate::model::Scenario;
-use crate::syntax::ast::{self, Binding, Expr, PropertyFile, PropertyItem, QueryKind, ScenarioFile};
+use crate::syntax::ast::{self, Expr, PropertyFile, PropertyItem, QueryKind, ScenarioFile};
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::source::{Source, Span};
 use std::collections::{BTreeMap, BTreeSet};
@@ -48,6 +48,8 @@ pub(super) struct Compiler<'a> {
     known: BTreeMap<Key, Vec<usize>>,
     queries: Vec<Query>,
     next_index: usize,
+    /// Queries that came to nothing.
+    refused: Vec<Span>,
     /// Claims that share the error of a family.
     members: usize,
     /// The world of the values of `--set`, of a sweep the first.
@@ -69,6 +71,7 @@ pub fn compile(input: &Input<'_>) -> (Option<Study>, Vec<Diagnostic>) {
             known: BTreeMap::new(),
             queries: Vec::new(),
             next_index: 0,
+            refused: Vec::new(),
             members: 0,
             base: 0,
             bases: BTreeSet::new(),
@@ -116,6 +119,9 @@ impl<'a> Compiler<'a> {
             self.next_index = 0;
             let base = self.site(point.clone());
             self.bases.insert(base);
+            let set = self.input.settings.iter().map(|setting| (setting.name.clone(), setting.ends()));
+            // What is wrong is noted in that world.
+            let _ = self.check_ranges(base, set.collect());
             if number == 0 {
                 self.base = base;
             }
@@ -126,7 +132,7 @@ impl<'a> Compiler<'a> {
     }
 
     /// The world of a combination of parameter values.
-    fn site(&mut self, settings: BTreeMap<String, Number>) -> usize {
+    pub(super) fn site(&mut self, settings: BTreeMap<String, Number>) -> usize {
         // Both zeros are one.
         let key: Key =
             settings.iter().map(|(name, number)| (name.clone(), (number.value + 0.0).to_bits())).collect();
@@ -156,9 +162,10 @@ impl<'a> Compiler<'a> {
                 match item {
                     // A name that is taken stands for something else; that is said already.
                     PropertyItem::Property { name, formula }
-                        if elaborator.scopes[number + 1]
-                            .get(&name.name)
-                            .is_none_or(|declared| declared.span != name.span) =>
+                        if elaborator.is_doubtful(number + 1, &name.name)
+                            || elaborator.scopes[number + 1]
+                                .get(&name.name)
+                                .is_none_or(|declared| declared.span != name.span) =>
                     {
                         let _ = elaborator.formula_column(formula, number + 1);
                     }
@@ -170,10 +177,8 @@ impl<'a> Compiler<'a> {
                         }
                     }
                     PropertyItem::Const { value, .. } => {
-                        elaborator.temporal = true;
-                        let lowered = elaborator.lower(value, &Locals::of(number + 1));
-                        elaborator.temporal = false;
-                        elaborator.check_constant(lowered, value);
+                        let lowered = elaborator.timeless(value, &Locals::of(number + 1));
+                        let _ = elaborator.unchanging(lowered, value);
                     }
                     PropertyItem::Let(decl) => {
                         elaborator.temporal = true;
@@ -223,74 +228,14 @@ impl<'a> Compiler<'a> {
                     self.sites[base].elaborator.note(warning);
                 }
                 let before = self.queries.len();
-                let _ = self.query(query, scope, base, point, &settings, family);
+                if self.query(query, scope, base, point, &settings, family).is_err() {
+                    self.refused.push(query.span);
+                }
                 for query in &mut self.queries[before..] {
                     query.point = if family.is_none() { settings.clone() } else { Vec::new() };
                 }
             }
         }
-    }
-
-    /// Values of the swept parameters in words.
-    pub(super) fn described(
-        &self,
-        site: usize,
-        point: &BTreeMap<String, Number>,
-        names: &[&str],
-    ) -> Vec<(String, String)> {
-        let elaborator = &self.sites[site].elaborator;
-        names
-            .iter()
-            .filter_map(|name| {
-                let number = point.get(*name)?;
-                let shown = match elaborator.scopes[0].get(name).map(|e| e.meaning.clone()) {
-                    Some(super::symbols::Meaning::Param { value, .. }) => elaborator.shown(value, *number),
-                    _ => number.value.to_string(),
-                };
-                Some(((*name).to_owned(), shown))
-            })
-            .collect()
-    }
-
-    /// The world in which some parameters take other values, and these in words.
-    pub(super) fn under(
-        &mut self,
-        bindings: &'a [Binding],
-        scope: ScopeId,
-        base: usize,
-        point: &BTreeMap<String, Number>,
-    ) -> Lowered<(usize, Vec<(String, String)>)> {
-        let mut settings = point.clone();
-        let mut failed = false;
-        for binding in bindings {
-            let elaborator = &mut self.sites[base].elaborator;
-            if let Some(first) = bindings.iter().find(|b| b.name.name == binding.name.name)
-                && first.name.span != binding.name.span
-            {
-                let text = format!("`{}` is set twice", binding.name.name);
-                let error = Diagnostic::error("E0210", binding.name.span, text);
-                elaborator.note(error.related(first.name.span, "first set here"));
-                failed = true;
-                continue;
-            }
-            if elaborator.param(&binding.name.name, binding.name.span).is_err() {
-                let _ = elaborator.number(&binding.value, &Locals::of(scope));
-                failed = true;
-                continue;
-            }
-            match elaborator.setting(&binding.name.name, &binding.value, &Locals::of(scope)) {
-                Ok(number) => {
-                    settings.insert(binding.name.name.clone(), number);
-                }
-                Err(_) => failed = true,
-            }
-        }
-        if failed {
-            return Err(Reported);
-        }
-        let names: Vec<&str> = bindings.iter().map(|b| b.name.name.as_str()).collect();
-        let described = self.described(base, &settings, &names);
-        Ok((self.site(settings), described))
     }
 
     /// A measure lowered in a world, and whether it ranges up to the horizon; and what is known of it in any case.
@@ -330,16 +275,17 @@ impl<'a> Compiler<'a> {
             Ok(world) => self.ask(query, scope, world, settings, family),
             Err(Reported) => {
                 // The world of the call stands in, so that this hides nothing else that is surely wrong.
-                let before: Vec<usize> =
-                    self.sites.iter().map(|site| site.elaborator.diagnostics.len()).collect();
+                let said = |site: &Site<'_>| (site.elaborator.diagnostics.len(), site.elaborator.failures());
+                let before: Vec<_> = self.sites.iter().map(said).collect();
                 let asked_before = self.queries.len();
                 let asked = self.ask(query, scope, (base, Vec::new()), settings, family);
                 // Sides of a comparison are set up from it; another query that asks for them sets up its own.
                 let mut sides = self.sites.split_off(before.len());
                 self.known.values_mut().for_each(|alike| alike.retain(|at| *at < before.len()));
                 self.queries.truncate(asked_before);
-                for (site, before) in self.sites.iter_mut().zip(before) {
-                    site.elaborator.keep_sure(before);
+                for (site, (said, failures)) in self.sites.iter_mut().zip(before) {
+                    site.elaborator.keep_sure(said);
+                    site.elaborator.forget_but_circles(&failures);
                 }
                 for side in &mut sides {
                     side.elaborator.keep_sure(0);
@@ -454,7 +400,15 @@ impl<'a> Compiler<'a> {
     }
 
     fn finish(self) -> (Option<Study>, Vec<Diagnostic>) {
-        let diagnostics = self.findings();
+        let mut diagnostics = self.findings();
+        // Nothing is left out without a word; of what was not read the parser told.
+        let is_torn = self.sites.iter().any(|site| !site.elaborator.torn.is_empty());
+        if let Some(query) = self.refused.first().filter(|_| !is_torn)
+            && !diagnostics.iter().any(|d| d.severity == Severity::Error)
+        {
+            let text = "what is wrong with this query shows nowhere else";
+            diagnostics.push(Diagnostic::error("E0305", *query, text));
+        }
         // What was cut short is refused by the parser.
         let cut = self.sites.iter().any(|site| !site.elaborator.cut.is_empty());
         if cut || diagnostics.iter().any(|d| d.severity == Severity::Error) {

@@ -1,11 +1,11 @@
 //! Recordings as start states.
 
 use super::dimension::Dimension;
-use super::elaborator::{Elaborator, Locals, Lowered};
+use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::files::Files;
 use super::scenery::missing;
 use super::symbols::{Meaning, unknown};
-use crate::data::tracks::{Observation, Recording, read_eth_biwi};
+use crate::data::tracks::{LineError, Observation, Recording, read_eth_biwi};
 use crate::syntax::ast::{Expr, Ident, Recorded, Text};
 use crate::syntax::diagnostic::Diagnostic;
 use std::collections::btree_map::Entry;
@@ -19,9 +19,7 @@ impl<'a> Elaborator<'a> {
         let index = self.recordings.len();
         let recording = self.recording(format, path, files).ok();
         self.recordings.push(recording);
-        if let Err(error) = self.scopes[0].declare(&name.name, name.span, Meaning::Tracks(index)) {
-            self.note(error);
-        }
+        self.enter(name, Meaning::Tracks(index));
     }
 
     fn recording(&mut self, format: &Ident, path: &Text, files: &Files) -> Lowered<Recording> {
@@ -40,19 +38,16 @@ impl<'a> Elaborator<'a> {
         match read_eth_biwi(text) {
             Ok(recording) => Ok(recording),
             Err(errors) => {
-                let shown: Vec<String> = errors
-                    .iter()
-                    .take(SHOWN_LINES)
-                    .map(|e| format!("line {}: {}", e.line, e.message))
-                    .collect();
+                let shown: Vec<String> = errors.iter().take(SHOWN_LINES).map(ToString::to_string).collect();
                 let more = errors.len().saturating_sub(SHOWN_LINES);
                 let rest = if more > 0 { format!("; and {more} more") } else { String::new() };
                 let error = Diagnostic::error(
                     "E0702",
                     path.span,
-                    match errors.len() {
-                        1 => "a line of this file cannot be read".to_owned(),
-                        many => format!("{many} lines of this file cannot be read"),
+                    match errors.as_slice() {
+                        [LineError { line: 0, .. }] => "this is no such recording".to_owned(),
+                        [_] => "a line of this file cannot be read".to_owned(),
+                        many => format!("{} lines of this file cannot be read", many.len()),
                     },
                 )
                 .label(format!("{}{rest}", shown.join("; ")));
@@ -69,6 +64,7 @@ impl<'a> Elaborator<'a> {
         let name = &recorded.tracks;
         let index = match self.find(&name.name, 0) {
             Some((_, Meaning::Tracks(index))) => index,
+            Some((_, Meaning::Doubtful)) => return Err(Reported),
             Some((_, meaning)) => {
                 let error = Diagnostic::error(
                     "E0206",

@@ -1,7 +1,7 @@
 //! The scene: walls, obstacles, regions, imports.
 
 use super::dimension::Dimension;
-use super::elaborator::{Elaborator, Locals, Lowered};
+use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::files::Files;
 use super::filter;
 use super::lower::{DISTRIBUTIONS, FUNCTIONS};
@@ -22,7 +22,7 @@ impl<'a> Elaborator<'a> {
     /// imports come last.
     pub(super) fn declare_scene(&mut self, items: &'a [SceneItem]) {
         for item in items {
-            let declared = match item {
+            match item {
                 SceneItem::Region { name, shape } => {
                     self.shapes.push(None);
                     let id = RegionId(self.shapes.len() as u32 - 1);
@@ -30,24 +30,18 @@ impl<'a> Elaborator<'a> {
                         name: name.name.clone(),
                         shape: Shape::rectangle(Vec2::zeros(), Vec2::zeros()),
                     });
-                    self.scopes[0].declare(&name.name, name.span, Meaning::Region(id, shape))
+                    self.enter(name, Meaning::Region(id, shape));
                 }
                 SceneItem::Wall { name, .. } | SceneItem::Obstacle { name, .. } => {
                     let id = BarrierId(self.scene.barriers.len() as u32);
                     let text = name.as_ref().map_or(String::new(), |n| n.name.clone());
                     self.scene.barriers.push(Barrier { name: text, obstacle: Obstacle::Wall(Vec::new()) });
-                    match name {
-                        Some(name) => self.scopes[0].declare(&name.name, name.span, Meaning::Barrier(id)),
-                        None => Ok(()),
+                    if let Some(name) = name {
+                        self.enter(name, Meaning::Barrier(id));
                     }
                 }
-                SceneItem::Point { name, at } => {
-                    self.scopes[0].declare(&name.name, name.span, Meaning::Point(at))
-                }
-                SceneItem::Import { .. } => Ok(()),
-            };
-            if let Err(error) = declared {
-                self.note(error);
+                SceneItem::Point { name, at } => self.enter(name, Meaning::Point(at)),
+                SceneItem::Import { .. } => {}
             }
         }
     }
@@ -79,8 +73,10 @@ impl<'a> Elaborator<'a> {
                     }
                     *next += 1;
                 }
-                SceneItem::Point { at, .. } => {
-                    let _ = self.point_of(at, Dimension::LENGTH, &Locals::default());
+                SceneItem::Point { name, at } => {
+                    if self.point_of(at, Dimension::LENGTH, &Locals::default()).is_err() {
+                        self.doubt(0, &name.name);
+                    }
                 }
                 SceneItem::Import { path, filter, .. } => self.import(path, filter.as_ref(), files),
             }
@@ -221,6 +217,7 @@ impl<'a> Elaborator<'a> {
     fn named_shape(&mut self, name: &Ident) -> Lowered<Shape> {
         match self.find(&name.name, 0) {
             Some((_, Meaning::Region(id, _))) => self.region_shape(id, name.span),
+            Some((_, Meaning::Doubtful)) => Err(Reported),
             Some((_, meaning)) => {
                 let error = Diagnostic::error(
                     "E0206",

@@ -30,6 +30,16 @@ pub enum SettingValue {
     Sweep(Expr, Expr, Expr),
 }
 
+impl Setting {
+    /// Where its least and its greatest value stand.
+    pub(super) fn ends(&self) -> (Span, Span) {
+        match &self.value {
+            SettingValue::One(value) => (value.span, value.span),
+            SettingValue::Sweep(from, to, _) => (from.span, to.span),
+        }
+    }
+}
+
 /// Most points of a sweep, and most combinations of several.
 pub(super) const MOST_POINTS: usize = 10_000;
 
@@ -95,28 +105,35 @@ impl<'a> Elaborator<'a> {
         if !number.value.is_finite() {
             return self.report(Diagnostic::error("E0405", value.span, "this is not a finite number"));
         }
-        if let Some((low, high)) = range {
-            let ends = (
-                self.number_of(low, declared.dimension, &Locals::of(0)),
-                self.number_of(high, declared.dimension, &Locals::of(0)),
-            );
-            let (low, high) = (ends.0?, ends.1?);
-            if low.value > high.value {
-                // Said where it is declared.
-                return Err(Reported);
-            }
-            if number.value < low.value || number.value > high.value {
-                let shown = [low, high].map(|n| self.shown(default, n));
-                let error = Diagnostic::error(
-                    "E0405",
-                    value.span,
-                    format!("`{name}` lies between {} and {}", shown[0], shown[1]),
-                )
-                .hanging();
-                return self.report(error);
-            }
+        // A range that hangs on other parameters is that of the world in which the value is set.
+        if let Some((low, high)) = range
+            && !self.hangs_on_parameters(low.span.to(high.span))
+        {
+            self.in_range((name, number), (value.span, value.span))?;
         }
         Ok(number)
+    }
+
+    /// Whether a parameter takes a value that lies in its range, as that is here; where it is told that it is too low, and too
+    /// high.
+    pub(super) fn in_range(&mut self, (name, number): (&str, Number), at: (Span, Span)) -> Lowered<()> {
+        let Ok((default, Some((low, high)))) = self.param(name, at.0) else { return Ok(()) };
+        let place = low.span.to(high.span);
+        let locals = Locals::of(0);
+        let ends =
+            (self.number_of(low, number.dimension, &locals), self.number_of(high, number.dimension, &locals));
+        let (low, high) = (ends.0?, ends.1?);
+        if low.value > high.value {
+            // Said where it is declared.
+            return Err(Reported);
+        }
+        if number.value < low.value || number.value > high.value {
+            let at = if number.value < low.value { at.0 } else { at.1 };
+            let [low, high] = [low, high].map(|n| self.shown(default, n));
+            let said = format!("`{name}` lies between {low} and {high}");
+            return self.report(Diagnostic::error("E0405", at, said).hanging_on(place));
+        }
+        Ok(())
     }
 
     /// The points of a sweep.

@@ -106,7 +106,8 @@ impl<'a> Elaborator<'a> {
         let span = value_span(&field.value);
         if law.bounds().0 < 0.0 {
             let error = Diagnostic::error("E0405", span, "a time between arrivals cannot be negative");
-            return self.report(truncate(error, &law));
+            let text = self.text(span);
+            return self.report(truncate(error, &law, &text));
         }
         if law.mean() > 0.0 {
             Ok(law)

@@ -41,6 +41,8 @@ pub(super) enum Meaning<'a> {
     Process(u32),
     /// A behaviour.
     Behaviour(BehaviourId),
+    /// Nobody knows which of two things; that was reported.
+    Doubtful,
     /// Agents that are declared but not elaborated yet.
     Declared,
     /// One agent.
@@ -55,6 +57,21 @@ pub(super) enum Meaning<'a> {
 }
 
 impl Meaning<'_> {
+    /// Whether two meanings go where the same things go: then it matters little which of the two a name has.
+    pub(super) fn is_like(&self, other: &Self) -> bool {
+        let group = |meaning: &Self| match meaning {
+            Self::Region(..) => Some(0),
+            Self::Barrier(_) => Some(1),
+            Self::Kind(_) => Some(2),
+            Self::Tracks(_) => Some(3),
+            Self::Process(_) => Some(4),
+            Self::Behaviour(_) => Some(5),
+            // Numbers have units, functions arguments, of several people one is chosen.
+            _ => None,
+        };
+        group(self).is_some_and(|own| group(other) == Some(own))
+    }
+
     /// What it is called in messages.
     pub(super) fn noun(&self) -> &'static str {
         match self {
@@ -72,6 +89,7 @@ impl Meaning<'_> {
             Self::Behaviour(_) => "a behaviour",
             Self::Declared | Self::Agent(_) => "an agent",
             Self::Agents { .. } => "a set of agents",
+            Self::Doubtful => "declared twice",
         }
     }
 }

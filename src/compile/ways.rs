@@ -4,6 +4,7 @@ use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered};
 use super::laws::{truncate, value_span};
 use super::people::People;
+use super::symbols::Meaning;
 use super::typed::Typed;
 use crate::base::geometry::Vec2;
 use crate::base::tick::Tick;
@@ -32,12 +33,10 @@ impl<'a> Elaborator<'a> {
                             let law = self.law(value, Dimension::TIME, locals);
                             match law {
                                 Ok(law) if law.bounds().0 < 0.0 => {
-                                    let error = Diagnostic::error(
-                                        "E0405",
-                                        value_span(value),
-                                        "a time to wait cannot be negative",
-                                    );
-                                    self.report(truncate(error, &law))
+                                    let at = value_span(value);
+                                    let said = "a time to wait cannot be negative";
+                                    let text = self.text(at);
+                                    self.report(truncate(Diagnostic::error("E0405", at, said), &law, &text))
                                 }
                                 law => law.map(Leg::Wait),
                             }
@@ -61,6 +60,15 @@ impl<'a> Elaborator<'a> {
     }
 
     fn goal(&mut self, expr: &Expr, locals: &Locals) -> Lowered<Goal> {
+        // People are not known yet where routes are settled, and never are goals.
+        if let ast::ExprKind::Name(name) = &expr.kind
+            && let Some((_, meaning @ (Meaning::Declared | Meaning::Agent(_) | Meaning::Agents { .. }))) =
+                self.find(name, locals.scope)
+            && locals.names.iter().all(|(bound, _)| bound != name)
+        {
+            let said = format!("expected a region or a point to go to, found {}", meaning.noun());
+            return self.report(Diagnostic::error("E0305", expr.span, said));
+        }
         match self.lower(expr, locals)? {
             Typed::Region(id) => Ok(Goal::Region(id)),
             Typed::Point(x, y) if x.dimension == Dimension::LENGTH => {

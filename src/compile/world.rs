@@ -74,9 +74,7 @@ impl<'a> Elaborator<'a> {
             if let Some(text) = reserved {
                 self.note(Diagnostic::error("E0202", name.span, text).hint("choose another name"));
             }
-            if let Err(error) = self.scopes[0].declare(&name.name, name.span, meaning) {
-                self.note(error);
-            }
+            self.enter(name, meaning);
         }
     }
 
@@ -100,9 +98,11 @@ impl<'a> Elaborator<'a> {
                     self.note(error);
                     // What it means in this file is anybody's guess: no further error comes of its uses.
                     self.broken.insert((self.scopes.len(), name.name.clone()));
+                    self.doubt(self.scopes.len(), &name.name);
                     let _ = scope.declare(&name.name, name.span, meaning);
                 } else if let Err(error) = scope.declare(&name.name, name.span, meaning) {
                     self.note(error);
+                    self.doubt(self.scopes.len(), &name.name);
                 }
             }
             self.scopes.push(scope);
@@ -134,10 +134,10 @@ impl<'a> Elaborator<'a> {
     /// What names mean whose declarations were not read to their end is anybody's guess: no further error comes of them.
     fn set_aside(&mut self, scenario: &ScenarioFile, properties: &[PropertyFile]) {
         let lost = scenario.lost.iter().chain(properties.iter().flat_map(|file| &file.lost));
-        self.is_torn = lost.count() > 0;
+        self.torn = lost.copied().collect();
         self.cut.extend(&scenario.cut);
         self.cut.extend(properties.iter().flat_map(|file| &file.cut));
-        self.is_torn |= !self.cut.is_empty();
+        self.torn.extend(&self.cut);
         self.cut.sort_unstable();
         // Of two of which one holds the other, that one; a shorter one that starts alike comes before it.
         let mut cuts: Vec<Span> = Vec::with_capacity(self.cut.len());
@@ -194,9 +194,14 @@ impl<'a> Elaborator<'a> {
         let mut moves: Vec<Moves> = Vec::new();
         let mut declared: Vec<Span> = Vec::new();
         for item in &file.items {
-            if let Item::Moves(decl) = item
-                && let Ok(one) = self.moves(decl, &people)
-            {
+            if let Item::Moves(decl) = item {
+                let Ok(one) = self.moves(decl, &people) else {
+                    self.advised = None;
+                    continue;
+                };
+                if let Some(advised) = &mut self.advised {
+                    advised.insert(one.agent);
+                }
                 if let Some(first) = moves.iter().position(|m| m.agent == one.agent) {
                     let error = Diagnostic::error(
                         "E0406",
@@ -258,7 +263,8 @@ impl<'a> Elaborator<'a> {
         for item in &file.items {
             match item {
                 Item::Const { name, value } => {
-                    let _ = self.lower_declared(name, value);
+                    let lowered = self.lower_declared(name, value);
+                    let _ = self.unchanging(lowered, value);
                 }
                 Item::Param { name, value, range } => {
                     let declared = self.lower_declared(name, value);
@@ -303,20 +309,23 @@ impl<'a> Elaborator<'a> {
             return;
         };
         let place = low.span.to(high.span);
+        // A default that something else takes the place of need not lie in a range that follows from what is set.
+        let is_replaced = self.settings.contains_key(&name.name) && self.hangs_on_parameters(place);
         let ends =
             (self.number_of(low, number.dimension, &locals), self.number_of(high, number.dimension, &locals));
         let (Ok(low), Ok(high)) = ends else { return };
         if low.value > high.value {
             self.note(Diagnostic::error("E0405", place, "this range is empty"));
-        } else if number.value < low.value || number.value > high.value {
+        } else if !is_replaced && (number.value < low.value || number.value > high.value) {
             let text = format!("the default of `{}` lies outside its range", name.name);
-            self.note(Diagnostic::error("E0405", value.span, text).hanging());
+            self.note(Diagnostic::error("E0405", value.span, text).hanging_on(place));
         }
     }
 
     fn lower_declared(&mut self, name: &Ident, value: &Expr) -> Lowered<super::typed::Typed> {
-        if self.scopes[0].get(&name.name).is_some_and(|entry| entry.span != name.span) {
-            // The name is taken: it stands for something else.
+        let is_taken = self.scopes[0].get(&name.name).is_some_and(|entry| entry.span != name.span);
+        if is_taken || self.is_doubtful(0, &name.name) {
+            // It stands for something else, or who knows.
             return self.lower(value, &Locals::of(0));
         }
         let expr = Expr { kind: ExprKind::Name(name.name.clone()), span: value.span };
@@ -363,6 +372,7 @@ impl<'a> Elaborator<'a> {
             }
             sure[slot] &= found[slot].is_none() && !self.is_cut(value.span);
             found[slot] = Some((value, name.span));
+            self.clock_at.push(value.span);
         }
         if file.items.is_empty() {
             return Err(Reported);

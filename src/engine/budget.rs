@@ -35,8 +35,10 @@ pub struct Budget {
     stopped: OnceLock<Instant>,
 }
 
-/// Seconds after the end that explanations may still take.
-const GRACE: f64 = 1.0;
+/// Seconds after the end that explanations may still take: at least, at most, and as a share of the time that was given.
+const LEAST_GRACE: f64 = 0.02;
+const MOST_GRACE: f64 = 1.0;
+const SHARE_OF_GRACE: f64 = 0.25;
 
 impl Budget {
     /// A budget that starts now; `timeout` is for the whole call.
@@ -106,6 +108,14 @@ impl Budget {
     /// Whether what was begun should be left too: some time has passed since no more should be started.
     #[allow(clippy::disallowed_methods, reason = "the engine keeps deadlines; trials never see the clock")]
     pub fn is_late(&self) -> bool {
-        self.must_stop() && self.stopped.get_or_init(Instant::now).elapsed().as_secs_f64() > GRACE
+        self.must_stop() && self.stopped.get_or_init(Instant::now).elapsed().as_secs_f64() > self.grace()
+    }
+
+    /// How long explanations may still take.
+    fn grace(&self) -> f64 {
+        self.deadline.map_or(MOST_GRACE, |deadline| {
+            let given = deadline.saturating_duration_since(self.started).as_secs_f64();
+            (SHARE_OF_GRACE * given).clamp(LEAST_GRACE, MOST_GRACE)
+        })
     }
 }

@@ -193,8 +193,8 @@ fn in_continuous_time(
         }
         view.look(state, &mut sight);
         let (atoms, signals) = view.of(state, &mut sight, 0);
-        let now = state.clocks.now[0];
-        let time = words::quantity(now, "s");
+        let now = state.clocks.instant(0);
+        let time = words::quantity(now.seconds, "s");
         let reading = match monitor.jump(now, atoms, signals) {
             Some(reading) => reading,
             None if !dynamics::jump(&subject.program, state, scratch).is_empty() => continue,
@@ -217,7 +217,7 @@ fn in_continuous_time(
     } else {
         "it jumps more often than can be followed"
     };
-    format!("{said}: {enough} jumps by {time}{busiest}; a shorter horizon or lower rates help")
+    format!("{said}: {enough} jumps by {time}{busiest}; a shorter horizon, lower rates or longer delays help")
 }
 
 /// `, most of them of ‹process›, now at a rate of …`, or nothing where no process jumps by itself.

@@ -136,7 +136,7 @@ impl Jumper {
     fn observe(&mut self, lane: usize, jumped: bool, row: &mut [Cell]) {
         let width = row.len();
         let faulty = self.state.faulty.has(lane);
-        let (now, jumps) = (self.state.clocks.now[lane], self.state.clocks.jumps[lane]);
+        let (now, jumps) = (self.state.clocks.instant(lane), self.state.clocks.jumps[lane]);
         let (atoms, signals) = self.view.of(&self.state, &mut self.sight, lane);
         let monitors = &mut self.monitors[lane * width..][..width];
         for (monitor, cell) in monitors.iter_mut().zip(row) {

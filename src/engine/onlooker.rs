@@ -3,6 +3,7 @@
 use super::cell::Reading;
 use super::observer::wanted;
 use super::subject::Subject;
+use crate::base::instant::Instant;
 use crate::compile::study::{Root, Sought};
 use crate::logic::{self, Bounds, Invalid, SignalMonitor, SignalRobustness};
 
@@ -35,7 +36,12 @@ impl Onlooker {
 
     /// From `time` on, s, these values hold; what is wanted, if the states before it force it.
     #[inline]
-    pub(super) fn jump(&mut self, time: f64, atoms: &[bool], signals: &[f64]) -> Option<Reading> {
+    pub(super) fn jump(
+        &mut self,
+        time: impl Into<Instant>,
+        atoms: &[bool],
+        signals: &[f64],
+    ) -> Option<Reading> {
         match self {
             Self::Plain(monitor) => monitor.jump(time, atoms, signals).map(reading_of),
             Self::Robustness(robustness, sought) => {

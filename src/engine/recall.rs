@@ -6,6 +6,7 @@
 use super::budget::Budget;
 use super::subject::Subject;
 use super::words;
+use crate::base::instant::Instant;
 use crate::base::random::TrialKey;
 use crate::kernel::process::Sight;
 use crate::kernel::{Scratch, State, dynamics, start};
@@ -26,7 +27,7 @@ pub(super) fn decision(
     budget: &Budget,
 ) -> Option<(f64, Option<f64>, String)> {
     let mut monitor = subject.signal_monitor(column).ok()?;
-    let more = |now: f64, atoms: &[bool], signals: &[f64]| monitor.jump(now, atoms, signals).is_none();
+    let more = |now: Instant, atoms: &[bool], signals: &[f64]| monitor.jump(now, atoms, signals).is_none();
     if run(subject, column, trial, budget, more)? {
         monitor.finish();
     }
@@ -35,7 +36,7 @@ pub(super) fn decision(
     // Monitors round times of jumps by less than this.
     let slack = 1e-12 * horizon;
     let mut past = Past { at: at + slack, atoms: Vec::new(), signals: Vec::new() };
-    run(subject, column, trial, budget, |now, atoms, signals| past.see(now, atoms, signals))?;
+    run(subject, column, trial, budget, |now, atoms, signals| past.see(now.seconds, atoms, signals))?;
     let used = subject.atoms_of(column);
     // What changed then closed the case; else it was that nothing changed any more.
     let changed =
@@ -68,7 +69,7 @@ fn run(
     column: usize,
     (index, seed): (u64, u64),
     budget: &Budget,
-    mut more: impl FnMut(f64, &[bool], &[f64]) -> bool,
+    mut more: impl FnMut(Instant, &[bool], &[f64]) -> bool,
 ) -> Option<bool> {
     let program = &subject.program;
     let view = subject.view(&[column]);
@@ -79,7 +80,7 @@ fn run(
     loop {
         view.look(&state, &mut sight);
         let (atoms, signals) = view.of(&state, &mut sight, 0);
-        if !more(state.clocks.now[0], atoms, signals) || !state.faulty.is_empty() {
+        if !more(state.clocks.instant(0), atoms, signals) || !state.faulty.is_empty() {
             return Some(false);
         }
         jumps = jumps.wrapping_add(1);

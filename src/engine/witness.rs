@@ -71,11 +71,16 @@ fn witness(
     let code = subject.code(&[column]);
     let mut observer = subject.observer(column).ok()?;
     // Where a robustness leaves its range a trial ends; here it is shown what it is, if the trial goes on so long.
-    let mut is_longer = false;
-    if let Observer::Robustness(_, sought @ Sought::Clipped(..)) = &mut observer {
-        *sought = Sought::Value;
-        is_longer = true;
+    let mut clipped = None;
+    if let Observer::Robustness(_, Sought::Clipped(..)) = &observer {
+        clipped = subject.observer(column).ok();
     }
+    if let (Some(_), Observer::Robustness(_, sought)) = (&clipped, &mut observer) {
+        *sought = Sought::Value;
+    }
+    // When it left its range.
+    let mut left = None;
+    let follows = subject.follows(column);
     let needs = subject.needs(&[column]).ok()?;
     let mut state = State::new(program.layout, program.scenario.agents.len());
     let mut scratch = Scratch::new();
@@ -85,6 +90,7 @@ fn witness(
     let lane = Mask::lane(0);
     dynamics::refresh(program, &mut state, &mut scratch, lane);
     observer.start(0);
+    clipped.iter_mut().for_each(|clipped| clipped.start(0));
     let mut record = blame::Record::default();
     let mut states: Vec<State> = Vec::new();
     let kept = if program.scenario.agents.len() <= LARGEST_KEPT { KEPT } else { 0 };
@@ -92,16 +98,22 @@ fn witness(
         code.run(program, &state, &mut readings);
         let queues = &state.queues;
         let is_over = || {
-            let gone = subject.follows(column) && queues.reused.has(0);
+            let gone = follows && queues.reused.has(0);
             let over = state.faulty | state.diverged | queues.full | lost(&needs, &readings, &state.ticks);
             gone || over.has(0)
         };
-        if is_longer && is_over() {
-            let time = program.scenario.clock.seconds(Tick(state.ticks[0]));
-            let what = "outside of its range, nobody knows how far: the trial ends here".to_owned();
+        if clipped.is_some() && is_over() {
+            let seconds = |tick: u64| program.scenario.clock.seconds(Tick(tick));
+            let end = seconds(state.ticks[0]);
+            let what = format!("outside of its range, nobody knows how far: the trial ends at {end} {unit}");
+            let time = left.map_or(end, seconds);
             return Some(Witness { shows, trial, value: None, time, unit, what, command });
         }
         observer.observe(lane, &readings);
+        if let Some(clipped) = clipped.as_mut().filter(|_| left.is_none()) {
+            clipped.observe(lane, &readings);
+            left = clipped.decided().has(0).then(|| state.ticks[0]);
+        }
         record.push(&readings);
         if states.len() < kept {
             states.push(state.clone());

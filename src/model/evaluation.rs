@@ -3,8 +3,8 @@
 //!
 //! The kernel runs expressions as code over lanes; here they are walked, for checks before a trial.
 
-use super::expression::{Arithmetic, Bool, Comparison, Function, Num};
-use super::process::VariableId;
+use super::expression::{Arithmetic, Bool, Comparison, Function, Num, Place};
+use super::process::{Process, Timing, VariableId};
 use crate::base::math;
 use std::collections::BTreeSet;
 
@@ -79,6 +79,26 @@ impl Comparison {
     }
 }
 
+impl Process {
+    /// Adds the variables that it reads, but for those of delays; whether it depends on nothing else.
+    pub fn reads(&self, into: &mut BTreeSet<VariableId>) -> bool {
+        let mut closed = true;
+        for command in &self.commands {
+            closed &= command.guard.reads(into);
+            if let Timing::Rate(rate) = &command.timing {
+                closed &= rate.reads(into);
+            }
+            for branch in &command.branches {
+                closed &= branch.weight.reads(into);
+                for (_, value) in &branch.updates {
+                    closed &= value.reads(into);
+                }
+            }
+        }
+        closed
+    }
+}
+
 impl Num {
     /// Adds the variables that it reads; whether it depends on nothing else.
     pub fn reads(&self, into: &mut BTreeSet<VariableId>) -> bool {
@@ -91,6 +111,24 @@ impl Num {
             Self::Apply(_, a) => a.reads(into),
             Self::Combine(_, a, b) => a.reads(into) & b.reads(into),
             Self::If(condition, a, b) => condition.reads(into) & a.reads(into) & b.reads(into),
+            _ => false,
+        }
+    }
+
+    /// Whether it is surely the same in all states of all trials, though perhaps not known before: how far it is from a
+    /// point to a wall.
+    pub fn is_fixed(&self) -> bool {
+        let place = |place: &Place| match place {
+            Place::Point(x, y) => x.is_fixed() && y.is_fixed(),
+            Place::Region(_) | Place::Barrier(_) => true,
+            Place::Agent(_) | Place::Centroid(_) => false,
+        };
+        match self {
+            Self::Constant(_) => true,
+            Self::Distance(a, b) => place(a) && place(b),
+            Self::Coordinate(_, of) | Self::Depth(of, _) => place(of),
+            Self::Apply(_, a) => a.is_fixed(),
+            Self::Combine(_, a, b) => a.is_fixed() && b.is_fixed(),
             _ => false,
         }
     }

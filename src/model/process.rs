@@ -5,6 +5,7 @@
 
 use super::expression::{Bool, Num};
 use super::law::Law;
+use crate::base::decimal::Decimal;
 
 /// Index of a variable of the scenario.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -72,8 +73,8 @@ pub enum Timing {
     Step,
     /// After an exponential time with this rate, 1/s.
     Rate(Num),
-    /// After a drawn time since it became enabled, s.
-    Delay(Law),
+    /// After a drawn time since it became enabled, s; of one that is a number its exact value, if it has one.
+    Delay(Law, Option<Decimal>),
 }
 
 /// What may happen when a command fires.

@@ -35,8 +35,10 @@ pub struct Diagnostic {
     pub related: Vec<Label>,
     /// What to do about it.
     pub hint: Option<String>,
-    /// Whether it hangs on more values than stand at its place: a threshold may lie outside of a range.
-    pub hangs: bool,
+    /// What it hangs on besides what stands at its place: a threshold may lie outside of a range.
+    pub hangs_on: Vec<Span>,
+    /// Whether it hangs on no value at its place: an argument may be missing.
+    pub is_formal: bool,
 }
 
 impl Diagnostic {
@@ -49,7 +51,8 @@ impl Diagnostic {
             place: Some(Label { span, text: String::new() }),
             related: Vec::new(),
             hint: None,
-            hangs: false,
+            hangs_on: Vec::new(),
+            is_formal: false,
         }
     }
 
@@ -67,14 +70,22 @@ impl Diagnostic {
             place: None,
             related: Vec::new(),
             hint: None,
-            hangs: false,
+            hangs_on: Vec::new(),
+            is_formal: false,
         }
     }
 
-    /// What it says hangs on values that stand elsewhere.
+    /// What it says hangs on a value that stands elsewhere.
     #[must_use]
-    pub fn hanging(mut self) -> Self {
-        self.hangs = true;
+    pub fn hanging_on(mut self, value: Span) -> Self {
+        self.hangs_on.push(value);
+        self
+    }
+
+    /// It hangs on no value at its place.
+    #[must_use]
+    pub fn formal(mut self) -> Self {
+        self.is_formal = true;
         self
     }
 

@@ -4,6 +4,7 @@
 #![allow(clippy::disallowed_methods, reason = "the platform's functions are the reference")]
 
 mod chain;
+mod delays;
 mod errors;
 mod exact;
 mod random;

@@ -91,7 +91,7 @@ fn errors_that_show_while_running_name_trial_time_and_state() {
 fn who_waits_for_a_proof_keeps_what_was_decided_before_an_error() {
     let scenario = "horizon = 9 steps\nprocess t { var t: 0 .. 3 = 0\n when t < 3 -> t = t + 1 }\n\
         process p[13] { var b: 0 .. 1 = 0\n when true -> 1/2: b = 0 | 1/2: b = 1 }\n\
-        process z { var u: 0 .. 3 = 0\n when t.t == 2 -> 1/500: u = u + 9 | 499/500: u = 0 }\n\
+        process z { var u: 0 .. 3 = 0\n when t.t == 2 & count(c in p: c.b == 1) <= 13 -> 1/500: u = u + 9 | 499/500: u = 0 }\n\
         process d { var s: 0 .. 1 = 0\n when t.t == 0 -> 1/100: s = 1 | 99/100: s = 0 }\n";
     let counts = |width: &str| {
         let queries =

@@ -70,9 +70,11 @@ impl<'a> Elaborator<'a> {
             // A condition sees no own parameters: what they hide is sound where it is used by conditions only.
             if lowered.is_err() {
                 let said = self.diagnostics.split_off(before);
-                self.forget_failures(&failures);
+                let forgotten = self.forget_failures(&failures);
                 lowered = self.check_let(decl, found, locals);
                 if lowered.is_err() {
+                    let _ = self.forget_failures(&failures);
+                    self.recall(forgotten);
                     self.diagnostics.truncate(before);
                     self.diagnostics.extend(said);
                 }

@@ -6,6 +6,7 @@
 mod conduct;
 mod names;
 
+use super::consequences::words;
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::lower::counted_arguments;
 use super::people::People;
@@ -14,8 +15,8 @@ use super::typed::Typed;
 use crate::model::{AgentId, Attached, Behaviour, BehaviourId, Behaviours, Mode, Parameter, Route, Who};
 use crate::syntax::ast::process::{BehaviourDecl, BehaviourItem, StateDecl};
 use crate::syntax::ast::{Expr, ExprKind, Ident, LetDecl};
-use crate::syntax::diagnostic::{Diagnostic, Severity};
-use crate::syntax::source::Span;
+use crate::syntax::diagnostic::{Diagnostic, Label, Severity};
+use crate::syntax::source::{Source, Span};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -23,6 +24,8 @@ use std::sync::Arc;
 const EVENTS: [&str; 1] = ["advice"];
 /// What can be done about advice.
 const OUTCOMES: [&str; 2] = ["follow", "ignore"];
+/// Codes of errors of behaviours that hang on nobody who could be missing: weights, delays, fields of a state.
+const OF_NOBODY: [&str; 3] = ["E0902", "E0906", "E0911"];
 
 /// `with` of one declaration, and those who have it.
 pub(super) struct With<'a> {
@@ -139,8 +142,10 @@ impl<'a> Elaborator<'a> {
             let id = match self.find(called, 0) {
                 Some((_, Meaning::Behaviour(id))) => id,
                 Some((_, other)) => {
-                    let text = format!("expected a behaviour, `{called}` is {}", other.noun());
-                    self.note(Diagnostic::error("E0206", expr.span, text));
+                    if !matches!(other, Meaning::Doubtful) {
+                        let text = format!("expected a behaviour, `{called}` is {}", other.noun());
+                        self.note(Diagnostic::error("E0206", expr.span, text));
+                    }
                     self.stray.push(arguments);
                     strays = true;
                     continue;
@@ -218,7 +223,7 @@ impl<'a> Elaborator<'a> {
                 match self.settle_one(with, id, (arguments, written), people, variables) {
                     Ok(attached) => out.attached.extend(attached),
                     // What failed was said; nobody goes without what they were given, without a word.
-                    Err(Reported) if self.failed() || self.is_torn => {}
+                    Err(Reported) if self.failed() || !self.torn.is_empty() => {}
                     Err(Reported) => {
                         let text = "what is wrong with this behaviour shows nowhere else";
                         self.note(Diagnostic::error("E0305", written.span, text));
@@ -229,10 +234,11 @@ impl<'a> Elaborator<'a> {
         self.withs = withs;
         self.check_unused_behaviours(variables);
         if taken {
-            // What stands elsewhere, as a constant that they use, hangs on nobody.
+            // What stands elsewhere, as a constant that they use, hangs on nobody; nor do weights, delays and fields.
             let found = self.diagnostics.split_off(before.min(self.diagnostics.len()));
-            let kept: Vec<Diagnostic> =
-                found.into_iter().filter(|one| elsewhere(one) || self.is_sure(one)).collect();
+            let hangs_on_nobody =
+                |one: &Diagnostic| elsewhere(one) || OF_NOBODY.contains(&one.code) || self.is_sure(one);
+            let kept: Vec<Diagnostic> = found.into_iter().filter(hangs_on_nobody).collect();
             self.diagnostics.extend(kept);
         }
         for one in &out.attached {
@@ -259,6 +265,31 @@ impl<'a> Elaborator<'a> {
                 .collect::<Vec<_>>()
         };
         self.withs.iter().flat_map(each).collect()
+    }
+
+    /// Marks in what was found wrong in a behaviour from a number on the arguments that it was given, where it hangs on them.
+    fn given(&mut self, from: usize, decl: &BehaviourDecl, at: Span) {
+        // What stands before the place in its condition or value belongs to it: `gap > 2` is wrong at its number.
+        let hangs = |sources: &[Source], place: Span| {
+            let source = sources.iter().find(|source| source.id == place.source)?;
+            let before = source.text.get(source.line_start(place.start) as usize..place.start as usize)?;
+            let starts = ["when ", "after ", " = ", "{", "->"].iter();
+            let start = starts.filter_map(|word| before.rfind(word).map(|at| at + word.len())).max();
+            let own = source.text.get(place.start as usize..place.end as usize)?;
+            let is_given = |word: &str| decl.arguments.iter().any(|argument| argument.name == word);
+            Some(words(&before[start.unwrap_or(0)..]).chain(words(own)).any(is_given))
+        };
+        for one in self.diagnostics.iter_mut().skip(from) {
+            let Some(place) = one.place.as_ref().map(|place| place.span) else { continue };
+            let inside = place.source == decl.span.source
+                && decl.span.start <= place.start
+                && place.end <= decl.span.end;
+            let is_marked = one.related.iter().any(|label| label.span == at);
+            let of_value = one.code.starts_with("E03") || one.code == "E0405";
+            if inside && of_value && !is_marked && hangs(self.sources, place) == Some(true) {
+                one.related.push(Label { span: at, text: "with these arguments".to_owned() });
+            }
+        }
     }
 
     fn settle_one(
@@ -295,11 +326,15 @@ impl<'a> Elaborator<'a> {
         if having.is_some() {
             self.stand_in();
         }
+        let before = self.diagnostics.len();
         let conduct = self.conduct(decl, &of(&locals, first), variables);
         self.attached_at = None;
         if failed || conduct.is_err() {
             // What is wrong with its conditions is said too.
             let _ = self.conditions(decl, &of(&locals, first));
+            if !failed {
+                self.given(before, decl, written.span);
+            }
         }
         if let Some(having) = having {
             self.having = having;
@@ -317,7 +352,10 @@ impl<'a> Elaborator<'a> {
         };
         let mut out = Vec::with_capacity(with.members.len());
         for (k, &agent) in with.members.iter().enumerate() {
-            let guards = self.conditions(decl, &of(&locals, agent))?;
+            let Ok(guards) = self.conditions(decl, &of(&locals, agent)) else {
+                self.given(before, decl, written.span);
+                return Err(Reported);
+            };
             let (entity, later) = (entity + k as u32, later + k as u32);
             out.push(Attached { agent, behaviour: id, entity, later, conduct: conduct.clone(), guards });
         }

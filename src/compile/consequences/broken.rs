@@ -1,7 +1,8 @@
 //! What could not be read, and which errors come of it.
 
 use super::{
-    BY_ITSELF, DIMENSION, LACKING, UNKNOWN, bare, block_end, has_word, leading_word, lines, word, words,
+    BY_ITSELF, DIMENSION, EARLY, LACKING, UNKNOWN, bare, block_end, has_word, leading_word, lines, word,
+    words,
 };
 use crate::compile::dimension;
 use crate::compile::queries::Input;
@@ -24,12 +25,14 @@ const TOO_DEEP: &str = "E0106";
 const COMMENT: &str = "E0104";
 /// Code of a bracket that closes nothing.
 const STRAY: &str = "E0103";
+/// Code of a scenario without a horizon or a step, or with one that is none.
+const SETTING: &str = "E0505";
 /// Code of moves without an option.
 const NO_OPTIONS: &str = "E0406";
 /// Code of an agent that nothing advises.
 const NO_MOVES: &str = "E0606";
-/// Code of people who start inside an obstacle.
-const INSIDE: &str = "E0409";
+/// Codes of people who start inside an obstacle, or where there is no room.
+const INSIDE: [&str; 2] = ["E0409", "E0801"];
 /// Codes after which the rest of a line is anybody's guess, besides those of brackets.
 const DERAILS: [&str; 2] = ["E0101", "E0112"];
 /// Marks that follow the name of a declaration.
@@ -122,6 +125,9 @@ pub(super) struct Broken<'i> {
     moves: bool,
     scenery: bool,
     clock: bool,
+    /// Whether a setting, or a field, may have been among it.
+    settings: bool,
+    fields: bool,
     /// Sources with errors, and the lines that say no more since they could not be read.
     with_errors: BTreeSet<SourceId>,
     derailed: BTreeSet<(SourceId, usize)>,
@@ -145,6 +151,8 @@ impl<'i> Broken<'i> {
             moves: false,
             scenery: false,
             clock: false,
+            settings: false,
+            fields: false,
             with_errors: BTreeSet::new(),
             derailed: BTreeSet::new(),
             faulty: BTreeSet::new(),
@@ -205,6 +213,13 @@ impl<'i> Broken<'i> {
         self.scenery |= SCENERY.contains(&first);
         let times = !TIMELESS.contains(&first) || TIMES.iter().any(|word| has_word(text, word));
         self.clock |= source == SourceId(0) && times;
+        // A word that starts no declaration may be a misspelt name of either.
+        let is_declared = DECLARES.contains(&first) || NAMELESS.contains(&first) || first == "scenario";
+        let sets = || ["horizon", "step"].iter().any(|word| has_word(text, word));
+        self.settings |= source == SourceId(0) && (!is_declared || sets());
+        let has_fields =
+            ["agent", "agents", "group", "kind", "source"].contains(&first) && text.contains('{');
+        self.fields |= source == SourceId(0) && (!is_declared || has_fields);
         if DECLARES.contains(&first) {
             // A wall may have no name.
             let nameless = first == "wall" && rest.trim_start().starts_with('(');
@@ -294,18 +309,27 @@ impl<'i> Broken<'i> {
         // A line that could not be read says no more.
         let of_line = self.line_of(place).is_some_and(|line| self.derailed.contains(&line));
         let of_clock = self.clock
-            && (CLOCKS.contains(&one.code) || one.code == DIMENSION && one.title.contains("(steps)"));
+            && (CLOCKS.contains(&one.code)
+                || one.code == DIMENSION
+                    && (one.title.contains("(steps)")
+                        || matches!(self.set_by(place), Some("horizon" | "step"))));
         let of_options = one.code == NO_OPTIONS && self.lost.some_within(place);
         let of_moves = one.code == NO_MOVES && one.title.contains("no moves") && self.moves;
-        let of_scenery = one.code == INSIDE && self.scenery;
+        let of_scenery = INSIDE.contains(&one.code) && self.scenery;
         // No name that is missing makes a circle; only the scenario declares moves; a start stands with its agent.
         let alone = one.title.ends_with(BY_ITSELF)
             || one.code == NO_MOVES && !scenario
-            || one.code == LACKING && one.title.starts_with("where does") && !self.is_torn_behind(place);
+            || one.code == LACKING && one.title.starts_with("where does") && !self.is_torn_behind(place)
+            || one.code == LACKING && !self.fields && !self.any_name
+            || one.code == SETTING
+                && (!one.title.contains("has no") || !self.settings && !self.any_name && !self.clock)
+            || one.code == EARLY && one.title.ends_with("not known yet here");
         let of_name = !alone
             && NAMES.contains(&one.code)
             && (!PLACED_AT_NAME.contains(&one.code) || self.may_declare(place));
-        let unit = UNKNOWN.contains(&one.code) && dimension::unit(text).is_some();
+        // Beside a part that could not be read, what reads as a name may be the rest of a unit.
+        let is_faulty = || self.line_of(place).is_some_and(|line| self.faulty.contains(&line));
+        let unit = UNKNOWN.contains(&one.code) && dimension::unit(text).is_some() && is_faulty();
         // What is at a name, not what stands beside it.
         let of_suspect =
             (one.code.starts_with("E03") || one.code.starts_with("E09") || UNKNOWN.contains(&one.code))

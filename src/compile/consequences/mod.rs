@@ -209,7 +209,11 @@ fn once_a_name(found: Vec<Diagnostic>, sources: &[Source]) -> Vec<Diagnostic> {
         let more = again.len().saturating_sub(MOST_MARKS);
         for (k, span) in again.into_iter().take(MOST_MARKS).enumerate() {
             let last = k + 1 == MOST_MARKS && more > 0;
-            let text = if last { format!("here too, and {more} more times") } else { "here too".to_owned() };
+            let text = match more {
+                1 if last => "here too, and once more".to_owned(),
+                _ if last => format!("here too, and {more} more times"),
+                _ => "here too".to_owned(),
+            };
             one.related.push(Label { span, text });
         }
     }

@@ -33,7 +33,11 @@ impl Elaborator<'_> {
         if let Some(called) = self.call_inside_behaviour(function, expr.span, arguments, locals) {
             return called;
         }
-        if let Some((scope, meaning)) = self.find(&function.name, locals.scope)
+        let found = self.find(&function.name, locals.scope);
+        if matches!(found, Some((_, Meaning::Doubtful))) {
+            return self.lower_all(arguments, locals).and(Err(Reported));
+        }
+        if let Some((scope, meaning)) = found
             && let Meaning::Let(decl) = meaning
             && !decl.arguments.is_empty()
         {

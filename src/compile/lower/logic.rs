@@ -2,10 +2,13 @@
 
 use super::super::dimension::Dimension;
 use super::super::elaborator::{Elaborator, Locals, Lowered, Reported};
+use super::super::told::Told;
 use super::super::typed::Typed;
-use crate::logic::{Node, NodeId, Relation, Term, TermId};
+use crate::base::tick::Clock;
+use crate::logic::{Aggregation, Node, NodeId, Relation, Term, TermId};
 use crate::model::{Bool, Comparison, Num, Place};
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind};
+use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
 impl Elaborator<'_> {
@@ -147,8 +150,13 @@ impl Elaborator<'_> {
             if margin && !time(a) && !time(b) {
                 self.note_margin(da, whole);
             }
+            self.within_a_trial((a, b), whole)?;
             let text = self.text(span);
-            return Ok(Typed::Formula(self.comparison((relation(comparison(op)), a, b), text, da)));
+            let relation = relation(comparison(op));
+            if let Some(node) = self.extreme_is((relation, a, b), &text, da) {
+                return Ok(Typed::Formula(node));
+            }
+            return Ok(Typed::Formula(self.comparison((relation, a, b), text, da)));
         }
         let sides = (self.as_num(a, left.span), self.as_num(b, right.span));
         let ((a, da), (b, db)) = (sides.0?, sides.1?);
@@ -162,6 +170,62 @@ impl Elaborator<'_> {
             self.note_margin(da, whole);
         }
         Ok(Typed::Truth(Bool::Compare(comparison(op), Box::new(a), Box::new(b))))
+    }
+
+    /// That the least or greatest of some values is, or is not, a number: as two comparisons, each of which may be settled by
+    /// one value. Such a formula has no margin, so not where that is asked for.
+    fn extreme_is(
+        &mut self,
+        (relation, a, b): (Relation, TermId, TermId),
+        text: &str,
+        dimension: Dimension,
+    ) -> Option<NodeId> {
+        let is_equal = match relation {
+            Relation::Equal => true,
+            Relation::Unequal => false,
+            _ => return None,
+        };
+        let terms = &self.tree.terms;
+        let is_extreme = |term: TermId| {
+            matches!(terms[term.0 as usize], Term::Window(Aggregation::Min | Aggregation::Max, ..))
+        };
+        let is_constant = |term: TermId| matches!(terms[term.0 as usize], Term::Constant(_));
+        let suits = is_extreme(a) && is_constant(b) || is_constant(a) && is_extreme(b);
+        if !suits || self.margins.is_some() {
+            return None;
+        }
+        let relations = match is_equal {
+            true => [Relation::AtLeast, Relation::AtMost],
+            false => [Relation::Greater, Relation::Less],
+        };
+        let sides = relations.map(|relation| self.comparison((relation, a, b), text.to_owned(), dimension));
+        let sides = sides.to_vec();
+        Some(self.node(if is_equal { Node::And(sides) } else { Node::Or(sides) }))
+    }
+
+    /// An error where the time until something is compared with one that no trial reaches: of what has not happened by the
+    /// horizon nobody knows whether it takes so long.
+    pub(in crate::compile) fn within_a_trial(&mut self, sides: (TermId, TermId), span: Span) -> Lowered<()> {
+        // Horizons that are no decimals are kept to ten digits.
+        let end = self.clock.seconds(self.horizon) * (1.0 + 1e-9);
+        let terms = &self.tree.terms;
+        let limit = |time: TermId, limit: TermId| match (&terms[time.0 as usize], &terms[limit.0 as usize]) {
+            (Term::TimeUntil(_), Term::Constant(limit)) if end < *limit && limit.is_finite() => Some(*limit),
+            _ => None,
+        };
+        let Some(limit) = limit(sides.0, sides.1).or_else(|| limit(sides.1, sides.0)) else { return Ok(()) };
+        if self.told < Told::Whole {
+            return Ok(());
+        }
+        let unit = if self.clock == Clock::Steps { "steps" } else { "s" };
+        let error = Diagnostic::error(
+            "E0502",
+            span,
+            format!("this looks {limit} {unit} ahead, but the horizon is {}", self.duration(self.horizon.0)),
+        );
+        self.report(
+            error.hint(format!("set `horizon = {limit} {unit}` in the scenario, or compare with less")),
+        )
     }
 
     /// Something is wrong with one of two sides that ought to have one dimension. That they have not is told as well, as

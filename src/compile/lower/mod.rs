@@ -152,16 +152,23 @@ impl Elaborator<'_> {
         let b = fixed(self, &second, y.span)?;
         if let (Some(a), Some(b)) = (a, b) {
             if a.dimension != b.dimension {
-                return self.wrong_dimension(y.span, a.dimension, b.dimension);
+                return self.unlike_coordinates((x.span, a.dimension), (y.span, b.dimension));
             }
             return Ok(Typed::Point(a, b));
         }
         let (a, da) = self.as_num(first, x.span)?;
         let (b, db) = self.as_num(second, y.span)?;
         if da != db {
-            return self.wrong_dimension(y.span, da, db);
+            return self.unlike_coordinates((x.span, da), (y.span, db));
         }
         Ok(Typed::Vector(a, b, da))
+    }
+
+    /// Of two coordinates of which one is a length or a speed, as those of points and velocities are, the other is wrong.
+    fn unlike_coordinates<T>(&mut self, x: (Span, Dimension), y: (Span, Dimension)) -> Lowered<T> {
+        let is_usual = |dimension| dimension == Dimension::LENGTH || dimension == Dimension::SPEED;
+        let (right, wrong) = if is_usual(y.1) && !is_usual(x.1) { (y, x) } else { (x, y) };
+        self.wrong_dimension(wrong.0, right.1, wrong.1)
     }
 
     /// A number of one state.

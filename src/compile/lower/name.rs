@@ -1,11 +1,12 @@
 //! Names and members of sets.
 
-use super::super::elaborator::{Elaborator, Locals, Lowered, Reported, Vain};
+use super::super::elaborator::{Elaborator, Locals, Lowered, Reported};
+use super::super::failures::Vain;
 use super::super::symbols::{Meaning, ScopeId, unknown};
 use super::super::typed::Typed;
 use super::super::weight::Weight;
 use super::{BUILT_IN, counted_arguments};
-use crate::model::{Set, Who};
+use crate::model::{Bool, Set, Who};
 use crate::syntax::ast::{Expr, Ident, LetDecl};
 use crate::syntax::diagnostic::{Diagnostic, Label};
 use crate::syntax::source::Span;
@@ -22,7 +23,10 @@ impl<'a> Elaborator<'a> {
     pub(in crate::compile) fn find(&self, name: &str, scope: ScopeId) -> Option<(ScopeId, Meaning<'a>)> {
         let own =
             self.scopes.get(scope).and_then(|table| table.get(name)).map(|e| (scope, e.meaning.clone()));
-        own.or_else(|| self.scopes[0].get(name).map(|e| (0, e.meaning.clone())))
+        let found = own.or_else(|| self.scopes[0].get(name).map(|e| (0, e.meaning.clone())));
+        found.map(|(scope, meaning)| {
+            (scope, if self.is_doubtful(scope, name) { Meaning::Doubtful } else { meaning })
+        })
     }
 
     pub(super) fn lower_name(&mut self, name: &str, span: Span, locals: &Locals) -> Lowered<Typed> {
@@ -59,9 +63,10 @@ impl<'a> Elaborator<'a> {
             };
         };
         match meaning {
-            Meaning::Constant(value) => {
-                self.constant(scope, name, span, |this| this.lower(value, &Locals::of(scope)))
-            }
+            Meaning::Constant(value) => self.constant(scope, name, span, |this| {
+                let lowered = this.timeless(value, &Locals::of(scope));
+                this.unchanging(lowered, value)
+            }),
             Meaning::Param { value, .. } => {
                 if let Some(set) = self.settings.get(name) {
                     return Ok(Typed::Number(*set));
@@ -107,6 +112,10 @@ impl<'a> Elaborator<'a> {
             Meaning::Agent(id) => Ok(Typed::Agent(Who::Agent(id))),
             Meaning::Agents { members, particle } => {
                 Ok(Typed::Agents { set: Set { members, except: None }, particle })
+            }
+            Meaning::Doubtful => {
+                self.unknowns += 1;
+                Err(Reported)
             }
             Meaning::Declared => {
                 let error = Diagnostic::error("E0205", span, format!("`{name}` is not known yet here"))
@@ -173,8 +182,40 @@ impl<'a> Elaborator<'a> {
         if value.is_err() {
             self.journal.push((Vain::Constant, key.clone()));
         }
-        self.constants.insert(key, value.clone());
+        // Who is among people is not settled before all are.
+        if !matches!(value, Ok(Typed::Agents { .. })) {
+            self.constants.insert(key, value.clone());
+        }
         value
+    }
+
+    /// An expression in which, whoever asks, operators over time are known: what is wrong with them is said of a whole.
+    pub(in crate::compile) fn timeless(&mut self, value: &Expr, locals: &Locals) -> Lowered<Typed> {
+        let temporal = std::mem::replace(&mut self.temporal, locals.scope > 0);
+        let lowered = self.lower(value, locals);
+        self.temporal = temporal;
+        lowered
+    }
+
+    /// What a constant stands for, if it is the same in all states of all trials.
+    pub(in crate::compile) fn unchanging(&mut self, lowered: Lowered<Typed>, value: &Expr) -> Lowered<Typed> {
+        let found = lowered?;
+        let changes = match &found {
+            Typed::Num(num, _) => !num.is_fixed(),
+            Typed::Vector(..) | Typed::Term(..) | Typed::Formula(_) | Typed::Tally(_) => true,
+            Typed::Truth(truth) => !matches!(truth, Bool::Constant(_)),
+            _ => false,
+        };
+        if !changes {
+            return Ok(found);
+        }
+        let error = Diagnostic::error("E0304", value.span, "this must be known before a trial starts").label(
+            match found {
+                Typed::Truth(_) => "a condition, which may change during a trial".to_owned(),
+                _ => format!("{} that changes during a trial", found.noun()),
+            },
+        );
+        self.report(error.hint("`let` names what changes"))
     }
 
     /// Computes what a name stands for; an error where that needs the name itself.
@@ -326,6 +367,7 @@ impl<'a> Elaborator<'a> {
         let with: Vec<String> = inner
             .names
             .iter()
+            .filter(|(name, _)| decl.arguments.iter().any(|argument| argument.name == *name))
             .filter_map(|(name, value)| Some(format!("`{name}` is {}", value.as_ref()?.noun())))
             .collect();
         let body = decl.body.span;

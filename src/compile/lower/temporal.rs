@@ -65,7 +65,7 @@ impl Elaborator<'_> {
                         let place = start.span.to(end.span);
                         let error = Diagnostic::error("E0503", place, "`X` asks one state, not an interval")
                             .hint("`X<=0.5 s p` is p at exactly 0.5 s; for some or all states of an interval write `F[a, b]` or `G[a, b]`");
-                        return self.report(error);
+                        return self.report(error.formal());
                     }
                     (Some(_), Some(to)) => to,
                     (Some(_), None) => {
@@ -175,6 +175,7 @@ impl Elaborator<'_> {
                 Some(n) if !self.clock.is_jumps() => Ok(Tick(n)),
                 Some(_) => self.report(
                     Diagnostic::error("E0503", span, "a scenario in continuous time has no steps")
+                        .formal()
                         .hint("write a time, as in `5 s`"),
                 ),
                 None => {
@@ -185,12 +186,17 @@ impl Elaborator<'_> {
             };
         }
         if number.dimension.is_none() {
+            // A number as it is written is shown with its unit.
+            let text = self.text(span);
+            let text = if text.bytes().all(|byte| byte.is_ascii_digit()) { text } else { "10".to_owned() };
             let hint = if self.clock.is_jumps() {
-                "write a time, as in `10 s`"
+                format!("write a time, as in `{text} s`")
             } else {
-                "write `10 s`, or `#10` (`10 steps`) for a number of steps"
+                let steps = if text == "1" { "step" } else { "steps" };
+                format!("write `{text} s`, or `#{text}` (`{text} {steps}`) for a number of steps")
             };
-            return self.report(Diagnostic::error("E0503", span, "this bound needs a unit").hint(hint));
+            let error = Diagnostic::error("E0503", span, "this bound needs a unit").formal();
+            return self.report(error.hint(hint));
         }
         if number.dimension != Dimension::TIME {
             return self.wrong_dimension(span, Dimension::TIME, number.dimension);
@@ -200,6 +206,7 @@ impl Elaborator<'_> {
             Clock::Jumps(tick) => return self.moment(number, tick, span),
             Clock::Steps => {
                 let error = Diagnostic::error("E0503", span, "this scenario has steps without a length")
+                    .formal()
                     .hint("write the bound in steps, as in `#10` or `10 steps`");
                 return self.report(error);
             }

@@ -3,7 +3,9 @@
 //! Variables are settled first, so that everything can read them; commands last, because they read
 //! everything.
 
+mod commands;
 mod names;
+mod parts;
 mod reachable;
 mod timing;
 
@@ -13,14 +15,15 @@ use super::number::Number;
 use super::people::People;
 use super::symbols::unknown;
 use super::typed::Typed;
-use crate::model::process::wrong_weights;
-use crate::model::{Bool, Branch, Command, Domain, Num, Process, Processes, Timing, Variable, VariableId};
+use crate::model::{Bool, Command, Domain, Num, Process, Processes, Timing, Variable, VariableId};
 use crate::syntax::ast::process::{self as ast, Domain as Written, ProcessDecl, ProcessItem};
 use crate::syntax::ast::{Expr, Item, LetDecl, ScenarioFile};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
+use parts::Writing;
 use reachable::Lines;
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// Most copies of a process.
 const MOST_COPIES: i64 = 1000;
@@ -45,6 +48,8 @@ pub(super) struct Declared<'a> {
     pub(super) copies: Option<u32>,
     /// Whether that number is wrong, so that nobody knows it.
     pub(super) uncounted: bool,
+    /// Whether something is wrong with its variables, so that nobody knows what they hold.
+    is_unknown: bool,
     /// First variable of the first copy.
     first: u32,
     /// Dimension and domain of each variable of a copy.
@@ -54,7 +59,22 @@ pub(super) struct Declared<'a> {
 
 impl<'a> Declared<'a> {
     pub(super) fn new(decl: &'a ProcessDecl) -> Self {
-        Self { decl, copies: None, uncounted: false, first: 0, variables: Vec::new(), names: BTreeMap::new() }
+        Self {
+            decl,
+            copies: None,
+            uncounted: false,
+            is_unknown: false,
+            first: 0,
+            variables: Vec::new(),
+            names: BTreeMap::new(),
+        }
+    }
+
+    /// The variables of a copy.
+    fn of_copy(&self, copy: u32) -> Range<usize> {
+        let (first, count) = (self.first as usize, self.variables.len());
+        let start = first + copy as usize * count;
+        start..start + count
     }
 
     fn variable(&self, copy: u32, place: usize) -> VariableId {
@@ -118,6 +138,7 @@ impl Elaborator<'_> {
                         .related(first, "first declared here")
                         .hint("rename one of them");
                 self.note(error);
+                self.processes[at].is_unknown = true;
                 if let ProcessItem::Var(var) = item {
                     let _ = self.variable(var, &locals);
                 }
@@ -126,10 +147,14 @@ impl Elaborator<'_> {
             if let ProcessItem::Var(var) = item {
                 let Ok((dimension, domain, initial)) = self.variable(var, &locals) else {
                     self.processes[at].names.insert(&name.name, Inside::Lost);
+                    self.processes[at].is_unknown = true;
                     continue;
                 };
+                // Whatever is wrong with the start, what the commands do with the variable can be checked.
+                self.processes[at].is_unknown |= initial.is_err();
                 self.processes[at].variables.push((dimension, domain));
-                initials.push((var.name.name.as_str(), domain, initial));
+                let start = initial.unwrap_or_else(|_| domain.values().map_or(0.0, |(least, _)| least));
+                initials.push((var.name.name.as_str(), domain, start));
             }
             self.processes[at].names.insert(&name.name, inside);
         }
@@ -155,8 +180,12 @@ impl Elaborator<'_> {
         }
     }
 
-    /// Dimension, domain and initial value of a variable.
-    fn variable(&mut self, var: &ast::VarDecl, locals: &Locals) -> Lowered<(Dimension, Domain, f64)> {
+    /// Dimension and domain of a variable, and its value at the start.
+    fn variable(
+        &mut self,
+        var: &ast::VarDecl,
+        locals: &Locals,
+    ) -> Lowered<(Dimension, Domain, Lowered<f64>)> {
         let initial = self.lower(&var.initial, locals);
         let span = var.initial.span;
         let number = |this: &mut Self, typed: Typed| match typed {
@@ -169,7 +198,7 @@ impl Elaborator<'_> {
             found => this.mismatch(span, "a number", &found),
         };
         let truth = |this: &mut Self, typed: Typed| match typed {
-            Typed::Truth(Bool::Constant(value)) => Ok((Dimension::NONE, Domain::Truth, f64::from(value))),
+            Typed::Truth(Bool::Constant(value)) => Ok(f64::from(value)),
             Typed::Truth(_) => this.report(Diagnostic::error(
                 "E0304",
                 span,
@@ -190,22 +219,20 @@ impl Elaborator<'_> {
                     ));
                 }
                 let domain = Domain::Whole { low: low_end, high: high_end };
-                // Whatever is wrong with the start, what the commands do with the variable can be checked.
                 let initial = initial
                     .and_then(|initial| number(self, initial))
-                    .and_then(|number| self.initial(var, number, domain))
-                    .unwrap_or(low_end as f64);
+                    .and_then(|number| self.initial(var, number, domain));
                 Ok((Dimension::NONE, domain, initial))
             }
             Some(Written::Named(name)) => match name.name.as_str() {
                 "bool" => {
                     let initial = initial.and_then(|initial| truth(self, initial));
-                    Ok(initial.unwrap_or((Dimension::NONE, Domain::Truth, 0.0)))
+                    Ok((Dimension::NONE, Domain::Truth, initial))
                 }
                 "real" => {
                     let initial = initial?;
                     let number = number(self, initial)?;
-                    Ok((number.dimension, Domain::Real, number.value))
+                    Ok((number.dimension, Domain::Real, Ok(number.value)))
                 }
                 "int" => {
                     let error = Diagnostic::error("E0405", name.span, "a whole number needs its range")
@@ -219,10 +246,10 @@ impl Elaborator<'_> {
                 }
             },
             None => match initial? {
-                typed @ Typed::Truth(_) => truth(self, typed),
+                typed @ Typed::Truth(_) => Ok((Dimension::NONE, Domain::Truth, Ok(truth(self, typed)?))),
                 typed => {
                     let number = number(self, typed)?;
-                    Ok((number.dimension, Domain::Real, number.value))
+                    Ok((number.dimension, Domain::Real, Ok(number.value)))
                 }
             },
         }
@@ -255,40 +282,66 @@ impl Elaborator<'_> {
     /// Lowers the commands of all processes.
     pub(super) fn settle_commands(&mut self, variables: Vec<Variable>, people: &mut People) -> Processes {
         let mut out = Processes { variables, list: Vec::new() };
-        let mut spans = Vec::new();
+        let mut writings = Vec::new();
         for at in 0..self.processes.len() {
             let decl = self.processes[at].decl;
             let copies = self.processes[at].copies.unwrap_or(1);
             let Ok(first) = self.entities(people, &decl.name.name, copies, decl.name.span) else { break };
             self.check_names(at);
             let choose = decl.items.iter().any(|item| matches!(item, ProcessItem::Choose(_)));
+            let process = &self.processes[at];
+            let mut is_sound = !process.uncounted && !process.is_unknown && !self.is_torn_within(decl.span);
             for copy in 0..copies {
                 let locals = Locals { process: Some((at as u32, copy)), ..Locals::of(0) };
                 let mut commands = Vec::new();
-                let mut places = Vec::new();
+                let mut lines = Vec::new();
+                let mut broken = Vec::new();
                 for item in &decl.items {
-                    if let ProcessItem::Command(command) = item
-                        && let Ok(lowered) = self.command(at, copy, command, &locals)
-                    {
-                        commands.push(lowered);
-                        places.push(Lines::of(command));
+                    let ProcessItem::Command(command) = item else { continue };
+                    match self.command(at, copy, command, &locals) {
+                        Ok(lowered) => {
+                            commands.push(lowered);
+                            lines.push(Lines::of(command));
+                        }
+                        Err(guard) => broken.push((guard, command)),
                     }
                 }
-                self.one_kind(decl, &commands);
+                is_sound &= self.one_kind(decl, &commands);
+                let is_whole = is_sound && broken.is_empty();
+                for (guard, command) in broken {
+                    // Who knows when one is enabled knows when what follows is not known.
+                    let Ok(guard) = guard else {
+                        is_sound = false;
+                        continue;
+                    };
+                    let timing =
+                        if self.clock.is_jumps() { Timing::Rate(Num::Constant(0.0)) } else { Timing::Step };
+                    commands.push(Command { guard, timing, branches: Vec::new() });
+                    lines.push(Lines::broken(command));
+                }
                 let name = self.copy_name(at, copy);
                 out.list.push(Process { name, entity: first + copy, commands, choose });
-                spans.push(places);
-                if self.failed() {
+                let variables = self.processes[at].of_copy(copy);
+                writings.push(Writing { lines, variables, is_sound });
+                if !is_whole {
+                    // What is wrong with one copy is wrong with the others.
                     break;
                 }
             }
         }
-        if !self.failed() {
-            self.check_reachable(&out, &spans);
-        }
-        let of_commands = |lines: Vec<Lines>| lines.into_iter().map(|one| one.command).collect();
-        self.origins.commands = spans.into_iter().map(of_commands).collect();
+        self.check_reachable(&out, &writings);
+        let of_commands =
+            |writing: Writing| writing.lines.into_iter().map(|line| line.command).collect::<Vec<_>>();
+        self.origins.commands = writings.into_iter().map(of_commands).collect();
         out
+    }
+
+    /// Whether part of a declaration was not read.
+    fn is_torn_within(&self, declaration: Span) -> bool {
+        let meets = |torn: &Span| {
+            torn.source == declaration.source && torn.start < declaration.end && declaration.start < torn.end
+        };
+        self.torn.iter().any(meets)
     }
 
     /// Names that nobody uses are checked too.
@@ -305,131 +358,6 @@ impl Elaborator<'_> {
                 ProcessItem::Var(_) | ProcessItem::Command(_) | ProcessItem::Choose(_) => {}
             }
         }
-    }
-
-    /// Commands of one process are all timed or all not.
-    fn one_kind(&mut self, decl: &ProcessDecl, commands: &[Command]) {
-        let timed = |command: &Command| command.timing != Timing::Step;
-        if commands.iter().any(timed) && !commands.iter().all(timed) {
-            let error = Diagnostic::error(
-                "E0905",
-                decl.name.span,
-                format!("some commands of `{}` have a rate or delay and some have none", decl.name.name),
-            )
-            .hint("make them two processes: one of steps, one of times; each can read the other");
-            self.note(error);
-        } else if commands.iter().any(timed)
-            && let Some(span) = decl.items.iter().find_map(|item| match item {
-                ProcessItem::Choose(span) => Some(*span),
-                _ => None,
-            })
-        {
-            let error =
-                Diagnostic::error("E0905", span, "commands with times race; there is nothing to choose")
-                    .hint("leave `choose` out: the earliest command fires");
-            self.note(error);
-        }
-    }
-
-    fn command(&mut self, at: usize, copy: u32, command: &ast::Command, locals: &Locals) -> Lowered<Command> {
-        let guard = self.lower(&command.guard, locals);
-        let guard = guard.and_then(|typed| self.as_truth(typed, command.guard.span));
-        let timing = self.timing(command, locals);
-        let branches: Vec<Lowered<Branch>> =
-            command.branches.iter().map(|branch| self.branch(at, copy, branch, locals)).collect();
-        let branches = branches.into_iter().collect::<Lowered<Vec<_>>>();
-        let (guard, timing, branches) = (guard?, timing?, branches?);
-        let known: Option<Vec<f64>> = branches
-            .iter()
-            .map(|b| if let Num::Constant(weight) = b.weight { Some(weight) } else { None })
-            .collect();
-        // Of several branches each has a weight; one that lacks it was reported.
-        let weighed = command.branches.len() == 1 || command.branches.iter().all(|b| b.weight.is_some());
-        if let Some(wrong) = known.filter(|_| weighed).and_then(|known| wrong_weights(&known)) {
-            return self.report(Diagnostic::error("E0902", command.span, wrong));
-        }
-        Ok(Command { guard, timing, branches })
-    }
-
-    fn branch(&mut self, at: usize, copy: u32, branch: &ast::Branch, locals: &Locals) -> Lowered<Branch> {
-        let weight =
-            branch.weight.as_ref().map_or(Ok(Num::Constant(1.0)), |weight| self.weight(weight, locals));
-        let mut updates: Vec<(VariableId, Num)> = Vec::new();
-        let mut failed = false;
-        for (k, update) in branch.updates.iter().enumerate() {
-            let value = self.update(at, copy, update, locals);
-            if branch.updates[..k].iter().any(|other| other.target.name == update.target.name) {
-                self.note(Diagnostic::error(
-                    "E0202",
-                    update.target.span,
-                    format!("`{}` is set twice in one branch", update.target.name),
-                ));
-                failed = true;
-            }
-            match value {
-                Ok(value) => updates.push(value),
-                Err(Reported) => failed = true,
-            }
-        }
-        let weight = weight?;
-        if failed { Err(Reported) } else { Ok(Branch { weight, updates }) }
-    }
-
-    /// The weight of one of several branches.
-    fn weight(&mut self, weight: &Expr, locals: &Locals) -> Lowered<Num> {
-        let typed = self.lower(weight, locals)?;
-        let (num, dimension) = self.as_num(typed, weight.span)?;
-        if !dimension.is_none() {
-            return self.wrong_dimension(weight.span, Dimension::NONE, dimension);
-        }
-        Ok(num)
-    }
-
-    fn update(
-        &mut self,
-        at: usize,
-        copy: u32,
-        update: &ast::Update,
-        locals: &Locals,
-    ) -> Lowered<(VariableId, Num)> {
-        let value = self.lower(&update.value, locals);
-        let process = &self.processes[at];
-        let Some(Inside::Variable(place)) = process.names.get(update.target.name.as_str()).copied() else {
-            if let Some(Inside::Lost) = process.names.get(update.target.name.as_str()) {
-                return Err(Reported);
-            }
-            let known = process.names.iter().filter(|(_, i)| matches!(i, Inside::Variable(_)));
-            let known: Vec<&str> = known.map(|(n, _)| *n).collect();
-            let error =
-                unknown("variable", &update.target.name, update.target.span, "E0201", known.into_iter());
-            let error = match &error.hint {
-                Some(_) => error,
-                None => error.hint("a process sets its own variables only"),
-            };
-            return self.report(error);
-        };
-        let (dimension, domain) = process.variables[place];
-        let id = process.variable(copy, place);
-        let typed = value?;
-        let span = update.value.span;
-        if domain == Domain::Truth {
-            let truth = self.as_truth(typed, span)?;
-            return Ok((id, as_number(truth)));
-        }
-        let (num, found) = self.as_num(typed, span)?;
-        if found != dimension {
-            return self.wrong_dimension(span, dimension, found);
-        }
-        if let Num::Constant(value) = num
-            && !domain.contains(value)
-        {
-            return self.report(Diagnostic::error(
-                "E0903",
-                span,
-                format!("`{}` cannot become {value}", update.target.name),
-            ));
-        }
-        Ok((id, num))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::Inside;
 use crate::compile::elaborator::{Elaborator, Locals, Lowered, Reported};
-use crate::compile::symbols::unknown;
+use crate::compile::symbols::{Meaning, unknown};
 use crate::compile::typed::Typed;
 use crate::model::{Bool, Comparison, Domain, Num};
 use crate::syntax::ast::{Expr, ExprKind, Ident, LetDecl};
@@ -106,13 +106,17 @@ impl<'a> Elaborator<'a> {
                 return Ok(Typed::Number(if member.name == "x" { x } else { y }));
             }
             found => {
-                let error = Diagnostic::error(
-                    "E0305",
-                    base.span,
-                    format!("expected a process before `.{}`, found {}", member.name, found.noun()),
-                )
-                .hint("numbers of agents are functions: `speed(user)`");
-                return self.report(error);
+                let name = &member.name;
+                let said = format!("expected a process before `.{name}`, found {}", found.noun());
+                let is_behaviour = matches!(self.find(name, 0), Some((_, Meaning::Behaviour(_))));
+                let hint = match (&found, is_behaviour) {
+                    (Typed::Agents { .. }, true) => {
+                        let people = self.text(base.span);
+                        format!("choose one, or count them: `count(a in {people}: a.{name} == …) > 0`")
+                    }
+                    _ => "numbers of agents are functions: `speed(user)`".to_owned(),
+                };
+                return self.report(Diagnostic::error("E0305", base.span, said).hint(hint));
             }
         };
         match self.lower_inside((at, copy), &member.name, member.span) {

@@ -1,10 +1,15 @@
 //! Errors that some trial could run into, found before any does.
 //!
 //! Where processes depend on nothing but themselves and have few states, all states that a trial can reach
-//! are walked through, breadth first, as far as the horizon. Where there are too many, or agents or delays come in,
-//! errors show while running.
+//! are walked through, breadth first, as far as the horizon; processes that read nothing of each other apart, so that
+//! what is wrong with one hides nothing of another. Where there are too many states, or agents or delays come in, errors
+//! show while running.
 
+use super::super::consequences::words;
 use super::super::elaborator::Elaborator;
+use super::super::told::Told;
+use super::parts::{Part, Scope, Writing};
+use crate::base::tick::Clock;
 use crate::model::process::wrong_weights;
 use crate::model::{Command, Domain, Process, Processes, Timing, Variable};
 use crate::syntax::ast::process as ast;
@@ -18,6 +23,8 @@ const MOST_STATES: usize = 4096;
 const MOST_SUCCESSORS: usize = 1 << 17;
 /// Most values of variables that are kept at a time, of known states or of the successors of one.
 const MOST_VALUES: usize = 1 << 22;
+/// Most commands that are looked at in all states.
+const MOST_LOOKS: usize = 1 << 23;
 /// Most values of variables of all successors.
 const MOST_WRITTEN: usize = 1 << 24;
 
@@ -26,6 +33,8 @@ pub(super) struct Lines {
     pub(super) command: Span,
     /// Of each branch.
     updates: Vec<Vec<Span>>,
+    /// Whether something is wrong with its rate or its branches: when it fires, nobody knows what follows.
+    is_broken: bool,
 }
 
 impl Lines {
@@ -33,7 +42,15 @@ impl Lines {
         let updates = |branch: &ast::Branch| {
             branch.updates.iter().map(|update| update.target.span.to(update.value.span)).collect()
         };
-        Self { command: command.span, updates: command.branches.iter().map(updates).collect() }
+        Self {
+            command: command.span,
+            updates: command.branches.iter().map(updates).collect(),
+            is_broken: false,
+        }
+    }
+
+    pub(super) fn broken(command: &ast::Command) -> Self {
+        Self { is_broken: true, ..Self::of(command) }
     }
 }
 
@@ -57,9 +74,9 @@ struct Findings<'p> {
 }
 
 impl Findings<'_> {
-    fn add(&mut self, wrong: Wrong, state: &[i64]) {
+    fn add(&mut self, wrong: Wrong, own: &[usize], state: &[i64]) {
         if self.known.insert((wrong.code, wrong.span.start, wrong.span.end)) {
-            self.list.push(wrong.diagnostic(self.variables, state));
+            self.list.push(wrong.diagnostic(self.variables, own, state));
         }
     }
 }
@@ -67,68 +84,193 @@ impl Findings<'_> {
 impl Elaborator<'_> {
     /// Reports what goes wrong in some state that can be reached. On that way a trial ends: what could follow is not
     /// looked at.
-    pub(super) fn check_reachable(&mut self, processes: &Processes, lines: &[Vec<Lines>]) {
-        if processes.variables.iter().any(|v| v.domain.values().is_none()) {
+    pub(super) fn check_reachable(&mut self, processes: &Processes, writings: &[Writing]) {
+        if self.told < Told::Whole || self.may_race() {
             return;
         }
-        let commands = || processes.list.iter().flat_map(|process| &process.commands);
-        let jumps = self.clock.is_jumps();
-        // Which of several delays ends first is not known here, nor how jumps and steps meet.
-        if commands().any(|c| matches!(c.timing, Timing::Delay(_)) || (!jumps && c.timing != Timing::Step)) {
-            return;
-        }
+        let mut scope = Scope { jumps: self.clock.is_jumps(), closed: false };
+        let steps = self.horizon.0;
         let mut findings =
             Findings { variables: &processes.variables, known: BTreeSet::new(), list: Vec::new() };
-        walk(processes, lines, jumps, self.horizon.0, &mut findings);
+        let mut looks = MOST_LOOKS;
+        let mut walked = true;
+        for part in Part::of(processes, writings, scope) {
+            let mut walk = Walk { processes, part: &part, jumps: scope.jumps, looks: &mut looks };
+            walked &= walk.through(steps, &mut findings).is_ok();
+        }
+        if !walked {
+            // Who reads more than variables hides nothing of those that do not.
+            scope.closed = true;
+            for part in Part::of(processes, writings, scope) {
+                let mut walk = Walk { processes, part: &part, jumps: scope.jumps, looks: &mut looks };
+                let _ = walk.through(steps, &mut findings);
+            }
+        }
         for found in findings.list {
             self.note(found);
         }
     }
+
+    /// Whether what was not read may have said that processes jump where they seem to step.
+    fn may_race(&self) -> bool {
+        let is_timed = |torn: &Span| {
+            let text = self.text(*torn);
+            words(&text).any(|word| ["at", "after", "process"].contains(&word))
+        };
+        matches!(self.clock, Clock::Steps) && self.torn.iter().any(is_timed)
+    }
 }
 
-/// Walks through the states that can be reached in so many steps, breadth first.
-fn walk(processes: &Processes, lines: &[Vec<Lines>], jumps: bool, steps: u64, findings: &mut Findings<'_>) {
-    let initial: Vec<i64> = processes.variables.iter().map(|v| v.initial as i64).collect();
-    let mut known = BTreeSet::from([initial.clone()]);
-    let mut front = vec![initial];
-    let mut made = 0;
-    for _ in 0..steps {
-        let mut next_front = Vec::new();
-        for state in std::mem::take(&mut front) {
-            let mut wrong = Vec::new();
-            let successors = if jumps {
-                jumped(processes, lines, &state, &mut wrong)
-            } else {
-                successors(processes, lines, &state, &mut wrong)
-            };
-            for wrong in wrong {
-                findings.add(wrong, &state);
-            }
-            let Ok(successors) = successors else { return };
-            made += successors.len();
-            for next in successors {
-                if !known.contains(&next) {
-                    known.insert(next.clone());
-                    next_front.push(next);
+/// A walk through the states of a part.
+struct Walk<'w, 'p> {
+    processes: &'p Processes,
+    part: &'w Part<'p>,
+    jumps: bool,
+    /// How many more commands are looked at.
+    looks: &'w mut usize,
+}
+
+impl Walk<'_, '_> {
+    /// Walks through the states that can be reached in so many steps, breadth first; `Err` where not all are known.
+    fn through(&mut self, steps: u64, findings: &mut Findings<'_>) -> Result<(), Unknown> {
+        let own = &self.part.variables;
+        let mut values: Vec<f64> = self.processes.variables.iter().map(|v| v.initial).collect();
+        let initial: Vec<i64> = own.iter().map(|v| values[*v] as i64).collect();
+        let commands: usize = self.part.members.iter().map(|(process, _)| process.commands.len()).sum();
+        let mut known = BTreeSet::from([initial.clone()]);
+        let mut front = vec![initial];
+        let mut made = 0;
+        for _ in 0..steps {
+            let mut next_front = Vec::new();
+            for state in std::mem::take(&mut front) {
+                *self.looks = self.looks.checked_sub(commands + 1).ok_or(Unknown)?;
+                for (variable, value) in own.iter().zip(&state) {
+                    values[*variable] = *value as f64;
+                }
+                let mut wrong = Vec::new();
+                let successors = if self.jumps {
+                    self.jumped(&values, &state, &mut wrong)
+                } else {
+                    self.successors(&values, &state, &mut wrong)
+                };
+                for wrong in wrong {
+                    findings.add(wrong, own, &state);
+                }
+                let successors = successors?;
+                made += successors.len();
+                for next in successors {
+                    if !known.contains(&next) {
+                        known.insert(next.clone());
+                        next_front.push(next);
+                    }
+                }
+                let kept = |states: usize| states.saturating_mul(own.len());
+                let many = known.len() > MOST_STATES || made > MOST_SUCCESSORS;
+                if many || kept(known.len()) > MOST_VALUES || kept(made) > MOST_WRITTEN {
+                    return Err(Unknown);
                 }
             }
-            let values = |states: usize| states.saturating_mul(processes.variables.len());
-            let many = known.len() > MOST_STATES || made > MOST_SUCCESSORS;
-            if many || values(known.len()) > MOST_VALUES || values(made) > MOST_WRITTEN {
-                return;
+            if next_front.is_empty() {
+                return Ok(());
+            }
+            front = next_front;
+        }
+        Ok(())
+    }
+
+    /// Where a variable of the part is in its states.
+    fn place(&self, variable: usize) -> usize {
+        self.part.variables.partition_point(|own| *own < variable)
+    }
+
+    /// The states that can follow: none by ways on which a trial ends.
+    fn successors(
+        &self,
+        values: &[f64],
+        state: &[i64],
+        wrong: &mut Vec<Wrong>,
+    ) -> Result<Vec<Vec<i64>>, Unknown> {
+        let mut ways = Vec::new();
+        for (process, writing) in &self.part.members {
+            ways.push(changes((process, &writing.lines), &self.processes.variables, values, wrong)?);
+        }
+        // Whatever the others do, the trial ends.
+        if ways.iter().any(Vec::is_empty) {
+            return Ok(Vec::new());
+        }
+        let mut joint: Vec<Vec<i64>> = vec![state.to_vec()];
+        for changes in ways {
+            if let [only] = changes.as_slice() {
+                for after in &mut joint {
+                    for &(variable, value) in only {
+                        after[self.place(variable)] = value;
+                    }
+                }
+                continue;
+            }
+            let ways = joint.len().saturating_mul(changes.len());
+            if ways > MOST_SUCCESSORS || ways.saturating_mul(state.len()) > MOST_VALUES {
+                return Err(Unknown);
+            }
+            joint = joint
+                .iter()
+                .flat_map(|before| changes.iter().map(|change| self.after(before, change)))
+                .collect();
+        }
+        Ok(joint)
+    }
+
+    /// The states that can follow where processes jump one at a time.
+    fn jumped(
+        &self,
+        values: &[f64],
+        state: &[i64],
+        wrong: &mut Vec<Wrong>,
+    ) -> Result<Vec<Vec<i64>>, Unknown> {
+        let (mut changes, mut ends) = (Vec::new(), false);
+        for (process, writing) in &self.part.members {
+            for (command, lines) in process.commands.iter().zip(&writing.lines) {
+                let Timing::Rate(rate) = &command.timing else { continue };
+                if !command.guard.evaluate(values).ok_or(Unknown)? {
+                    continue;
+                }
+                let rate = rate.evaluate(values).ok_or(Unknown)?;
+                if !(rate >= 0.0 && rate.is_finite()) {
+                    wrong.push(Wrong {
+                        code: "E0904",
+                        span: lines.command,
+                        what: format!("the rate of this command would be {rate} /s"),
+                        hint: Some("a rate is a finite number, not negative; 0 disables the command"),
+                    });
+                    ends = true;
+                } else if rate > 0.0 {
+                    branches((command, lines), &self.processes.variables, values, (&mut changes, wrong))?;
+                }
             }
         }
-        if next_front.is_empty() {
-            return;
+        if ends {
+            return Ok(Vec::new());
         }
-        front = next_front;
+        if changes.len().saturating_mul(state.len()) > MOST_VALUES {
+            return Err(Unknown);
+        }
+        Ok(changes.iter().map(|change| self.after(state, change)).collect())
+    }
+
+    /// The state after a change.
+    fn after(&self, before: &[i64], change: &Change) -> Vec<i64> {
+        let mut after = before.to_vec();
+        for &(variable, value) in change {
+            after[self.place(variable)] = value;
+        }
+        after
     }
 }
 
 impl Wrong {
-    fn diagnostic(self, variables: &[Variable], state: &[i64]) -> Diagnostic {
+    fn diagnostic(self, variables: &[Variable], own: &[usize], state: &[i64]) -> Diagnostic {
         let error = Diagnostic::error(self.code, self.span, self.what)
-            .label(format!("where {}", shown(variables, state)));
+            .label(format!("where {}", shown(variables, own, state)));
         match self.hint {
             Some(hint) => error.hint(hint),
             None => error,
@@ -136,9 +278,10 @@ impl Wrong {
     }
 }
 
-fn shown(variables: &[Variable], state: &[i64]) -> String {
-    let words: Vec<String> = variables
+fn shown(variables: &[Variable], own: &[usize], state: &[i64]) -> String {
+    let words: Vec<String> = own
         .iter()
+        .map(|variable| &variables[*variable])
         .zip(state)
         .take(8)
         .map(|(variable, value)| match variable.domain {
@@ -152,98 +295,7 @@ fn shown(variables: &[Variable], state: &[i64]) -> String {
 /// Changed variables of one way that a process can take.
 type Change = Vec<(usize, i64)>;
 
-/// The states that can follow: none by ways on which a trial ends.
-fn successors(
-    processes: &Processes,
-    lines: &[Vec<Lines>],
-    state: &[i64],
-    wrong: &mut Vec<Wrong>,
-) -> Result<Vec<Vec<i64>>, Unknown> {
-    let values: Vec<f64> = state.iter().map(|value| *value as f64).collect();
-    let mut ways = Vec::new();
-    for (process, lines) in processes.list.iter().zip(lines) {
-        ways.push(changes((process, lines), &processes.variables, &values, wrong)?);
-    }
-    // Whatever the others do, the trial ends.
-    if ways.iter().any(Vec::is_empty) {
-        return Ok(Vec::new());
-    }
-    let mut joint: Vec<Vec<i64>> = vec![state.to_vec()];
-    for changes in ways {
-        if let [only] = changes.as_slice() {
-            for after in &mut joint {
-                for &(variable, value) in only {
-                    after[variable] = value;
-                }
-            }
-            continue;
-        }
-        let ways = joint.len().saturating_mul(changes.len());
-        if ways > MOST_SUCCESSORS || ways.saturating_mul(state.len()) > MOST_VALUES {
-            return Err(Unknown);
-        }
-        joint = joint
-            .iter()
-            .flat_map(|before| {
-                changes.iter().map(|change| {
-                    let mut after = before.clone();
-                    for &(variable, value) in change {
-                        after[variable] = value;
-                    }
-                    after
-                })
-            })
-            .collect();
-    }
-    Ok(joint)
-}
-
-/// The states that can follow where processes jump one at a time.
-fn jumped(
-    processes: &Processes,
-    lines: &[Vec<Lines>],
-    state: &[i64],
-    wrong: &mut Vec<Wrong>,
-) -> Result<Vec<Vec<i64>>, Unknown> {
-    let values: Vec<f64> = state.iter().map(|value| *value as f64).collect();
-    let (mut changes, mut ends) = (Vec::new(), false);
-    for (process, lines) in processes.list.iter().zip(lines) {
-        for (command, lines) in process.commands.iter().zip(lines) {
-            let Timing::Rate(rate) = &command.timing else { continue };
-            if !command.guard.evaluate(&values).ok_or(Unknown)? {
-                continue;
-            }
-            let rate = rate.evaluate(&values).ok_or(Unknown)?;
-            if !(rate >= 0.0 && rate.is_finite()) {
-                wrong.push(Wrong {
-                    code: "E0904",
-                    span: lines.command,
-                    what: format!("the rate of this command would be {rate} /s"),
-                    hint: Some("a rate is a finite number, not negative; 0 disables the command"),
-                });
-                ends = true;
-            } else if rate > 0.0 {
-                branches((command, lines), &processes.variables, &values, (&mut changes, wrong))?;
-            }
-        }
-    }
-    if ends {
-        return Ok(Vec::new());
-    }
-    if changes.len().saturating_mul(state.len()) > MOST_VALUES {
-        return Err(Unknown);
-    }
-    let after = changes.iter().map(|change| {
-        let mut after = state.to_vec();
-        for &(variable, value) in change {
-            after[variable] = value;
-        }
-        after
-    });
-    Ok(after.collect())
-}
-
-/// What one process can do at a step; nothing where a trial ends by an error whatever is drawn.
+/// What one process can do at a step, as far as it is known; nothing where a trial ends by an error whatever is drawn.
 fn changes(
     (process, lines): (&Process, &[Lines]),
     variables: &[Variable],
@@ -286,6 +338,9 @@ fn branches(
     values: &[f64],
     (all, wrong): (&mut Vec<Change>, &mut Vec<Wrong>),
 ) -> Result<(), Unknown> {
+    if lines.is_broken {
+        return Ok(());
+    }
     let weights: Option<Vec<f64>> = command.branches.iter().map(|b| b.weight.evaluate(values)).collect();
     let weights = weights.ok_or(Unknown)?;
     if let Some(what) = wrong_weights(&weights) {

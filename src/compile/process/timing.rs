@@ -25,7 +25,16 @@ impl Elaborator<'_> {
             }
             None => Ok(Timing::Step),
             Some(ast::Timing::Rate(rate)) => self.rate(rate, locals).map(Timing::Rate),
-            Some(ast::Timing::Delay(delay)) => self.delay(delay, locals).map(Timing::Delay),
+            Some(ast::Timing::Delay(delay)) => {
+                let law = self.delay(delay, locals)?;
+                let exact = match &**delay {
+                    Value::Plain(expr) if law.constant().is_some() => {
+                        self.number(expr, locals).ok().and_then(|n| n.exact)
+                    }
+                    _ => None,
+                };
+                Ok(Timing::Delay(law, exact))
+            }
         }
     }
 
@@ -52,10 +61,8 @@ impl Elaborator<'_> {
             if law.constant().is_some() {
                 return self.report(Diagnostic::error("E0906", span, "a delay cannot be negative"));
             }
-            let error = Diagnostic::error("E0906", span, "this delay can be negative").hint(format!(
-                "cut it off, as in `{} in 0 s .. 60 s`",
-                self.text(span).split(" in ").next().unwrap_or_default()
-            ));
+            let error = Diagnostic::error("E0906", span, "this delay can be negative");
+            let error = laws::truncate(error, &law, &self.text(span));
             return self.report(error);
         }
         Ok(law)

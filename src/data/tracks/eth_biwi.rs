@@ -18,9 +18,10 @@ const SECONDS_PER_ANNOTATION: f64 = 0.4;
 /// Frames between two annotations where nobody was seen twice, as at 25 frames per second.
 const DEFAULT_STRIDE: u32 = 10;
 
-/// So many metres tell how places and velocities belong together, and so far apart they do not.
-const ENOUGH: f64 = 20.0;
-const DOUBTFUL: f64 = 1.5;
+/// So many metres tell how places and velocities belong together, and so far apart they do not. In the published tables the
+/// velocities are differences of places, so that the two agree to a millionth.
+const ENOUGH: f64 = 5.0;
+const DOUBTFUL: f64 = 1.15;
 
 const NAMES: [&str; 8] = ["frame", "id", "x", "z", "y", "vx", "vz", "vy"];
 
@@ -38,7 +39,7 @@ struct Row {
 /// # Errors
 /// Every bad line: not eight columns, a field that is not a finite number, a frame or id that is no whole
 /// number from 0 to 4294967295, and a person who is in one frame twice; in the order of the lines. A text
-/// without any row is one error.
+/// without any row is one error, and so is one whose velocities tell of another interval.
 pub fn read_eth_biwi(text: &str) -> Result<Recording, Vec<LineError>> {
     let mut rows = Vec::with_capacity(text.len() / 128);
     let mut errors = Vec::new();
@@ -61,7 +62,7 @@ pub fn read_eth_biwi(text: &str) -> Result<Recording, Vec<LineError>> {
         }
     }
     if rows.is_empty() && errors.is_empty() {
-        errors.push(LineError::whole(1, "there is no observation in this file"));
+        errors.push(LineError::of_file("there is no observation in this file"));
     }
     if !errors.is_empty() {
         errors.sort_by_key(|error| (error.line, error.column));
@@ -83,7 +84,7 @@ pub fn read_eth_biwi(text: &str) -> Result<Recording, Vec<LineError>> {
             "the velocities in this file tell that its annotations are about {seconds:.2} s apart, and in this format they \
              are {SECONDS_PER_ANNOTATION} s apart"
         );
-        return Err(vec![LineError::whole(1, message)]);
+        return Err(vec![LineError::of_file(message)]);
     }
     Ok(Recording::new(people, stride, SECONDS_PER_ANNOTATION / f64::from(stride)))
 }
@@ -167,7 +168,9 @@ fn other_interval(people: &[Person], stride: u32) -> Option<f64> {
         gone += way.norm();
         told += sum.norm();
     }
-    let clear = gone > ENOUGH && told > ENOUGH && !(1.0 / DOUBTFUL..DOUBTFUL).contains(&(gone / told));
+    let most = if gone > told { gone } else { told };
+    let clear =
+        most > ENOUGH && gone > 0.0 && told > 0.0 && !(1.0 / DOUBTFUL..DOUBTFUL).contains(&(gone / told));
     clear.then(|| SECONDS_PER_ANNOTATION * gone / told)
 }
 
@@ -206,7 +209,7 @@ mod tests {
                 "line 6, column 24: vy `NaN` is not a finite number",
             ]
         );
-        assert_eq!(read_eth_biwi(" \n").unwrap_err()[0].line, 1);
+        assert_eq!(read_eth_biwi(" \n").unwrap_err()[0].to_string(), "there is no observation in this file");
     }
 
     #[test]
@@ -221,7 +224,18 @@ mod tests {
             (0..80).map(|k| format!("{} 1 {} 0 0 1 0 0\n", k * 10, f64::from(k) * 0.4)).collect::<String>();
         assert!(read_eth_biwi(&known).is_ok());
         let said = read_eth_biwi(&table(20)).unwrap_err();
+        assert!(said[0].to_string().starts_with("the velocities"), "{said:?}");
         assert!(said[0].message.contains("about 0.80 s apart"), "{said:?}");
+        // Nearer ones, and few rows.
+        let short = |frames: u32, rows: u32| -> String {
+            let at = |k: u32| f64::from(k * frames) / 25.0;
+            (0..rows).map(|k| format!("{} 1 {} 0 0 1 0 0\n", k * 10, at(k))).collect()
+        };
+        for (frames, rows, clear) in
+            [(8, 20, true), (12, 20, true), (1, 20, true), (9, 20, false), (20, 5, false)]
+        {
+            assert_eq!(read_eth_biwi(&short(frames, rows)).is_err(), clear, "{frames} {rows}");
+        }
         // People who wait, annotated to within some centimetres.
         let jitter = |k: u32| f64::from(k * 7919 % 101) / 1_000.0;
         let waiting: String = (0..4_000)

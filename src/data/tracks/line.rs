@@ -4,7 +4,7 @@
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}", self.sentence())]
 pub struct LineError {
-    /// Line, from 1.
+    /// Line, from 1; 0 where the whole file is meant.
     pub line: usize,
     /// Character of the line at which the fault begins, from 1; `None` where the whole line is meant.
     pub column: Option<usize>,
@@ -18,6 +18,11 @@ impl LineError {
         Self { line, column: None, message: message.into() }
     }
 
+    /// A fault that no line has alone.
+    pub fn of_file(message: impl Into<String>) -> Self {
+        Self::whole(0, message)
+    }
+
     /// A fault at a character of a line.
     pub fn at(line: usize, column: usize, message: impl Into<String>) -> Self {
         Self { line, column: Some(column), message: message.into() }
@@ -26,6 +31,7 @@ impl LineError {
     fn sentence(&self) -> String {
         match self.column {
             Some(column) => format!("line {}, column {column}: {}", self.line, self.message),
+            None if self.line == 0 => self.message.clone(),
             None => format!("line {}: {}", self.line, self.message),
         }
     }

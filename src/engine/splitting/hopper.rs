@@ -6,6 +6,7 @@
 
 use super::flock::{Flown, Landed, first_fault};
 use super::path::Path;
+use crate::base::instant::Instant;
 use crate::base::lanes::{LANES, Mask};
 use crate::engine::budget::Budget;
 use crate::engine::fault::Fault;
@@ -93,7 +94,7 @@ impl Hopper {
             self.view.look(&self.state, &mut self.sight);
             for lane in self.state.occupied.iter() {
                 if jumped.has(lane) {
-                    self.observe(lane, Some(self.state.clocks.now[lane]), &mut done);
+                    self.observe(lane, Some(self.state.clocks.instant(lane)), &mut done);
                 } else if let Some(change) = self.change(paths, lane).filter(|(from, _)| *from < horizon) {
                     dynamics::renew(program, &mut self.state, &mut self.scratch, lane, change);
                     if let Some(busy) = &mut self.busy[lane] {
@@ -162,7 +163,7 @@ impl Hopper {
 
     /// The present state of a lane begins at a time, or its trial has come to the horizon: judges the state before. A path
     /// whose formula is decided ends.
-    fn observe(&mut self, lane: usize, now: Option<f64>, done: &mut Landed) {
+    fn observe(&mut self, lane: usize, now: Option<Instant>, done: &mut Landed) {
         let Some(busy) = &mut self.busy[lane] else { return };
         let (formula, level) = (&mut self.formulas[lane], &mut self.levels[lane]);
         let (reading, bounds) = if let Some(now) = now {
@@ -172,7 +173,7 @@ impl Hopper {
             (Some(formula.finish()), level.finish())
         };
         let jumps = self.state.clocks.jumps[lane];
-        let (since, next) = (busy.since, now.unwrap_or(f64::INFINITY));
+        let (since, next) = (busy.since, now.map_or(f64::INFINITY, |now| now.seconds));
         // Only the verdict is the event itself.
         let finite = |level: f64| if level < f64::MAX { level } else { f64::MAX };
         let flight = &mut busy.flown.flight;
@@ -192,7 +193,7 @@ impl Hopper {
             None => level.is_overfull() || jumps >= self.most,
         };
         if let (None, false, Some(now)) = (reading, lost, now) {
-            busy.since = now;
+            busy.since = now.seconds;
             return;
         }
         busy.flown.lost = lost;

@@ -239,8 +239,9 @@ impl<'a> Person<'a> {
             // Who goes on as recorded has the recorded speed as driving speed.
             self.state.speed[self.block].0[self.lane] = speed;
         }
-        // Who wants to go nowhere, and never did, looks nowhere: the social force is felt alike all around.
-        let direction = towards.or(moving).unwrap_or_else(Vec2::zeros);
+        // Who wants to go nowhere, and never did, looks nowhere, though they may be pushed or come to rest: the social force is
+        // felt alike all around.
+        let direction = towards.or(moving.filter(|_| onward)).unwrap_or_else(Vec2::zeros);
         self.way.onward = (direction, moving.is_some());
         self.drive(Some(direction), 0.0);
         // Who starts at a goal goes on to the next; nobody leaves before the first step.
@@ -249,7 +250,7 @@ impl<'a> Person<'a> {
             && ticks > 0
         {
             self.head();
-            let ahead = unit(self.direction()).unwrap_or(EAST);
+            let ahead = unit(self.direction()).or(moving).unwrap_or(EAST);
             self.way.advice = match advice {
                 Move::Heading(angle) => rotated(ahead, angle),
                 Move::Stop => Vec2::zeros(),

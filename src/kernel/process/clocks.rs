@@ -1,5 +1,6 @@
 //! The clocks of processes with rates and delays, as part of the state of a batch of trials.
 
+use crate::base::instant::Instant;
 use crate::base::lanes::{LANES, Lanes, Mask};
 
 /// When everything that waits will happen.
@@ -9,6 +10,8 @@ use crate::base::lanes::{LANES, Lanes, Mask};
 pub struct Clocks {
     /// When each clock rings, s; infinite where it does not run.
     pub(super) due: Vec<Lanes>,
+    /// What each is later than that, s: what rounding took off; 0 where `is_exact` is not.
+    pub(super) rests: Vec<Lanes>,
     /// Of a race: its rate, 1/s.
     pub(super) rate: Vec<Lanes>,
     /// Of a race: what was left of its exponential number when the rate last changed.
@@ -19,17 +22,23 @@ pub struct Clocks {
     pub(super) races: Vec<[u32; LANES]>,
     /// Of each process: delays drawn so far.
     pub(super) delays: Vec<[u32; LANES]>,
+    /// Of each process: jumps so far, modulo 2^32.
+    pub(super) fired: Vec<[u32; LANES]>,
     /// Of each process that is a table: its present row.
     pub(super) rows: Vec<[u32; LANES]>,
     /// Time of the last jump, s.
     pub now: [f64; LANES],
+    /// What it is later than that, s.
+    rest: [f64; LANES],
+    /// Whether sums of times are exact: in continuous time with delays.
+    is_exact: bool,
     /// Jumps since the start of the trial.
     pub jumps: [u64; LANES],
     /// How many of the last jumps were at the present time.
     pub(super) crowd: [u32; LANES],
     /// Lanes in which more happened between two steps than is followed.
     pub jammed: Mask,
-    /// Of these the process that jumps most.
+    /// Of these the process that jumped most often in that step.
     pub(super) jammer: [usize; LANES],
     /// Lanes whose clocks have not been set yet.
     pub(super) fresh: Mask,
@@ -37,9 +46,11 @@ pub struct Clocks {
 
 impl Clocks {
     /// A trial begins in a lane.
-    pub(super) fn load(&mut self, clocks: usize, processes: usize, lane: usize) {
+    pub(super) fn load(&mut self, clocks: usize, processes: usize, is_exact: bool, lane: usize) {
+        self.is_exact = is_exact;
         for (list, value) in [
             (&mut self.due, f64::INFINITY),
+            (&mut self.rests, 0.0),
             (&mut self.rate, 0.0),
             (&mut self.fuel, 0.0),
             (&mut self.pick, 0.0),
@@ -49,35 +60,57 @@ impl Clocks {
                 lanes.0[lane] = value;
             }
         }
-        for list in [&mut self.races, &mut self.delays, &mut self.rows] {
+        for list in [&mut self.races, &mut self.delays, &mut self.fired, &mut self.rows] {
             list.resize(processes, [0; LANES]);
             for lanes in list {
                 lanes[lane] = 0;
             }
         }
-        self.now[lane] = 0.0;
+        (self.now[lane], self.rest[lane]) = (0.0, 0.0);
         self.jumps[lane] = 0;
         self.crowd[lane] = 0;
         self.jammed &= !Mask::lane(lane);
         self.fresh |= Mask::lane(lane);
     }
 
-    /// How often each process has begun to wait, lane by lane.
-    pub(super) fn waits(&self) -> Vec<[u64; LANES]> {
-        let both = self.races.iter().zip(&self.delays);
-        let sum = |races: &[u32; LANES], delays: &[u32; LANES]| {
-            std::array::from_fn(|lane| u64::from(races[lane]) + u64::from(delays[lane]))
-        };
-        both.map(|(races, delays)| sum(races, delays)).collect()
+    /// Remembers for some lanes which process has jumped most often since.
+    pub(super) fn blame(&mut self, since: &[[u32; LANES]], lanes: Mask) {
+        for lane in lanes.iter() {
+            let jumps =
+                |k: usize| self.fired[k][lane].wrapping_sub(since.get(k).map_or(0, |fired| fired[lane]));
+            let most = (0..self.fired.len()).max_by_key(|&k| (jumps(k), std::cmp::Reverse(k)));
+            self.jammer[lane] = most.unwrap_or(0);
+        }
     }
 
-    /// Remembers for some lanes which process has waited most often since.
-    pub(super) fn blame(&mut self, before: &[[u64; LANES]], lanes: Mask) {
-        let now = self.waits();
-        for lane in lanes.iter() {
-            let more = |k: &usize| (now[*k][lane] - before[*k][lane], std::cmp::Reverse(*k));
-            self.jammer[lane] = (0..now.len()).max_by_key(more).unwrap_or(0);
+    /// The time of the last jump of a lane.
+    pub fn instant(&self, lane: usize) -> Instant {
+        let now = self.now[lane];
+        if self.is_exact { Instant { seconds: now, rest: self.rest[lane] } } else { Instant::from(now) }
+    }
+
+    /// A clock rings: it is as late as it says.
+    #[inline]
+    pub(super) fn reach(&mut self, clock: usize, lane: usize) {
+        self.now[lane] = self.due[clock].0[lane];
+        self.rest[lane] = self.rests[clock].0[lane];
+    }
+
+    /// Sets a clock to a time that came by chance, not before the present.
+    #[inline]
+    pub(super) fn set(&mut self, clock: usize, lane: usize, due: f64) {
+        self.due[clock].0[lane] = due;
+        if self.is_exact {
+            self.rests[clock].0[lane] = if due == self.now[lane] { self.rest[lane] } else { 0.0 };
         }
+    }
+
+    /// Sets a clock to a time after the present, exactly.
+    #[inline]
+    pub(super) fn set_after(&mut self, clock: usize, lane: usize, wait: Instant) {
+        let now = Instant { seconds: self.now[lane], rest: self.rest[lane] };
+        let due = now.after(wait);
+        (self.due[clock].0[lane], self.rests[clock].0[lane]) = (due.seconds, due.rest);
     }
 
     /// The clock that rings first in each lane, and when.
@@ -89,6 +122,18 @@ impl Clocks {
                 let sooner = due.0[lane] < when[lane];
                 which[lane] = if sooner { k } else { which[lane] };
                 when[lane] = if sooner { due.0[lane] } else { when[lane] };
+            }
+        }
+        if self.is_exact {
+            /// Of a time, what sums of two doubles may be off, amply.
+            const NOISE: f64 = 1.0 / (1_u128 << 92) as f64;
+            for lane in 0..LANES {
+                // Of several that round alike the first by what rounding took off; of those at one time the first there is.
+                let noise = when[lane] * NOISE;
+                let alike = (0..self.due.len()).filter(|k| self.due[*k].0[lane] == when[lane]);
+                let rest = |k: usize| self.rests[k].0[lane];
+                which[lane] =
+                    alike.fold(which[lane], |first, k| if rest(k) + noise < rest(first) { k } else { first });
             }
         }
         (which, when)

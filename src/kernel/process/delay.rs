@@ -16,8 +16,9 @@ pub(in crate::kernel) fn delay(trial: TrialKey, entity: u32, number: u32, law: &
 /// A time after a delay. Times that people write are short decimals, and sums of them are, too: three times 0.1 s is 0.3 s,
 /// and what is due then happens in the state of then. Sums of doubles miss that by a unit in the last place; one that is as
 /// near to a whole number of nanoseconds as that is taken for it. Only `+ - * /`, so the same everywhere.
-/// So is one that is near a tick of the clock, where states are looked at and bounds end: 1 s / 3 is no decimal, and its
-/// sums go astray a little more each time. Never by more than a hundred-millionth of the delay: what is due at once is due
+/// So is one that is near a step, where states are looked at and bounds end: 1 s / 3 is no decimal, and its sums go astray
+/// a little more each time. (In continuous time delays begin at any time, and
+/// add up as `Instant`s.) Never by more than a hundred-millionth of the delay: what is due at once is due
 /// now, and a short delay after a long time is not lost.
 pub(in crate::kernel) fn after(now: f64, wait: f64, clock: Clock) -> f64 {
     /// A few units in the last place.
@@ -31,7 +32,7 @@ pub(in crate::kernel) fn after(now: f64, wait: f64, clock: Clock) -> f64 {
         let off = (time - due).abs();
         off <= due * share && off <= wait * OF_DELAY
     };
-    if let Clock::Stepped(length) | Clock::Jumps(length) = clock {
+    if let Clock::Stepped(length) = clock {
         let ticks = (due * length.denominator() as f64 / length.numerator() as f64 + 0.5).floor();
         // Ticks that are nearer to each other than that tell nothing.
         if ticks < 1e11 {
@@ -72,15 +73,14 @@ mod tests {
         // Sums of what is no decimal meet the ticks all the same.
         for parts in [3_i128, 7, 49, 60] {
             let length = Decimal::ratio(1, parts).unwrap();
-            for clock in [Clock::Stepped(length), Clock::Jumps(length)] {
-                let mut now = 0.0;
-                for k in 1..=20_000 {
-                    now = after(now, length.to_f64(), clock);
-                    assert_eq!(now, clock.seconds(Tick(k)), "{k} times 1/{parts}");
-                }
+            let clock = Clock::Stepped(length);
+            let mut now = 0.0;
+            for k in 1..=20_000 {
+                now = after(now, length.to_f64(), clock);
+                assert_eq!(now, clock.seconds(Tick(k)), "{k} times 1/{parts}");
             }
-            // Where only the end is a tick, too.
-            let whole = Clock::Jumps(Decimal::ONE);
+            // Where only the end is a step, too.
+            let whole = Clock::Stepped(Decimal::ONE);
             let mut now = 0.0;
             for k in 1..=1_000 * parts {
                 now = after(now, length.to_f64(), whole);
@@ -92,7 +92,7 @@ mod tests {
     #[test]
     fn time_goes_on_by_every_delay() {
         let clocks =
-            [Clock::Steps, Clock::Jumps(Decimal::ONE), Clock::Stepped(Decimal::ratio(1, 50).unwrap())];
+            [Clock::Steps, Clock::Stepped(Decimal::ONE), Clock::Stepped(Decimal::ratio(1, 50).unwrap())];
         let mut now = 0.37;
         while now < 1e12 {
             for clock in clocks {

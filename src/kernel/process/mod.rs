@@ -43,8 +43,8 @@ use timed::{Timed, is_timed};
 
 /// Most jumps between two steps; a trial that needs more is unresolved.
 pub const MOST_BETWEEN: u32 = 1 << 20;
-/// Jumps after these from which it is told which process they are of.
-const JUMPS_OF_A_JAM: u32 = 1 << 8;
+/// So many that it is counted which process those after them are of.
+const MANY_BETWEEN: u32 = 1 << 12;
 
 /// One process.
 #[derive(Clone, Debug)]
@@ -225,7 +225,7 @@ impl Processes {
         self.clock.seconds(self.horizon)
     }
 
-    /// The process with rates or delays that has waited most often in the trial of a lane, and its present rate, 1/s.
+    /// The process with rates or delays that has jumped most often in the trial of a lane, and its present rate, 1/s.
     pub fn busiest(&self, state: &State, lane: usize) -> Option<(u32, f64)> {
         self.timed.as_ref()?.busiest(state, lane)
     }
@@ -303,7 +303,11 @@ fn ring(
     mut lanes: Mask,
     until: &[f64; LANES],
 ) {
-    for _ in 0..MOST_BETWEEN {
+    let mut since = Vec::new();
+    for round in 0..MOST_BETWEEN {
+        if round == MANY_BETWEEN {
+            since.clone_from(&state.clocks.fired);
+        }
         lanes = timed.ring(layout, state, readings, lanes & !state.faulty, until);
         if lanes.is_empty() {
             return;
@@ -311,11 +315,5 @@ fn ring(
     }
     state.diverged |= lanes;
     state.clocks.jammed |= lanes;
-    // Who does it shows in what would come next.
-    let before = state.clocks.waits();
-    for _ in 0..JUMPS_OF_A_JAM {
-        timed.ring(layout, state, readings, lanes & !state.faulty, until);
-    }
-    state.clocks.blame(&before, lanes);
-    state.faulty &= !lanes;
+    state.clocks.blame(&since, lanes);
 }

@@ -7,7 +7,7 @@ use super::super::code::Readings;
 use super::fault::Fault;
 use crate::base::lanes::Lanes;
 use crate::model::process::are_weights;
-use crate::model::{Bool, Domain, Num, Process, Timing, VariableId};
+use crate::model::{Bool, Domain, Num, Process, Timing};
 use std::collections::BTreeSet;
 
 /// A new value: the variable, what it may hold, and the signal that holds the value.
@@ -60,7 +60,7 @@ impl Race {
             atoms.push(command.guard.clone());
             let rate = match &command.timing {
                 Timing::Rate(rate) => Some(signal(rate)),
-                Timing::Delay(_) | Timing::Step => None,
+                Timing::Delay(..) | Timing::Step => None,
             };
             let mut branches = Vec::with_capacity(command.branches.len());
             for branch in &command.branches {
@@ -224,22 +224,4 @@ impl Race {
         }
         Ok(())
     }
-}
-
-/// Adds the variables that a process reads; whether it depends on nothing else.
-pub(super) fn reads(process: &Process, into: &mut BTreeSet<VariableId>) -> bool {
-    let mut closed = true;
-    for command in &process.commands {
-        closed &= command.guard.reads(into);
-        if let Timing::Rate(rate) = &command.timing {
-            closed &= rate.reads(into);
-        }
-        for branch in &command.branches {
-            closed &= branch.weight.reads(into);
-            for (_, value) in &branch.updates {
-                closed &= value.reads(into);
-            }
-        }
-    }
-    closed
 }

@@ -5,7 +5,7 @@ use super::super::code::{Code, Readings};
 use super::super::state::{Layout, State};
 use super::fault::Fault;
 use super::keys::Keys;
-use super::race::{Race, Way, reads};
+use super::race::{Race, Way};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::model::{Domain, Scenario};
 use std::collections::BTreeSet;
@@ -68,7 +68,7 @@ impl Rates {
     ) -> Option<Self> {
         let process = &scenario.processes.list[number];
         let mut read = BTreeSet::new();
-        if !reads(process, &mut read) {
+        if !process.reads(&mut read) {
             return None;
         }
         let keys = Keys::of(&read, domains, most)?;

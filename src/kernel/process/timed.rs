@@ -13,8 +13,9 @@ use super::super::state::{Layout, State};
 use super::delay::{after, delay};
 use super::draws::exponentials;
 use super::fault::Fault;
-use super::race::{Race, reads};
+use super::race::Race;
 use super::rates::Rates;
+use crate::base::instant::Instant;
 use crate::base::lanes::{LANES, Mask};
 use crate::base::random::{Purpose, Stream, TrialKey};
 use crate::base::tick::Clock;
@@ -44,8 +45,8 @@ struct Racer {
     word: u64,
     /// Its first clock: that of the race. The others are those of `delayed`.
     first: usize,
-    /// Commands with delays.
-    delayed: Vec<(usize, Ready)>,
+    /// Commands with delays; of those that are numbers the exact one.
+    delayed: Vec<(usize, Ready, Option<Instant>)>,
     form: Form,
     /// Those that may have to look again when it has jumped, itself among them.
     followers: Vec<usize>,
@@ -62,6 +63,8 @@ pub(super) struct Timed {
     /// The variables that they set.
     pub(super) written: Vec<u32>,
     clock: Clock,
+    /// Whether sums of times are exact.
+    is_exact: bool,
     level: Level,
 }
 
@@ -87,11 +90,11 @@ impl Timed {
             let process = &list[number];
             let mut delayed = Vec::new();
             for (k, command) in process.commands.iter().enumerate() {
-                if let Timing::Delay(law) = &command.timing {
-                    delayed.push((k, law.ready()));
+                if let Timing::Delay(law, exact) = &command.timing {
+                    delayed.push((k, law.ready(), exact.map(Instant::from)));
                 }
             }
-            let with_delays: Vec<usize> = delayed.iter().map(|(k, _)| *k).collect();
+            let with_delays: Vec<usize> = delayed.iter().map(|(k, ..)| *k).collect();
             let form = match Rates::of(scenario, number, domains, &with_delays, rows) {
                 Some(table) => Form::Table(table),
                 None => {
@@ -100,7 +103,7 @@ impl Timed {
                 }
             };
             let mut variables = BTreeSet::new();
-            let closed = reads(process, &mut variables);
+            let closed = process.reads(&mut variables);
             read.push(closed.then_some(variables));
             let updates = process.commands.iter().flat_map(|command| &command.branches);
             let own: BTreeSet<u32> = updates.flat_map(|b| b.updates.iter().map(|(id, _)| id.0)).collect();
@@ -118,8 +121,11 @@ impl Timed {
             };
             racer.followers = (0..timed.len()).filter(|&j| follows(j)).collect();
         }
+        let delayed = racers.iter().any(|racer| !racer.delayed.is_empty());
+        let is_exact = delayed && scenario.clock.is_jumps();
         Some(Self {
             clock: scenario.clock,
+            is_exact,
             racers,
             owners,
             code: coded.then(|| Code::compile(scenario, &atoms, &signals)),
@@ -143,7 +149,7 @@ impl Timed {
 
     /// Begins a trial.
     pub(super) fn load(&self, state: &mut State, lane: usize) {
-        state.clocks.load(self.owners.len(), self.racers.len(), lane);
+        state.clocks.load(self.owners.len(), self.racers.len(), self.is_exact, lane);
     }
 
     /// Looks at the state as it is at `state.clocks.now`: sets the clocks of trials that have just begun, and
@@ -230,8 +236,8 @@ impl Timed {
             let clocks = &mut state.clocks;
             let race = racer.first;
             let (rate, fuel) = (clocks.rate[race].0[lane], clocks.fuel[race].0[lane]);
-            clocks.due[race].0[lane] = if rate > 0.0 { at + fuel / rate } else { f64::INFINITY };
-            for (j, (_, law)) in racer.delayed.iter().enumerate() {
+            clocks.set(race, lane, if rate > 0.0 { at + fuel / rate } else { f64::INFINITY });
+            for (j, (_, law, _)) in racer.delayed.iter().enumerate() {
                 let clock = race + 1 + j;
                 if clocks.due[clock].0[lane] < f64::INFINITY {
                     let number = &mut clocks.delays[k][lane];
@@ -242,14 +248,13 @@ impl Timed {
         }
     }
 
-    /// The process that has waited most often in a lane, and its present rate, 1/s.
+    /// The process that has jumped most often in a lane, in a jam in its last step, and its present rate, 1/s.
     pub(super) fn busiest(&self, state: &State, lane: usize) -> Option<(u32, f64)> {
         let clocks = &state.clocks;
-        let waits = |k: usize| u64::from(clocks.races[k][lane]) + u64::from(clocks.delays[k][lane]);
         let most = if clocks.jammed.has(lane) {
             clocks.jammer[lane]
         } else {
-            (0..self.racers.len()).max_by_key(|&k| (waits(k), std::cmp::Reverse(k)))?
+            (0..self.racers.len()).max_by_key(|&k| (clocks.fired[k][lane], std::cmp::Reverse(k)))?
         };
         let racer = self.racers.get(most)?;
         Some((racer.process, clocks.rate[racer.first].0[lane]))
@@ -297,7 +302,7 @@ impl Timed {
         let clocks = &mut state.clocks;
         let crowd = if when > clocks.now[lane] { 0 } else { clocks.crowd[lane] + 1 };
         clocks.crowd[lane] = crowd;
-        clocks.now[lane] = when;
+        clocks.reach(clock, lane);
         if crowd > MOST_AT_ONCE {
             return Err(Fault::Stuck { process: racer.process });
         }
@@ -315,6 +320,8 @@ impl Timed {
             }
         }
         state.clocks.jumps[lane] += 1;
+        let fired = &mut state.clocks.fired[place][lane];
+        *fired = fired.wrapping_add(1);
         Ok(())
     }
 
@@ -357,22 +364,26 @@ impl Timed {
             }
             clocks.rate[race].0[lane] = total;
             let fuel = clocks.fuel[race].0[lane];
-            clocks.due[race].0[lane] = if total > 0.0 { now + fuel * mean } else { f64::INFINITY };
+            clocks.set(race, lane, if total > 0.0 { now + fuel * mean } else { f64::INFINITY });
         }
-        for (j, (command, law)) in racer.delayed.iter().enumerate() {
+        for (j, (command, law, exact)) in racer.delayed.iter().enumerate() {
             let enabled = match &racer.form {
                 Form::Table(table) => table.runs(clocks.rows[k][lane] as usize, j + 1),
                 Form::Code(race) => race.enabled(*command, readings, lane),
             };
             let clock = race + 1 + j;
-            let due = &mut clocks.due[clock].0[lane];
+            let due = clocks.due[clock].0[lane];
             if !enabled {
-                *due = f64::INFINITY;
-            } else if *due == f64::INFINITY || fired == Some(clock) {
+                clocks.due[clock].0[lane] = f64::INFINITY;
+            } else if due == f64::INFINITY || fired == Some(clock) {
                 let number = &mut clocks.delays[k][lane];
                 let (wait, pick) = delay(state.keys[lane], racer.entity, *number, law);
                 *number += 1;
-                *due = after(now, wait, self.clock);
+                if self.is_exact {
+                    clocks.set_after(clock, lane, exact.unwrap_or_else(|| Instant::decimal(wait)));
+                } else {
+                    clocks.due[clock].0[lane] = after(now, wait, self.clock);
+                }
                 clocks.pick[clock].0[lane] = pick;
             }
         }

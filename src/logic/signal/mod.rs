@@ -23,6 +23,7 @@ use super::formula::{NodeId, TermId, Tree};
 use super::invalid::Invalid;
 use super::reach::Part;
 use crate::base::decimal::Decimal;
+use crate::base::instant::Instant;
 use crate::base::tick::Tick;
 use cells::Cells;
 use direct::Direct;
@@ -136,14 +137,15 @@ impl SignalMonitor {
     /// signals that are missing as false and as no number. Once there is a reading, the rest of the
     /// trial is ignored.
     #[inline]
-    pub fn jump(&mut self, time: f64, atoms: &[bool], signals: &[f64]) -> Option<Reading> {
+    pub fn jump(&mut self, time: impl Into<Instant>, atoms: &[bool], signals: &[f64]) -> Option<Reading> {
+        let at = time.into();
+        let time = at.seconds;
         if self.reading.is_some() {
             return self.reading;
         }
         if self.begun {
             if time > self.since {
-                let end = if time > self.horizon { f64::INFINITY } else { time };
-                self.close(end);
+                self.close(if time > self.horizon { Instant::from(f64::INFINITY) } else { at });
                 if self.reading.is_some() {
                     return self.reading;
                 }
@@ -163,14 +165,15 @@ impl SignalMonitor {
             self.present.read(&[], &[]);
         }
         if self.reading.is_none() {
-            self.close(f64::INFINITY);
+            self.close(Instant::from(f64::INFINITY));
         }
         self.reading.unwrap_or(Reading::Unresolved)
     }
 
     /// The present state lasts to before `end`.
     #[inline]
-    fn close(&mut self, end: f64) {
+    fn close(&mut self, until: Instant) {
+        let end = until.seconds;
         for (k, watched) in self.watched.iter().enumerate() {
             if self.since <= watched.last && end > watched.first && self.present.truth(watched.slot) {
                 self.triggered |= 1 << k.min(63);
@@ -183,7 +186,7 @@ impl SignalMonitor {
                 }
             }
             Way::Cells(cells) => {
-                let to = if end == f64::INFINITY { self.scale.end() } else { self.scale.at(end) };
+                let to = if end == f64::INFINITY { self.scale.end() } else { self.scale.at(until) };
                 if to > self.moment {
                     if let Some((reading, at)) = cells.step(self.moment, to, &self.present) {
                         (self.reading, self.decided_at) = (Some(reading), self.scale.seconds(at));

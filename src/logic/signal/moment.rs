@@ -1,12 +1,14 @@
 //! Continuous time as whole numbers: every instant, and the open span right after it, has an index.
 //!
 //! A tick is divided into 2^k units, so many that the horizon is 2^58 to 2^59 units; times of jumps are
-//! rounded down to units once, when they come in, and bounds are whole ticks. From there on everything is exact.
+//! rounded down to units once, when they come in, and bounds are whole ticks. From there on everything is exact. Of two
+//! jumps that are a whole number of ticks apart the moments are, too, where it is known what rounding took off their times.
 //! Moment 2u is the instant u, moment 2u + 1 the open span between u and u + 1. Nothing changes inside
 //! such a span, so a function of time is a function of moments, and its ends are open or closed as the
 //! moments are odd or even. A shift in time by d units is a shift by 2d moments.
 
 use crate::base::decimal::Decimal;
+use crate::base::instant::Instant;
 use crate::base::tick::Tick;
 
 /// An instant (even) or the open span right after it (odd).
@@ -31,6 +33,8 @@ pub(super) struct Scale {
     seconds_per_tick: (f64, f64),
     units_per_second: f64,
     ticks_per_unit: f64,
+    /// Units in a second.
+    units: Instant,
 }
 
 impl Scale {
@@ -40,7 +44,13 @@ impl Scale {
         let seconds_per_tick = (quantum.numerator() as f64, quantum.denominator() as f64);
         let units_per_second = seconds_per_tick.1 / seconds_per_tick.0 * (1u64 << bits) as f64;
         let ticks_per_unit = 1.0 / (1u64 << bits) as f64;
-        Self { bits, horizon: horizon.0, seconds_per_tick, units_per_second, ticks_per_unit }
+        let ticks = Decimal::ONE
+            .div(quantum)
+            .map_or(Instant::exactly(units_per_second * ticks_per_unit), Instant::from);
+        // By a power of two nothing is rounded.
+        let power = (1u64 << bits) as f64;
+        let units = Instant { seconds: ticks.seconds * power, rest: ticks.rest * power };
+        Self { bits, horizon: horizon.0, seconds_per_tick, units_per_second, ticks_per_unit, units }
     }
 
     /// The moment right after the instant of the horizon.
@@ -63,8 +73,14 @@ impl Scale {
         (ticks.0.min(self.horizon + 1) as i64) << (self.bits + 1)
     }
 
-    /// The instant of a time in seconds, at most the end. What is the double nearest to a tick is that tick.
-    pub(super) fn at(self, seconds: f64) -> Moment {
+    /// The instant of a time, at most the end. Of one of which nobody knows what rounding took off, the double nearest to a
+    /// tick is that tick.
+    pub(super) fn at(self, time: Instant) -> Moment {
+        let seconds = time.seconds;
+        if !time.rest.is_nan() {
+            let is_near = seconds * self.units_per_second <= (self.end() / 2) as f64;
+            return if is_near { (2 * time.floor_by(self.units).max(0)).min(self.end()) } else { self.end() };
+        }
         if let Some(moment) = self.on_tick(seconds) {
             return moment;
         }
@@ -108,8 +124,8 @@ mod tests {
             let scale = Scale::new(Tick(horizon), Decimal::parse(quantum).unwrap());
             for ticks in (0..horizon).step_by((horizon / 70).max(1) as usize) {
                 let seconds = scale.time(Tick(ticks));
-                assert_eq!(scale.span(seconds), scale.at(seconds), "{seconds}");
-                assert_eq!(scale.span(-seconds), -scale.at(seconds), "{seconds}");
+                assert_eq!(scale.span(seconds), scale.at(seconds.into()), "{seconds}");
+                assert_eq!(scale.span(-seconds), -scale.at(seconds.into()), "{seconds}");
             }
         }
     }
@@ -120,11 +136,15 @@ mod tests {
             let scale = Scale::new(Tick(horizon), Decimal::parse(quantum).unwrap());
             for ticks in [0, horizon / 3, horizon] {
                 let seconds = scale.time(Tick(ticks));
-                assert_eq!(scale.at(seconds), scale.shift(Tick(ticks)).min(scale.end()), "{quantum} {ticks}");
+                assert_eq!(
+                    scale.at(seconds.into()),
+                    scale.shift(Tick(ticks)).min(scale.end()),
+                    "{quantum} {ticks}"
+                );
                 assert_eq!(scale.seconds(scale.shift(Tick(ticks))), seconds);
                 assert_eq!(scale.span(seconds), scale.shift(Tick(ticks)));
             }
-            assert_eq!(scale.at(f64::INFINITY), scale.end());
+            assert_eq!(scale.at(f64::INFINITY.into()), scale.end());
             assert!(scale.end() > 0 && scale.end() < FOREVER / 2);
         }
     }

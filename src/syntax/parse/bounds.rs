@@ -73,12 +73,13 @@ impl Builder<'_> {
         let unit = Span::new(self.source.id, unit_at, unit_at + word.len());
         let operator = lexeme::word_before(self.text, before.len() - mark.len()).map_or("", |(_, word)| word);
         let formula = format!("({word} {} …)", fault.found);
-        // With steps of a length a bare number is no bound.
-        let hint = if number.bytes().all(|byte| byte.is_ascii_digit()) {
-            format!("write the bound in steps, and parentheses: `{operator}{mark}#{number} {formula}`")
-        } else {
-            format!("write the bound with a unit, and parentheses: `{operator}{mark}{number} s {formula}`")
-        };
+        // Whether it has steps, or steps of a length, only the scenario knows.
+        let steps =
+            number.bytes().all(|byte| byte.is_ascii_digit()).then(|| format!(" (of steps `#{number}`)"));
+        let hint = format!(
+            "write the bound with a unit{}, and parentheses: `{operator}{mark}{number} s {formula}`",
+            steps.unwrap_or_default()
+        );
         Some(
             Diagnostic::error(
                 code::BOUND_TOOK_NAME,

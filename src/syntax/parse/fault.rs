@@ -7,7 +7,7 @@
 use super::builder::{Builder, Pair, end_of};
 use super::grammar::{Grammar, Rule};
 use super::nesting::Brackets;
-use super::{lexeme, nesting, nouns};
+use super::{lexeme, nesting, nouns, slips};
 use crate::syntax::codes::syntax as code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -92,9 +92,16 @@ impl Builder<'_> {
             } else if rule == Rule::t_semi {
                 before = None;
             } else {
-                last_bad_end = None;
-                let is_member =
-                    !super::builder::is_mark(rule) && part.as_span().start() < part.as_span().end();
+                let is_mark = super::builder::is_mark(rule);
+                if !is_mark {
+                    // `param = 3 in 0 .. 5` reads as a setting, as far as one goes.
+                    let inner =
+                        part.clone().into_inner().next().filter(|inner| inner.as_rule() == Rule::setting);
+                    let is_bad =
+                        inner.is_some_and(|pair| slips::unsigned(lexeme::first(pair.as_str())).is_some());
+                    last_bad_end = is_bad.then(|| end_of(&part));
+                }
+                let is_member = !is_mark && part.as_span().start() < part.as_span().end();
                 before = is_member.then_some(part);
             }
         }
@@ -210,7 +217,9 @@ impl Builder<'_> {
                 diagnostic = diagnostic.related(span, format!("this `{bracket}` is still open"));
             }
         }
-        if let Some(word) = Self::meant(&fault) {
+        if let Some(hint) = self.belonging(&fault) {
+            diagnostic = diagnostic.hint(hint);
+        } else if let Some(word) = Self::meant(&fault) {
             diagnostic = diagnostic.hint(format!("did you mean `{word}`?"));
         } else if fault.found == "at" && fault.after_value() && self.root != Rule::scenario_file {
             diagnostic = diagnostic
@@ -227,6 +236,38 @@ impl Builder<'_> {
             "]" => within() != Some('['),
             _ => self.brackets.get_or_init(|| Brackets::of(self.text)).open_at(fault.at) != Some('{'),
         }
+    }
+
+    /// Where the word belongs that was found where a declaration is wanted.
+    fn belonging(&self, fault: &Fault<'_>) -> Option<String> {
+        let wanted = [Rule::item, Rule::item_end, Rule::property_item, Rule::property_item_end];
+        if !wanted.iter().any(|rule| fault.expected.contains(rule)) {
+            return None;
+        }
+        let starts = |rule| nouns::words(rule).contains(&fault.found);
+        let in_scenario = self.root == Rule::scenario_file;
+        let (own, others) = (Rule::item, Rule::property_item);
+        let (own, others) = if in_scenario { (own, others) } else { (others, own) };
+        if starts(own) {
+            return None;
+        }
+        if starts(others) {
+            let other = if in_scenario { "property file (`.bltl`)" } else { "scenario (`.scn`)" };
+            return Some(format!("`{}` belongs in a {other}", fault.found));
+        }
+        let blocks = [
+            (Rule::behaviour_item, "behaviour"),
+            (Rule::process_item, "process"),
+            (Rule::scene_item, "scene"),
+            (Rule::move_option, "list of moves"),
+        ];
+        let (_, block) = blocks.into_iter().find(|(rule, _)| in_scenario && starts(*rule))?;
+        let is_after_a_brace = self.text[..fault.at].trim_end().ends_with('}');
+        Some(if is_after_a_brace {
+            format!("`{}` stands in a {block}: is the `}}` before this one too many?", fault.found)
+        } else {
+            format!("`{}` stands in a {block}", fault.found)
+        })
     }
 
     /// The keyword that was probably meant.
@@ -366,6 +407,14 @@ fn expected_nouns(expected: &[Rule]) -> String {
     }
     if nouns.len() > 1 {
         nouns.retain(|(_, noun)| noun != "a unit");
+    }
+    let has = |name: &str| nouns.iter().any(|(_, noun)| noun == name);
+    if has("a declaration") && has("the next declaration") {
+        let less = if nouns.len() == 2 { "the next declaration" } else { "a declaration" };
+        nouns.retain(|(_, noun)| noun != less);
+    }
+    if nouns.iter().any(|(_, noun)| noun == "the next line of the block") {
+        nouns.retain(|(_, noun)| noun != "`name = value`");
     }
     let mut flat: Vec<String> = Vec::new();
     for (_, noun) in &nouns {

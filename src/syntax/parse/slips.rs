@@ -78,6 +78,13 @@ impl Builder<'_> {
                 Diagnostic::error(code::EQUALS, place, "`:=` is not known").hint("`=` sets, `==` compares"),
             );
         }
+        if matches!(fault.found, "==" | ":=" | "===")
+            && let Some((_, word)) = lexeme::word_before(self.text, fault.at)
+            && let Some(wanted) = unsigned(word)
+        {
+            let title = format!("expected {wanted}, found `{}`", fault.found);
+            return Some(Diagnostic::error(code::UNEXPECTED, place, title));
+        }
         if fault.found == "==="
             || matches!(fault.found, "==" | ":=") && fault.expected.contains(&Rule::t_assign)
         {
@@ -144,13 +151,10 @@ impl Builder<'_> {
     /// `const = 3`: a declaration without its name reads as a setting. Reports it, and whether it is so.
     pub(super) fn sets_a_keyword(&mut self, setting: &Pair<'_>) -> bool {
         let (start, text) = (setting.as_span().start(), setting.as_str());
-        let name = lexeme::first(text);
-        if !nouns::words(Rule::item).contains(&name) || matches!(name, "horizon" | "step") {
-            return false;
-        }
+        let Some(wanted) = unsigned(lexeme::first(text)) else { return false };
         let equals = start + text.find('=').unwrap_or(0);
         let place = Span::new(self.source.id, equals, equals + 1);
-        self.say(Diagnostic::error(code::UNEXPECTED, place, "expected a name, found `=`"));
+        self.say(Diagnostic::error(code::UNEXPECTED, place, format!("expected {wanted}, found `=`")));
         self.lost.push(Span::new(self.source.id, start, start + text.len()));
         true
     }
@@ -370,4 +374,16 @@ fn percent(place: Span) -> Diagnostic {
 fn unequal(place: Span, wanted: &str, found: &str) -> Diagnostic {
     Diagnostic::error(code::EQUALS, place, format!("expected `{wanted}`, found `{found}`"))
         .hint("`=` sets, `==` compares")
+}
+
+/// What is wanted after a word that is followed by no sign of equality.
+pub(super) fn unsigned(word: &str) -> Option<&'static str> {
+    Some(match word {
+        "horizon" | "step" => return None,
+        "scenario" => "a text",
+        "scene" => "`{`",
+        "after" | "when" => "a number, a name or `(`",
+        _ if nouns::words(Rule::item).contains(&word) => "a name",
+        _ => return None,
+    })
 }

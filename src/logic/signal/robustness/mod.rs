@@ -13,6 +13,7 @@ use super::moment::{Moment, Scale};
 use super::plan::plan_cells;
 use super::present::Present;
 use crate::base::decimal::Decimal;
+use crate::base::instant::Instant;
 use crate::base::tick::Tick;
 use crate::logic::formula::{NodeId, Tree};
 use crate::logic::invalid::Invalid;
@@ -94,9 +95,11 @@ impl SignalRobustness {
 
     /// From `time` (in seconds) on these signals hold; as for a monitor of signals the state before it is judged
     /// now. Atoms, where the formula has some, are infinitely far from the other answer.
-    pub fn jump(&mut self, time: f64, atoms: &[bool], signals: &[f64]) -> Bounds {
+    pub fn jump(&mut self, time: impl Into<Instant>, atoms: &[bool], signals: &[f64]) -> Bounds {
+        let at = time.into();
+        let time = at.seconds;
         if self.begun && time > self.since {
-            self.close(if time > self.horizon { f64::INFINITY } else { time });
+            self.close(if time > self.horizon { Instant::from(f64::INFINITY) } else { at });
             self.since = time;
         }
         self.begun = true;
@@ -111,7 +114,7 @@ impl SignalRobustness {
         if !self.begun {
             self.jump(0.0, &[], &[]);
         }
-        self.close(f64::INFINITY);
+        self.close(Instant::from(f64::INFINITY));
         self.bounds
     }
 
@@ -131,8 +134,8 @@ impl SignalRobustness {
         self.overfull
     }
 
-    fn close(&mut self, end: f64) {
-        let to = if end == f64::INFINITY { self.scale.end() } else { self.scale.at(end) };
+    fn close(&mut self, end: Instant) {
+        let to = if end.seconds == f64::INFINITY { self.scale.end() } else { self.scale.at(end) };
         if to <= self.moment || self.overfull || self.bounds.is_settled() {
             self.at_start = self.bounds.lower;
             return;

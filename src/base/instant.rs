@@ -1,0 +1,167 @@
+//! Instants of continuous time with what rounding took off: two doubles that add up to the time (Dekker, Numerische
+//! Mathematik 18, 1971).
+//!
+//! Something that takes two seconds takes two seconds whenever it begins: a bound of two seconds must not miss it by a
+//! rounding. One double has no room for the sum of a time that came by chance and a delay; two have, and for decimals and
+//! thirds to some 32 digits.
+
+use super::decimal::Decimal;
+
+/// A time, or the length of one, in seconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instant {
+    /// The double that is nearest to it.
+    pub seconds: f64,
+    /// What it is more than that; no number where nobody knows.
+    pub rest: f64,
+}
+
+impl From<f64> for Instant {
+    /// A double that may stand for what it was rounded from.
+    fn from(seconds: f64) -> Self {
+        Self { seconds, rest: f64::NAN }
+    }
+}
+
+impl From<Decimal> for Instant {
+    fn from(exact: Decimal) -> Self {
+        Self::quotient(exact.numerator() as f64, exact.denominator() as f64)
+    }
+}
+
+impl Instant {
+    /// Just a double.
+    pub fn exactly(seconds: f64) -> Self {
+        Self { seconds, rest: 0.0 }
+    }
+
+    /// A double that may be one of at most twelve digits behind the point: then that. Another is what it is.
+    #[inline]
+    pub fn decimal(seconds: f64) -> Self {
+        let whole = (seconds * 1e12 + 0.5).floor();
+        if whole < 9e15 && whole / 1e12 == seconds {
+            Self::quotient(whole, 1e12)
+        } else {
+            Self::exactly(seconds)
+        }
+    }
+
+    /// One whole number by another.
+    fn quotient(numerator: f64, denominator: f64) -> Self {
+        let seconds = numerator / denominator;
+        let (product, error) = product(seconds, denominator);
+        let rest = ((numerator - product) - error) / denominator;
+        Self { seconds, rest: if rest.is_finite() { rest } else { 0.0 } }
+    }
+
+    /// The instant that is `wait` later. An infinite wait has no end.
+    #[inline]
+    pub fn after(self, wait: Self) -> Self {
+        let (sum, error) = sum(self.seconds, wait.seconds);
+        if sum.is_infinite() {
+            return Self::exactly(sum);
+        }
+        let (seconds, rest) = sum_of_ordered(sum, error + (self.rest + wait.rest));
+        Self { seconds, rest }
+    }
+
+    /// This time by a number of two doubles: the greatest whole number up to it, which a rounding does not miss.
+    #[inline]
+    pub fn floor_by(self, factor: Self) -> i64 {
+        /// Of one: much more than 2^-46, which is what two doubles may be off of 2^60.
+        const NEAR: f64 = 1.0 / (1 << 20) as f64;
+        let (product, error) = product(self.seconds, factor.seconds);
+        let whole = product.floor();
+        let less = (product - whole) + (error + (self.seconds * factor.rest + self.rest * factor.seconds));
+        whole as i64 + (less + NEAR).floor() as i64
+    }
+}
+
+/// A sum and its rounding error.
+#[inline]
+fn sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let of_b = sum - a;
+    (sum, (a - (sum - of_b)) + (b - of_b))
+}
+
+/// The same, of which the first is larger.
+#[inline]
+fn sum_of_ordered(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    (sum, b - (sum - a))
+}
+
+/// A product and its rounding error.
+#[inline]
+fn product(a: f64, b: f64) -> (f64, f64) {
+    /// Splits a double into two of half as many digits.
+    fn halves(x: f64) -> (f64, f64) {
+        let scaled = 134_217_729.0 * x;
+        let high = scaled - (scaled - x);
+        (high, x - high)
+    }
+    let product = a * b;
+    let ((a, a_low), (b, b_low)) = (halves(a), halves(b));
+    (product, ((a * b - product) + a * b_low + a_low * b) + a_low * b_low)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(text: &str) -> Instant {
+        Instant::from(Decimal::parse(text).unwrap())
+    }
+
+    #[test]
+    fn sums_of_decimals_and_thirds_are_what_they_are() {
+        let third = Instant::from(Decimal::ratio(1, 3).unwrap());
+        let mut now = Instant::exactly(0.0);
+        for k in 1..=30_000 {
+            now = now.after(third);
+            if k % 3 == 0 {
+                assert_eq!(now.seconds, f64::from(k / 3));
+                assert!(now.rest.abs() < 1e-24, "{now:?}");
+            }
+        }
+        let mut now = Instant::exactly(0.0);
+        for k in 1..=5000 {
+            now = now.after(of("0.1"));
+            assert_eq!(now.seconds, f64::from(k) / 10.0);
+        }
+        assert_eq!(of("0.3").after(Instant::exactly(f64::INFINITY)).seconds, f64::INFINITY);
+        assert_eq!(of("0.3"), Instant::decimal(0.3));
+        assert_eq!(Instant::decimal(std::f64::consts::PI), Instant::exactly(std::f64::consts::PI));
+        assert_eq!(Instant::decimal(1e300), Instant::exactly(1e300));
+        assert_eq!(Instant::decimal(f64::INFINITY).seconds, f64::INFINITY);
+    }
+
+    #[test]
+    fn a_delay_is_as_many_units_whenever_it_begins() {
+        // Units of which a second has 10^9 times 2^24, and those of a third of a billionth.
+        for units in [1_000_000_000_i64 << 24, 3_000_000_000 << 24] {
+            let units = Instant::exactly(units as f64);
+            for start in [0.123_456_789_012_345_6, 1.0 / 3.0, 3.069_993_738_794_106_5, 17.25, 0.0, 1e-9] {
+                let now = Instant::exactly(start);
+                for parts in [["1.5", "0.5"], ["1.7", "0.3"], ["0.1", "1.9"], ["2", "0"]] {
+                    let due = parts.iter().fold(now, |now, part| now.after(of(part)));
+                    let two = of("2").floor_by(units);
+                    assert_eq!(due.floor_by(units) - now.floor_by(units), two, "{start} {parts:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn products_are_exact() {
+        // Whole numbers, so that the product can be had exactly.
+        for (a, b) in [
+            (9_007_199_254_740_881_i64, 4_503_599_627_370_449_i64),
+            (123_456_789_012_345, 98_765_432_109_876),
+        ] {
+            let (product, error) = product(a as f64, b as f64);
+            assert_eq!(product as i128 + error as i128, i128::from(a) * i128::from(b));
+        }
+    }
+}

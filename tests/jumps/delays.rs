@@ -1,0 +1,99 @@
+//! What takes so long takes so long, whenever it begins: fixed delays after random times, against bounds of just that length.
+
+use crate::traces::trace;
+use crate::{compiled, count};
+use smc::kernel::Program;
+
+const JOBS: &str = "horizon = 20 s
+process job {
+  var k: 0 .. 2 = 0
+  when k == 0 at 1 /s   -> k = 1
+  when k == 1 after 2 s -> k = 2
+}
+process parts {
+  var k: 0 .. 4 = 0
+  when k == 0 at 1 /s        -> k = 1
+  when k == 1 after 1.7 s    -> k = 2
+  when k == 2 after 0.2 s    -> k = 3
+  when k == 3 after 1 s / 10 -> k = 4
+}
+process thirds {
+  var k: 0 .. 4 = 0
+  when k == 0 at 1 /s       -> k = 1
+  when k == 1 after 1 s / 3 -> k = 2
+  when k == 2 after 2 s / 3 -> k = 3
+  when k == 3 after 1 s     -> k = 4
+}
+process door  { var s: 0 .. 2 = 0  when job.k >= 1 & s == 0 after 2 s -> s = 2 }
+process timer { var s: 0 .. 2 = 0  when job.k >= 1 & s == 0 after 0.5 s -> s = 1  when s == 1 after 1.5 s -> s = 2 }
+";
+
+#[test]
+fn bounds_of_just_that_length_hold_always_and_shorter_ones_never() {
+    for (formula, truth) in [
+        ("G<=10 s (job.k == 1 => F<=2 s (job.k == 2))", true),
+        ("F<=10 s (job.k == 1 & G[2 s, 2 s] (job.k == 1))", false),
+        ("G<=10 s (job.k == 1 => F<=1.999999999 s (job.k == 2))", false),
+        ("G<=10 s (parts.k == 1 => F<=2 s (parts.k == 4))", true),
+        ("F<=10 s (parts.k == 1 & G[2 s, 2 s] (parts.k == 3))", false),
+        ("G<=10 s (thirds.k == 1 => F<=2 s (thirds.k == 4))", true),
+        ("G<=10 s (thirds.k == 1 => F<=(4 s / 3) (thirds.k >= 3))", true),
+        ("G<=10 s (thirds.k == 1 => F<=1.3333333333 s (thirds.k >= 3))", true),
+        ("G<=10 s (thirds.k == 1 => F<=1.999999999 s (thirds.k == 4))", false),
+        // Two that begin together end together, however one is cut.
+        ("G<=15 s (door.s == 2 <=> timer.s == 2)", true),
+        ("time_until(door.s == 2) <= 20 s => time_until(timer.s == 2) <= 20 s", true),
+    ] {
+        // Who begins before the tenth second: nearly all, and nothing is asked of the others.
+        let held = count(JOBS, formula, 400);
+        let kept = if truth { held == 400 } else { held <= 1 };
+        assert!(kept, "{formula}: {held} of 400");
+    }
+}
+
+#[test]
+fn what_is_asked_moves_no_jump() {
+    let program = |queries: &str| {
+        let study = compiled(JOBS, queries).unwrap_or_else(|error| panic!("{error}"));
+        Program::new(study.worlds[0].scenario.clone())
+    };
+    let (plain, thirds) = (program(""), program("estimate P(F<=(1 s / 7) (job.k == 1))\n"));
+    assert_ne!(plain.scenario.clock, thirds.scenario.clock);
+    for index in 0..40 {
+        assert_eq!(trace(&plain, 3, index), trace(&thirds, 3, index));
+    }
+}
+
+#[test]
+fn a_process_with_delays_moves_no_jump_of_others() {
+    let rates = "horizon = 200 s\nprocess a { var n: 0 .. 9 = 0  when n < 9 at 0.7 /s -> n = n + 1  when n > 0 at 1 /s -> n = n - 1 }\n";
+    let more = format!(
+        "{rates}process b {{ var on = false  when !on after 50 s -> on = true  when on after 1 s / 7 -> on = false }}\n"
+    );
+    let of = |text: &str| {
+        let study = compiled(text, "").unwrap_or_else(|error| panic!("{error}"));
+        Program::new(study.worlds[0].scenario.clone())
+    };
+    let (plain, more) = (of(rates), of(&more));
+    for index in 0..20 {
+        let own = |program: &Program| {
+            let mut states: Vec<(f64, f64)> =
+                trace(program, 3, index).into_iter().map(|(time, values)| (time, values[0])).collect();
+            states.dedup_by_key(|(_, n)| *n);
+            states
+        };
+        assert_eq!(own(&plain), own(&more), "{index}");
+    }
+}
+
+/// What lasts a millionth of a second in a year lasts that long.
+#[test]
+fn brief_states_count_however_late_they_come() {
+    let model = "horizon = 31536000 s
+process a { var k: 0 .. 2 = 0  when k == 0 at 0.000001 /s -> k = 1  when k == 1 at 1000000 /s -> k = 2 }
+process c { var k: 0 .. 2 = 0  when k == 0 after 1000000 s -> k = 1  when k == 1 after 0.00000003 s -> k = 2 }
+process b { var n: 0 .. 1 = 0  when n == 0 after 1 s -> n = 1 }
+";
+    assert!(count(model, "F (a.k == 1)", 1000) >= 990);
+    assert_eq!(count(model, "F (c.k == 1)", 10), 10);
+}
