@@ -89,7 +89,7 @@ fn thousands_of_errors_are_told_in_seconds() {
     let parts = |before: &'static str, part: fn(usize) -> String, after: &'static str| -> Write {
         Box::new(move |count| format!("{before}{}{after}", (0..count).map(part).collect::<String>()))
     };
-    let scenarios: [Case; 13] = [
+    let scenarios: [Case; 14] = [
         (parts(CLOCK, |k| format!("const a{k} = 1 )\n"), ""), |n| n),
         (parts(CLOCK, |k| format!("}}\nconst a{k} = 1\n"), ""), |n| n),
         (parts("agent a: b { ", |_| "x = 1 ".to_owned(), "}\n"), |n| n + 2),
@@ -98,6 +98,14 @@ fn thousands_of_errors_are_told_in_seconds() {
                 "scene { ",
                 |_| "wall a: (1, 2) -- (1 2) wall b: (1, 2) -- (1, 2) ".to_owned(),
                 "}\nhorizon = 1 s\nstep = 1 s\n",
+            ),
+            |n| n,
+        ),
+        (
+            parts(
+                "scene {\n",
+                |k| format!("obstacle a{k}: circel (1, 2) radius 1 m "),
+                "\n}\nhorizon = 1 s\nstep = 1 s\n",
             ),
             |n| n,
         ),

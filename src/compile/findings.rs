@@ -176,7 +176,7 @@ impl Elaborator<'_> {
                 match &entry.meaning {
                     Meaning::Param { .. } => return true,
                     Meaning::Constant(value) | Meaning::Property(value) | Meaning::Point(value) => {
-                        left.push(value.span)
+                        left.push(value.span);
                     }
                     Meaning::Let(decl) => left.push(decl.body.span),
                     Meaning::Region(_, shape) => left.push(super::laws::shape_span(shape)),

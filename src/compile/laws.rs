@@ -55,9 +55,15 @@ fn cut(mean: f64) -> f64 {
     if !(mean > 0.0 && mean.is_finite()) {
         return 60.0;
     }
-    let twice = 2.0 * mean;
-    let scale = 10f64.powf(2.0 - twice.log10().floor());
-    if scale.is_finite() { (twice * scale).ceil() / scale } else { twice }
+    // Three digits will do.
+    let (twice, mut scale, mut unit) = (2.0 * mean, 1.0, 1.0);
+    while twice * scale < 100.0 {
+        scale *= 10.0;
+    }
+    while twice > 1000.0 * unit {
+        unit *= 10.0;
+    }
+    (twice * scale / unit).ceil() * unit / scale
 }
 
 impl Elaborator<'_> {

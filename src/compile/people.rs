@@ -337,6 +337,7 @@ impl<'a> Elaborator<'a> {
         required: bool,
     ) -> Lowered<Start> {
         let position = match fields.iter().find(|f| f.name.name == "at") {
+            Some(field) if self.misread_placement(&field.value) => Err(Reported),
             Some(field) => self.position(name, &field.value, people),
             None if required => {
                 let error =

@@ -90,7 +90,9 @@ fn witness(
     let lane = Mask::lane(0);
     dynamics::refresh(program, &mut state, &mut scratch, lane);
     observer.start(0);
-    clipped.iter_mut().for_each(|clipped| clipped.start(0));
+    if let Some(clipped) = &mut clipped {
+        clipped.start(0);
+    }
     let mut record = blame::Record::default();
     let mut states: Vec<State> = Vec::new();
     let kept = if program.scenario.agents.len() <= LARGEST_KEPT { KEPT } else { 0 };

@@ -44,6 +44,9 @@ impl Elaborator<'_> {
             return self.lower_power(span, left, right, locals);
         }
         let sides = (self.lower(left, locals), self.lower(right, locals));
+        if sides.1.is_err() {
+            self.suggest_unit(op, left, right);
+        }
         let sum = matches!(op, BinaryOp::Plus | BinaryOp::Minus);
         let (a, b) = match sides {
             (Ok(a), Ok(b)) => (a, b),

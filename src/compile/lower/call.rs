@@ -102,6 +102,10 @@ impl Elaborator<'_> {
                 if self.is_said("E0203", function.span) {
                     return Err(Reported);
                 }
+                // A unit that is misspelt reads as a call, and what follows it is what it is.
+                if self.is_said("E0113", function.span) {
+                    return self.lower_all(arguments, locals).and(Err(Reported));
+                }
                 if let Some((_, meaning)) = self.find(name, locals.scope) {
                     let hidden = self.scopes[0].get(name).is_some_and(|e| takes_arguments(&e.meaning));
                     // That a name of the scenario was taken was said where that was done; and what is wrong with it

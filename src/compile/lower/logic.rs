@@ -194,9 +194,10 @@ impl Elaborator<'_> {
         if !suits || self.margins.is_some() {
             return None;
         }
-        let relations = match is_equal {
-            true => [Relation::AtLeast, Relation::AtMost],
-            false => [Relation::Greater, Relation::Less],
+        let relations = if is_equal {
+            [Relation::AtLeast, Relation::AtMost]
+        } else {
+            [Relation::Greater, Relation::Less]
         };
         let sides = relations.map(|relation| self.comparison((relation, a, b), text.to_owned(), dimension));
         let sides = sides.to_vec();

@@ -6,6 +6,7 @@ mod call;
 mod gist;
 mod logic;
 mod mention;
+mod misread;
 mod name;
 mod quantifier;
 mod select;

@@ -135,7 +135,7 @@ impl<'a> Elaborator<'a> {
 
     fn unknown_name(&mut self, name: &str, span: Span, locals: &Locals) -> Lowered<Typed> {
         self.unknowns += 1;
-        if self.is_said("E0201", span) {
+        if self.is_said("E0201", span) || self.is_said("E0113", span) {
             return Err(Reported);
         }
         let mut known: Vec<String> = Vec::new();

@@ -1,7 +1,7 @@
 //! Temporal operators, windows and their bounds.
 
 use super::super::dimension::Dimension;
-use super::super::elaborator::{Elaborator, Locals, Lowered};
+use super::super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::super::moments;
 use super::super::number::Number;
 use super::super::typed::Typed;
@@ -46,7 +46,7 @@ impl Elaborator<'_> {
         locals: &Locals,
     ) -> Lowered<Typed> {
         self.expect_temporal(span, locals)?;
-        let window = self.window(bound, locals);
+        let window = self.window(bound, body, locals);
         let body = self.operand(body, locals);
         let (window, body) = (window?, body?);
         let node = match op {
@@ -88,7 +88,7 @@ impl Elaborator<'_> {
         locals: &Locals,
     ) -> Lowered<Typed> {
         self.expect_temporal(span, locals)?;
-        let window = self.window(bound, locals);
+        let window = self.window(bound, right, locals);
         let sides = (self.operand(left, locals), self.operand(right, locals));
         let (window, left, right) = (window?, sides.0?, sides.1?);
         let node = match op {
@@ -113,7 +113,7 @@ impl Elaborator<'_> {
                 .hint("use `mean`, the time average");
             return self.report(error);
         }
-        let window = self.window(Some(bound), locals);
+        let window = self.window(Some(bound), body, locals);
         let typed = self.lower(body, locals)?;
         let (term, dimension) = self.as_term(typed, body.span)?;
         let aggregation = match aggregate {
@@ -125,10 +125,11 @@ impl Elaborator<'_> {
         Ok(Typed::Term(self.term(Term::Window(aggregation, window?, term)), dimension))
     }
 
-    /// The window of a bound.
-    fn window(&mut self, bound: Option<&Bound>, locals: &Locals) -> Lowered<Window> {
+    /// The window of a bound, behind which `body` stands.
+    fn window(&mut self, bound: Option<&Bound>, body: &Expr, locals: &Locals) -> Lowered<Window> {
         match bound {
             None => Ok(ALWAYS),
+            Some(Bound::AtMost(end)) if self.misread_bound(end, body, locals) => Err(Reported),
             Some(Bound::AtMost(end)) => Ok(Window { from: Tick(0), to: self.time(end, locals)? }),
             Some(Bound::Interval(start, end)) => {
                 let ends = (self.time(start, locals), self.time(end, locals));

@@ -201,7 +201,7 @@ Right:\n\
         title: "unknown unit",
         text: "\
 A name right after a number is its unit. Known are m, cm, mm, km, s, ms, min, h, kg, g, N, kN, deg, rad, Hz, %, step\n\
-and steps, with powers (`m^2`), quotients (`m/s`, `1 /s`, `kg/(m s)`) and products (`N*m`).\n\
+and steps, with powers (`m^2`), quotients (`m/s`, `1 /s`, `kg/(m s)`) and products (`N*m`). Ranges of whole numbers have none.\n\
 \n\
 Wrong:\n\
 \x20   speed = 1.3 metres/s\n\

@@ -8,11 +8,15 @@ use crate::syntax::codes::syntax as code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use pest::Parser;
+use std::collections::BTreeMap;
 
 /// The operators that look ahead.
-const OPERATORS: [char; 6] = ['F', 'G', 'X', 'U', 'W', 'R'];
+pub(super) const OPERATORS: [char; 6] = ['F', 'G', 'X', 'U', 'W', 'R'];
 /// Words that a name follows which may stand in a value.
 const DECLARES: [&str; 6] = ["const", "label", "let", "param", "process", "var"];
+/// Others that a name follows.
+const INTRODUCES: [&str; 10] =
+    ["agent", "agents", "group", "obstacle", "point", "property", "region", "source", "state", "wall"];
 
 impl Builder<'_> {
     /// `let late = F<=2 s (…)` in a scenario, where `F` is a name like any other.
@@ -45,7 +49,13 @@ impl Builder<'_> {
 
     /// Whether an operator is the name of something else in this text.
     fn declares(&self, operator: char) -> bool {
-        self.operators.get_or_init(|| declared(self.text)).contains(operator)
+        let names = self.names.get_or_init(|| declared(self.text));
+        names.get(operator.encode_utf8(&mut [0; 4]) as &str).is_some_and(|word| DECLARES.contains(word))
+    }
+
+    /// Whether a word is the name of something in this text.
+    pub(super) fn is_declared(&self, word: &str) -> bool {
+        self.names.get_or_init(|| declared(self.text)).contains_key(word)
     }
 
     /// `F<=0 s == 3`: the bound took the name for its unit; and `F<5 s p`.
@@ -106,17 +116,21 @@ fn is_bound(text: &str, found: &str) -> bool {
     Grammar::parse(rule, text).is_ok_and(whole)
 }
 
-/// The letters of operators that a text declares as names.
-fn declared(text: &str) -> String {
-    let (mut found, mut before, mut at) = (String::new(), "", 0);
+/// The names that a text declares, each with the word before it; one that may stand in a value, if there are several.
+fn declared(text: &str) -> BTreeMap<&str, &str> {
+    let (mut found, mut before, mut at) = (BTreeMap::new(), "", 0);
     while at < text.len() {
         if let Some(length) = lexeme::trivia(&text[at..]) {
             at += length;
             continue;
         }
         let token = lexeme::first(&text[at..]);
-        if DECLARES.contains(&before) && token.len() == 1 && token.starts_with(OPERATORS) {
-            found.push_str(token);
+        if token.starts_with(lexeme::starts_name) {
+            if DECLARES.contains(&before) {
+                found.insert(token, before);
+            } else if INTRODUCES.contains(&before) {
+                found.entry(token).or_insert(before);
+            }
         }
         before = token;
         at += token.len().max(1);

@@ -4,12 +4,13 @@
 //! (`None`) on one that is not there; nothing panics.
 
 use super::grammar::Rule;
-use super::nesting::Brackets;
+use super::nesting::Braces;
 use crate::syntax::ast::{Ident, Text};
 use crate::syntax::codes::syntax as code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
 use std::cell::OnceCell;
+use std::collections::BTreeMap;
 
 /// A piece of the text that a rule took.
 pub(in crate::syntax) type Pair<'i> = pest::iterators::Pair<'i, Rule>;
@@ -26,12 +27,12 @@ pub(super) struct Builder<'s> {
     pub(super) cut: Vec<Span>,
     /// Parts that could not be read, and heads of those whose values could not.
     pub(super) lost: Vec<Span>,
-    /// The brackets of the text, once somebody asked for them.
-    pub(super) brackets: OnceCell<Brackets>,
+    /// The braces of the text, once somebody asked for them.
+    pub(super) braces: OnceCell<Braces>,
     /// Its arrows, once somebody asked for them: thousands of errors on a line look for one.
     pub(super) arrows: OnceCell<Vec<usize>>,
-    /// The letters of temporal operators that it declares as names, once somebody asked for them.
-    pub(super) operators: OnceCell<String>,
+    /// The names that it declares, each with the word before it, once somebody asked for them.
+    pub(super) names: OnceCell<BTreeMap<&'s str, &'s str>>,
 }
 
 /// Whether a pair is only a mark or keyword.

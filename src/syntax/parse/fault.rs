@@ -6,7 +6,7 @@
 
 use super::builder::{Builder, Pair, end_of};
 use super::grammar::{Grammar, Rule};
-use super::nesting::Brackets;
+use super::nesting::Braces;
 use super::{lexeme, nesting, nouns, slips};
 use crate::syntax::codes::syntax as code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -24,6 +24,8 @@ pub(super) struct Fault<'t> {
     pub(super) expected: Vec<Rule>,
     /// Start of the declaration.
     pub(super) from: usize,
+    /// What it was meant to be.
+    pub(super) rule: Rule,
 }
 
 impl Fault<'_> {
@@ -124,7 +126,7 @@ impl Builder<'_> {
         Self: 't,
     {
         let start = bad.as_span().start();
-        let mut fault = Fault { at: start, found: "", expected: Vec::new(), from: start };
+        let mut fault = Fault { at: start, found: "", expected: Vec::new(), from: start, rule: strict };
         let starts = before.map(|pair| pair.as_span().start()).into_iter().chain([start]);
         for from in starts {
             if let Some((mut at, mut expected)) = failure(strict, self.text, from) {
@@ -159,7 +161,7 @@ impl Builder<'_> {
 
     /// The place of a fault. Where the next declaration stands on a later line, something lacks before it: that
     /// is right after the token before.
-    fn place_of(&self, fault: &Fault<'_>) -> Span {
+    pub(super) fn place_of(&self, fault: &Fault<'_>) -> Span {
         let expects_it = fault.expected.iter().any(|rule| {
             matches!(
                 rule,
@@ -185,9 +187,10 @@ impl Builder<'_> {
             at: fault.at,
             found: lexeme::first(&self.text[fault.at..]),
             expected: fault.expected.clone(),
-            from: fault.from,
+            ..*fault
         };
-        if let Some(slip) = self.slip(&fault) {
+        let slip = self.slip_of_bracket(&fault).or_else(|| self.slip_of_opener(&fault));
+        if let Some(slip) = slip.or_else(|| self.slip(&fault)) {
             return slip;
         }
         let place = self.place_of(&fault);
@@ -207,9 +210,10 @@ impl Builder<'_> {
             && let Some((open, bracket)) = nesting::open_bracket(self.text, fault.from, fault.at)
         {
             let span = Span::new(self.source.id, open, open + 1);
-            if bracket != '{' && self.text[open..fault.at].contains('\n') {
-                // What follows on a later line belongs to something else: the bracket is the error.
-                let close = if bracket == '(' { ')' } else { ']' };
+            let later = self.text[open..fault.at].contains('\n');
+            if bracket != '{' && (later || self.ends_bracket(&fault, bracket)) {
+                // What follows on a later line, or cannot stand in it, belongs to something else: the bracket is the error.
+                let close = nesting::partner(bracket);
                 return Diagnostic::error(code::UNCLOSED, span, format!("this `{bracket}` is not closed"))
                     .related(self.place(fault.at, fault.found), format!("expected `{close}` before this"));
             }
@@ -232,9 +236,9 @@ impl Builder<'_> {
         let within = || nesting::open_bracket(self.text, fault.from, fault.at).map(|(_, open)| open);
         // A block opens before its lines, other brackets within one.
         match fault.found {
-            ")" => within() != Some('('),
-            "]" => within() != Some('['),
-            _ => self.brackets.get_or_init(|| Brackets::of(self.text)).open_at(fault.at) != Some('{'),
+            // One that is closed behind it lacks nothing.
+            ")" | "]" => within().is_none_or(|open| open == '{' || self.is_closed_behind(fault.at + 1, open)),
+            _ => !self.braces.get_or_init(|| Braces::of(self.text)).is_open_at(fault.at),
         }
     }
 
@@ -275,11 +279,17 @@ impl Builder<'_> {
         if !fault.found.starts_with(lexeme::starts_name) {
             return None;
         }
-        let known = fault
-            .expected
-            .iter()
-            .flat_map(|&rule| nouns::keyword(rule).into_iter().chain(nouns::words(rule).iter().copied()));
-        nouns::nearest(fault.found, known)
+        let known = || {
+            let expected = fault.expected.iter();
+            expected
+                .flat_map(|&rule| nouns::keyword(rule).into_iter().chain(nouns::words(rule).iter().copied()))
+        };
+        // What is a keyword itself is no other one misspelt; of two or three letters it may be.
+        let is_keyword = fault.found.len() > 3 && nouns::is_keyword(fault.found);
+        if is_keyword || known().any(|word| word == fault.found) {
+            return None;
+        }
+        nouns::nearest(fault.found, known())
     }
 }
 
@@ -304,7 +314,7 @@ fn declaration(strict: Rule) -> Rule {
 }
 
 /// Whether a word starts declarations of either language.
-fn starts_declaration(word: &str) -> bool {
+pub(super) fn starts_declaration(word: &str) -> bool {
     [Rule::item, Rule::property_item].iter().any(|&rule| nouns::words(rule).contains(&word))
 }
 
@@ -314,7 +324,7 @@ const FIRST: usize = 1 << 10;
 const AHEAD: usize = 16;
 
 /// The farthest failure of a rule from a byte on, and what it would have taken there.
-fn failure(strict: Rule, text: &str, from: usize) -> Option<(usize, Vec<Rule>)> {
+pub(super) fn failure(strict: Rule, text: &str, from: usize) -> Option<(usize, Vec<Rule>)> {
     failure_within(strict, text, from, FIRST)
 }
 
@@ -433,7 +443,7 @@ impl Builder<'_> {
     pub(super) fn refused(&mut self, error: pest::error::Error<Rule>) {
         let (at, expected) = place_and_expected(error);
         let at = at + lexeme::all_trivia(&self.text[at..]);
-        let diagnostic = self.describe(&Fault { at, found: "", expected, from: 0 });
+        let diagnostic = self.describe(&Fault { at, found: "", expected, from: 0, rule: self.root });
         self.say(diagnostic);
     }
 }

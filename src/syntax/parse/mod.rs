@@ -17,11 +17,14 @@ mod nouns;
 mod process;
 mod property;
 mod quantity;
+mod retry;
 mod scenario;
 mod scene;
 mod slips;
+mod units;
 
 pub use nouns::edits;
+pub(crate) use quantity::unit_meant;
 
 pub(super) use builder::Pair;
 
@@ -144,9 +147,9 @@ fn parse<T>(
         diagnostics: Vec::new(),
         cut: Vec::new(),
         lost: Vec::new(),
-        brackets: OnceCell::new(),
+        braces: OnceCell::new(),
         arrows: OnceCell::new(),
-        operators: OnceCell::new(),
+        names: OnceCell::new(),
     };
     match nesting::scan(source, text) {
         Scan::Fine => {}

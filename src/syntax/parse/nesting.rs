@@ -77,38 +77,67 @@ fn brackets(text: &str, from: usize) -> impl Iterator<Item = (usize, char)> {
     })
 }
 
-/// The innermost bracket that is open at `until`, counted from `from`.
-pub(super) fn open_bracket(text: &str, from: usize, until: usize) -> Option<(usize, char)> {
+/// The brackets that are open at `until`, counted from `from`, the innermost last.
+pub(super) fn open_brackets(text: &str, from: usize, until: usize) -> Vec<(usize, char)> {
     let mut open = Vec::new();
-    for (at, bracket) in brackets(text, from).take_while(|(at, _)| *at < until) {
+    // Behind it the next one may be far.
+    for (at, bracket) in brackets(&text[..until], from) {
         match bracket {
             '(' | '[' | '{' => open.push((at, bracket)),
             _ => drop(open.pop()),
         }
     }
-    open.pop()
+    open
 }
 
-/// Each bracket of a text and the innermost one that is open after it: thousands of brackets that close nothing are
-/// told with one scan.
-pub(super) struct Brackets(Vec<(usize, Option<char>)>);
+/// The innermost of them.
+pub(super) fn open_bracket(text: &str, from: usize, until: usize) -> Option<(usize, char)> {
+    open_brackets(text, from, until).pop()
+}
 
-impl Brackets {
+/// The bracket that closes another.
+pub(super) fn partner(bracket: char) -> char {
+    match bracket {
+        '(' => ')',
+        '[' => ']',
+        _ => '}',
+    }
+}
+
+/// The first bracket of a text that closes what was opened before it. A brace closes what stands open within it.
+pub(super) fn first_closing(text: &str) -> Option<char> {
+    let mut open: Vec<char> = Vec::new();
+    for (_, bracket) in brackets(text, 0) {
+        if matches!(bracket, '(' | '[' | '{') {
+            open.push(partner(bracket));
+            continue;
+        }
+        match open.iter().rposition(|close| *close == bracket) {
+            Some(place) if bracket == '}' || !open[place..].contains(&'}') => open.truncate(place),
+            _ if bracket != '}' && open.contains(&'}') => {}
+            _ => return Some(bracket),
+        }
+    }
+    None
+}
+
+/// The braces of a text and how many are open after each: thousands that close nothing are told with one scan.
+pub(super) struct Braces(Vec<(usize, usize)>);
+
+impl Braces {
     pub(super) fn of(text: &str) -> Self {
-        let mut open = Vec::new();
-        let after = brackets(text, 0).map(|(at, bracket)| {
-            match bracket {
-                '(' | '[' | '{' => open.push(bracket),
-                _ => drop(open.pop()),
-            }
-            (at, open.last().copied())
-        });
+        let mut open = 0_usize;
+        let after =
+            brackets(text, 0).filter(|(_, bracket)| matches!(bracket, '{' | '}')).map(|(at, brace)| {
+                open = if brace == '{' { open + 1 } else { open.saturating_sub(1) };
+                (at, open)
+            });
         Self(after.collect())
     }
 
-    /// The innermost bracket that is open at a byte, counted from the start of the text.
-    pub(super) fn open_at(&self, until: usize) -> Option<char> {
+    /// Whether one is open at a byte.
+    pub(super) fn is_open_at(&self, until: usize) -> bool {
         let before = self.0.partition_point(|(at, _)| *at < until);
-        self.0[..before].last().and_then(|(_, open)| *open)
+        self.0[..before].last().is_some_and(|(_, open)| *open > 0)
     }
 }

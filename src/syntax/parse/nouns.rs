@@ -74,6 +74,11 @@ pub(super) fn keyword(rule: Rule) -> Option<&'static str> {
     })
 }
 
+/// Whether a word is a keyword of either language.
+pub(super) fn is_keyword(word: &str) -> bool {
+    Rule::all_rules().iter().any(|&rule| keyword(rule) == Some(word))
+}
+
 /// The mark of a rule that is one.
 fn mark(rule: Rule) -> Option<&'static str> {
     Some(match rule {

@@ -2,9 +2,10 @@
 
 use super::builder::{Builder, Pair, Parts};
 use super::grammar::Rule;
+use super::quantity;
 use crate::syntax::ast::{
-    BehaviourDecl, BehaviourItem, Branch, Choice, Command, Domain, OnDecl, ProcessDecl, ProcessItem,
-    StateDecl, Timing, Transition, Update, Value, VarDecl,
+    BehaviourDecl, BehaviourItem, BinaryOp, Branch, Choice, Command, Domain, ExprKind, OnDecl, ProcessDecl,
+    ProcessItem, StateDecl, Timing, Transition, Update, Value, VarDecl,
 };
 use crate::syntax::codes::syntax as code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -48,9 +49,19 @@ impl Builder<'_> {
         // A variable is `process.name` outside; that it may equal a unit does no harm.
         let name = self.ident(&parts.part(Rule::name)?);
         let domain = if let Some(range) = parts.part(Rule::var_range) {
+            let place = range.as_span();
             let mut ends = Parts::of(range);
             let low = self.expr(ends.part(Rule::arith)?)?;
-            Some(Domain::Range(low, self.expr(ends.part(Rule::arith)?)?))
+            let high = self.expr(ends.part(Rule::arith)?)?;
+            // `0 .. 3 m/s = …`: a name that is set is no unit.
+            if let ExprKind::Binary(BinaryOp::Over | BinaryOp::Times, _, below) = &high.kind
+                && matches!(&below.kind, ExprKind::Name(name) if quantity::UNITS.contains(&name.as_str()))
+                && let Some(error) = self.unit_in_range(&name.name, place.start()..place.end())
+            {
+                self.say(error);
+                return None;
+            }
+            Some(Domain::Range(low, high))
         } else {
             parts.part(Rule::name).map(|domain| Domain::Named(self.ident(&domain)))
         };

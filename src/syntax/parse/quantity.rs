@@ -42,6 +42,16 @@ pub(super) fn nearest_unit(word: &str) -> Option<&'static str> {
     super::nouns::nearest(word, UNITS.iter().copied())
 }
 
+/// The unit that a name was probably meant to be, with its power as in `s2`, and whether that is beyond doubt.
+pub(crate) fn unit_meant(name: &str) -> Option<(String, bool)> {
+    let base = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    let power = &name[base.len()..];
+    let is_spoken = SPOKEN.iter().any(|(spoken, _)| spoken.contains(&base));
+    let unit = UNITS.into_iter().find(|unit| *unit == base).or_else(|| nearest_unit(base))?;
+    let is_sure = is_spoken || unit == base;
+    Some((if matches!(power, "" | "1") { unit.to_owned() } else { format!("{unit}^{power}") }, is_sure))
+}
+
 impl Builder<'_> {
     /// `0.2 m/s`
     pub(super) fn quantity(&mut self, pair: Pair<'_>) -> Option<Quantity> {

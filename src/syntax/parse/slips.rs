@@ -13,11 +13,14 @@ impl Builder<'_> {
     pub(super) fn slip(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
         self.slip_in_text(fault)
             .or_else(|| self.slip_of_bound(fault))
+            .or_else(|| self.slip_of_unit_in_bound(fault))
+            .or_else(|| self.slip_of_whole_range(fault))
             .or_else(|| self.slip_of_bindings(fault))
             .or_else(|| self.slip_of_equals(fault))
             .or_else(|| self.slip_of_operator(fault))
             .or_else(|| self.slip_of_range(fault))
             .or_else(|| self.slip_of_quantifier(fault))
+            .or_else(|| self.slip_of_sides(fault))
             .or_else(|| self.slip_of_with(fault))
             .or_else(|| self.slip_of_time(fault))
             .or_else(|| self.slip_of_unit(fault))
@@ -44,6 +47,8 @@ impl Builder<'_> {
             "÷" => "/",
             "→" => "->",
             "…" => "..",
+            "²" => "^2",
+            "³" => "^3",
             "%" if fault.after_value() => {
                 return Some(percent(place));
             }
@@ -228,6 +233,34 @@ impl Builder<'_> {
         Some(error.hint(format!("did you mean `{meant}`?")))
     }
 
+    /// `compare P(p) under n = 2 within 0.1`
+    fn slip_of_sides(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
+        let expects = |rule| fault.expected.contains(&rule);
+        let lacks = if expects(Rule::kw_with) {
+            "with"
+        } else if expects(Rule::kw_under) && !fault.takes_clauses() {
+            "under"
+        } else {
+            return None;
+        };
+        let ends = fault.found.is_empty() || matches!(fault.found, ";" | "with");
+        let goes_on = [Rule::clause, Rule::property_item]
+            .into_iter()
+            .any(|rule| nouns::words(rule).contains(&fault.found));
+        if !ends && !goes_on {
+            return None;
+        }
+        let compared = &self.text[fault.from..fault.at];
+        let set = compared.rsplit_once("under").map(|(_, set)| lexeme::first(set.trim_start()));
+        let name = set.filter(|name| name.starts_with(lexeme::starts_name)).unwrap_or("n");
+        let title = format!("expected `{lacks}`, found {}", quote(fault.found));
+        let error = Diagnostic::error(code::UNEXPECTED, self.place_of(fault), title);
+        Some(
+            error
+                .hint(format!("a comparison has two sides: `compare P(…) under {name} = … with {name} = …`")),
+        )
+    }
+
     /// `estimate P(p) with n = 3`
     fn slip_of_with(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
         if fault.found != "with" || !fault.takes_clauses() {
@@ -272,75 +305,6 @@ impl Builder<'_> {
             "write `,`"
         };
         Some(Diagnostic::error(code::OPERATOR, self.place(at, joined), title).hint(hint))
-    }
-
-    /// `3 metres`
-    fn slip_of_unit(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
-        if !fault.found.starts_with(lexeme::starts_name) {
-            return None;
-        }
-        // `3 N m`
-        let (unit_at, before_it) = lexeme::word_before(self.text, fault.at)?;
-        let factor = quantity::UNITS.contains(&fault.found) && quantity::UNITS.contains(&before_it);
-        if factor
-            && let Some((_, number)) = lexeme::word_before(self.text, unit_at)
-            && number.starts_with(|c: char| c.is_ascii_digit())
-        {
-            let place = self.place(fault.at, fault.found);
-            let title = format!("unexpected `{}` after `{number} {before_it}`", fault.found);
-            return Some(
-                Diagnostic::error(code::UNIT, place, title)
-                    .hint(format!("a product of units is written `{number} {before_it}*{}`", fault.found)),
-            );
-        }
-        let before = &self.text[..fault.at];
-        let between = &before[before.trim_end().len()..];
-        let (_, number) = lexeme::word_before(self.text, fault.at)?;
-        if between.contains('\n') || !number.starts_with(|c: char| c.is_ascii_digit()) {
-            return None;
-        }
-        let after = fault.at + fault.found.len();
-        let rest = self.text[after..].trim_start();
-        if quantity::UNITS.contains(&fault.found) && rest.starts_with('=') && !rest.starts_with("==") {
-            // A name that is set is no unit, so that the grammar stopped before it.
-            let at = self.text.len() - rest.len();
-            let said = Diagnostic::error(
-                code::UNEXPECTED,
-                self.place(at, "="),
-                format!("unexpected `=` after `{number} {}`", fault.found),
-            );
-            return Some(said.hint("`=` sets the name before it; `==` compares"));
-        }
-        let unit = quantity::nearest_unit(fault.found);
-        let near_keyword = fault.expected.iter().any(|&rule| {
-            let words =
-                super::nouns::keyword(rule).into_iter().chain(super::nouns::words(rule).iter().copied());
-            super::nouns::nearest(fault.found, words).is_some()
-        });
-        if near_keyword
-            || fault.found == "with"
-            || quantity::UNITS.contains(&fault.found)
-            || unit.is_none() && !between.is_empty() && !fault.after_value()
-        {
-            return None;
-        }
-        let place = self.place(fault.at, fault.found);
-        let rest = self.text[fault.at + fault.found.len()..].trim_start();
-        let argues = rest.starts_with('(') || rest.starts_with('=') && !rest.starts_with("==");
-        if argues && fault.expected.contains(&Rule::t_comma) {
-            let error =
-                Diagnostic::error(code::UNEXPECTED, place, format!("expected `,`, found `{}`", fault.found));
-            return Some(error.hint(format!("write `{number}, {}`", fault.found)));
-        }
-        let hint = match unit {
-            Some(unit) => format!("did you mean `{number} {unit}`?"),
-            None => format!(
-                "units are {}; to multiply write `{number} * {}`",
-                quantity::UNITS.join(", "),
-                fault.found
-            ),
-        };
-        Some(Diagnostic::error(code::UNIT, place, format!("unknown unit `{}`", fault.found)).hint(hint))
     }
 
     /// `process p { n = 3 }`
