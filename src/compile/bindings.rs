@@ -91,12 +91,14 @@ impl<'a> Compiler<'a> {
             let Some(number) = settings.get(&name) else { continue };
             result = result.and(elaborator.in_range((&name, *number), at));
         }
-        if result.is_err() && !was_astray {
+        // Of a range that is wrong itself that is said where it is declared.
+        let is_outside = elaborator.diagnostics.len() > before;
+        if is_outside && !was_astray {
             let said = elaborator.diagnostics.split_off(before);
             elaborator.keep_sure(0);
             elaborator.diagnostics.extend(said);
         }
-        elaborator.is_astray = was_astray || result.is_err();
+        elaborator.is_astray = was_astray || is_outside;
         result
     }
 }

@@ -55,6 +55,9 @@ impl<'a> Elaborator<'a> {
 
     /// The parameter of a name: its default and range.
     pub(super) fn param(&mut self, name: &str, span: Span) -> Lowered<(&'a Expr, Option<&'a (Expr, Expr)>)> {
+        if self.is_doubtful(0, name) {
+            return Err(Reported);
+        }
         match self.scopes[0].get(name).map(|e| e.meaning.clone()) {
             Some(Meaning::Param { value, range }) => Ok((value, range)),
             Some(meaning) => {

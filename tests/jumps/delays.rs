@@ -97,3 +97,29 @@ process b { var n: 0 .. 1 = 0  when n == 0 after 1 s -> n = 1 }
     assert!(count(model, "F (a.k == 1)", 1000) >= 990);
     assert_eq!(count(model, "F (c.k == 1)", 10), 10);
 }
+
+/// The last instant is in the trial, though two factors of it round beyond.
+#[test]
+fn what_comes_at_the_horizon_comes() {
+    for last in ["1.07", "8.3", "1.1", "16.1", "2.14"] {
+        let model = format!(
+            "horizon = {last} s\nprocess p {{ var n: 0 .. 3 = 0  when n == 0 after {last} s -> n = 1 }}\n"
+        );
+        for formula in [
+            format!("F<={last} s (p.n == 1)"),
+            format!("time_until(p.n == 1) <= {last} s"),
+            format!("F[0 s, {last} s] (G[0 s, 0 s] (p.n == 1))"),
+        ] {
+            assert_eq!(count(&model, &formula, 4), 4, "{formula}");
+        }
+    }
+}
+
+#[test]
+fn what_comes_at_one_time_comes_in_the_order_in_which_it_is_written() {
+    let model = "horizon = 1001 s
+process b { var k: 0 .. 9 = 0  when k < 9 after 0.001 s -> k = k + 1  when k == 9 after 0.001 s -> k = 0 }
+process a { var m: 0 .. 10 = 10  when m == 10 after 1000 s -> m = b.k }
+";
+    assert_eq!(count(model, "F<=1000.5 s (a.m == 0)", 1), 1);
+}

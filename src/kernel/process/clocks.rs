@@ -125,8 +125,8 @@ impl Clocks {
             }
         }
         if self.is_exact {
-            /// Of a time, what sums of two doubles may be off, amply.
-            const NOISE: f64 = 1.0 / (1_u128 << 92) as f64;
+            /// Of a time, what millions of sums of two doubles may be off, amply.
+            const NOISE: f64 = 1.0 / (1_u128 << 78) as f64;
             for lane in 0..LANES {
                 // Of several that round alike the first by what rounding took off; of those at one time the first there is.
                 let noise = when[lane] * NOISE;

@@ -78,7 +78,8 @@ impl Scale {
     pub(super) fn at(self, time: Instant) -> Moment {
         let seconds = time.seconds;
         if !time.rest.is_nan() {
-            let is_near = seconds * self.units_per_second <= (self.end() / 2) as f64;
+            // Near enough to be counted; what is beyond the horizon shows then.
+            let is_near = seconds * self.units_per_second <= self.end() as f64;
             return if is_near { (2 * time.floor_by(self.units).max(0)).min(self.end()) } else { self.end() };
         }
         if let Some(moment) = self.on_tick(seconds) {
@@ -132,7 +133,16 @@ mod tests {
 
     #[test]
     fn ticks_and_seconds_meet_and_come_back() {
-        for (quantum, horizon) in [("1", 10), ("0.1", 100), ("0.25", 1), ("60", 1 << 40), ("1", 0)] {
+        for (quantum, horizon) in [
+            ("1", 10),
+            ("0.1", 100),
+            ("0.25", 1),
+            ("60", 1 << 40),
+            ("1", 0),
+            ("0.000000001", 1_070_000_000),
+            ("0.000000001", 8_300_000_000),
+            ("0.000000001", 2_140_000_000),
+        ] {
             let scale = Scale::new(Tick(horizon), Decimal::parse(quantum).unwrap());
             for ticks in [0, horizon / 3, horizon] {
                 let seconds = scale.time(Tick(ticks));
@@ -144,6 +154,12 @@ mod tests {
                 assert_eq!(scale.seconds(scale.shift(Tick(ticks))), seconds);
                 assert_eq!(scale.span(seconds), scale.shift(Tick(ticks)));
             }
+            // The horizon itself is within it, also where it is known exactly.
+            let last = scale.time(Tick(horizon));
+            for exact in [Instant::decimal(last), Instant::exactly(0.0).after(Instant::decimal(last))] {
+                assert_eq!(scale.at(exact), scale.end() - 1, "{quantum} {horizon}");
+            }
+            assert_eq!(scale.at(Instant::exactly(last * 1.000_001 + 1.0)), scale.end());
             assert_eq!(scale.at(f64::INFINITY.into()), scale.end());
             assert!(scale.end() > 0 && scale.end() < FOREVER / 2);
         }
