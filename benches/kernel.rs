@@ -166,6 +166,7 @@ fn scenario(scene: &Scene, own_b: bool) -> Scenario {
         clock: Clock::Stepped(Decimal::parse("0.01").expect("a number")),
         horizon: Tick(100_000),
         scene: Surroundings {
+            points: Vec::new(),
             barriers: scene
                 .walls
                 .iter()

@@ -10,6 +10,7 @@ use smc::syntax::diagnostic::Diagnostic;
 use smc::syntax::parse::{parse_properties, parse_scenario};
 use smc::syntax::render::render;
 use smc::syntax::source::{Source, SourceId};
+use std::time::Instant;
 
 /// Compiles two texts; diagnostics as rendered.
 fn compiled(scenario: &str, properties: &str) -> (Option<Study>, String) {
@@ -273,6 +274,61 @@ fn states_of_many_processes_are_walked_as_far_as_they_fit() {
         process still[900] { var k: 0..1 = 0  when k == 0 -> k = 1 }\n\
         process late { var n: 0..5 = 0  when true -> n = n + 1 }\n";
     refused(wrong, "", "E0903");
+    // How far depends on what there is to compute in a state.
+    let sum = |copies: usize| {
+        format!(
+            "horizon = 100000 steps\nprocess p[{copies}] {{ var n: 0 .. 1000 = 0  let all = sum(q.n for q in p)\n\
+             when all >= 0 -> n = n + 1 }}\n"
+        )
+    };
+    understood(&sum(300), "");
+    refused(&sum(30), "", "E0903");
+}
+
+#[test]
+fn copies_of_many_processes_take_as_long_as_there_are() {
+    let tell = |count: usize| {
+        let one = |k| format!("process p{k}[1000] {{ var n: 0 .. 1 = 0  when n == 0 -> n = 1 }}\n");
+        let scenario = format!("horizon = 10 steps\n{}", (0..count).map(one).collect::<String>());
+        let start = Instant::now();
+        understood(&scenario, "");
+        start.elapsed()
+    };
+    // Another may have taken the processor for a while.
+    let ratio = || tell(40).as_secs_f64() / tell(10).as_secs_f64();
+    let least = (0..3).map(|_| ratio()).find(|ratio| *ratio < 9.0);
+    assert!(least.is_some(), "{:?} {:?}", tell(10), tell(40));
+}
+
+#[test]
+fn what_never_changes_may_be_a_constant() {
+    let properties = "const way = (distance(hall, (12, 3)), 1 m)\nconst base = position((1, 1))\n\
+        const size = if(distance(hall, (12, 3)) > 1 m, 1, 2)\nconst inside = (3, 3) in hall\n\
+        const far = distance(hall, (12, 3)) > 1 m\n\
+        estimate P(F<=1 s (distance(me, way) < 1 m & distance(me, base) < size * 1 m & inside & far))\n";
+    understood(THREE, properties);
+    // In a fold it is the same for each.
+    understood(
+        THREE,
+        &format!("{properties}estimate P(sum(size for a in crowd) > 1 & count(a in crowd: far) > 1)\n"),
+    );
+    for changing in
+        ["if(me in hall, 1, 2)", "(radius(me), 1 m)", "me in hall", "centroid(crowd) in hall", "x(me) > 1 m"]
+    {
+        refused(THREE, &format!("const c = {changing}\n"), "E0304");
+    }
+}
+
+#[test]
+fn names_of_a_process_are_known_before_it_where_they_do_not_change() {
+    let scenario = "horizon = 10 steps\nprocess a { var n: 0 .. 5 = b.k  when n < 5 -> n = n + 1 }\n\
+        process b { let k = 2  var m: 0 .. 5 = 1 }\n";
+    let study = understood(scenario, "");
+    assert_eq!(study.worlds[0].scenario.processes.variables[0].initial, 2.0);
+    // A constant is meant where a variable takes its first value from one of its name.
+    let scenario =
+        "horizon = 10 steps\nconst n = 3\nprocess a { var n: 0 .. 5 = n  when n < 5 -> n = n + 1 }\n";
+    assert_eq!(understood(scenario, "").worlds[0].scenario.processes.variables[0].initial, 3.0);
 }
 
 #[test]
@@ -366,6 +422,30 @@ fn what_is_checked_though_nobody_uses_it_refuses_nothing_sound() {
         let (study, found) =
             compiled(&scenario, "estimate P(F<=1 s (forall a in crowd: F<=0.5 s (speed(a) > 0.1 m/s)))\n");
         assert!(study.is_some() && !found.contains("error["), "{scenario}\n{found}");
+    }
+}
+
+/// Ends in another unit are the same number, though doubles may differ in their last place.
+#[test]
+fn defaults_at_the_ends_of_their_ranges_are_legal() {
+    for (range, value) in [
+        ("0.7 m in 70 cm .. 1 m", 0.7),
+        ("70 cm in 0 m .. 0.7 m", 0.7),
+        ("0.07 m in 7 cm .. 7 cm", 0.07),
+        ("-0.3 m in -30 cm .. 0 m", -0.3),
+    ] {
+        let more = format!("param w = {range}\nagent wide: adult {{ at = (5 m + w, 1 m) }}\n");
+        let study = understood(&format!("{THREE}{more}"), "estimate P(F<=1 s (speed(me) > 1 m/s))\n");
+        let agents = &study.worlds[0].scenario.agents;
+        let wide = agents.iter().find(|agent| agent.name == "wide").expect(range);
+        assert_eq!(wide.start.position, Position::Point(Vec2::new(5.0 + value, 1.0)), "{range}");
+    }
+    // Nothing is left out without a word.
+    for more in
+        ["param w = 0.7 m in 71 cm .. 1 m", "param w = 0.7 kg in 70 cm .. 1 m", "const z = 5 kg / (m * s)"]
+    {
+        let (study, found) = compiled(&format!("{THREE}{more}\n"), "");
+        assert!(study.is_none() && found.contains("error["), "{more}\n{found}");
     }
 }
 

@@ -70,6 +70,7 @@ fn scenario(agents: Vec<Agent>) -> Scenario {
         clock: Clock::Stepped(Decimal::parse("0.02").unwrap()),
         horizon: Tick(5000),
         scene: Scene {
+            points: Vec::new(),
             barriers: Vec::new(),
             regions: vec![
                 named(Shape::rectangle(p(10.0, 0.0), p(12.0, 4.0))),

@@ -90,6 +90,54 @@ fn too_many_combinations_of_sweeps_are_refused_before_they_are_made() {
 }
 
 #[test]
+fn sweeps_in_units_that_are_no_decimals_stay_in_their_range() {
+    let scenario = "scenario \"turns\"\nhorizon = 1 steps\nconst most = 90 deg\nparam a = 45 deg in 0 deg .. most\n\
+        process c { var x: 0 .. 2 = 0  when x == 0 & a >= 0 deg -> x = 1 }\n";
+    let points = |sweep: &str| -> Vec<String> {
+        let found = results(scenario, "estimate P(F (c.x == 1)) by fixed(trials = 1)\n", &["--set", sweep]);
+        found.iter().map(|r| r["settings"]["a"].as_str().unwrap().to_owned()).collect()
+    };
+    for (sweep, count, last) in [
+        ("a=0 deg..90 deg by 3 deg", 31, "90 deg"),
+        ("a=20 deg..80 deg by 1 deg", 61, "80 deg"),
+        ("a=0 deg..89 deg by 3 deg", 30, "87 deg"),
+    ] {
+        let points = points(sweep);
+        assert_eq!(
+            (points.len(), points.last().map(String::as_str)),
+            (count, Some(last)),
+            "{sweep}: {points:?}"
+        );
+    }
+    // A step that is a little too long reaches the end it is meant to.
+    let sweep = ["--set", "p=0..1 by 0.33333333333334"];
+    assert_eq!(results(COIN, "estimate P(F (c.x == 1)) within 0.1\n", &sweep).len(), 4);
+}
+
+#[test]
+fn a_default_that_is_replaced_need_not_lie_in_its_range() {
+    let scenario = format!("{COIN}param twice = 2 * q in 0 .. 1.5\n");
+    let query = "estimate P(F (c.x == 1)) within 0.1\n";
+    results(&scenario, query, &["--set", "twice=1", "--set", "q=1"]);
+    let said = called(&scenario, &[query], &["--set", "q=1"]);
+    assert!(said.err.contains("error[E0405]: the default of `twice` lies outside its range"), "{}", said.err);
+}
+
+#[test]
+fn a_constant_of_one_file_is_not_blamed_for_a_name_of_another() {
+    let query = "estimate P(F<=1 steps (4 m < d))\n";
+    let files = [&format!("const d = 3\n{query}"), &format!("let d = c.x + 1\n{query}")];
+    let said = called(COIN, &files.map(String::as_str), &[]).err;
+    for part in [
+        "`d` is a pure number, but is used as a length (m)\n --> 0.bltl:1:11",
+        "expected a length (m), found a pure number\n --> 1.bltl:2:",
+    ] {
+        assert!(said.contains(part), "{said}");
+    }
+    assert_eq!(said.matches("used as").count(), 2, "{said}");
+}
+
+#[test]
 fn a_family_holds_jointly_over_sweeps_lists_and_files() {
     let near = |found: Vec<f64>, share: f64| {
         for delta in found {

@@ -7,10 +7,13 @@
 
 use super::decimal::Decimal;
 
+/// Of a time, what millions of sums of two doubles may be off, amply: what is nearer to each other is at one time.
+const NOISE: f64 = 1.0 / (1_u128 << 78) as f64;
+
 /// A time, or the length of one, in seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instant {
-    /// The double that is nearest to it.
+    /// The double that is nearest to it; halfway between two the lower one, so that all that are at one time have the same.
     pub seconds: f64,
     /// What it is more than that; no number where nobody knows.
     pub rest: f64,
@@ -25,7 +28,12 @@ impl From<f64> for Instant {
 
 impl From<Decimal> for Instant {
     fn from(exact: Decimal) -> Self {
-        Self::quotient(exact.numerator() as f64, exact.denominator() as f64)
+        // Whole numbers of more digits than a double has are two.
+        let split = |whole: i128| {
+            let high = whole as f64;
+            (high, (whole - high as i128) as f64)
+        };
+        Self::quotient(split(exact.numerator()), split(exact.denominator()))
     }
 }
 
@@ -40,18 +48,43 @@ impl Instant {
     pub fn decimal(seconds: f64) -> Self {
         let whole = (seconds * 1e12 + 0.5).floor();
         if whole < 9e15 && whole / 1e12 == seconds {
-            Self::quotient(whole, 1e12)
+            Self::quotient((whole, 0.0), (1e12, 0.0))
         } else {
             Self::exactly(seconds)
         }
     }
 
-    /// One whole number by another.
-    fn quotient(numerator: f64, denominator: f64) -> Self {
-        let seconds = numerator / denominator;
-        let (product, error) = product(seconds, denominator);
-        let rest = ((numerator - product) - error) / denominator;
-        Self { seconds, rest: if rest.is_finite() { rest } else { 0.0 } }
+    /// One number of two doubles by another.
+    fn quotient(numerator: (f64, f64), denominator: (f64, f64)) -> Self {
+        let seconds = numerator.0 / denominator.0;
+        let (product, error) = product(seconds, denominator.0);
+        let low = numerator.1 - seconds * denominator.1;
+        let rest = (((numerator.0 - product) - error) + low) / denominator.0;
+        if rest.is_finite() { Self::of_parts(seconds, rest) } else { Self::exactly(seconds) }
+    }
+
+    /// The sum of two doubles, of which the first is much larger.
+    #[inline]
+    fn of_parts(seconds: f64, rest: f64) -> Self {
+        let (seconds, rest) = sum_of_ordered(seconds, rest);
+        let other = seconds + 2.0 * rest;
+        if other != seconds {
+            // About halfway to another double.
+            let half = 0.5 * (other - seconds);
+            if (rest - half).abs() <= seconds * NOISE {
+                let lower = if other < seconds { other } else { seconds };
+                return Self { seconds: lower, rest: half.abs() };
+            }
+        }
+        Self { seconds, rest }
+    }
+
+    /// Whether this is earlier than another time, by more than noise. Of one of which nobody knows what rounding took off, the
+    /// double counts.
+    #[inline]
+    pub fn is_before(self, other: Self) -> bool {
+        self.seconds < other.seconds
+            || (self.seconds == other.seconds && self.rest + self.seconds * NOISE < other.rest)
     }
 
     /// The instant that is `wait` later. An infinite wait has no end.
@@ -61,8 +94,7 @@ impl Instant {
         if sum.is_infinite() {
             return Self::exactly(sum);
         }
-        let (seconds, rest) = sum_of_ordered(sum, error + (self.rest + wait.rest));
-        Self { seconds, rest }
+        Self::of_parts(sum, error + (self.rest + wait.rest))
     }
 
     /// This time by a number of two doubles: the greatest whole number up to it, which a rounding does not miss.

@@ -134,7 +134,13 @@ impl Desk<'_> {
     fn tell(self, outlook: &Outlook) -> Exit {
         let text = match self.arguments.format {
             OutputFormat::Json => report::outlook::json(outlook),
-            _ => report::outlook::text(outlook),
+            OutputFormat::Text => report::outlook::text(outlook),
+            OutputFormat::Junit | OutputFormat::Github => {
+                return self.refuse(complaint::argument(
+                    "`--forecast` is no result of a test",
+                    "it is written as `--format text` or `--format json`",
+                ));
+            }
         };
         match print(&text) {
             Ok(()) => Exit::Success,

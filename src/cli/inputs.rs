@@ -121,7 +121,8 @@ impl Reader {
 
     /// `name=value` or `name=from..to by step`
     fn setting(&mut self, text: &str) -> Option<Setting> {
-        let Some((name, value)) = text.split_once('=') else {
+        let named = text.split_once('=').filter(|(name, _)| !name.trim().is_empty());
+        let Some((name, value)) = named else {
             let error = Diagnostic::placeless("E0210", format!("`--set {text}` sets nothing"))
                 .hint("write `--set name=value` or `--set name=from..to by step`");
             self.diagnostics.push(error);
@@ -229,6 +230,12 @@ pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> I
             Some(source) => {
                 let (file, diagnostics) = parse_scenario(&source);
                 scenario = file;
+                if scenario.items.is_empty() && diagnostics.is_empty() {
+                    // Nothing but comments: as an empty file.
+                    complete = false;
+                    let title = format!("{} declares nothing", source.name);
+                    reader.diagnostics.push(Diagnostic::placeless("E0108", title));
+                }
                 let hint = "these are properties; the scenario comes first, and properties after it";
                 reader.diagnostics.extend(misplaced(diagnostics, &source, is_of_properties, hint));
             }
@@ -280,6 +287,10 @@ pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> I
     }
     if diagnostics.iter().any(|d| d.severity == Severity::Error) {
         study = None;
+    } else if study.is_none() {
+        // Nothing is refused without a word.
+        let title = "what is wrong with these files shows nowhere else";
+        diagnostics.push(Diagnostic::placeless("E0305", title));
     }
     if let (Some(study), Some(last)) = (&study, properties.last())
         && study.queries.is_empty()

@@ -28,6 +28,8 @@ struct Record<'s> {
     arrival: Option<String>,
     position: Vec2,
     velocity: Vec2,
+    /// The radius, m, and the values of all variables of processes; truth as 1 or 0.
+    signals: Vec<f64>,
     /// States of behaviours, in the order of their declaration; empty in who has none.
     modes: Vec<&'s str>,
 }
@@ -197,6 +199,9 @@ impl<'p> Iterator for Walk<'p> {
             arrival: self.state.queues.arrival(&self.program.scenario.sources, AgentId(self.agent as u32), 0),
             position: Vec2::new(at(&self.state.x), at(&self.state.y)),
             velocity: Vec2::new(at(&self.state.vx), at(&self.state.vy)),
+            signals: std::iter::once(at(&self.state.radius))
+                .chain(self.state.variables.iter().map(|lanes| lanes.0[0]))
+                .collect(),
             modes: modes(self.program, &self.state, slot),
         };
         self.agent = (self.agent + 1) % agents;
@@ -362,11 +367,15 @@ fn write(
         position: record.position,
         velocity: record.velocity,
         present: true,
-        signals: &[],
+        signals: record.signals.into(),
         words: record.modes,
     });
     let declared = scenario.behaviours.declared.iter().filter(|behaviour| !behaviour.states.is_empty());
-    let names: Vec<&str> = declared.map(|behaviour| behaviour.name.as_str()).collect();
+    let variables = scenario.processes.variables.iter().map(|variable| variable.name.as_str());
+    let names: Vec<&str> = std::iter::once("radius")
+        .chain(variables)
+        .chain(declared.map(|behaviour| behaviour.name.as_str()))
+        .collect();
     match format {
         TableFormat::Csv => write_csv(out, &names, rows),
         TableFormat::Json => write_json(out, &names, rows),

@@ -3,6 +3,7 @@
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::families::Allowance;
 use super::measures::{Observed, Sketch, What};
+use super::methods::Theta;
 use super::number::Number;
 use super::queries::Compiler;
 use super::study::{Ask, Measure, MeasureKind, Ranking, Target};
@@ -43,10 +44,18 @@ impl<'a> Compiler<'a> {
                 let said = "a check of an expectation has one procedure only";
                 elaborator.report(Diagnostic::error("E0603", method.span, said))
             }
-            (What::Quantile, _) => elaborator.test(clauses, sketch.level, threshold.span, allowance, &locals),
+            (What::Quantile, _) => {
+                let level = match &measure.kind {
+                    ast::MeasureKind::Quantile(level) => level.span,
+                    _ => measure.span,
+                };
+                let theta = Theta { value: sketch.level, at: level, noun: "level" };
+                elaborator.test(clauses, theta, allowance, &locals)
+            }
             (What::Probability, _) => {
-                let theta = bound.ok().map(|bound| bound.value);
-                elaborator.test(clauses, theta, threshold.span, allowance, &locals)
+                let value = bound.ok().map(|bound| bound.value);
+                let theta = Theta { value, at: threshold.span, noun: "threshold" };
+                elaborator.test(clauses, theta, allowance, &locals)
             }
         };
         width?;

@@ -23,7 +23,7 @@ use crate::logic::Tree;
 use crate::model::{AgentId, BehaviourId, Bool, Num, Scene};
 use crate::syntax::ast::{BehaviourDecl, Expr};
 use crate::syntax::diagnostic::{Diagnostic, Severity};
-use crate::syntax::source::{Source, Span};
+use crate::syntax::source::{Source, SourceId, Span};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -54,6 +54,8 @@ pub(super) struct Locals {
     pub(super) running: u32,
     /// The process, and which of its copies, whose names come next.
     pub(super) process: Option<(u32, u32)>,
+    /// The process whose variables are being settled.
+    pub(super) settling: Option<u32>,
     /// The behaviour whose names come next, and how many of the bound names they see.
     pub(super) behaviour: Option<(u32, usize)>,
 }
@@ -116,6 +118,8 @@ pub(super) struct Elaborator<'a> {
     pub(super) places: Written,
     /// Stand-ins for people whose declaration is wrong.
     pub(super) undeclared: BTreeSet<AgentId>,
+    /// Whether a part of the scenario was left out, which is never done without an error.
+    pub(super) given_up: bool,
     /// Where the behaviour that is looked at gets its arguments, if it takes any.
     pub(super) attached_at: Option<Span>,
     /// Where processes and behaviours are written.
@@ -150,6 +154,10 @@ pub(super) struct Elaborator<'a> {
     pub(super) texts: Texts,
     /// Where a use of an argument stands, and where what it stands for is written, in the present call.
     pub(super) aliases: BTreeMap<Span, Span>,
+    /// Where the name of a bare number stands, and where that is declared.
+    pub(super) bare: BTreeMap<Span, Span>,
+    /// Of each file, an exponent that hangs on parameters: so does the unit of what it raises.
+    pub(super) exponents: BTreeMap<SourceId, Span>,
     /// How often an unknown name was come upon.
     pub(super) unknowns: u64,
     /// Whether the body of a function is looked at, whatever it is called with.
@@ -207,6 +215,7 @@ impl<'a> Elaborator<'a> {
             agent_names: Vec::new(),
             places: Vec::new(),
             undeclared: BTreeSet::new(),
+            given_up: false,
             attached_at: None,
             origins: Origins::default(),
             coming: false,
@@ -224,6 +233,8 @@ impl<'a> Elaborator<'a> {
             known: Default::default(),
             texts: Texts::default(),
             aliases: BTreeMap::new(),
+            bare: BTreeMap::new(),
+            exponents: BTreeMap::new(),
             unknowns: 0,
             looking: false,
             followed: BTreeSet::new(),
@@ -250,12 +261,19 @@ impl<'a> Elaborator<'a> {
     }
 
     /// Notes an error or warning, each place once.
-    pub(super) fn note(&mut self, diagnostic: Diagnostic) {
+    pub(super) fn note(&mut self, mut diagnostic: Diagnostic) {
         if self.told < Told::needed(diagnostic.code) {
             return;
         }
         if diagnostic.place.as_ref().is_some_and(|place| self.is_cut(place.span)) {
             return;
+        }
+        if ["E0302", "E0303"].contains(&diagnostic.code)
+            && let Some(place) = &diagnostic.place
+        {
+            // A file knows its own names and those of the scenario.
+            let files = [place.span.source, SourceId(0)];
+            diagnostic.hangs_on.extend(files.iter().find_map(|file| self.exponents.get(file)));
         }
         if self.is_astray && diagnostic.severity == Severity::Error && !self.is_sure(&diagnostic) {
             return;
@@ -309,6 +327,11 @@ impl<'a> Elaborator<'a> {
         expected: Dimension,
         found: Dimension,
     ) -> Lowered<T> {
+        let error = self.other_dimension(span, expected, found);
+        self.report(error)
+    }
+
+    pub(super) fn other_dimension(&self, span: Span, expected: Dimension, found: Dimension) -> Diagnostic {
         let mut error = Diagnostic::error(
             "E0303",
             span,
@@ -327,7 +350,18 @@ impl<'a> Elaborator<'a> {
                 format!("write the unit where the number stands, or multiply: `{text} * 1 {unit}`")
             });
         }
-        self.report(error)
+        if found.is_none() && !expected.is_none() {
+            error.comes_of = self.bare_within(span);
+        }
+        error
+    }
+
+    /// Where the bare number is declared that is named within a place, if there is just one.
+    fn bare_within(&self, place: Span) -> Option<Span> {
+        let from = self.bare.range(Span { end: 0, ..place }..);
+        let mut within = from.take_while(|(name, _)| name.source == place.source && name.start < place.end);
+        let (_, first) = within.next()?;
+        within.all(|(_, other)| other == first).then_some(*first)
     }
 
     /// Counts one more level; an error where expressions nest or grow beyond reason.
@@ -415,6 +449,7 @@ impl<'a> Elaborator<'a> {
             found @ (Typed::Num(..) | Typed::Term(..)) => {
                 let when = match &found {
                     Typed::Num(num, _) if num.is_fixed() => "is computed in each",
+                    Typed::Num(num, _) if num.is_drawn() => "is not known before a trial",
                     _ => "changes during a trial",
                 };
                 let error = Diagnostic::error("E0304", expr.span, "this must be known before a trial starts")

@@ -3,6 +3,7 @@
 use crate::data::geometry::PropertyValue;
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, UnaryOp};
 use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
 
 /// A side of a comparison.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +25,8 @@ pub(super) fn selects(filter: &Expr, feature: Described<'_>) -> Result<bool, Dia
         ExprKind::Unary(UnaryOp::Not, inner) => Ok(!selects(inner, feature)?),
         ExprKind::Binary(BinaryOp::And, a, b) => Ok(selects(a, feature)? & selects(b, feature)?),
         ExprKind::Binary(BinaryOp::Or, a, b) => Ok(selects(a, feature)? | selects(b, feature)?),
+        // What compares no property says nothing of a feature.
+        ExprKind::Binary(_, a, b) if !names(a).chain(names(b)).any(|_| true) => Err(wrong(filter)),
         ExprKind::Binary(op, a, b) => {
             let (a, b) = (side(a, feature)?, side(b, feature)?);
             let order = match (&a, &b) {
@@ -43,6 +46,16 @@ pub(super) fn selects(filter: &Expr, feature: Described<'_>) -> Result<bool, Dia
             }
         }
         _ => Err(wrong(filter)),
+    }
+}
+
+/// The properties that a filter names, and where.
+pub(super) fn names(filter: &Expr) -> Box<dyn Iterator<Item = (&str, Span)> + '_> {
+    match &filter.kind {
+        ExprKind::Name(name) => Box::new(std::iter::once((name.as_str(), filter.span))),
+        ExprKind::Unary(_, inner) => names(inner),
+        ExprKind::Binary(_, a, b) => Box::new(names(a).chain(names(b))),
+        _ => Box::new(std::iter::empty()),
     }
 }
 

@@ -4,6 +4,7 @@ use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered};
 use super::lower::DISTRIBUTIONS;
 use super::symbols::{Meaning, unknown};
+use crate::base::decimal::Decimal;
 use crate::model::{Family, Law};
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Value};
 use crate::syntax::diagnostic::Diagnostic;
@@ -180,12 +181,7 @@ impl Elaborator<'_> {
         dimension: Dimension,
         locals: &Locals,
     ) -> Lowered<Family> {
-        // Several factors are one: `2 * lognormal(1, 0.1) * 1 m/s`.
-        let joined = drawn.factors.iter().copied().cloned().reduce(|first, second| Expr {
-            span: first.span.to(second.span),
-            kind: ExprKind::Binary(BinaryOp::Times, Box::new(first), Box::new(second)),
-        });
-        let Some(factor) = joined else {
+        let Some(factor) = drawn.factor() else {
             return self.own_family(drawn, span, dimension, locals);
         };
         let family = self.own_family(drawn, span, Dimension::NONE, locals);
@@ -197,13 +193,73 @@ impl Elaborator<'_> {
                 Diagnostic::error("E0404", factor.span, "a distribution is multiplied by what is positive");
             return self.report(error);
         }
-        let Some(scaled) = family.scaled(by.value) else {
+        let Some(mut scaled) = family.scaled(by.value) else {
             let error =
                 Diagnostic::error("E0404", span, format!("no multiple of this `{}` is drawn", drawn.name))
                     .hint("a multiple of `beta` leaves (0, 1), and a count has at most 4096 values");
             return self.report(error);
         };
+        // Three times 0.1 s is 0.3 s, which a product of doubles misses.
+        let exact = self.exactly(drawn, &scaled, locals);
+        if let Family::Choice(options) | Family::Multiple { options, .. } = &mut scaled {
+            for ((value, _), (_, exact)) in options.iter_mut().zip(exact) {
+                *value = exact.map_or(*value, Decimal::to_f64);
+            }
+        }
         Ok(scaled)
+    }
+
+    /// The values that a law can take, and what they are exactly: of laws of few values, those that are not rounded.
+    pub(super) fn exact_values(&mut self, value: &Value, law: &Law, locals: &Locals) -> Vec<(f64, Decimal)> {
+        let (Value::Plain(expr) | Value::Truncated { law: expr, .. }) = value else { return Vec::new() };
+        match (law, distribution(expr)) {
+            (Law::Constant(value), _) => {
+                let exact = self.number(expr, locals).ok().and_then(|number| number.exact);
+                exact.map(|exact| (*value, exact)).into_iter().collect()
+            }
+            (Law::Random { family, .. }, Some(drawn)) => {
+                let values = self.exactly(&drawn, family, locals);
+                values.into_iter().filter_map(|(value, exact)| Some((value, exact?))).collect()
+            }
+            (Law::Random { .. }, None) => Vec::new(),
+        }
+    }
+
+    /// The values that a family can take, in its order, as far as each is known exactly.
+    fn exactly(
+        &mut self,
+        drawn: &Drawn<'_>,
+        family: &Family,
+        locals: &Locals,
+    ) -> Vec<(f64, Option<Decimal>)> {
+        let by = match drawn.factor() {
+            Some(factor) => self.number(&factor, locals).ok().and_then(|number| number.exact),
+            None => Some(Decimal::ONE),
+        };
+        let Some(by) = by else { return Vec::new() };
+        let mut written = |place: usize| {
+            let number = self.number(drawn.arguments.get(place)?, locals).ok()?;
+            number.exact?.mul(by)
+        };
+        match *family {
+            Family::Choice(ref options) => {
+                options.iter().enumerate().map(|(place, (value, _))| (*value, written(place))).collect()
+            }
+            Family::Multiple { by: unit, ref options, .. } => {
+                let count = |value: f64| Decimal::whole((value / unit + 0.5).floor() as i64);
+                options.iter().map(|(value, _)| (*value, count(*value).mul(by))).collect()
+            }
+            // Without spread it is its mean.
+            Family::Normal { mean, sd }
+            | Family::LogNormal { mean, sd }
+            | Family::Gamma { mean, sd }
+            | Family::Weibull { mean, sd }
+                if sd == 0.0 =>
+            {
+                vec![(mean, written(0))]
+            }
+            _ => Vec::new(),
+        }
     }
 
     fn own_family(
@@ -276,6 +332,16 @@ pub(super) struct Drawn<'e> {
     arguments: &'e [Expr],
     /// What it is multiplied by, in the order of writing.
     factors: Vec<&'e Expr>,
+}
+
+impl Drawn<'_> {
+    /// All factors as one, if there are any: `2 * lognormal(1, 0.1) * 1 m/s`.
+    fn factor(&self) -> Option<Expr> {
+        self.factors.iter().copied().cloned().reduce(|first, second| Expr {
+            span: first.span.to(second.span),
+            kind: ExprKind::Binary(BinaryOp::Times, Box::new(first), Box::new(second)),
+        })
+    }
 }
 
 /// A distribution, or a multiple of one.

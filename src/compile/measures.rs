@@ -312,6 +312,15 @@ impl Elaborator<'_> {
         level: &Expr,
         scope: ScopeId,
     ) -> (Lowered<Observed>, Sketch) {
+        if matches!(measure.body.kind, ExprKind::Quantity(_))
+            && matches!(level.kind, ExprKind::Call { .. } | ExprKind::Window(..))
+        {
+            // `Q(time_until(safe), 0.95)`
+            let (metric, number) = (self.text(level.span), self.text(measure.body.span));
+            let error = Diagnostic::error("E0601", level.span, "the level of a quantile comes first")
+                .hint(format!("write `Q({number}, {metric})`"));
+            return (self.report(error), Sketch::of(What::Quantile, None));
+        }
         let number = self.number_of(level, Dimension::NONE, &Locals::of(scope)).and_then(|number| {
             if number.value > 0.0 && number.value < 1.0 {
                 return Ok(number.value);

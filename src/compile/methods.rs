@@ -31,6 +31,16 @@ pub(super) fn both<A, B>(a: Lowered<A>, b: Lowered<B>) -> Lowered<(A, B)> {
     Ok((a?, b?))
 }
 
+/// The probability that a test decides about.
+#[derive(Clone, Copy)]
+pub(super) struct Theta {
+    /// Unless something is wrong with it.
+    pub(super) value: Option<f64>,
+    pub(super) at: Span,
+    /// What it is: a threshold, or the level of a quantile.
+    pub(super) noun: &'static str,
+}
+
 /// The width that a query states, if it does, and where.
 pub(super) type Stated = Lowered<Option<(f64, Span)>>;
 
@@ -105,12 +115,11 @@ impl Elaborator<'_> {
         })
     }
 
-    /// The test of a check with its threshold, if that is one.
+    /// The test of a check, around what it decides about.
     pub(super) fn test(
         &mut self,
         clauses: &Clauses,
-        threshold: Option<f64>,
-        at: Span,
+        theta: Theta,
         allowance: Allowance,
         locals: &Locals,
     ) -> Lowered<Test> {
@@ -118,7 +127,7 @@ impl Elaborator<'_> {
         let error = allowance.error(confidence.unwrap_or(None), DEFAULT_ALPHA);
         let test = match &clauses.by {
             None => Ok(Test::EProcess { alpha: error, beta: error }),
-            Some(method) => self.test_by((clauses, method), (threshold, at), error, locals),
+            Some(method) => self.test_by((clauses, method), theta, error, locals),
         };
         confidence?;
         test
@@ -127,7 +136,7 @@ impl Elaborator<'_> {
     fn test_by(
         &mut self,
         (clauses, method): (&Clauses, &Method),
-        (threshold, at): (Option<f64>, Span),
+        theta: Theta,
         error: f64,
         locals: &Locals,
     ) -> Lowered<Test> {
@@ -142,7 +151,7 @@ impl Elaborator<'_> {
                 );
                 let alpha = self.error_of(arguments.values[0], error, "alpha");
                 let beta = self.error_of(arguments.values[1], error, "beta");
-                let region = self.region(&arguments, 2, threshold, at);
+                let region = self.region(&arguments, 2, theta);
                 let ((alpha, beta), (indifference, span)) = both(both(alpha, beta), region)?;
                 arguments.sound()?;
                 let least = match name {
@@ -175,7 +184,7 @@ impl Elaborator<'_> {
                 let arguments =
                     self.arguments((clauses, method), ["alpha", "indifference"], Sketch::PROBABILITY, locals);
                 let alpha = self.error_of(arguments.values[0], error, "alpha");
-                let region = self.region(&arguments, 1, threshold, at);
+                let region = self.region(&arguments, 1, theta);
                 let (alpha, (indifference, _)) = both(alpha, region)?;
                 arguments.sound()?;
                 Ok(Test::ThreeWay { alpha, indifference })
@@ -190,8 +199,7 @@ impl Elaborator<'_> {
         &mut self,
         arguments: &Arguments<'_, N>,
         argument: usize,
-        theta: Option<f64>,
-        at: Span,
+        Theta { value, at, noun }: Theta,
     ) -> Lowered<(f64, Span)> {
         let (indifference, span) = self.required(arguments, argument, "indifference")?;
         if indifference <= 0.0 {
@@ -200,7 +208,7 @@ impl Elaborator<'_> {
             return self.report(error.hint("leave the region out: the default test needs none"));
         }
         // Around what is no threshold nothing is asked of it.
-        let Some(theta) = theta else { return Ok((indifference, span)) };
+        let Some(theta) = value else { return Ok((indifference, span)) };
         let (low, high) = (theta - indifference, theta + indifference);
         if low > 0.0 && high < 1.0 && low < theta && theta < high {
             return Ok((indifference, span));
@@ -212,7 +220,7 @@ impl Elaborator<'_> {
             format!("the indifference region {} to {} must lie inside (0, 1)", round(low), round(high)),
         )
         .hanging_on(at)
-        .related(at, "around this threshold")
+        .related(at, format!("around this {noun}"))
         .hint("choose a smaller indifference, or leave the region out: the default test needs none");
         self.report(error)
     }

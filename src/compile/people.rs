@@ -175,7 +175,7 @@ impl<'a> Elaborator<'a> {
         let repulsion = field(self, "repulsion", Dimension::NONE, PARTICLE_REPULSION);
         let friction = field(self, "friction", Dimension::FRICTION, PARTICLE_FRICTION);
         if decl.particle.is_some() {
-            self.only(&rest, &["at", "velocity", "route", "attraction", "repulsion", "friction"]);
+            self.only(&rest, &["at", "velocity", "route", "repulsion", "friction"]);
         } else {
             self.only(&rest, &["at", "velocity", "route", "attraction"]);
         }

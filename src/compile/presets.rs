@@ -80,6 +80,9 @@ pub fn law(preset: &str, parameter: &str) -> Option<Law> {
         "speed" => Some(Law::Random { family: Family::Normal { mean: 1.34, sd: 0.26 }, low: 0.4, high: 2.2 }),
         "k1" => Some(Law::Constant(1.2e5)),
         "k2" => Some(Law::Constant(2.4e5)),
+        // A set is the whole force: of a kind that starts from another nothing of that one's is left.
+        "lambda" | "lambda2" | "B2" => Some(Law::Constant(1.0)),
+        "A2" => Some(Law::Constant(0.0)),
         _ => None,
     }
 }

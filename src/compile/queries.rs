@@ -409,8 +409,11 @@ impl<'a> Compiler<'a> {
             let text = "what is wrong with this query shows nowhere else";
             diagnostics.push(Diagnostic::error("E0305", *query, text));
         }
-        // What was cut short is refused by the parser.
-        let cut = self.sites.iter().any(|site| !site.elaborator.cut.is_empty());
+        // What was cut short is refused by the parser; what was left out without an error, by whoever reads this.
+        let fails = |all: &[Diagnostic]| all.iter().any(|one| one.severity == Severity::Error);
+        let is_lost =
+            |one: &Elaborator<'_>| (one.given_up || !one.undeclared.is_empty()) && !fails(&one.diagnostics);
+        let cut = self.sites.iter().any(|site| !site.elaborator.cut.is_empty() || is_lost(&site.elaborator));
         if cut || diagnostics.iter().any(|d| d.severity == Severity::Error) {
             return (None, diagnostics);
         }

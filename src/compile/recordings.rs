@@ -8,6 +8,7 @@ use super::symbols::{Meaning, unknown};
 use crate::data::tracks::{LineError, Observation, Recording, read_eth_biwi};
 use crate::syntax::ast::{Expr, Ident, Recorded, Text};
 use crate::syntax::diagnostic::Diagnostic;
+use std::collections::BTreeSet;
 use std::collections::btree_map::Entry;
 
 /// How many bad lines of a file are shown.
@@ -47,7 +48,10 @@ impl<'a> Elaborator<'a> {
                     match errors.as_slice() {
                         [LineError { line: 0, .. }] => "this is no such recording".to_owned(),
                         [_] => "a line of this file cannot be read".to_owned(),
-                        many => format!("{} lines of this file cannot be read", many.len()),
+                        many => match many.iter().map(|one| one.line).collect::<BTreeSet<_>>().len() {
+                            1 => "a line of this file cannot be read".to_owned(),
+                            lines => format!("{lines} lines of this file cannot be read"),
+                        },
                     },
                 )
                 .label(format!("{}{rest}", shown.join("; ")));

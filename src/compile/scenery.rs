@@ -74,8 +74,9 @@ impl<'a> Elaborator<'a> {
                     *next += 1;
                 }
                 SceneItem::Point { name, at } => {
-                    if self.point_of(at, Dimension::LENGTH, &Locals::default()).is_err() {
-                        self.doubt(0, &name.name);
+                    match self.point_of(at, Dimension::LENGTH, &Locals::default()) {
+                        Ok(at) => self.scene.points.push((name.name.clone(), at)),
+                        Err(Reported) => self.doubt(0, &name.name),
                     }
                 }
                 SceneItem::Import { path, filter, .. } => self.import(path, filter.as_ref(), files),
@@ -238,8 +239,11 @@ impl<'a> Elaborator<'a> {
     fn import(&mut self, path: &Text, filter: Option<&Expr>, files: &Files) {
         let (mut total, mut wrong) = (0, None);
         let mut known: BTreeSet<String> = BTreeSet::new();
+        let mut unknown: Vec<(&str, Span)> = filter.into_iter().flat_map(filter::names).collect();
+        unknown.retain(|(name, _)| *name != "name");
         let mut select = |name: &str, properties: &[(String, PropertyValue)]| {
             total += 1;
+            unknown.retain(|(name, _)| !properties.iter().any(|(known, _)| known == name));
             if known.len() < MOST_NAMES {
                 known.extend(properties.iter().map(|(name, _)| name.clone()));
             }
@@ -257,6 +261,12 @@ impl<'a> Elaborator<'a> {
             return self.note(error);
         }
         let Ok(features) = features else { return };
+        // A property that no feature has equals nothing, and differs from everything. What all lack is told below.
+        let all_known = unknown.is_empty() || known.is_empty();
+        for (name, span) in unknown.into_iter().filter(|_| !all_known) {
+            let known = known.iter().map(String::as_str).chain(["name"]);
+            self.note(super::symbols::unknown("property", name, span, "E0201", known));
+        }
         let before = self.scene.barriers.len();
         let points = features.iter().filter(|f| matches!(f.shape, Geometry::Point(_))).count();
         for feature in features {
@@ -269,7 +279,7 @@ impl<'a> Elaborator<'a> {
             };
             self.scene.barriers.push(Barrier { name: feature.name, obstacle });
         }
-        if self.scene.barriers.len() == before {
+        if self.scene.barriers.len() == before && all_known {
             let have = if total == 1 { "1 feature".to_owned() } else { format!("{total} features") };
             let warning = Diagnostic::warning(
                 "W0401",

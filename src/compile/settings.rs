@@ -180,12 +180,14 @@ impl<'a> Elaborator<'a> {
                         format!("a sweep has at most {MOST_POINTS} points"),
                     ));
                 }
-                let mut points = vec![first];
-                for _ in 0..count as usize {
-                    let next = points[points.len() - 1].plus(step);
-                    points.push(next);
-                }
-                Ok(points)
+                // Each from the first: steps that are no decimals would add up their rounding, and leave the range.
+                let point = |k: i64| {
+                    let way = step.times(Number::whole(k)).map_or(first, |way| first.plus(way));
+                    // Where the last one is meant it is that one, whatever rounding made of the step.
+                    let is_last = (last.value - way.value).abs() <= 1e-9 * step.value;
+                    if is_last { last } else { way }
+                };
+                Ok((0..=count as i64).map(point).collect())
             }
         }
     }

@@ -5,7 +5,7 @@
 
 use super::elaborator::{Elaborator, Lowered, MOST_NODES};
 use super::typed::Typed;
-use crate::model::{Bool, Num, Place};
+use crate::model::{Bool, Num, Place, Process, Timing};
 use crate::syntax::source::Span;
 
 /// How deep an expression may be that is copied: what walks it does so on the stack.
@@ -119,6 +119,22 @@ impl Weight {
     /// That of a condition.
     pub(super) fn of_truth(truth: &Bool) -> Self {
         Self::of_parts(vec![Part::Bool(truth)])
+    }
+
+    /// That of all that a process computes in a state.
+    pub(super) fn of_process(process: &Process) -> Self {
+        let mut parts = Vec::new();
+        for command in &process.commands {
+            parts.push(Part::Bool(&command.guard));
+            if let Timing::Rate(rate) = &command.timing {
+                parts.push(Part::Num(rate));
+            }
+            for branch in &command.branches {
+                parts.push(Part::Num(&branch.weight));
+                parts.extend(branch.updates.iter().map(|(_, value)| Part::Num(value)));
+            }
+        }
+        Self::of_parts(parts)
     }
 
     /// Number of parts.

@@ -36,6 +36,7 @@ impl<'a> Elaborator<'a> {
         this.declare(scenario);
         this.declare_properties(properties);
         this.set_aside(scenario, properties);
+        this.doubt_defaults(scenario);
         this.warn_of_meanings();
         let built = this.build(scenario, files).ok();
         (this, built)
@@ -299,9 +300,12 @@ impl<'a> Elaborator<'a> {
         &mut self,
         name: &Ident,
         (declared, value): (Lowered<super::typed::Typed>, &Expr),
-        (low, high): &(Expr, Expr),
+        range: &(Expr, Expr),
     ) {
-        let locals = Locals::of(0);
+        let (locals, (low, high)) = (Locals::of(0), range);
+        if self.fault_of_default(name, value, range).is_some() {
+            return;
+        }
         // What it is set to is judged where that is done.
         let default = declared.and_then(|_| self.number(value, &locals));
         let Ok(number) = default else {
@@ -309,8 +313,10 @@ impl<'a> Elaborator<'a> {
             return;
         };
         let place = low.span.to(high.span);
-        // A default that something else takes the place of need not lie in a range that follows from what is set.
-        let is_replaced = self.settings.contains_key(&name.name) && self.hangs_on_parameters(place);
+        // A default that something else takes the place of need not lie in its range where one of them follows from what
+        // is set.
+        let is_replaced = self.settings.contains_key(&name.name)
+            && (self.hangs_on_parameters(place) || self.hangs_on_parameters(value.span));
         let ends =
             (self.number_of(low, number.dimension, &locals), self.number_of(high, number.dimension, &locals));
         let (Ok(low), Ok(high)) = ends else { return };

@@ -112,7 +112,8 @@ impl Answers<'_> {
         if let Some((interval, coverage, error)) = inquiry.procedure.interval(counts, beside) {
             beside = error;
             // Where no trial is resolved the middle of what is legal is no estimate.
-            result.estimate = (counts.unresolved < counts.trials).then_some(interval.estimate);
+            result.estimate = Some(interval.estimate)
+                .filter(|middle| counts.unresolved < counts.trials && !middle.is_nan());
             result.low = interval.low;
             result.high = interval.high;
             result.interval = words::interval(coverage, error);

@@ -41,6 +41,7 @@ pub(super) fn unresolved(
     };
     let mut readings = Readings::default();
     observer.start(0);
+    let mut missing = None;
     loop {
         let time = moment(scenario, state.ticks[0]);
         if let Some(reason) = state.queues.overrun(&scenario.sources, 0) {
@@ -55,6 +56,8 @@ pub(super) fn unresolved(
             return format!("it diverged at {time}: {}", divergence(program, &state));
         }
         code.run(program, &state, &mut readings);
+        missing =
+            missing.or_else(|| absent(subject, column, &state, &readings).map(|name| (name, time.clone())));
         // As for a worker: only where something is looked at in this state that has no value.
         if lost(&needs, &readings, &state.ticks).has(0) {
             return nobody(subject, (column, &needs), &state, &time);
@@ -62,9 +65,15 @@ pub(super) fn unresolved(
         observer.observe(lane, &readings);
         if observer.decided().has(0) {
             return match observer.reading(0) {
-                Reading::Unresolved => {
-                    format!("the metric is not a number at {time}; look for 0 / 0 or ∞ - ∞ in it")
-                }
+                Reading::Unresolved => match absent(subject, column, &state, &readings)
+                    .map(|name| (name, time.clone()))
+                    .or(missing)
+                {
+                    Some((name, time)) => format!(
+                        "`{name}` has not come at {time}, and what is asked of it is no number; ask only while `present({name})`"
+                    ),
+                    None => format!("the metric is not a number at {time}; look for 0 / 0 or ∞ - ∞ in it"),
+                },
                 _ => String::new(),
             };
         }
@@ -149,6 +158,27 @@ pub fn no_start(scenario: &Scenario, fault: start::Fault) -> String {
         }
         start::Fault::Advice { .. } => String::new(),
     }
+}
+
+/// Somebody who has not come yet, and of whom a number is asked that is none for it.
+fn absent(subject: &Subject, column: usize, state: &State, readings: &Readings) -> Option<String> {
+    let (mut found, scenario) = (None, &subject.program.scenario);
+    for k in subject.signals_of(column) {
+        if readings.signals.get(k).is_none_or(|signal| !signal.0[0].is_nan()) {
+            continue;
+        }
+        subject.signals()[k].mentions(&mut |agent| {
+            // Who has left is where they left.
+            let mut sources = scenario.sources.iter().zip(&state.queues.entered);
+            let is_to_come = sources.any(|(source, entered)| {
+                source.members.binary_search(&agent).is_ok_and(|number| entered[0] as usize <= number)
+            });
+            if found.is_none() && is_to_come {
+                found = scenario.agents.get(agent.0 as usize).map(|agent| agent.name.clone());
+            }
+        });
+    }
+    found
 }
 
 /// A mean or a middle of nobody: in which condition or number of those that a column looks at now.

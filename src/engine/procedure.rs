@@ -381,7 +381,14 @@ fn quantile(sample: &mut Sample, level: f64, delta: f64, band: bool) -> Option<I
     } else {
         sample.quantiles(&[level], delta).ok()?.into_iter().next()?
     };
-    let estimate = if found.low_estimate.is_finite() { found.low_estimate } else { found.high_estimate };
+    // The middle of both readings of what is unresolved; of two that bound it on no side nobody knows.
+    let estimate = match (found.low_estimate, found.high_estimate) {
+        (low, high) if low == high => low,
+        (low, high) if low.is_finite() && high.is_finite() => 0.5 * (low + high),
+        (f64::NEG_INFINITY, f64::INFINITY) => f64::NAN,
+        (f64::NEG_INFINITY, high) => high,
+        (low, _) => low,
+    };
     Some(Interval { estimate, low: found.interval.low, high: found.interval.high })
 }
 

@@ -33,8 +33,8 @@ pub(super) fn decision(
     }
     let at = monitor.decided_at();
     let horizon = subject.program.scenario.clock.seconds(subject.horizon);
-    // Monitors round times of jumps by less than this.
-    let slack = 1e-12 * horizon;
+    // Monitors round times of jumps by less than this, some units in the last place.
+    let slack = 1e-15 * horizon;
     let mut past = Past { at: at + slack, atoms: Vec::new(), signals: Vec::new() };
     run(subject, column, trial, budget, |now, atoms, signals| past.see(now.seconds, atoms, signals))?;
     let used = subject.atoms_of(column);

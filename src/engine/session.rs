@@ -230,8 +230,10 @@ fn crowded(scenario: &Scenario, crowding: &start::Crowding) -> String {
         [first, .., last] => format!("{first} to {last} ({} people)", names.len()),
     };
     format!(
-        "{who} cannot be placed: their bodies take {:.1} m^2, and there is room for {:.1} m^2 where they start",
-        crowding.bodies, crowding.free
+        "{who} cannot be placed: their bodies take {:.2} m^2 of the {:.2} m^2 that they can cover where they start, and more than {:.0} % are never filled",
+        crowding.bodies,
+        crowding.free,
+        100.0 * start::JAMMED
     )
 }
 

@@ -3,8 +3,8 @@
 //!
 //! The kernel runs expressions as code over lanes; here they are walked, for checks before a trial.
 
-use super::expression::{Arithmetic, Bool, Comparison, Function, Num, Place};
-use super::process::{Process, Timing, VariableId};
+use super::expression::{Arithmetic, Bool, Comparison, Field, Function, Num, Place, Who};
+use super::process::{Command, Process, Timing, VariableId};
 use crate::base::math;
 use std::collections::BTreeSet;
 
@@ -82,17 +82,21 @@ impl Comparison {
 impl Process {
     /// Adds the variables that it reads, but for those of delays; whether it depends on nothing else.
     pub fn reads(&self, into: &mut BTreeSet<VariableId>) -> bool {
-        let mut closed = true;
-        for command in &self.commands {
-            closed &= command.guard.reads(into);
-            if let Timing::Rate(rate) = &command.timing {
-                closed &= rate.reads(into);
-            }
-            for branch in &command.branches {
-                closed &= branch.weight.reads(into);
-                for (_, value) in &branch.updates {
-                    closed &= value.reads(into);
-                }
+        self.commands.iter().fold(true, |so_far, command| so_far & command.reads(into))
+    }
+}
+
+impl Command {
+    /// Adds the variables that it reads, but for those of a delay; whether it depends on nothing else.
+    pub fn reads(&self, into: &mut BTreeSet<VariableId>) -> bool {
+        let mut closed = self.guard.reads(into);
+        if let Timing::Rate(rate) = &self.timing {
+            closed &= rate.reads(into);
+        }
+        for branch in &self.branches {
+            closed &= branch.weight.reads(into);
+            for (_, value) in &branch.updates {
+                closed &= value.reads(into);
             }
         }
         closed
@@ -118,8 +122,18 @@ impl Num {
     /// Whether it is surely the same in all states of all trials, though perhaps not known before: how far it is from a
     /// point to a wall.
     pub fn is_fixed(&self) -> bool {
+        self.is_made_of(|_| false)
+    }
+
+    /// Whether it is surely the same in all states of a trial: bodies are drawn at the start.
+    pub fn is_drawn(&self) -> bool {
+        self.is_made_of(is_of_body)
+    }
+
+    /// Whether it is made of what is the same everywhere, and of some numbers.
+    fn is_made_of(&self, number: fn(&Self) -> bool) -> bool {
         let place = |place: &Place| match place {
-            Place::Point(x, y) => x.is_fixed() && y.is_fixed(),
+            Place::Point(x, y) => x.is_made_of(number) && y.is_made_of(number),
             Place::Region(_) | Place::Barrier(_) => true,
             Place::Agent(_) | Place::Centroid(_) => false,
         };
@@ -127,9 +141,12 @@ impl Num {
             Self::Constant(_) => true,
             Self::Distance(a, b) => place(a) && place(b),
             Self::Coordinate(_, of) | Self::Depth(of, _) => place(of),
-            Self::Apply(_, a) => a.is_fixed(),
-            Self::Combine(_, a, b) => a.is_fixed() && b.is_fixed(),
-            _ => false,
+            Self::Apply(_, a) => a.is_made_of(number),
+            Self::Combine(_, a, b) => a.is_made_of(number) && b.is_made_of(number),
+            Self::If(condition, a, b) => {
+                condition.is_made_of(number) && a.is_made_of(number) && b.is_made_of(number)
+            }
+            _ => number(self),
         }
     }
 
@@ -154,7 +171,32 @@ impl Num {
     }
 }
 
+fn is_of_body(num: &Num) -> bool {
+    matches!(num, Num::Of(Field::Radius | Field::Mass, Who::Agent(_)))
+}
+
 impl Bool {
+    /// Whether it is surely the same in all states of all trials, though perhaps not known before.
+    pub fn is_fixed(&self) -> bool {
+        self.is_made_of(|_| false)
+    }
+
+    /// Whether it is surely the same in all states of a trial.
+    pub fn is_drawn(&self) -> bool {
+        self.is_made_of(is_of_body)
+    }
+
+    fn is_made_of(&self, number: fn(&Num) -> bool) -> bool {
+        match self {
+            Self::Constant(_) => true,
+            Self::Compare(_, a, b) => a.is_made_of(number) && b.is_made_of(number),
+            Self::Not(a) => a.is_made_of(number),
+            Self::And(all) | Self::Or(all) => all.iter().all(|one| one.is_made_of(number)),
+            Self::Iff(a, b) => a.is_made_of(number) && b.is_made_of(number),
+            _ => false,
+        }
+    }
+
     /// Adds the variables that it reads; whether it depends on nothing else.
     pub fn reads(&self, into: &mut BTreeSet<VariableId>) -> bool {
         match self {
@@ -190,7 +232,7 @@ impl Bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::VariableId;
+    use crate::model::{AgentId, RegionId};
 
     #[test]
     fn the_remainder_has_the_sign_of_the_divisor() {
@@ -215,6 +257,29 @@ mod tests {
             assert!(Arithmetic::Min.of(a, b).is_nan() && Arithmetic::Max.of(a, b).is_nan());
         }
         assert_eq!([Arithmetic::Min.of(1.0, 2.0), Arithmetic::Max.of(1.0, 2.0)], [1.0, 2.0]);
+    }
+
+    #[test]
+    fn what_agents_have_no_part_in_is_fixed() {
+        let point = Place::Point(Box::new(Num::Constant(1.0)), Box::new(Num::Constant(2.0)));
+        let far = |of: &Place| Num::Distance(of.clone(), Place::Region(RegionId(0)));
+        let choice = |num: Num, of: &Place| {
+            let near = Bool::Compare(Comparison::Less, Box::new(far(of)), Box::new(Num::Constant(1.0)));
+            let near = Bool::Not(Box::new(Bool::And(vec![near, Bool::Constant(true)])));
+            Num::If(Box::new(near), Box::new(num), Box::new(Num::Constant(0.0)))
+        };
+        let body = |who| Num::Of(Field::Radius, who);
+        let somebody = Who::Agent(AgentId(0));
+        for (num, fixed, drawn) in [
+            (choice(far(&point), &point), true, true),
+            (choice(body(somebody), &point), false, true),
+            (choice(body(Who::Running(0)), &point), false, false),
+            (choice(Num::Constant(1.0), &Place::Agent(somebody)), false, false),
+            (choice(Num::Variable(VariableId(0)), &point), false, false),
+            (choice(Num::Time, &point), false, false),
+        ] {
+            assert_eq!((num.is_fixed(), num.is_drawn()), (fixed, drawn), "{num:?}");
+        }
     }
 
     #[test]

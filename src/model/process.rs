@@ -73,8 +73,9 @@ pub enum Timing {
     Step,
     /// After an exponential time with this rate, 1/s.
     Rate(Num),
-    /// After a drawn time since it became enabled, s; of one that is a number its exact value, if it has one.
-    Delay(Law, Option<Decimal>),
+    /// After a drawn time since it became enabled, s; the times it can be, and what they are exactly, as far as they are few
+    /// and not rounded.
+    Delay(Law, Vec<(f64, Decimal)>),
 }
 
 /// What may happen when a command fires.

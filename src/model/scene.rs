@@ -17,6 +17,8 @@ pub struct Scene {
     pub barriers: Vec<Barrier>,
     /// Regions, which hinder nobody.
     pub regions: Vec<Region>,
+    /// Named points, m.
+    pub points: Vec<(String, Vec2)>,
 }
 
 /// A wall or an obstacle.

@@ -80,7 +80,8 @@ fn processes(out: &mut String, written: &Written) {
 }
 
 fn scene(out: &mut String, scenario: &Scenario) {
-    if scenario.scene.barriers.is_empty() && scenario.scene.regions.is_empty() {
+    let scene = &scenario.scene;
+    if scene.barriers.is_empty() && scene.regions.is_empty() && scene.points.is_empty() {
         return;
     }
     let _ = writeln!(out, "\nScene");
@@ -101,6 +102,9 @@ fn scene(out: &mut String, scenario: &Scenario) {
     }
     for region in &scenario.scene.regions {
         let _ = writeln!(out, "  region {}: {}", region.name, shape(&region.shape));
+    }
+    for (name, at) in &scenario.scene.points {
+        let _ = writeln!(out, "  point {name}: {} m", point(*at));
     }
 }
 

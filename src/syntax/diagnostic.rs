@@ -39,6 +39,8 @@ pub struct Diagnostic {
     pub hangs_on: Vec<Span>,
     /// Whether it hangs on no value at its place: an argument may be missing.
     pub is_formal: bool,
+    /// Where the bare number is declared that it comes of: that one lacks a unit.
+    pub comes_of: Option<Span>,
 }
 
 impl Diagnostic {
@@ -53,6 +55,7 @@ impl Diagnostic {
             hint: None,
             hangs_on: Vec::new(),
             is_formal: false,
+            comes_of: None,
         }
     }
 
@@ -72,6 +75,7 @@ impl Diagnostic {
             hint: None,
             hangs_on: Vec::new(),
             is_formal: false,
+            comes_of: None,
         }
     }
 

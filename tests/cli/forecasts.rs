@@ -74,6 +74,20 @@ fn a_rehearsal_leaves_no_trace() {
 }
 
 #[test]
+fn a_forecast_is_no_result_of_a_test() {
+    for format in ["junit", "github"] {
+        let said = place().call(&["check", "die.scn", "die.bltl", "-q", "--forecast", "--format", format]);
+        assert_eq!(said.code, Some(2), "{}", said.err);
+        assert!(
+            said.err.starts_with("error[E0705]") && said.out.contains("E0705"),
+            "{} {}",
+            said.err,
+            said.out
+        );
+    }
+}
+
+#[test]
 fn a_long_call_begins_with_its_forecast() {
     let place = Place::new(&[("a.scn", SMALL)]);
     place.write("a.bltl", b"estimate P(F<=3 s (speed(user) > 1.2 m/s)) within 0.0002 confidence 99 %\n");

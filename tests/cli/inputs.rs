@@ -206,7 +206,11 @@ fn imports_that_yield_nothing_are_told() {
     for (import, code, said) in [
         (r#""e.wkt""#, Some(2), "error[E0704]: this file is empty"),
         (r#""p.geojson""#, Some(0), "points are left out"),
-        (r#""l.geojson" where knd == "wall""#, Some(0), "these have `kind`"),
+        (r#""l.geojson" where kind == "door""#, Some(0), "these have `kind`"),
+        // What no feature has would differ from everything.
+        (r#""l.geojson" where knd == "wall""#, Some(2), "did you mean `kind`?"),
+        (r#""l.geojson" where kind == wall"#, Some(2), "error[E0201]: unknown property `wall`"),
+        (r#""l.geojson" where "kind" == "wall""#, Some(2), "error[E0305]: a filter compares properties"),
         (r#""l.geojson" where kind == "wall""#, Some(0), ""),
     ] {
         place.write("a.scn", format!("{SMALL}\nscene {{ import {import} }}\n").as_bytes());
@@ -217,6 +221,18 @@ fn imports_that_yield_nothing_are_told() {
             "{import}: {}",
             found.err
         );
+    }
+}
+
+#[test]
+fn a_scenario_of_comments_is_an_empty_one() {
+    for text in ["// only a comment\n", "/* nothing */", ";\n"] {
+        let place = Place::new(&[("a.scn", text), ("a.bltl", "check P(1 < 2) >= 0.5\n")]);
+        for call in [&["check", "a.scn", "a.bltl"][..], &["show", "a.scn"], &["simulate", "a.scn"]] {
+            let said = place.call(call);
+            assert_eq!(said.code, Some(2), "{}", said.err);
+            assert_eq!(said.err, "error[E0108]: a.scn declares nothing\n\n", "{text}");
+        }
     }
 }
 

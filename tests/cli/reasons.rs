@@ -30,6 +30,35 @@ fn implications_of_each_are_seen_to_have_no_case() {
     }
 }
 
+/// Whoever decides before the left side is known has not seen that it never holds.
+#[test]
+fn a_left_side_that_was_left_open_may_have_been_a_case() {
+    for (formula, idle) in [
+        ("(X (p.s == 1)) => p.s == 0", false),
+        ("(F<=1 step (p.s == 1)) => p.s == 0", false),
+        ("(G<=2 steps (p.s >= 0)) => p.s == 0", false),
+        ("(p.s == 0 U<=2 steps p.s == 1) => p.s == 0", false),
+        ("(X X (p.s == 0)) => X (p.s == 1)", false),
+        ("F<=3 steps ((X (p.s == 1)) => p.s == 0)", false),
+        ("p.s == 0 | ((X (p.s == 1)) => p.s == 1)", false),
+        // Seen to its end.
+        ("G<=3 steps ((X (p.s == 1 & p.s == 0)) => p.s == 0)", true),
+        ("(F<=3 steps (p.s == 0 & p.s == 1)) => p.s == 1", true),
+        ("G<=3 steps ((X (p.s == 1)) & p.s == 1 => p.s == 0)", true),
+        ("G<=3 steps (p.s == 1 & p.s == 0 => X (p.s == 1))", true),
+        // Open at the last position alone.
+        ("G<=3 steps ((F<=2 steps (p.s == 0 & p.s == 1)) => p.s >= 0)", true),
+    ] {
+        let model = "horizon = 6 steps\nprocess p { var s: 0 .. 1 = 0\n when s == 0 -> s = 1\n when s == 1 -> s = 0 }\n";
+        let query = format!("check P({formula}) >= 0.5\n");
+        let place = Place::new(&[("flip.scn", model), ("flip.bltl", &query)]);
+        let json = place.call(&["check", "flip.scn", "flip.bltl", "--format", "json"]).json();
+        let result = &json["results"][0];
+        assert_eq!(result["verdict"], "satisfied", "{result}");
+        assert_eq!(result["warnings"].to_string().contains("never triggered"), idle, "{formula}: {result}");
+    }
+}
+
 #[test]
 fn an_implication_is_a_condition_like_any_other() {
     let left = "speed(a) > 1.2 m/s";

@@ -121,7 +121,11 @@ impl Crowd {
             title: String::new(),
             clock: Clock::Stepped(Decimal::parse(self.dt).unwrap()),
             horizon: Tick(1_000_000),
-            scene: Scene { barriers: self.obstacles.iter().map(barrier).collect(), regions: Vec::new() },
+            scene: Scene {
+                barriers: self.obstacles.iter().map(barrier).collect(),
+                regions: Vec::new(),
+                points: Vec::new(),
+            },
             agents: self.people.iter().enumerate().map(agent).collect(),
             groups: self.groups.iter().map(group).collect(),
             moves: Vec::new(),

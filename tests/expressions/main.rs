@@ -31,6 +31,7 @@ fn scene() -> Scene {
     let region = |shape| Region { name: String::new(), shape };
     let barrier = |obstacle| Barrier { name: String::new(), obstacle };
     Scene {
+        points: Vec::new(),
         regions: vec![
             region(Shape::rectangle(p(1.0, 0.5), p(4.0, 3.0))),
             region(Shape::Circle { centre: p(3.0, 3.0), radius: 1.5 }),

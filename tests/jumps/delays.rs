@@ -123,3 +123,99 @@ process a { var m: 0 .. 10 = 10  when m == 10 after 1000 s -> m = b.k }
 ";
     assert_eq!(count(model, "F<=1000.5 s (a.m == 0)", 1), 1);
 }
+
+/// Sums that fall halfway between two doubles are the same time, however one is cut; of most that begin by chance one in
+/// eight does.
+#[test]
+fn what_begins_by_chance_keeps_its_order_too() {
+    let model = "horizon = 20 s
+process job    { var k: 0 .. 1 = 0  when k == 0 at 1 /s -> k = 1 }
+process ninths { var n: 0 .. 9 = 0  when job.k == 1 & n < 9 after 1 s / 9 -> n = n + 1 }
+process tenths { var n: 0 .. 10 = 0  when job.k == 1 & n < 10 after 0.1 s -> n = n + 1 }
+process door {
+  var s: 0 .. 1 = 0
+  var nine: 0 .. 9 = 0
+  var ten: 0 .. 10 = 0
+  when job.k == 1 & s == 0 after 1 s -> { s = 1; nine = ninths.n; ten = tenths.n }
+}
+process late { var n: 0 .. 14 = 0  when job.k == 1 & n < 14 after 1 s / 14 -> n = n + 1 }
+";
+    for (formula, truth) in [
+        ("G<=15 s (door.s == 1 => door.nine == 9 & door.ten == 10)", true),
+        // Asked directly, and of stored pieces.
+        ("G<=15 s (door.s == 1 <=> ninths.n == 9)", true),
+        ("G<=15 s F<=0 s (door.s == 1 <=> ninths.n == 9)", true),
+        ("G<=15 s (door.s == 1 <=> late.n == 14)", true),
+        ("F<=15 s (door.s == 0 & ninths.n == 9)", false),
+        ("F<=15 s (G[0 s, 0 s] (door.s == 0 & ninths.n == 9))", false),
+    ] {
+        assert_eq!(count(model, formula, 600), if truth { 600 } else { 0 }, "{formula}");
+    }
+}
+
+/// Two times that have one double are two times.
+#[test]
+fn what_lasts_less_than_a_double_tells_lasts() {
+    let model = "horizon = 31536000 s
+process job {
+  var k: 0 .. 3 = 0
+  when k == 0 at 0.0000001 /s       -> k = 1
+  when k == 1 after 0.000000001 s   -> k = 2
+  when k == 2 after 2 s             -> k = 3
+}
+process late { var k: 0 .. 2 = 0  when k == 0 after 31000000 s -> k = 1  when k == 1 after 0.000000001 s -> k = 2 }
+";
+    for (formula, truth) in [
+        ("G<=31000000 s (job.k == 2 => F<=2 s (job.k == 3))", true),
+        ("F (job.k == 2) => F (job.k == 1)", true),
+        ("F<=31000000 s (late.k == 2)", false),
+        ("F<=31000000 s (late.k == 1)", true),
+        ("F<=31000001 s (late.k == 2)", true),
+        ("F<=31000001 s (G[0 s, 0 s] (late.k == 1))", true),
+        ("time_until(late.k == 2) > 31000000 s", true),
+    ] {
+        assert_eq!(count(model, formula, 300), if truth { 300 } else { 0 }, "{formula}");
+    }
+}
+
+/// What is drawn of a list is as long as it is written, however many digits that takes: `3 * 0.1 s` is 0.3 s.
+#[test]
+fn drawn_delays_meet_bounds_of_just_their_length() {
+    let model = "horizon = 86400 s
+process tenths { var k: 0 .. 1 = 0  when k == 0 after uniform_int(3, 3) * 0.1 s -> k = 1 }
+process thirds { var k: 0 .. 2 = 0  when k == 0 at 0.001 /s -> k = 1  when k == 1 after uniform_int(7, 7) * (1 s / 3) -> k = 2 }
+process cut    { var k: 0 .. 1 = 0  when k == 0 after uniform_int(1, 9) * 0.1 s in 0.7 s .. 0.75 s -> k = 1 }
+process long   { var k: 0 .. 2 = 0  when k == 0 at 0.001 /s -> k = 1  when k == 1 after choice(9000.1 s, 9000.1 s) -> k = 2 }
+process mixed  { var k: 0 .. 1 = 0  when k == 0 after 0.1 s * choice(3, pi / 3) -> k = 1 }
+process still  { var k: 0 .. 2 = 0  when k == 0 at 0.001 /s -> k = 1  when k == 1 after normal(9000.1 s, 0 s) -> k = 2 }
+process triple { var k: 0 .. 2 = 0  when k == 0 at 0.001 /s -> k = 1  when k == 1 after 2 * choice(1.1, 1.1) * 1.5 s -> k = 2 }
+process digits {
+  var k: 0 .. 3 = 0
+  when k == 0 at 0.001 /s                 -> k = 1
+  when k == 1 after 0.12345678901234567 s -> k = 2
+  when k == 2 after 1.87654321098765433 s -> k = 3
+}
+";
+    for formula in [
+        "F<=0.3 s (tenths.k == 1)",
+        "G<=0.29 s (tenths.k == 0)",
+        "G<=70000 s (thirds.k == 1 => F<=(7 s / 3) (thirds.k == 2))",
+        "F<=0.7 s (cut.k == 1)",
+        // What is rounded beside it rounds nothing else.
+        "F<=0.3 s (mixed.k == 1)",
+        "G<=70000 s (still.k == 1 => F<=9000.1 s (still.k == 2))",
+        "G<=70000 s (long.k == 1 => F<=9000.1 s (long.k == 2))",
+        "G<=70000 s (triple.k == 1 => F<=3.3 s (triple.k == 2))",
+        "G<=70000 s (digits.k == 1 => F<=2 s (digits.k == 3))",
+    ] {
+        assert_eq!(count(model, formula, 300), 300, "{formula}");
+    }
+    // Steps and continuous time agree.
+    let law = "process job { var k: 0 .. 1 = 0  when k == 0 after poisson(4) * 0.1 s -> k = 1 }\n";
+    for bound in ["0.3 s", "0.6 s", "0.7 s"] {
+        let formula = format!("F<={bound} (job.k == 1)");
+        let held = ["horizon = 20 s\n", "horizon = 20 s\nstep = 0.1 s\n"]
+            .map(|head| count(&format!("{head}{law}"), &formula, 400));
+        assert_eq!(held[0], held[1], "{formula}");
+    }
+}

@@ -119,6 +119,35 @@ fn a_trial_that_is_decided_before_the_error_counts() {
     assert_eq!(run.results[0].counts.failures, 0);
 }
 
+/// What the least or greatest value of a window is compared with is looked at state by state: by `==` and `!=` too.
+#[test]
+fn an_extreme_beside_a_number_is_decided_by_one_state() {
+    // The step from 3 is an error: whatever waits for the end of its window meets it.
+    let scenario =
+        "horizon = 50 steps\nprocess p { var x = 0\n var n: 0 .. 3 = 0\n when x >= 0 -> n = n + 1 }";
+    let rows = [
+        ("(min<=#9 p.n) == 1", Some(false)),
+        ("(min<=#9 p.n) != 1", Some(true)),
+        ("(max<=#9 p.n) == 2", Some(false)),
+        ("(max<=#9 p.n) != 2", Some(true)),
+        ("2 == (max<=#9 p.n)", Some(false)),
+        ("X<=#1 ((max<=#9 p.n) != 2)", Some(true)),
+        ("(min<=#9 p.n) == 0", None),
+        ("(max<=#9 p.n) != 3", None),
+    ];
+    for (formula, holds) in rows {
+        let run = answered(&compiled(scenario, &format!("estimate P({formula}) within 0.05")).unwrap(), 3, 1);
+        match holds {
+            Some(holds) => {
+                assert_eq!(run.failure, None, "{formula}");
+                let counts = &run.results[0].counts;
+                assert_eq!(counts.successes, if holds { counts.trials } else { 0 }, "{formula}");
+            }
+            None => assert!(matches!(run.failure, Some(Failure::Model(_))), "{formula}: {:?}", run.failure),
+        }
+    }
+}
+
 #[test]
 fn other_errors_of_clocks_and_timing() {
     for (text, code) in [

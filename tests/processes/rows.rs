@@ -64,6 +64,21 @@ fn next_is_the_next_state_and_with_a_bound_exactly_that_one() {
 }
 
 #[test]
+fn an_extreme_is_a_number_where_all_reach_it_and_one_is_it() {
+    exactly(
+        &die(),
+        &[
+            ("(max<=#3 die.s) == 7", 0.75),
+            ("(max<=#3 die.s) != 7", 0.25),
+            ("(min<=#3 die.s) == 0", 1.0),
+            ("X ((min<=#3 die.s) == 1)", 0.5),
+            ("X ((min<=#3 die.s) != 1)", 0.5),
+            ("(max<=#2 die.s) == 3 | (max<=#2 die.s) == 4", 0.5),
+        ],
+    );
+}
+
+#[test]
 fn until_looks_at_its_goal_first_and_the_weak_and_release_forms_are_as_usual() {
     exactly(
         &die(),

@@ -151,6 +151,66 @@ fn arms_that_never_differ_are_certified_equal_and_the_least_deviation_decides() 
     assert!(choice.gap <= 0.02);
 }
 
+/// Before anything is certified, too: of arms that came out alike none has more to say for itself than the others.
+#[test]
+fn of_arms_that_came_out_alike_the_least_deviation_is_chosen_at_any_time() {
+    let deviations = [2.0, 1.0, 0.0, 1.0, 2.0];
+    let half = |index: u64, arm: usize| Outcome::from(index.is_multiple_of(2) || arm == 4 && index == 1);
+    for (behind, alike) in [(false, 2), (true, 4)] {
+        let mut race = Race::<Booleans>::new(5, 0.02, 0.05, 32, Allocation::AllFailing).unwrap();
+        let mut scores = Race::<Scores>::new(5, 0.02, 0.05, 32, Allocation::AllFailing).unwrap();
+        let mut each = Each::new(5, 0.02, 0.05, 32).unwrap();
+        for arm in 0..5 {
+            // One success more puts the last one ahead.
+            let outcome = |index| half(index, if behind { arm } else { 0 });
+            let outcomes: Vec<Outcome> = (0..32).map(outcome).collect();
+            race.feed(arm, &outcomes).unwrap();
+            each.feed(arm, &outcomes).unwrap();
+            let values: Vec<Option<f64>> =
+                outcomes.iter().map(|one| Some(f64::from(u8::from(*one == Outcome::True)))).collect();
+            scores.feed(arm, &values).unwrap();
+        }
+        for choice in
+            [race.choice(Some(&deviations)), scores.choice(Some(&deviations)), each.choice(Some(&deviations))]
+        {
+            assert_eq!((choice.arm, choice.certified.len(), choice.open.len()), (alike, 0, 4));
+        }
+        assert_eq!(race.choice(None).arm, if behind { 4 } else { 0 });
+        if !behind {
+            // One more trial of some is no reason, of the next round neither.
+            race.next_round();
+            each.next_round();
+            for arm in [0, 1] {
+                race.feed(arm, &[Outcome::True; 1]).unwrap();
+                each.feed(arm, &[Outcome::True; 1]).unwrap();
+            }
+            assert_eq!(race.choice(Some(&deviations)).arm, 2);
+        }
+    }
+}
+
+/// One that stopped early beside the leader is alike on what both have, and carries no certificate.
+#[test]
+fn a_decided_race_keeps_its_promise() {
+    for run in 0..40 {
+        let mut race = Race::<Booleans>::new(3, 0.1, 0.05, 32, Allocation::AllFailing).unwrap();
+        // The first two differ late; the third differs from both in many trials, and is about as good.
+        let outcome = |arm: usize, index: u64| {
+            let u = uniform(49, run, if arm == 2 { 2 } else { 0 }, index);
+            Outcome::from(if arm == 1 && index >= 150 { u < 0.4 } else { u < 0.5 })
+        };
+        while !race.finished() && race.trials() < 100_000 {
+            for share in race.next_round().to_vec() {
+                let outcomes: Vec<Outcome> = (share.from..share.to).map(|k| outcome(share.arm, k)).collect();
+                race.feed(share.arm, &outcomes).unwrap();
+            }
+        }
+        assert!(race.finished());
+        let choice = race.choice(Some(&[1.0, 0.0, 1.0]));
+        assert!(choice.gap <= 0.1 + 1e-12 && choice.certified.contains(&choice.arm), "{run}: {choice:?}");
+    }
+}
+
 #[test]
 fn unresolved_trials_count_against_the_leader_and_for_the_rival() {
     // The second arm succeeds in 0.75 to 0.95 of its trials, depending on the unresolved ones; the first, in

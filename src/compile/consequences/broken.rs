@@ -7,10 +7,11 @@ use super::{
 use crate::compile::dimension;
 use crate::compile::queries::Input;
 use crate::compile::told::is_stepped;
+use crate::syntax::ast::Item;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::source::{Source, SourceId, Span};
 use std::cmp::Reverse;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Codes of names that are not there, or of what needs one.
 const NAMES: [&str; 8] = ["E0201", "E0203", "E0205", "E0208", "E0209", "E0210", "E0505", "E0606"];
@@ -128,6 +129,8 @@ pub(super) struct Broken<'i> {
     /// Whether a setting, or a field, may have been among it.
     settings: bool,
     fields: bool,
+    /// Kinds: what each starts from, and where its name is.
+    kinds: BTreeMap<&'i str, (&'i str, Span)>,
     /// Sources with errors, and the lines that say no more since they could not be read.
     with_errors: BTreeSet<SourceId>,
     derailed: BTreeSet<(SourceId, usize)>,
@@ -153,6 +156,7 @@ impl<'i> Broken<'i> {
             clock: false,
             settings: false,
             fields: false,
+            kinds: input.scenario.items.iter().filter_map(kind_of).collect(),
             with_errors: BTreeSet::new(),
             derailed: BTreeSet::new(),
             faulty: BTreeSet::new(),
@@ -179,7 +183,7 @@ impl<'i> Broken<'i> {
         texts.sort_by_key(|span| (span.source, span.start, Reverse(span.end)));
         texts.dedup_by_key(|span| (span.source, span.start));
         for span in texts {
-            broken.add(span.source, word(input.sources, span).unwrap_or_default());
+            broken.add(span, word(input.sources, span).unwrap_or_default());
         }
         // Of a scenario without times in seconds the processes decide which clock it has.
         broken.clock &= !is_stepped(input.scenario);
@@ -206,7 +210,8 @@ impl<'i> Broken<'i> {
     }
 
     /// A text that was not read, or not to its end.
-    fn add(&mut self, source: SourceId, text: &'i str) {
+    fn add(&mut self, span: Span, text: &'i str) {
+        let source = span.source;
         let (first, rest) = leading_word(text);
         let (second, _) = leading_word(rest);
         self.moves |= ["moves", "heading", "stop"].iter().any(|word| has_word(text, word));
@@ -216,7 +221,9 @@ impl<'i> Broken<'i> {
         // A word that starts no declaration may be a misspelt name of either.
         let is_declared = DECLARES.contains(&first) || NAMELESS.contains(&first) || first == "scenario";
         let sets = || ["horizon", "step"].iter().any(|word| has_word(text, word));
-        self.settings |= source == SourceId(0) && (!is_declared || sets());
+        // Of a field whose value alone could not be read the name was.
+        let is_field = rest.trim() == "=" && self.is_in_block(span);
+        self.settings |= source == SourceId(0) && (!is_declared && !is_field || sets());
         let has_fields =
             ["agent", "agents", "group", "kind", "source"].contains(&first) && text.contains('{');
         self.fields |= source == SourceId(0) && (!is_declared || has_fields);
@@ -297,6 +304,25 @@ impl<'i> Broken<'i> {
             || self.skipped.hold(place)
     }
 
+    /// Whether a place stands in braces.
+    fn is_in_block(&self, place: Span) -> bool {
+        let before = word(self.sources, Span { start: 0, end: place.start, ..place }).unwrap_or_default();
+        before.matches('{').count() > before.matches('}').count()
+    }
+
+    /// Whether a kind, and all that it starts from, were read to their ends.
+    fn is_whole_kind(&self, name: &str) -> bool {
+        let mut name = name;
+        for _ in 0..=self.kinds.len() {
+            let Some((base, place)) = self.kinds.get(name) else { return name == "sfm" };
+            if self.is_torn_behind(*place) {
+                return false;
+            }
+            name = base;
+        }
+        false
+    }
+
     pub(super) fn is_own(&self, one: &Diagnostic) -> bool {
         let scenario = self.is_broken(SourceId(0));
         let Some(place) = one.place.as_ref().map(|place| place.span) else {
@@ -320,7 +346,7 @@ impl<'i> Broken<'i> {
         let alone = one.title.ends_with(BY_ITSELF)
             || one.code == NO_MOVES && !scenario
             || one.code == LACKING && one.title.starts_with("where does") && !self.is_torn_behind(place)
-            || one.code == LACKING && !self.fields && !self.any_name
+            || one.code == LACKING && !self.any_name && (!self.fields || self.is_whole_kind(text))
             || one.code == SETTING
                 && (!one.title.contains("has no") || !self.settings && !self.any_name && !self.clock)
             || one.code == EARLY && one.title.ends_with("not known yet here");
@@ -346,6 +372,13 @@ impl<'i> Broken<'i> {
             || of_part
             || of_line
             || unit)
+    }
+}
+
+fn kind_of(item: &Item) -> Option<(&str, (&str, Span))> {
+    match item {
+        Item::Kind(decl) => Some((&decl.name.name, (&decl.base.name, decl.name.span))),
+        _ => None,
     }
 }
 

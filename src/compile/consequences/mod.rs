@@ -10,6 +10,7 @@ use super::dimension;
 use super::queries::Input;
 use crate::syntax::ast::{Expr, ExprKind, Ident, Item, PropertyItem};
 use crate::syntax::diagnostic::{Diagnostic, Label, Severity};
+use crate::syntax::parse::{continues_name, starts_name};
 use crate::syntax::source::{Source, SourceId, Span};
 use broken::Broken;
 use std::collections::btree_map::Entry;
@@ -68,7 +69,11 @@ fn less_what_follows(mut found: Vec<Diagnostic>, sources: &[Source]) -> Vec<Diag
                 ends.range((span.source, from)..=(span.source, to)).next().is_some()
             })
         };
-        let of_setting = || word(sources, span).is_some_and(|name| settings.contains(name));
+        // It may stand in parentheses.
+        let of_setting = || {
+            let name = word(sources, span).map(|text| leading_word(bare(text)).0);
+            name.is_some_and(|name| settings.contains(name) && one.title.contains(&format!("`{name}`")))
+        };
         let misspelt = || {
             let source = sources.iter().find(|source| source.id == span.source);
             let block = source.and_then(|source| source.text.get(span.end as usize..)).map_or(0, block_end);
@@ -174,11 +179,10 @@ fn blamed<'b, 'd>(
 ) -> Option<(&'b Bare<'b>, &'d str, Span)> {
     let wanted = one.title.strip_prefix("expected ")?.strip_suffix(", found a pure number")?;
     let place = one.place.as_ref().filter(|_| one.code == DIMENSION)?.span;
-    let text = word(sources, place)?;
-    let mut named = declared.iter().filter(|bare| has_word(text, bare.name));
     // A call may make a pure number of anything.
-    let first = named.next().filter(|_| !text.contains('('))?;
-    named.next().is_none().then_some((first, wanted, place))
+    let comes_of = one.comes_of.filter(|_| word(sources, place).is_some_and(|text| !text.contains('(')))?;
+    let bare = declared.iter().find(|bare| bare.value == comes_of)?;
+    Some((bare, wanted, place))
 }
 
 /// Tells of an unknown name where it stands first, and marks where it stands again.
@@ -242,14 +246,14 @@ fn bare(text: &str) -> &str {
 /// The name at the start of a text, and what follows.
 fn leading_word(text: &str) -> (&str, &str) {
     let text = text.trim_start();
-    let starts = text.starts_with(|c: char| c.is_alphabetic() || c == '_');
-    let end = text.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(text.len());
+    let starts = text.starts_with(starts_name);
+    let end = text.find(|c: char| !continues_name(c)).unwrap_or(text.len());
     if starts { text.split_at(end) } else { ("", text) }
 }
 
 /// The words of a text.
 pub(super) fn words(text: &str) -> impl DoubleEndedIterator<Item = &str> {
-    text.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|word| !word.is_empty())
+    text.split(|c: char| !continues_name(c)).filter(|word| !word.is_empty())
 }
 
 /// The lines of a place.
@@ -266,7 +270,7 @@ fn word(sources: &[Source], span: Span) -> Option<&str> {
 
 /// Whether a name stands in a text as a word of its own.
 fn has_word(text: &str, name: &str) -> bool {
-    let inside = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_');
+    let inside = |c: Option<char>| c.is_some_and(continues_name);
     let name = name.trim();
     name.is_empty()
         || text.match_indices(name).any(|(at, _)| {

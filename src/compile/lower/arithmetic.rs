@@ -8,7 +8,7 @@ use super::super::weight::Weight;
 use crate::base::math;
 use crate::logic::{Operation, Term};
 use crate::model::{Arithmetic, Function, Num};
-use crate::syntax::ast::{BinaryOp, Expr};
+use crate::syntax::ast::{BinaryOp, Expr, ExprKind};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
@@ -42,6 +42,11 @@ impl Elaborator<'_> {
     ) -> Lowered<Typed> {
         if op == BinaryOp::Power {
             return self.lower_power(span, left, right, locals);
+        }
+        let is_over_product =
+            op == BinaryOp::Over && matches!(right.kind, ExprKind::Binary(BinaryOp::Times, ..));
+        if is_over_product && self.misread_factors(left, right, locals) {
+            return Err(Reported);
         }
         let sides = (self.lower(left, locals), self.lower(right, locals));
         if sides.1.is_err() {
@@ -184,6 +189,7 @@ impl Elaborator<'_> {
             if dimension.is_none() {
                 return Ok(dimension);
             }
+            this.note_exponent(right);
             match whole {
                 Some(n) => match dimension.power(n) {
                     Some(d) => Ok(d),
@@ -225,6 +231,24 @@ impl Elaborator<'_> {
                 let exponent = Box::new(Num::Constant(exponent.value));
                 Ok(Typed::Num(Num::Combine(Arithmetic::Power, Box::new(num), exponent), dimension))
             }
+        }
+    }
+}
+
+impl Elaborator<'_> {
+    /// Notes an exponent that hangs on parameters, by itself or by the arguments of a function.
+    fn note_exponent(&mut self, exponent: &Expr) {
+        let place = exponent.span;
+        if matches!(exponent.kind, ExprKind::Quantity(_)) || self.exponents.contains_key(&place.source) {
+            return;
+        }
+        let inside = |used: &Span| place.start <= used.start && used.end <= place.end;
+        let from = self.aliases.range(Span { end: 0, ..place }..);
+        let used = from.take_while(|(used, _)| used.source == place.source && used.start < place.end);
+        let meant = used.filter(|(used, _)| inside(used)).map(|(_, meant)| *meant);
+        let hangs = std::iter::once(place).chain(meant).find(|place| self.hangs_on_parameters(*place));
+        if let Some(hangs) = hangs {
+            self.exponents.insert(place.source, hangs);
         }
     }
 }

@@ -127,7 +127,7 @@ impl Elaborator<'_> {
                     .collect();
                 known.extend(declared.iter().map(String::as_str));
                 let error = unknown("function", name, function.span, "E0203", known.into_iter());
-                self.note(error);
+                self.note(if matches!(name, "not" | "NOT") { error.hint("write `!(…)`") } else { error });
                 // Whatever it is, its arguments are what they are.
                 let _ = self.lower_all(arguments, locals);
                 Err(Reported)

@@ -158,6 +158,11 @@ impl Elaborator<'_> {
             }
             return Ok(Typed::Formula(self.comparison((relation, a, b), text, da)));
         }
+        if [&a, &b].iter().all(|side| matches!(side, Typed::Vector(..) | Typed::Point(..))) {
+            let error = Diagnostic::error("E0305", whole, "vectors are not compared")
+                .hint("compare their `distance`, or their components: `x(position(a))`");
+            return self.report(error);
+        }
         let sides = (self.as_num(a, left.span), self.as_num(b, right.span));
         let ((a, da), (b, db)) = (sides.0?, sides.1?);
         if da != db {

@@ -7,11 +7,9 @@ use super::{BUILT_IN, DISTRIBUTIONS, FUNCTIONS};
 use crate::base::tick::Clock;
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Value};
 use crate::syntax::diagnostic::Diagnostic;
-use crate::syntax::parse::unit_meant;
+use crate::syntax::parse::{time_meant, unit_meant};
 use crate::syntax::source::Span;
 
-/// Units of a bound.
-const TIMES: [&str; 6] = ["s", "ms", "min", "h", "step", "steps"];
 /// The word before a shape in which somebody starts.
 const PLACES: &str = "uniform";
 
@@ -24,8 +22,7 @@ impl Elaborator<'_> {
         if end.span.end > span.start || !self.text(between).is_empty() || self.is_known(name, locals) {
             return false;
         }
-        let meant = unit_meant(name).filter(|(unit, _)| TIMES.contains(&unit.as_str()));
-        let Some((unit, is_sure)) = meant else { return false };
+        let Some((unit, is_sure)) = time_meant(name) else { return false };
         let number = self.text(end.span);
         let hint = match self.clock {
             // There a bare number is a bound, and nothing but the name is amiss.
@@ -73,27 +70,99 @@ impl Elaborator<'_> {
         true
     }
 
-    /// `1 m/sec`, `0.1 /m2`: of an unknown name that stands below or beside a unit, the unit it may mean.
+    /// `5 kg/(m*sec)`: a product of units one of which is misspelt, so that all read as names. Says so, and whether it
+    /// is so.
+    #[cold]
+    pub(super) fn misread_factors(&mut self, left: &Expr, right: &Expr, locals: &Locals) -> bool {
+        let (before, mut factors) = (last_operand(left), Vec::new());
+        let has_unit = matches!(&before.kind, ExprKind::Quantity(quantity) if quantity.unit.is_some());
+        if !has_unit || !self.ends_with(left, before) || !named_factors(right, &mut factors) {
+            return false;
+        }
+        let mut misspelt = Vec::new();
+        for (name, span) in &factors {
+            match unit_meant(name).filter(|_| !self.is_known(name, locals)) {
+                None => return false,
+                Some((unit, _)) if unit == *name => {}
+                Some((unit, is_sure)) => misspelt.push((*name, *span, unit, is_sure)),
+            }
+        }
+        // Where all are units, or none surely is one, they are names that nobody knows.
+        let is_sure = misspelt.len() < factors.len() || misspelt.iter().any(|(.., is_sure)| *is_sure);
+        if misspelt.is_empty() || !is_sure {
+            return false;
+        }
+        for (name, span, unit, _) in misspelt {
+            let error = Diagnostic::error("E0113", span, format!("unknown unit `{name}`"));
+            self.note(error.hint(format!("did you mean `{unit}`?")));
+        }
+        true
+    }
+
+    /// `1 m/sec`, `0.1 /m2`, `1 m/sec^2`: of an unknown name that stands below or beside a unit, the unit it may mean.
     #[cold]
     pub(super) fn suggest_unit(&mut self, op: BinaryOp, left: &Expr, right: &Expr) {
-        let (ExprKind::Name(name), BinaryOp::Over | BinaryOp::Times) = (&right.kind, op) else { return };
+        let (factor, power) = match &right.kind {
+            ExprKind::Binary(BinaryOp::Power, base, _) => {
+                (&**base, self.text(Span { start: base.span.end, ..right.span }))
+            }
+            _ => (right, String::new()),
+        };
+        let (ExprKind::Name(name), BinaryOp::Over | BinaryOp::Times) = (&factor.kind, op) else { return };
         let before = last_operand(left);
         let ExprKind::Quantity(quantity) = &before.kind else { return };
         if quantity.unit.is_none() && op == BinaryOp::Times {
             return;
         }
-        let Some((unit, is_sure)) = unit_meant(name).filter(|(unit, _)| unit != name) else { return };
+        let meant = unit_meant(name).filter(|(unit, _)| unit != name);
+        let Some((unit, is_sure)) = meant.filter(|(unit, _)| is_power(unit, &power)) else { return };
         let mut written = self.text(Span { end: right.span.start, ..before.span }).trim_end().to_owned();
         if op == BinaryOp::Times {
             written.truncate(written.trim_end_matches(['*', ' ']).len());
             written.push('*');
         }
+        // A unit behind parentheses belongs to no number.
+        if !self.ends_with(left, before) {
+            "1 ".clone_into(&mut written);
+        }
         let unknown = self.diagnostics.iter_mut().rev().find(|one| {
-            one.code == "E0201" && one.place.as_ref().is_some_and(|place| place.span == right.span)
+            one.code == "E0201" && one.place.as_ref().is_some_and(|place| place.span == factor.span)
         });
         if let Some(unknown) = unknown.filter(|one| is_sure || one.hint.is_none()) {
-            unknown.hint = Some(format!("did you mean `{written}{unit}`?"));
+            unknown.hint = Some(format!("did you mean `{written}{unit}{power}`?"));
         }
+    }
+}
+
+impl Elaborator<'_> {
+    /// Whether no parenthesis stands between the last operand of an expression and its end.
+    fn ends_with(&self, expr: &Expr, last: &Expr) -> bool {
+        expr.span.end == last.span.end && !self.text(last.span).starts_with('(')
+    }
+}
+
+/// Whether a unit takes a power as it is written: it has none of its own, and that one is whole.
+fn is_power(unit: &str, power: &str) -> bool {
+    let digits = power.strip_prefix('^').map(|power| power.strip_prefix('-').unwrap_or(power));
+    digits.is_none_or(|digits| !unit.contains('^') && digits.bytes().all(|byte| byte.is_ascii_digit()))
+}
+
+/// Adds the names that an expression is a product of, with or without powers, and says whether it is one.
+fn named_factors<'e>(expr: &'e Expr, found: &mut Vec<(&'e str, Span)>) -> bool {
+    match &expr.kind {
+        ExprKind::Name(name) => {
+            found.push((name, expr.span));
+            true
+        }
+        ExprKind::Binary(BinaryOp::Times, left, right) => {
+            named_factors(left, found) && named_factors(right, found)
+        }
+        ExprKind::Binary(BinaryOp::Power, base, power) => {
+            matches!(base.kind, ExprKind::Name(_))
+                && matches!(power.kind, ExprKind::Quantity(_))
+                && named_factors(base, found)
+        }
+        _ => false,
     }
 }
 
@@ -116,8 +185,8 @@ fn leading_name(expr: &Expr) -> Option<(&str, Span)> {
 /// The operand that an expression ends with.
 fn last_operand(expr: &Expr) -> &Expr {
     let mut expr = expr;
-    while let ExprKind::Binary(_, _, right) = &expr.kind {
-        expr = right;
+    while let ExprKind::Binary(_, _, last) | ExprKind::Unary(_, last) = &expr.kind {
+        expr = last;
     }
     expr
 }

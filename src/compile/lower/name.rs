@@ -2,12 +2,13 @@
 
 use super::super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::super::failures::Vain;
+use super::super::process::Declared;
 use super::super::symbols::{Meaning, ScopeId, unknown};
 use super::super::typed::Typed;
 use super::super::weight::Weight;
 use super::{BUILT_IN, counted_arguments};
 use crate::model::{Bool, Set, Who};
-use crate::syntax::ast::{Expr, Ident, LetDecl};
+use crate::syntax::ast::{Expr, ExprKind, Ident, LetDecl};
 use crate::syntax::diagnostic::{Diagnostic, Label};
 use crate::syntax::source::Span;
 
@@ -59,9 +60,19 @@ impl<'a> Elaborator<'a> {
                     Ok(Typed::Agents { set: Set { members: self.everyone(), except: None }, particle: false })
                 }
                 "pi" => Ok(Typed::Number(super::Number::rounded(std::f64::consts::PI, Dimension::NONE))),
-                _ => self.unknown_name(name, span, locals),
+                _ => match self.lower_settling(name, span, locals) {
+                    Some(lowered) => lowered,
+                    None => self.unknown_name(name, span, locals),
+                },
             };
         };
+        if let Meaning::Constant(value) | Meaning::Param { value, .. } = &meaning
+            && matches!(&value.kind, ExprKind::Quantity(quantity) if quantity.unit.is_none())
+            // A declaration that is looked at by its name is no use of it.
+            && value.span != span
+        {
+            self.bare.insert(span, value.span);
+        }
         match meaning {
             Meaning::Constant(value) => self.constant(scope, name, span, |this| {
                 let lowered = this.timeless(value, &Locals::of(scope));
@@ -104,10 +115,8 @@ impl<'a> Elaborator<'a> {
             Meaning::Barrier(id) => Ok(Typed::Barrier(id)),
             Meaning::Point(at) => self.constant(scope, name, span, |this| this.lower(at, &Locals::of(scope))),
             Meaning::Process(process) => {
-                Ok(match self.processes.get(process as usize).and_then(|p| p.copies) {
-                    Some(_) => Typed::Processes(process),
-                    None => Typed::Process { process, copy: 0 },
-                })
+                let is_array = self.processes.get(process as usize).is_some_and(Declared::is_array);
+                Ok(if is_array { Typed::Processes(process) } else { Typed::Process { process, copy: 0 } })
             }
             Meaning::Agent(id) => Ok(Typed::Agent(Who::Agent(id))),
             Meaning::Agents { members, particle } => {
@@ -173,7 +182,10 @@ impl<'a> Elaborator<'a> {
         compute: impl FnOnce(&mut Self) -> Lowered<Typed>,
     ) -> Lowered<Typed> {
         let key = (scope, name.to_owned());
-        if let Some(known) = self.constants.get(&key) {
+        // A condition has a margin at each place where it is asked for.
+        let is_margin = |known: &Lowered<Typed>| matches!(known, Ok(Typed::Truth(truth)) if !matches!(truth, Bool::Constant(_)));
+        let asks = self.margins.is_some();
+        if let Some(known) = self.constants.get(&key).filter(|known| !(asks && is_margin(known))) {
             let weight = known.as_ref().map(Weight::of).map_err(|reported| *reported)?;
             self.count_copy(weight, span)?;
             return self.constants.get(&key).cloned().unwrap_or(Err(Reported));
@@ -200,22 +212,27 @@ impl<'a> Elaborator<'a> {
     /// What a constant stands for, if it is the same in all states of all trials.
     pub(in crate::compile) fn unchanging(&mut self, lowered: Lowered<Typed>, value: &Expr) -> Lowered<Typed> {
         let found = lowered?;
-        let changes = match &found {
-            Typed::Num(num, _) => !num.is_fixed(),
-            Typed::Vector(..) | Typed::Term(..) | Typed::Formula(_) | Typed::Tally(_) => true,
-            Typed::Truth(truth) => !matches!(truth, Bool::Constant(_)),
-            _ => false,
+        let (is_fixed, is_drawn) = match &found {
+            Typed::Num(num, _) => (num.is_fixed(), num.is_drawn()),
+            Typed::Vector(x, y, _) => (x.is_fixed() && y.is_fixed(), x.is_drawn() && y.is_drawn()),
+            Typed::Truth(truth) => (truth.is_fixed(), truth.is_drawn()),
+            Typed::Term(..) | Typed::Formula(_) | Typed::Tally(_) => (false, false),
+            _ => (true, true),
         };
-        if !changes {
+        if is_fixed {
             return Ok(found);
         }
-        let error = Diagnostic::error("E0304", value.span, "this must be known before a trial starts").label(
-            match found {
-                Typed::Truth(_) => "a condition, which may change during a trial".to_owned(),
-                _ => format!("{} that changes during a trial", found.noun()),
-            },
-        );
-        self.report(error.hint("`let` names what changes"))
+        let label = match found {
+            _ if is_drawn => format!("{} that is not known before a trial", found.noun()),
+            Typed::Truth(_) => "a condition, which may change during a trial".to_owned(),
+            _ => format!("{} that changes during a trial", found.noun()),
+        };
+        let error = Diagnostic::error("E0304", value.span, "this must be known before a trial starts");
+        self.report(error.label(label).hint(if is_drawn {
+            "`let` names what each trial draws"
+        } else {
+            "`let` names what changes"
+        }))
     }
 
     /// Computes what a name stands for; an error where that needs the name itself.

@@ -25,6 +25,7 @@ impl Elaborator<'_> {
     ) -> Lowered<Typed> {
         let members = match self.lower(set, locals) {
             Ok(Typed::Processes(process)) => {
+                self.counted(process, set.span)?;
                 return self.lower_over_processes(quantifier, variable, process, body, locals);
             }
             members => members.and_then(|members| self.as_set(members, set.span)),

@@ -187,14 +187,22 @@ impl Elaborator<'_> {
             };
         }
         if number.dimension.is_none() {
-            // A number as it is written is shown with its unit.
+            // A number as it is written is shown with its unit; steps are whole.
             let text = self.text(span);
-            let text = if text.bytes().all(|byte| byte.is_ascii_digit()) { text } else { "10".to_owned() };
-            let hint = if self.clock.is_jumps() {
-                format!("write a time, as in `{text} s`")
-            } else {
-                let steps = if text == "1" { "step" } else { "steps" };
-                format!("write `{text} s`, or `#{text}` (`{text} {steps}`) for a number of steps")
+            let is_number =
+                text.starts_with(|c: char| c.is_ascii_digit() || c == '.') && Decimal::parse(&text).is_some();
+            let is_whole = text.bytes().all(|byte| byte.is_ascii_digit());
+            let hint = match (is_number, self.clock.is_jumps()) {
+                (true, true) => format!("write a time, as in `{text} s`"),
+                (false, true) => "write a time, as in `10 s`".to_owned(),
+                (true, false) if is_whole => {
+                    let steps = if text == "1" { "step" } else { "steps" };
+                    format!("write `{text} s`, or `#{text}` (`{text} {steps}`) for a number of steps")
+                }
+                (true, false) => format!("write `{text} s`"),
+                (false, false) => {
+                    "write a time, as in `10 s`, or a number of steps, as in `#10` (`10 steps`)".to_owned()
+                }
             };
             let error = Diagnostic::error("E0503", span, "this bound needs a unit").formal();
             return self.report(error.hint(hint));

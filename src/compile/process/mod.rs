@@ -17,7 +17,7 @@ use super::symbols::unknown;
 use super::typed::Typed;
 use crate::model::{Bool, Command, Domain, Num, Process, Processes, Timing, Variable, VariableId};
 use crate::syntax::ast::process::{self as ast, Domain as Written, ProcessDecl, ProcessItem};
-use crate::syntax::ast::{Expr, Item, LetDecl, ScenarioFile};
+use crate::syntax::ast::{Expr, Ident, Item, LetDecl, ScenarioFile};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use parts::Writing;
@@ -33,6 +33,8 @@ const MOST_COPIES: i64 = 1000;
 enum Inside<'a> {
     /// Its n-th variable.
     Variable(usize),
+    /// A variable that is not settled yet.
+    Early,
     /// A named expression or function.
     Let(&'a LetDecl),
     /// A named condition.
@@ -41,12 +43,24 @@ enum Inside<'a> {
     Lost,
 }
 
+impl<'a> Inside<'a> {
+    /// The name that an item declares, if it does; what its variable is is given.
+    fn of(item: &'a ProcessItem, variable: Self) -> Option<(&'a Ident, Self)> {
+        match item {
+            ProcessItem::Var(var) => Some((&var.name, variable)),
+            ProcessItem::Let(decl) => Some((&decl.name, Self::Let(decl))),
+            ProcessItem::Label { name, value } => Some((name, Self::Label(value))),
+            ProcessItem::Command(_) | ProcessItem::Choose(_) => None,
+        }
+    }
+}
+
 /// A process under elaboration.
 pub(super) struct Declared<'a> {
     decl: &'a ProcessDecl,
     /// Number of copies, of an array.
     pub(super) copies: Option<u32>,
-    /// Whether that number is wrong, so that nobody knows it.
+    /// Whether that number is not settled yet, or is wrong, so that nobody knows it.
     pub(super) uncounted: bool,
     /// Whether something is wrong with its variables, so that nobody knows what they hold.
     is_unknown: bool,
@@ -59,15 +73,24 @@ pub(super) struct Declared<'a> {
 
 impl<'a> Declared<'a> {
     pub(super) fn new(decl: &'a ProcessDecl) -> Self {
+        let mut names = BTreeMap::new();
+        for (name, inside) in decl.items.iter().filter_map(|item| Inside::of(item, Inside::Early)) {
+            names.entry(name.name.as_str()).or_insert(inside);
+        }
         Self {
             decl,
             copies: None,
-            uncounted: false,
+            uncounted: decl.count.is_some(),
             is_unknown: false,
             first: 0,
             variables: Vec::new(),
-            names: BTreeMap::new(),
+            names,
         }
+    }
+
+    /// Whether it is an array, of however many copies.
+    pub(super) fn is_array(&self) -> bool {
+        self.decl.count.is_some()
     }
 
     /// The variables of a copy.
@@ -105,7 +128,7 @@ impl Elaborator<'_> {
 
     fn settle(&mut self, at: usize, variables: &mut Vec<Variable>) {
         let decl = self.processes[at].decl;
-        let locals = Locals::of(0);
+        let locals = Locals { settling: Some(at as u32), ..Locals::of(0) };
         if let Some(count) = &decl.count {
             let number = self.number_of(count, Dimension::NONE, &locals);
             let whole = number.map(Number::as_whole);
@@ -126,12 +149,8 @@ impl Elaborator<'_> {
         let mut spans: BTreeMap<&str, Span> = BTreeMap::new();
         let mut initials = Vec::new();
         for item in &decl.items {
-            let (name, inside) = match item {
-                ProcessItem::Var(var) => (&var.name, Inside::Variable(initials.len())),
-                ProcessItem::Let(decl) => (&decl.name, Inside::Let(decl)),
-                ProcessItem::Label { name, value } => (name, Inside::Label(value)),
-                ProcessItem::Command(_) | ProcessItem::Choose(_) => continue,
-            };
+            let declared = Inside::of(item, Inside::Variable(initials.len()));
+            let Some((name, inside)) = declared else { continue };
             if let Some(first) = spans.insert(&name.name, name.span) {
                 let error =
                     Diagnostic::error("E0202", name.span, format!("`{}` is declared twice", name.name))

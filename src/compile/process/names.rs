@@ -23,6 +23,7 @@ impl<'a> Elaborator<'a> {
         let path = format!("{}.{name}", process.decl.name.name);
         Some(match inside {
             Inside::Lost => Err(Reported),
+            Inside::Early => self.too_early((at, "a variable of"), span),
             Inside::Variable(place) => {
                 let (dimension, domain) = process.variables[place];
                 let value = Num::Variable(process.variable(copy, place));
@@ -52,6 +53,46 @@ impl<'a> Elaborator<'a> {
                 self.expand(0, &path, span, |this| this.lower(body, &locals))
             }
         })
+    }
+
+    /// A name of the process whose variables are being settled, if it has it: they start from nothing that it declares.
+    pub(in crate::compile) fn lower_settling(
+        &mut self,
+        name: &str,
+        span: Span,
+        locals: &Locals,
+    ) -> Option<Lowered<Typed>> {
+        let at = locals.settling?;
+        let process = self.processes.get(at as usize)?;
+        let what = match process.names.get(name)? {
+            Inside::Lost => return Some(Err(Reported)),
+            Inside::Variable(_) | Inside::Early => "a variable",
+            Inside::Let(_) | Inside::Label(_) => "a name inside",
+        };
+        let label =
+            format!("{what} of `{}`, known only when all of its variables are", process.decl.name.name)
+                .replace("inside of", "inside");
+        let error = Diagnostic::error("E0201", span, format!("unknown name `{name}`")).label(label);
+        Some(self.report(error.hint("what variables start with is known before a trial starts")))
+    }
+
+    fn too_early<T>(&mut self, (at, what): (u32, &str), span: Span) -> Lowered<T> {
+        let name = self.processes.get(at as usize).map_or("", |process| process.decl.name.name.as_str());
+        let label = format!("{what} `{name}`, which may change during a trial");
+        self.report(Diagnostic::error("E0304", span, "this must be known before a trial starts").label(label))
+    }
+
+    /// An error where the copies of an array of processes are not counted yet.
+    pub(in crate::compile) fn counted(&mut self, process: u32, span: Span) -> Lowered<()> {
+        let is_settled = self.processes.get(process as usize).is_none_or(|p| p.copies.is_some());
+        if is_settled {
+            return Ok(());
+        }
+        let text = format!("`{}` is not known yet here", self.text(span));
+        self.report(
+            Diagnostic::error("E0205", span, text)
+                .hint("how many copies there are, and what variables start with, cannot depend on processes"),
+        )
     }
 
     /// The names of the process around the present place.

@@ -8,10 +8,11 @@
 use super::super::consequences::words;
 use super::super::elaborator::Elaborator;
 use super::super::told::Told;
+use super::super::weight::Weight;
 use super::parts::{Part, Scope, Writing};
 use crate::base::tick::Clock;
 use crate::model::process::wrong_weights;
-use crate::model::{Command, Domain, Process, Processes, Timing, Variable};
+use crate::model::{Command, Domain, Process, Processes, Timing, Variable, VariableId};
 use crate::syntax::ast::process as ast;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -23,10 +24,12 @@ const MOST_STATES: usize = 4096;
 const MOST_SUCCESSORS: usize = 1 << 17;
 /// Most values of variables that are kept at a time, of known states or of the successors of one.
 const MOST_VALUES: usize = 1 << 22;
-/// Most commands that are looked at in all states.
-const MOST_LOOKS: usize = 1 << 23;
-/// Most values of variables of all successors.
-const MOST_WRITTEN: usize = 1 << 24;
+/// Most parts of expressions that are computed in all states of all processes: a fraction of a second.
+const MOST_LOOKS: u64 = 1 << 25;
+/// As many parts of expressions a successor counts as, which is looked for among those known, besides its values.
+const LOOKS_OF_SUCCESSOR: u64 = 16;
+/// Most variables that are shown of a state.
+const MOST_SHOWN: usize = 8;
 
 /// Where a command and its updates are written.
 pub(super) struct Lines {
@@ -54,9 +57,13 @@ impl Lines {
     }
 }
 
+/// A command of a part: of which member, which one.
+type Which = (usize, usize);
+
 /// What is wrong, and where it is written.
 struct Wrong {
     code: &'static str,
+    which: Which,
     span: Span,
     what: String,
     hint: Option<&'static str>,
@@ -74,9 +81,9 @@ struct Findings<'p> {
 }
 
 impl Findings<'_> {
-    fn add(&mut self, wrong: Wrong, own: &[usize], state: &[i64]) {
+    fn add(&mut self, wrong: Wrong, part: &Part<'_>, state: &[i64]) {
         if self.known.insert((wrong.code, wrong.span.start, wrong.span.end)) {
-            self.list.push(wrong.diagnostic(self.variables, own, state));
+            self.list.push(wrong.diagnostic(self.variables, part, state));
         }
     }
 }
@@ -88,22 +95,27 @@ impl Elaborator<'_> {
         if self.told < Told::Whole || self.may_race() {
             return;
         }
-        let mut scope = Scope { jumps: self.clock.is_jumps(), closed: false };
-        let steps = self.horizon.0;
         let mut findings =
             Findings { variables: &processes.variables, known: BTreeSet::new(), list: Vec::new() };
         let mut looks = MOST_LOOKS;
-        let mut walked = true;
-        for part in Part::of(processes, writings, scope) {
-            let mut walk = Walk { processes, part: &part, jumps: scope.jumps, looks: &mut looks };
-            walked &= walk.through(steps, &mut findings).is_ok();
-        }
-        if !walked {
+        // A part reads no variables but its own, which each of its states sets.
+        let mut values: Vec<f64> = processes.variables.iter().map(|v| v.initial).collect();
+        // Between steps, too, processes may jump, as often as they like.
+        for jumps in [false, true] {
+            if !jumps && self.clock.is_jumps() {
+                continue;
+            }
+            let steps = if jumps { u64::MAX } else { self.horizon.0 };
             // Who reads more than variables hides nothing of those that do not.
-            scope.closed = true;
-            for part in Part::of(processes, writings, scope) {
-                let mut walk = Walk { processes, part: &part, jumps: scope.jumps, looks: &mut looks };
-                let _ = walk.through(steps, &mut findings);
+            for closed in [false, true] {
+                let mut walked = true;
+                for part in Part::of(processes, writings, Scope { jumps, closed }) {
+                    let mut walk = Walk { processes, part: &part, jumps, looks: &mut looks };
+                    walked &= walk.through(steps, &mut values, &mut findings).is_ok();
+                }
+                if walked {
+                    break;
+                }
             }
         }
         for found in findings.list {
@@ -126,38 +138,44 @@ struct Walk<'w, 'p> {
     processes: &'p Processes,
     part: &'w Part<'p>,
     jumps: bool,
-    /// How many more commands are looked at.
-    looks: &'w mut usize,
+    /// How many more parts of expressions are computed.
+    looks: &'w mut u64,
 }
 
 impl Walk<'_, '_> {
     /// Walks through the states that can be reached in so many steps, breadth first; `Err` where not all are known.
-    fn through(&mut self, steps: u64, findings: &mut Findings<'_>) -> Result<(), Unknown> {
+    fn through(
+        &mut self,
+        steps: u64,
+        values: &mut [f64],
+        findings: &mut Findings<'_>,
+    ) -> Result<(), Unknown> {
         let own = &self.part.variables;
-        let mut values: Vec<f64> = self.processes.variables.iter().map(|v| v.initial).collect();
-        let initial: Vec<i64> = own.iter().map(|v| values[*v] as i64).collect();
-        let commands: usize = self.part.members.iter().map(|(process, _)| process.commands.len()).sum();
+        let initial: Vec<i64> = own.iter().map(|v| self.processes.variables[*v].initial as i64).collect();
+        let processes = self.part.members.iter().map(|(process, _)| Weight::of_process(process).nodes());
+        let of_state = processes.fold(own.len() as u64 + 1, u64::saturating_add);
         let mut known = BTreeSet::from([initial.clone()]);
         let mut front = vec![initial];
         let mut made = 0;
         for _ in 0..steps {
             let mut next_front = Vec::new();
             for state in std::mem::take(&mut front) {
-                *self.looks = self.looks.checked_sub(commands + 1).ok_or(Unknown)?;
+                self.count(of_state)?;
                 for (variable, value) in own.iter().zip(&state) {
                     values[*variable] = *value as f64;
                 }
                 let mut wrong = Vec::new();
                 let successors = if self.jumps {
-                    self.jumped(&values, &state, &mut wrong)
+                    self.jumped(values, &state, &mut wrong)
                 } else {
-                    self.successors(&values, &state, &mut wrong)
+                    self.successors(values, &state, &mut wrong)
                 };
                 for wrong in wrong {
-                    findings.add(wrong, own, &state);
+                    findings.add(wrong, self.part, &state);
                 }
                 let successors = successors?;
                 made += successors.len();
+                self.count(successors.len() as u64 * (own.len() as u64 + LOOKS_OF_SUCCESSOR))?;
                 for next in successors {
                     if !known.contains(&next) {
                         known.insert(next.clone());
@@ -166,7 +184,7 @@ impl Walk<'_, '_> {
                 }
                 let kept = |states: usize| states.saturating_mul(own.len());
                 let many = known.len() > MOST_STATES || made > MOST_SUCCESSORS;
-                if many || kept(known.len()) > MOST_VALUES || kept(made) > MOST_WRITTEN {
+                if many || kept(known.len()) > MOST_VALUES {
                     return Err(Unknown);
                 }
             }
@@ -175,6 +193,12 @@ impl Walk<'_, '_> {
             }
             front = next_front;
         }
+        Ok(())
+    }
+
+    /// Counts parts of expressions, or what takes as long as these.
+    fn count(&mut self, looks: u64) -> Result<(), Unknown> {
+        *self.looks = self.looks.checked_sub(looks).ok_or(Unknown)?;
         Ok(())
     }
 
@@ -191,8 +215,9 @@ impl Walk<'_, '_> {
         wrong: &mut Vec<Wrong>,
     ) -> Result<Vec<Vec<i64>>, Unknown> {
         let mut ways = Vec::new();
-        for (process, writing) in &self.part.members {
-            ways.push(changes((process, &writing.lines), &self.processes.variables, values, wrong)?);
+        for (member, (process, writing)) in self.part.members.iter().enumerate() {
+            let known = (self.processes.variables.as_slice(), values);
+            ways.push(changes((member, process, &writing.lines), known, wrong)?);
         }
         // Whatever the others do, the trial ends.
         if ways.iter().any(Vec::is_empty) {
@@ -228,8 +253,8 @@ impl Walk<'_, '_> {
         wrong: &mut Vec<Wrong>,
     ) -> Result<Vec<Vec<i64>>, Unknown> {
         let (mut changes, mut ends) = (Vec::new(), false);
-        for (process, writing) in &self.part.members {
-            for (command, lines) in process.commands.iter().zip(&writing.lines) {
+        for (member, (process, writing)) in self.part.members.iter().enumerate() {
+            for (k, (command, lines)) in process.commands.iter().zip(&writing.lines).enumerate() {
                 let Timing::Rate(rate) = &command.timing else { continue };
                 if !command.guard.evaluate(values).ok_or(Unknown)? {
                     continue;
@@ -238,13 +263,15 @@ impl Walk<'_, '_> {
                 if !(rate >= 0.0 && rate.is_finite()) {
                     wrong.push(Wrong {
                         code: "E0904",
+                        which: (member, k),
                         span: lines.command,
                         what: format!("the rate of this command would be {rate} /s"),
                         hint: Some("a rate is a finite number, not negative; 0 disables the command"),
                     });
                     ends = true;
                 } else if rate > 0.0 {
-                    branches((command, lines), &self.processes.variables, values, (&mut changes, wrong))?;
+                    let known = (self.processes.variables.as_slice(), values);
+                    branches(((member, k), command, lines), known, (&mut changes, wrong))?;
                 }
             }
         }
@@ -268,9 +295,9 @@ impl Walk<'_, '_> {
 }
 
 impl Wrong {
-    fn diagnostic(self, variables: &[Variable], own: &[usize], state: &[i64]) -> Diagnostic {
+    fn diagnostic(self, variables: &[Variable], part: &Part<'_>, state: &[i64]) -> Diagnostic {
         let error = Diagnostic::error(self.code, self.span, self.what)
-            .label(format!("where {}", shown(variables, own, state)));
+            .label(format!("where {}", shown(variables, (part, self.which), state)));
         match self.hint {
             Some(hint) => error.hint(hint),
             None => error,
@@ -278,17 +305,29 @@ impl Wrong {
     }
 }
 
-fn shown(variables: &[Variable], own: &[usize], state: &[i64]) -> String {
-    let words: Vec<String> = own
-        .iter()
-        .map(|variable| &variables[*variable])
-        .zip(state)
-        .take(8)
-        .map(|(variable, value)| match variable.domain {
+/// A state of a part, as one of its commands sees it: the variables of its process, those that it reads, and others.
+fn shown(variables: &[Variable], (part, (member, command)): (&Part<'_>, Which), state: &[i64]) -> String {
+    let (process, writing) = part.members[member];
+    let mut read = BTreeSet::new();
+    process.commands[command].reads(&mut read);
+    let rank = |variable: usize| match () {
+        () if writing.variables.contains(&variable) => 0,
+        () if read.contains(&VariableId(variable as u32)) => 1,
+        () => 2,
+    };
+    let mut seen: Vec<(usize, i64)> = part.variables.iter().copied().zip(state.iter().copied()).collect();
+    seen.sort_by_key(|(variable, _)| rank(*variable));
+    let word = |(variable, value): &(usize, i64)| {
+        let variable = &variables[*variable];
+        match variable.domain {
             Domain::Truth => format!("{} = {}", variable.name, *value != 0),
             _ => format!("{} = {value}", variable.name),
-        })
-        .collect();
+        }
+    };
+    let mut words: Vec<String> = seen.iter().take(MOST_SHOWN).map(word).collect();
+    if seen.len() > MOST_SHOWN {
+        words.push("…".to_owned());
+    }
     words.join(", ")
 }
 
@@ -297,22 +336,22 @@ type Change = Vec<(usize, i64)>;
 
 /// What one process can do at a step, as far as it is known; nothing where a trial ends by an error whatever is drawn.
 fn changes(
-    (process, lines): (&Process, &[Lines]),
-    variables: &[Variable],
-    values: &[f64],
+    (member, process, lines): (usize, &Process, &[Lines]),
+    known: (&[Variable], &[f64]),
     wrong: &mut Vec<Wrong>,
 ) -> Result<Vec<Change>, Unknown> {
     let mut enabled = Vec::new();
-    for (command, lines) in process.commands.iter().zip(lines) {
-        if command.guard.evaluate(values).ok_or(Unknown)? {
-            enabled.push((command, lines));
+    for (k, (command, lines)) in process.commands.iter().zip(lines).enumerate() {
+        if command.guard.evaluate(known.1).ok_or(Unknown)? {
+            enabled.push(((member, k), command, lines));
         }
     }
-    if let [_, (_, second), ..] = enabled.as_slice()
+    if let [_, (which, _, second), ..] = enabled.as_slice()
         && !process.choose
     {
         wrong.push(Wrong {
             code: "E0901",
+            which: *which,
             span: second.command,
             what: format!("another command of `{}` is enabled together with this one", process.name),
             hint: Some("`choose` in the process makes each of them equally likely"),
@@ -323,8 +362,8 @@ fn changes(
     }
     let mut all = Vec::new();
     let is_clear = process.choose || enabled.len() == 1;
-    for (command, lines) in enabled {
-        branches((command, lines), variables, values, (&mut all, wrong))?;
+    for command in enabled {
+        branches(command, known, (&mut all, wrong))?;
     }
     if !is_clear {
         all.clear();
@@ -333,9 +372,8 @@ fn changes(
 }
 
 fn branches(
-    (command, lines): (&Command, &Lines),
-    variables: &[Variable],
-    values: &[f64],
+    (which, command, lines): (Which, &Command, &Lines),
+    (variables, values): (&[Variable], &[f64]),
     (all, wrong): (&mut Vec<Change>, &mut Vec<Wrong>),
 ) -> Result<(), Unknown> {
     if lines.is_broken {
@@ -344,7 +382,7 @@ fn branches(
     let weights: Option<Vec<f64>> = command.branches.iter().map(|b| b.weight.evaluate(values)).collect();
     let weights = weights.ok_or(Unknown)?;
     if let Some(what) = wrong_weights(&weights) {
-        wrong.push(Wrong { code: "E0902", span: lines.command, what, hint: None });
+        wrong.push(Wrong { code: "E0902", which, span: lines.command, what, hint: None });
         return Ok(());
     }
     for ((branch, updates), weight) in command.branches.iter().zip(&lines.updates).zip(weights) {
@@ -359,6 +397,7 @@ fn branches(
             if !variable.domain.contains(value) {
                 wrong.push(Wrong {
                     code: "E0903",
+                    which,
                     span: *span,
                     what: format!("`{}` would become {value}, outside its range", variable.name),
                     hint: Some("a guard can keep it inside"),

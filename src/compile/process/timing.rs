@@ -27,12 +27,7 @@ impl Elaborator<'_> {
             Some(ast::Timing::Rate(rate)) => self.rate(rate, locals).map(Timing::Rate),
             Some(ast::Timing::Delay(delay)) => {
                 let law = self.delay(delay, locals)?;
-                let exact = match &**delay {
-                    Value::Plain(expr) if law.constant().is_some() => {
-                        self.number(expr, locals).ok().and_then(|n| n.exact)
-                    }
-                    _ => None,
-                };
+                let exact = self.exact_values(delay, &law, locals);
                 Ok(Timing::Delay(law, exact))
             }
         }

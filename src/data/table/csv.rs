@@ -37,7 +37,7 @@ fn write<'a>(
             table.write_field(cell(value))?;
         }
         table.write_field(if row.present { "1" } else { "0" })?;
-        for &value in row.signals {
+        for &value in row.signals.iter() {
             table.write_field(cell(Some(value)))?;
         }
         for word in &row.words {

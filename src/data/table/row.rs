@@ -23,7 +23,7 @@ pub struct Row<'a> {
     /// Whether the agent is in the scene.
     pub present: bool,
     /// One value per signal, in the order of their names.
-    pub signals: &'a [f64],
+    pub signals: Cow<'a, [f64]>,
     /// One word per column of words, after the signals; empty where there is none.
     pub words: Vec<&'a str>,
 }
@@ -60,7 +60,7 @@ pub(super) mod samples {
                 position: Vec2::new(1.5, -0.25),
                 velocity: Vec2::new(0.3, 0.4),
                 present: true,
-                signals: &[f64::INFINITY],
+                signals: Cow::Borrowed(&[f64::INFINITY]),
                 words: Vec::new(),
             },
             Row {
@@ -70,7 +70,7 @@ pub(super) mod samples {
                 position: Vec2::new(9.0, 9.0),
                 velocity: Vec2::zeros(),
                 present: false,
-                signals: &[f64::NAN],
+                signals: Cow::Borrowed(&[f64::NAN]),
                 words: Vec::new(),
             },
         ]

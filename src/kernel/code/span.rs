@@ -72,6 +72,7 @@ mod tests {
         let region = |shape| Region { name: String::new(), shape };
         let barrier = |obstacle| Barrier { name: String::new(), obstacle };
         let scene = Scene {
+            points: Vec::new(),
             regions: vec![
                 region(Shape::rectangle(p(0., 0.), p(2., 2.))),
                 region(Shape::Circle { centre: p(5., 1.), radius: 1.0 }),

@@ -26,7 +26,11 @@ fn program() -> Program {
         title: String::new(),
         clock: Clock::Stepped(Decimal::parse("0.01").unwrap()),
         horizon: Tick(10),
-        scene: Scene { barriers: vec![wall(low, side), wall(low, top)], regions: Vec::new() },
+        scene: Scene {
+            barriers: vec![wall(low, side), wall(low, top)],
+            regions: Vec::new(),
+            points: Vec::new(),
+        },
         agents: Vec::new(),
         groups: Vec::new(),
         moves: Vec::new(),

@@ -125,15 +125,12 @@ impl Clocks {
             }
         }
         if self.is_exact {
-            /// Of a time, what millions of sums of two doubles may be off, amply.
-            const NOISE: f64 = 1.0 / (1_u128 << 78) as f64;
             for lane in 0..LANES {
                 // Of several that round alike the first by what rounding took off; of those at one time the first there is.
-                let noise = when[lane] * NOISE;
+                let of = |k: usize| Instant { seconds: self.due[k].0[lane], rest: self.rests[k].0[lane] };
                 let alike = (0..self.due.len()).filter(|k| self.due[*k].0[lane] == when[lane]);
-                let rest = |k: usize| self.rests[k].0[lane];
                 which[lane] =
-                    alike.fold(which[lane], |first, k| if rest(k) + noise < rest(first) { k } else { first });
+                    alike.fold(which[lane], |first, k| if of(k).is_before(of(first)) { k } else { first });
             }
         }
         (which, when)

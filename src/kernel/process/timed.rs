@@ -15,6 +15,7 @@ use super::draws::exponentials;
 use super::fault::Fault;
 use super::race::Race;
 use super::rates::Rates;
+use crate::base::decimal::Decimal;
 use crate::base::instant::Instant;
 use crate::base::lanes::{LANES, Mask};
 use crate::base::random::{Purpose, Stream, TrialKey};
@@ -35,6 +36,29 @@ enum Form {
     Code(Race),
 }
 
+/// What a delay can be: doubles, ascending, and what they stand for.
+#[derive(Clone, Debug)]
+struct Exact(Vec<(f64, Instant)>);
+
+impl Exact {
+    fn new(values: &[(f64, Decimal)]) -> Self {
+        let mut values: Vec<_> =
+            values.iter().map(|(value, exact)| (*value, Instant::from(*exact))).collect();
+        values.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Self(values)
+    }
+
+    /// What was drawn, as it was meant.
+    #[inline]
+    fn of(&self, drawn: f64) -> Instant {
+        let place = self.0.partition_point(|(value, _)| *value < drawn);
+        match self.0.get(place) {
+            Some((value, exact)) if *value == drawn => *exact,
+            _ => Instant::decimal(drawn),
+        }
+    }
+}
+
 /// One process.
 #[derive(Clone, Debug)]
 struct Racer {
@@ -45,8 +69,8 @@ struct Racer {
     word: u64,
     /// Its first clock: that of the race. The others are those of `delayed`.
     first: usize,
-    /// Commands with delays; of those that are numbers the exact one.
-    delayed: Vec<(usize, Ready, Option<Instant>)>,
+    /// Commands with delays.
+    delayed: Vec<(usize, Ready, Exact)>,
     form: Form,
     /// Those that may have to look again when it has jumped, itself among them.
     followers: Vec<usize>,
@@ -91,7 +115,7 @@ impl Timed {
             let mut delayed = Vec::new();
             for (k, command) in process.commands.iter().enumerate() {
                 if let Timing::Delay(law, exact) = &command.timing {
-                    delayed.push((k, law.ready(), exact.map(Instant::from)));
+                    delayed.push((k, law.ready(), Exact::new(exact)));
                 }
             }
             let with_delays: Vec<usize> = delayed.iter().map(|(k, ..)| *k).collect();
@@ -203,7 +227,7 @@ impl Timed {
             self.read(layout, state, readings);
         }
         for lane in rang.iter() {
-            if let Err(fault) = self.fire(which[lane], when[lane], lane, state, readings) {
+            if let Err(fault) = self.fire(which[lane], lane, state, readings) {
                 stop(state, lane, fault);
             }
         }
@@ -289,20 +313,14 @@ impl Timed {
 
     /// A clock rings.
     #[inline]
-    fn fire(
-        &self,
-        clock: usize,
-        when: f64,
-        lane: usize,
-        state: &mut State,
-        readings: &Readings,
-    ) -> Result<(), Fault> {
+    fn fire(&self, clock: usize, lane: usize, state: &mut State, readings: &Readings) -> Result<(), Fault> {
         let (place, slot) = self.owners[clock];
         let racer = &self.racers[place];
         let clocks = &mut state.clocks;
-        let crowd = if when > clocks.now[lane] { 0 } else { clocks.crowd[lane] + 1 };
-        clocks.crowd[lane] = crowd;
+        let before = clocks.instant(lane);
         clocks.reach(clock, lane);
+        let crowd = if before.is_before(clocks.instant(lane)) { 0 } else { clocks.crowd[lane] + 1 };
+        clocks.crowd[lane] = crowd;
         if crowd > MOST_AT_ONCE {
             return Err(Fault::Stuck { process: racer.process });
         }
@@ -380,7 +398,7 @@ impl Timed {
                 let (wait, pick) = delay(state.keys[lane], racer.entity, *number, law);
                 *number += 1;
                 if self.is_exact {
-                    clocks.set_after(clock, lane, exact.unwrap_or_else(|| Instant::decimal(wait)));
+                    clocks.set_after(clock, lane, exact.of(wait));
                 } else {
                     clocks.due[clock].0[lane] = after(now, wait, self.clock);
                 }

@@ -7,7 +7,7 @@ use crate::model::{AgentId, Barrier, Law, Obstacle, Position, Scenario};
 use std::f64::consts::PI;
 
 /// Discs that are thrown and pushed jam at about this share of an area.
-const JAMMED: f64 = 0.84;
+pub const JAMMED: f64 = 0.84;
 
 /// Points of the grid along each axis on which free area is measured.
 const GRID: u32 = 160;

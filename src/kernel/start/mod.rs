@@ -12,7 +12,7 @@ mod placement;
 mod relaxation;
 mod sampler;
 
-pub use area::{Crowding, check_area};
+pub use area::{Crowding, JAMMED, check_area};
 pub use arrival::{Arrivals, Queues};
 pub use placement::Starts;
 

@@ -272,7 +272,8 @@ mod tests {
             Barrier { name: String::new(), obstacle: Obstacle::Wall(pieces) }
         };
         for count in [3, 40, 2_000] {
-            let scene = Scene { barriers: (0..count).map(wall).collect(), regions: Vec::new() };
+            let scene =
+                Scene { barriers: (0..count).map(wall).collect(), regions: Vec::new(), points: Vec::new() };
             let barriers = Barriers::new(&scene);
             let ground = Ground { scene: &scene, barriers: &barriers };
             let (mut looked_at, mut near_some) = (0, 0);

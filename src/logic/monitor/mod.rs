@@ -23,8 +23,8 @@ use super::reach::Part;
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::tick::{Clock, Tick};
 use calendar::Calendar;
-use cell::{Cell, Context, Place};
-use plan::{Answer, Plan, Watched};
+use cell::{Cell, Context, Machine, Place};
+use plan::{Answer, Plan, Watch, Watched};
 
 /// Steps are counted from here, so that positions before the first one are numbers too.
 const FIRST_STEP: u64 = 1 << 40;
@@ -35,7 +35,7 @@ pub struct Antecedent {
     /// The implication: the `Or` whose first operand is a `Not`.
     pub implication: NodeId,
     /// Lanes in whose trial `a` was true at a position that the formula asks about, up to the state at
-    /// which the lane was decided.
+    /// which the lane was decided, or, if it looks ahead, was settled nowhere up to there.
     pub triggered: Mask,
 }
 
@@ -214,9 +214,24 @@ impl Monitor {
     pub fn antecedents(&self) -> impl Iterator<Item = Antecedent> {
         self.watches.iter().map(|watched| {
             let always = if watched.always { 0xff } else { 0 };
-            let triggered = watched.cells.iter().fold(always, |all, &cell| all | self.cells[cell].t);
+            let triggered = |all, watch: &Watch| all | self.cells[watch.cell].t | self.left_open(*watch);
+            let triggered = watched.watches.iter().fold(always, triggered);
             Antecedent { implication: watched.implication, triggered: Mask(triggered) }
         })
+    }
+
+    /// Lanes in which nobody knows whether an antecedent that looks ahead was ever true: they were decided before it was
+    /// settled anywhere.
+    fn left_open(&self, watch: Watch) -> u8 {
+        let Machine::Watch(child) = self.cells[watch.cell].machine else { return 0 };
+        let known = match child.place {
+            Place::Held => self.cells[child.cell].t | self.cells[child.cell].f,
+            _ => self.cells[watch.cell].f,
+        };
+        let is_open = |lane: usize| (watch.first..watch.settled).contains(&self.decided_at[lane]);
+        (0..LANES).filter(|lane| is_open(*lane)).fold(0, |open, lane| open | 1 << lane)
+            & !known
+            & self.decided
     }
 
     /// Bytes that the monitor holds. The number never changes.
@@ -225,6 +240,6 @@ impl Monitor {
         size_of::<Self>()
             + cells
             + self.calendar.bytes()
-            + self.watches.iter().map(|watched| size_of_val(&*watched.cells)).sum::<usize>()
+            + self.watches.iter().map(|watched| size_of_val(&*watched.watches)).sum::<usize>()
     }
 }

@@ -4,6 +4,7 @@
 
 use super::Reading;
 use super::present::Present;
+use crate::base::instant::Instant;
 use crate::logic::flat::Sort;
 use crate::logic::formula::{Aggregation, Operation};
 
@@ -25,21 +26,22 @@ impl Probe {
 /// A state lasts from `start` to before `end`, s; infinite after the horizon.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stay {
-    pub(super) start: f64,
-    pub(super) end: f64,
+    pub(super) start: Instant,
+    pub(super) end: Instant,
 }
 
 impl Stay {
     /// Until, or weak until, in a state of this sort: the truth and when it was forced, if it is.
     #[inline]
-    pub(super) fn until(self, sort: Sort, (from, to): (f64, f64), weak: bool) -> Option<(bool, f64)> {
-        let reached = if self.start >= from { self.start } else { from };
-        if sort.goal && reached < self.end && (sort.hold || reached == self.start) {
-            Some((true, reached))
+    pub(super) fn until(self, sort: Sort, (from, to): (Instant, Instant), weak: bool) -> Option<(bool, f64)> {
+        let is_early = self.start.is_before(from);
+        let reached = if is_early { from } else { self.start };
+        if sort.goal && reached.is_before(self.end) && (sort.hold || !is_early) {
+            Some((true, reached.seconds))
         } else if !sort.hold {
-            Some((false, self.start))
+            Some((false, self.start.seconds))
         } else {
-            (self.end > to).then_some((weak, to))
+            to.is_before(self.end).then_some((weak, to.seconds))
         }
     }
 }
@@ -55,18 +57,18 @@ pub(super) enum Question {
     Time { goal: Probe },
 }
 
-/// A question about the window `from ..= to` in seconds.
+/// A question about the window `from ..= to`.
 #[derive(Clone, Debug)]
 pub(super) struct Direct {
     pub(super) question: Question,
-    pub(super) from: f64,
-    pub(super) to: f64,
+    pub(super) from: Instant,
+    pub(super) to: Instant,
     /// So far: smallest, largest or integral.
     folded: Option<f64>,
 }
 
 impl Direct {
-    pub(super) fn new(question: Question, from: f64, to: f64) -> Self {
+    pub(super) fn new(question: Question, from: Instant, to: Instant) -> Self {
         Self { question, from, to, folded: None }
     }
 
@@ -77,25 +79,31 @@ impl Direct {
     /// The present state lasts from `start` to before `end`; infinite after the horizon. The reading, and
     /// when it was forced.
     #[inline]
-    pub(super) fn step(&mut self, start: f64, end: f64, present: &Present) -> Option<(Reading, f64)> {
+    pub(super) fn step(&mut self, stay: Stay, present: &Present) -> Option<(Reading, f64)> {
+        let Stay { start, end } = stay;
         match self.question {
             Question::Until { first, second, weak, negated } => {
                 let hold = first.is_none_or(|probe| probe.is(present));
                 let sort = Sort { hold, goal: second.is(present) };
-                let (truth, at) = Stay { start, end }.until(sort, (self.from, self.to), weak)?;
+                let (truth, at) = stay.until(sort, (self.from, self.to), weak)?;
                 Some((Reading::Truth(truth != negated), at))
             }
-            Question::Time { goal } if goal.is(present) => Some((Reading::Value(start), start)),
-            Question::Time { .. } => (end > self.to).then_some((Reading::Value(f64::INFINITY), self.to)),
-            Question::Fold { aggregation, of } => self.fold(aggregation, present.number(of), start, end),
+            Question::Time { goal } if goal.is(present) => {
+                Some((Reading::Value(start.seconds), start.seconds))
+            }
+            Question::Time { .. } => {
+                self.to.is_before(end).then_some((Reading::Value(f64::INFINITY), self.to.seconds))
+            }
+            Question::Fold { aggregation, of } => self.fold(aggregation, present.number(of), stay),
         }
     }
 
-    fn fold(&mut self, aggregation: Aggregation, value: f64, start: f64, end: f64) -> Option<(Reading, f64)> {
-        if end <= self.from {
+    fn fold(&mut self, aggregation: Aggregation, value: f64, stay: Stay) -> Option<(Reading, f64)> {
+        if !self.from.is_before(stay.end) {
             return None;
         }
-        let (left, right) = (start.max(self.from), end.min(self.to));
+        let (from, to) = (self.from.seconds, self.to.seconds);
+        let (left, right) = (stay.start.seconds.max(from), stay.end.seconds.min(to));
         self.folded = Some(match (aggregation, self.folded) {
             (Aggregation::Min, Some(folded)) => Operation::Min.apply(folded, value),
             (Aggregation::Max, Some(folded)) => Operation::Max.apply(folded, value),
@@ -104,15 +112,15 @@ impl Direct {
                 folded.unwrap_or(0.0) + if right > left { value * (right - left) } else { 0.0 }
             }
         });
-        if end <= self.to {
+        if !self.to.is_before(stay.end) {
             return None;
         }
         let folded = self.folded.unwrap_or(f64::NAN);
         let value = match aggregation {
-            Aggregation::Mean if self.from == self.to => value,
-            Aggregation::Mean => folded / (self.to - self.from),
+            Aggregation::Mean if from == to => value,
+            Aggregation::Mean => folded / (to - from),
             _ => folded,
         };
-        Some((Reading::Value(value), self.to))
+        Some((Reading::Value(value), to))
     }
 }

@@ -3,6 +3,7 @@
 use super::direct::{Direct, Question, Stay};
 use super::present::Present;
 use super::{SignalMonitor, Way};
+use crate::base::instant::Instant;
 use crate::logic::flat::Sort;
 
 /// A monitor that is one until over present states, by state and not by trial.
@@ -10,7 +11,7 @@ use crate::logic::flat::Sort;
 pub struct Glance {
     present: Present,
     direct: Direct,
-    horizon: f64,
+    horizon: Instant,
 }
 
 impl SignalMonitor {
@@ -42,17 +43,18 @@ impl Glance {
 
     /// A state that neither reaches the goal nor fails what must be so decides nothing before this time, s.
     pub fn quiet_until(&self) -> f64 {
-        if self.direct.to < self.horizon { self.direct.to } else { self.horizon }
+        let (to, horizon) = (self.direct.to.seconds, self.horizon.seconds);
+        if to < horizon { to } else { horizon }
     }
 
     /// The verdict, if it falls in a state that lasts from `since` to before `end`, s (infinite where it lasts
     /// beyond the horizon), and did not fall before.
     #[inline]
     pub fn verdict(&self, sort: Sort, since: f64, end: f64) -> Option<bool> {
-        let end = if end > self.horizon { f64::INFINITY } else { end };
+        let end = if end > self.horizon.seconds { f64::INFINITY } else { end };
         match self.direct.question {
             Question::Until { weak, negated, .. } => {
-                let stay = Stay { start: since, end };
+                let stay = Stay { start: since.into(), end: Instant::from(end) };
                 let (truth, _) = stay.until(sort, (self.direct.from, self.direct.to), weak)?;
                 Some(truth != negated)
             }

@@ -26,7 +26,7 @@ use crate::base::decimal::Decimal;
 use crate::base::instant::Instant;
 use crate::base::tick::Tick;
 use cells::Cells;
-use direct::Direct;
+use direct::{Direct, Stay};
 pub use glance::Glance;
 use moment::{Moment, Scale};
 use plan::plan;
@@ -55,10 +55,10 @@ enum Way {
 struct Watched {
     /// Where the left side is in the code of the present state.
     slot: usize,
-    /// The first second at which it is asked about.
-    first: f64,
+    /// The first time at which it is asked about.
+    first: Instant,
     /// The last one.
-    last: f64,
+    last: Instant,
 }
 
 /// The monitor of one formula or metric, one trial at a time.
@@ -72,9 +72,9 @@ pub struct SignalMonitor {
     scale: Scale,
     begun: bool,
     /// Since when the present state holds.
-    since: f64,
+    since: Instant,
     moment: Moment,
-    horizon: f64,
+    horizon: Instant,
     reading: Option<Reading>,
     decided_at: f64,
     watched: Vec<Watched>,
@@ -108,7 +108,7 @@ impl SignalMonitor {
             way,
             scale,
             begun: false,
-            since: 0.0,
+            since: Instant::exactly(0.0),
             moment: 0,
             horizon,
             reading: None,
@@ -122,7 +122,7 @@ impl SignalMonitor {
 
     /// A new trial begins; what was known of the last one is forgotten.
     pub fn start(&mut self) {
-        (self.begun, self.since, self.moment) = (false, 0.0, 0);
+        (self.begun, self.since, self.moment) = (false, Instant::exactly(0.0), 0);
         (self.reading, self.decided_at, self.triggered) = (None, 0.0, 0);
         match &mut self.way {
             Way::Direct(direct) => direct.clear(),
@@ -139,17 +139,16 @@ impl SignalMonitor {
     #[inline]
     pub fn jump(&mut self, time: impl Into<Instant>, atoms: &[bool], signals: &[f64]) -> Option<Reading> {
         let at = time.into();
-        let time = at.seconds;
         if self.reading.is_some() {
             return self.reading;
         }
         if self.begun {
-            if time > self.since {
-                self.close(if time > self.horizon { Instant::from(f64::INFINITY) } else { at });
+            if self.since.is_before(at) {
+                self.close(if self.horizon.is_before(at) { Instant::from(f64::INFINITY) } else { at });
                 if self.reading.is_some() {
                     return self.reading;
                 }
-                self.since = time;
+                self.since = at;
             }
         } else {
             self.begun = true;
@@ -172,21 +171,22 @@ impl SignalMonitor {
 
     /// The present state lasts to before `end`.
     #[inline]
-    fn close(&mut self, until: Instant) {
-        let end = until.seconds;
+    fn close(&mut self, end: Instant) {
         for (k, watched) in self.watched.iter().enumerate() {
-            if self.since <= watched.last && end > watched.first && self.present.truth(watched.slot) {
+            let is_asked = !watched.last.is_before(self.since) && watched.first.is_before(end);
+            if is_asked && self.present.truth(watched.slot) {
                 self.triggered |= 1 << k.min(63);
             }
         }
         match &mut self.way {
             Way::Direct(direct) => {
-                if let Some((reading, at)) = direct.step(self.since, end, &self.present) {
+                if let Some((reading, at)) = direct.step(Stay { start: self.since, end }, &self.present) {
                     (self.reading, self.decided_at) = (Some(reading), at);
                 }
             }
             Way::Cells(cells) => {
-                let to = if end == f64::INFINITY { self.scale.end() } else { self.scale.at(until) };
+                let is_over = end.seconds == f64::INFINITY;
+                let to = if is_over { self.scale.end() } else { self.scale.at(end) };
                 if to > self.moment {
                     if let Some((reading, at)) = cells.step(self.moment, to, &self.present) {
                         (self.reading, self.decided_at) = (Some(reading), self.scale.seconds(at));

@@ -35,6 +35,8 @@ pub(super) struct Scale {
     ticks_per_unit: f64,
     /// Units in a second.
     units: Instant,
+    /// A tick, s.
+    quantum: Decimal,
 }
 
 impl Scale {
@@ -50,7 +52,7 @@ impl Scale {
         // By a power of two nothing is rounded.
         let power = (1u64 << bits) as f64;
         let units = Instant { seconds: ticks.seconds * power, rest: ticks.rest * power };
-        Self { bits, horizon: horizon.0, seconds_per_tick, units_per_second, ticks_per_unit, units }
+        Self { bits, horizon: horizon.0, seconds_per_tick, units_per_second, ticks_per_unit, units, quantum }
     }
 
     /// The moment right after the instant of the horizon.
@@ -63,9 +65,15 @@ impl Scale {
         ticks.0 as f64 * self.seconds_per_tick.0 / self.seconds_per_tick.1
     }
 
+    /// Seconds of so many ticks, exactly.
+    pub(super) fn exact(self, ticks: Tick) -> Instant {
+        let exact = Decimal::ratio(i128::from(ticks.0), 1).and_then(|ticks| ticks.mul(self.quantum));
+        exact.map_or(Instant::from(self.time(ticks)), Instant::from)
+    }
+
     /// Seconds up to the horizon.
-    pub(super) fn horizon(self) -> f64 {
-        self.time(Tick(self.horizon))
+    pub(super) fn horizon(self) -> Instant {
+        self.exact(Tick(self.horizon))
     }
 
     /// The number of moments in so many ticks; more than the horizon holds are one tick more than it.

@@ -163,6 +163,19 @@ impl Table for Booleans {
         (one.trials, &one.sure, &one.possible).cmp(&(other.trials, &other.sure, &other.possible))
     }
 
+    fn is_alike(&self, one: usize, other: usize) -> bool {
+        let (one, other) = (&self.arms[one], &self.arms[other]);
+        let common = if one.trials < other.trials { one.trials } else { other.trials };
+        let whole = (common / 64) as usize;
+        // The trials of the last word that both have.
+        let rest = (1u64 << (common % 64)) - 1;
+        let alike = |one: &[u64], other: &[u64]| {
+            let last = |words: &[u64]| words.get(whole).copied().unwrap_or(0) & rest;
+            one[..whole] == other[..whole] && last(one) == last(other)
+        };
+        common > 0 && alike(&one.sure, &other.sure) && alike(&one.possible, &other.possible)
+    }
+
     fn least_evidence(&mut self, rivals: &[usize], leader: usize, gap: f64) -> f64 {
         let factors = Factors::new(&self.bets, gap);
         rivals.iter().fold(f64::INFINITY, |least, rival| {

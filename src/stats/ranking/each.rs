@@ -126,8 +126,13 @@ impl Each {
             low + high
         };
         let mut leader = 0;
+        let of = |arm: usize| deviations.and_then(|all| all.get(arm)).copied().unwrap_or(f64::INFINITY);
         for arm in 1..k {
-            if middle(arm) > middle(leader) {
+            // Of those with the same shares, but for a round of as many trials, the one that deviates least.
+            let trials = |arm: usize| self.arms[arm].0.trials();
+            let is_alike =
+                trials(arm).abs_diff(trials(leader)) < self.word && self.shares(arm) == self.shares(leader);
+            if middle(arm) > middle(leader) || is_alike && of(arm) < of(leader) {
                 leader = arm;
             }
         }
@@ -141,8 +146,7 @@ impl Each {
         };
         let certified: Vec<usize> = (0..k).filter(|arm| gap_of(*arm) <= self.epsilon + 1e-12).collect();
         let mut arm = leader;
-        if let Some(deviations) = deviations {
-            let of = |arm: usize| deviations.get(arm).copied().unwrap_or(f64::INFINITY);
+        if deviations.is_some() {
             for other in &certified {
                 if of(*other) < of(arm) {
                     arm = *other;

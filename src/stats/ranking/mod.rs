@@ -79,6 +79,9 @@ pub trait Table {
     /// An order of arms by their outcomes, in which only those with the same outcomes are equal.
     fn order(&self, one: usize, other: usize) -> Ordering;
 
+    /// Whether two arms came out alike in each trial that both have, and have some.
+    fn is_alike(&self, one: usize, other: usize) -> bool;
+
     /// The logarithm of the evidence that a rival is less than `gap` better than `leader`, of the rival for which
     /// it is least; infinite without rivals.
     fn least_evidence(&mut self, rivals: &[usize], leader: usize, gap: f64) -> f64;

@@ -195,7 +195,8 @@ impl<T: Table> Race<T> {
     }
 
     /// The choice now, at the end or at a deadline. With `deviations` (one number per arm), the least of
-    /// them decides among arms that each carry the full certificate; else the leader is chosen.
+    /// them decides among arms that each carry the full certificate, and before there are any among those that came out as the
+    /// leader, trial by trial; else the leader is chosen.
     pub fn choice(&mut self, deviations: Option<&[f64]>) -> Choice {
         if !self.decided {
             // No round is complete: the trials there are have to do.
@@ -210,7 +211,14 @@ impl<T: Table> Race<T> {
         };
         let mut arm = self.leader;
         if deviations.is_some() {
-            for other in &certified {
+            // A decided race keeps its promise: only who carries the certificate takes the leader's place. Before that those
+            // that came out as the leader are as good as it, if they were tried as often, but for a round.
+            let (table, leader, word) = (&self.table, self.leader, self.word);
+            let alike = |other: &&usize| {
+                table.trials(**other).abs_diff(table.trials(leader)) < word && table.is_alike(**other, leader)
+            };
+            let others = if self.finished { &[][..] } else { &live };
+            for other in certified.iter().chain(others.iter().filter(alike)) {
                 if of(*other) < of(arm) {
                     arm = *other;
                 }

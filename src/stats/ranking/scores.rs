@@ -147,6 +147,14 @@ impl Table for Scores {
         bits(one).cmp(bits(other))
     }
 
+    fn is_alike(&self, one: usize, other: usize) -> bool {
+        let bits = |arm: usize| {
+            let Arm { least, greatest, .. } = &self.arms[arm];
+            least.iter().zip(greatest).map(|(low, high)| (low.to_bits(), high.to_bits()))
+        };
+        self.common(one, other) > 0 && bits(one).zip(bits(other)).all(|(one, other)| one == other)
+    }
+
     fn least_evidence(&mut self, rivals: &[usize], leader: usize, gap: f64) -> f64 {
         rivals.iter().fold(f64::INFINITY, |least, rival| {
             let mut logs = [0.0; BETS];

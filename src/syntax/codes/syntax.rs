@@ -144,7 +144,8 @@ Right:\n\
         code: EMPTY,
         title: "the file is empty",
         text: "\
-There is nothing but blanks in the file. A scenario needs at least a horizon, a property file at least a property or query.\n\
+There is nothing but blanks, or comments, in the file. A scenario needs at least a horizon, a property file at least a property\n\
+or query.\n\
 \n\
 Wrong:\n\
 \x20   (nothing)\n\

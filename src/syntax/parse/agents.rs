@@ -102,10 +102,12 @@ impl Builder<'_> {
         if self.sets_a_unit(&pair) {
             return None;
         }
+        let head = self.head(&pair);
         let mut parts = Parts::of(pair);
         let name = self.ident(&parts.part(Rule::ident)?);
         let value = parts.part(Rule::value)?.into_inner().next()?;
-        Some(Field { name, value: self.value(value)? })
+        let value = self.value(value);
+        Some(Field { name, value: self.missed(value, head)? })
     }
 
     /// The value of a field, a wait or a delay.

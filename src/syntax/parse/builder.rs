@@ -119,7 +119,7 @@ impl Builder<'_> {
     /// what is set to the sign after it; of commands and moves, which have no names, their first word.
     pub(super) fn head(&self, part: &Pair<'_>) -> Option<Span> {
         let last = |inner: &Pair<'_>| match part.as_rule() {
-            Rule::setting => matches!(inner.as_rule(), Rule::t_assign | Rule::t_unequal),
+            Rule::setting | Rule::field => matches!(inner.as_rule(), Rule::t_assign | Rule::t_unequal),
             Rule::command | Rule::heading | Rule::headings => true,
             Rule::rank => false,
             _ => inner.as_rule() == Rule::name,

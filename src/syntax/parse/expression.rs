@@ -349,6 +349,17 @@ impl Builder<'_> {
     fn postfix(&mut self, target: Built, pair: Pair<'_>) -> Option<Built> {
         let span = target.expr.span.to(self.span(&pair));
         let is_member = pair.as_rule() == Rule::member;
+        let written = &self.text[target.expr.span.start as usize..target.expr.span.end as usize];
+        // What stands on the next line is another slip.
+        let is_line = !self.text[target.expr.span.end as usize..span.end as usize].contains('\n');
+        if is_member && is_line && written.bytes().all(|byte| byte.is_ascii_digit()) {
+            // `5. m/s`
+            let place =
+                Span { end: span.end.min(target.expr.span.end + 1), start: target.expr.span.end, ..span };
+            let error = Diagnostic::error(code::UNEXPECTED, place, "a number does not end in a point");
+            self.say(error.hint(format!("write `{written}`, or `{written}.0`")));
+            return None;
+        }
         let part = Parts::of(pair).next()?;
         let (kind, height, nesting) = if is_member {
             let member = self.ident(&part);

@@ -223,6 +223,8 @@ impl Builder<'_> {
         }
         if let Some(hint) = self.belonging(&fault) {
             diagnostic = diagnostic.hint(hint);
+        } else if nouns::OPERATORS.contains(&fault.found) && lexeme::declares_name(self.text, fault.at) {
+            diagnostic = diagnostic.hint("in property files that is an operator; another name is free");
         } else if let Some(word) = Self::meant(&fault) {
             diagnostic = diagnostic.hint(format!("did you mean `{word}`?"));
         } else if fault.found == "at" && fault.after_value() && self.root != Rule::scenario_file {

@@ -1,18 +1,21 @@
 //! The words and marks of a text, one at a time: for marking what an error points at and for scans that
 //! come before the grammar.
 
+// The tables that the grammar has its characters from.
+use pest::unicode;
+
 /// Marks of several characters, longer ones first.
 const MARKS: [&str; 14] =
     ["<=>", "===", "==", "=>", "!=", "<=", ">=", "->", "--", "..", "&&", "||", "**", ":="];
 
-/// Whether a character may start a name.
-pub(super) fn starts_name(c: char) -> bool {
-    c.is_alphabetic() || c == '_'
+/// Whether a character may start a name, as in the grammar.
+pub(crate) fn starts_name(c: char) -> bool {
+    unicode::XID_START(c) || c == '_'
 }
 
-/// Whether a character may continue a name.
-pub(super) fn continues_name(c: char) -> bool {
-    c.is_alphanumeric() || c == '_'
+/// Whether a character may continue a name, as in the grammar: no `²`, though it is a number.
+pub(crate) fn continues_name(c: char) -> bool {
+    unicode::XID_CONTINUE(c)
 }
 
 /// Length of the blank or comment at the start of a text, if there is one.
@@ -112,6 +115,11 @@ pub(super) fn is_open_text(token: &str) -> bool {
     token.starts_with('"') && !closed
 }
 
+/// Whether a name is declared at a place of a property file.
+pub(super) fn declares_name(text: &str, at: usize) -> bool {
+    word_before(text, at).is_some_and(|(_, word)| ["property", "let", "const"].contains(&word))
+}
+
 /// The word or number that ends right before `at`, blanks skipped, and where it starts.
 pub(super) fn word_before(text: &str, at: usize) -> Option<(usize, &str)> {
     let trimmed = text[..at].trim_end();
@@ -126,6 +134,18 @@ mod tests {
     use super::*;
     use crate::syntax::parse::grammar::{Grammar, Rule};
     use pest::Parser;
+
+    #[test]
+    fn the_grammar_takes_as_much_of_a_name() {
+        for c in (0..=0x10_FFFF).filter_map(char::from_u32) {
+            for text in [format!("{c}"), format!("a{c}b")] {
+                let taken = Grammar::parse(Rule::ident, &text)
+                    .map_or(0, |mut pairs| pairs.next().map_or(0, |pair| pair.as_str().len()));
+                let is_name = first(&text).starts_with(starts_name);
+                assert_eq!(if is_name { first(&text).len() } else { 0 }, taken, "{text:?}");
+            }
+        }
+    }
 
     #[test]
     fn the_grammar_takes_as_much_of_a_quoted_text() {

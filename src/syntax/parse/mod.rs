@@ -23,8 +23,9 @@ mod scene;
 mod slips;
 mod units;
 
+pub(crate) use lexeme::{continues_name, starts_name};
 pub use nouns::edits;
-pub(crate) use quantity::unit_meant;
+pub(crate) use quantity::{time_meant, unit_meant};
 
 pub(super) use builder::Pair;
 

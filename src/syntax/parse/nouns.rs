@@ -74,6 +74,9 @@ pub(super) fn keyword(rule: Rule) -> Option<&'static str> {
     })
 }
 
+/// Words that are operators in property files, and no names.
+pub(super) const OPERATORS: [&str; 8] = ["forall", "exists", "F", "G", "X", "U", "W", "R"];
+
 /// Whether a word is a keyword of either language.
 pub(super) fn is_keyword(word: &str) -> bool {
     Rule::all_rules().iter().any(|&rule| keyword(rule) == Some(word))

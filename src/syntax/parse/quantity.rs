@@ -14,8 +14,11 @@ pub(super) const UNITS: [&str; 18] = [
     "steps",
 ];
 
+/// Those of times.
+const TIMES: [&str; 6] = ["s", "ms", "min", "h", "step", "steps"];
+
 /// What people write for a unit, and the unit.
-const SPOKEN: [(&[&str], &str); 16] = [
+const SPOKEN: [(&[&str], &str); 18] = [
     (&["metre", "metres", "meter", "meters", "M"], "m"),
     (&["centimetre", "centimetres", "centimeter", "centimeters"], "cm"),
     (&["millimetre", "millimetres", "millimeter", "millimeters"], "mm"),
@@ -30,6 +33,8 @@ const SPOKEN: [(&[&str], &str); 16] = [
     (&["degree", "degrees", "degs", "grad"], "deg"),
     (&["radian", "radians", "rads"], "rad"),
     (&["hertz", "hz", "HZ"], "Hz"),
+    (&["mps"], "m/s"),
+    (&["kmh", "kph"], "km/h"),
     (&["percent", "pct"], "%"),
     (&["ticks", "tick", "Steps"], "steps"),
 ];
@@ -50,6 +55,13 @@ pub(crate) fn unit_meant(name: &str) -> Option<(String, bool)> {
     let unit = UNITS.into_iter().find(|unit| *unit == base).or_else(|| nearest_unit(base))?;
     let is_sure = is_spoken || unit == base;
     Some((if matches!(power, "" | "1") { unit.to_owned() } else { format!("{unit}^{power}") }, is_sure))
+}
+
+/// The unit of time that a name behind a bound was probably meant to be, and whether that is beyond doubt.
+pub(crate) fn time_meant(name: &str) -> Option<(String, bool)> {
+    // They lie near `min` and `ms`, but are words of their own.
+    let is_word = super::nouns::is_keyword(name) || name == "is";
+    unit_meant(name).filter(|(unit, _)| !is_word && TIMES.contains(&unit.as_str()))
 }
 
 impl Builder<'_> {

@@ -52,14 +52,15 @@ impl Builder<'_> {
         None
     }
 
-    /// Whether a bracket that is open at a byte is closed behind it, in the same declaration.
+    /// Whether a bracket that is open at a byte is closed behind it, in the same declaration, or farther behind than
+    /// anybody looks.
     pub(super) fn is_closed_behind(&self, at: usize, bracket: char) -> bool {
         let end = self.text.floor_char_boundary(at.saturating_add(BEHIND));
-        let behind = &self.text[at..end];
-        let declares = |line: &str| starts_declaration(lexeme::first(line.trim_start_matches([' ', '\t'])));
-        let lines = behind.match_indices('\n').map(|(newline, _)| newline + 1);
-        let next = lines.into_iter().find(|start| declares(&behind[*start..]));
-        nesting::first_closing(&behind[..next.unwrap_or(behind.len())]) == Some(nesting::partner(bracket))
+        let (behind, is_whole) = own_part(&self.text[at..end]);
+        match nesting::first_closing(behind) {
+            Some(closing) => closing == nesting::partner(bracket),
+            None => !is_whole && end < self.text.len(),
+        }
     }
 
     /// Whether what was found is a keyword, which stands in no bracket, and nothing closes the one that is open.
@@ -101,7 +102,8 @@ impl Builder<'_> {
     fn read_again(&self, fault: &Fault<'_>, part: Range<usize>, by: &str) -> Again {
         let end = self.text.floor_char_boundary(fault.at.saturating_add(BEHIND));
         let before = &self.text[fault.from..part.start];
-        let between = &self.text[part.end..fault.at];
+        // A word that the fault lies in is read as it is.
+        let Some(between) = self.text.get(part.end..fault.at) else { return Again::No };
         let found = before.len() + by.len() + between.len();
         let text = format!("{before}{by}{between}{}", &self.text[fault.at..end]);
         match failure(fault.rule, &text, 0) {
@@ -110,6 +112,27 @@ impl Builder<'_> {
             Some(_) => Again::No,
         }
     }
+}
+
+/// A text up to the line that starts the next declaration, and whether there is one; less a comment that was cut.
+fn own_part(text: &str) -> (&str, bool) {
+    let (mut at, mut starts_line) = (0, false);
+    while at < text.len() {
+        let rest = &text[at..];
+        if let Some(length) = lexeme::trivia(rest) {
+            starts_line |= rest[..length].contains('\n');
+            at += length;
+            continue;
+        }
+        let token = lexeme::first(rest);
+        let is_next = starts_line && starts_declaration(token);
+        if is_next || rest.starts_with("/*") {
+            return (&text[..at], is_next);
+        }
+        starts_line = false;
+        at += token.len().max(1);
+    }
+    (text, false)
 }
 
 /// How far a text goes on that was changed.
@@ -130,4 +153,28 @@ fn opener(word: &str) -> Option<&'static str> {
     }
     let spoken = SPOKEN.iter().find(|(spoken, _)| *spoken == word);
     spoken.map(|(_, meant)| *meant).or_else(|| nouns::nearest(word, OPENERS.into_iter()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::syntax::parse::parse_properties;
+    use crate::syntax::source::{Source, SourceId};
+
+    #[test]
+    fn a_bracket_is_accused_only_where_all_behind_it_was_seen() {
+        let codes = |behind: &str| {
+            let text = format!("check P(F<=1 s (p within {behind}");
+            let (_, said) = parse_properties(&Source::new(SourceId(0), "a.bltl", text.as_str()));
+            said.into_iter().map(|one| one.code).collect::<Vec<_>>()
+        };
+        let sum = "1 + ".repeat(BEHIND);
+        assert_eq!(codes("2 >= 0.5"), [code::UNCLOSED]);
+        assert_eq!(codes("2)) >= 0.5"), [code::UNEXPECTED]);
+        assert_eq!(codes(&format!("{sum}2)) >= 0.5")), [code::UNEXPECTED]);
+        assert_eq!(codes(&format!("2\nlet a = {sum}2)) >= 0.5"))[0], code::UNCLOSED);
+        // What a comment says declares nothing.
+        assert_eq!(codes("/* 1\nlet it be */ 2)) >= 0.5"), [code::UNEXPECTED]);
+        assert_eq!(codes("2 /* 1\n */ let a = (2) >= 0.5")[0], code::UNCLOSED);
+    }
 }

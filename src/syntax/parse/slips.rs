@@ -14,6 +14,7 @@ impl Builder<'_> {
         self.slip_in_text(fault)
             .or_else(|| self.slip_of_bound(fault))
             .or_else(|| self.slip_of_unit_in_bound(fault))
+            .or_else(|| self.slip_of_initial(fault))
             .or_else(|| self.slip_of_whole_range(fault))
             .or_else(|| self.slip_of_bindings(fault))
             .or_else(|| self.slip_of_equals(fault))
@@ -133,7 +134,8 @@ impl Builder<'_> {
     pub(super) fn sets_a_unit(&mut self, setting: &Pair<'_>) -> bool {
         let (start, text) = (setting.as_span().start(), setting.as_str());
         let name = lexeme::first(text);
-        if !quantity::UNITS.contains(&name) {
+        // What can be set is set, on the same line too.
+        if !quantity::UNITS.contains(&name) || name == "step" {
             return false;
         }
         // The number may stand on the line before, where what is set here lost its name.

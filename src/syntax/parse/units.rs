@@ -9,6 +9,9 @@ use crate::syntax::codes::syntax as code;
 use crate::syntax::diagnostic::Diagnostic;
 use std::ops::Range;
 
+/// Words that other languages, or people, have before the initial value of a variable.
+const INITIAL: [&str; 4] = ["as", "init", "initially", "is"];
+
 impl Builder<'_> {
     /// `F<=2 sec p`: the bound ended before its unit, which reads as a name.
     pub(super) fn slip_of_unit_in_bound(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
@@ -24,7 +27,7 @@ impl Builder<'_> {
         if !is_bound || !is_number || is_unit || self.root != Rule::property_file || self.is_declared(word) {
             return None;
         }
-        let (unit, _) = quantity::unit_meant(word)?;
+        let (unit, _) = quantity::time_meant(word)?;
         let error = Diagnostic::error(code::UNIT, self.place(at, word), format!("unknown unit `{word}`"));
         Some(error.hint(format!("did you mean `{number} {unit}`?")))
     }
@@ -44,6 +47,24 @@ impl Builder<'_> {
         self.unit_in_range(name, fault.at - range.len()..end)
     }
 
+    /// `var n: 0 .. 3 init 0`: a word for the sign, as other languages have it.
+    pub(super) fn slip_of_initial(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
+        if fault.rule != Rule::strict_process_item
+            || lexeme::first(&self.text[fault.from..]) != "var"
+            || !fault.expected.contains(&Rule::t_assign)
+            || !INITIAL.contains(&fault.found)
+        {
+            return None;
+        }
+        let rest = &self.text[fault.at + fault.found.len()..];
+        let value = rest.trim_start_matches([' ', '\t']);
+        let value = lexeme::first(if value.starts_with(['\r', '\n']) { "" } else { value });
+        let is_value = value.starts_with(lexeme::continues_name);
+        let title = format!("expected `=`, found `{}`", fault.found);
+        let error = Diagnostic::error(code::UNEXPECTED, self.place(fault.at, fault.found), title);
+        Some(error.hint(if is_value { format!("write `= {value}`") } else { "write `=`".to_owned() }))
+    }
+
     /// That the range of a variable has a unit, said at the first one.
     pub(super) fn unit_in_range(&self, name: &str, range: Range<usize>) -> Option<Diagnostic> {
         let (mut at, mut after_number) = (range.start, false);
@@ -53,8 +74,12 @@ impl Builder<'_> {
                 continue;
             }
             let token = lexeme::first(&self.text[at..]);
-            // No name follows a number.
-            if after_number && (quantity::UNITS.contains(&token) || quantity::nearest_unit(token).is_some()) {
+            // No name follows a number. What is only like a unit may be another word for `=`.
+            let is_unit = || {
+                let meant = quantity::unit_meant(token);
+                quantity::UNITS.contains(&token) || meant.is_some_and(|(_, is_sure)| is_sure)
+            };
+            if after_number && is_unit() {
                 let place = self.place(at, token);
                 let error = Diagnostic::error(code::UNIT, place, "a range of whole numbers has no units");
                 return Some(
@@ -117,7 +142,7 @@ impl Builder<'_> {
             nouns::nearest(fault.found, words).is_some()
         });
         // Some are functions, too.
-        let is_keyword = nouns::is_keyword(fault.found) && !rest.starts_with('(');
+        let is_keyword = fault.found == "in" || nouns::is_keyword(fault.found) && !rest.starts_with('(');
         if near_keyword
             || is_keyword
             || quantity::UNITS.contains(&fault.found)

@@ -1,6 +1,6 @@
 //! Cells of formulas.
 
-use super::{Builder, Made, NowKey, later};
+use super::{Builder, Made, NowKey, Watch, later};
 use crate::base::tick::Tick;
 use crate::logic::formula::{Node, NodeId, Window};
 use crate::logic::invalid::Invalid;
@@ -115,7 +115,7 @@ impl Builder<'_> {
 
     /// Notes whether the antecedent of an implication is ever true.
     fn watch(&mut self, id: NodeId, antecedent: Made<bool>, lo: u64, hi: u64) {
-        let cell = match antecedent {
+        let watch = match antecedent {
             Made::Constant(value) => {
                 if let Some(watched) = self.watches.get_mut(&id.0) {
                     watched.always |= value;
@@ -126,11 +126,19 @@ impl Builder<'_> {
                 self.touch(child, (lo, hi));
                 let range =
                     if child.place == Place::Now { (lo + child.ahead, hi + child.ahead) } else { (lo, hi) };
-                self.answer(Machine::Watch(child), range, self.horizon, false).cell
+                // What is of one state is known where it is asked about.
+                let settled = match (child.place, self.delay(child)) {
+                    // Its answer says whether it is.
+                    (Place::Held, _) => u64::MAX,
+                    (_, 0) => lo,
+                    (_, delay) => hi.saturating_add(delay),
+                };
+                let cell = self.answer(Machine::Watch(child), range, self.horizon, false).cell;
+                Watch { cell, first: lo, settled }
             }
         };
         if let Some(watched) = self.watches.get_mut(&id.0) {
-            watched.cells.push(cell);
+            watched.watches.push(watch);
         }
     }
 

@@ -44,7 +44,17 @@ pub(super) struct Watched {
     pub(super) implication: NodeId,
     /// The antecedent does not depend on any state and is true.
     pub(super) always: bool,
-    pub(super) cells: Vec<usize>,
+    pub(super) watches: Vec<Watch>,
+}
+
+/// Who knows whether an antecedent was true at some positions.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Watch {
+    pub(super) cell: usize,
+    /// The first position that is asked about.
+    pub(super) first: u64,
+    /// The state at which all are settled.
+    pub(super) settled: u64,
 }
 
 /// The cells of a monitor, children first.
@@ -193,7 +203,7 @@ impl Builder<'_> {
             Part::Term(id) => self.constants[id.0 as usize] = self.constant(id),
             Part::Node(id) => {
                 if self.antecedent(id).is_some() {
-                    let watched = Watched { implication: id, always: false, cells: Vec::new() };
+                    let watched = Watched { implication: id, always: false, watches: Vec::new() };
                     self.watches.insert(id.0, watched);
                 }
             }

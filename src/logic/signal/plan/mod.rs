@@ -34,7 +34,7 @@ pub(super) fn plan(
         builder.note(part);
         if let Some(slot) = builder.antecedent(part) {
             let (first, last) = asked.of(part).unwrap_or((0, asked.last));
-            watched.push(Watched { slot, first: scale.time(Tick(first)), last: scale.time(Tick(last)) });
+            watched.push(Watched { slot, first: scale.exact(Tick(first)), last: scale.exact(Tick(last)) });
         }
     }
     if let Some(direct) = builder.direct(root) {

@@ -142,7 +142,7 @@ impl Builder<'_> {
                 _ => return None,
             },
         };
-        let (from, to) = (self.scale.time(window.from), window.to.map(|to| self.scale.time(to)));
+        let (from, to) = (self.scale.exact(window.from), window.to.map(|to| self.scale.exact(to)));
         Some(Direct::new(question, from, to.unwrap_or(self.scale.horizon())))
     }
 

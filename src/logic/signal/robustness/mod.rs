@@ -43,10 +43,10 @@ pub struct SignalRobustness {
     present: Present,
     cells: Cells,
     scale: Scale,
-    horizon: f64,
+    horizon: Instant,
     closely: bool,
     begun: bool,
-    since: f64,
+    since: Instant,
     moment: Moment,
     bounds: Bounds,
     at_start: f64,
@@ -70,7 +70,7 @@ impl SignalRobustness {
             horizon,
             closely: false,
             begun: false,
-            since: 0.0,
+            since: Instant::exactly(0.0),
             moment: 0,
             bounds: Bounds::OPEN,
             at_start: f64::NEG_INFINITY,
@@ -88,7 +88,7 @@ impl SignalRobustness {
 
     /// A new trial begins.
     pub fn start(&mut self) {
-        (self.begun, self.since, self.moment) = (false, 0.0, 0);
+        (self.begun, self.since, self.moment) = (false, Instant::exactly(0.0), 0);
         (self.bounds, self.at_start, self.overfull) = (Bounds::OPEN, f64::NEG_INFINITY, false);
         self.cells.clear();
     }
@@ -97,10 +97,9 @@ impl SignalRobustness {
     /// now. Atoms, where the formula has some, are infinitely far from the other answer.
     pub fn jump(&mut self, time: impl Into<Instant>, atoms: &[bool], signals: &[f64]) -> Bounds {
         let at = time.into();
-        let time = at.seconds;
-        if self.begun && time > self.since {
-            self.close(if time > self.horizon { Instant::from(f64::INFINITY) } else { at });
-            self.since = time;
+        if self.begun && self.since.is_before(at) {
+            self.close(if self.horizon.is_before(at) { Instant::from(f64::INFINITY) } else { at });
+            self.since = at;
         }
         self.begun = true;
         if !self.bounds.is_settled() {
