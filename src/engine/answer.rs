@@ -462,7 +462,7 @@ fn total(tallies: &[Tally]) -> Tally {
 }
 
 /// Whether a number is a time until something, or made of one.
-fn waits(tree: &Tree, term: TermId) -> bool {
+pub(super) fn waits(tree: &Tree, term: TermId) -> bool {
     match &tree.terms[term.0 as usize] {
         Term::TimeUntil(_) => true,
         Term::Constant(_) | Term::Signal(_) => false,

@@ -3,11 +3,13 @@
 //!
 //! A monitor knows only later that an earlier moment decided, so one run would have to keep all that happened in between.
 
+use super::answer::waits;
 use super::budget::Budget;
 use super::subject::Subject;
 use super::words;
 use crate::base::instant::Instant;
 use crate::base::random::TrialKey;
+use crate::compile::study::Root;
 use crate::kernel::process::Sight;
 use crate::kernel::{Scratch, State, dynamics, start};
 use crate::logic::Reading;
@@ -35,9 +37,13 @@ pub(super) fn decision(
     let horizon = subject.program.scenario.clock.seconds(subject.horizon);
     // Monitors round times of jumps by less than this, some units in the last place.
     let slack = 1e-15 * horizon;
-    let mut past = Past { at: at + slack, atoms: Vec::new(), signals: Vec::new() };
+    let mut past = Past { at: at + slack, last: 0.0, atoms: Vec::new(), signals: Vec::new() };
     run(subject, column, trial, budget, |now, atoms, signals| past.see(now.seconds, atoms, signals))?;
+    // The time of the row that shows it.
+    let at = if (at - past.last).abs() <= slack { past.last } else { at };
     let used = subject.atoms_of(column);
+    // Only a time that does not come lies beyond the horizon.
+    let is_time = matches!(subject.columns[column], Root::Metric(term) if waits(&subject.tree, term));
     // What changed then closed the case; else it was that nothing changed any more.
     let changed =
         |k: &usize| past.atoms.get(*k).is_some_and(|(_, since)| since.is_some_and(|s| at - s <= slack));
@@ -49,7 +55,7 @@ pub(super) fn decision(
         (closing, _) => past.named(subject, closing),
     };
     match monitor.reading() {
-        Some(Reading::Value(value)) if value == f64::INFINITY => {
+        Some(Reading::Value(value)) if value == f64::INFINITY && is_time => {
             Some((at, Some(value), "not within the horizon".to_owned()))
         }
         Some(Reading::Value(value)) => {
@@ -97,6 +103,8 @@ fn run(
 struct Past {
     /// The moment, s.
     at: f64,
+    /// The last jump up to it, s.
+    last: f64,
     /// The truth of each atom, and since when, if it was ever another.
     atoms: Vec<(bool, Option<f64>)>,
     /// The value of each signal.
@@ -109,6 +117,7 @@ impl Past {
         if now > self.at {
             return false;
         }
+        self.last = now;
         if self.atoms.is_empty() {
             self.atoms = atoms.iter().map(|truth| (*truth, None)).collect();
         }

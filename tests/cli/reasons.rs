@@ -46,10 +46,13 @@ fn a_left_side_that_was_left_open_may_have_been_a_case() {
         ("(F<=3 steps (p.s == 0 & p.s == 1)) => p.s == 1", true),
         ("G<=3 steps ((X (p.s == 1)) & p.s == 1 => p.s == 0)", true),
         ("G<=3 steps (p.s == 1 & p.s == 0 => X (p.s == 1))", true),
-        // Open at the last position alone.
-        ("G<=3 steps ((F<=2 steps (p.s == 0 & p.s == 1)) => p.s >= 0)", true),
+        // Open at the last positions, where it is true.
+        ("G<=2 steps ((X X (n.n == 4)) => n.n == 2)", false),
+        ("G<=2 steps ((F<=3 steps (n.n == 5)) => n.n >= 0)", false),
+        ("G<=2 steps ((X X (n.n == 5)) => X X (n.n == 3))", true),
     ] {
-        let model = "horizon = 6 steps\nprocess p { var s: 0 .. 1 = 0\n when s == 0 -> s = 1\n when s == 1 -> s = 0 }\n";
+        let model = "horizon = 6 steps\nprocess p { var s: 0 .. 1 = 0\n when s == 0 -> s = 1\n when s == 1 -> s = 0 }\n\
+             process n { var n: 0 .. 9 = 0\n when n < 9 -> n = n + 1 }\n";
         let query = format!("check P({formula}) >= 0.5\n");
         let place = Place::new(&[("flip.scn", model), ("flip.bltl", &query)]);
         let json = place.call(&["check", "flip.scn", "flip.bltl", "--format", "json"]).json();

@@ -86,9 +86,9 @@ impl Elaborator<'_> {
                 let error = Diagnostic::error(
                     "E0404",
                     expr.span,
-                    format!("`{name}` is a distribution and can only be the value of a field"),
+                    format!("`{name}` is a distribution, and is no part of an expression"),
                 )
-                .hint("give it to a parameter of a kind or an agent, which draws it once per trial");
+                .hint("give it to a field of a kind or an agent, or to `after`; it may be multiplied: `poisson(4) * (1 s / 3)`");
                 self.report(error)
             }
             name if FUNCTIONS.contains(&name) => {

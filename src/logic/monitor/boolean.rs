@@ -54,19 +54,15 @@ pub(super) fn step(cell: &mut Cell, before: &[Cell], cx: &Context) {
             }
             track.ascend();
         }
-        // True, and false, at some position that is asked about.
-        Machine::Watch(child) => {
-            let mut seen = |t: u8, f: u8, lanes: u8| {
-                cell.t |= t & lanes;
-                cell.f |= f & lanes;
-            };
-            let (t, f) = truth(before, *child);
-            match child.place {
-                super::cell::Place::Held => seen(t, f, cx.work),
-                super::cell::Place::Now => seen(t, f, cell.need & cx.work),
-                _ => events(before, *child, cx.now).for_each(|(_, t, f)| seen(t, f, cx.work)),
+        Machine::Watch(child) => match child.place {
+            super::cell::Place::Held => cell.t |= truth(before, *child).0 & cx.work,
+            super::cell::Place::Now => cell.t |= truth(before, *child).0 & cell.need & cx.work,
+            _ => {
+                for (_, t, _) in events(before, *child, cx.now) {
+                    cell.t |= t & cx.work;
+                }
             }
-        }
+        },
         _ => {}
     }
 }

@@ -35,7 +35,7 @@ pub struct Antecedent {
     /// The implication: the `Or` whose first operand is a `Not`.
     pub implication: NodeId,
     /// Lanes in whose trial `a` was true at a position that the formula asks about, up to the state at
-    /// which the lane was decided, or, if it looks ahead, was settled nowhere up to there.
+    /// which the lane was decided, or, if it looks ahead, was left open at one.
     pub triggered: Mask,
 }
 
@@ -220,13 +220,13 @@ impl Monitor {
         })
     }
 
-    /// Lanes in which nobody knows whether an antecedent that looks ahead was ever true: they were decided before it was
-    /// settled anywhere.
+    /// Lanes in which nobody knows whether an antecedent that looks ahead was true at each state up to the deciding one: they
+    /// were decided before.
     fn left_open(&self, watch: Watch) -> u8 {
         let Machine::Watch(child) = self.cells[watch.cell].machine else { return 0 };
         let known = match child.place {
             Place::Held => self.cells[child.cell].t | self.cells[child.cell].f,
-            _ => self.cells[watch.cell].f,
+            _ => 0,
         };
         let is_open = |lane: usize| (watch.first..watch.settled).contains(&self.decided_at[lane]);
         (0..LANES).filter(|lane| is_open(*lane)).fold(0, |open, lane| open | 1 << lane)
