@@ -62,6 +62,44 @@ fn a_left_side_that_was_left_open_may_have_been_a_case() {
     }
 }
 
+const COUNTER: &str = "horizon = 6 steps\nprocess n { var n: 0 .. 9 = 0\n when n < 9 -> n = n + 1 }\n";
+
+/// What `docs/semantics.md` says of many implications: those from the 64th on are one.
+#[test]
+fn the_last_of_very_many_implications_are_watched_as_one() {
+    let case = |k: usize, last: usize| {
+        let left = if k == last { "==" } else { "<" };
+        format!("G<=4 steps (n.n {left} 9 => F<=1 step (n.n < {}))", 100 + k)
+    };
+    for (count, warns) in [(64, true), (65, false)] {
+        let parts: Vec<String> = (1..=count).map(|k| case(k, count)).collect();
+        let query = format!("check P({}) >= 0.5\n", parts.join(" & "));
+        let place = Place::new(&[("a.scn", COUNTER), ("a.bltl", &query)]);
+        let said = place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "json"]);
+        let warnings = said.json()["results"][0]["warnings"].to_string();
+        assert_eq!(warnings.contains("never triggered"), warns, "{count}: {warnings} {}", said.err);
+    }
+}
+
+/// What it says of limits: each is told with its number.
+#[test]
+fn formulas_beyond_reason_are_refused_with_the_limit() {
+    let nested = format!("check P({}n.n == 0{}) >= 0.5\n", "(".repeat(300), ")".repeat(300));
+    let joined = format!("check P({}) >= 0.5\n", vec!["n.n == 0"; 600].join(" & "));
+    let mut named = "property p0 = n.n == 0\n".to_owned();
+    for k in 1..=1100 {
+        named += &format!("property p{k} = !(p{})\n", k - 1);
+    }
+    named += "check P(p1100) >= 0.5\n";
+    for (query, code, limit) in [(nested, "E0106", "256"), (joined, "E0120", "512"), (named, "E0211", "1000")]
+    {
+        let place = Place::new(&[("a.scn", COUNTER), ("a.bltl", &query)]);
+        let said = place.call(&["check", "a.scn", "a.bltl"]);
+        assert_eq!(said.code, Some(2), "{}", said.err);
+        assert!(said.err.contains(code) && said.err.contains(limit), "{}", said.err);
+    }
+}
+
 #[test]
 fn an_implication_is_a_condition_like_any_other() {
     let left = "speed(a) > 1.2 m/s";
