@@ -66,12 +66,10 @@ impl<'a> Elaborator<'a> {
         let process = self.processes.get(at as usize)?;
         let what = match process.names.get(name)? {
             Inside::Lost => return Some(Err(Reported)),
-            Inside::Variable(_) | Inside::Early => "a variable",
+            Inside::Variable(_) | Inside::Early => "a variable of",
             Inside::Let(_) | Inside::Label(_) => "a name inside",
         };
-        let label =
-            format!("{what} of `{}`, known only when all of its variables are", process.decl.name.name)
-                .replace("inside of", "inside");
+        let label = format!("{what} `{}`, known only when all of its variables are", process.decl.name.name);
         let error = Diagnostic::error("E0201", span, format!("unknown name `{name}`")).label(label);
         Some(self.report(error.hint("what variables start with is known before a trial starts")))
     }
