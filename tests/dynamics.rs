@@ -5,9 +5,9 @@
 mod crowd;
 
 use crowd::{Crowd, NEVER, Person, Run, crowd, p, person, streams, wall};
-use smc::base::geometry::Vec2;
+use smc::base::geometry::{Polygon, Segment, Shape, Vec2};
 use smc::kernel::Layout;
-use smc::model::Particle;
+use smc::model::{Obstacle, Particle};
 
 const BOTH: [Layout; 2] = [Layout::Trials, Layout::Agents];
 
@@ -69,6 +69,35 @@ fn who_walks_into_a_wall_stands_off() {
             run.steps(4000);
             close(run.at(0).y, wanted, 2e-5);
             close(run.velocity(0).norm(), 0.0, 1e-9);
+        }
+    }
+}
+
+#[test]
+fn who_is_driven_into_the_corner_of_a_room_stands_still_however_it_is_drawn() {
+    let corners = [p(0.0, 5.0), p(0.0, 0.0), p(5.0, 0.0), p(5.0, 5.0)];
+    let pieces = || corners.windows(2).map(|ends| Segment::new(ends[0], ends[1])).collect();
+    let mut ring = Polygon::rectangle(p(-1.0, -1.0), p(6.0, 6.0));
+    ring.holes.push(corners.to_vec());
+    let angle = vec![p(0.0, 5.0), p(0.0, 0.0), p(5.0, 0.0), p(5.0, -1.0), p(-1.0, -1.0), p(-1.0, 5.0)];
+    let rooms = [
+        vec![wall(corners[0], corners[1]), wall(corners[1], corners[2])],
+        vec![Obstacle::Wall(pieces())],
+        vec![Obstacle::Solid(Shape::Polygon(ring))],
+        vec![Obstacle::Solid(Shape::Polygon(Polygon::new(angle)))],
+    ];
+    for layout in BOTH {
+        for room in &rooms {
+            let towards = p(-0.6, -0.8);
+            let mut scene = crowd(vec![Person { towards, drive: 1.3, ..person(p(2.0, 2.4)) }], "0.01");
+            scene.obstacles.clone_from(room);
+            let mut run = scene.start(layout);
+            run.steps(2_000);
+            // A exp((r - d)/B) = m v0/tau along each normal.
+            let stand = |drive: f64| 0.25 + 0.08 * (2000.0 * 0.5 / (80.0 * 1.3 * drive)).ln();
+            close(run.at(0).x, stand(0.6), 1e-5);
+            close(run.at(0).y, stand(0.8), 1e-5);
+            close(run.velocity(0).norm(), 0.0, 1e-5);
         }
     }
 }

@@ -9,6 +9,145 @@ use smc::base::lanes::Mask;
 use smc::kernel::{Layout, Scratch, State, refresh};
 use smc::model::{Obstacle, Particle};
 
+/// What of an obstacle pushes someone: where from, which way, and the straight piece that does.
+struct Push {
+    obstacle: usize,
+    foot: Vec2,
+    normal: Vec2,
+    distance: f64,
+    piece: Option<Segment>,
+}
+
+/// Nearer than this is on it, m.
+const ON: f64 = 1e-3;
+
+/// The pieces of all obstacles as someone at a place sees them.
+fn pushes(scene: &Crowd, at: Vec2) -> Vec<Push> {
+    let mut all = Vec::new();
+    for (obstacle, form) in scene.obstacles.iter().enumerate() {
+        let edges: Vec<Segment> = match form {
+            Obstacle::Wall(pieces) => pieces.clone(),
+            Obstacle::Solid(Shape::Polygon(polygon)) => polygon.segments().collect(),
+            Obstacle::Solid(Shape::Circle { .. }) => Vec::new(),
+        };
+        for piece in edges {
+            let foot = piece.nearest(at);
+            let (distance, normal) = ((at - foot).norm(), (at - foot).normalize());
+            // Seen is what one leaves into the open.
+            if form.distance(foot + normal * 1e-6) > 0.0 {
+                all.push(Push { obstacle, foot, normal, distance, piece: Some(piece) });
+            }
+        }
+        let distance = form.distance(at);
+        let is_round = matches!(form, Obstacle::Solid(Shape::Circle { .. }));
+        if distance < 0.0 || is_round {
+            // As a whole: the normal is the gradient of the distance.
+            let h = 1e-6;
+            let slope = |step: Vec2| (form.distance(at + step) - form.distance(at - step)) / (2.0 * h);
+            let normal = p(slope(p(h, 0.0)), slope(p(0.0, h)));
+            all.push(Push { obstacle, foot: at - normal * distance, normal, distance, piece: None });
+        }
+    }
+    all
+}
+
+/// Given-Wilson et al. 2017, equation (5) without contact: of pieces that meet, by the rules of `kernel::surfaces`.
+fn of_walls(scene: &Crowd, one: &Person) -> Vec2 {
+    let all = pushes(scene, one.at);
+    let nearest: Vec<f64> = scene.obstacles.iter().map(|obstacle| obstacle.distance(one.at)).collect();
+    // Where the nearest point lies on a piece that is nearer, that one pushes; in an obstacle or on its back, nobody.
+    let is_silent = |k: usize| {
+        let Push { obstacle, foot, distance, .. } = all[k];
+        let on = |j: usize| match all[j].piece {
+            Some(piece) => piece.distance(foot) <= ON,
+            None => scene.obstacles[all[j].obstacle].distance(foot) <= ON,
+        };
+        let before = |j: usize| all[j].distance.total_cmp(&distance).then(j.cmp(&k)).is_lt();
+        let is_polygon =
+            |obstacle: usize| matches!(scene.obstacles[obstacle], Obstacle::Solid(Shape::Polygon(_)));
+        let is_inside = |j: usize| all[j].piece.is_none() && is_polygon(all[j].obstacle);
+        (0..all.len()).any(|j| j != k && !is_inside(j) && on(j) && before(j))
+            || (0..nearest.len()).any(|other| {
+                let is_hidden = scene.obstacles[other].distance(foot) <= ON && nearest[other] < distance;
+                let mut faces = (0..all.len()).filter(|j| all[*j].obstacle == other && !is_inside(*j));
+                other != obstacle && is_polygon(other) && is_hidden && !faces.any(|j| j != k && on(j))
+            })
+    };
+    let gap = |push: &Push| one.radius - push.distance;
+    let mut felt: Vec<(&Push, f64)> = (0..all.len())
+        .filter(|k| gap(&all[*k]) > -16.0 * one.b && !is_silent(*k))
+        .map(|k| (&all[k], one.a * (gap(&all[k]) / one.b).exp()))
+        .collect();
+    // What hangs together shares.
+    let structure = structures(scene);
+    let of = |push: &Push| structure[push.obstacle];
+    let alone: Vec<f64> = felt.iter().map(|(_, f)| *f).collect();
+    let c = |j: usize, k: usize, felt: &[(&Push, f64)]| {
+        let is_one = j != k && of(felt[j].0) == of(felt[k].0);
+        if is_one { felt[j].0.normal.dot(&felt[k].0.normal).clamp(0.0, 1.0) } else { 0.0 }
+    };
+    let n = felt.len();
+    let mut is_crowded = false;
+    for k in 0..n {
+        let others: Vec<usize> = (0..n).filter(|&j| c(j, k, &felt) > 0.0).collect();
+        is_crowded |= others.len() > 1;
+        for j in others {
+            let c = c(j, k, &felt);
+            let given = alone[k] / (1.0 + c) + c * (alone[k] - alone[j]) / (1.0 - c * c + 1e-300);
+            felt[k].1 = felt[k].1.min(given.max(0.0));
+        }
+    }
+    for _ in 0..if is_crowded { 8 } else { 0 } {
+        for k in 0..n {
+            let given: f64 = (0..n).map(|j| c(j, k, &felt) * felt[j].1).sum();
+            felt[k].1 = (alone[k] - given).max(0.0);
+        }
+    }
+    felt.iter().map(|(push, f)| push.normal * *f).sum()
+}
+
+/// Which obstacles hang together: of each the first that it is reached from.
+fn structures(scene: &Crowd) -> Vec<usize> {
+    let touch = |one: &Obstacle, other: &Obstacle| {
+        let pieces = |obstacle: &Obstacle| match obstacle {
+            Obstacle::Wall(pieces) => pieces.clone(),
+            Obstacle::Solid(Shape::Polygon(polygon)) => polygon.segments().collect(),
+            Obstacle::Solid(Shape::Circle { .. }) => Vec::new(),
+        };
+        let (ones, others) = (pieces(one), pieces(other));
+        let round = |disc: &Obstacle, pieces: &[Segment]| match disc {
+            Obstacle::Solid(Shape::Circle { centre, radius }) => {
+                pieces.iter().any(|piece| piece.distance(*centre) <= radius + ON)
+            }
+            _ => false,
+        };
+        ones.iter().any(|a| others.iter().any(|b| apart(*a, *b) <= ON))
+            || round(one, &others)
+            || round(other, &ones)
+    };
+    let n = scene.obstacles.len();
+    let mut first: Vec<usize> = (0..n).collect();
+    loop {
+        let before = first.clone();
+        for j in 0..n {
+            for k in 0..j {
+                if first[j] != first[k] && touch(&scene.obstacles[j], &scene.obstacles[k]) {
+                    let (low, high) = (first[j].min(first[k]), first[j].max(first[k]));
+                    first.iter_mut().filter(|f| **f == high).for_each(|f| *f = low);
+                }
+            }
+        }
+        if first == before {
+            return first;
+        }
+    }
+}
+
+fn apart(one: Segment, other: Segment) -> f64 {
+    let ends = [one.distance(other.a), one.distance(other.b), other.distance(one.a), other.distance(one.b)];
+    if one.meets(&other) { 0.0 } else { ends.into_iter().fold(f64::INFINITY, f64::min) }
+}
+
 /// Given-Wilson et al. 2017, equations (3) and (5) without contact, and the attraction of groups.
 fn plain(scene: &Crowd, i: usize) -> Vec2 {
     let one = &scene.people[i];
@@ -34,24 +173,7 @@ fn plain(scene: &Crowd, i: usize) -> Vec2 {
         };
         force += n * (factor * (term(one.a, one.b, one.lambda) + term(one.a2, one.b2, one.lambda2)));
     }
-    let distances: Vec<f64> = scene.obstacles.iter().map(|obstacle| obstacle.distance(one.at)).collect();
-    for (k, obstacle) in scene.obstacles.iter().enumerate() {
-        let distance = distances[k];
-        // The normal is the gradient of the distance.
-        let (h, at) = (1e-6, one.at);
-        let slope = |step: Vec2| (obstacle.distance(at + step) - obstacle.distance(at - step)) / (2.0 * h);
-        let n = p(slope(p(h, 0.0)), slope(p(0.0, h)));
-        // Where the nearest point lies on another one that is nearer, that one pushes.
-        let foot = at - n * distance;
-        let others = scene.obstacles.iter().zip(&distances).enumerate();
-        let mut before = others.filter(|(j, (_, d))| d.total_cmp(&distance).then(j.cmp(&k)).is_lt());
-        if before.any(|(_, (other, _))| other.distance(foot) <= 1e-3) {
-            continue;
-        }
-        if one.radius - distance > -16.0 * one.b {
-            force += n * (one.a * ((one.radius - distance) / one.b).exp());
-        }
-    }
+    force += of_walls(scene, one);
     for (members, attraction) in &scene.groups {
         if members.contains(&(i as u32)) {
             let here: Vec<Vec2> = members

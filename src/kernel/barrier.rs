@@ -1,11 +1,8 @@
-//! Walls and obstacles as the forces see them: the nearest point of the surface, inside or outside.
+//! Walls and obstacles as wholes: the nearest point of the surface, inside or outside.
 //!
-//! A barrier gives one force, from its nearest point: so a corner, where two segments are equally near,
-//! counts once, and an end repels along the line to that end. Inside a solid the normal points out. What holds
-//! where barriers meet stands in `surfaces`.
-//! Given-Wilson et al. 2017, equations (5) and (6), with `d_ib` the distance from the centre of the body.
+//! Inside a solid the normal points out. Which of the faces of a barrier push stands in `surfaces`.
 
-use super::edges::{Edges, squared_distance};
+use super::edges::Edges;
 use super::vector::{Doubles, Part};
 use crate::base::geometry::{Bounds, Segment, Shape, Vec2};
 use crate::model::{Barrier, Obstacle};
@@ -25,16 +22,6 @@ pub(super) struct Surface {
     form: Form,
     /// The smallest upright rectangle around it.
     pub(super) bounds: Bounds,
-}
-
-/// From the nearest point of a surface to each of eight places.
-#[derive(Clone, Copy)]
-pub(super) struct Nearest<S: Simd> {
-    /// Unit vector away from the surface; zero exactly on it.
-    pub(super) nx: Doubles<S>,
-    pub(super) ny: Doubles<S>,
-    /// Distance, negative inside a solid, m.
-    pub(super) distance: Doubles<S>,
 }
 
 impl Surface {
@@ -65,25 +52,33 @@ impl Surface {
         edges.into_iter().flat_map(Edges::segments)
     }
 
+    /// Whether it is made of straight edges: not a disc.
+    pub(super) fn has_edges(&self) -> bool {
+        !matches!(self.form, Form::Disc { .. })
+    }
+
+    /// The middle of its bounds: of a disc, its centre.
+    pub(super) fn centre(&self) -> Vec2 {
+        match &self.form {
+            Form::Disc { centre, .. } => *centre,
+            Form::Wall(_) | Form::Polygon(_) => 0.5 * (self.bounds.low + self.bounds.high),
+        }
+    }
+
     /// Whether a place lies in a polygon.
     pub(super) fn surrounds(&self, p: Vec2) -> bool {
         matches!(&self.form, Form::Polygon(edges) if edges.surround(p))
     }
 
-    /// Squared distance from eight places to the rectangle around the surface.
+    /// The nearest points to eight places: unit vectors away from the surface, zero exactly on it, and distances,
+    /// negative inside a solid.
     #[inline(always)]
-    pub(super) fn squared_distance_to_bounds<S: Simd>(
+    pub(super) fn nearest<S: Simd>(
         &self,
         part: Part<S>,
         x: Doubles<S>,
         y: Doubles<S>,
-    ) -> Doubles<S> {
-        squared_distance(part, &self.bounds, x, y)
-    }
-
-    /// The nearest points to eight places.
-    #[inline(always)]
-    pub(super) fn nearest<S: Simd>(&self, part: Part<S>, x: Doubles<S>, y: Doubles<S>) -> Nearest<S> {
+    ) -> (Doubles<S>, Doubles<S>, Doubles<S>) {
         // Far below any square of a distance that matters: keeps 1/0 out where the centre is on the line.
         let tiny = part.c(1e-300);
         match &self.form {
@@ -91,13 +86,13 @@ impl Surface {
                 let (dx, dy) = (x - part.c(centre.x), y - part.c(centre.y));
                 let d = (dx * dx + dy * dy + tiny).sqrt();
                 let q = part.c(1.0) / d;
-                Nearest { nx: dx * q, ny: dy * q, distance: d - part.c(*radius) }
+                (dx * q, dy * q, d - part.c(*radius))
             }
             Form::Wall(edges) => {
                 let (dx, dy) = edges.nearest(part, x, y);
                 let d = (dx * dx + dy * dy + tiny).sqrt();
                 let q = part.c(1.0) / d;
-                Nearest { nx: dx * q, ny: dy * q, distance: d }
+                (dx * q, dy * q, d)
             }
             Form::Polygon(edges) => {
                 let (dx, dy) = edges.nearest(part, x, y);
@@ -105,7 +100,7 @@ impl Surface {
                 let inside = edges.inside(part, x, y);
                 let sign = inside.select(part.c(-1.0), part.c(1.0));
                 let q = sign / d;
-                Nearest { nx: dx * q, ny: dy * q, distance: sign * d }
+                (dx * q, dy * q, sign * d)
             }
         }
     }
@@ -142,10 +137,10 @@ mod tests {
     fn eight<S: Simd>(simd: S, surface: &Surface, x: [f64; 8], y: [f64; 8]) -> [[f64; 8]; 3] {
         let mut out = [Lanes::ZERO; 3];
         for part in parts(simd) {
-            let n = surface.nearest(part, part.slice(&x), part.slice(&y));
-            part.store(n.nx, &mut out[0]);
-            part.store(n.ny, &mut out[1]);
-            part.store(n.distance, &mut out[2]);
+            let (nx, ny, distance) = surface.nearest(part, part.slice(&x), part.slice(&y));
+            part.store(nx, &mut out[0]);
+            part.store(ny, &mut out[1]);
+            part.store(distance, &mut out[2]);
         }
         out.map(|lanes| lanes.0)
     }

@@ -9,8 +9,9 @@ use super::contact::Contacts;
 use super::forces::{Forces, REACH};
 use super::nearby::amply_around;
 use super::program::Program;
-use super::social::{Sum, Term, cohesion, decay, is_in_reach, repel};
+use super::social::{Sum, Term, cohesion, repel};
 use super::state::State;
+use super::surfaces::{self, Bodies};
 use super::vector::{Doubles, Part, larger, parts};
 use crate::base::geometry::{Bounds, Vec2};
 use crate::base::lanes::{LANES, Lanes, Mask};
@@ -99,6 +100,7 @@ pub(super) struct Lanewise {
     /// How far beyond touching each body is felt or may be touched, with the skin, m.
     reaches: Vec<Lanes>,
     room: Vec<u32>,
+    faces: surfaces::Room,
     stale: bool,
 }
 
@@ -250,12 +252,11 @@ impl Lanewise {
             list.first_surface.push(list.surfaces.len() as u32);
             let around = around(one, &reaches[i]);
             for &k in forces.surfaces.nearby.find(&around, &mut self.room) {
-                let surface = &forces.surfaces.at(k);
                 let mut near = false;
                 for part in parts(simd) {
                     let limit = larger::<S>(part.load(&one.r) + part.load(&reaches[i]), part.c(0.0));
-                    let square =
-                        surface.squared_distance_to_bounds(part, part.load(&one.x), part.load(&one.y));
+                    let (x, y) = (part.load(&one.x), part.load(&one.y));
+                    let square = forces.surfaces.squared_distance_to_bounds(k, part, x, y);
                     near |= square.simd_lt(limit * limit).any_true();
                 }
                 if near {
@@ -328,14 +329,14 @@ impl Lanewise {
 
     #[inline(always)]
     fn walls<S: Simd>(
-        &self,
+        &mut self,
         simd: S,
         forces: &Forces,
         state: &State,
         sums: &mut [Sum],
         contacts: &mut Contacts,
     ) {
-        let list = &self.neighbours;
+        let (list, surfaces) = (&self.neighbours, &forces.surfaces);
         for (i, walker) in self.walkers.iter().enumerate() {
             let near = &list.surfaces[list.first_surface[i] as usize..list.first_surface[i + 1] as usize];
             if near.is_empty() {
@@ -349,21 +350,11 @@ impl Lanewise {
                     None => part.load(&walker.term.rate),
                 };
                 let (mut fx, mut fy) = (part.load(&sums[i].x), part.load(&sums[i].y));
-                for &k in near {
-                    let nearest = forces.surfaces.at(k).nearest(part, x, y);
-                    let gap = r - nearest.distance;
-                    let touching = gap.simd_gt(part.c(-forces.margin));
-                    if touching.any_true() {
-                        contacts.push_wall(i as u32, k, part.bits(touching));
-                    }
-                    let mut power = gap * rate;
-                    if is_in_reach(part, power) {
-                        power = (r - forces.surfaces.felt(k, part, (x, y), &nearest)) * rate;
-                    }
-                    let f = a * decay(part, power);
-                    fx += f * nearest.nx;
-                    fy += f * nearest.ny;
-                }
+                let bodies = Bodies { place: (x, y), r, a, rate };
+                let touching = |k, lanes| contacts.push_wall(i as u32, k, part.bits(lanes));
+                let (wx, wy) = surfaces.push(part, near, &bodies, forces.margin, &mut self.faces, touching);
+                fx += wx;
+                fy += wy;
                 part.store(fx, &mut sums[i].x);
                 part.store(fy, &mut sums[i].y);
             }

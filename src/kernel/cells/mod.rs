@@ -18,6 +18,7 @@ use super::contact::Contacts;
 use super::program::Program;
 use super::social::{Sum, cohesion};
 use super::state::State;
+use super::surfaces;
 use crate::base::lanes::LANES;
 use fearless_simd::Simd;
 use grid::{Grid, survey};
@@ -61,6 +62,8 @@ pub(super) struct Cells {
     touches: Vec<Touch>,
     own: Vec<Sum>,
     room: Vec<u32>,
+    near: Vec<u32>,
+    faces: surfaces::Room,
     /// As in `Close`.
     edge: f64,
 }

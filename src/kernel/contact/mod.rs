@@ -42,7 +42,7 @@ pub(super) struct Contacts {
 #[derive(Clone, Debug, Default)]
 struct Candidates {
     pairs: Vec<(u32, u32)>,
-    /// An agent and a surface.
+    /// An agent and a face.
     walls: Vec<(u32, u32)>,
 }
 
@@ -76,12 +76,12 @@ impl Contacts {
         }
     }
 
-    /// Agent `i` may touch surface `surface` within a step in these lanes.
+    /// Agent `i` may touch a face within a step in these lanes.
     #[inline]
-    pub(super) fn push_wall(&mut self, i: u32, surface: u32, lanes: Mask) {
+    pub(super) fn push_wall(&mut self, i: u32, face: u32, lanes: Mask) {
         self.listed |= lanes;
         for lane in lanes.iter() {
-            self.candidates[lane].walls.push((i, surface));
+            self.candidates[lane].walls.push((i, face));
         }
     }
 
@@ -132,9 +132,9 @@ impl Candidates {
             let (a, b) = (state.slot(i as usize, lane), state.slot(j as usize, lane));
             here(a) && here(b) && within_reach(radius(a) + radius(b), place(a), place(b), h)
         };
-        let wall = |&(i, surface): &(u32, u32)| {
+        let wall = |&(i, face): &(u32, u32)| {
             let a = state.slot(i as usize, lane);
-            here(a) && within_reach_of_surface(program, surface, radius(a), place(a), h)
+            here(a) && within_reach_of_face(program, face, radius(a), place(a), h)
         };
         self.pairs.iter().any(pair) || self.walls.iter().any(wall)
     }
@@ -149,16 +149,9 @@ fn within_reach(touch: f64, (x, v): (Vec2, Vec2), (other_x, other_v): (Vec2, Vec
     d.dot(&d) < reach * reach
 }
 
-/// Whether a body of some radius can touch a surface within `h` seconds.
-fn within_reach_of_surface(
-    program: &Program,
-    surface: u32,
-    radius: f64,
-    (x, v): (Vec2, Vec2),
-    h: f64,
-) -> bool {
-    let (_, distance) = program.forces.surfaces.at(surface).nearest_to(x);
-    distance < radius + length(v) * h
+/// Whether a body of some radius can touch a face within `h` seconds.
+fn within_reach_of_face(program: &Program, face: u32, radius: f64, (x, v): (Vec2, Vec2), h: f64) -> bool {
+    program.forces.surfaces.nearest_to(face, x).near < radius + length(v) * h
 }
 
 fn at(x: &[Lanes], y: &[Lanes], slot: Slot) -> Vec2 {

@@ -7,15 +7,16 @@ use super::throng::Motion;
 use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Lanes};
 use crate::kernel::program::Program;
+use crate::kernel::surfaces;
 use crate::kernel::vector::{exp, parts};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
-/// Two bodies that may touch, or one and a surface.
+/// Two bodies that may touch, or one and a face.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touch {
     pub(super) a: u32,
-    /// The other body; at a wall, the surface.
+    /// The other body; at a wall, the face.
     pub(super) b: u32,
     /// Bodies that hang together by pairs that may touch.
     pub(super) cluster: u32,
@@ -70,6 +71,8 @@ pub(super) struct Touches {
     /// Those that overlap at present, in order; as many as `found` says.
     overlaps: Vec<u32>,
     found: usize,
+    /// Room to work.
+    touches: Vec<surfaces::Touch>,
 }
 
 impl Touches {
@@ -121,16 +124,26 @@ impl Touches {
         }
     }
 
-    /// Finds the bodies that overlap a surface, and what it does in a sub-step of `t` seconds.
+    /// Finds the bodies that overlap a face, and what it does in a sub-step of `t` seconds.
     #[inline(always)]
     pub(super) fn find_at_walls<S: Simd>(&mut self, simd: S, program: &Program, x: &[Vec2], t: f64) {
-        for k in 0..self.count {
-            let (eight, lane) = (&mut self.blocks[k / LANES], k % LANES);
-            let at = x[eight.a[lane] as usize];
-            let (normal, distance) = program.forces.surfaces.felt_at(eight.b[lane], at);
-            eight.nx.0[lane] = normal.x;
-            eight.ny.0[lane] = normal.y;
-            eight.gap.0[lane] = eight.distance.0[lane] - distance;
+        // The faces of one body stand one after the other.
+        let body = |blocks: &[Eight], k: usize| blocks[k / LANES].a[k % LANES];
+        let mut first = 0;
+        while first < self.count {
+            let a = body(&self.blocks, first);
+            let same = (first..self.count).take_while(|&k| body(&self.blocks, k) == a).count();
+            let (blocks, touches) = (&self.blocks, &mut self.touches);
+            let faces = (first..first + same).map(|k| blocks[k / LANES].b[k % LANES]);
+            let radius = blocks[first / LANES].distance.0[first % LANES];
+            program.forces.surfaces.touch(faces, x[a as usize], radius, touches);
+            for (k, touch) in (first..).zip(&self.touches) {
+                let (eight, lane) = (&mut self.blocks[k / LANES], k % LANES);
+                eight.nx.0[lane] = touch.normal.x;
+                eight.ny.0[lane] = touch.normal.y;
+                eight.gap.0[lane] = touch.depth;
+            }
+            first += same;
         }
         self.prepare(simd, t);
     }

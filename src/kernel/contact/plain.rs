@@ -1,6 +1,6 @@
 //! Contact written plainly, pair by pair in the order of candidates: the reference of the tests.
 
-use super::{Contacts, at, within_reach, within_reach_of_surface};
+use super::{Contacts, at, within_reach, within_reach_of_face};
 use crate::base::decimal::Decimal;
 use crate::base::geometry::{Segment, Vec2};
 use crate::base::lanes::{LANES, Mask};
@@ -89,9 +89,9 @@ fn candidates(program: &Program, state: &State) -> Contacts {
                     contacts.push_pair(i as u32, j as u32, Mask::lane(lane));
                 }
             }
-            for (k, surface) in program.forces.surfaces.iter().enumerate() {
-                if state.radius[i].0[lane] - surface.nearest_to(place(i)).1 > -0.05 {
-                    contacts.push_wall(i as u32, k as u32, Mask::lane(lane));
+            for k in 0..program.forces.surfaces.len() as u32 {
+                if state.radius[i].0[lane] - program.forces.surfaces.nearest_to(k, place(i)).near > -0.05 {
+                    contacts.push_wall(i as u32, k, Mask::lane(lane));
                 }
             }
         }
@@ -119,8 +119,8 @@ fn plainly(contacts: &Contacts, program: &Program, state: &mut State, moved: &mu
         for &(i, j) in pairs {
             hot[i as usize] |= within_reach(radius(i) + radius(j), moving(i), moving(j), H);
         }
-        for &(i, surface) in walls {
-            hot[i as usize] |= within_reach_of_surface(program, surface, radius(i), moving(i), H);
+        for &(i, face) in walls {
+            hot[i as usize] |= within_reach_of_face(program, face, radius(i), moving(i), H);
         }
         for _ in 0..PEOPLE {
             for &(i, j) in pairs {
@@ -153,10 +153,14 @@ fn plainly(contacts: &Contacts, program: &Program, state: &mut State, moved: &mu
                     (mean(&state.k1, i, j), mean(&state.k2, i, j)),
                 ));
             }
-            for &(i, surface) in &walls {
-                let (normal, distance) = program.forces.surfaces.felt_at(surface, x[i as usize]);
+            for k in 0..walls.len() {
+                let (i, face) = walls[k];
+                let faces: Vec<u32> = walls.iter().filter(|wall| wall.0 == i).map(|wall| wall.1).collect();
+                let mut touches = Vec::new();
+                program.forces.surfaces.touch(faces.iter().copied(), x[i as usize], radius(i), &mut touches);
+                let touch = touches[faces.iter().position(|other| *other == face).unwrap()];
                 let k = (of(&state.k1, i), of(&state.k2, i));
-                overlaps.push(((i, None, inverse(i)), normal, radius(i) - distance, k));
+                overlaps.push(((i, None, inverse(i)), touch.normal, touch.depth, k));
             }
             overlaps.retain(|&(_, _, gap, _)| gap > 0.0);
             let exchange = |v: &mut [Vec2], i: u32, j: Option<u32>, impulse: Vec2| {

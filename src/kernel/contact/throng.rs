@@ -6,7 +6,7 @@
 //! whatever stands between, and the processor works on several pairs at a time.
 
 use super::overlap::{Touch, Touches};
-use super::{Candidates, at, within_reach, within_reach_of_surface};
+use super::{Candidates, at, within_reach, within_reach_of_face};
 use crate::base::geometry::Vec2;
 use crate::base::lanes::Mask;
 use crate::base::math;
@@ -100,10 +100,10 @@ impl Throng {
             self.bodies[b as usize].turn = turn + 1;
             self.pairs.push((turn, Touch { a, b, cluster: 0, distance, k1, k2, inverse }));
         }
-        for &(i, surface) in &candidates.walls {
+        for &(i, face) in &candidates.walls {
             let Some(a) = self.body(state, i, lane) else { continue };
             let Body { radius: distance, k1, k2, inverse, .. } = self.bodies[a as usize];
-            self.walls.push(Touch { a, b: surface, cluster: 0, distance, k1, k2, inverse });
+            self.walls.push(Touch { a, b: face, cluster: 0, distance, k1, k2, inverse });
         }
         self.find_clusters();
         self.listed = 0;
@@ -207,7 +207,7 @@ impl Throng {
         }
         for touch in &self.walls {
             let hot = &mut self.clusters[touch.cluster as usize].hot;
-            if !*hot && within_reach_of_surface(program, touch.b, touch.distance, moving(touch.a), h) {
+            if !*hot && within_reach_of_face(program, touch.b, touch.distance, moving(touch.a), h) {
                 *hot = true;
                 cold -= 1;
             }

@@ -1,0 +1,174 @@
+//! A face: what one straight piece of a barrier, or a barrier as a whole, does.
+//!
+//! A piece of a wall has two faces in one, an edge of a polygon is felt from outside alone. The nearest point of a
+//! piece is the foot of the perpendicular, or an end. An end of an edge where the polygon is hollow is nobody's
+//! nearest point: who sees it is nearer to the neighbour.
+
+use super::Surface;
+use crate::base::geometry::{Bounds, Polygon, Segment, Vec2, cross};
+use crate::kernel::vector::{Doubles, Part, larger, smaller};
+use fearless_simd::Simd;
+use fearless_simd::prelude::*;
+
+/// Sine of an angle that is none: such pieces are in line.
+const ALIGNED: f64 = 1e-7;
+
+/// What pushes.
+#[derive(Clone, Debug)]
+pub(super) enum Form {
+    /// A piece of a wall or an edge of a polygon.
+    Side(Side),
+    /// A whole barrier: a disc.
+    Disc,
+    /// A whole barrier: a polygon, which pushes those who got into it.
+    Inside,
+}
+
+/// A straight piece.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Side {
+    a: Vec2,
+    along: Vec2,
+    /// One over the squared length; 0 for a point.
+    inverse_square: f64,
+    /// Of an edge of a polygon: which way is out, of any length. Zero in a wall.
+    outward: Vec2,
+    /// Whether the ends are nobody's nearest point.
+    closed: [bool; 2],
+}
+
+/// The nearest point of a face to each of eight places.
+#[derive(Clone, Copy)]
+pub(in crate::kernel) struct Nearest<S: Simd> {
+    /// Unit vector away from the surface; zero exactly on it.
+    pub(in crate::kernel) nx: Doubles<S>,
+    pub(in crate::kernel) ny: Doubles<S>,
+    /// Distance, seen or not, negative inside a solid, m.
+    pub(in crate::kernel) near: Doubles<S>,
+    /// The same; infinite where the face is not seen, as from behind.
+    pub(in crate::kernel) distance: Doubles<S>,
+}
+
+/// The nearest point of a face to one place: the fields of `Nearest`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::kernel) struct NearestTo {
+    pub(in crate::kernel) normal: Vec2,
+    pub(in crate::kernel) near: f64,
+    pub(in crate::kernel) distance: f64,
+}
+
+impl Side {
+    pub(super) fn of_wall(piece: Segment) -> Self {
+        let along = piece.b - piece.a;
+        let square = along.dot(&along);
+        Self {
+            a: piece.a,
+            along,
+            inverse_square: if square > 0.0 { 1.0 / square } else { 0.0 },
+            outward: Vec2::zeros(),
+            closed: [false; 2],
+        }
+    }
+
+    pub(super) fn bounds(&self) -> Bounds {
+        let b = self.a + self.along;
+        Bounds { low: self.a.inf(&b), high: self.a.sup(&b) }
+    }
+
+    pub(super) fn piece(&self) -> Segment {
+        Segment::new(self.a, self.a + self.along)
+    }
+
+    fn is_one_sided(&self) -> bool {
+        self.outward != Vec2::zeros()
+    }
+
+    #[inline(always)]
+    pub(super) fn nearest<S: Simd>(&self, part: Part<S>, x: Doubles<S>, y: Doubles<S>) -> Nearest<S> {
+        let (px, py) = (x - part.c(self.a.x), y - part.c(self.a.y));
+        let foot = (px * part.c(self.along.x) + py * part.c(self.along.y)) * part.c(self.inverse_square);
+        let share = smaller::<S>(larger::<S>(foot, part.c(0.0)), part.c(1.0));
+        let (dx, dy) = (px - share * part.c(self.along.x), py - share * part.c(self.along.y));
+        // Far below any square of a distance that matters: keeps 1/0 out where the centre is on the line.
+        let near = (dx * dx + dy * dy + part.c(1e-300)).sqrt();
+        let q = part.c(1.0) / near;
+        let mut distance = near;
+        if self.is_one_sided() {
+            let height = px * part.c(self.outward.x) + py * part.c(self.outward.y);
+            let mut seen = height.simd_ge(part.c(0.0));
+            if self.closed[0] {
+                seen &= foot.simd_gt(part.c(0.0));
+            }
+            if self.closed[1] {
+                seen &= foot.simd_lt(part.c(1.0));
+            }
+            distance = seen.select(near, part.c(f64::INFINITY));
+        }
+        Nearest { nx: dx * q, ny: dy * q, near, distance }
+    }
+
+    /// With the operations of `nearest`.
+    pub(super) fn nearest_to(&self, p: Vec2) -> NearestTo {
+        let from = p - self.a;
+        let foot = from.dot(&self.along) * self.inverse_square;
+        let share = if foot > 0.0 { foot } else { 0.0 };
+        let share = if share < 1.0 { share } else { 1.0 };
+        let d = from - self.along * share;
+        let near = (d.dot(&d) + 1e-300).sqrt();
+        let is_seen = !self.is_one_sided()
+            || from.dot(&self.outward) >= 0.0
+                && !(self.closed[0] && foot <= 0.0)
+                && !(self.closed[1] && foot >= 1.0);
+        NearestTo { normal: d * (1.0 / near), near, distance: if is_seen { near } else { f64::INFINITY } }
+    }
+}
+
+/// The nearest point of a disc or, for those inside, of a polygon.
+#[inline(always)]
+pub(super) fn nearest_of_whole<S: Simd>(
+    surface: &Surface,
+    part: Part<S>,
+    x: Doubles<S>,
+    y: Doubles<S>,
+) -> Nearest<S> {
+    let (nx, ny, near) = surface.nearest(part, x, y);
+    let mut distance = near;
+    if surface.has_edges() {
+        distance = near.simd_lt(part.c(0.0)).select(near, part.c(f64::INFINITY));
+    }
+    Nearest { nx, ny, near, distance }
+}
+
+/// With the operations of `nearest_of_whole`.
+pub(super) fn nearest_of_whole_to(surface: &Surface, p: Vec2) -> NearestTo {
+    let (normal, near) = surface.nearest_to(p);
+    let is_seen = near < 0.0 || !surface.has_edges();
+    NearestTo { normal, near, distance: if is_seen { near } else { f64::INFINITY } }
+}
+
+/// The edges of a polygon as they are felt from outside, in their order.
+pub(super) fn sides_of(polygon: &Polygon) -> Vec<Side> {
+    let mut sides = Vec::new();
+    let holes = polygon.holes.iter().map(|hole| (hole, -1.0));
+    for (ring, solid) in [(&polygon.outline, 1.0)].into_iter().chain(holes) {
+        let n = ring.len();
+        let along = |k: usize| ring[(k + 1) % n] - ring[k % n];
+        // From its first corner, so that a ring far from the origin keeps its sense.
+        let twice: f64 = (0..n).map(|k| cross(ring[k] - ring[0], along(k))).sum();
+        let sense = if twice < 0.0 { -solid } else { solid };
+        // Whether the polygon is hollow at the corner where edge k begins.
+        let is_hollow = |k: usize| {
+            let (before, after) = (along(k + n - 1), along(k));
+            sense * cross(before, after) < -ALIGNED * before.norm() * after.norm()
+        };
+        for k in 0..n {
+            let way = along(k);
+            sides.push(Side {
+                outward: Vec2::new(way.y, -way.x) * sense,
+                closed: [is_hollow(k), is_hollow(k + 1)],
+                ..Side::of_wall(Segment::new(ring[k], ring[(k + 1) % n]))
+            });
+        }
+    }
+    sides
+}

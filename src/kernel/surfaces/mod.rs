@@ -1,0 +1,347 @@
+//! The barriers of a scene as the forces see them: which faces may be near, and which of them push.
+//!
+//! Each straight piece of a wall and each edge of a polygon is a face and pushes from its nearest point
+//! (Given-Wilson et al. 2017, equations (5) and (6), with `d_ib` the distance from the centre of the body), a disc as
+//! a whole. So in the corner of a room both of its faces push, however the room is drawn. Three rules say what holds
+//! where pieces meet.
+//!
+//! 1. An edge of a polygon is felt on its outer side only. Whoever got into a polygon is pushed, too, to the nearest
+//!    point of its rim.
+//! 2. Where the nearest point of a face lies on another face that is nearer, or as near and declared before, the
+//!    other one has the say; and where it lies in another solid, or on the back of one. So a corner outside counts
+//!    once, and an end that another barrier hides is not felt. The nearest of all is always felt.
+//! 3. Faces that hang together (those of one wall, or of walls and obstacles that touch) share the work where they
+//!    push the same way: together they give the smallest force that is, along each normal, what that face gives alone
+//!    (`sharing`). So in a right angle both push in full, a straight wall in pieces, a ledge or the two sides of a wall
+//!    drawn as its outline are one wall, and the side of a round room drawn of short pieces is not twice as hard where
+//!    two of them are in front.
+//!
+//! Barriers that do not touch push each for itself: the sum over walls of the paper.
+
+mod face;
+mod joints;
+mod sharing;
+#[cfg(test)]
+mod tests;
+
+use super::barrier::Surface;
+use super::edges::squared_distance;
+use super::nearby::Nearby;
+use super::social::{decay, is_in_reach};
+use super::vector::{Doubles, Part, Truths};
+use crate::base::geometry::{Bounds, Shape, Vec2};
+use crate::base::lanes::Mask;
+use crate::model::{Barrier, Obstacle};
+use face::{Form, Nearest, NearestTo, Side, nearest_of_whole, nearest_of_whole_to, sides_of};
+use fearless_simd::Simd;
+use fearless_simd::prelude::*;
+pub(super) use sharing::Touch;
+use sharing::{Push, share, share_depths};
+
+/// A point this close to a barrier lies on it, m: nobody slips through, whatever is drawn so.
+const ON: f64 = 1e-3;
+
+/// Where a face meets another one.
+#[derive(Clone, Debug, PartialEq)]
+struct Joint {
+    /// The other one.
+    other: u32,
+    /// A rectangle around all points of the face that lie on or in the other one.
+    around: Bounds,
+}
+
+/// What pushes.
+#[derive(Clone, Debug)]
+struct Face {
+    form: Form,
+    /// The barrier that it belongs to.
+    barrier: u32,
+    bounds: Bounds,
+    /// Where it meets others, in their order.
+    joints: Vec<Joint>,
+    /// The first of the faces that it hangs together with; `None` if there is no other.
+    structure: Option<u32>,
+}
+
+/// The faces of the barriers of a scene, in their order; those without a piece have none.
+#[derive(Clone, Debug)]
+pub(super) struct Surfaces {
+    wholes: Vec<Surface>,
+    faces: Vec<Face>,
+    /// Which faces may be near.
+    pub(super) nearby: Nearby,
+}
+
+/// Eight bodies as a face meets them.
+#[derive(Clone, Copy)]
+pub(super) struct Bodies<S: Simd> {
+    /// Places, m.
+    pub(super) place: (Doubles<S>, Doubles<S>),
+    /// Radius, m.
+    pub(super) r: Doubles<S>,
+    /// Strength A, N, and log2(e)/B, 1/m, of the social force.
+    pub(super) a: Doubles<S>,
+    pub(super) rate: Doubles<S>,
+}
+
+/// Room to work.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Room {
+    pushes: Vec<Push>,
+}
+
+impl Surfaces {
+    /// Of a scene.
+    pub(super) fn new(barriers: &[Barrier]) -> Self {
+        let there: Vec<(&Barrier, Surface)> =
+            barriers.iter().filter_map(|barrier| Some((barrier, Surface::new(barrier)?))).collect();
+        let (barriers, wholes): (Vec<&Barrier>, Vec<Surface>) = there.into_iter().unzip();
+        let mut faces = Vec::new();
+        for (k, barrier) in barriers.iter().enumerate() {
+            faces.extend(forms(barrier, &wholes[k]).into_iter().map(|(form, bounds)| Face {
+                form,
+                barrier: k as u32,
+                bounds,
+                joints: Vec::new(),
+                structure: None,
+            }));
+        }
+        let nearby = Nearby::new(&faces.iter().map(|face| face.bounds).collect::<Vec<_>>());
+        let mut meets = Vec::new();
+        for k in 0..faces.len() {
+            let (joints, mut others) = joints::of_face(&faces, &wholes, k, &nearby);
+            faces[k].joints = joints;
+            // What belongs to one barrier hangs together.
+            others.extend((k > 0 && faces[k - 1].barrier == faces[k].barrier).then(|| k as u32 - 1));
+            meets.push(others);
+        }
+        let structures = joints::structures(&meets);
+        let mut sizes = vec![0; faces.len()];
+        structures.iter().for_each(|&first| sizes[first as usize] += 1);
+        for (face, first) in faces.iter_mut().zip(structures) {
+            face.structure = (sizes[first as usize] > 1).then_some(first);
+        }
+        Self { wholes, faces, nearby }
+    }
+
+    /// Whether there is none.
+    pub(super) const fn is_empty(&self) -> bool {
+        self.faces.is_empty()
+    }
+
+    /// How many faces there are.
+    #[cfg(test)]
+    pub(super) const fn len(&self) -> usize {
+        self.faces.len()
+    }
+
+    /// Squared distance from eight places to the rectangle around a face.
+    #[inline(always)]
+    pub(super) fn squared_distance_to_bounds<S: Simd>(
+        &self,
+        face: u32,
+        part: Part<S>,
+        x: Doubles<S>,
+        y: Doubles<S>,
+    ) -> Doubles<S> {
+        squared_distance(part, &self.faces[face as usize].bounds, x, y)
+    }
+
+    /// The nearest points of a face to eight places.
+    #[inline(always)]
+    pub(super) fn nearest<S: Simd>(
+        &self,
+        face: u32,
+        part: Part<S>,
+        (x, y): (Doubles<S>, Doubles<S>),
+    ) -> Nearest<S> {
+        let Face { form, barrier, .. } = &self.faces[face as usize];
+        match form {
+            Form::Side(side) => side.nearest(part, x, y),
+            Form::Disc | Form::Inside => nearest_of_whole(&self.wholes[*barrier as usize], part, x, y),
+        }
+    }
+
+    /// The nearest point of a face to one place.
+    pub(super) fn nearest_to(&self, face: u32, p: Vec2) -> NearestTo {
+        let Face { form, barrier, .. } = &self.faces[face as usize];
+        match form {
+            Form::Side(side) => side.nearest_to(p),
+            Form::Disc | Form::Inside => nearest_of_whole_to(&self.wholes[*barrier as usize], p),
+        }
+    }
+
+    /// The social force of faces on eight bodies, N. Those that touch or may do so within a step are told to `may_touch`,
+    /// if they are nearer than `margin`.
+    #[inline(always)]
+    pub(super) fn push<S: Simd>(
+        &self,
+        part: Part<S>,
+        near: &[u32],
+        bodies: &Bodies<S>,
+        margin: f64,
+        room: &mut Room,
+        mut may_touch: impl FnMut(u32, Truths<S>),
+    ) -> (Doubles<S>, Doubles<S>) {
+        let (mut fx, mut fy) = (part.c(0.0), part.c(0.0));
+        room.pushes.clear();
+        for &k in near {
+            let nearest = self.nearest(k, part, bodies.place);
+            let touching = (bodies.r - nearest.near).simd_gt(part.c(-margin));
+            if touching.any_true() {
+                may_touch(k, touching);
+            }
+            let mut power = (bodies.r - nearest.distance) * bodies.rate;
+            if !is_in_reach(part, power) {
+                continue;
+            }
+            let Face { joints, structure, .. } = &self.faces[k as usize];
+            if !joints.is_empty() {
+                power = (bodies.r - self.felt(k, part, bodies.place, &nearest)) * bodies.rate;
+            }
+            let alone = bodies.a * decay(part, power);
+            let Some(structure) = *structure else {
+                fx += alone * nearest.nx;
+                fy += alone * nearest.ny;
+                continue;
+            };
+            if is_in_reach(part, power) {
+                let mut push = Push { structure, ..Push::default() };
+                part.store(nearest.nx, &mut push.nx);
+                part.store(nearest.ny, &mut push.ny);
+                part.store(alone, &mut push.alone);
+                push.shared = push.alone;
+                room.pushes.push(push);
+            }
+        }
+        if room.pushes.len() > 1 {
+            share(part, &mut room.pushes);
+        }
+        for push in &room.pushes {
+            let f = part.load(&push.shared);
+            fx += f * part.load(&push.nx);
+            fy += f * part.load(&push.ny);
+        }
+        (fx, fy)
+    }
+
+    /// Distances at which a face is felt at eight places, from its nearest points: infinite where it is not seen, or
+    /// another one has the say (rule 2).
+    #[inline(always)]
+    fn felt<S: Simd>(
+        &self,
+        index: u32,
+        part: Part<S>,
+        place: (Doubles<S>, Doubles<S>),
+        nearest: &Nearest<S>,
+    ) -> Doubles<S> {
+        let foot = (place.0 - nearest.nx * nearest.near, place.1 - nearest.ny * nearest.near);
+        let on = part.c(ON);
+        let mut silent = part.mask(Mask::NONE);
+        // The barrier of the last other face, and where the foot lies on one of its faces that is seen.
+        let (mut barrier, mut on_face) = (u32::MAX, silent);
+        for Joint { other, around } in &self.faces[index as usize].joints {
+            let here = is_in(part, around, foot);
+            if !here.any_true() {
+                continue;
+            }
+            let other_face = &self.faces[*other as usize];
+            if barrier != other_face.barrier {
+                (barrier, on_face) = (other_face.barrier, part.mask(Mask::NONE));
+            }
+            let theirs = self.nearest(*other, part, place);
+            if matches!(other_face.form, Form::Inside) {
+                let nearer = here & !on_face & theirs.near.simd_lt(nearest.distance);
+                if nearer.any_true() {
+                    silent |= nearer & self.nearest(*other, part, foot).near.simd_le(on);
+                }
+                continue;
+            }
+            let seen = here & theirs.distance.simd_lt(part.c(f64::INFINITY));
+            if seen.any_true() {
+                let here = seen & self.nearest(*other, part, foot).near.simd_le(on);
+                on_face |= here;
+                silent |= here
+                    & if *other < index {
+                        theirs.distance.simd_le(nearest.distance)
+                    } else {
+                        theirs.distance.simd_lt(nearest.distance)
+                    };
+            }
+        }
+        silent.select(part.c(f64::INFINITY), nearest.distance)
+    }
+
+    /// How one body overlaps some faces as the contact between them feels it, by the rules above; in their order.
+    pub(super) fn touch(
+        &self,
+        faces: impl Iterator<Item = u32>,
+        p: Vec2,
+        radius: f64,
+        touches: &mut Vec<Touch>,
+    ) {
+        touches.clear();
+        for (k, face) in faces.enumerate() {
+            let (normal, distance) = self.felt_at(face, p);
+            // Who hangs together with nobody has a number that no face has.
+            let structure = self.faces[face as usize].structure.unwrap_or(u32::MAX - k as u32);
+            let alone = radius - distance;
+            touches.push(Touch { structure, normal, alone, depth: alone });
+        }
+        if touches.len() > 1 {
+            share_depths(touches);
+        }
+    }
+
+    /// The nearest point of a face to one place: unit vector away from the face, and distance as `felt` has it.
+    fn felt_at(&self, index: u32, p: Vec2) -> (Vec2, f64) {
+        let NearestTo { normal, near, distance } = self.nearest_to(index, p);
+        let foot = p - normal * near;
+        let mut silent = false;
+        let (mut barrier, mut on_face) = (u32::MAX, false);
+        for Joint { other, around } in &self.faces[index as usize].joints {
+            if !contains(around, foot) {
+                continue;
+            }
+            let other_face = &self.faces[*other as usize];
+            if barrier != other_face.barrier {
+                (barrier, on_face) = (other_face.barrier, false);
+            }
+            let theirs = self.nearest_to(*other, p);
+            let is_on = self.nearest_to(*other, foot).near <= ON;
+            if matches!(other_face.form, Form::Inside) {
+                silent |= is_on && !on_face && theirs.near < distance;
+            } else if theirs.distance < f64::INFINITY && is_on {
+                on_face = true;
+                silent |= theirs.distance < distance || (*other < index && theirs.distance == distance);
+            }
+        }
+        (normal, if silent { f64::INFINITY } else { distance })
+    }
+}
+
+/// The faces of a barrier, and a rectangle around each.
+fn forms(barrier: &Barrier, surface: &Surface) -> Vec<(Form, Bounds)> {
+    let sides: Vec<Side> = match &barrier.obstacle {
+        Obstacle::Wall(_) => surface.edges().map(Side::of_wall).collect(),
+        Obstacle::Solid(Shape::Polygon(polygon)) => sides_of(polygon),
+        Obstacle::Solid(Shape::Circle { .. }) => Vec::new(),
+    };
+    let sides = sides.into_iter().map(|side| (Form::Side(side), side.bounds()));
+    match &barrier.obstacle {
+        Obstacle::Wall(_) => sides.collect(),
+        Obstacle::Solid(Shape::Circle { .. }) => vec![(Form::Disc, surface.bounds)],
+        Obstacle::Solid(Shape::Polygon(_)) => sides.chain([(Form::Inside, surface.bounds)]).collect(),
+    }
+}
+
+fn is_in<S: Simd>(part: Part<S>, around: &Bounds, (x, y): (Doubles<S>, Doubles<S>)) -> Truths<S> {
+    x.simd_ge(part.c(around.low.x))
+        & x.simd_le(part.c(around.high.x))
+        & y.simd_ge(part.c(around.low.y))
+        & y.simd_le(part.c(around.high.y))
+}
+
+fn contains(around: &Bounds, p: Vec2) -> bool {
+    around.low.x <= p.x && p.x <= around.high.x && around.low.y <= p.y && p.y <= around.high.y
+}

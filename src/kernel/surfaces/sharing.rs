@@ -1,0 +1,144 @@
+//! What faces that hang together give at once: the smallest that is enough along each normal.
+//!
+//! Faces that push with f_i along unit vectors n_i give g_i, with g_i >= 0 and sum_j max(0, n_i . n_j) g_j >= f_i, and
+//! = where g_i > 0: a linear complementarity problem. So those that push against each other, or at right angles, do
+//! not know of each other. Of two at an angle, c its cosine, each gives (f_i - c f_j)/(1 - c^2), at least 0 and at most
+//! f_i. With more, the least of these is where Gauss and Seidel begin (projected; Cottle, Pang, Stone 1992, chapter 5).
+//! A fixed number of sweeps, so that what comes out changes as smoothly as what goes in.
+
+use crate::base::geometry::Vec2;
+use crate::base::lanes::Lanes;
+use crate::kernel::vector::{Doubles, Part, larger, smaller};
+use fearless_simd::Simd;
+use fearless_simd::prelude::*;
+
+/// Sweeps over three or more.
+const SWEEPS: usize = 8;
+
+/// A face that pushes eight bodies.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Push {
+    /// What it hangs together with.
+    pub(super) structure: u32,
+    pub(super) nx: Lanes,
+    pub(super) ny: Lanes,
+    /// What it gives alone, N.
+    pub(super) alone: Lanes,
+    /// What it gives beside the others, N.
+    pub(super) shared: Lanes,
+}
+
+/// A face that pushes one body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::kernel) struct Touch {
+    pub(super) structure: u32,
+    /// Unit vector away from the face.
+    pub(in crate::kernel) normal: Vec2,
+    /// How deep the body overlaps it, m.
+    pub(super) alone: f64,
+    /// How deep beside the others.
+    pub(in crate::kernel) depth: f64,
+}
+
+/// What of two the first one gives.
+#[inline(always)]
+fn of_two<S: Simd>(part: Part<S>, c: Doubles<S>, own: Doubles<S>, other: Doubles<S>) -> Doubles<S> {
+    let one = part.c(1.0);
+    // (own - c other)/(1 - c^2), such that in line, c = 1, two that are equal give half each.
+    own / (one + c) + c * (own - other) / (one - c * c + part.c(1e-300))
+}
+
+/// Cosine between the normals of two, 0 where they push against each other.
+#[inline(always)]
+fn cosine<S: Simd>(part: Part<S>, one: &Push, other: &Push) -> Doubles<S> {
+    let c = part.load(&one.nx) * part.load(&other.nx) + part.load(&one.ny) * part.load(&other.ny);
+    smaller::<S>(larger::<S>(c, part.c(0.0)), part.c(1.0))
+}
+
+/// Works out what each gives beside the others. Nothing of one lane is felt in another.
+#[inline(always)]
+pub(super) fn share<S: Simd>(part: Part<S>, pushes: &mut [Push]) {
+    let (zero, one) = (part.c(0.0), part.c(1.0));
+    let mut most = zero;
+    for i in 0..pushes.len() {
+        let own = part.load(&pushes[i].alone);
+        let (mut least, mut others) = (own, zero);
+        for j in 0..pushes.len() {
+            if i == j || pushes[i].structure != pushes[j].structure {
+                continue;
+            }
+            let c = cosine(part, &pushes[i], &pushes[j]);
+            let other = part.load(&pushes[j].alone);
+            let shares = c.simd_gt(zero) & other.simd_gt(zero) & own.simd_gt(zero);
+            if shares.any_true() {
+                let given = larger::<S>(of_two(part, c, own, other), zero);
+                least = shares.select(smaller::<S>(given, least), least);
+                others += shares.select(one, zero);
+            }
+        }
+        most = larger::<S>(others, most);
+        part.store(least, &mut pushes[i].shared);
+    }
+    let several = most.simd_gt(one);
+    if !several.any_true() {
+        return;
+    }
+    for _ in 0..SWEEPS {
+        for i in 0..pushes.len() {
+            let mut given = zero;
+            for j in 0..pushes.len() {
+                if i != j && pushes[i].structure == pushes[j].structure {
+                    given += cosine(part, &pushes[i], &pushes[j]) * part.load(&pushes[j].shared);
+                }
+            }
+            let left = larger::<S>(part.load(&pushes[i].alone) - given, zero);
+            part.store_in(several, left, &mut pushes[i].shared);
+        }
+    }
+}
+
+/// The same for depths in contact with one body.
+pub(super) fn share_depths(touches: &mut [Touch]) {
+    let cosine = |one: &Touch, other: &Touch| {
+        let c = one.normal.dot(&other.normal);
+        let c = if c > 0.0 { c } else { 0.0 };
+        if c < 1.0 { c } else { 1.0 }
+    };
+    let touching = |touch: &Touch| touch.alone > 0.0;
+    let mut sweeps = 0;
+    for i in 0..touches.len() {
+        let own = touches[i];
+        let mut others = 0;
+        if touching(&own) {
+            for j in 0..touches.len() {
+                let other = touches[j];
+                let c = cosine(&own, &other);
+                if i != j && own.structure == other.structure && touching(&other) && c > 0.0 {
+                    others += 1;
+                    let given =
+                        own.alone / (1.0 + c) + c * (own.alone - other.alone) / (1.0 - c * c + 1e-300);
+                    let given = if given > 0.0 { given } else { 0.0 };
+                    let least = touches[i].depth;
+                    touches[i].depth = if given < least { given } else { least };
+                }
+            }
+        }
+        if others > 1 {
+            sweeps = SWEEPS;
+        }
+    }
+    for _ in 0..sweeps {
+        for i in 0..touches.len() {
+            let own = touches[i];
+            if touching(&own) {
+                let fellow = |(j, other): &(usize, &Touch)| {
+                    *j != i && own.structure == other.structure && touching(other)
+                };
+                let others = touches.iter().enumerate().filter(fellow);
+                let given: f64 = others.map(|(_, other)| cosine(&own, other) * other.depth).sum();
+                let left = own.alone - given;
+                touches[i].depth = if left > 0.0 { left } else { 0.0 };
+            }
+        }
+    }
+}

@@ -1,0 +1,565 @@
+//! Which faces push where, against the rule written plainly.
+
+use super::*;
+use crate::base::geometry::{Polygon, Segment, rotated};
+use crate::base::lanes::Lanes;
+use crate::kernel::vector::parts;
+use fearless_simd::{Level, dispatch};
+use proptest::prelude::*;
+
+fn p(x: f64, y: f64) -> Vec2 {
+    Vec2::new(x, y)
+}
+
+fn barrier(obstacle: Obstacle) -> Barrier {
+    Barrier { name: String::new(), obstacle }
+}
+
+fn wall(points: &[Vec2]) -> Barrier {
+    barrier(Obstacle::Wall(points.windows(2).map(|ends| Segment::new(ends[0], ends[1])).collect()))
+}
+
+fn block(low: Vec2, high: Vec2) -> Barrier {
+    barrier(Obstacle::Solid(Shape::rectangle(low, high)))
+}
+
+/// What is felt at a place: unit vectors away from faces, and distances.
+fn felt(barriers: &[Barrier], place: Vec2) -> Vec<(Vec2, f64)> {
+    let all = Surfaces::new(barriers);
+    (0..all.len() as u32).map(|k| all.felt_at(k, place)).filter(|(_, d)| d.is_finite()).collect()
+}
+
+fn places() -> impl Iterator<Item = Vec2> {
+    (0..41 * 41).map(|k| p(f64::from(k % 41) * 0.2 - 4.03, f64::from(k / 41) * 0.2 - 4.01))
+}
+
+#[test]
+fn a_straight_wall_in_pieces_is_one_wall() {
+    let whole = wall(&[p(-3.0, 0.0), p(3.0, 0.0)]);
+    let one = wall(&[p(-3.0, 0.0), p(-1.0, 0.0)]);
+    let two = wall(&[p(1.5, 0.0), p(-1.0, 0.0)]);
+    let three = wall(&[p(1.0, 0.0), p(2.0, 0.0), p(3.0, 0.0)]);
+    for pieces in [[&one, &two, &three], [&three, &one, &two], [&two, &three, &one]] {
+        let pieces = pieces.map(Clone::clone);
+        for place in places().chain([p(-1.0, 1.0), p(1.5, -2.0)]) {
+            let (found, wanted) = (felt(&pieces, place), felt(std::slice::from_ref(&whole), place));
+            assert_eq!(found.len(), 1, "{place}");
+            assert!((found[0].0 - wanted[0].0).norm() < 1e-12, "{place}");
+            assert!((found[0].1 - wanted[0].1).abs() < 1e-12, "{place}");
+        }
+    }
+}
+
+#[test]
+fn outside_a_corner_of_two_walls_one_pushes_and_inside_both() {
+    let (east, north) = (wall(&[p(0.0, 0.0), p(9.0, 0.0)]), wall(&[p(0.0, 9.0), p(0.0, 0.0)]));
+    for barriers in [[east.clone(), north.clone()], [north, east]] {
+        for place in places() {
+            let found = felt(&barriers, place);
+            let inside = place.x > 0.0 && place.y > 0.0;
+            assert_eq!(found.len(), if inside { 2 } else { 1 }, "{place}");
+            let least = found.iter().map(|f| f.1).fold(f64::INFINITY, f64::min);
+            let nearest = p(place.x.max(0.0), 0.0).metric_distance(&place);
+            let nearest = nearest.min(p(0.0, place.y.max(0.0)).metric_distance(&place));
+            assert!((least - nearest).abs() < 1e-12, "{place}");
+        }
+    }
+}
+
+#[test]
+fn an_end_on_a_side_or_inside_a_solid_is_not_felt() {
+    let side = wall(&[p(-9.0, 0.0), p(9.0, 0.0)]);
+    let pillar = barrier(Obstacle::Solid(Shape::Circle { centre: p(0.0, -0.5), radius: 0.6 }));
+    let table = block(p(-9.0, -1.0), p(9.0, 0.0));
+    for (other, foot, surface) in [(side, 0.0, 0.0), (table, -0.5, 0.0), (pillar, 0.0, 0.1)] {
+        let stem = wall(&[p(0.0, 5.0), p(0.0, foot)]);
+        for place in places() {
+            let found = felt(&[stem.clone(), other.clone()], place);
+            // The stem is felt where the nearest of it is not hidden.
+            assert_eq!(found.len(), if place.y > surface { 2 } else { 1 }, "{place}");
+            assert_eq!(found.last(), felt(std::slice::from_ref(&other), place).last());
+        }
+    }
+}
+
+#[test]
+fn blocks_side_by_side_or_overlapping_are_one_block() {
+    let whole = block(p(-2.0, 0.0), p(2.0, 1.0));
+    for (a, b) in [(-0.5, -0.5), (0.3, -1.0)] {
+        let parts =
+            [block(p(-2.0, 0.0), p(a, 1.0)), block(p(b, 0.0), p(0.5, 1.0)), block(p(0.5, 0.0), p(2.0, 1.0))];
+        for place in places() {
+            let wanted = felt(std::slice::from_ref(&whole), place)[0];
+            if wanted.1 > 0.0 {
+                let found = felt(&parts, place);
+                assert_eq!(found.len(), 1, "{place}");
+                let off = (found[0].0 - wanted.0).norm() + (found[0].1 - wanted.1).abs();
+                assert!(off < 1e-12, "{place}");
+            }
+        }
+    }
+}
+
+#[test]
+fn four_walls_that_meet_in_a_point_push_with_the_two_faces_of_a_quarter() {
+    let ends = [p(9.0, 0.0), p(0.0, 9.0), p(-9.0, 0.0), p(0.0, -9.0)];
+    let cross = ends.map(|end| wall(&[end, Vec2::zeros()]));
+    for place in places() {
+        let mut found: Vec<f64> = felt(&cross, place).iter().map(|f| f.1).collect();
+        found.sort_by(f64::total_cmp);
+        let (x, y) = (place.x.abs(), place.y.abs());
+        assert_eq!(found.len(), 2, "{place}");
+        assert!((found[0] - x.min(y)).abs() + (found[1] - x.max(y)).abs() < 1e-12, "{place}");
+    }
+}
+
+#[test]
+fn what_is_drawn_twice_is_felt_once_and_what_is_apart_twice() {
+    let (first, gap) = (wall(&[p(0.0, 0.0), p(1.0, 0.0)]), wall(&[p(1.01, 0.0), p(2.0, 0.0)]));
+    assert_eq!(felt(&[first.clone(), gap], p(1.005, 1.0)).len(), 2);
+    for place in places() {
+        assert_eq!(felt(&[first.clone(), first.clone()], place).len(), 1);
+    }
+}
+
+/// A wall along corners of a polygon, closed.
+fn closed(points: &[Vec2]) -> Barrier {
+    let mut points = points.to_vec();
+    points.push(points[0]);
+    wall(&points)
+}
+
+/// A ring with this hole.
+fn around_hole(hole: &[Vec2]) -> Barrier {
+    let mut ring = Polygon::rectangle(p(-20.0, -20.0), p(20.0, 20.0));
+    ring.holes.push(hole.to_vec());
+    barrier(Obstacle::Solid(Shape::Polygon(ring)))
+}
+
+/// Sum of the social forces on a body of radius 0.3 m with A = 1 N at a place, N.
+fn force(barriers: &[Barrier], place: Vec2, range: f64) -> Vec2 {
+    let all = Surfaces::new(barriers);
+    let at = [place; 8];
+    let [x, y] = dispatch!(Level::new(), simd => forces(simd, &all, &at, range));
+    p(x.0[0], y.0[0])
+}
+
+#[inline(always)]
+fn forces<S: Simd>(simd: S, all: &Surfaces, at: &[Vec2; 8], range: f64) -> [Lanes; 2] {
+    let (x, y) = (Lanes(at.map(|p| p.x)), Lanes(at.map(|p| p.y)));
+    let mut out = [Lanes::ZERO; 2];
+    for part in parts(simd) {
+        let bodies = Bodies {
+            place: (part.load(&x), part.load(&y)),
+            r: part.c(0.3),
+            a: part.c(1.0),
+            rate: part.c(std::f64::consts::LOG2_E / range),
+        };
+        let near: Vec<u32> = (0..all.len() as u32).collect();
+        let (fx, fy) = all.push(part, &near, &bodies, 0.0, &mut Room::default(), |_, _| {});
+        part.store(fx, &mut out[0]);
+        part.store(fy, &mut out[1]);
+    }
+    out
+}
+
+/// The force of one face alone, N.
+fn alone(distance: f64, range: f64) -> f64 {
+    ((0.3 - distance) / range).exp()
+}
+
+#[test]
+fn a_room_is_a_room_however_it_is_drawn() {
+    let corners = [p(-3.0, -2.0), p(3.5, -2.0), p(3.5, 1.0), p(1.0, 1.0), p(1.0, 3.0), p(-3.0, 3.0)];
+    let pieces: Vec<Barrier> = (0..6).map(|k| wall(&[corners[k], corners[(k + 1) % 6]])).collect();
+    let reverse: Vec<Vec2> = corners.iter().rev().copied().collect();
+    for place in places() {
+        let wanted = force(&pieces, place, 0.2);
+        let inside = Obstacle::Solid(Shape::Polygon(Polygon::new(corners.to_vec()))).distance(place) < -0.05;
+        assert!((force(&[closed(&corners)], place, 0.2) - wanted).norm() < 1e-12 * wanted.norm(), "{place}");
+        if inside {
+            for hole in [&corners[..], &reverse[..]] {
+                let found = force(&[around_hole(hole)], place, 0.2);
+                assert!((found - wanted).norm() < 1e-12 * wanted.norm(), "{place} {found} {wanted}");
+            }
+        }
+    }
+}
+
+#[test]
+fn opposite_sides_of_one_barrier_push_both() {
+    let corners = [p(-9.0, 0.0), p(9.0, 0.0), p(9.0, 1.0), p(-9.0, 1.0)];
+    for corridor in [closed(&corners), around_hole(&corners)] {
+        let found = force(&[corridor], p(0.0, 0.4), 0.1);
+        assert!((found.y - alone(0.4, 0.1) + alone(0.6, 0.1)).abs() < 1e-12, "{found}");
+    }
+}
+
+#[test]
+fn from_behind_an_edge_is_not_felt_and_from_inside_the_rim_is() {
+    let panel = block(p(-2.0, 0.0), p(2.0, 0.1));
+    let found = felt(std::slice::from_ref(&panel), p(0.3, 0.5));
+    assert_eq!(found, [(p(0.0, 1.0), 0.4)]);
+    let found = felt(std::slice::from_ref(&panel), p(0.3, 0.08));
+    assert_eq!(found.len(), 1);
+    assert!((found[0].0 - p(0.0, 1.0)).norm() < 1e-12 && (found[0].1 + 0.02).abs() < 1e-12);
+    // Against a wall: only the panel is felt.
+    let found = felt(&[wall(&[p(-9.0, 0.0), p(9.0, 0.0)]), panel], p(0.3, 0.5));
+    assert_eq!(found, [(p(0.0, 1.0), 0.4)]);
+}
+
+#[test]
+fn faces_at_an_angle_push_with_the_smallest_force_that_is_enough_along_each_normal() {
+    for degrees in [5, 10, 30, 45, 60, 80, 89, 90, 91, 120, 150, 170] {
+        let bend = f64::from(degrees).to_radians();
+        let other = p(-(bend.cos()), bend.sin());
+        let chain = wall(&[other * 9.0, Vec2::zeros(), p(9.0, 0.0)]);
+        let pieces = [wall(&[other * 9.0, Vec2::zeros()]), wall(&[p(9.0, 0.0), Vec2::zeros()])];
+        let normals = [p(0.0, 1.0), p(other.y, -other.x)];
+        for k in 0..60 {
+            let turn = (f64::from(k) + 0.5) / 60.0 * std::f64::consts::PI;
+            for far in [0.35, 0.7, 1.2] {
+                let place = p(turn.cos(), turn.sin()) * far;
+                let feet = [place.x > 0.0, place.dot(&other) > 0.0];
+                let heights = normals.map(|normal| normal.dot(&place));
+                // Inside of the corner, where both feet lie on the faces and not on the end of the other.
+                if heights[0] < 0.03 || heights[1] < 0.03 || feet.contains(&false) {
+                    continue;
+                }
+                let found = force(std::slice::from_ref(&chain), place, 0.2);
+                assert!((force(&pieces, place, 0.2) - found).norm() < 1e-12, "{degrees} {place}");
+                let wanted = heights.map(|height| alone(height, 0.2));
+                let along = normals.map(|normal| normal.dot(&found));
+                let merged = [place.x, place.dot(&other)].iter().any(|foot| foot * bend.sin() <= ON);
+                if merged {
+                    continue;
+                }
+                if degrees > 90 {
+                    let sum = normals[0] * wanted[0] + normals[1] * wanted[1];
+                    assert!((found - sum).norm() < 1e-9, "{degrees} {place}");
+                    continue;
+                }
+                for (along, wanted) in along.iter().zip(wanted) {
+                    assert!(along / wanted > 1.0 - 1e-9, "{degrees} {place} {along} {wanted}");
+                }
+                // The smallest: one face alone, or no more than needed along both.
+                let tight = |k: usize| (along[k] / wanted[k] - 1.0).abs() < 1e-9;
+                let single = |k: usize| (found - normals[k] * wanted[k]).norm() < 1e-9;
+                assert!(tight(0) && tight(1) || single(0) || single(1), "{degrees} {place} {found}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_round_wall_of_straight_pieces_pushes_the_same_everywhere() {
+    for (count, spread) in [(12, 0.12), (24, 0.05), (64, 0.02)] {
+        let corner = |k: i32| {
+            let (sin, cos) = crate::base::math::sin_cos_turn(f64::from(k) / f64::from(count));
+            p(3.0 * cos, 3.0 * sin)
+        };
+        let corners: Vec<Vec2> = (0..count).map(corner).collect();
+        for room in [closed(&corners), around_hole(&corners)] {
+            let all = std::slice::from_ref(&room);
+            let mut last: Option<Vec2> = None;
+            for k in 0..2_000 {
+                let (sin, cos) = crate::base::math::sin_cos_turn(f64::from(k) / 2_000.0);
+                let place = p(cos, sin) * 2.5;
+                let found = force(all, place, 0.1);
+                // The nearest piece gives what is along its normal; nothing jumps.
+                let distance =
+                    -Obstacle::Solid(Shape::Polygon(Polygon::new(corners.clone()))).distance(place);
+                let whole = alone(distance, 0.1);
+                assert!((found.norm() / whole - 1.0).abs() < spread, "{count} {k} {found} {whole}");
+                if let Some(last) = last {
+                    // A hundredth of a metre of way changes a force of 0.1 m of range by a tenth.
+                    assert!((found - last).norm() < 0.1 * whole, "{count} {k} {found} {last}");
+                }
+                last = Some(found);
+            }
+        }
+    }
+}
+
+#[test]
+fn contact_shares_as_the_social_force_does() {
+    let bend = wall(&[p(-3.0, 1.0), p(0.0, 0.0), p(3.0, 1.0)]);
+    let room = wall(&[p(10.0, 3.0), p(10.0, 0.0), p(13.0, 0.0)]);
+    let all = Surfaces::new(&[bend, room]);
+    let touch = |faces: [u32; 2], place: Vec2| {
+        let mut touches = Vec::new();
+        all.touch(faces.into_iter(), place, 0.3, &mut touches);
+        [touches[0], touches[1]]
+    };
+    let both = touch([0, 1], p(0.0, 0.25));
+    let sum = both[0].normal * both[0].depth + both[1].normal * both[1].depth;
+    let depth = 0.3 - 0.25 * (0.9_f64).sqrt();
+    for touch in both {
+        assert!((sum.dot(&touch.normal) / depth - 1.0).abs() < 1e-12);
+    }
+    let both = touch([2, 3], p(10.2, 0.25));
+    assert!((both[0].depth - 0.1).abs() < 1e-12 && (both[1].depth - 0.05).abs() < 1e-12);
+}
+
+#[test]
+fn depths_are_shared_as_forces_are() {
+    let mut number = 7_u64;
+    let mut next = || {
+        number = number.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (number >> 11) as f64 / 9_007_199_254_740_992.0
+    };
+    for round in 0..400 {
+        let count = 2 + round % 5;
+        let mut touches: Vec<Touch> = (0..count)
+            .map(|_| {
+                let (sin, cos) = crate::base::math::sin_cos_turn(next());
+                let (alone, structure) = (next() - 0.2, u32::from(next() < 0.2));
+                Touch { structure, normal: p(cos, sin), alone, depth: alone }
+            })
+            .collect();
+        let mut pushes: Vec<Push> = touches
+            .iter()
+            .map(|touch| Push {
+                structure: touch.structure,
+                nx: Lanes::splat(touch.normal.x),
+                ny: Lanes::splat(touch.normal.y),
+                alone: Lanes::splat(touch.alone.max(0.0)),
+                shared: Lanes::ZERO,
+            })
+            .collect();
+        share_depths(&mut touches);
+        dispatch!(Level::new(), simd => share_all(simd, &mut pushes));
+        for (push, touch) in pushes.iter().zip(&touches) {
+            assert!((push.shared.0[0] - touch.depth.max(0.0)).abs() < 1e-12, "{push:?} {touch:?}");
+            assert_eq!(push.shared, Lanes::splat(push.shared.0[0]));
+        }
+    }
+}
+
+#[inline(always)]
+fn share_all<S: Simd>(simd: S, pushes: &mut [Push]) {
+    for part in parts(simd) {
+        share(part, pushes);
+    }
+}
+
+#[test]
+fn what_is_drawn_twice_or_in_another_order_pushes_the_same() {
+    let rooms = |order: [usize; 2]| {
+        let rooms = [
+            wall(&[p(0.0, 0.0), p(4.0, 0.0), p(4.0, 3.0), p(0.0, 3.0), p(0.0, 0.0)]),
+            wall(&[p(4.0, 0.0), p(8.0, 0.0), p(8.0, 3.0), p(4.0, 3.0), p(4.0, 0.0)]),
+        ];
+        order.map(|k| rooms[k].clone()).to_vec()
+    };
+    let with_block = |order: [usize; 2]| {
+        let both = [block(p(3.0, 0.0), p(4.0, 3.0)), wall(&[p(4.0, 3.0), p(4.0, 0.0), p(8.0, 0.0)])];
+        order.map(|k| both[k].clone()).to_vec()
+    };
+    let overlaid = |order: [usize; 2]| {
+        let both = [wall(&[p(0.0, 0.0), p(5.0, 0.0)]), wall(&[p(0.0, 5.0), p(0.0, 0.0), p(5.0, 0.0)])];
+        order.map(|k| both[k].clone()).to_vec()
+    };
+    let close = |found: Vec2, wanted: Vec2| (found - wanted).norm() < 1e-9 * wanted.norm();
+    for k in 0..900 {
+        let (x, y) = (4.0 + 0.1 * (f64::from(k % 30) + 0.53), 0.1 * (f64::from(k / 30) + 0.37));
+        let wanted = force(&rooms([0, 1])[1..], p(x, y), 0.2);
+        for order in [[0, 1], [1, 0]] {
+            assert!(close(force(&rooms(order), p(x, y), 0.2), wanted), "{x} {y}");
+        }
+        let wanted = force(&with_block([0, 1])[1..], p(x, y), 0.2);
+        for order in [[0, 1], [1, 0]] {
+            // Above the upper end of the wall the block pushes on.
+            assert!(y > 2.9 || close(force(&with_block(order), p(x, y), 0.2), wanted), "{x} {y}");
+        }
+        let wanted = force(&overlaid([0, 1])[1..], p(x - 4.0, y), 0.2);
+        for order in [[0, 1], [1, 0]] {
+            assert!(close(force(&overlaid(order), p(x - 4.0, y), 0.2), wanted), "{x} {y}");
+        }
+    }
+}
+
+#[test]
+fn a_ledge_or_a_wall_drawn_as_its_outline_is_one_wall() {
+    let ledge = [p(-5.0, 0.0), p(0.0, 0.0), p(0.0, 0.005), p(5.0, 0.005)];
+    let mut solid = ledge.to_vec();
+    solid.extend([p(5.0, -1.0), p(-5.0, -1.0)]);
+    let ledges = [wall(&ledge), barrier(Obstacle::Solid(Shape::Polygon(Polygon::new(solid))))];
+    for ledge in ledges {
+        let mut last: Option<Vec2> = None;
+        for k in -300..300 {
+            let found = force(std::slice::from_ref(&ledge), p(f64::from(k) * 1e-3 + 1e-4, 0.4), 0.08);
+            let bounds = [alone(0.4, 0.08), alone(0.395, 0.08)];
+            assert!((0.98 * bounds[0]..1.02 * bounds[1]).contains(&found.norm()), "{k} {found} {bounds:?}");
+            if let Some(last) = last {
+                assert!((found - last).norm() < 0.08 * bounds[0], "{k} {found} {last}");
+            }
+            last = Some(found);
+        }
+    }
+    for thick in [2e-3, 0.05, 0.1, 0.3] {
+        let outline = closed(&[p(0.0, -thick), p(5.0, -thick), p(5.0, 0.0), p(0.0, 0.0)]);
+        let found = force(&[outline], p(2.5, 0.3), 0.2);
+        assert!((found - p(0.0, alone(0.3, 0.2))).norm() < 1e-12, "{thick} {found}");
+    }
+    // A piece that comes out of a wall by a centimetre, upright or nearly so.
+    for foot in [2.5, 2.501] {
+        let spur = barrier(Obstacle::Wall(vec![
+            Segment::new(p(0.0, 0.0), p(5.0, 0.0)),
+            Segment::new(p(foot, -2.0), p(2.5, 0.01)),
+        ]));
+        for x in [2.3, 2.45, 2.499, 2.501, 2.6] {
+            let found = force(std::slice::from_ref(&spur), p(x, 0.35), 0.08);
+            let bounds = [alone(0.35, 0.08), alone(0.34, 0.08)];
+            assert!((0.98 * bounds[0]..1.03 * bounds[1]).contains(&found.norm()), "{x} {found} {bounds:?}");
+        }
+    }
+}
+
+#[test]
+fn pieces_that_do_not_meet_have_no_joint_and_those_that_do_a_small_one() {
+    let turn = |at: Vec2| rotated(at, 0.5);
+    let row = |k: i32, upright: bool| {
+        let (a, b) = (p(-60.0, f64::from(k)), p(60.0, f64::from(k)));
+        let flip = |at: Vec2| if upright { p(at.y, at.x) } else { at };
+        wall(&[turn(flip(a)), turn(flip(b))])
+    };
+    let apart: Vec<Barrier> = (0..40).map(|k| row(k, false)).collect();
+    assert!(Surfaces::new(&apart).faces.iter().all(|face| face.joints.is_empty()));
+    let grid: Vec<Barrier> = (0..20).map(|k| row(k / 2, k % 2 == 0)).collect();
+    for face in Surfaces::new(&grid).faces {
+        assert_eq!(face.joints.len(), 10);
+        assert!(face.joints.iter().all(|joint| (joint.around.high - joint.around.low).norm() < 0.02));
+    }
+}
+
+#[inline(always)]
+fn eight<S: Simd>(simd: S, all: &Surfaces, x: &Lanes, y: &Lanes) -> Vec<Lanes> {
+    let mut out = vec![Lanes::ZERO; all.len()];
+    for part in parts(simd) {
+        let place = (part.load(x), part.load(y));
+        for (k, out) in out.iter_mut().enumerate() {
+            let nearest = all.nearest(k as u32, part, place);
+            part.store(all.felt(k as u32, part, place, &nearest), out);
+        }
+    }
+    out
+}
+
+/// Chains, discs, blocks, angles and rings that end on or near each other, with ends that are off by up to 1.5 mm.
+fn scene() -> impl Strategy<Value = Vec<Barrier>> {
+    let off = (-1.5e-3..1.5e-3, -1.5e-3..1.5e-3).prop_map(|(x, y)| p(x, y));
+    let off = prop_oneof![Just(Vec2::zeros()), off];
+    let knot = (0..3, 0..3).prop_map(|(x, y)| p(f64::from(x), f64::from(y)));
+    let place = (knot, off).prop_map(|(knot, off)| knot + off);
+    let chain = prop::collection::vec(place.clone(), 2..5).prop_map(|points| wall(&points));
+    let solid = (place, 0.2..1.1, 0.0..1.5, 0..3, any::<bool>()).prop_map(|(low, size, turn, form, back)| {
+        let place = |&(x, y): &(f64, f64)| low + rotated(p(x * size, y), turn);
+        let ring = |corners: &[(f64, f64)]| {
+            let mut ring: Vec<Vec2> = corners.iter().map(place).collect();
+            if back {
+                ring.reverse();
+            }
+            ring
+        };
+        let square = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
+        barrier(Obstacle::Solid(if turn < 0.3 {
+            Shape::Circle { centre: low, radius: size }
+        } else if form == 0 {
+            Shape::Polygon(Polygon::new(ring(&square)))
+        } else if form == 1 {
+            let angle = [(0.0, 0.0), (1.0, 0.0), (1.0, 0.3), (0.4, 0.4), (0.3, 1.0), (0.0, 1.0)];
+            Shape::Polygon(Polygon::new(ring(&angle)))
+        } else {
+            let mut polygon = Polygon::new(ring(&square));
+            polygon.holes.push([(0.2, 0.2), (0.8, 0.2), (0.7, 0.9)].iter().map(place).collect());
+            Shape::Polygon(polygon)
+        }))
+    });
+    prop::collection::vec(prop_oneof![3 => chain, 1 => solid], 1..6)
+}
+
+/// The first two rules of the head of the module, of every pair and without rectangles.
+fn plainly(all: &Surfaces, face: u32, place: Vec2) -> f64 {
+    let own = &all.faces[face as usize];
+    let NearestTo { normal, near, distance } = all.nearest_to(face, place);
+    let foot = place - normal * near;
+    let on = |k: u32| all.nearest_to(k, foot).near <= ON;
+    let seen = |k: u32| all.nearest_to(k, place).distance.is_finite();
+    let has_the_say = |k: u32| {
+        let other = &all.faces[k as usize];
+        let (theirs, is_own) = (all.nearest_to(k, place), other.barrier == own.barrier);
+        if k == face || !on(k) {
+            return false;
+        }
+        match other.form {
+            Form::Inside => {
+                // In it, or on the back of it.
+                let mut faces =
+                    (0..all.len() as u32).filter(|j| all.faces[*j as usize].barrier == other.barrier);
+                let on_face = faces.any(|j| j != k && seen(j) && on(j));
+                !is_own && !on_face && theirs.near < distance
+            }
+            _ if is_own && matches!(own.form, Form::Inside) => false,
+            _ => seen(k) && theirs.distance.total_cmp(&distance).then(k.cmp(&face)).is_lt(),
+        }
+    };
+    if (0..all.len() as u32).any(has_the_say) { f64::INFINITY } else { distance }
+}
+
+proptest! {
+    #[test]
+    fn the_rules_hold_everywhere_and_eight_at_once_are_as_one_by_one(
+        barriers in scene(),
+        x in prop::array::uniform8(-1.0..3.0),
+        y in prop::array::uniform8(-1.0..3.0),
+    ) {
+        let all = Surfaces::new(&barriers);
+        let found = dispatch!(Level::new(), simd => eight(simd, &all, &Lanes(x), &Lanes(y)));
+        for lane in 0..8 {
+            let place = p(x[lane], y[lane]);
+            let mut least = f64::INFINITY;
+            for (k, found) in found.iter().enumerate() {
+                let wanted = plainly(&all, k as u32, place);
+                prop_assert_eq!(all.felt_at(k as u32, place).1, wanted, "{} {}", k, place);
+                prop_assert_eq!(found.0[lane], wanted);
+                least = least.min(wanted);
+            }
+            // The nearest of all barriers is felt.
+            let nearest = barriers.iter().map(|b| b.obstacle.distance(place)).fold(f64::INFINITY, f64::min);
+            prop_assert!((least - nearest).abs() < 1e-12, "{} {} {}", place, least, nearest);
+        }
+    }
+
+    /// Forces do not hang on who stands in the other lanes, and nobody is pulled.
+    #[test]
+    fn a_force_is_that_of_one_alone(
+        barriers in scene(),
+        x in prop::array::uniform8(-1.0..3.0),
+        y in prop::array::uniform8(-1.0..3.0),
+    ) {
+        let all = Surfaces::new(&barriers);
+        let at: [Vec2; 8] = std::array::from_fn(|lane| p(x[lane], y[lane]));
+        let found = dispatch!(Level::new(), simd => forces(simd, &all, &at, 0.3));
+        for lane in 0..8 {
+            let [one_x, one_y] = dispatch!(Level::new(), simd => forces(simd, &all, &[at[lane]; 8], 0.3));
+            prop_assert_eq!((found[0].0[lane], found[1].0[lane]), (one_x.0[0], one_y.0[0]));
+            prop_assert!(one_x.0[0].is_finite() && one_y.0[0].is_finite());
+            // What the nearest face gives is there along its normal, but for faces that push against it: of two at
+            // an angle in full, of three or more about.
+            let nearest = (0..all.len() as u32).map(|k| all.felt_at(k, at[lane]));
+            let (normal, distance) = nearest.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
+            let against: f64 = (0..all.len() as u32)
+                .map(|k| all.felt_at(k, at[lane]))
+                .filter(|(other, _)| other.dot(&normal) < 0.0)
+                .map(|(other, distance)| -other.dot(&normal) * alone(distance, 0.3))
+                .sum();
+            if distance.abs() < 1e-6 {
+                continue;
+            }
+            let along = normal.dot(&p(one_x.0[0], one_y.0[0]));
+            let wanted = alone(distance, 0.3);
+            prop_assert!(along + against > 0.9 * wanted, "{} {} {}", along, against, wanted);
+        }
+    }
+}
