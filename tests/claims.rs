@@ -182,6 +182,32 @@ fn the_band_holds_both_readings_of_unresolved_trials() {
     }
 }
 
+/// The second step of `r` does not come in some trials, the first one of `q` always does.
+const RACE: &str = "horizon = 10 s
+process q { var n: 0 .. 2 = 0
+  when n < 2 after uniform(0.5 s, 2 s) -> n = n + 1 }
+process r { var n: 0 .. 2 = 0
+  when n < 2 after uniform(0.5 s, 6 s) -> n = n + 1 }
+";
+
+#[test]
+fn a_difference_of_times_is_infinite_in_either_direction() {
+    let (a, b) = ("time_until(q.n == 1)", "time_until(r.n == 2)");
+    let ask = |level: f64, a: &str, b: &str| format!("estimate Q({level}, {a} - {b})\n");
+    let properties = [ask(0.5, a, b), ask(0.5, b, a), ask(0.01, a, b), ask(0.99, b, a)].concat();
+    let results = run(RACE, &properties, &["--max-trials", "200"]);
+    let ends = |k: usize| {
+        let histogram = &results[k]["distribution"]["histogram"];
+        (number(histogram, "below"), number(histogram, "beyond"))
+    };
+    let (below, beyond) = ends(0);
+    assert!(below > 0.0 && beyond == 0.0, "{:#}", results[0]);
+    assert_eq!(ends(1), (beyond, below));
+    // Only what is late lies beyond the horizon.
+    assert_eq!(results[2]["estimate"], Value::Null);
+    assert_eq!((&results[2]["censored"], &results[3]["censored"]), (&false.into(), &true.into()));
+}
+
 #[test]
 fn checks_of_quantiles_say_what_their_figures_are_of() {
     let properties = "check Q(0.5, time_until(p.over)) >= 7 s\n";

@@ -121,6 +121,7 @@ fn estimates() -> Vec<QueryResult> {
                     low: -0.5,
                     high: 1.5,
                     counts: vec![2, 0, 12, 140, 320, 270, 130, 80, 40, 4],
+                    below: 0,
                     beyond: 0,
                 }),
                 quantiles: vec![],
@@ -370,7 +371,7 @@ fn junit_has_one_suite_for_each_file_of_a_sweep() {
 #[test]
 fn what_lies_above_a_histogram_has_one_name() {
     let said = |query: &str, word: &str| {
-        let histogram = Histogram { low: 0.0, high: 1.0, counts: vec![1, 2], beyond: 349 };
+        let histogram = Histogram { low: 0.0, high: 1.0, counts: vec![1, 2], below: 17, beyond: 349 };
         let results = vec![QueryResult {
             distribution: Some(Distribution { histogram: Some(histogram), ..Distribution::default() }),
             ..result(0, Kind::Estimate, query)
@@ -379,6 +380,7 @@ fn what_lies_above_a_histogram_has_one_name() {
         for format in [Format::Text, Format::Html] {
             let text = render(&run, format, Palette::PLAIN);
             assert!(text.contains(&format!("349 {word}")), "{text}");
+            assert!(text.contains("17 at -∞"), "{text}");
         }
     };
     said("estimate E(time_until(user in exit)) in 0 s .. 9 s", "beyond the horizon");

@@ -122,7 +122,8 @@ impl Answers<'_> {
                 Root::Metric(term) => waits(&subject.tree, term),
                 Root::Formula(_) | Root::Robustness(..) => false,
             };
-            if matches!(measure.kind, MeasureKind::Quantile { .. }) && interval.high.is_infinite() && time {
+            if matches!(measure.kind, MeasureKind::Quantile { .. }) && interval.high == f64::INFINITY && time
+            {
                 result.censored = Some(subject.program.scenario.clock.seconds(subject.horizon));
             }
             if kind == Kind::Estimate {
@@ -220,10 +221,13 @@ impl Answers<'_> {
         result.clipped = tally.clipped;
         result.shrunk = tally.shrunk;
         let Ok(implications) = subject.implications(column) else { return };
-        if tally.counts.trials == 0 {
-            return;
-        }
-        let trials = tally.counts.trials;
+        // Of a trial that is not resolved nobody knows what the rest of it would have been.
+        let resolved = tally.counts.trials - tally.counts.unresolved;
+        let trials = match (resolved, tally.counts.unresolved) {
+            (0, _) => return,
+            (_, 0) => format!("{resolved} trials"),
+            _ => format!("{resolved} resolved trials"),
+        };
         // The 64th stands for all beyond: of those none was triggered, or perhaps all were.
         let idle = |implied: bool| {
             let some = implications.iter().enumerate().filter(|(_, one)| **one == implied);
@@ -233,18 +237,18 @@ impl Answers<'_> {
         match idle(false) {
             (0, _) => {}
             (1, 1) => result.warnings.push(format!(
-                "the implication in it was never triggered: the left side was true in none of {trials} trials"
+                "the implication in it was never triggered: the left side was true in none of {trials}"
             )),
             (idle, all) => result.warnings.push(format!(
-                "{idle} of its {all} implications were never triggered: the left side was true in none of {trials} trials"
+                "{idle} of its {all} implications were never triggered: the left side was true in none of {trials}"
             )),
         }
         if let (idle, all @ 1..) = idle(true)
             && idle == all
         {
-            result.warnings.push(format!(
-                "nobody was there whenever it asked about those who are, in all of {trials} trials"
-            ));
+            result
+                .warnings
+                .push(format!("nobody was there whenever it asked about those who are, in all of {trials}"));
         }
     }
 

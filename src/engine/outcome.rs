@@ -438,7 +438,9 @@ pub struct Histogram {
     pub high: f64,
     /// Trials per bin.
     pub counts: Vec<u64>,
-    /// Trials with an infinite value.
+    /// Trials with the value -∞: a difference of times of which the second does not come.
+    pub below: u64,
+    /// Trials with the value ∞.
     pub beyond: u64,
 }
 

@@ -366,7 +366,9 @@ impl Procedure {
                 for value in &finite {
                     bins.add(*value);
                 }
-                Some(Histogram { low, high, counts: bins.bins, beyond: (values.len() - finite.len()) as u64 })
+                let at = |end: f64| values.iter().filter(|value| **value == end).count() as u64;
+                let (below, beyond) = (at(f64::NEG_INFINITY), at(f64::INFINITY));
+                Some(Histogram { low, high, counts: bins.bins, below, beyond })
             }
             _ => None,
         };

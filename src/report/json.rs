@@ -190,6 +190,7 @@ fn distribution(found: &Distribution) -> Value {
             "low": histogram.low,
             "high": histogram.high,
             "counts": histogram.counts,
+            "below": histogram.below,
             "beyond": histogram.beyond,
         })
     });

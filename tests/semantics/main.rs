@@ -1,5 +1,6 @@
 //! The monitor against the definition.
 
+mod antecedents;
 mod exhaustive;
 mod random;
 mod reference;

@@ -8,8 +8,8 @@ use smc::logic::{
     Aggregation, AtomId, Monitor, Node, NodeId, Operation, Relation, SignalId, Term, TermId, Tree, Window,
 };
 
-const ATOMS: usize = 3;
-const SIGNALS: usize = 2;
+pub(crate) const ATOMS: usize = 3;
+pub(crate) const SIGNALS: usize = 2;
 
 /// A formula or number before it is put into a tree.
 #[derive(Clone, Debug)]
@@ -181,14 +181,14 @@ impl Sketch {
 }
 
 /// One trial: each atom and each signal in each state.
-#[derive(Clone, Debug)]
-struct Trial {
-    atoms: Vec<Vec<bool>>,
-    signals: Vec<Vec<f64>>,
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Trial {
+    pub(crate) atoms: Vec<Vec<bool>>,
+    pub(crate) signals: Vec<Vec<f64>>,
 }
 
 /// Draws trials that change seldom or often.
-fn trial(random: &mut TestRandom, states: u64) -> Trial {
+pub(crate) fn trial(random: &mut TestRandom, states: u64) -> Trial {
     let seldom = random.below(4) + 1;
     let mut atoms = vec![Vec::new(); ATOMS];
     for atom in &mut atoms {
@@ -319,7 +319,7 @@ fn run(tree: &Tree, root: Root, horizon: u64, seed: u64) -> Result<(), TestCaseE
     Ok(())
 }
 
-fn settings(cases: u32) -> ProptestConfig {
+pub(crate) fn settings(cases: u32) -> ProptestConfig {
     ProptestConfig {
         cases,
         max_global_rejects: 1_000_000,

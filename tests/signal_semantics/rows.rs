@@ -235,3 +235,27 @@ fn a_trial_of_too_many_pieces_is_unresolved() {
     assert_eq!(pulses(20_000_000), Some(Reading::Unresolved));
     assert_eq!(pulses(20_000), None, "the next trial is not concerned");
 }
+
+/// Before there is a reading the last state is not judged: it may last, and be a case.
+#[test]
+fn the_state_at_which_a_trial_is_broken_off_may_be_a_case() {
+    let (tree, root) = formula(vec![
+        Node::Not(P),
+        Node::Or(vec![NodeId(2), Q]),
+        Node::Globally(window(0, Some(2)), NodeId(3)),
+    ]);
+    let mut monitor = SignalMonitor::formula(&tree, root, Tick(4), Decimal::parse("1").unwrap()).unwrap();
+    assert_eq!((monitor.implications(), monitor.triggered()), (1, 0));
+    let mut broken_off = |jumps: &[(f64, bool)]| {
+        monitor.start();
+        for &(time, a) in jumps {
+            monitor.jump(time, &[a, true], &[]);
+        }
+        monitor.triggered()
+    };
+    assert_eq!(broken_off(&[(0.0, false), (1.0, true)]), 1);
+    assert_eq!(broken_off(&[(0.0, false), (1.0, true), (1.0, false)]), 0);
+    assert_eq!(broken_off(&[(0.0, false), (1.0, true), (1.5, false)]), 1);
+    // Nobody asks there any more.
+    assert_eq!(broken_off(&[(0.0, false), (2.5, true)]), 0);
+}

@@ -1,8 +1,9 @@
 //! Any of several formulas at many positions, comparisons, and single answers.
 
-use super::cell::{Cell, Context, Machine, Ref, events, planes, truth};
+use super::cell::{Cell, Context, Machine, Place, Ref, events, planes, truth};
 use super::numbers;
 use super::track::Track;
+use crate::base::lanes::Mask;
 use crate::logic::formula::Relation;
 
 pub(super) fn step(cell: &mut Cell, before: &[Cell], cx: &Context) {
@@ -54,16 +55,31 @@ pub(super) fn step(cell: &mut Cell, before: &[Cell], cx: &Context) {
             }
             track.ascend();
         }
-        Machine::Watch(child) => match child.place {
-            super::cell::Place::Held => cell.t |= truth(before, *child).0 & cx.work,
-            super::cell::Place::Now => cell.t |= truth(before, *child).0 & cell.need & cx.work,
-            _ => {
-                for (_, t, _) in events(before, *child, cx.now) {
-                    cell.t |= t & cx.work;
+        Machine::Watch { .. } => watch(cell, before, cx),
+        _ => {}
+    }
+}
+
+fn watch(cell: &mut Cell, before: &[Cell], cx: &Context) {
+    let Machine::Watch { child, settled } = &mut cell.machine else { return };
+    match child.place {
+        Place::Held => {
+            let (t, f) = truth(before, *child);
+            cell.t |= t & cx.work;
+            for lane in Mask((t | f) & cx.work).iter() {
+                settled[lane] = 1;
+            }
+        }
+        Place::Now => cell.t |= truth(before, *child).0 & cell.need & cx.work,
+        // The child reports each of its positions once.
+        _ => {
+            for (_, t, f) in events(before, *child, cx.now) {
+                cell.t |= t & cx.work;
+                for lane in Mask((t | f) & cx.work).iter() {
+                    settled[lane] += 1;
                 }
             }
-        },
-        _ => {}
+        }
     }
 }
 

@@ -75,8 +75,8 @@ pub(super) enum Machine {
     Chain { first: Option<Ref>, second: Ref },
     /// Comparison at many positions.
     CompareLate(Relation, Ref, Ref),
-    /// Whether a truth ever held at a needed position.
-    Watch(Ref),
+    /// Whether a truth ever held at a needed position, and at how many it is settled.
+    Watch { child: Ref, settled: [u64; LANES] },
     /// A number of the present state.
     Signal(usize),
     /// A number that is the same everywhere.
@@ -214,6 +214,11 @@ impl Cell {
                     left[lane] = *states;
                 }
             }
+            Machine::Watch { settled, .. } => {
+                for lane in Mask(lanes).iter() {
+                    settled[lane] = 0;
+                }
+            }
             Machine::Fold { aggregation, .. } => {
                 let identity = numbers::identity(*aggregation);
                 self.value = select(lanes, Lanes::splat(identity), self.value);
@@ -281,7 +286,7 @@ impl Cell {
             | Machine::AnyLate { .. }
             | Machine::CompareHeld(..)
             | Machine::CompareLate(..)
-            | Machine::Watch(_) => boolean::step(self, before, cx),
+            | Machine::Watch { .. } => boolean::step(self, before, cx),
             Machine::Chain { .. } => until::step(self, before, cx),
             _ => numbers::step(self, before, cx),
         }

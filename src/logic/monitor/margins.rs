@@ -184,7 +184,7 @@ pub(super) fn step(
         }
         Machine::AnyLate { children, cut } => any(below, children, *cut, own, cx, scratch),
         Machine::Chain { first, second } => chain(below, *first, *second, own, cx, scratch),
-        Machine::Watch(_) => {}
+        Machine::Watch { .. } => {}
         // Numbers of the present state are those of the Boolean monitor.
         _ => cell.step(before, cx),
     }

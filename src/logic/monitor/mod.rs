@@ -35,7 +35,7 @@ pub struct Antecedent {
     /// The implication: the `Or` whose first operand is a `Not`.
     pub implication: NodeId,
     /// Lanes in whose trial `a` was true at a position that the formula asks about, up to the state at
-    /// which the lane was decided, or, if it looks ahead, was left open at one.
+    /// which the lane was decided or the last one it was shown, or, if it looks ahead, was left open at one.
     pub triggered: Mask,
 }
 
@@ -53,7 +53,8 @@ pub struct Monitor {
     decided: u8,
     truth: u8,
     value: Lanes,
-    decided_at: [u64; LANES],
+    /// Own position of the last state that counts: the one at which the lane was decided, or after which it was left out.
+    shown: [Option<u64>; LANES],
 }
 
 impl Monitor {
@@ -88,7 +89,7 @@ impl Monitor {
             decided: 0,
             truth: 0,
             value: Lanes::ZERO,
-            decided_at: [0; LANES],
+            shown: [None; LANES],
         }
     }
 
@@ -101,6 +102,7 @@ impl Monitor {
             self.running &= !bit;
             self.decided &= !bit;
             self.truth &= !bit;
+            self.shown[lane] = None;
         }
     }
 
@@ -139,6 +141,9 @@ impl Monitor {
     fn exchange(&mut self, lanes: Mask) {
         let ended = self.running & !lanes.0;
         self.running &= lanes.0;
+        for lane in Mask(ended & !self.decided).iter() {
+            self.shown[lane] = Some(self.now - 1 - self.calendar.starts[lane]);
+        }
         self.calendar.stop(Mask(ended));
         let fresh = self.starting & lanes.0;
         if fresh != 0 {
@@ -176,7 +181,7 @@ impl Monitor {
         };
         for lane in Mask(fresh).iter() {
             self.value.0[lane] = value.0[lane];
-            self.decided_at[lane] = self.now - self.calendar.starts[lane];
+            self.shown[lane] = Some(self.now - self.calendar.starts[lane]);
         }
         self.calendar.stop(Mask(fresh));
     }
@@ -198,7 +203,7 @@ impl Monitor {
 
     /// The own position of each decided lane's state at which it was decided, the first state being 0.
     pub fn decided_at(&self) -> [u64; LANES] {
-        self.decided_at
+        self.shown.map(|at| at.unwrap_or(0))
     }
 
     /// The formula's truth if it does not depend on any state.
@@ -216,22 +221,31 @@ impl Monitor {
             let always = if watched.always { 0xff } else { 0 };
             let triggered = |all, watch: &Watch| all | self.cells[watch.cell].t | self.left_open(*watch);
             let triggered = watched.watches.iter().fold(always, triggered);
-            Antecedent { implication: watched.implication, triggered: Mask(triggered) }
+            // A trial that was shown no state has no case, whatever the one before it in its lane had.
+            Antecedent { implication: watched.implication, triggered: Mask(triggered & !self.starting) }
         })
     }
 
-    /// Lanes in which nobody knows whether an antecedent that looks ahead was true at each state up to the deciding one: they
-    /// were decided before.
+    /// Lanes in which nobody knows whether an antecedent was true at each state that it was asked about: it looks ahead, and
+    /// the trial was decided, or was shown no more, before all were settled.
     fn left_open(&self, watch: Watch) -> u8 {
-        let Machine::Watch(child) = self.cells[watch.cell].machine else { return 0 };
-        let known = match child.place {
-            Place::Held => self.cells[child.cell].t | self.cells[child.cell].f,
-            _ => 0,
+        let Machine::Watch { child, settled } = &self.cells[watch.cell].machine else { return 0 };
+        let is_open = |lane: usize| {
+            let Some(last) = self.last_shown(lane).filter(|last| *last >= watch.first) else { return false };
+            match child.place {
+                Place::Held => settled[lane] == 0,
+                // What is of one state is known where it is asked about.
+                Place::Now => child.ahead > 0 && last < watch.last + child.ahead,
+                _ => settled[lane] <= last.min(watch.last) - watch.first,
+            }
         };
-        let is_open = |lane: usize| (watch.first..watch.settled).contains(&self.decided_at[lane]);
         (0..LANES).filter(|lane| is_open(*lane)).fold(0, |open, lane| open | 1 << lane)
-            & !known
-            & self.decided
+    }
+
+    /// Own position of the last state that counts in a lane, if there was one.
+    fn last_shown(&self, lane: usize) -> Option<u64> {
+        let is_watched = self.running & !self.decided & 1 << lane != 0;
+        if is_watched { Some(self.now - self.calendar.starts[lane]) } else { self.shown[lane] }
     }
 
     /// Bytes that the monitor holds. The number never changes.

@@ -203,9 +203,16 @@ impl SignalMonitor {
     }
 
     /// Those of them that the present or last trial triggered, bit k for the k-th (the 64th stands for all
-    /// beyond). One that no trial ever triggers holds for want of a case.
+    /// beyond). One that no trial ever triggers holds for want of a case. Of a trial without a reading the last state may
+    /// last on, and counts.
     pub fn triggered(&self) -> u64 {
-        self.triggered
+        if !self.begun || self.reading.is_some() {
+            return self.triggered;
+        }
+        let perhaps =
+            |watched: &Watched| !watched.last.is_before(self.since) && self.present.truth(watched.slot);
+        let last = self.watched.iter().enumerate().filter(|(_, watched)| perhaps(watched));
+        last.fold(self.triggered, |all, (k, _)| all | 1 << k.min(63))
     }
 
     /// The reading, if there is one.

@@ -51,8 +51,10 @@ pub(super) fn bars(histogram: &Histogram, unit: &str, endless: &str) -> String {
         );
     }
     svg.push_str("</svg>\n");
-    if histogram.beyond > 0 {
-        let _ = writeln!(svg, "<p class=\"faint\">{} {endless}</p>", count(histogram.beyond));
+    for (some, where_) in [(histogram.below, "at -∞"), (histogram.beyond, endless)] {
+        if some > 0 {
+            let _ = writeln!(svg, "<p class=\"faint\">{} {where_}</p>", count(some));
+        }
     }
     svg
 }
@@ -63,10 +65,14 @@ mod tests {
 
     #[test]
     fn one_bar_per_bin() {
-        let histogram = Histogram { low: 0.0, high: 2.0, counts: vec![1, 0, 4, 2], beyond: 3 };
+        let histogram = Histogram { low: 0.0, high: 2.0, counts: vec![1, 0, 4, 2], below: 5, beyond: 3 };
         let svg = bars(&histogram, "m", "infinite");
         assert_eq!(svg.matches("<rect").count(), 4);
-        assert!(svg.contains("<title>1 to 1.5 m: 4</title>") && svg.contains("3 infinite"));
+        assert!(
+            svg.contains("<title>1 to 1.5 m: 4</title>")
+                && svg.contains("3 infinite")
+                && svg.contains("5 at -∞")
+        );
         assert_eq!(bars(&Histogram { counts: vec![0, 0], ..histogram }, "", "infinite"), "");
     }
 }

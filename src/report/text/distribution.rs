@@ -29,6 +29,9 @@ pub(super) fn write(text: &mut String, result: &QueryResult, found: &Distributio
     if let Some(histogram) = &found.histogram {
         let bars = palette.paint(Paint::Neutral, &bars(histogram));
         let mut said = format!("{}{unit} {bars} {}{unit}", brief(histogram.low), brief(histogram.high));
+        if histogram.below > 0 {
+            said = format!("{} at -∞, {said}", count(histogram.below));
+        }
         if histogram.beyond > 0 {
             said = format!("{said}, {} {}", count(histogram.beyond), endless(result));
         }
@@ -55,7 +58,7 @@ mod tests {
 
     #[test]
     fn an_empty_bin_shows() {
-        let histogram = Histogram { low: 0.0, high: 1.0, counts: vec![0, 1, 100, 50], beyond: 0 };
+        let histogram = Histogram { low: 0.0, high: 1.0, counts: vec![0, 1, 100, 50], below: 0, beyond: 0 };
         assert_eq!(bars(&histogram), "·▁█▅");
         assert_eq!(bars(&Histogram { counts: vec![], ..histogram }), "");
     }

@@ -304,7 +304,10 @@ impl Builder<'_> {
             return None;
         }
         if built.height > HEIGHT {
-            let title = format!("the expression joins more than {HEIGHT} parts in a row");
+            // Operators in a row stand upon one another, the last one on the highest of the parts.
+            let title = format!(
+                "the expression is more than {HEIGHT} levels high, and each operator in a row is one"
+            );
             self.say(
                 Diagnostic::error(code::TOO_LONG, built.expr.span, title)
                     .hint("give parts of it names with `let`, or write a fold such as `forall a in S: …`"),

@@ -126,15 +126,9 @@ impl Builder<'_> {
                 self.touch(child, (lo, hi));
                 let range =
                     if child.place == Place::Now { (lo + child.ahead, hi + child.ahead) } else { (lo, hi) };
-                // What is of one state is known where it is asked about.
-                let settled = match (child.place, self.delay(child)) {
-                    // Its answer says whether it is.
-                    (Place::Held, _) => u64::MAX,
-                    (_, 0) => lo,
-                    (_, delay) => hi.saturating_add(delay),
-                };
-                let cell = self.answer(Machine::Watch(child), range, self.horizon, false).cell;
-                Watch { cell, first: lo, settled }
+                let machine = Machine::Watch { child, settled: [0; crate::base::lanes::LANES] };
+                let cell = self.answer(machine, range, self.horizon, false).cell;
+                Watch { cell, first: lo, last: hi }
             }
         };
         if let Some(watched) = self.watches.get_mut(&id.0) {

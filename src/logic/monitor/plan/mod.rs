@@ -53,8 +53,8 @@ pub(super) struct Watch {
     pub(super) cell: usize,
     /// The first position that is asked about.
     pub(super) first: u64,
-    /// The state at which all are settled.
-    pub(super) settled: u64,
+    /// The last one.
+    pub(super) last: u64,
 }
 
 /// The cells of a monitor, children first.
