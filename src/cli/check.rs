@@ -11,7 +11,7 @@ use crate::compile::Study;
 use crate::compile::nearest::nearest;
 use crate::engine::budget::DEFAULT_TRIALS;
 use crate::engine::outcome::{Failure, Finding, Run};
-use crate::engine::{Budget, Call, Fault, Outlook, Ranks, Threads, forecast, run as run_study};
+use crate::engine::{Budget, Call, Fault, Outlook, Ranks, Threads, forecast, overfull, run as run_study};
 use crate::report::{self, ExitCode as Exit, Format, Palette};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
@@ -56,6 +56,10 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
         }
         interrupted.interrupt();
     });
+    let crowded: Vec<Diagnostic> = overfull(study, &only).iter().map(complaint::refusal).collect();
+    if !crowded.is_empty() {
+        return desk.refuse_for(&crowded);
+    }
     let crew = match crew(arguments, study, &shelf, threads, &budget) {
         Ok(crew) => crew,
         Err(error) => return desk.refuse(error),
@@ -149,9 +153,14 @@ impl Desk<'_> {
     }
 
     /// The call is wrong, or nothing could be run.
-    fn refuse(mut self, error: Diagnostic) -> Exit {
-        complaint::tell(&error, self.sources, self.colors);
-        self.findings.extend(inputs::findings(&[error], self.sources));
+    fn refuse(self, error: Diagnostic) -> Exit {
+        self.refuse_for(&[error])
+    }
+
+    /// The same for several reasons.
+    fn refuse_for(mut self, errors: &[Diagnostic]) -> Exit {
+        complaint::tell_all(errors, self.sources, self.colors);
+        self.findings.extend(inputs::findings(errors, self.sources));
         self.refused()
     }
 

@@ -60,5 +60,10 @@ pub(super) fn of_model(flaw: &Flaw) -> Diagnostic {
 
 /// Says it on standard error.
 pub(super) fn tell(error: &Diagnostic, sources: &[Source], colors: Colors) {
-    say(&render(std::slice::from_ref(error), sources, colors.err));
+    tell_all(std::slice::from_ref(error), sources, colors);
+}
+
+/// Says them on standard error.
+pub(super) fn tell_all(errors: &[Diagnostic], sources: &[Source], colors: Colors) {
+    say(&render(errors, sources, colors.err));
 }

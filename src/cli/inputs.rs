@@ -1,10 +1,12 @@
 //! Files of a call: read, decoded, parsed, compiled.
 
 use super::arguments::Model;
+use super::complaint;
 use super::shelf::Shelf;
 use crate::base::fingerprint::Fingerprint;
-use crate::compile::{Files, Input, Setting, SettingValue, Study, compile, own_errors, requests};
+use crate::compile::{Files, Input, Setting, SettingValue, Starts, Study, examine, own_errors, requests};
 use crate::engine::outcome::{Finding, Spot};
+use crate::engine::overfull_starts;
 use crate::syntax::ast::{Item, PropertyItem, ScenarioFile};
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::parse::{decode, parse_properties, parse_scenario, parse_value};
@@ -195,6 +197,18 @@ fn is_error(diagnostic: &Diagnostic) -> bool {
     diagnostic.severity == Severity::Error
 }
 
+/// Where more people are to start than fit, but for what is known to be wrong there.
+fn crowded(starts: &[Starts], known: &[Diagnostic]) -> Vec<Diagnostic> {
+    let place = |one: &Diagnostic| one.place.as_ref().map(|place| place.span);
+    let is_known = |span: Span| {
+        let meets =
+            |other: Span| other.source == span.source && other.start < span.end && span.start < other.end;
+        known.iter().filter(|one| is_error(one)).filter_map(place).any(meets)
+    };
+    let found = overfull_starts(starts);
+    found.iter().map(complaint::refusal).filter(|one| !place(one).is_some_and(is_known)).collect()
+}
+
 /// Whether a text is a scenario, with something in it that only scenarios have.
 fn is_scenario(source: &Source) -> bool {
     let (file, said) = parse_scenario(source);
@@ -280,10 +294,16 @@ pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> I
             files: &files,
             settings: &settings,
         };
-        let (compiled, found) = compile(&input);
-        let found = own_errors(found, &diagnostics, &input);
+        let examined = examine(&input);
+        let found = own_errors(examined.found, &diagnostics, &input);
+        let said = diagnostics.clone();
         diagnostics.extend(found);
-        study = compiled;
+        if diagnostics.iter().any(is_error) {
+            // Of files that are right the engine tells it, of the queries that were chosen.
+            let more = own_errors(crowded(&examined.starts, &diagnostics), &said, &input);
+            diagnostics.extend(more);
+        }
+        study = examined.study;
     }
     if diagnostics.iter().any(|d| d.severity == Severity::Error) {
         study = None;

@@ -10,6 +10,7 @@ use super::number::Number;
 use super::places::Written;
 use super::process::Declared;
 use super::said::without_comments;
+use super::starts::Starts;
 use super::study::Origins;
 use super::study::Texts;
 use super::symbols::{Scope, ScopeId};
@@ -116,10 +117,14 @@ pub(super) struct Elaborator<'a> {
     pub(super) agent_names: Vec<String>,
     /// Where the starts of people are written.
     pub(super) places: Written,
+    /// Who starts where, of a scenario that is wrong elsewhere.
+    pub(super) starts: Option<Starts>,
     /// Stand-ins for people whose declaration is wrong.
     pub(super) undeclared: BTreeSet<AgentId>,
     /// Whether a part of the scenario was left out, which is never done without an error.
     pub(super) given_up: bool,
+    /// Whether some radius is any one, since the one that is set is wrong.
+    pub(super) any_width: bool,
     /// Where the behaviour that is looked at gets its arguments, if it takes any.
     pub(super) attached_at: Option<Span>,
     /// Where processes and behaviours are written.
@@ -214,8 +219,10 @@ impl<'a> Elaborator<'a> {
             stray: Vec::new(),
             agent_names: Vec::new(),
             places: Vec::new(),
+            starts: None,
             undeclared: BTreeSet::new(),
             given_up: false,
+            any_width: false,
             attached_at: None,
             origins: Origins::default(),
             coming: false,

@@ -39,6 +39,7 @@ mod said;
 mod scenery;
 mod settings;
 mod sources;
+mod starts;
 pub mod study;
 mod sweeps;
 mod symbols;
@@ -51,7 +52,8 @@ mod written;
 
 pub use consequences::own_errors;
 pub use files::{Files, Request, requests};
-pub use queries::{Input, compile};
+pub use queries::{Examined, Input, compile, examine};
 pub use settings::{Setting, SettingValue};
+pub use starts::Starts;
 pub use study::Study;
 pub use written::Written;

@@ -6,6 +6,7 @@ use super::files::Files;
 use super::measures::{Observed, Sketch};
 use super::number::Number;
 use super::settings::Setting;
+use super::starts::Starts;
 use super::study::{Ask, Column, Estimator, Measure, Query, Said, Study, Target, World};
 use super::symbols::ScopeId;
 use crate::base::decimal::Decimal;
@@ -30,11 +31,22 @@ pub struct Input<'a> {
     pub settings: &'a [Setting],
 }
 
+/// What compilation yields.
+#[derive(Debug)]
+pub struct Examined {
+    /// All that is asked, if nothing is wrong.
+    pub study: Option<Study>,
+    /// What is wrong.
+    pub found: Vec<Diagnostic>,
+    /// Who starts where in the worlds that are surely asked about.
+    pub starts: Vec<Starts>,
+}
+
 /// A world under construction.
 pub(super) struct Site<'a> {
     pub(super) settings: BTreeMap<String, Number>,
     pub(super) elaborator: Elaborator<'a>,
-    pub(super) scenario: Option<Scenario>,
+    pub(super) scenario: Option<Arc<Scenario>>,
     pub(super) columns: Vec<Column>,
 }
 
@@ -46,8 +58,10 @@ pub(super) struct Compiler<'a> {
     pub(super) sites: Vec<Site<'a>>,
     /// Sites by the names and bits of their settings; numbers of the same bits may differ in what is exact.
     known: BTreeMap<Key, Vec<usize>>,
-    queries: Vec<Query>,
+    pub(super) queries: Vec<Query>,
     next_index: usize,
+    /// Queries that ask about one world, and that world.
+    pub(super) asked: Vec<(Span, usize)>,
     /// Queries that came to nothing.
     refused: Vec<Span>,
     /// Claims that share the error of a family.
@@ -63,6 +77,12 @@ pub(super) struct Compiler<'a> {
 /// Compiles a scenario and property files. All errors are returned at once; a study only where there is none, and where
 /// the parser cut nothing short.
 pub fn compile(input: &Input<'_>) -> (Option<Study>, Vec<Diagnostic>) {
+    let examined = examine(input);
+    (examined.study, examined.found)
+}
+
+/// Compiles, and tells who starts where even if there is an error.
+pub fn examine(input: &Input<'_>) -> Examined {
     let mut measured: BTreeMap<Key, Vec<Decimal>> = BTreeMap::new();
     loop {
         let mut compiler = Compiler {
@@ -71,6 +91,7 @@ pub fn compile(input: &Input<'_>) -> (Option<Study>, Vec<Diagnostic>) {
             known: BTreeMap::new(),
             queries: Vec::new(),
             next_index: 0,
+            asked: Vec::new(),
             refused: Vec::new(),
             members: 0,
             base: 0,
@@ -90,7 +111,9 @@ pub fn compile(input: &Input<'_>) -> (Option<Study>, Vec<Diagnostic>) {
             }
         }
         if !more {
-            return compiler.finish();
+            let starts = compiler.starts();
+            let (study, found) = compiler.finish();
+            return Examined { study, found, starts };
         }
     }
 }
@@ -150,6 +173,7 @@ impl<'a> Compiler<'a> {
             settings.clone(),
             measured,
         );
+        let scenario = scenario.map(Arc::new);
         self.sites.push(Site { settings, elaborator, scenario, columns: Vec::new() });
         self.sites.len() - 1
     }
@@ -272,7 +296,10 @@ impl<'a> Compiler<'a> {
         family: Option<f64>,
     ) -> Lowered<()> {
         match self.under(&query.clauses.under, scope, base, point) {
-            Ok(world) => self.ask(query, scope, world, settings, family),
+            Ok(world) => {
+                self.note_asked(query, world.0);
+                self.ask(query, scope, world, settings, family)
+            }
             Err(Reported) => {
                 // The world of the call stands in, so that this hides nothing else that is surely wrong.
                 let said = |site: &Site<'_>| (site.elaborator.diagnostics.len(), site.elaborator.failures());
@@ -431,7 +458,7 @@ impl<'a> Compiler<'a> {
             let written = elaborator.written(self.input.scenario);
             worlds.push(World {
                 settings,
-                scenario: Arc::new(scenario),
+                scenario,
                 atoms: elaborator.atoms,
                 written,
                 texts: elaborator.texts,

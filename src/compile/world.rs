@@ -220,8 +220,8 @@ impl<'a> Elaborator<'a> {
         self.check_unused(file);
         self.check_titles(file);
         self.check_places(&people);
-        clock?;
-        if self.failed() {
+        if clock.is_err() || self.failed() {
+            self.keep_starts(people, sources);
             return Err(Reported);
         }
         let title = file

@@ -10,14 +10,13 @@ use super::forecast::Glimpse;
 use super::outcome::{Failure, QueryResult, Run, Stop};
 use super::procedure::Procedure;
 use super::race::{Contest, Field};
+use super::room::placeable;
 use super::splitting::Question;
 use super::subject::Subject;
 use super::survey::{Broken, Inquiry, Survey};
 use super::tally::Tally;
 use super::watch::{Outlook, Watch};
-use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Query, Study, World};
-use crate::kernel::start;
-use crate::model::Scenario;
+use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Query, Study};
 use crate::stats::Levels;
 
 /// What the command line adds to a study.
@@ -208,36 +207,7 @@ enum Sampling<'q> {
     Split(Question<'q>),
 }
 
-/// Whether everybody can be placed, as far as areas tell.
-pub fn placeable(world: &World) -> Result<(), Fault> {
-    let crowding = start::check_area(&world.scenario);
-    let Some(first) = crowding.first() else { return Ok(()) };
-    let place = first.agents.first().and_then(|agent| world.place_of(*agent));
-    Err(Fault::Placement { reason: crowded(&world.scenario, first), place })
-}
-
-/// More people than fit, in words.
-fn crowded(scenario: &Scenario, crowding: &start::Crowding) -> String {
-    let names: Vec<&str> = crowding
-        .agents
-        .iter()
-        .filter_map(|id| scenario.agents.get(id.0 as usize))
-        .map(|a| a.name.as_str())
-        .collect();
-    let who = match names.as_slice() {
-        [] => "nobody".to_owned(),
-        [one] => (*one).to_owned(),
-        [first, .., last] => format!("{first} to {last} ({} people)", names.len()),
-    };
-    format!(
-        "{who} cannot be placed: their bodies take {:.2} m^2 of the {:.2} m^2 that they can cover where they start, and more than {:.0} % are never filled",
-        crowding.bodies,
-        crowding.free,
-        100.0 * start::JAMMED
-    )
-}
-
-fn worlds(ask: &Ask) -> Vec<usize> {
+pub(super) fn worlds(ask: &Ask) -> Vec<usize> {
     match ask {
         Ask::Check { measure, .. } | Ask::Estimate { measure, .. } | Ask::Rank { measure, .. } => {
             vec![measure.target.world]

@@ -34,6 +34,8 @@ const NO_OPTIONS: &str = "E0406";
 const NO_MOVES: &str = "E0606";
 /// Codes of people who start inside an obstacle, or where there is no room.
 const INSIDE: [&str; 2] = ["E0409", "E0801"];
+/// How it is told that many people start where few find room.
+const CROWDED: &str = " cannot be placed: ";
 /// Codes after which the rest of a line is anybody's guess, besides those of brackets.
 const DERAILS: [&str; 2] = ["E0101", "E0112"];
 /// Marks that follow the name of a declaration.
@@ -133,7 +135,7 @@ pub(super) struct Broken<'i> {
     kinds: BTreeMap<&'i str, (&'i str, Span)>,
     /// Sources with errors, and the lines that say no more since they could not be read.
     with_errors: BTreeSet<SourceId>,
-    derailed: BTreeSet<(SourceId, usize)>,
+    derailed: BTreeMap<(SourceId, usize), Vec<Span>>,
     /// All lines with an error.
     faulty: BTreeSet<(SourceId, usize)>,
 }
@@ -142,7 +144,10 @@ impl<'i> Broken<'i> {
     pub(super) fn of(said: &[Diagnostic], input: &Input<'i>) -> Self {
         let files = input.properties.iter();
         let lost = input.scenario.lost.iter().chain(files.clone().flat_map(|file| &file.lost));
-        let cut = input.scenario.cut.iter().chain(files.flat_map(|file| &file.cut));
+        let cut = input.scenario.cut.iter().chain(files.clone().flat_map(|file| &file.cut));
+        let mut doubts: Vec<Span> =
+            files.flat_map(|file| &file.doubts).chain(&input.scenario.doubts).copied().collect();
+        doubts.sort_unstable();
         let mut broken = Self {
             sources: input.sources,
             lost: Parts::of(lost.clone().copied()),
@@ -158,7 +163,7 @@ impl<'i> Broken<'i> {
             fields: false,
             kinds: input.scenario.items.iter().filter_map(kind_of).collect(),
             with_errors: BTreeSet::new(),
-            derailed: BTreeSet::new(),
+            derailed: BTreeMap::new(),
             faulty: BTreeSet::new(),
         };
         let mut texts: Vec<Span> = Vec::new();
@@ -171,7 +176,7 @@ impl<'i> Broken<'i> {
             let derails =
                 DERAILS.contains(&one.code) && !broken.starts_line(place.span) && !broken.was_mended(one);
             if derails || BRACKETS.contains(&one.code) {
-                broken.derailed.extend(broken.line_of(place.span));
+                broken.derail(place.span, &doubts);
                 texts.extend(lines(input.sources, place.span));
             }
         }
@@ -304,6 +309,34 @@ impl<'i> Broken<'i> {
             || self.skipped.hold(place)
     }
 
+    /// What an error leaves in doubt of its line: all of it, but for what the parser is sure of.
+    fn derail(&mut self, place: Span, doubts: &[Span]) {
+        let (Some(line), Some(key)) = (lines(self.sources, place), self.line_of(place)) else { return };
+        let before =
+            doubts.partition_point(|doubt| (doubt.source, doubt.start) <= (place.source, place.start));
+        let holds = |doubt: &Span| doubt.source == place.source && place.start <= doubt.end;
+        if !doubts[..before].last().is_some_and(holds) {
+            self.derailed.insert(key, vec![line]);
+            return;
+        }
+        self.derailed.entry(key).or_insert_with(|| {
+            let first =
+                doubts.partition_point(|doubt| (doubt.source, doubt.end) <= (line.source, line.start));
+            let is_here = |doubt: &&Span| doubt.source == line.source && doubt.start < line.end;
+            doubts[first..].iter().take_while(is_here).copied().collect()
+        });
+    }
+
+    /// Whether a place stands where a line is in doubt.
+    fn is_derailed(&self, place: Span) -> bool {
+        let Some(doubts) = self.line_of(place).and_then(|line| self.derailed.get(&line)) else {
+            return false;
+        };
+        // They are in order and apart.
+        let before = doubts.partition_point(|doubt| doubt.start <= place.end);
+        doubts[..before].last().is_some_and(|doubt| place.start < doubt.end)
+    }
+
     /// Whether a place stands in braces.
     fn is_in_block(&self, place: Span) -> bool {
         let before = word(self.sources, Span { start: 0, end: place.start, ..place }).unwrap_or_default();
@@ -333,7 +366,7 @@ impl<'i> Broken<'i> {
         }
         let text = word(self.sources, place).unwrap_or_default();
         // A line that could not be read says no more.
-        let of_line = self.line_of(place).is_some_and(|line| self.derailed.contains(&line));
+        let of_line = self.is_derailed(place);
         let of_clock = self.clock
             && (CLOCKS.contains(&one.code)
                 || one.code == DIMENSION
@@ -341,7 +374,11 @@ impl<'i> Broken<'i> {
                         || matches!(self.set_by(place), Some("horizon" | "step"))));
         let of_options = one.code == NO_OPTIONS && self.lost.some_within(place);
         let of_moves = one.code == NO_MOVES && one.title.contains("no moves") && self.moves;
-        let of_scenery = INSIDE.contains(&one.code) && self.scenery;
+        // With barriers that were not read there is less room for many, not more.
+        let is_crowd = one.title.contains(CROWDED);
+        let of_scenery = INSIDE.contains(&one.code) && self.scenery && !is_crowd;
+        // Of bodies of which something may not have been read nobody knows how much room they take.
+        let of_bodies = is_crowd && scenario && (self.fields || self.any_name);
         // No name that is missing makes a circle; only the scenario declares moves; a start stands with its agent.
         let alone = one.title.ends_with(BY_ITSELF)
             || one.code == NO_MOVES && !scenario
@@ -356,6 +393,12 @@ impl<'i> Broken<'i> {
         // Beside a part that could not be read, what reads as a name may be the rest of a unit.
         let is_faulty = || self.line_of(place).is_some_and(|line| self.faulty.contains(&line));
         let unit = UNKNOWN.contains(&one.code) && dimension::unit(text).is_some() && is_faulty();
+        // Of a name that grew together with the sign behind it, `nin 0 .. 3` for `n: 0 .. 3`, its line misses the first part.
+        let name = leading_word(bare(text)).0;
+        let of_longer = UNKNOWN.contains(&one.code)
+            && self.line_of(place).is_some_and(|line| self.derailed.contains_key(&line))
+            && !name.is_empty()
+            && self.suspects.range(name..).next().is_some_and(|suspect| suspect.starts_with(name));
         // What is at a name, not what stands beside it.
         let of_suspect =
             (one.code.starts_with("E03") || one.code.starts_with("E09") || UNKNOWN.contains(&one.code))
@@ -367,6 +410,8 @@ impl<'i> Broken<'i> {
             || of_options
             || of_moves
             || of_scenery
+            || of_bodies
+            || of_longer
             || of_name
             || of_suspect
             || of_part

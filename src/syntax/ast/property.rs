@@ -12,6 +12,9 @@ pub struct PropertyFile {
     pub cut: Vec<Span>,
     /// Parts that could not be read, and heads of those whose values could not; that was reported.
     pub lost: Vec<Span>,
+    /// What could not be read on its line, each up to where reading surely began again there. Without one, all of a line
+    /// with an error is in doubt.
+    pub doubts: Vec<Span>,
 }
 
 /// One declaration or query.

@@ -119,6 +119,11 @@ fn pairs_up(lines: &[Line<'_>]) -> bool {
     depth == 0
 }
 
+/// The same of a text as it is written.
+pub(super) fn is_even(text: &str) -> bool {
+    pairs_up(&lines(text))
+}
+
 /// The line that should have opened the block that ends before line `end`: the last one that is no deeper.
 fn header(lines: &[Line<'_>], end: usize) -> Option<usize> {
     let line = (0..end).rev().find(|&line| lines[line].indent <= lines[end].indent)?;

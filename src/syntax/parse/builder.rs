@@ -3,6 +3,7 @@
 //! The grammar fixes the shape of every pair, so the builders take the parts in order and give up
 //! (`None`) on one that is not there; nothing panics.
 
+use super::anchor::Anchor;
 use super::grammar::Rule;
 use super::nesting::Braces;
 use crate::syntax::ast::{Ident, Text};
@@ -11,6 +12,7 @@ use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// A piece of the text that a rule took.
 pub(in crate::syntax) type Pair<'i> = pest::iterators::Pair<'i, Rule>;
@@ -27,6 +29,14 @@ pub(super) struct Builder<'s> {
     pub(super) cut: Vec<Span>,
     /// Parts that could not be read, and heads of those whose values could not.
     pub(super) lost: Vec<Span>,
+    /// Where items seem to begin.
+    pub(super) anchors: Vec<(usize, Anchor)>,
+    /// Parts that could not be read, with what stands before them and may be a piece of them, and where each was found wrong.
+    pub(super) doubts: Vec<(Range<usize>, usize)>,
+    /// Where, behind one of them on its line, an item surely begins and no bracket is open.
+    pub(super) resumed: Vec<u32>,
+    /// Whether the braces of the source pair up, once somebody asked for that.
+    pub(super) even: OnceCell<bool>,
     /// The braces of the text, once somebody asked for them.
     pub(super) braces: OnceCell<Braces>,
     /// Its arrows, once somebody asked for them: thousands of errors on a line look for one.

@@ -4,10 +4,10 @@
 //! its context, from its own start and from the start of the declaration before it (which may have
 //! ended early); the farthest failure is the error.
 
-use super::builder::{Builder, Pair, end_of};
+use super::builder::{Builder, Pair};
 use super::grammar::{Grammar, Rule};
 use super::nesting::Braces;
-use super::{lexeme, nesting, nouns, slips};
+use super::{lexeme, nesting, nouns};
 use crate::syntax::codes::syntax as code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -40,88 +40,8 @@ impl Fault<'_> {
     }
 }
 
-/// The strict rule for what a bad part was meant to be.
-fn strict_rule(bad: Rule) -> Option<Rule> {
-    Some(match bad {
-        Rule::bad_item => Rule::strict_item,
-        Rule::bad_property_item => Rule::strict_property_item,
-        Rule::bad_scene_item => Rule::strict_scene_item,
-        Rule::bad_field => Rule::strict_field,
-        Rule::bad_move => Rule::strict_move,
-        Rule::bad_process_item => Rule::strict_process_item,
-        Rule::bad_behaviour_item => Rule::strict_behaviour_item,
-        Rule::bad_state_item => Rule::strict_state_item,
-        _ => return None,
-    })
-}
-
 impl Builder<'_> {
-    /// Looks through the direct parts of a block or file and reports the bad ones.
-    pub(super) fn report_faults(&mut self, block: &Pair<'_>) {
-        let text = self.text;
-        let mut before: Option<Pair<'_>> = None;
-        let mut last_bad_end = None;
-        for part in block.clone().into_inner() {
-            let rule = part.as_rule();
-            if let Some(strict) = strict_rule(rule) {
-                let start = part.as_span().start();
-                self.lost.push(Span::new(self.source.id, start, end_of(&part)));
-                // What follows a bad part on its line is a consequence of it, and what follows it elsewhere unless it starts
-                // a line as declarations do.
-                let follows = |end: usize| {
-                    !text[end..start].contains('\n')
-                        || rule == Rule::bad_item
-                            && self.source.line_start(start as u32) != start as u32
-                            && failure(Rule::scenario_start, text, start).is_some()
-                };
-                if !last_bad_end.is_some_and(follows) {
-                    let fault = self.fault(strict, &part, before.as_ref());
-                    if let Some(before) = &before
-                        && fault.from == before.as_span().start()
-                        && (fault.at > start
-                            || !text[end_of(before)..start].contains('\n')
-                            || !text[start..].starts_with(lexeme::starts_name))
-                    {
-                        self.cut.push(Span::new(self.source.id, fault.from, end_of(&part)));
-                    }
-                    let diagnostic = self.describe(&fault);
-                    self.say(diagnostic);
-                }
-                last_bad_end = Some(end_of(&part));
-                before = None;
-            } else if rule == Rule::missing_brace || rule == Rule::missing_decl {
-                self.missing_brace(block, part.as_span().start());
-            } else if rule == Rule::t_semi {
-                before = None;
-            } else {
-                let is_mark = super::builder::is_mark(rule);
-                if !is_mark {
-                    // `param = 3 in 0 .. 5` reads as a setting, as far as one goes.
-                    let inner =
-                        part.clone().into_inner().next().filter(|inner| inner.as_rule() == Rule::setting);
-                    let is_bad =
-                        inner.is_some_and(|pair| slips::unsigned(lexeme::first(pair.as_str())).is_some());
-                    last_bad_end = is_bad.then(|| end_of(&part));
-                }
-                let is_member = !is_mark && part.as_span().start() < part.as_span().end();
-                before = is_member.then_some(part);
-            }
-        }
-    }
-
-    fn missing_brace(&mut self, block: &Pair<'_>, at: usize) {
-        let found = lexeme::first(&self.text[at..]);
-        let place = self.place(at, found);
-        let mut diagnostic =
-            Diagnostic::error(code::UNCLOSED, place, format!("expected `}}`, found {}", quote(found)));
-        if let Some((open, _)) = nesting::open_bracket(self.text, block.as_span().start(), at) {
-            let span = Span::new(self.source.id, open, open + 1);
-            diagnostic = diagnostic.related(span, "this `{` is not closed");
-        }
-        self.say(diagnostic);
-    }
-
-    fn fault<'t>(&self, strict: Rule, bad: &Pair<'_>, before: Option<&Pair<'_>>) -> Fault<'t>
+    pub(super) fn fault<'t>(&self, strict: Rule, bad: &Pair<'_>, before: Option<&Pair<'_>>) -> Fault<'t>
     where
         Self: 't,
     {
@@ -182,7 +102,7 @@ impl Builder<'_> {
         self.place(fault.at, fault.found)
     }
 
-    fn describe(&self, fault: &Fault<'_>) -> Diagnostic {
+    pub(super) fn describe(&self, fault: &Fault<'_>) -> Diagnostic {
         let fault = Fault {
             at: fault.at,
             found: lexeme::first(&self.text[fault.at..]),

@@ -4,6 +4,7 @@
 //! rest is returned.
 
 mod agents;
+mod anchor;
 mod bounds;
 mod braces;
 mod builder;
@@ -17,6 +18,7 @@ mod nouns;
 mod process;
 mod property;
 mod quantity;
+mod recovery;
 mod retry;
 mod scenario;
 mod scene;
@@ -38,7 +40,6 @@ use grammar::{Grammar, Rule};
 use nesting::Scan;
 use pest::Parser;
 use std::cell::OnceCell;
-use std::collections::BTreeSet;
 
 /// Reads bytes as a source text: UTF-8, not empty, below 4 GiB.
 #[allow(clippy::result_large_err, reason = "called once a file")]
@@ -96,7 +97,7 @@ fn mended<T>(
     }
     let joined = |said: Vec<Diagnostic>, slips: Vec<Diagnostic>| {
         let mut said = braces::together(source, said, slips);
-        order(source, &mut said);
+        order(source, &mut said, &[]);
         said
     };
     let weigh = |text: &str, slips: Vec<Diagnostic>| {
@@ -148,6 +149,10 @@ fn parse<T>(
         diagnostics: Vec::new(),
         cut: Vec::new(),
         lost: Vec::new(),
+        anchors: Vec::new(),
+        doubts: Vec::new(),
+        resumed: Vec::new(),
+        even: OnceCell::new(),
         braces: OnceCell::new(),
         arrows: OnceCell::new(),
         names: OnceCell::new(),
@@ -181,23 +186,27 @@ fn parse<T>(
                 || diagnostic.place.as_ref().is_none_or(|place| place.span.start < last)
         });
     }
-    order(source, &mut diagnostics);
+    order(source, &mut diagnostics, &builder.resumed);
     (built, diagnostics)
 }
 
-/// Sorts by place, one a place, and leaves out what follows from the one before.
-fn order(source: &Source, diagnostics: &mut Vec<Diagnostic>) {
+/// Sorts by place, one a place, and leaves out what follows from the one before, unless reading was resumed between them.
+fn order(source: &Source, diagnostics: &mut Vec<Diagnostic>, resumed: &[u32]) {
     diagnostics.sort_by_key(|diagnostic| diagnostic.place.as_ref().map(|place| place.span));
     diagnostics.dedup_by_key(|diagnostic| {
         diagnostic.place.as_ref().map(|place| (place.span.start, diagnostic.severity))
     });
     // A bracket without a partner on the line of an error has lost it there.
-    let mut errors: BTreeSet<usize> = BTreeSet::new();
+    let mut last: Option<u32> = None;
     diagnostics.retain(|diagnostic| {
         let Some(place) = diagnostic.place.as_ref().filter(|_| diagnostic.severity == Severity::Error) else {
             return true;
         };
-        let line = source.line(place.span.start);
-        errors.insert(line) || diagnostic.code != code::STRAY
+        let start = place.span.start;
+        let Some(before) = last.replace(start) else { return true };
+        let between = resumed.partition_point(|at| *at <= before);
+        diagnostic.code != code::STRAY
+            || source.line(before) != source.line(start)
+            || resumed.get(between).is_some_and(|at| *at <= start)
     });
 }

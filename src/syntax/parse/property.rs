@@ -22,7 +22,12 @@ impl Builder<'_> {
                 self.missed(item, head)
             })
             .collect();
-        PropertyFile { items, cut: std::mem::take(&mut self.cut), lost: std::mem::take(&mut self.lost) }
+        PropertyFile {
+            items,
+            cut: std::mem::take(&mut self.cut),
+            lost: std::mem::take(&mut self.lost),
+            doubts: self.doubts(),
+        }
     }
 
     fn property_item(&mut self, pair: Pair<'_>) -> Option<PropertyItem> {

@@ -16,7 +16,12 @@ impl Builder<'_> {
                 self.missed(item, head)
             })
             .collect();
-        ScenarioFile { items, cut: std::mem::take(&mut self.cut), lost: std::mem::take(&mut self.lost) }
+        ScenarioFile {
+            items,
+            cut: std::mem::take(&mut self.cut),
+            lost: std::mem::take(&mut self.lost),
+            doubts: self.doubts(),
+        }
     }
 
     fn item(&mut self, pair: Pair<'_>) -> Option<Item> {

@@ -1,0 +1,78 @@
+//! Whether everybody can be placed, as far as areas tell: known before anything is drawn.
+
+use super::fault::Fault;
+use super::session::worlds;
+use crate::compile::Starts;
+use crate::compile::study::{Study, World};
+use crate::kernel::start;
+use crate::model::{AgentId, Scenario};
+use crate::syntax::source::Span;
+
+/// Whether everybody in a world can be placed.
+pub fn placeable(world: &World) -> Result<(), Fault> {
+    crowds(&world.scenario, |agent| world.place_of(agent)).into_iter().next().map_or(Ok(()), Err)
+}
+
+/// All places where more people are to start than fit, in the worlds that some queries of a study ask about, all if none
+/// are chosen.
+pub fn overfull(study: &Study, only: &[usize]) -> Vec<Fault> {
+    let queries = study.queries.iter().filter(|query| only.is_empty() || only.contains(&query.index));
+    let mut asked: Vec<usize> = queries.flat_map(|query| worlds(&query.ask)).collect();
+    asked.sort_unstable();
+    asked.dedup();
+    let worlds = asked.into_iter().filter_map(|world| study.worlds.get(world));
+    once(worlds.flat_map(|world| crowds(&world.scenario, |agent| world.place_of(agent))))
+}
+
+/// The same in worlds of which perhaps no more is known.
+pub fn overfull_starts(starts: &[Starts]) -> Vec<Fault> {
+    once(starts.iter().flat_map(|starts| crowds(&starts.scenario, |agent| starts.place_of(agent))))
+}
+
+/// One fault a place: worlds may be alike.
+fn once(all: impl Iterator<Item = Fault>) -> Vec<Fault> {
+    let mut kept: Vec<Fault> = Vec::new();
+    let place = |fault: &Fault| match fault {
+        Fault::Placement { place, .. } => *place,
+        _ => None,
+    };
+    for fault in all {
+        if !kept
+            .iter()
+            .any(|known| *known == fault || place(known).is_some() && place(known) == place(&fault))
+        {
+            kept.push(fault);
+        }
+    }
+    kept
+}
+
+/// The places of a scenario where more people are to start than fit.
+fn crowds(scenario: &Scenario, place_of: impl Fn(AgentId) -> Option<Span>) -> Vec<Fault> {
+    let fault = |crowding: &start::Crowding| {
+        let place = crowding.agents.first().and_then(|agent| place_of(*agent));
+        Fault::Placement { reason: crowded(scenario, crowding), place }
+    };
+    start::check_area(scenario).iter().map(fault).collect()
+}
+
+/// More people than fit, in words.
+fn crowded(scenario: &Scenario, crowding: &start::Crowding) -> String {
+    let names: Vec<&str> = crowding
+        .agents
+        .iter()
+        .filter_map(|id| scenario.agents.get(id.0 as usize))
+        .map(|a| a.name.as_str())
+        .collect();
+    let who = match names.as_slice() {
+        [] => "nobody".to_owned(),
+        [one] => (*one).to_owned(),
+        [first, .., last] => format!("{first} to {last} ({} people)", names.len()),
+    };
+    format!(
+        "{who} cannot be placed: their bodies take {:.2} m^2 of the {:.2} m^2 that they can cover where they start, and more than {:.0} % are never filled",
+        crowding.bodies,
+        crowding.free,
+        100.0 * start::JAMMED
+    )
+}
