@@ -49,8 +49,10 @@ pub(super) struct Locals {
     pub(super) scope: ScopeId,
     /// Bound names, innermost last. `None`: nobody knows what it stands for, and nothing is said of what needs that.
     pub(super) names: Vec<(String, Option<Arc<Typed>>)>,
-    /// Where the arguments of a function are written that is called.
-    pub(super) written: Vec<(String, Span)>,
+    /// Where the arguments of a function are written that is called, by their places among the names.
+    pub(super) written: Vec<(usize, Span)>,
+    /// Where the names of quantifiers over copies of a process are bound, by their places among the names.
+    pub(super) copies: Vec<(usize, Span)>,
     /// Number of enclosing folds over agents.
     pub(super) running: u32,
     /// The process, and which of its copies, whose names come next.
@@ -159,6 +161,11 @@ pub(super) struct Elaborator<'a> {
     pub(super) texts: Texts,
     /// Where a use of an argument stands, and where what it stands for is written, in the present call.
     pub(super) aliases: BTreeMap<Span, Span>,
+    /// Where a name is used that is called otherwise elsewhere: one of a process inside it, or the copy that a quantifier is
+    /// at; with what it is called, and where that quantifier names it.
+    pub(super) owned: BTreeMap<Span, (String, Option<Span>)>,
+    /// Names of the agents of quantifiers.
+    pub(super) variables: BTreeSet<String>,
     /// Where the name of a bare number stands, and where that is declared.
     pub(super) bare: BTreeMap<Span, Span>,
     /// Of each file, an exponent that hangs on parameters: so does the unit of what it raises.
@@ -240,6 +247,8 @@ impl<'a> Elaborator<'a> {
             known: Default::default(),
             texts: Texts::default(),
             aliases: BTreeMap::new(),
+            owned: BTreeMap::new(),
+            variables: BTreeSet::new(),
             bare: BTreeMap::new(),
             exponents: BTreeMap::new(),
             unknowns: 0,

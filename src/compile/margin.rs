@@ -7,6 +7,7 @@
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Lowered};
 use super::lower::relation;
+use super::study::{Form, Part};
 use crate::base::tick::Clock;
 use crate::logic::{Invalid, Node, NodeId, Relation, Robustness, SignalRobustness, Term, TermId};
 use crate::model::{Arithmetic, Bool, Comparison, Field, Fold, Function, Num, Place, Set, Who};
@@ -120,7 +121,10 @@ impl Rewriting<'_, '_> {
                 let truth = self.elaborator.atoms[atom.0 as usize].clone();
                 let text = self.elaborator.texts.atoms.get(atom.0 as usize).cloned();
                 self.text = text.unwrap_or_default();
-                self.condition(&truth)
+                match self.elaborator.texts.parts.get(&atom.0).cloned() {
+                    Some(part) => self.part(&part),
+                    None => self.condition(&truth),
+                }
             }
             Node::Compare(relation, a, b) => {
                 let (a, b) = (self.term(a), self.term(b));
@@ -207,6 +211,33 @@ impl Rewriting<'_, '_> {
 
     fn number(&mut self, num: &Num) -> TermId {
         self.elaborator.signal(num.clone(), self.dimension, self.span)
+    }
+
+    /// The same of a condition whose parts are known: each is named as it was written.
+    fn part(&mut self, part: &Part) -> NodeId {
+        match &part.form {
+            Form::Named(inner) => self.part(inner),
+            Form::Not(inner) => {
+                let inner = self.part(inner);
+                self.elaborator.node(Node::Not(inner))
+            }
+            Form::All(list) => {
+                let list = list.iter().map(|one| self.part(one)).collect();
+                self.elaborator.node(Node::And(list))
+            }
+            Form::Any(list) => {
+                let list = list.iter().map(|one| self.part(one)).collect();
+                self.elaborator.node(Node::Or(list))
+            }
+            Form::Both(a, b) => {
+                let (a, b) = (self.part(a), self.part(b));
+                self.elaborator.iff(a, b)
+            }
+            Form::Plain(_) | Form::Each(..) | Form::Someone(..) => {
+                self.text.clone_from(&part.text);
+                self.condition(&part.truth())
+            }
+        }
     }
 
     /// A condition of one state as a formula of comparisons.

@@ -30,6 +30,7 @@ pub mod nearest;
 mod number;
 mod observed;
 mod people;
+mod phrase;
 mod places;
 pub mod presets;
 mod process;

@@ -2,15 +2,16 @@
 
 use super::dimension::Dimension;
 use super::elaborator::Elaborator;
+use super::phrase::Phrase;
 use crate::logic::{Node, NodeId, Relation, SignalId, Term, TermId};
 use crate::model::{AgentId, Bool, Num, Who};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
-/// Through how many functions an argument is followed to where it is written.
-const MOST_ALIASES: u32 = 32;
 /// How many conditions on states it may have.
 const MOST_ATOMS: usize = 5_000;
+/// Of how many of them the parts are known.
+const MOST_WITH_PARTS: usize = 1_000;
 
 impl Elaborator<'_> {
     /// A formula node, shared with equal ones.
@@ -25,19 +26,35 @@ impl Elaborator<'_> {
 
     /// The formula that reads a truth value of the present state. Each way in which a query says it counts, so that it is
     /// told in words of its own.
-    pub(super) fn atom(&mut self, truth: Bool, span: Span) -> NodeId {
+    pub(super) fn atom(&mut self, truth: Bool, span: Span, phrase: Option<&Phrase>) -> NodeId {
         let text = self.words(span);
-        self.atom_said(truth, span, text, false)
+        self.atom_worded(truth, span, text, phrase)
     }
 
-    /// The text of a place; of an argument of a function, what it was called with.
-    fn words(&self, mut span: Span) -> String {
-        // An argument may be one of the function around, and so on.
-        for _ in 0..MOST_ALIASES {
-            let Some(meant) = self.aliases.get(&span) else { break };
-            span = *meant;
+    /// The same in words that are not those of its place.
+    pub(super) fn atom_worded(
+        &mut self,
+        truth: Bool,
+        span: Span,
+        text: String,
+        phrase: Option<&Phrase>,
+    ) -> NodeId {
+        let node = self.atom_said(truth, span, text, false);
+        if let (Node::Atom(atom), Some(phrase)) = (&self.tree.nodes[node.0 as usize], phrase)
+            && self.texts.parts.len() < MOST_WITH_PARTS
+            && !self.texts.parts.contains_key(&atom.0)
+        {
+            let atom = atom.0;
+            if let Some(part) = self.part(phrase).filter(|part| !part.is_plain()) {
+                self.texts.parts.insert(atom, part);
+            }
         }
-        bare(&self.text(span)).to_owned()
+        node
+    }
+
+    /// The text of a place; arguments of a function are what it was called with.
+    pub(super) fn words(&self, span: Span) -> String {
+        self.worded(span, &self.meant(span))
     }
 
     /// One that nobody wrote is another than what somebody wrote in the same words.
@@ -111,7 +128,7 @@ impl Elaborator<'_> {
 }
 
 /// A text without parentheses around the whole of it.
-fn bare(text: &str) -> &str {
+pub(super) fn bare(text: &str) -> &str {
     let Some(inner) = text.strip_prefix('(').and_then(|t| t.strip_suffix(')')) else { return text };
     let mut depth = 0i32;
     for c in inner.chars() {

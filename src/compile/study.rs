@@ -3,7 +3,7 @@
 use super::dimension::Dimension;
 use super::written::Written;
 use crate::logic::{NodeId, Relation, TermId, Tree};
-use crate::model::{AgentId, Bool, Num, Scenario};
+use crate::model::{AgentId, Bool, Num, Scenario, Set};
 use crate::syntax::source::Span;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -69,12 +69,72 @@ pub struct Origins {
 pub struct Texts {
     /// Each atom.
     pub atoms: Vec<String>,
+    /// Those of them that are made of others, by their number.
+    pub parts: BTreeMap<u32, Part>,
+    /// Those of them that ask whether someone has the left side of an implication, which nobody wrote.
+    pub cases: BTreeSet<u32>,
     /// Those of them that ask whether somebody is there, where a quantifier does and nobody wrote it.
     pub implied: BTreeSet<u32>,
     /// Each signal, and its dimension.
     pub signals: Vec<(String, Dimension)>,
     /// Comparisons of numbers over time, by the index of their node, and the dimension of their sides.
     pub comparisons: BTreeMap<u32, (String, Dimension)>,
+}
+
+/// A condition of one state as it was written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// Its text, in which arguments of functions are what they stand for.
+    pub text: String,
+    /// What it is made of.
+    pub form: Form,
+}
+
+/// What a condition of one state is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Form {
+    /// Nothing that is a condition.
+    Plain(Bool),
+    /// A name or a call stands for another.
+    Named(Box<Part>),
+    /// Not.
+    Not(Box<Part>),
+    /// All of them.
+    All(Vec<Part>),
+    /// Any of them.
+    Any(Vec<Part>),
+    /// Both or neither.
+    Both(Box<Part>, Box<Part>),
+    /// It is true of each of a set, who is the running one in it.
+    Each(Set, Box<Part>),
+    /// It is true of someone of a set.
+    Someone(Set, Box<Part>),
+}
+
+impl Part {
+    /// The condition itself.
+    pub fn truth(&self) -> Bool {
+        let all = |list: &[Self]| list.iter().map(Self::truth).collect();
+        match &self.form {
+            Form::Plain(truth) => truth.clone(),
+            Form::Named(inner) => inner.truth(),
+            Form::Not(inner) => Bool::Not(Box::new(inner.truth())),
+            Form::All(list) => Bool::And(all(list)),
+            Form::Any(list) => Bool::Or(all(list)),
+            Form::Both(a, b) => Bool::Iff(Box::new(a.truth()), Box::new(b.truth())),
+            Form::Each(set, body) => Bool::Forall(set.clone(), Box::new(body.truth())),
+            Form::Someone(set, body) => Bool::Exists(set.clone(), Box::new(body.truth())),
+        }
+    }
+
+    /// Whether it has no parts of which one or the other may decide.
+    pub fn is_plain(&self) -> bool {
+        match &self.form {
+            Form::Plain(_) => true,
+            Form::Not(inner) | Form::Each(_, inner) | Form::Someone(_, inner) => inner.is_plain(),
+            _ => false,
+        }
+    }
 }
 
 /// One thing asked of each trace of a world.

@@ -2,8 +2,10 @@
 
 use super::dimension::{Dimension, describe};
 use super::number::Number;
+use super::phrase::Phrase;
 use crate::logic::{NodeId, TermId};
 use crate::model::{BarrierId, BehaviourId, Bool, Num, RegionId, Set, Who};
+use std::sync::Arc;
 
 /// What an expression turned out to be.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,8 +22,8 @@ pub(super) enum Typed {
     Num(Num, Dimension),
     /// A vector of a state.
     Vector(Num, Num, Dimension),
-    /// A truth value of a state.
-    Truth(Bool),
+    /// A truth value of a state, and how it was written where a witness may speak of it.
+    Truth(Bool, Option<Arc<Phrase>>),
     /// One agent.
     Agent(Who),
     /// A set of agents.
@@ -60,6 +62,16 @@ pub(super) enum Typed {
 }
 
 impl Typed {
+    /// A truth value of a state.
+    pub(super) const fn truth(truth: Bool) -> Self {
+        Self::Truth(truth, None)
+    }
+
+    /// How a truth value was written.
+    pub(super) fn phrase(&self) -> Option<Arc<Phrase>> {
+        if let Self::Truth(_, phrase) = self { phrase.clone() } else { None }
+    }
+
     /// What it is called in messages.
     pub(super) fn noun(&self) -> String {
         match self {
@@ -69,7 +81,7 @@ impl Typed {
             Self::Text(_) => "a text".to_owned(),
             Self::Point(..) => "a point".to_owned(),
             Self::Vector(..) => "a vector".to_owned(),
-            Self::Truth(_) => "a condition".to_owned(),
+            Self::Truth(..) => "a condition".to_owned(),
             Self::Agent(_) => "an agent".to_owned(),
             Self::Agents { .. } => "a set of agents".to_owned(),
             Self::Process { .. } => "a process".to_owned(),

@@ -105,7 +105,7 @@ impl Weight {
         match typed {
             Typed::Num(num, _) => Self::of_num(num),
             Typed::Vector(x, y, _) => Self::of_parts(vec![Part::Num(x), Part::Num(y)]),
-            Typed::Truth(truth) => Self::of_truth(truth),
+            Typed::Truth(truth, _) => Self::of_truth(truth),
             Typed::Tally(formulas) => Self { nodes: formulas.len() as u64, depth: 1 },
             _ => Self { nodes: 1, depth: 1 },
         }

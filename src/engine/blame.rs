@@ -2,16 +2,17 @@
 
 use super::budget::Budget;
 use super::culprits::{NAMED, Search};
+use super::grounds::{copies, grounds};
 use super::subject::Subject;
 use super::words;
 use crate::base::tick::{Clock, Tick};
+use crate::compile::study;
 use crate::kernel::{Readings, State};
 use crate::logic::{
-    AtomId, Node, NodeId, Reason, Recording, SignalId, Source, Term, TermId, critical, explain, sides,
-    sources,
+    AtomId, Node, NodeId, Part, Reason, Recording, SignalId, Source, Term, TermId, critical, explain, leaves,
+    sides, sources,
 };
-use crate::model::{AgentId, Bool, Scenario, VariableId, Who};
-use std::collections::BTreeSet;
+use crate::model::{AgentId, Bool, Scenario, Who};
 
 /// Most truth values and numbers that are kept of a trial.
 const MOST_KEPT: usize = 1 << 27;
@@ -82,14 +83,31 @@ pub(super) fn truth(
             !reason.value && matches!(subject.atoms()[atom.0 as usize], Bool::Present(_))
         };
         // The last reason in time is the one that closed the case.
-        let said = explanation.reasons.iter().filter(|reason| !absent(reason));
-        let last = said.max_by_key(|reason| (reason.to, reason.from));
+        let said: Vec<&Reason> = explanation.reasons.iter().filter(|reason| !absent(reason)).collect();
+        let last = said.iter().copied().max_by_key(|reason| (reason.to, reason.from));
+        // Another of the same time closed it with it; of more than two the last stands for all. That someone has the left
+        // side of an implication goes without saying where the whole is told.
+        let goes_without = |reason: &Reason| {
+            let Node::Atom(atom) = subject.tree.nodes[reason.leaf.0 as usize] else { return false };
+            reason.value && subject.texts.cases.contains(&atom.0)
+        };
+        let of_then = |last: &Reason| {
+            let then = said.iter().copied().filter(|one| (one.to, one.from) == (last.to, last.from));
+            then.filter(|one| *one == last || !goes_without(one)).collect::<Vec<&Reason>>()
+        };
         match last {
             None if explanation.reasons.len() > 1 => "none of those it asks about is there".to_owned(),
             None if explanation.reasons.len() == 1 => {
                 closing(subject, &explanation.reasons[0], recording, &state_at)
             }
-            Some(reason) => closing(subject, reason, recording, &state_at),
+            Some(reason) => {
+                let then = of_then(reason);
+                let told = if then.len() <= 2 { then } else { vec![reason] };
+                let mut list: Vec<String> =
+                    told.into_iter().map(|one| closing(subject, one, recording, &state_at)).collect();
+                list.dedup();
+                list.join("; ")
+            }
             None if explanation.verdict.is_some() => "it does not depend on what happens".to_owned(),
             None => String::new(),
         }
@@ -160,6 +178,9 @@ pub(super) fn margin(
                     search.extremum(&subject.signals()[signal.0 as usize]);
                 }
             }
+            if search.is_empty() {
+                spoken_of(&mut search, subject, found.leaf);
+            }
             let named = search.named();
             said.push_str(&names(subject, &named, Some(&state)));
         }
@@ -185,6 +206,9 @@ fn origin(
         let mut search = Search::of(subject, &state, stop);
         let signal = &subject.signals()[signal.0 as usize];
         search.extremum(signal);
+        if search.is_empty() {
+            search.name_all_in(signal);
+        }
         search.name_members(text, |tell| signal.mentions(tell));
         said.push_str(&names(subject, &search.named(), Some(&state)));
     }
@@ -227,6 +251,11 @@ fn closing(
             let Some(text) = subject.texts.atoms.get(atom.0 as usize) else { return String::new() };
             let condition = &subject.atoms()[atom.0 as usize];
             let stop = recording.stop;
+            if let Some((part, state)) = subject.texts.parts.get(&atom.0).zip(state_at(reason.to))
+                && let Some(because) = because((subject, stop), (part, text), reason.value, &state)
+            {
+                return because;
+            }
             let blamed = |state: &State| blamed((subject, stop), condition, text, reason.value, state);
             let state = state_at(reason.to);
             let who = state.as_ref().map_or_else(Vec::new, blamed);
@@ -234,7 +263,10 @@ fn closing(
             if !named.is_empty() {
                 return format!("`{text}` {word}{named}");
             }
-            let of = |state: &State| copies((subject, stop), condition, text, reason.value, state);
+            let of = |state: &State| {
+                let asked = Search::of(subject, state, stop);
+                copies(&subject.program.scenario, condition, reason.value, &asked)
+            };
             let copies = state.as_ref().map_or_else(Vec::new, of);
             let colon = if copies.is_empty() { "" } else { ": " };
             format!("`{text}` {word}{colon}{}", copies.join(", "))
@@ -245,10 +277,54 @@ fn closing(
             let signals = found.iter().filter(|source| matches!(source, Source::Signal { .. }));
             let told = |source: &Source| origin(subject, source, true, (state_at, recording.stop));
             let list: Vec<String> = signals.take(NAMED).map(told).collect();
-            let because = if list.is_empty() { String::new() } else { format!(": {}", list.join(" and ")) };
-            format!("`{text}` {word}{because}")
+            if list.is_empty() {
+                let Some(state) = state_at(reason.to) else { return format!("`{text}` {word}") };
+                let mut search = Search::of(subject, &state, recording.stop);
+                spoken_of(&mut search, subject, reason.leaf);
+                return format!("`{text}` {word}{}", names(subject, &search.named(), Some(&state)));
+            }
+            format!("`{text}` {word}: {}", list.join(" and "))
         }
         _ => String::new(),
+    }
+}
+
+/// A condition that is made of others in words, with those of them that decide in a state and the agents in these.
+fn because(
+    (subject, stop): (&Subject, &dyn Fn() -> bool),
+    (part, text): (&study::Part, &str),
+    truth: bool,
+    state: &State,
+) -> Option<String> {
+    let found = grounds(part, truth, &Search::of(subject, state, stop))?;
+    let mut search = Search::of(subject, state, stop);
+    let (mut said, mut owners): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
+    for ground in &found {
+        let (text, condition) = (&ground.part.text, ground.condition());
+        ground.given.iter().for_each(|id| search.name(*id));
+        search.walk(&condition, ground.truth);
+        search.name_members(text, |tell| condition.mentions(tell));
+        let of =
+            copies(&subject.program.scenario, &condition, ground.truth, &Search::of(subject, state, stop));
+        owners.extend(of);
+        said.push(words::condition((text, ground.truth)));
+    }
+    owners.dedup();
+    let mut named = names(subject, &search.named(), Some(state));
+    if named.is_empty() && !owners.is_empty() {
+        named = format!(": {}", owners.join(", "));
+    }
+    Some(words::because((text, truth), &said) + &named)
+}
+
+/// The agents who are there of whom a comparison of numbers over time speaks one by one.
+fn spoken_of(search: &mut Search<'_>, subject: &Subject, leaf: NodeId) {
+    let Node::Compare(_, x, y) = subject.tree.nodes[leaf.0 as usize] else { return };
+    for side in [x, y] {
+        let (_, signals) = leaves(&subject.tree, &[Part::Term(side)]).unwrap_or_default();
+        for signal in signals {
+            search.name_all_in(&subject.signals()[signal.0 as usize]);
+        }
     }
 }
 
@@ -264,43 +340,4 @@ fn blamed(
     search.walk(atom, truth);
     search.name_members(text, |tell| atom.mentions(tell));
     search.named()
-}
-
-/// The copies of processes that make an atom true or false in a state, where they are spoken of by a name that they
-/// share, as `a` in `forall a in sensor`.
-fn copies(
-    (subject, stop): (&Subject, &dyn Fn() -> bool),
-    atom: &Bool,
-    text: &str,
-    truth: bool,
-    state: &State,
-) -> Vec<String> {
-    let search = Search::of(subject, state, stop);
-    let (mut part, mut truth, mut narrowed) = (atom, truth, false);
-    loop {
-        part = match part {
-            Bool::Not(inner) => {
-                truth = !truth;
-                inner
-            }
-            // A false conjunct, or a true disjunct, is enough; otherwise all of them decide.
-            Bool::And(list) | Bool::Or(list) if matches!(part, Bool::Or(_)) == truth => {
-                let Some(one) = list.iter().find(|one| search.holds(one) == truth) else { return Vec::new() };
-                narrowed = true;
-                one
-            }
-            Bool::And(_) | Bool::Or(_) if narrowed => break,
-            Bool::Compare(..) | Bool::Iff(..) => break,
-            _ => return Vec::new(),
-        };
-    }
-    let mut read = BTreeSet::new();
-    part.reads(&mut read);
-    let variables = &subject.program.scenario.processes.variables;
-    let owner = |id: &VariableId| Some(variables.get(id.0 as usize)?.name.rsplit_once('.')?.0.to_owned());
-    let mut found: Vec<String> = read.iter().filter_map(owner).collect();
-    found.retain(|copy| copy.ends_with(']') && !text.contains(copy.as_str()));
-    found.dedup();
-    // What depends on many of them is about none of them.
-    if found.len() > 2 { Vec::new() } else { found }
 }

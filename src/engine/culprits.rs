@@ -1,5 +1,6 @@
 //! Who made a condition true or false, or gave a number its value, in one state.
 
+use super::grounds::Asked;
 use super::instance::{instantiate_bool, instantiate_num};
 use super::subject::Subject;
 use crate::kernel::{Code, Readings, State};
@@ -18,12 +19,19 @@ pub(super) struct Search<'s> {
     /// Whether the time is over.
     stop: &'s dyn Fn() -> bool,
     found: Vec<AgentId>,
+    /// How many quantifiers are around: what is said of their members is about those.
+    inside: u32,
 }
 
 impl<'s> Search<'s> {
     /// Nobody found yet.
     pub(super) fn of(subject: &'s Subject, state: &'s State, stop: &'s dyn Fn() -> bool) -> Self {
-        Self { subject, state, stop, found: Vec::new() }
+        Self { subject, state, stop, found: Vec::new(), inside: 0 }
+    }
+
+    /// Whether nobody was found.
+    pub(super) const fn is_empty(&self) -> bool {
+        self.found.is_empty()
     }
 
     /// The first few who were found.
@@ -61,7 +69,7 @@ impl<'s> Search<'s> {
         found
     }
 
-    fn name(&mut self, id: AgentId) {
+    pub(super) fn name(&mut self, id: AgentId) {
         if !self.found.contains(&id) {
             self.found.push(id);
         }
@@ -80,17 +88,28 @@ impl<'s> Search<'s> {
         });
     }
 
+    /// Names those who are there of whom a number speaks one by one, but not within a fold.
+    pub(super) fn name_all_in(&mut self, num: &Num) {
+        let mut named = Vec::new();
+        spoken_of(num, &mut |id| named.push(id));
+        named.retain(|id| self.is_there(*id));
+        for id in named {
+            self.name(id);
+        }
+    }
+
+    fn is_there(&self, id: AgentId) -> bool {
+        let slot = self.state.slot(id.0 as usize, 0);
+        self.state.present[slot.block].has(slot.lane)
+    }
+
     /// Those of a set who are there: nobody else counts.
     fn members(&self, set: &Set) -> Vec<AgentId> {
         let out = match set.except {
             Some(Who::Agent(id)) => Some(id),
             _ => None,
         };
-        let there = |id: AgentId| {
-            let slot = self.state.slot(id.0 as usize, 0);
-            self.state.present[slot.block].has(slot.lane)
-        };
-        set.members.iter().copied().filter(|id| Some(*id) != out && there(*id)).collect()
+        set.members.iter().copied().filter(|id| Some(*id) != out && self.is_there(*id)).collect()
     }
 
     /// The agents that make a condition true or false.
@@ -121,15 +140,22 @@ impl<'s> Search<'s> {
                 let members = self.members(set);
                 for (id, one) in self.those(&members, truth, |id| instantiate_bool(body, 0, id)) {
                     self.name(id);
+                    self.inside += 1;
                     self.walk(&one, truth);
+                    self.inside -= 1;
                     if self.found.len() >= NAMED {
                         return;
                     }
                 }
             }
             Bool::Compare(_, a, b) => {
+                let before = self.found.len();
                 self.extremum(a);
                 self.extremum(b);
+                if self.found.len() == before && self.inside == 0 {
+                    self.name_all_in(a);
+                    self.name_all_in(b);
+                }
             }
             Bool::In(Who::Agent(id), _) | Bool::Present(Who::Agent(id)) => self.name(*id),
             Bool::Contact(Who::Agent(id)) => {
@@ -198,6 +224,39 @@ impl<'s> Search<'s> {
         if let Some((best, _)) = best {
             self.name(best);
         }
+    }
+}
+
+impl Asked for Search<'_> {
+    fn holds(&self, condition: &Bool) -> bool {
+        Search::holds(self, condition)
+    }
+
+    fn is_late(&self) -> bool {
+        (self.stop)()
+    }
+
+    fn first(&self, set: &Set, body: &Bool, truth: bool) -> Option<AgentId> {
+        let members = self.members(set);
+        self.those(&members, truth, |id| instantiate_bool(body, 0, id)).first().map(|(id, _)| *id)
+    }
+}
+
+/// Tells of each agent that a number is about by itself: of a fold it is the set.
+fn spoken_of(num: &Num, tell: &mut dyn FnMut(AgentId)) {
+    match num {
+        Num::Apply(_, a) => spoken_of(a, tell),
+        Num::Combine(_, a, b) => {
+            spoken_of(a, tell);
+            spoken_of(b, tell);
+        }
+        Num::If(condition, a, b) => {
+            condition.mentions(tell);
+            spoken_of(a, tell);
+            spoken_of(b, tell);
+        }
+        Num::Fold(..) | Num::Count(..) | Num::MeanVelocity(..) | Num::Spread(_) => {}
+        other => other.mentions(tell),
     }
 }
 

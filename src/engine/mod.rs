@@ -12,6 +12,7 @@ mod fault;
 pub mod finding;
 mod flaw;
 mod forecast;
+mod grounds;
 mod instance;
 mod jumper;
 mod leaper;

@@ -5,17 +5,21 @@
 
 use super::answer::waits;
 use super::budget::Budget;
+use super::grounds::{Asked, copies, grounds};
 use super::subject::Subject;
 use super::words;
 use crate::base::instant::Instant;
 use crate::base::random::TrialKey;
 use crate::compile::study::Root;
-use crate::kernel::process::Sight;
+use crate::kernel::process::{Sight, View};
 use crate::kernel::{Scratch, State, dynamics, start};
 use crate::logic::Reading;
+use crate::model::{AgentId, Bool, Set};
 
 /// Most atoms that are named.
 const NAMED: usize = 3;
+/// Most conditions that are told apart of those that the atoms are made of.
+const MOST_PARTS: usize = 1_000;
 /// Jumps between two looks at the clock.
 const CLOCK_EVERY: u32 = 1 << 12;
 
@@ -30,18 +34,20 @@ pub(super) fn decision(
 ) -> Option<(f64, Option<f64>, String)> {
     let mut monitor = subject.signal_monitor(column).ok()?;
     let more = |now: Instant, atoms: &[bool], signals: &[f64]| monitor.jump(now, atoms, signals).is_none();
-    if run(subject, column, trial, budget, more)? {
+    if run(subject, &subject.view(&[column]), trial, budget, more)? {
         monitor.finish();
     }
     let at = monitor.decided_at();
     let horizon = subject.program.scenario.clock.seconds(subject.horizon);
     // Monitors round times of jumps by less than this, some units in the last place.
     let slack = 1e-15 * horizon;
-    let mut past = Past { at: at + slack, last: 0.0, atoms: Vec::new(), signals: Vec::new() };
-    run(subject, column, trial, budget, |now, atoms, signals| past.see(now.seconds, atoms, signals))?;
+    let used = subject.atoms_of(column);
+    let parts = parts(subject, &used);
+    let view = subject.view_beside(column, &parts);
+    let mut past = Past { at: at + slack, last: 0.0, atoms: Vec::new(), signals: Vec::new(), parts };
+    run(subject, &view, trial, budget, |now, atoms, signals| past.see(now.seconds, atoms, signals))?;
     // The time of the row that shows it.
     let at = if (at - past.last).abs() <= slack { past.last } else { at };
-    let used = subject.atoms_of(column);
     // Only a time that does not come lies beyond the horizon.
     let is_time = matches!(subject.columns[column], Root::Metric(term) if waits(&subject.tree, term));
     // What changed then closed the case; else it was that nothing changed any more.
@@ -72,13 +78,12 @@ pub(super) fn decision(
 /// end. None where it cannot start, or where the time is over.
 fn run(
     subject: &Subject,
-    column: usize,
+    view: &View,
     (index, seed): (u64, u64),
     budget: &Budget,
     mut more: impl FnMut(Instant, &[bool], &[f64]) -> bool,
 ) -> Option<bool> {
     let program = &subject.program;
-    let view = subject.view(&[column]);
     let (mut state, mut scratch) = (State::new(program.layout, 0), Scratch::new());
     let mut sight = Sight::default();
     start::load(program, &mut state, 0, TrialKey { seed, index, branch: 0 }, None).ok()?;
@@ -109,6 +114,49 @@ struct Past {
     atoms: Vec<(bool, Option<f64>)>,
     /// The value of each signal.
     signals: Vec<f64>,
+    /// What the atoms are made of. Their truths come after those of the atoms.
+    parts: Vec<Bool>,
+}
+
+/// What the atoms of a column are made of, each once: conditions that join no others.
+fn parts(subject: &Subject, used: &[usize]) -> Vec<Bool> {
+    let mut open: Vec<&Bool> = used.iter().rev().filter_map(|k| subject.atoms().get(*k)).collect();
+    let mut found: Vec<Bool> = Vec::new();
+    while let Some(condition) = open.pop() {
+        match condition {
+            Bool::Not(inner) => open.push(inner),
+            Bool::And(list) | Bool::Or(list) => open.extend(list.iter().rev()),
+            Bool::Iff(a, b) => open.extend([&**b, &**a]),
+            Bool::Constant(_) => {}
+            other if found.contains(other) => {}
+            // So many are not told apart.
+            _ if found.len() == MOST_PARTS => return Vec::new(),
+            other => found.push(other.clone()),
+        }
+    }
+    found
+}
+
+impl Asked for Past {
+    fn holds(&self, condition: &Bool) -> bool {
+        match condition {
+            Bool::Constant(value) => *value,
+            Bool::Not(inner) => !self.holds(inner),
+            Bool::And(list) => list.iter().all(|one| self.holds(one)),
+            Bool::Or(list) => list.iter().any(|one| self.holds(one)),
+            Bool::Iff(a, b) => self.holds(a) == self.holds(b),
+            other => self.part(other).is_some_and(|(holds, _)| holds),
+        }
+    }
+
+    fn is_late(&self) -> bool {
+        false
+    }
+
+    /// In continuous time there are no people.
+    fn first(&self, _: &Set, _: &Bool, _: bool) -> Option<AgentId> {
+        None
+    }
 }
 
 impl Past {
@@ -131,12 +179,78 @@ impl Past {
         true
     }
 
+    /// The truth of a condition that joins no others, and since when, if it was ever another.
+    fn part(&self, condition: &Bool) -> Option<(bool, Option<f64>)> {
+        let at = self.parts.iter().position(|part| part == condition)?;
+        let first = self.atoms.len().checked_sub(self.parts.len())?;
+        self.atoms.get(first + at).copied()
+    }
+
+    /// Since when it is surely as it is: since the last of its parts changed.
+    fn since(&self, condition: &Bool) -> Option<f64> {
+        match condition {
+            Bool::Constant(_) => None,
+            Bool::Not(inner) => self.since(inner),
+            Bool::And(list) | Bool::Or(list) => {
+                list.iter().filter_map(|one| self.since(one)).reduce(f64::max)
+            }
+            Bool::Iff(a, b) => [self.since(a), self.since(b)].into_iter().flatten().reduce(f64::max),
+            other => self.part(other)?.1,
+        }
+    }
+
+    /// What decides an atom, in words, and whose it is; `lasting` says since when, and nothing where that is no reason
+    /// for what began at `since`.
+    fn because(
+        &self,
+        subject: &Subject,
+        atom: usize,
+        (truth, lasting): (bool, Option<Option<f64>>),
+    ) -> Option<(Vec<String>, String)> {
+        if self.parts.is_empty() {
+            return None;
+        }
+        let scenario = &subject.program.scenario;
+        let text = subject.texts.atoms.get(atom)?;
+        let mut owners: Vec<String> = Vec::new();
+        let mut said: Vec<String> = Vec::new();
+        match subject.texts.parts.get(&(atom as u32)) {
+            None => owners = copies(scenario, subject.atoms().get(atom)?, truth, self),
+            Some(part) => {
+                for ground in grounds(part, truth, self)? {
+                    let condition = ground.condition();
+                    owners.extend(copies(scenario, &condition, ground.truth, self));
+                    let is_whole = ground.part.text == *text;
+                    match lasting {
+                        _ if is_whole => {}
+                        None => said.push(words::condition((&ground.part.text, ground.truth))),
+                        Some(since) => {
+                            let own = self.since(&condition);
+                            // What came later is no reason, nor what changed for what never did.
+                            let is_later = |own: f64| since.is_none_or(|since| own > since);
+                            // Of several parts nobody knows which of them it was.
+                            if own.is_some_and(|own| is_later(own) || !is_single(&condition)) {
+                                return None;
+                            }
+                            said.push(lasted(&ground.part.text, ground.truth, own));
+                        }
+                    }
+                }
+            }
+        }
+        owners.sort();
+        owners.dedup();
+        let names = if owners.is_empty() { String::new() } else { format!(": {}", owners.join(", ")) };
+        Some((said, names))
+    }
+
     /// Atoms and their truth.
     fn named(&self, subject: &Subject, atoms: &[usize]) -> String {
         let word = |k: &usize| {
             let text = subject.texts.atoms.get(*k).map_or("", String::as_str);
             let holds = self.atoms.get(*k).is_some_and(|(holds, _)| *holds);
-            format!("`{text}` {}", words::truth(holds))
+            let (said, names) = self.because(subject, *k, (holds, None)).unwrap_or_default();
+            words::because((text, holds), &said) + &names
         };
         atoms.iter().take(NAMED).map(word).collect::<Vec<_>>().join(", ")
     }
@@ -153,13 +267,9 @@ impl Past {
             .iter()
             .map(|(k, holds, since)| {
                 let text = subject.texts.atoms.get(*k).map_or("", String::as_str);
-                match (since, holds) {
-                    (Some(since), _) => {
-                        format!("`{text}` {} since {} s", words::truth(*holds), words::brief(*since, ""))
-                    }
-                    (None, true) => format!("`{text}` was true throughout"),
-                    (None, false) => format!("`{text}` was never true"),
-                }
+                let (because, _) = self.because(subject, *k, (*holds, Some(*since))).unwrap_or_default();
+                let said = lasted(text, *holds, *since);
+                if because.is_empty() { said } else { format!("{said} because {}", because.join(" and ")) }
             })
             .collect();
         if said.is_empty() {
@@ -171,5 +281,25 @@ impl Past {
         }
         said.truncate(NAMED);
         said.join(", ")
+    }
+}
+
+/// Whether a condition joins no others.
+fn is_single(condition: &Bool) -> bool {
+    match condition {
+        Bool::Not(inner) => is_single(inner),
+        Bool::And(_) | Bool::Or(_) | Bool::Iff(..) => false,
+        _ => true,
+    }
+}
+
+/// How long a condition has been as it is.
+fn lasted(text: &str, holds: bool, since: Option<f64>) -> String {
+    match (since, holds) {
+        (Some(since), _) => {
+            format!("{} since {} s", words::condition((text, holds)), words::brief(since, ""))
+        }
+        (None, true) => format!("`{text}` was true throughout"),
+        (None, false) => format!("`{text}` was never true"),
     }
 }

@@ -198,6 +198,13 @@ impl Subject {
         View::new(&self.program.scenario, &atoms, &signals)
     }
 
+    /// The same of one column and some more conditions, whose truths come after those of the atoms.
+    pub(super) fn view_beside(&self, column: usize, more: &[Bool]) -> View {
+        let (mut atoms, signals) = self.observed(&[column]);
+        atoms.extend_from_slice(more);
+        View::new(&self.program.scenario, &atoms, &signals)
+    }
+
     /// Code that reads what some columns use; what they do not use reads as a constant.
     pub fn code(&self, columns: &[usize]) -> Code {
         let (atoms, signals) = self.observed(columns);

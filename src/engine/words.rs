@@ -166,6 +166,21 @@ pub(super) const fn truth(value: bool) -> &'static str {
     if value { "is true" } else { "is false" }
 }
 
+/// A condition and its truth.
+pub(super) fn condition((text, value): (&str, bool)) -> String {
+    format!("`{text}` {}", truth(value))
+}
+
+/// A condition and what it was decided by: "`slow` is true because `v < 1 m/s` is true". What is the condition itself says
+/// nothing more.
+pub(super) fn because((text, value): (&str, bool), grounds: &[String]) -> String {
+    let whole = condition((text, value));
+    if grounds.is_empty() || grounds.contains(&whole) {
+        return whole;
+    }
+    format!("{whole} because {}", grounds.join(" and "))
+}
+
 /// What a test certifies.
 pub(super) fn statement(subject: &str, statement: &Statement, unit: &str) -> String {
     let claim = match statement.claim {

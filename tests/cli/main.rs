@@ -11,3 +11,4 @@ mod program;
 mod ranks;
 mod reasons;
 mod traces;
+mod witnesses;

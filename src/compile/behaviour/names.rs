@@ -118,7 +118,7 @@ impl<'a> Elaborator<'a> {
             Err(reported) => return Some(Err(reported)),
         };
         let number = Box::new(Num::Of(Field::Mode(behaviour), who));
-        Some(Ok(Typed::Truth(Bool::Compare(comparison, number, Box::new(Num::Constant(at as f64))))))
+        Some(Ok(Typed::truth(Bool::Compare(comparison, number, Box::new(Num::Constant(at as f64))))))
     }
 
     /// Which state of a behaviour is named.

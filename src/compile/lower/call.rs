@@ -169,7 +169,7 @@ impl Elaborator<'_> {
             "mass" => field(Field::Mass, Dimension::MASS),
             "driving_speed" => field(Field::DrivingSpeed, Dimension::SPEED),
             "travelled" => field(Field::Travelled, Dimension::LENGTH),
-            "present" => return Ok(Typed::Truth(Bool::Present(self.as_agent(typed, span)?))),
+            "present" => return Ok(Typed::truth(Bool::Present(self.as_agent(typed, span)?))),
             "clearance" => {
                 return Ok(Typed::Num(Num::Clearance(self.as_agent(typed, span)?), Dimension::LENGTH));
             }
@@ -420,7 +420,7 @@ impl Elaborator<'_> {
         };
         let agents: Vec<_> = arguments.iter().map(&mut agent).collect();
         let agents = agents.into_iter().collect::<Lowered<Vec<_>>>()?;
-        Ok(Typed::Truth(match agents[..] {
+        Ok(Typed::truth(match agents[..] {
             [one, other] => Bool::Touching(one, other),
             _ => Bool::Contact(agents[0]),
         }))

@@ -2,6 +2,7 @@
 
 use super::super::dimension::Dimension;
 use super::super::elaborator::{Elaborator, Locals, Lowered, Reported};
+use super::super::phrase::{Phrase, Shape};
 use super::super::told::Told;
 use super::super::typed::Typed;
 use crate::base::tick::Clock;
@@ -10,11 +11,15 @@ use crate::model::{Bool, Comparison, Num, Place};
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
+use std::sync::Arc;
 
 impl Elaborator<'_> {
-    pub(super) fn lower_not(&mut self, operand: &Expr, locals: &Locals) -> Lowered<Typed> {
+    pub(super) fn lower_not(&mut self, span: Span, operand: &Expr, locals: &Locals) -> Lowered<Typed> {
         match self.lower(operand, locals)? {
-            Typed::Truth(truth) => Ok(Typed::Truth(negated(truth))),
+            Typed::Truth(truth, phrase) => {
+                let phrase = phrase.and_then(|phrase| self.phrase(span, Shape::Not(phrase)));
+                Ok(Typed::Truth(negated(truth), phrase))
+            }
             Typed::Formula(node) => Ok(Typed::Formula(self.node(Node::Not(node)))),
             found => self.mismatch(operand.span, "a condition", &found),
         }
@@ -35,7 +40,7 @@ impl Elaborator<'_> {
             BinaryOp::In => self.lower_in(left, right, locals),
             BinaryOp::And | BinaryOp::Or | BinaryOp::Implies | BinaryOp::Iff => {
                 let sides = (self.lower(left, locals), self.lower(right, locals));
-                self.connect(op, (sides.0?, left.span), (sides.1?, right.span), locals)
+                self.connect((op, expr.span), (sides.0?, left.span), (sides.1?, right.span), locals)
             }
             _ => self.lower_comparison(op, left, right, locals),
         }
@@ -43,28 +48,31 @@ impl Elaborator<'_> {
 
     fn connect(
         &mut self,
-        op: BinaryOp,
+        (op, span): (BinaryOp, Span),
         a: (Typed, Span),
         mut b: (Typed, Span),
         locals: &Locals,
     ) -> Lowered<Typed> {
         // An implication of a formula stays visible to the monitor, which counts how often it was triggered.
         let monitored = self.temporal && locals.running == 0 && op == BinaryOp::Implies;
-        let states = matches!((&a.0, &b.0), (Typed::Truth(_), Typed::Truth(_))) && !monitored;
+        let states = matches!((&a.0, &b.0), (Typed::Truth(..), Typed::Truth(..))) && !monitored;
         if states {
+            let phrase = self.connected(op, span, (a.0.phrase(), b.0.phrase()), a.1);
             let (a, b) = (self.as_truth(a.0, a.1)?, self.as_truth(b.0, b.1)?);
-            return Ok(Typed::Truth(match op {
+            let truth = match op {
                 BinaryOp::And => all(a, b),
                 BinaryOp::Or => any(a, b),
                 BinaryOp::Implies => any(negated(a), b),
                 _ => iff(a, b),
-            }));
+            };
+            return Ok(Typed::Truth(truth, phrase));
         }
-        if let (Typed::Truth(when), Typed::Truth(then)) = (&a.0, &b.0)
+        if let (Typed::Truth(when, _), Typed::Truth(then, phrase)) = (&a.0, &b.0)
             && then.may_lack_value()
         {
             // `a => b` is `a => (!a | b)`: where the guard is false, nobody misses what the rest lacks.
-            b.0 = Typed::Truth(any(negated(when.clone()), then.clone()));
+            let phrase = self.connected(BinaryOp::Implies, b.1, (a.0.phrase(), phrase.clone()), a.1);
+            b.0 = Typed::Truth(any(negated(when.clone()), then.clone()), phrase);
         }
         let sides = (self.as_formula(a.0, a.1), self.as_formula(b.0, b.1));
         let (a, b) = (sides.0?, sides.1?);
@@ -77,6 +85,26 @@ impl Elaborator<'_> {
             }
             _ => self.iff(a, b),
         }))
+    }
+
+    /// How a connection of two conditions is written. What is the same everywhere is no part of it.
+    fn connected(
+        &self,
+        op: BinaryOp,
+        span: Span,
+        sides: (Option<Arc<Phrase>>, Option<Arc<Phrase>>),
+        left: Span,
+    ) -> Option<Arc<Phrase>> {
+        let sides = match (op, sides) {
+            (BinaryOp::Iff, (a, b)) => return self.phrase(span, Shape::Both(a?, b?)),
+            (BinaryOp::Implies, (a, b)) => (a.and_then(|a| self.phrase(left, Shape::Not(a))), b),
+            (_, sides) => sides,
+        };
+        let list: Vec<_> = [sides.0, sides.1].into_iter().flatten().collect();
+        if list.is_empty() {
+            return None;
+        }
+        self.phrase(span, if op == BinaryOp::And { Shape::All(list) } else { Shape::Any(list) })
     }
 
     /// Both formulas or neither.
@@ -151,7 +179,7 @@ impl Elaborator<'_> {
                 self.note_margin(da, whole);
             }
             self.within_a_trial((a, b), whole)?;
-            let text = self.text(span);
+            let text = self.words(span);
             let relation = relation(comparison(op));
             if let Some(node) = self.extreme_is((relation, a, b), &text, da) {
                 return Ok(Typed::Formula(node));
@@ -169,12 +197,12 @@ impl Elaborator<'_> {
             return self.wrong_dimension(right.span, da, db);
         }
         if let (Num::Constant(a), Num::Constant(b)) = (&a, &b) {
-            return Ok(Typed::Truth(Bool::Constant(comparison(op).of(*a, *b))));
+            return Ok(Typed::truth(Bool::Constant(comparison(op).of(*a, *b))));
         }
         if margin {
             self.note_margin(da, whole);
         }
-        Ok(Typed::Truth(Bool::Compare(comparison(op), Box::new(a), Box::new(b))))
+        Ok(Typed::truth(Bool::Compare(comparison(op), Box::new(a), Box::new(b))))
     }
 
     /// That the least or greatest of some values is, or is not, a number: as two comparisons, each of which may be settled by
@@ -292,11 +320,11 @@ impl Elaborator<'_> {
         let place = self.as_place(who, left.span);
         let region = region?;
         match place? {
-            Place::Agent(who) => Ok(Typed::Truth(Bool::In(who, region))),
+            Place::Agent(who) => Ok(Typed::truth(Bool::In(who, region))),
             place @ (Place::Point(..) | Place::Centroid(_)) => {
                 let distance = Num::Distance(place, Place::Region(region));
                 let zero = Box::new(Num::Constant(0.0));
-                Ok(Typed::Truth(Bool::Compare(Comparison::AtMost, Box::new(distance), zero)))
+                Ok(Typed::truth(Bool::Compare(Comparison::AtMost, Box::new(distance), zero)))
             }
             Place::Region(id) => self.mismatch(left.span, "an agent or a point", &Typed::Region(id)),
             Place::Barrier(id) => self.mismatch(left.span, "an agent or a point", &Typed::Barrier(id)),

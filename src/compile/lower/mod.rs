@@ -19,6 +19,7 @@ pub(super) use logic::relation;
 use super::dimension::{self, Dimension};
 use super::elaborator::{Elaborator, Locals, Lowered, MOST_NODES, Reported};
 use super::number::Number;
+use super::phrase::{Phrase, Shape};
 use super::typed::Typed;
 use super::weight::Weight;
 use crate::logic::{Node, NodeId, TermId};
@@ -26,6 +27,7 @@ use crate::model::{Axis, Bool, Num, Place, Set, Who};
 use crate::syntax::ast::{Expr, ExprKind, Ident, UnaryOp};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
+use std::sync::Arc;
 
 impl Elaborator<'_> {
     /// What an expression means.
@@ -33,7 +35,36 @@ impl Elaborator<'_> {
         self.descend(expr.span)?;
         let lowered = self.lower_kind(expr, locals);
         self.depth -= 1;
-        lowered
+        match lowered {
+            Ok(Typed::Truth(truth, phrase)) if self.temporal => {
+                Ok(self.phrased(expr, (truth, phrase), locals))
+            }
+            other => other,
+        }
+    }
+
+    /// A condition that knows how it is written here.
+    fn phrased(
+        &mut self,
+        expr: &Expr,
+        (truth, phrase): (Bool, Option<Arc<Phrase>>),
+        locals: &Locals,
+    ) -> Typed {
+        let phrase = match (matches!(truth, Bool::Constant(_)), phrase, &expr.kind) {
+            (true, ..) => None,
+            (false, None, _) => self.phrase(expr.span, Shape::Plain(truth.clone())),
+            // An argument is what it stands for.
+            (false, Some(inner), ExprKind::Name(name))
+                if locals.names.iter().any(|(bound, _)| bound == name) =>
+            {
+                Some(inner)
+            }
+            (false, Some(inner), ExprKind::Name(_) | ExprKind::Call { .. } | ExprKind::Member(..)) => {
+                self.phrase(expr.span, Shape::Named(inner))
+            }
+            (false, phrase, _) => phrase,
+        };
+        Typed::Truth(truth, phrase)
     }
 
     /// What some expressions mean. What is wrong with each is said.
@@ -59,7 +90,7 @@ impl Elaborator<'_> {
                 Ok(Typed::Number(Number::literal(quantity.value, &unit)))
             }
             ExprKind::Infinity => Ok(Typed::Infinity),
-            ExprKind::Bool(value) => Ok(Typed::Truth(Bool::Constant(*value))),
+            ExprKind::Bool(value) => Ok(Typed::truth(Bool::Constant(*value))),
             ExprKind::Text(text) => Ok(Typed::Text(text.clone())),
             ExprKind::Name(name) => self.lower_name(name, expr.span, locals),
             ExprKind::Member(base, field)
@@ -87,7 +118,7 @@ impl Elaborator<'_> {
             ExprKind::Call { function, arguments } => self.lower_call(expr, function, arguments, locals),
             ExprKind::Point { x, y, unit } => self.lower_point(x, y, unit.as_ref(), locals),
             ExprKind::Unary(UnaryOp::Minus, operand) => self.lower_minus(operand, locals),
-            ExprKind::Unary(UnaryOp::Not, operand) => self.lower_not(operand, locals),
+            ExprKind::Unary(UnaryOp::Not, operand) => self.lower_not(expr.span, operand, locals),
             ExprKind::Binary(op, left, right) => self.lower_binary(expr, *op, left, right, locals),
             ExprKind::Quantified { quantifier, variable, set, body } => {
                 self.lower_quantified(expr.span, *quantifier, variable, set, body, locals)
@@ -213,7 +244,7 @@ impl Elaborator<'_> {
     pub(super) fn as_formula(&mut self, typed: Typed, span: Span) -> Lowered<NodeId> {
         match typed {
             Typed::Formula(node) => Ok(node),
-            Typed::Truth(truth) => Ok(self.atom(truth, span)),
+            Typed::Truth(truth, phrase) => Ok(self.atom(truth, span, phrase.as_deref())),
             found => self.mismatch(span, "a condition", &found),
         }
     }
@@ -246,7 +277,7 @@ impl Elaborator<'_> {
     /// A truth value of one state.
     pub(super) fn as_truth(&mut self, typed: Typed, span: Span) -> Lowered<Bool> {
         match typed {
-            Typed::Truth(truth) => Ok(truth),
+            Typed::Truth(truth, _) => Ok(truth),
             Typed::Formula(node) => {
                 let mut size = 0;
                 let written = self.of_one_state(node, &mut 10_000, &mut size);

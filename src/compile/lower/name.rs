@@ -31,10 +31,15 @@ impl<'a> Elaborator<'a> {
     }
 
     pub(super) fn lower_name(&mut self, name: &str, span: Span, locals: &Locals) -> Lowered<Typed> {
-        if let Some((_, typed)) = locals.names.iter().rev().find(|(bound, _)| bound == name) {
-            let typed = typed.as_ref().ok_or(Reported)?;
-            if let Some((_, meant)) = locals.written.iter().rev().find(|(bound, _)| bound == name) {
+        if let Some(at) = locals.names.iter().rposition(|(bound, _)| bound == name) {
+            let typed = locals.names[at].1.as_ref().ok_or(Reported)?;
+            if let Some((_, meant)) = locals.written.iter().find(|(argument, _)| *argument == at) {
                 self.aliases.insert(span, *meant);
+            }
+            if let Typed::Process { process, copy } = **typed
+                && let Some((_, bound)) = locals.copies.iter().find(|(variable, _)| *variable == at)
+            {
+                self.note_copy((process, copy), span, *bound);
             }
             self.count_copy(Weight::of(typed), span)?;
             return Ok((**typed).clone());
@@ -42,6 +47,7 @@ impl<'a> Elaborator<'a> {
         if let Some(process) = locals.process
             && let Some(inside) = self.lower_inside(process, name, span)
         {
+            self.note_owner(process, name, span);
             return inside;
         }
         if let Some(inside) = self.lower_inside_behaviour(name, span, locals) {
@@ -106,7 +112,7 @@ impl<'a> Elaborator<'a> {
             Meaning::Property(formula) => {
                 let inner = Locals { running: locals.running, ..Locals::of(scope) };
                 self.expand_once(scope, name, span, |this| match this.lower(formula, &inner)? {
-                    typed @ (Typed::Truth(_) | Typed::Formula(_)) => Ok(typed),
+                    typed @ (Typed::Truth(..) | Typed::Formula(_)) => Ok(typed),
                     // Said where it is declared, however often it is used.
                     found => this.mismatch(formula.span, "a condition", &found),
                 })
@@ -183,7 +189,7 @@ impl<'a> Elaborator<'a> {
     ) -> Lowered<Typed> {
         let key = (scope, name.to_owned());
         // A condition has a margin at each place where it is asked for.
-        let is_margin = |known: &Lowered<Typed>| matches!(known, Ok(Typed::Truth(truth)) if !matches!(truth, Bool::Constant(_)));
+        let is_margin = |known: &Lowered<Typed>| matches!(known, Ok(Typed::Truth(truth, _)) if !matches!(truth, Bool::Constant(_)));
         let asks = self.margins.is_some();
         if let Some(known) = self.constants.get(&key).filter(|known| !(asks && is_margin(known))) {
             let weight = known.as_ref().map(Weight::of).map_err(|reported| *reported)?;
@@ -215,7 +221,7 @@ impl<'a> Elaborator<'a> {
         let (is_fixed, is_drawn) = match &found {
             Typed::Num(num, _) => (num.is_fixed(), num.is_drawn()),
             Typed::Vector(x, y, _) => (x.is_fixed() && y.is_fixed(), x.is_drawn() && y.is_drawn()),
-            Typed::Truth(truth) => (truth.is_fixed(), truth.is_drawn()),
+            Typed::Truth(truth, _) => (truth.is_fixed(), truth.is_drawn()),
             Typed::Term(..) | Typed::Formula(_) | Typed::Tally(_) => (false, false),
             _ => (true, true),
         };
@@ -224,7 +230,7 @@ impl<'a> Elaborator<'a> {
         }
         let label = match found {
             _ if is_drawn => format!("{} that is not known before a trial", found.noun()),
-            Typed::Truth(_) => "a condition, which may change during a trial".to_owned(),
+            Typed::Truth(..) => "a condition, which may change during a trial".to_owned(),
             _ => format!("{} that changes during a trial", found.noun()),
         };
         let error = Diagnostic::error("E0304", value.span, "this must be known before a trial starts");
@@ -320,8 +326,8 @@ impl<'a> Elaborator<'a> {
             return Err(Reported);
         };
         for ((name, value), argument) in decl.arguments.iter().zip(values).zip(arguments) {
+            inner.written.push((inner.names.len(), argument.span));
             inner.bind(&name.name, value);
-            inner.written.push((name.name.clone(), argument.span));
         }
         let (before, unknowns) = (self.diagnostics.len(), self.unknowns);
         let value = self.expand(inner.scope, &path, span, |this| this.lower(&decl.body, &inner));

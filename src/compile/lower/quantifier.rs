@@ -4,6 +4,7 @@
 //! member, because each member's formula is monitored on its own.
 
 use super::super::elaborator::{Elaborator, Locals, Lowered, Reported};
+use super::super::phrase::{Phrase, Shape};
 use super::super::typed::Typed;
 use crate::logic::{Node, NodeId, Operation, Term, TermId};
 use crate::model::{AgentId, Arithmetic, Bool, Fold, Num, Set, Who};
@@ -12,6 +13,14 @@ use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
 use super::super::dimension::Dimension;
+use std::sync::Arc;
+
+/// The left side of an implication, as a condition of one state.
+struct Case {
+    truth: Bool,
+    text: String,
+    phrase: Option<Arc<Phrase>>,
+}
 
 impl Elaborator<'_> {
     pub(super) fn lower_quantified(
@@ -23,13 +32,17 @@ impl Elaborator<'_> {
         body: &Expr,
         locals: &Locals,
     ) -> Lowered<Typed> {
+        if !self.variables.contains(&variable.name) {
+            self.variables.insert(variable.name.clone());
+        }
         let members = match self.lower(set, locals) {
             Ok(Typed::Processes(process)) => {
                 self.counted(process, set.span)?;
-                return self.lower_over_processes(quantifier, variable, process, body, locals);
+                return self.lower_over_processes((quantifier, span), variable, process, body, locals);
             }
             members => members.and_then(|members| self.as_set(members, set.span)),
         };
+        let place = set.span;
         let Ok(set) = members else {
             // Whoever they are, what is said of each is looked at.
             let mut inner = locals.clone();
@@ -44,21 +57,28 @@ impl Elaborator<'_> {
         inner.bind(&variable.name, Typed::Agent(Who::Running(locals.running)));
         inner.running += 1;
         let typed = self.lower(body, &inner)?;
+        let phrase = typed.phrase();
         match quantifier {
             Quantifier::Forall => {
+                let phrase = phrase.and_then(|one| self.phrase(span, Shape::Each(set.clone(), one)));
                 let all = Bool::Forall(set.clone(), Box::new(self.as_truth(typed, body.span)?));
                 let watched = self.temporal && locals.running == 0;
-                let Some((left, place)) = (if watched { self.left_side(body, &inner)? } else { None }) else {
-                    return Ok(Typed::Truth(all));
+                let Some(left) = (if watched { self.left_side(body, &inner)? } else { None }) else {
+                    return Ok(Typed::Truth(all, phrase));
                 };
                 // "Each a: if p then q" is "if some a has p, then each a: if p then q"; so the monitor sees whether
                 // anybody ever had p.
-                let some = self.atom(Bool::Exists(set, Box::new(left)), place);
-                let (none, all) = (self.node(Node::Not(some)), self.atom(all, span));
+                let some = self.someone((variable, place, set), left, span);
+                let some = self.atom_worded(some.truth, span, some.text, some.phrase.as_deref());
+                if let Node::Atom(atom) = &self.tree.nodes[some.0 as usize] {
+                    self.texts.cases.insert(atom.0);
+                }
+                let (none, all) = (self.node(Node::Not(some)), self.atom(all, span, phrase.as_deref()));
                 Ok(Typed::Formula(self.node(Node::Or(vec![none, all]))))
             }
             Quantifier::Exists => {
-                Ok(Typed::Truth(Bool::Exists(set, Box::new(self.as_truth(typed, body.span)?))))
+                let phrase = phrase.and_then(|one| self.phrase(span, Shape::Someone(set.clone(), one)));
+                Ok(Typed::Truth(Bool::Exists(set, Box::new(self.as_truth(typed, body.span)?)), phrase))
             }
             Quantifier::Count => {
                 let truth = self.as_truth(typed, body.span)?;
@@ -71,34 +91,44 @@ impl Elaborator<'_> {
         }
     }
 
-    /// Where a condition of each is an implication, the condition that some of them has its left side; and the place of
-    /// that side.
-    fn left_side(&mut self, body: &Expr, locals: &Locals) -> Lowered<Option<(Bool, Span)>> {
+    /// Where a condition of each is an implication, the condition that some of them has its left side.
+    fn left_side(&mut self, body: &Expr, locals: &Locals) -> Lowered<Option<Case>> {
         match &body.kind {
             ExprKind::Binary(BinaryOp::Implies, left, _) => {
                 let typed = self.lower(left, locals)?;
-                Ok(Some((self.as_truth(typed, left.span)?, left.span)))
+                let phrase = typed.phrase();
+                let text = self.words(left.span);
+                Ok(Some(Case { truth: self.as_truth(typed, left.span)?, text, phrase }))
             }
             ExprKind::Quantified { quantifier: Quantifier::Forall, variable, set, body } => {
+                let place = set.span;
                 let members = self.lower(set, locals)?;
                 if matches!(members, Typed::Processes(_)) {
                     return Ok(None);
                 }
-                let set = self.as_set(members, set.span)?;
+                let set = self.as_set(members, place)?;
                 let mut inner = locals.clone();
                 inner.bind(&variable.name, Typed::Agent(Who::Running(locals.running)));
                 inner.running += 1;
                 let left = self.left_side(body, &inner)?;
-                Ok(left.map(|(truth, place)| (Bool::Exists(set, Box::new(truth)), place)))
+                Ok(left.map(|left| self.someone((variable, place, set), left, body.span)))
             }
             _ => Ok(None),
         }
     }
 
+    /// That someone of a set has a left side: nobody wrote it, so it is worded here.
+    fn someone(&self, (variable, place, set): (&Ident, Span, Set), left: Case, span: Span) -> Case {
+        let text = format!("exists {} in {}: {}", variable.name, self.words(place), left.text);
+        let someone = left.phrase.map(|one| Shape::Someone(set.clone(), one));
+        let phrase = someone.and_then(|shape| self.unwritten(span, shape, text.clone()));
+        Case { truth: Bool::Exists(set, Box::new(left.truth)), text, phrase }
+    }
+
     /// Over copies of a process everything is written out.
     fn lower_over_processes(
         &mut self,
-        quantifier: Quantifier,
+        (quantifier, span): (Quantifier, Span),
         variable: &Ident,
         process: u32,
         body: &Expr,
@@ -109,6 +139,7 @@ impl Elaborator<'_> {
         let mut each = Vec::new();
         for copy in self.copies(process) {
             let mut inner = locals.clone();
+            inner.copies.push((inner.names.len(), variable.span));
             inner.bind(&variable.name, copy);
             each.push(if formulas {
                 self.inside_a_formula(|this| this.lower(body, &inner))?
@@ -126,11 +157,16 @@ impl Elaborator<'_> {
                 Ok(Typed::Formula(self.node(if all { Node::And(nodes) } else { Node::Or(nodes) })))
             }
             Quantifier::Forall | Quantifier::Exists => {
+                let phrases: Option<Vec<_>> = each.iter().map(Typed::phrase).collect();
                 let truths: Lowered<Vec<Bool>> =
                     each.into_iter().map(|typed| self.as_truth(typed, body.span)).collect();
                 let truths = truths?;
                 let all = quantifier == Quantifier::Forall;
-                Ok(Typed::Truth(if all { Bool::And(truths) } else { Bool::Or(truths) }))
+                // Conditions without parts are those of the whole; whose they are is found all the same.
+                let phrases = phrases.filter(|list| !list.iter().all(|one| one.is_plain()));
+                let shape = |list| if all { Shape::All(list) } else { Shape::Any(list) };
+                let phrase = phrases.and_then(|list| self.phrase(span, shape(list)));
+                Ok(Typed::Truth(if all { Bool::And(truths) } else { Bool::Or(truths) }, phrase))
             }
             Quantifier::Count if formulas => {
                 let nodes: Lowered<Vec<_>> =

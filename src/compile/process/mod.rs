@@ -217,8 +217,8 @@ impl Elaborator<'_> {
             found => this.mismatch(span, "a number", &found),
         };
         let truth = |this: &mut Self, typed: Typed| match typed {
-            Typed::Truth(Bool::Constant(value)) => Ok(f64::from(value)),
-            Typed::Truth(_) => this.report(Diagnostic::error(
+            Typed::Truth(Bool::Constant(value), _) => Ok(f64::from(value)),
+            Typed::Truth(..) => this.report(Diagnostic::error(
                 "E0304",
                 span,
                 "the value at the start must be known before a trial starts",
@@ -265,7 +265,7 @@ impl Elaborator<'_> {
                 }
             },
             None => match initial? {
-                typed @ Typed::Truth(_) => Ok((Dimension::NONE, Domain::Truth, Ok(truth(self, typed)?))),
+                typed @ Typed::Truth(..) => Ok((Dimension::NONE, Domain::Truth, Ok(truth(self, typed)?))),
                 typed => {
                     let number = number(self, typed)?;
                     Ok((number.dimension, Domain::Real, Ok(number.value)))

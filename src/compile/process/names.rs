@@ -28,7 +28,7 @@ impl<'a> Elaborator<'a> {
                 let (dimension, domain) = process.variables[place];
                 let value = Num::Variable(process.variable(copy, place));
                 Ok(match domain {
-                    Domain::Truth => Typed::Truth(Bool::Compare(
+                    Domain::Truth => Typed::truth(Bool::Compare(
                         Comparison::Equal,
                         Box::new(value),
                         Box::new(Num::Constant(1.0)),
@@ -72,6 +72,22 @@ impl<'a> Elaborator<'a> {
         let label = format!("{what} `{}`, known only when all of its variables are", process.decl.name.name);
         let error = Diagnostic::error("E0201", span, format!("unknown name `{name}`")).label(label);
         Some(self.report(error.hint("what variables start with is known before a trial starts")))
+    }
+
+    /// Notes what a name used inside a process is called outside.
+    pub(in crate::compile) fn note_owner(&mut self, (at, copy): (u32, u32), name: &str, span: Span) {
+        let Some(process) = self.processes.get(at as usize).filter(|_| self.temporal) else { return };
+        let owner = &process.decl.name.name;
+        let number = if process.is_array() { format!("[{}]", copy + 1) } else { String::new() };
+        self.owned.insert(span, (format!("{owner}{number}.{name}"), None));
+    }
+
+    /// Notes which copy of a process a quantifier is at where its name is used.
+    pub(in crate::compile) fn note_copy(&mut self, (process, copy): (u32, u32), span: Span, bound: Span) {
+        if let Some(process) = self.processes.get(process as usize).filter(|_| self.temporal) {
+            let text = format!("{}[{}]", process.decl.name.name, copy + 1);
+            self.owned.insert(span, (text, Some(bound)));
+        }
     }
 
     fn too_early<T>(&mut self, (at, what): (u32, &str), span: Span) -> Lowered<T> {

@@ -1,0 +1,205 @@
+//! What witnesses say: the smallest parts of a condition that decided, and the agents these are about.
+
+use crate::program::Place;
+
+const PEOPLE: &str = r#"scenario "Witnesses"
+horizon = 6 s
+step = 0.1 s
+scene {
+  region room: rect (4, 0) .. (8, 4)
+  region exit: rect (3, 0) .. (20, 4)
+}
+kind person: sfm preset helbing2000 { speed = 1 m/s }
+agent me: person { at = (1, 2) velocity = (1, 0) m/s route = exit }
+agent you: person { at = (6, 1) velocity = (0, 0) m/s route = room }
+agents crowd[1]: person { at = (9, 1) velocity = (0, 0) m/s }
+process lamp { choose
+  var on = false
+  var n: 0 .. 5 = 0
+  when !on -> on = true
+  label bright = on & n > 2 }
+process bulb[3] {
+  var k: 0 .. 9 = 0
+  when k < 9 -> k = k + 1
+  let good = k < 3 | k > 7 }
+"#;
+
+/// Names of properties of them.
+const NAMED: &str = "let f(p, r, t) = F<=t (p in r)
+let near(p, q, d) = distance(p, q) < d
+let close(p) = near(p, me, 2 m) & speed(p) < 3 m/s
+let twice(v) = 2 * v
+let least(p) = min<=2 s (distance(p, me))
+let lonely(p) = !(exists a in crowd: distance(a, p) < 1 m & speed(a) < 9 m/s & a in exit)
+property slow = speed(me) < 0.1 m/s & x(position(me)) > 0.5 m
+property quick = !slow
+property fine = quick | you in room
+";
+
+const MACHINES: &str = r#"scenario "Machines"
+horizon = 20 s
+process machine[2] { var up = true
+  var jobs: 0 .. 4 = 0
+  when up after 3 s -> up = false
+  when jobs < 4 after 1 s -> jobs = jobs + 1 }
+process door { var open = false
+  when !open after 2 s -> open = true
+  label shut = !open }
+let ok(which, n) = which.up | which.jobs < n
+"#;
+
+/// What decided the first trial, for each formula.
+fn told(scenario: &str, cases: &[(&str, &str)]) {
+    let queries: String = cases.iter().map(|(formula, _)| format!("check P({formula}) >= 0.5\n")).collect();
+    let properties = if scenario == PEOPLE { format!("{NAMED}{queries}") } else { queries };
+    let place = Place::new(&[("a.scn", scenario), ("a.bltl", &properties)]);
+    let said = place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "json", "--max-trials", "1"]);
+    assert!(said.code != Some(2), "{}", said.err);
+    let json = said.json();
+    for (k, (formula, expected)) in cases.iter().enumerate() {
+        assert_eq!(json["results"][k]["witnesses"][0]["what"], *expected, "{formula}");
+    }
+}
+
+#[test]
+fn of_a_condition_of_several_parts_those_are_named_that_decided() {
+    told(
+        PEOPLE,
+        &[
+            ("F<=1 s slow", "`slow` is false because `speed(me) < 0.1 m/s` is false: me"),
+            ("G<=1 s quick", "`quick` is true because `speed(me) < 0.1 m/s` is false: me"),
+            ("G<=1 s fine", "`fine` is true because `speed(me) < 0.1 m/s` is false: me"),
+            ("F<=1 s !fine", "`!fine` is false because `speed(me) < 0.1 m/s` is false: me"),
+            (
+                "G<=1 s (me in exit | you in room)",
+                "`me in exit | you in room` is true because `you in room` is true: you",
+            ),
+            (
+                "F<=1 s (me in exit | distance(me, you) < 1 m)",
+                "`me in exit | distance(me, you) < 1 m` is false because `me in exit` is false and \
+                 `distance(me, you) < 1 m` is false: me, you",
+            ),
+            (
+                "G<=1 s (speed(me) < 9 m/s & you in room & speed(you) < 9 m/s)",
+                "`speed(me) < 9 m/s & you in room & speed(you) < 9 m/s` is true: me, you",
+            ),
+            (
+                "G<=1 s (me in room <=> you in room)",
+                "`me in room <=> you in room` is false because `me in room` is false and `you in room` is true: me, you",
+            ),
+            ("G<=1 s (you in room => me in room)", "`you in room` is true: you; `me in room` is false: me"),
+            ("if(me in exit, 1, 0) == 1", "`if(me in exit, 1, 0) == 1` is false: me"),
+            ("distance(me, you) < 1 m", "`distance(me, you) < 1 m` is false: me, you"),
+            (
+                "mean<=1 s (distance(me, you)) < 1 m",
+                "`mean<=1 s (distance(me, you)) < 1 m` is false: me, you",
+            ),
+            (
+                "time_until(you in room & speed(me) > 0.1 m/s) < 1 s",
+                "`you in room & speed(me) > 0.1 m/s` is true because `you in room` is true and `speed(me) > 0.1 m/s` \
+                 is true: you, me",
+            ),
+        ],
+    );
+}
+
+#[test]
+fn of_a_quantifier_it_is_the_first_of_whom_it_is_said_and_the_part_that_decided() {
+    told(
+        PEOPLE,
+        &[
+            (
+                "G<=1 s (forall a in crowd: speed(a) < 9 m/s & a in room)",
+                "`forall a in crowd: speed(a) < 9 m/s & a in room` is false because `a in room` is false: crowd[1]",
+            ),
+            (
+                "F<=1 s (exists a in crowd: a in room | a in exit)",
+                "`exists a in crowd: a in room | a in exit` is true because `a in exit` is true: crowd[1]",
+            ),
+            // Nobody wrote the `!` that an implication is made of.
+            (
+                "G<=1 s (forall a in crowd: a in exit => a in room)",
+                "`forall a in crowd: a in exit => a in room` is false because `a in exit` is true and `a in room` is \
+                 false: crowd[1]",
+            ),
+            // Nobody wrote that there is no case.
+            ("G<=1 s (forall a in crowd: close(a) => a in exit)", "`exists a in crowd: close(a)` is false"),
+            ("G<=1 s (forall a in crowd: a in room => a in exit)", "`exists a in crowd: a in room` is false"),
+        ],
+    );
+}
+
+#[test]
+fn arguments_are_told_as_what_they_stand_for() {
+    told(
+        PEOPLE,
+        &[
+            ("f(me, room, 1 s)", "`me in room` is false: me"),
+            // Both functions call their argument `p`.
+            (
+                "F<=1 s close(you)",
+                "`close(you)` is false because `distance(you, me) < 2 m` is false: you, me",
+            ),
+            (
+                "G<=1 s (close(you) | close(crowd[1]))",
+                "`close(you) | close(crowd[1])` is false because `distance(you, me) < 2 m` is false and \
+                 `distance(crowd[1], me) < 2 m` is false: you, me, crowd[1]",
+            ),
+            (
+                "F<=1 s (twice(distance(me, you) - 1 m) < 1 m)",
+                "`twice(distance(me, you) - 1 m) < 1 m` is false: me, you",
+            ),
+            (
+                "min<=1 s (twice(distance(me, you) - 1 m)) < 1 m",
+                "`min<=1 s (twice(distance(me, you) - 1 m)) < 1 m` is false: `twice(distance(me, you) - 1 m)` is 6.246 m at 1 s: me, you",
+            ),
+            (
+                "least(you) > 9 m",
+                "`least(you) > 9 m` is false: `distance(you, me)` is 5.099 m at 0 s: you, me",
+            ),
+            // One `a` is another than the other.
+            (
+                "G<=1 s (forall a in crowd: lonely(a))",
+                "`forall a in crowd: lonely(a)` is false because `distance(a, p) < 1 m & speed(a) < 9 m/s & a in exit, \
+                 where p = a` is true: crowd[1]",
+            ),
+        ],
+    );
+}
+
+#[test]
+fn names_inside_processes_are_told_as_outside() {
+    told(
+        PEOPLE,
+        &[
+            ("F<=1 s lamp.bright", "`lamp.bright` is false because `lamp.n > 2` is false"),
+            (
+                "G<=1 s (forall b in bulb: b.good)",
+                "`forall b in bulb: b.good` is false because `bulb[1].k < 3` is false and `bulb[1].k > 7` is false: bulb[1]",
+            ),
+        ],
+    );
+    told(
+        MACHINES,
+        &[
+            (
+                "G<=10 s (forall k in machine: ok(k, 3))",
+                "`forall k in machine: ok(k, 3)` is false because `machine[1].up` is false and `machine[1].jobs < 3` is \
+                 false: machine[1]",
+            ),
+            ("G<=10 s (forall k in machine: k.up)", "`forall k in machine: k.up` is false: machine[1]"),
+            (
+                "G<=10 s (machine[2].jobs < 4 & door.shut)",
+                "`machine[2].jobs < 4 & door.shut` is false because `door.open` is true",
+            ),
+            (
+                "F[5 s, 6 s] (machine[1].up & door.open)",
+                "`machine[1].up & door.open` is false since 3 s because `machine[1].up` is false since 3 s",
+            ),
+            (
+                "F<=1 s (machine[1].up & door.open)",
+                "`machine[1].up & door.open` was never true because `door.open` was never true",
+            ),
+        ],
+    );
+}
