@@ -104,6 +104,13 @@ fn run(
     }
 }
 
+/// How a condition is told: as it is, or how long it has been so, from a time on if it was ever another.
+#[derive(Clone, Copy)]
+enum Told {
+    Now,
+    Lasting(Option<f64>),
+}
+
 /// What was known at a moment.
 struct Past {
     /// The moment, s.
@@ -205,7 +212,7 @@ impl Past {
         &self,
         subject: &Subject,
         atom: usize,
-        (truth, lasting): (bool, Option<Option<f64>>),
+        (truth, lasting): (bool, Told),
     ) -> Option<(Vec<String>, String)> {
         if self.parts.is_empty() {
             return None;
@@ -223,8 +230,8 @@ impl Past {
                     let is_whole = ground.part.text == *text;
                     match lasting {
                         _ if is_whole => {}
-                        None => said.push(words::condition((&ground.part.text, ground.truth))),
-                        Some(since) => {
+                        Told::Now => said.push(words::condition((&ground.part.text, ground.truth))),
+                        Told::Lasting(since) => {
                             let own = self.since(&condition);
                             // What came later is no reason, nor what changed for what never did.
                             let is_later = |own: f64| since.is_none_or(|since| own > since);
@@ -249,7 +256,7 @@ impl Past {
         let word = |k: &usize| {
             let text = subject.texts.atoms.get(*k).map_or("", String::as_str);
             let holds = self.atoms.get(*k).is_some_and(|(holds, _)| *holds);
-            let (said, names) = self.because(subject, *k, (holds, None)).unwrap_or_default();
+            let (said, names) = self.because(subject, *k, (holds, Told::Now)).unwrap_or_default();
             words::because((text, holds), &said) + &names
         };
         atoms.iter().take(NAMED).map(word).collect::<Vec<_>>().join(", ")
@@ -267,7 +274,8 @@ impl Past {
             .iter()
             .map(|(k, holds, since)| {
                 let text = subject.texts.atoms.get(*k).map_or("", String::as_str);
-                let (because, _) = self.because(subject, *k, (*holds, Some(*since))).unwrap_or_default();
+                let (because, _) =
+                    self.because(subject, *k, (*holds, Told::Lasting(*since))).unwrap_or_default();
                 let said = lasted(text, *holds, *since);
                 if because.is_empty() { said } else { format!("{said} because {}", because.join(" and ")) }
             })
