@@ -138,11 +138,17 @@ pub(super) fn number(
             }
             [] => (None, text),
             several => {
-                let list: Vec<String> = several
-                    .iter()
-                    .take(NAMED)
-                    .map(|s| origin(subject, s, true, (&state_at, recording.stop)))
-                    .collect();
+                let told = |source: &Source| match source {
+                    Source::Formula(reason) => {
+                        let closing = closing(subject, reason, recording, &state_at);
+                        format!("{closing} at {}", moment(subject, reason.to))
+                    }
+                    signal @ Source::Signal { .. } => {
+                        origin(subject, signal, true, (&state_at, recording.stop))
+                    }
+                };
+                let list: Vec<String> =
+                    several.iter().map(told).filter(|said| !said.is_empty()).take(NAMED).collect();
                 (None, format!("{text}: {}", list.join(" and ")))
             }
         }

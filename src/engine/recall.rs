@@ -44,12 +44,13 @@ pub(super) fn decision(
     let used = subject.atoms_of(column);
     let parts = parts(subject, &used);
     let view = subject.view_beside(column, &parts);
-    let mut past = Past { at: at + slack, last: 0.0, atoms: Vec::new(), signals: Vec::new(), parts };
+    let mut past = Past { at: at + slack, parts, ..Past::default() };
     run(subject, &view, trial, budget, |now, atoms, signals| past.see(now.seconds, atoms, signals))?;
     // The time of the row that shows it.
     let at = if (at - past.last).abs() <= slack { past.last } else { at };
-    // Only a time that does not come lies beyond the horizon.
-    let is_time = matches!(subject.columns[column], Root::Metric(term) if waits(&subject.tree, term));
+    // Only a time that does not come lies beyond the horizon, and that is known only there.
+    let is_time = matches!(subject.columns[column], Root::Metric(term) if waits(&subject.tree, term))
+        && horizon - at <= slack;
     // What changed then closed the case; else it was that nothing changed any more.
     let changed =
         |k: &usize| past.atoms.get(*k).is_some_and(|(_, since)| since.is_some_and(|s| at - s <= slack));
@@ -112,12 +113,15 @@ enum Told {
 }
 
 /// What was known at a moment.
+#[derive(Default)]
 struct Past {
     /// The moment, s.
     at: f64,
     /// The last jump up to it, s.
     last: f64,
-    /// The truth of each atom, and since when, if it was ever another.
+    /// The truth of each atom before that jump, and since when, if it was ever another; none before the first instant is over.
+    before: Vec<(bool, Option<f64>)>,
+    /// The same after it.
     atoms: Vec<(bool, Option<f64>)>,
     /// The value of each signal.
     signals: Vec<f64>,
@@ -172,15 +176,17 @@ impl Past {
         if now > self.at {
             return false;
         }
+        if now > self.last {
+            self.before.clone_from(&self.atoms);
+        }
         self.last = now;
-        if self.atoms.is_empty() {
-            self.atoms = atoms.iter().map(|truth| (*truth, None)).collect();
-        }
-        for (known, truth) in self.atoms.iter_mut().zip(atoms) {
-            if known.0 != *truth {
-                *known = (*truth, Some(now));
-            }
-        }
+        // What lasts no time is as if it had not been: a change back within an instant is none.
+        let known = |(k, truth): (usize, &bool)| match self.before.get(k) {
+            None => (*truth, None),
+            Some(before) if before.0 == *truth => *before,
+            Some(_) => (*truth, Some(now)),
+        };
+        self.atoms = atoms.iter().enumerate().map(known).collect();
         self.signals.clear();
         self.signals.extend_from_slice(signals);
         true

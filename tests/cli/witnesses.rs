@@ -203,3 +203,43 @@ fn names_inside_processes_are_told_as_outside() {
         ],
     );
 }
+
+/// What an estimate of a quantile says of its lowest trial.
+fn lowest(scenario: &str, metric: &str) -> String {
+    let query = format!("estimate Q(0.5, {metric}) by fixed(trials = 3)\n");
+    let place = Place::new(&[("a.scn", scenario), ("a.bltl", &query)]);
+    let said = place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "json"]);
+    assert!(said.code == Some(0), "{}", said.err);
+    said.json()["results"][0]["witnesses"][0]["what"].as_str().unwrap_or_default().to_owned()
+}
+
+const STEPS: &str = "scenario \"Steps\"\nhorizon = 20 steps
+process n { var n: 0 .. 9 = 0  when n < 9 -> n = n + 1 }\n";
+const JUMPS: &str = "scenario \"Jumps\"\nhorizon = 6 s
+process p { var s: 0 .. 3 = 0  when s == 0 after 2 s -> s = 1  when s == 1 after 0 s -> s = 0 }
+process q { var n: 0 .. 3 = 0  when n == 0 after 2 s -> n = 1 }
+process r { var n: 0 .. 3 = 0 }\n";
+
+#[test]
+fn each_of_the_times_that_a_number_is_made_of_is_told() {
+    assert_eq!(
+        lowest(STEPS, "time_until(n.n == 8) - time_until(n.n == 3)"),
+        "5 steps: `n.n == 8` is true at step 8 and `n.n == 3` is true at step 3"
+    );
+    assert_eq!(
+        lowest(STEPS, "time_until(n.n == 8) + 1 step / n.n"),
+        "∞ steps: `n.n == 8` is true at step 8 and `1 step / n.n` is ∞ steps at step 0"
+    );
+}
+
+#[test]
+fn what_lasts_no_time_is_no_reason_and_an_infinity_that_is_no_time_is_none() {
+    told(
+        JUMPS,
+        &[
+            ("G<=3 s (p.s == 0)", "`p.s == 0` was true throughout"),
+            ("F<=5 s (p.s == 1) | (F<=5 s (q.n == 1))", "`q.n == 1` is true"),
+        ],
+    );
+    assert_eq!(lowest(JUMPS, "time_until(q.n == 1) + 1 s / r.n"), "∞ s, when `q.n == 1` is true");
+}

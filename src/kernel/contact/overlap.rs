@@ -72,7 +72,7 @@ pub(super) struct Touches {
     overlaps: Vec<u32>,
     found: usize,
     /// Room to work.
-    touches: Vec<surfaces::Touch>,
+    room: Vec<surfaces::Touch>,
 }
 
 impl Touches {
@@ -133,11 +133,11 @@ impl Touches {
         while first < self.count {
             let a = body(&self.blocks, first);
             let same = (first..self.count).take_while(|&k| body(&self.blocks, k) == a).count();
-            let (blocks, touches) = (&self.blocks, &mut self.touches);
+            let (blocks, touches) = (&self.blocks, &mut self.room);
             let faces = (first..first + same).map(|k| blocks[k / LANES].b[k % LANES]);
             let radius = blocks[first / LANES].distance.0[first % LANES];
             program.forces.surfaces.touch(faces, x[a as usize], radius, touches);
-            for (k, touch) in (first..).zip(&self.touches) {
+            for (k, touch) in (first..).zip(&self.room) {
                 let (eight, lane) = (&mut self.blocks[k / LANES], k % LANES);
                 eight.nx.0[lane] = touch.normal.x;
                 eight.ny.0[lane] = touch.normal.y;

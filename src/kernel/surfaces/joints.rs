@@ -83,16 +83,18 @@ pub(super) fn of_face(
     (joints, meets)
 }
 
+/// The root of the tree that one stands in; the way to it gets shorter.
+fn find(root: &mut [u32], mut k: u32) -> u32 {
+    while root[k as usize] != k {
+        root[k as usize] = root[root[k as usize] as usize];
+        k = root[k as usize];
+    }
+    k
+}
+
 /// Which faces hang together by such meetings: of each the first of all that do (union-find).
 pub(super) fn structures(meets: &[Vec<u32>]) -> Vec<u32> {
     let mut root: Vec<u32> = (0..meets.len() as u32).collect();
-    fn find(root: &mut [u32], mut k: u32) -> u32 {
-        while root[k as usize] != k {
-            root[k as usize] = root[root[k as usize] as usize];
-            k = root[k as usize];
-        }
-        k
-    }
     for (k, others) in meets.iter().enumerate() {
         for &other in others {
             let (a, b) = (find(&mut root, k as u32), find(&mut root, other));

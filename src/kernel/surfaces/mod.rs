@@ -117,7 +117,9 @@ impl Surfaces {
         }
         let structures = joints::structures(&meets);
         let mut sizes = vec![0; faces.len()];
-        structures.iter().for_each(|&first| sizes[first as usize] += 1);
+        for &first in &structures {
+            sizes[first as usize] += 1;
+        }
         for (face, first) in faces.iter_mut().zip(structures) {
             face.structure = (sizes[first as usize] > 1).then_some(first);
         }

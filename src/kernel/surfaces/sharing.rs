@@ -1,9 +1,10 @@
 //! What faces that hang together give at once: the smallest that is enough along each normal.
 //!
-//! Faces that push with f_i along unit vectors n_i give g_i, with g_i >= 0 and sum_j max(0, n_i . n_j) g_j >= f_i, and
-//! = where g_i > 0: a linear complementarity problem. So those that push against each other, or at right angles, do
-//! not know of each other. Of two at an angle, c its cosine, each gives (f_i - c f_j)/(1 - c^2), at least 0 and at most
-//! f_i. With more, the least of these is where Gauss and Seidel begin (projected; Cottle, Pang, Stone 1992, chapter 5).
+//! Faces that push with f along unit vectors n give g >= 0 such that the sum over all j of `max(0, n_i . n_j) g_j` is at
+//! least `f_i`, and just that where `g_i > 0`: a linear complementarity problem. So those that push against each other,
+//! or at right angles, do not know of each other. Of two at an angle, c its cosine, the first gives
+//! `(f_1 - c f_2)/(1 - c^2)`, at least 0 and at most `f_1`. With more, the least of these is where Gauss and Seidel begin
+//! (projected; Cottle, Pang, Stone 1992, chapter 5).
 //! A fixed number of sweeps, so that what comes out changes as smoothly as what goes in.
 
 use crate::base::geometry::Vec2;
