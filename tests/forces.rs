@@ -27,14 +27,21 @@ fn pushes(scene: &Crowd, at: Vec2) -> Vec<Push> {
     for (obstacle, form) in scene.obstacles.iter().enumerate() {
         let edges: Vec<Segment> = match form {
             Obstacle::Wall(pieces) => pieces.clone(),
-            Obstacle::Solid(Shape::Polygon(polygon)) => polygon.segments().collect(),
-            Obstacle::Solid(Shape::Circle { .. }) => Vec::new(),
+            Obstacle::Solid(Shape::Polygon(polygon)) if form.distance(at) > 0.0 => {
+                polygon.segments().collect()
+            }
+            Obstacle::Solid(_) => Vec::new(),
         };
         for piece in edges {
             let foot = piece.nearest(at);
             let (distance, normal) = ((at - foot).norm(), (at - foot).normalize());
-            // Seen is what one leaves into the open.
-            if form.distance(foot + normal * 1e-6) > 0.0 {
+            // Seen is what one leaves into the open, from before it.
+            let upright = p(piece.a.y - piece.b.y, piece.b.x - piece.a.x).normalize();
+            let middle = 0.5 * (piece.a + piece.b);
+            let open = form.distance(middle + upright * 1e-6) > 0.0;
+            let side = upright.dot(&(at - piece.a)) * if open { 1.0 } else { -1.0 };
+            if matches!(form, Obstacle::Wall(_)) || (side >= 0.0 && form.distance(foot + normal * 1e-6) > 0.0)
+            {
                 all.push(Push { obstacle, foot, normal, distance, piece: Some(piece) });
             }
         }
@@ -55,9 +62,10 @@ fn pushes(scene: &Crowd, at: Vec2) -> Vec<Push> {
 fn of_walls(scene: &Crowd, one: &Person) -> Vec2 {
     let all = pushes(scene, one.at);
     let nearest: Vec<f64> = scene.obstacles.iter().map(|obstacle| obstacle.distance(one.at)).collect();
-    // Where the nearest point lies on a piece that is nearer, that one pushes; in an obstacle or on its back, nobody.
-    let is_silent = |k: usize| {
-        let Push { obstacle, foot, distance, .. } = all[k];
+    // What is left where something nearer has the say: nothing in an obstacle or on its back; behind an end that lies
+    // on another piece a face fades out.
+    let left = |k: usize| {
+        let Push { obstacle, foot, distance, piece, .. } = all[k];
         let on = |j: usize| match all[j].piece {
             Some(piece) => piece.distance(foot) <= ON,
             None => scene.obstacles[all[j].obstacle].distance(foot) <= ON,
@@ -66,17 +74,29 @@ fn of_walls(scene: &Crowd, one: &Person) -> Vec2 {
         let is_polygon =
             |obstacle: usize| matches!(scene.obstacles[obstacle], Obstacle::Solid(Shape::Polygon(_)));
         let is_inside = |j: usize| all[j].piece.is_none() && is_polygon(all[j].obstacle);
-        (0..all.len()).any(|j| j != k && !is_inside(j) && on(j) && before(j))
-            || (0..nearest.len()).any(|other| {
-                let is_hidden = scene.obstacles[other].distance(foot) <= ON && nearest[other] < distance;
-                let mut faces = (0..all.len()).filter(|j| all[*j].obstacle == other && !is_inside(*j));
-                other != obstacle && is_polygon(other) && is_hidden && !faces.any(|j| j != k && on(j))
-            })
+        let mut rest: f64 = 1.0;
+        for j in (0..all.len()).filter(|&j| j != k && !is_inside(j) && on(j) && before(j)) {
+            rest = match (piece, all[j].piece) {
+                (Some(piece), Some(_)) => {
+                    let way = (piece.b - piece.a).normalize();
+                    let past = (way.dot(&(one.at - piece.b))).max(way.dot(&(piece.a - one.at))).max(0.0);
+                    rest.min((1.0 - past / piece.length().min(0.1)).max(0.0))
+                }
+                _ => 0.0,
+            };
+        }
+        let is_hidden = (0..nearest.len()).any(|other| {
+            let is_hidden = scene.obstacles[other].distance(foot) <= ON && nearest[other] < distance;
+            let mut faces = (0..all.len()).filter(|j| all[*j].obstacle == other && !is_inside(*j));
+            other != obstacle && is_polygon(other) && is_hidden && !faces.any(|j| j != k && on(j))
+        });
+        if is_hidden { 0.0 } else { rest }
     };
     let gap = |push: &Push| one.radius - push.distance;
     let mut felt: Vec<(&Push, f64)> = (0..all.len())
-        .filter(|k| gap(&all[*k]) > -16.0 * one.b && !is_silent(*k))
-        .map(|k| (&all[k], one.a * (gap(&all[k]) / one.b).exp()))
+        .filter(|k| gap(&all[*k]) > -16.0 * one.b)
+        .map(|k| (&all[k], left(k) * one.a * (gap(&all[k]) / one.b).exp()))
+        .filter(|(_, f)| *f > 0.0)
         .collect();
     // What hangs together shares.
     let structure = structures(scene);
@@ -97,10 +117,15 @@ fn of_walls(scene: &Crowd, one: &Person) -> Vec2 {
             felt[k].1 = felt[k].1.min(given.max(0.0));
         }
     }
-    for _ in 0..if is_crowded { 8 } else { 0 } {
-        for k in 0..n {
+    for _ in 0..if is_crowded { 16 } else { 0 } {
+        let next = |k: usize| {
             let given: f64 = (0..n).map(|j| c(j, k, &felt) * felt[j].1).sum();
-            felt[k].1 = (alone[k] - given).max(0.0);
+            let row: f64 = (0..n).map(|j| c(j, k, &felt)).sum();
+            felt[k].1 + ((alone[k] - given).max(0.0) - felt[k].1) / (1.0 + row)
+        };
+        let all: Vec<f64> = (0..n).map(next).collect();
+        for (one, next) in felt.iter_mut().zip(all) {
+            one.1 = next;
         }
     }
     felt.iter().map(|(push, f)| push.normal * *f).sum()

@@ -1,17 +1,22 @@
 //! A face: what one straight piece of a barrier, or a barrier as a whole, does.
 //!
 //! A piece of a wall has two faces in one, an edge of a polygon is felt from outside alone. The nearest point of a
-//! piece is the foot of the perpendicular, or an end. An end of an edge where the polygon is hollow is nobody's
-//! nearest point: who sees it is nearer to the neighbour.
+//! piece is the foot of the perpendicular, or an end. Where another one is nearer to that end, as on the hollow side of a
+//! corner, a piece fades out over the first centimetres behind it, so that nothing jumps as the foot leaves it.
 
 use super::Surface;
 use crate::base::geometry::{Bounds, Polygon, Segment, Vec2, cross};
-use crate::kernel::vector::{Doubles, Part, larger, smaller};
+use crate::base::lanes::Mask;
+use crate::kernel::vector::{Doubles, Part, Truths, larger, smaller};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
 /// Sine of an angle that is none: such pieces are in line.
 const ALIGNED: f64 = 1e-7;
+
+/// Longest way behind an end over which a face fades out, m; a shorter piece does so over its length. Where bodies are
+/// farther from a straight wall than this, times sqrt(1/2), what fades out gives nothing beside its neighbour.
+const FADE: f64 = 0.1;
 
 /// What pushes.
 #[derive(Clone, Debug)]
@@ -33,8 +38,10 @@ pub(super) struct Side {
     inverse_square: f64,
     /// Of an edge of a polygon: which way is out, of any length. Zero in a wall.
     outward: Vec2,
-    /// Whether the ends are nobody's nearest point.
+    /// Whether the polygon is hollow at the ends.
     closed: [bool; 2],
+    /// Its length, in ways behind an end over which it fades out.
+    per_fade: f64,
 }
 
 /// The nearest point of a face to each of eight places.
@@ -47,6 +54,10 @@ pub(in crate::kernel) struct Nearest<S: Simd> {
     pub(in crate::kernel) near: Doubles<S>,
     /// The same; infinite where the face is not seen, as from behind.
     pub(in crate::kernel) distance: Doubles<S>,
+    /// Share of its force that is left where another one has the say: 1 at the foot of a perpendicular.
+    pub(in crate::kernel) fading: Doubles<S>,
+    /// Whether another one has the say there anyway: behind an end where a polygon is hollow.
+    pub(in crate::kernel) fades: Truths<S>,
 }
 
 /// The nearest point of a face to one place: the fields of `Nearest`.
@@ -55,6 +66,8 @@ pub(in crate::kernel) struct NearestTo {
     pub(in crate::kernel) normal: Vec2,
     pub(in crate::kernel) near: f64,
     pub(in crate::kernel) distance: f64,
+    pub(in crate::kernel) fading: f64,
+    pub(in crate::kernel) fades: bool,
 }
 
 impl Side {
@@ -67,6 +80,7 @@ impl Side {
             inverse_square: if square > 0.0 { 1.0 / square } else { 0.0 },
             outward: Vec2::zeros(),
             closed: [false; 2],
+            per_fade: if along.norm() < FADE { 1.0 } else { along.norm() / FADE },
         }
     }
 
@@ -93,18 +107,21 @@ impl Side {
         let near = (dx * dx + dy * dy + part.c(1e-300)).sqrt();
         let q = part.c(1.0) / near;
         let mut distance = near;
+        let mut fades = part.mask(Mask::NONE);
         if self.is_one_sided() {
             let height = px * part.c(self.outward.x) + py * part.c(self.outward.y);
-            let mut seen = height.simd_ge(part.c(0.0));
+            let seen = height.simd_ge(part.c(0.0));
+            distance = seen.select(near, part.c(f64::INFINITY));
             if self.closed[0] {
-                seen &= foot.simd_gt(part.c(0.0));
+                fades |= foot.simd_lt(part.c(0.0));
             }
             if self.closed[1] {
-                seen &= foot.simd_lt(part.c(1.0));
+                fades |= foot.simd_gt(part.c(1.0));
             }
-            distance = seen.select(near, part.c(f64::INFINITY));
         }
-        Nearest { nx: dx * q, ny: dy * q, near, distance }
+        let behind = (foot - share).abs() * part.c(self.per_fade);
+        let fading = larger::<S>(part.c(1.0) - behind, part.c(0.0));
+        Nearest { nx: dx * q, ny: dy * q, near, distance, fading, fades }
     }
 
     /// With the operations of `nearest`.
@@ -115,11 +132,15 @@ impl Side {
         let share = if share < 1.0 { share } else { 1.0 };
         let d = from - self.along * share;
         let near = (d.dot(&d) + 1e-300).sqrt();
-        let is_seen = !self.is_one_sided()
-            || from.dot(&self.outward) >= 0.0
-                && !(self.closed[0] && foot <= 0.0)
-                && !(self.closed[1] && foot >= 1.0);
-        NearestTo { normal: d * (1.0 / near), near, distance: if is_seen { near } else { f64::INFINITY } }
+        let is_seen = !self.is_one_sided() || from.dot(&self.outward) >= 0.0;
+        let left = 1.0 - (foot - share).abs() * self.per_fade;
+        NearestTo {
+            normal: d * (1.0 / near),
+            near,
+            distance: if is_seen { near } else { f64::INFINITY },
+            fading: if left > 0.0 { left } else { 0.0 },
+            fades: self.closed[0] && foot < 0.0 || self.closed[1] && foot > 1.0,
+        }
     }
 }
 
@@ -136,14 +157,15 @@ pub(super) fn nearest_of_whole<S: Simd>(
     if surface.has_edges() {
         distance = near.simd_lt(part.c(0.0)).select(near, part.c(f64::INFINITY));
     }
-    Nearest { nx, ny, near, distance }
+    Nearest { nx, ny, near, distance, fading: part.c(0.0), fades: part.mask(Mask::NONE) }
 }
 
 /// With the operations of `nearest_of_whole`.
 pub(super) fn nearest_of_whole_to(surface: &Surface, p: Vec2) -> NearestTo {
     let (normal, near) = surface.nearest_to(p);
     let is_seen = near < 0.0 || !surface.has_edges();
-    NearestTo { normal, near, distance: if is_seen { near } else { f64::INFINITY } }
+    let distance = if is_seen { near } else { f64::INFINITY };
+    NearestTo { normal, near, distance, fading: 0.0, fades: false }
 }
 
 /// The edges of a polygon as they are felt from outside, in their order.

@@ -5,11 +5,12 @@
 //! a whole. So in the corner of a room both of its faces push, however the room is drawn. Three rules say what holds
 //! where pieces meet.
 //!
-//! 1. An edge of a polygon is felt on its outer side only. Whoever got into a polygon is pushed, too, to the nearest
-//!    point of its rim.
-//! 2. Where the nearest point of a face lies on another face that is nearer, or as near and declared before, the
-//!    other one has the say; and where it lies in another solid, or on the back of one. So a corner outside counts
-//!    once, and an end that another barrier hides is not felt. The nearest of all is always felt.
+//! 1. An edge of a polygon is felt on its outer side only. Whoever got into a polygon is pushed to the nearest point of
+//!    its rim instead.
+//! 2. Where the nearest point of a face is an end that lies on another face which is nearer, or as near and declared
+//!    before, the other one has the say, and the face fades out behind that end; where its nearest point lies in another
+//!    solid, or on the back of one, it gives nothing. So a corner outside counts once, and an end that another barrier
+//!    hides is not felt. The nearest of all is always felt.
 //! 3. Faces that hang together (those of one wall, or of walls and obstacles that touch) share the work where they
 //!    push the same way: together they give the smallest force that is, along each normal, what that face gives alone
 //!    (`sharing`). So in a right angle both push in full, a straight wall in pieces, a ledge or the two sides of a wall
@@ -28,7 +29,7 @@ use super::barrier::Surface;
 use super::edges::squared_distance;
 use super::nearby::Nearby;
 use super::social::{decay, is_in_reach};
-use super::vector::{Doubles, Part, Truths};
+use super::vector::{Doubles, Part, Truths, smaller};
 use crate::base::geometry::{Bounds, Shape, Vec2};
 use crate::base::lanes::Mask;
 use crate::model::{Barrier, Obstacle};
@@ -197,18 +198,27 @@ impl Surfaces {
             if !is_in_reach(part, power) {
                 continue;
             }
-            let Face { joints, structure, .. } = &self.faces[k as usize];
-            if !joints.is_empty() {
-                power = (bodies.r - self.felt(k, part, bodies.place, &nearest)) * bodies.rate;
+            let Face { joints, structure, barrier, form, .. } = &self.faces[k as usize];
+            if matches!(form, Form::Inside) {
+                let inside = nearest.distance.simd_lt(part.c(f64::INFINITY));
+                for push in room.pushes.iter_mut().filter(|push| push.barrier == *barrier) {
+                    part.store_in(inside, part.c(0.0), &mut push.alone);
+                    push.shared = push.alone;
+                }
             }
-            let alone = bodies.a * decay(part, power);
+            let mut alone = bodies.a * decay(part, power);
+            if !joints.is_empty() {
+                let left = self.left(k, part, bodies.place, &nearest);
+                power = left.simd_gt(part.c(0.0)).select(power, part.c(f64::NEG_INFINITY));
+                alone *= left;
+            }
             let Some(structure) = *structure else {
                 fx += alone * nearest.nx;
                 fy += alone * nearest.ny;
                 continue;
             };
             if is_in_reach(part, power) {
-                let mut push = Push { structure, ..Push::default() };
+                let mut push = Push { structure, barrier: *barrier, ..Push::default() };
                 part.store(nearest.nx, &mut push.nx);
                 part.store(nearest.ny, &mut push.ny);
                 part.store(alone, &mut push.alone);
@@ -227,10 +237,10 @@ impl Surfaces {
         (fx, fy)
     }
 
-    /// Distances at which a face is felt at eight places, from its nearest points: infinite where it is not seen, or
+    /// Share of its force that a face gives at eight places, from its nearest points, where it is seen: less than 1 where
     /// another one has the say (rule 2).
     #[inline(always)]
-    fn felt<S: Simd>(
+    fn left<S: Simd>(
         &self,
         index: u32,
         part: Part<S>,
@@ -238,10 +248,11 @@ impl Surfaces {
         nearest: &Nearest<S>,
     ) -> Doubles<S> {
         let foot = (place.0 - nearest.nx * nearest.near, place.1 - nearest.ny * nearest.near);
-        let on = part.c(ON);
-        let mut silent = part.mask(Mask::NONE);
+        let (on, zero) = (part.c(ON), part.c(0.0));
+        let mut left = nearest.fades.select(nearest.fading, part.c(1.0));
+        let unseen = nearest.distance.simd_eq(part.c(f64::INFINITY));
         // The barrier of the last other face, and where the foot lies on one of its faces that is seen.
-        let (mut barrier, mut on_face) = (u32::MAX, silent);
+        let (mut barrier, mut on_face) = (u32::MAX, part.mask(Mask::NONE));
         for Joint { other, around } in &self.faces[index as usize].joints {
             let here = is_in(part, around, foot);
             if !here.any_true() {
@@ -253,9 +264,11 @@ impl Surfaces {
             }
             let theirs = self.nearest(*other, part, place);
             if matches!(other_face.form, Form::Inside) {
-                let nearer = here & !on_face & theirs.near.simd_lt(nearest.distance);
+                let open = on_face & theirs.near.simd_ge(zero);
+                let nearer = here & !open & theirs.near.simd_lt(nearest.distance);
                 if nearer.any_true() {
-                    silent |= nearer & self.nearest(*other, part, foot).near.simd_le(on);
+                    let hidden = nearer & self.nearest(*other, part, foot).near.simd_le(on);
+                    left = hidden.select(zero, left);
                 }
                 continue;
             }
@@ -263,15 +276,24 @@ impl Surfaces {
             if seen.any_true() {
                 let here = seen & self.nearest(*other, part, foot).near.simd_le(on);
                 on_face |= here;
-                silent |= here
+                let has_the_say = here
                     & if *other < index {
                         theirs.distance.simd_le(nearest.distance)
                     } else {
                         theirs.distance.simd_lt(nearest.distance)
                     };
+                // Nothing is left of what lies in a disc.
+                let rest = match other_face.form {
+                    Form::Side(_) => smaller::<S>(nearest.fading, left),
+                    Form::Disc | Form::Inside => zero,
+                };
+                left = has_the_say.select(rest, left);
+            }
+            if (left.simd_le(zero) | unseen).all_true() {
+                break;
             }
         }
-        silent.select(part.c(f64::INFINITY), nearest.distance)
+        left
     }
 
     /// How one body overlaps some faces as the contact between them feels it, by the rules above; in their order.
@@ -284,22 +306,30 @@ impl Surfaces {
     ) {
         touches.clear();
         for (k, face) in faces.enumerate() {
-            let (normal, distance) = self.felt_at(face, p);
+            let nearest = self.nearest_to(face, p);
             // Who hangs together with nobody has a number that no face has.
             let structure = self.faces[face as usize].structure.unwrap_or(u32::MAX - k as u32);
-            let alone = radius - distance;
-            touches.push(Touch { structure, normal, alone, depth: alone });
+            let depth = radius - nearest.distance;
+            let alone = if depth > 0.0 { depth * self.left_at(face, p, &nearest) } else { depth };
+            let Face { barrier, ref form, .. } = self.faces[face as usize];
+            if matches!(form, Form::Inside) && nearest.distance < f64::INFINITY {
+                for touch in touches.iter_mut().filter(|touch| touch.barrier == barrier) {
+                    (touch.alone, touch.depth) = (0.0, 0.0);
+                }
+            }
+            let normal = nearest.normal;
+            touches.push(Touch { structure, barrier, normal, alone, depth: alone, next: alone });
         }
         if touches.len() > 1 {
             share_depths(touches);
         }
     }
 
-    /// The nearest point of a face to one place: unit vector away from the face, and distance as `felt` has it.
-    fn felt_at(&self, index: u32, p: Vec2) -> (Vec2, f64) {
-        let NearestTo { normal, near, distance } = self.nearest_to(index, p);
+    /// The same as `left` at one place.
+    fn left_at(&self, index: u32, p: Vec2, nearest: &NearestTo) -> f64 {
+        let NearestTo { normal, near, distance, fading, fades } = *nearest;
         let foot = p - normal * near;
-        let mut silent = false;
+        let mut left = if fades { fading } else { 1.0 };
         let (mut barrier, mut on_face) = (u32::MAX, false);
         for Joint { other, around } in &self.faces[index as usize].joints {
             if !contains(around, foot) {
@@ -312,13 +342,20 @@ impl Surfaces {
             let theirs = self.nearest_to(*other, p);
             let is_on = self.nearest_to(*other, foot).near <= ON;
             if matches!(other_face.form, Form::Inside) {
-                silent |= is_on && !on_face && theirs.near < distance;
+                let is_open = on_face && theirs.near >= 0.0;
+                if is_on && !is_open && theirs.near < distance {
+                    left = 0.0;
+                }
             } else if theirs.distance < f64::INFINITY && is_on {
                 on_face = true;
-                silent |= theirs.distance < distance || (*other < index && theirs.distance == distance);
+                let is_as_near = *other < index && theirs.distance == distance;
+                let rest = if matches!(other_face.form, Form::Side(_)) { fading } else { 0.0 };
+                if (theirs.distance < distance || is_as_near) && rest < left {
+                    left = rest;
+                }
             }
         }
-        (normal, if silent { f64::INFINITY } else { distance })
+        left
     }
 }
 

@@ -3,9 +3,9 @@
 //! Faces that push with f along unit vectors n give g >= 0 such that the sum over all j of `max(0, n_i . n_j) g_j` is at
 //! least `f_i`, and just that where `g_i > 0`: a linear complementarity problem. So those that push against each other,
 //! or at right angles, do not know of each other. Of two at an angle, c its cosine, the first gives
-//! `(f_1 - c f_2)/(1 - c^2)`, at least 0 and at most `f_1`. With more, the least of these is where Gauss and Seidel begin
-//! (projected; Cottle, Pang, Stone 1992, chapter 5).
-//! A fixed number of sweeps, so that what comes out changes as smoothly as what goes in.
+//! `(f_1 - c f_2)/(1 - c^2)`, at least 0 and at most `f_1`. With more, the least of these is where Jacobi's iteration begins
+//! (projected, each row damped by its sum; Cottle, Pang, Stone 1992, chapter 5): all at once, so that their order does not
+//! matter, and a fixed number of times, so that what comes out changes as smoothly as what goes in.
 
 use crate::base::geometry::Vec2;
 use crate::base::lanes::Lanes;
@@ -13,32 +13,38 @@ use crate::kernel::vector::{Doubles, Part, larger, smaller};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
-/// Sweeps over three or more.
-const SWEEPS: usize = 8;
+/// Iterations over three or more.
+const ITERATIONS: usize = 16;
 
 /// A face that pushes eight bodies.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Push {
     /// What it hangs together with.
     pub(super) structure: u32,
+    pub(super) barrier: u32,
     pub(super) nx: Lanes,
     pub(super) ny: Lanes,
     /// What it gives alone, N.
     pub(super) alone: Lanes,
     /// What it gives beside the others, N.
     pub(super) shared: Lanes,
+    /// The same after the next iteration.
+    pub(super) next: Lanes,
 }
 
 /// A face that pushes one body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::kernel) struct Touch {
     pub(super) structure: u32,
+    pub(super) barrier: u32,
     /// Unit vector away from the face.
     pub(in crate::kernel) normal: Vec2,
     /// How deep the body overlaps it, m.
     pub(super) alone: f64,
     /// How deep beside the others.
     pub(in crate::kernel) depth: f64,
+    /// The same after the next iteration.
+    pub(super) next: f64,
 }
 
 /// What of two the first one gives.
@@ -84,16 +90,23 @@ pub(super) fn share<S: Simd>(part: Part<S>, pushes: &mut [Push]) {
     if !several.any_true() {
         return;
     }
-    for _ in 0..SWEEPS {
+    for _ in 0..ITERATIONS {
         for i in 0..pushes.len() {
-            let mut given = zero;
+            let (mut given, mut row) = (zero, one);
             for j in 0..pushes.len() {
                 if i != j && pushes[i].structure == pushes[j].structure {
-                    given += cosine(part, &pushes[i], &pushes[j]) * part.load(&pushes[j].shared);
+                    let c = cosine(part, &pushes[i], &pushes[j]);
+                    let c = part.load(&pushes[j].alone).simd_gt(zero).select(c, zero);
+                    given += c * part.load(&pushes[j].shared);
+                    row += c;
                 }
             }
-            let left = larger::<S>(part.load(&pushes[i].alone) - given, zero);
-            part.store_in(several, left, &mut pushes[i].shared);
+            let own = part.load(&pushes[i].shared);
+            let wanted = larger::<S>(part.load(&pushes[i].alone) - given, zero);
+            part.store(own + (wanted - own) / row, &mut pushes[i].next);
+        }
+        for push in &mut *pushes {
+            part.store_in(several, part.load(&push.next), &mut push.shared);
         }
     }
 }
@@ -106,7 +119,7 @@ pub(super) fn share_depths(touches: &mut [Touch]) {
         if c < 1.0 { c } else { 1.0 }
     };
     let touching = |touch: &Touch| touch.alone > 0.0;
-    let mut sweeps = 0;
+    let mut iterations = 0;
     for i in 0..touches.len() {
         let own = touches[i];
         let mut others = 0;
@@ -125,21 +138,26 @@ pub(super) fn share_depths(touches: &mut [Touch]) {
             }
         }
         if others > 1 {
-            sweeps = SWEEPS;
+            iterations = ITERATIONS;
         }
     }
-    for _ in 0..sweeps {
+    for _ in 0..iterations {
         for i in 0..touches.len() {
             let own = touches[i];
             if touching(&own) {
-                let fellow = |(j, other): &(usize, &Touch)| {
-                    *j != i && own.structure == other.structure && touching(other)
-                };
-                let others = touches.iter().enumerate().filter(fellow);
-                let given: f64 = others.map(|(_, other)| cosine(&own, other) * other.depth).sum();
-                let left = own.alone - given;
-                touches[i].depth = if left > 0.0 { left } else { 0.0 };
+                let (mut given, mut row) = (0.0, 1.0);
+                for (j, other) in touches.iter().enumerate() {
+                    if j != i && own.structure == other.structure && touching(other) {
+                        given += cosine(&own, other) * other.depth;
+                        row += cosine(&own, other);
+                    }
+                }
+                let wanted = if own.alone > given { own.alone - given } else { 0.0 };
+                touches[i].next = own.depth + (wanted - own.depth) / row;
             }
+        }
+        for touch in touches.iter_mut().filter(|touch| touching(touch)) {
+            touch.depth = touch.next;
         }
     }
 }

@@ -196,7 +196,7 @@ fn depths_are_shared_as_forces_are() {
             .map(|_| {
                 let (sin, cos) = crate::base::math::sin_cos_turn(next());
                 let (alone, structure) = (next() - 0.2, u32::from(next() < 0.2));
-                Touch { structure, normal: p(cos, sin), alone, depth: alone }
+                Touch { structure, barrier: 0, normal: p(cos, sin), alone, depth: alone, next: alone }
             })
             .collect();
         let mut pushes: Vec<Push> = touches
@@ -206,7 +206,7 @@ fn depths_are_shared_as_forces_are() {
                 nx: Lanes::splat(touch.normal.x),
                 ny: Lanes::splat(touch.normal.y),
                 alone: Lanes::splat(touch.alone.max(0.0)),
-                shared: Lanes::ZERO,
+                ..Push::default()
             })
             .collect();
         share_depths(&mut touches);
@@ -298,6 +298,162 @@ fn a_ledge_or_a_wall_drawn_as_its_outline_is_one_wall() {
     }
 }
 
+/// Whether a scene pushes as the sum of these faces does, each alone: which way, and how far it is.
+fn pushes_as(barriers: &[Barrier], place: Vec2, faces: &[(Vec2, f64)]) {
+    let wanted: Vec2 = faces.iter().map(|(normal, distance)| *normal * alone(*distance, 0.5)).sum();
+    let found = force(barriers, place, 0.5);
+    assert!((found - wanted).norm() < 1e-12 * wanted.norm(), "{place} {found} {wanted}");
+}
+
+/// The nearest of a scene.
+fn nearest(barrier: &Barrier, place: Vec2) -> (Vec2, f64) {
+    Surface::new(barrier).unwrap().nearest_to(place)
+}
+
+/// Places that are not nearer to a line of the grid than bodies ever are to a wall.
+fn free_places() -> impl Iterator<Item = Vec2> {
+    places().filter(|place| place.x.abs() > 0.08 && place.y.abs() > 0.08)
+}
+
+#[test]
+fn a_straight_wall_in_pieces_is_one_wall() {
+    let whole = wall(&[p(-3.0, 0.0), p(3.0, 0.0)]);
+    let one = wall(&[p(-3.0, 0.0), p(-1.0, 0.0)]);
+    let two = wall(&[p(1.5, 0.0), p(-1.0, 0.0)]);
+    let three = wall(&[p(1.0, 0.0), p(2.0, 0.0), p(2.95, 0.0), p(3.0, 0.0)]);
+    for pieces in [[&one, &two, &three], [&three, &one, &two], [&two, &three, &one]] {
+        let pieces = pieces.map(Clone::clone);
+        for place in free_places().chain([p(-1.0, 1.0), p(1.5, -2.0), p(2.98, 0.3)]) {
+            pushes_as(&pieces, place, &[nearest(&whole, place)]);
+        }
+    }
+}
+
+#[test]
+fn outside_a_corner_of_two_walls_one_pushes_and_inside_both() {
+    let (east, north) = (wall(&[p(0.0, 0.0), p(9.0, 0.0)]), wall(&[p(0.0, 9.0), p(0.0, 0.0)]));
+    for barriers in [[east.clone(), north.clone()], [north, east]] {
+        for place in free_places() {
+            let both = [nearest(&barriers[0], place), nearest(&barriers[1], place)];
+            let inside = place.x > 0.0 && place.y > 0.0;
+            let one = if both[0].1 < both[1].1 { both[0] } else { both[1] };
+            pushes_as(&barriers, place, if inside { &both[..] } else { std::slice::from_ref(&one) });
+        }
+    }
+}
+
+#[test]
+fn an_end_on_a_side_or_inside_a_solid_is_not_felt() {
+    let side = wall(&[p(-9.0, 0.0), p(9.0, 0.0)]);
+    let table = block(p(-9.0, -1.0), p(9.0, 0.0));
+    for (other, foot) in [(side, 0.0), (table, -0.5)] {
+        let stem = wall(&[p(0.0, 5.0), p(0.0, foot)]);
+        for place in free_places().filter(|place| place.y > 0.0 || place.y < -1.0 || foot == 0.0) {
+            let both = [nearest(&other, place), nearest(&stem, place)];
+            // The stem is felt where the nearest of it is not hidden.
+            let count = if place.y > 0.0 { 2 } else { 1 };
+            pushes_as(&[stem.clone(), other.clone()], place, &both[..count]);
+        }
+    }
+    let pillar = barrier(Obstacle::Solid(Shape::Circle { centre: p(0.0, -0.5), radius: 0.6 }));
+    let stem = wall(&[p(0.0, 5.0), p(0.0, 0.0)]);
+    for place in free_places() {
+        let found = felt(&[stem.clone(), pillar.clone()], place);
+        assert_eq!(found.len(), if place.y > 0.1 { 2 } else { 1 }, "{place}");
+    }
+}
+
+#[test]
+fn blocks_side_by_side_or_overlapping_are_one_block() {
+    let whole = block(p(-2.0, 0.0), p(2.0, 1.0));
+    for (a, b) in [(-0.5, -0.5), (0.3, -1.0)] {
+        let parts =
+            [block(p(-2.0, 0.0), p(a, 1.0)), block(p(b, 0.0), p(0.5, 1.0)), block(p(0.5, 0.0), p(2.0, 1.0))];
+        for place in places() {
+            let wanted = nearest(&whole, place);
+            if wanted.1 > 0.08 {
+                pushes_as(&parts, place, &[wanted]);
+            }
+        }
+    }
+}
+
+#[test]
+fn four_walls_that_meet_in_a_point_push_with_the_two_faces_of_a_quarter() {
+    let ends = [p(9.0, 0.0), p(0.0, 9.0), p(-9.0, 0.0), p(0.0, -9.0)];
+    let cross = ends.map(|end| wall(&[end, Vec2::zeros()]));
+    for place in free_places() {
+        let faces = [(p(place.x.signum(), 0.0), place.x.abs()), (p(0.0, place.y.signum()), place.y.abs())];
+        pushes_as(&cross, place, &faces);
+    }
+}
+
+#[test]
+fn what_is_drawn_twice_is_felt_once_and_what_is_apart_twice() {
+    let (first, gap) = (wall(&[p(0.0, 0.0), p(1.0, 0.0)]), wall(&[p(1.01, 0.0), p(2.0, 0.0)]));
+    let place = p(1.005, 1.0);
+    pushes_as(&[first.clone(), gap.clone()], place, &[nearest(&first, place), nearest(&gap, place)]);
+    for place in free_places() {
+        pushes_as(&[first.clone(), first.clone()], place, &[nearest(&first, place)]);
+    }
+    let found = force(&[first.clone(), first.clone(), first], p(0.5, 0.3), 0.2);
+    assert!((found.y / alone(0.3, 0.2) - 1.0).abs() < 1e-3, "{found}");
+}
+
+#[test]
+fn a_rounded_corner_pushes_alike_however_it_is_drawn_and_nothing_jumps() {
+    for count in [4, 8, 16] {
+        let arc = |k: i32| {
+            let (sin, cos) = crate::base::math::sin_cos_turn(f64::from(k) / f64::from(count) * 0.25);
+            p(0.5 - 0.5 * cos, 0.5 - 0.5 * sin)
+        };
+        let mut corner = vec![p(0.0, 5.0)];
+        corner.extend((0..=count).map(arc));
+        corner.push(p(5.0, 0.0));
+        let mut room = corner.clone();
+        room.push(p(5.0, 5.0));
+        let drawn = [wall(&corner), around_hole(&room)];
+        let pieces: Vec<Barrier> = corner.windows(2).rev().map(wall).collect();
+        for y in [0.45, 0.5, 0.52, 0.6] {
+            let mut last: Option<Vec2> = None;
+            for k in 0..1_500 {
+                let place = p(0.42 + f64::from(k) * 1e-4, y);
+                let found = force(&drawn[..1], place, 0.08);
+                let others = [&drawn[1..], &pieces[..]];
+                for other in others.into_iter().filter(|_| k % 25 == 0) {
+                    let other = force(other, place, 0.08);
+                    assert!((other - found).norm() < 1e-6 * found.norm(), "{count} {place} {found} {other}");
+                }
+                if let Some(last) = last {
+                    assert!((found - last).norm() < 0.03 * found.norm(), "{count} {place} {found} {last}");
+                }
+                last = Some(found);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_order_of_many_that_share_does_not_matter() {
+    let fin = |k: i32| {
+        let (sin, cos) = crate::base::math::sin_cos_turn(f64::from(k) / 16.0);
+        wall(&[p(0.45 * cos, 0.45 * sin), p(1.2 * cos, 1.2 * sin)])
+    };
+    let rim = |k: i32| {
+        let (sin, cos) = crate::base::math::sin_cos_turn(f64::from(k) / 16.0);
+        p(1.2 * cos, 1.2 * sin)
+    };
+    let mut fins: Vec<Barrier> = (0..=8).map(fin).collect();
+    fins.push(wall(&(0..=8).map(rim).collect::<Vec<_>>()));
+    let reversed: Vec<Barrier> = fins.iter().rev().cloned().collect();
+    for (x, y) in [(0.02, 0.01), (0.1, 0.05), (0.0, 0.05)] {
+        let (one, other) = (force(&fins, p(x, y), 0.08), force(&reversed, p(x, y), 0.08));
+        let mirrored = force(&fins, p(-x, y), 0.08);
+        assert!((one - other).norm() < 1e-9 * one.norm(), "{one} {other}");
+        assert!((one - p(-mirrored.x, mirrored.y)).norm() < 1e-9 * one.norm(), "{one} {mirrored}");
+    }
+}
+
 proptest! {
     /// Forces do not hang on who stands in the other lanes, and nobody is pulled.
     #[test]
@@ -315,12 +471,12 @@ proptest! {
             prop_assert!(one_x.0[0].is_finite() && one_y.0[0].is_finite());
             // What the nearest face gives is there along its normal, but for faces that push against it: of two at
             // an angle in full, of three or more about.
-            let nearest = (0..all.len() as u32).map(|k| all.felt_at(k, at[lane]));
-            let (normal, distance) = nearest.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
-            let against: f64 = (0..all.len() as u32)
-                .map(|k| all.felt_at(k, at[lane]))
+            let nearest = felt(&barriers, at[lane]);
+            let (normal, distance) = *nearest.iter().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
+            let against: f64 = nearest
+                .iter()
                 .filter(|(other, _)| other.dot(&normal) < 0.0)
-                .map(|(other, distance)| -other.dot(&normal) * alone(distance, 0.3))
+                .map(|(other, distance)| -other.dot(&normal) * alone(*distance, 0.3))
                 .sum();
             if distance.abs() < 1e-6 {
                 continue;
