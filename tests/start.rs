@@ -355,3 +355,59 @@ fn only_what_cannot_fit_is_refused() {
     let inside = Shape::Polygon(Polygon::rectangle(p(11.95, 1.95), p(12.05, 2.05)));
     assert_eq!(check_area(&scenario(vec![agent(1, Position::Within(inside))])).len(), 1);
 }
+
+/// Somebody of a fixed radius in a shape.
+fn of_radius(entity: u32, radius: f64, shape: &Shape) -> Agent {
+    let mut agent = agent(entity, Position::Within(shape.clone()));
+    agent.body = Arc::new(Body { radius: Law::Constant(radius), ..body() });
+    agent
+}
+
+#[test]
+fn what_is_allowed_of_few_can_be_placed() {
+    let spot = |radius| Shape::Circle { centre: p(5.0, 2.0), radius };
+    let row = |length| Shape::rectangle(p(5.0, 2.0), p(5.0 + length, 2.01));
+    // Each fills more than 0.84 of what it can cover.
+    for (count, shape) in [(1, spot(0.01)), (1, spot(0.02)), (2, row(0.61)), (1, row(0.01))] {
+        let mut only = scenario((0..count).map(|k| of_radius(k, 0.3, &shape)).collect());
+        only.scene.barriers.clear();
+        assert_eq!(check_area(&only), [], "{shape:?}");
+        let program = Program::new(Arc::new(only));
+        let mut state = empty(&program);
+        for index in 0..50 {
+            let loaded = load(&program, &mut state, 0, key(index), None).unwrap();
+            assert_eq!((loaded.shrunk_pairs, overlaps(&state, 0)), (0, 0), "{shape:?}");
+        }
+        assert!(f64::from(count) * 0.09 * std::f64::consts::PI > 0.84 * covered(&shape, 0.3));
+    }
+}
+
+/// Area of what lies within reach of a shape, roughly.
+fn covered(shape: &Shape, reach: f64) -> f64 {
+    let bounds = shape.bounds();
+    let low = bounds.low - p(reach, reach);
+    let cell = (bounds.high - bounds.low + p(2.0 * reach, 2.0 * reach)) / 200.0;
+    let at = |k: u32| low + p(f64::from(k % 200) + 0.5, f64::from(k / 200) + 0.5).component_mul(&cell);
+    (0..40_000).filter(|k| shape.distance(at(*k)) <= reach).count() as f64 * cell.x * cell.y
+}
+
+#[test]
+fn few_are_refused_only_if_they_take_more_than_there_is() {
+    let spot = Shape::Circle { centre: p(5.0, 2.0), radius: 0.05 };
+    let three = check_area(&scenario((0..3).map(|k| of_radius(k, 0.3, &spot)).collect()));
+    assert_eq!((three.len(), three[0].share), (1, None));
+    // Radii that may be drawn small tell nothing of those that are.
+    let drawn = Body { radius: uniform(0.01, 0.4), ..body() };
+    let drawn = |k| Agent { body: Arc::new(drawn.clone()), ..of_radius(k, 0.3, &spot) };
+    assert_eq!(check_area(&scenario((0..3).map(drawn).collect())), []);
+}
+
+#[test]
+fn a_row_of_many_fills_more_than_a_hall_does() {
+    // A line of thirty, with a little to spare: nothing of what they cover beyond it is anybody else's.
+    let line = Shape::rectangle(p(1.0, 20.0), p(1.0 + 29.0 * 0.63, 20.001));
+    let many = scenario((0..30).map(|k| of_radius(k, 0.3, &line)).collect());
+    assert_eq!(check_area(&many), []);
+    let hall = check_area(&scenario(crowd(260)));
+    assert!(hall[0].share.is_some_and(|share| (0.84..0.9).contains(&share)), "{:?}", hall[0].share);
+}

@@ -11,7 +11,7 @@ use crate::compile::Study;
 use crate::compile::nearest::nearest;
 use crate::engine::budget::DEFAULT_TRIALS;
 use crate::engine::outcome::{Failure, Finding, Run};
-use crate::engine::{Budget, Call, Fault, Outlook, Ranks, Threads, forecast, overfull, run as run_study};
+use crate::engine::{Budget, Call, Fault, Outlook, Ranks, Threads, forecast, run as run_study};
 use crate::report::{self, ExitCode as Exit, Format, Palette};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
@@ -56,10 +56,6 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
         }
         interrupted.interrupt();
     });
-    let crowded: Vec<Diagnostic> = overfull(study, &only).iter().map(complaint::refusal).collect();
-    if !crowded.is_empty() {
-        return desk.refuse_for(&crowded);
-    }
     let crew = match crew(arguments, study, &shelf, threads, &budget) {
         Ok(crew) => crew,
         Err(error) => return desk.refuse(error),
@@ -178,7 +174,7 @@ impl Desk<'_> {
 
     /// Nothing could be run.
     fn fault(self, fault: &Fault) -> Exit {
-        self.refuse(complaint::refusal(fault))
+        self.refuse_for(&complaint::refusals(fault))
     }
 
     /// A report of a run that never began, in formats for machines; people have read it already.

@@ -23,7 +23,15 @@ pub(super) fn input(title: impl Into<String>) -> Diagnostic {
         .hint("names are relative to the folder of the call; `-` is standard input")
 }
 
-/// What the engine refuses.
+/// What the engine refuses, each of it.
+pub(super) fn refusals(fault: &Fault) -> Vec<Diagnostic> {
+    match fault {
+        Fault::Crowded(places) => places.iter().map(refusal).collect(),
+        one => vec![refusal(one)],
+    }
+}
+
+/// What the engine refuses; of several the first.
 pub(super) fn refusal(fault: &Fault) -> Diagnostic {
     match fault {
         Fault::Placement { reason, place } => {
@@ -33,6 +41,10 @@ pub(super) fn refusal(fault: &Fault) -> Diagnostic {
             };
             error.hint("fewer people, a larger shape to start from, or smaller radii")
         }
+        Fault::Crowded(places) => match places.first() {
+            Some(first) => refusal(first),
+            None => Diagnostic::placeless("E0801", fault.to_string()),
+        },
         Fault::Procedure { place, reason } => Diagnostic::error("E0604", *place, reason.to_string())
             .hint("`smc explain E0604` says what each procedure takes"),
         Fault::Model(flaw) => of_model(flaw),

@@ -9,10 +9,14 @@ use crate::engine::outcome::{Finding, Spot};
 use crate::engine::overfull_starts;
 use crate::syntax::ast::{Item, PropertyItem, ScenarioFile};
 use crate::syntax::diagnostic::{Diagnostic, Severity};
-use crate::syntax::parse::{decode, parse_properties, parse_scenario, parse_value};
+use crate::syntax::parse::{continues_name, decode, parse_properties, parse_scenario, parse_value};
 use crate::syntax::source::{Source, SourceId, Span};
+use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::{Path, PathBuf};
+
+/// Code of a parameter that is set wrongly.
+const SETTING: &str = "E0210";
 
 /// All that was read, and what was found wrong with it.
 pub(super) struct Inputs {
@@ -209,6 +213,35 @@ fn crowded(starts: &[Starts], known: &[Diagnostic]) -> Vec<Diagnostic> {
     found.iter().map(complaint::refusal).filter(|one| !place(one).is_some_and(is_known)).collect()
 }
 
+/// Whether any number of people may be another than the files say. What is wrong with a value that the call sets tells
+/// nothing of the value that was meant; and where parameters decide anything, what could not be read of the properties may
+/// have set them. The first sources are those of files.
+fn is_any_world(found: &[Diagnostic], said: &[Diagnostic], input: &Input<'_>, files: usize) -> bool {
+    let source = |one: &Diagnostic| one.place.as_ref().map(|place| usize::from(place.span.source.0));
+    let of_setting = |one: &Diagnostic| source(one).map_or(one.code == SETTING, |source| source >= files);
+    let of_query = |one: &Diagnostic| source(one).is_none_or(|source| (1..files).contains(&source));
+    let is_lost = || input.properties.iter().any(|file| !file.lost.is_empty() || !file.cut.is_empty());
+    found.iter().chain(said).filter(|one| is_error(one)).any(of_setting)
+        || (is_lost() || said.iter().filter(|one| is_error(one)).any(of_query)) && has_used_parameter(input)
+}
+
+/// Whether the scenario names some parameter again where it is not declared.
+fn has_used_parameter(input: &Input<'_>) -> bool {
+    let mut params: BTreeMap<&str, usize> = BTreeMap::new();
+    for item in &input.scenario.items {
+        if let Item::Param { name, .. } = item {
+            params.insert(&name.name, 0);
+        }
+    }
+    let text = input.sources.first().map_or("", |source| source.text.as_ref());
+    for word in text.split(|c: char| !continues_name(c)) {
+        if let Some(count) = params.get_mut(word) {
+            *count += 1;
+        }
+    }
+    params.values().any(|count| *count > 1)
+}
+
 /// Whether a text is a scenario, with something in it that only scenarios have.
 fn is_scenario(source: &Source) -> bool {
     let (file, said) = parse_scenario(source);
@@ -271,6 +304,7 @@ pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> I
             .diagnostics
             .push(error.hint("it names a folder in which recordings and imports are looked for"));
     }
+    let in_files = reader.sources.len();
     let settings: Vec<Setting> = model.set.iter().filter_map(|text| reader.setting(text)).collect();
     let mut files = Files::default();
     for request in requests(&scenario) {
@@ -295,10 +329,11 @@ pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> I
             settings: &settings,
         };
         let examined = examine(&input);
+        let is_any = is_any_world(&examined.found, &diagnostics, &input, in_files);
         let found = own_errors(examined.found, &diagnostics, &input);
         let said = diagnostics.clone();
         diagnostics.extend(found);
-        if diagnostics.iter().any(is_error) {
+        if diagnostics.iter().any(is_error) && !is_any {
             // Of files that are right the engine tells it, of the queries that were chosen.
             let more = own_errors(crowded(&examined.starts, &diagnostics), &said, &input);
             diagnostics.extend(more);

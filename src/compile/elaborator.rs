@@ -125,8 +125,8 @@ pub(super) struct Elaborator<'a> {
     pub(super) undeclared: BTreeSet<AgentId>,
     /// Whether a part of the scenario was left out, which is never done without an error.
     pub(super) given_up: bool,
-    /// Whether some radius is any one, since the one that is set is wrong.
-    pub(super) any_width: bool,
+    /// Whether what is said of starts is anybody's guess: a radius, a field or a number that decides them is wrong.
+    pub(super) any_start: bool,
     /// Where the behaviour that is looked at gets its arguments, if it takes any.
     pub(super) attached_at: Option<Span>,
     /// Where processes and behaviours are written.
@@ -229,7 +229,7 @@ impl<'a> Elaborator<'a> {
             starts: None,
             undeclared: BTreeSet::new(),
             given_up: false,
-            any_width: false,
+            any_start: false,
             attached_at: None,
             origins: Origins::default(),
             coming: false,

@@ -151,7 +151,7 @@ impl Elaborator<'_> {
                 Err(reported) => Err(reported),
             };
             self.given_up |= law.is_err();
-            self.any_width |= law.is_err() && name == "radius";
+            self.any_start |= law.is_err() && name == "radius";
             // What was set wrongly is set: any value will do until it is set right.
             let Some(law) = law.ok().or_else(|| any_law(name)) else { continue };
             if let Some(kind) = &mut kind {

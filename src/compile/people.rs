@@ -445,13 +445,13 @@ impl<'a> Elaborator<'a> {
 
     /// Refuses fields that mean nothing here.
     pub(super) fn only(&mut self, fields: &[&Field], known: &[&str]) {
-        for field in fields {
-            if !known.contains(&field.name.name.as_str()) {
-                let all = known.iter().copied().chain(super::presets::PARAMETERS.iter().map(|(n, ..)| *n));
-                let error = unknown("field", &field.name.name, field.name.span, "E0207", all);
-                self.note(error);
-                self.look_at(&field.value, &Locals::default());
-            }
+        for field in fields.iter().filter(|field| !known.contains(&field.name.name.as_str())) {
+            let all = known.iter().copied().chain(super::presets::PARAMETERS.iter().map(|(n, ..)| *n));
+            let error = unknown("field", &field.name.name, field.name.span, "E0207", all);
+            self.note(error);
+            // It may have been the radius.
+            self.any_start = true;
+            self.look_at(&field.value, &Locals::default());
         }
     }
 

@@ -35,9 +35,9 @@ impl Starts {
 
 impl Elaborator<'_> {
     /// Keeps who starts where, of a scenario in which something is wrong. Who is wrong is missing, and so is a barrier: there
-    /// is more room than that, not less. Where any radius stands for one that is wrong, nothing is known.
+    /// is more room than that, not less. Where a radius, a field of theirs or what decides a number is wrong, nothing is known.
     pub(super) fn keep_starts(&mut self, people: People, sources: Vec<Source>) {
-        if self.any_width || self.diagnostics.iter().any(|one| one.code == TWICE) {
+        if self.any_start || self.diagnostics.iter().any(|one| one.code == TWICE) {
             return;
         }
         let scenario = Scenario {

@@ -321,9 +321,11 @@ impl<'a> Elaborator<'a> {
             (self.number_of(low, number.dimension, &locals), self.number_of(high, number.dimension, &locals));
         let (Ok(low), Ok(high)) = ends else { return };
         if low.value > high.value {
+            self.any_start = true;
             self.note(Diagnostic::error("E0405", place, "this range is empty"));
         } else if !is_replaced && (number.value < low.value || number.value > high.value) {
             let text = format!("the default of `{}` lies outside its range", name.name);
+            self.any_start = true;
             self.note(Diagnostic::error("E0405", value.span, text).hanging_on(place));
         }
     }

@@ -32,6 +32,9 @@ pub enum Fault {
         /// Where the start of the first of them is written.
         place: Option<Span>,
     },
+    /// Places where more people are to start than fit, each as a fault of its own.
+    #[error("{}", .0.first().map(ToString::to_string).unwrap_or_default())]
+    Crowded(Vec<Fault>),
     /// A trial in which the model is wrong.
     #[error("{0}")]
     Model(Box<Flaw>),

@@ -46,7 +46,7 @@ pub use executor::{Executor, Threads};
 pub use fault::Fault;
 pub use flaw::Flaw;
 pub use ranks::Ranks;
-pub use room::{overfull, overfull_starts, placeable};
+pub use room::{overfull_starts, placeable};
 pub use session::{Call, forecast, run};
 pub use subject::Subject;
 pub use watch::{Forecast, Nobody, Outlook, Watch};

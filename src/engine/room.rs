@@ -3,7 +3,7 @@
 use super::fault::Fault;
 use super::session::worlds;
 use crate::compile::Starts;
-use crate::compile::study::{Study, World};
+use crate::compile::study::{Query, Study, World};
 use crate::kernel::start;
 use crate::model::{AgentId, Scenario};
 use crate::syntax::source::Span;
@@ -13,18 +13,17 @@ pub fn placeable(world: &World) -> Result<(), Fault> {
     crowds(&world.scenario, |agent| world.place_of(agent)).into_iter().next().map_or(Ok(()), Err)
 }
 
-/// All places where more people are to start than fit, in the worlds that some queries of a study ask about, all if none
-/// are chosen.
-pub fn overfull(study: &Study, only: &[usize]) -> Vec<Fault> {
-    let queries = study.queries.iter().filter(|query| only.is_empty() || only.contains(&query.index));
-    let mut asked: Vec<usize> = queries.flat_map(|query| worlds(&query.ask)).collect();
+/// Whether everybody in the worlds that some queries ask about can be placed; all places where not are told at once.
+pub(super) fn all_placeable(study: &Study, asked: &[&Query]) -> Result<(), Fault> {
+    let mut asked: Vec<usize> = asked.iter().flat_map(|query| worlds(&query.ask)).collect();
     asked.sort_unstable();
     asked.dedup();
     let worlds = asked.into_iter().filter_map(|world| study.worlds.get(world));
-    once(worlds.flat_map(|world| crowds(&world.scenario, |agent| world.place_of(agent))))
+    let found = once(worlds.flat_map(|world| crowds(&world.scenario, |agent| world.place_of(agent))));
+    if found.is_empty() { Ok(()) } else { Err(Fault::Crowded(found)) }
 }
 
-/// The same in worlds of which perhaps no more is known.
+/// All places where more people are to start than fit, in worlds of which perhaps no more is known.
 pub fn overfull_starts(starts: &[Starts]) -> Vec<Fault> {
     once(starts.iter().flat_map(|starts| crowds(&starts.scenario, |agent| starts.place_of(agent))))
 }
@@ -69,10 +68,17 @@ fn crowded(scenario: &Scenario, crowding: &start::Crowding) -> String {
         [one] => (*one).to_owned(),
         [first, .., last] => format!("{first} to {last} ({} people)", names.len()),
     };
-    format!(
-        "{who} cannot be placed: their bodies take {:.2} m^2 of the {:.2} m^2 that they can cover where they start, and more than {:.0} % are never filled",
-        crowding.bodies,
-        crowding.free,
-        100.0 * start::JAMMED
-    )
+    let (bodies, free) = (crowding.bodies, crowding.free);
+    let all = |least: &str| {
+        format!(
+            "{who} cannot be placed: their bodies take {least}{bodies:.2} m^2, and where they start they can cover {free:.2} m^2"
+        )
+    };
+    match crowding.share.map(|share| (100.0 * share).round()) {
+        None => all("at least "),
+        Some(100.0..) => all(""),
+        Some(share) => format!(
+            "{who} cannot be placed: their bodies take {bodies:.2} m^2 of the {free:.2} m^2 that they can cover where they start, and more than {share} % are never filled"
+        ),
+    }
 }

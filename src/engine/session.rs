@@ -10,7 +10,7 @@ use super::forecast::Glimpse;
 use super::outcome::{Failure, QueryResult, Run, Stop};
 use super::procedure::Procedure;
 use super::race::{Contest, Field};
-use super::room::placeable;
+use super::room::all_placeable;
 use super::splitting::Question;
 use super::subject::Subject;
 use super::survey::{Broken, Inquiry, Survey};
@@ -153,11 +153,11 @@ fn asked<'s>(study: &'s Study, call: &Call<'_>) -> Vec<&'s Query> {
 
 /// The worlds that are asked about, made ready.
 fn subjects(study: &Study, asked: &[&Query]) -> Result<Vec<Option<Subject>>, Fault> {
+    all_placeable(study, asked)?;
     let mut subjects: Vec<Option<Subject>> = study.worlds.iter().map(|_| None).collect();
     for query in asked {
         for world in worlds(&query.ask) {
             if subjects[world].is_none() {
-                placeable(&study.worlds[world])?;
                 subjects[world] = Subject::of(study, world);
             }
         }

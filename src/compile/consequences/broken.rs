@@ -9,6 +9,7 @@ use crate::compile::queries::Input;
 use crate::compile::told::is_stepped;
 use crate::syntax::ast::Item;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
+use crate::syntax::parse::starts_name;
 use crate::syntax::source::{Source, SourceId, Span};
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
@@ -120,6 +121,8 @@ pub(super) struct Broken<'i> {
     swallowed: BTreeSet<&'i str>,
     /// Names whose declarations were not read, or not to their end.
     suspects: BTreeSet<&'i str>,
+    /// Names that may have grown together with the words before them.
+    grown: BTreeSet<&'i str>,
     /// Names that were set, perhaps in a declaration whose first word is missing.
     set: BTreeSet<&'i str>,
     /// Whether any name may have been declared in what was not read.
@@ -154,6 +157,7 @@ impl<'i> Broken<'i> {
             skipped: Parts::of(lost.clone().chain(cut.clone()).copied()),
             swallowed: BTreeSet::new(),
             suspects: BTreeSet::new(),
+            grown: BTreeSet::new(),
             set: BTreeSet::new(),
             any_name: false,
             moves: false,
@@ -172,6 +176,7 @@ impl<'i> Broken<'i> {
             broken.with_errors.insert(place.span.source);
             broken.faulty.extend(broken.line_of(place.span));
             broken.swallow(one, place.span);
+            broken.grown.extend(grown(word(input.sources, place.span).unwrap_or_default()));
             // What stands first in its line is missed by the one before, but for a bracket.
             let derails =
                 DERAILS.contains(&one.code) && !broken.starts_line(place.span) && !broken.was_mended(one);
@@ -232,6 +237,7 @@ impl<'i> Broken<'i> {
         let has_fields =
             ["agent", "agents", "group", "kind", "source"].contains(&first) && text.contains('{');
         self.fields |= source == SourceId(0) && (!is_declared || has_fields);
+        self.grown.extend(grown(first));
         if DECLARES.contains(&first) {
             // A wall may have no name.
             let nameless = first == "wall" && rest.trim_start().starts_with('(');
@@ -293,6 +299,7 @@ impl<'i> Broken<'i> {
         let (name, _) = leading_word(bare(text));
         self.any_name
             || self.suspects.contains(name)
+            || self.grown.contains(name)
             || self.set.contains(name)
             || self.swallowed.contains(name)
             || name.is_empty() && !self.lost.0.is_empty()
@@ -425,6 +432,16 @@ fn kind_of(item: &Item) -> Option<(&str, (&str, Span))> {
         Item::Kind(decl) => Some((&decl.name.name, (&decl.base.name, decl.name.span))),
         _ => None,
     }
+}
+
+/// The names that a word may have had behind it before it grew together with them: `n` of `varn`.
+pub(super) fn grown(text: &str) -> impl Iterator<Item = &str> {
+    let (first, _) = leading_word(text);
+    let is_whole = DECLARES.contains(&first) || NAMELESS.contains(&first);
+    let keywords = DECLARES.iter().filter(move |_| !is_whole);
+    keywords
+        .filter_map(move |keyword| first.strip_prefix(keyword))
+        .filter(|name| name.starts_with(starts_name))
 }
 
 /// Whether what follows the first word of a declaration is its name, whole.

@@ -21,6 +21,8 @@ use std::ops::RangeInclusive;
 const LACKING: &str = "E0209";
 /// Code of a field that nobody knows.
 const UNKNOWN_FIELD: &str = "E0207";
+/// Code of a unit that nobody knows.
+const UNKNOWN_UNIT: &str = "E0113";
 /// Code of a wrong dimension.
 const DIMENSION: &str = "E0303";
 /// Code of a name that is used before it can be known.
@@ -48,8 +50,12 @@ fn less_what_follows(mut found: Vec<Diagnostic>, sources: &[Source]) -> Vec<Diag
     let place = |one: &Diagnostic| one.place.as_ref().map(|place| place.span);
     let settings: BTreeSet<&str> = found
         .iter()
-        .filter(|one| one.code == UNKNOWN_FIELD)
-        .filter_map(|one| word(sources, place(one)?))
+        .filter(|one| one.code == UNKNOWN_FIELD || one.code == UNKNOWN_UNIT)
+        .filter_map(|one| Some((one.code, word(sources, place(one)?)?)))
+        .flat_map(|(code, name)| {
+            // `constA = 3` reads as a setting, and `0 labeldone = on` begins with a quantity.
+            broken::grown(name).chain(Some(name).filter(|_| code == UNKNOWN_FIELD))
+        })
         .collect();
     let mut ends: BTreeSet<(SourceId, u32)> = BTreeSet::new();
     let mut starts: BTreeMap<(SourceId, u32), &'static str> = BTreeMap::new();

@@ -9,6 +9,9 @@ use std::f64::consts::PI;
 /// Discs that are thrown and pushed jam at about this share of an area.
 pub const JAMMED: f64 = 0.84;
 
+/// Fewer bodies than this are judged by area alone: beside a rim, or one behind the other, few fill more than many do.
+const FEW: usize = 20;
+
 /// Points of the grid along each axis on which free area is measured.
 const GRID: u32 = 160;
 
@@ -17,10 +20,12 @@ const GRID: u32 = 160;
 pub struct Crowding {
     /// Those who start in it.
     pub agents: Vec<AgentId>,
-    /// Expected area of their bodies, m^2.
+    /// Expected area of their bodies, m^2; of few the least.
     pub bodies: f64,
     /// Free area that bodies with their centres in the shape can cover, m^2.
     pub free: f64,
+    /// The greatest share of it that can be filled; of few nothing is said but that it is free.
+    pub share: Option<f64>,
 }
 
 /// The mean of the square of a law, by the midpoint rule on its inverse distribution function.
@@ -49,59 +54,130 @@ fn solids<'a>(scenario: &'a Scenario, bounds: &Bounds) -> Vec<&'a Shape> {
     scenario.scene.barriers.iter().filter_map(solid).filter(reaches).collect()
 }
 
-/// Area of what lies within `reach` of the shape and in none of the solids, by a grid over `bounds`.
-fn free_area(shape: &Shape, reach: f64, bounds: &Bounds, solids: &[&Shape]) -> f64 {
-    let nearby = Nearby::new(&solids.iter().map(|solid| solid.bounds()).collect::<Vec<_>>());
-    let cell = (bounds.high - bounds.low) / f64::from(GRID);
-    let mut count = 0u32;
-    for row in 0..GRID {
-        for column in 0..GRID {
-            let place = Vec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5);
-            let p = bounds.low + place.component_mul(&cell);
-            let outside = |solid: &u32| !solids[*solid as usize].contains(p);
-            let free = || nearby.within(p, 0.0).iter().all(outside);
-            count += u32::from(shape.distance(p) <= reach && free());
-        }
+/// A grid over the surroundings of a shape.
+struct Grid<'a> {
+    shape: &'a Shape,
+    /// How far bodies reach out of the shape.
+    reach: f64,
+    bounds: Bounds,
+    cell: Vec2,
+    solids: &'a [&'a Shape],
+    nearby: Nearby,
+}
+
+impl<'a> Grid<'a> {
+    fn new(shape: &'a Shape, reach: f64, bounds: Bounds, solids: &'a [&'a Shape]) -> Self {
+        let nearby = Nearby::new(&solids.iter().map(|solid| solid.bounds()).collect::<Vec<_>>());
+        let cell = (bounds.high - bounds.low) / f64::from(GRID);
+        Self { shape, reach, bounds, cell, solids, nearby }
     }
-    f64::from(count) * cell.x * cell.y
+
+    /// The middles of the cells.
+    fn points(&self) -> impl Iterator<Item = Vec2> {
+        (0..GRID * GRID).map(|k| {
+            let place = Vec2::new(f64::from(k % GRID) + 0.5, f64::from(k / GRID) + 0.5);
+            self.bounds.low + place.component_mul(&self.cell)
+        })
+    }
+
+    /// Area of some cells.
+    fn area(&self, cells: usize) -> f64 {
+        cells as f64 * self.cell.x * self.cell.y
+    }
+
+    /// Area of what lies within reach of the shape and in none of the solids: in the shape, and out of it.
+    fn free(&self) -> (f64, f64) {
+        let outside = |p: Vec2| move |solid: &u32| !self.solids[*solid as usize].contains(p);
+        let (mut inner, mut outer) = (0, 0);
+        for p in self.points() {
+            let distance = self.shape.distance(p);
+            if distance <= self.reach && self.nearby.within(p, 0.0).iter().all(outside(p)) {
+                *(if distance > 0.0 { &mut outer } else { &mut inner }) += 1;
+            }
+        }
+        (self.area(inner), self.area(outer))
+    }
+
+    /// Area that surely holds what lies within reach of the shape and in none of the solids: all cells of which some part
+    /// may be free.
+    fn most_free(&self) -> f64 {
+        let half = self.cell / 2.0;
+        let reach = self.reach + half.norm();
+        let corners = [half, -half, Vec2::new(half.x, -half.y), Vec2::new(-half.x, half.y)];
+        let is_filled = |p: Vec2| {
+            self.nearby.within(p, 0.0).iter().any(|solid| {
+                let solid = self.solids[*solid as usize];
+                solid.contains(p) && corners.iter().all(|corner| solid.contains(p + corner))
+            })
+        };
+        self.area(self.points().filter(|p| self.shape.distance(*p) <= reach && !is_filled(*p)).count())
+    }
+}
+
+/// Those who start in one shape.
+struct Crowd<'a> {
+    shape: &'a Shape,
+    agents: Vec<AgentId>,
+    /// Of their radii: the sum of the mean squares, and the greatest of them; the same of the least radii.
+    mean: (f64, f64),
+    least: (f64, f64),
+}
+
+impl Crowd<'_> {
+    fn add(&mut self, id: AgentId, radius: &Law, wider: f64) {
+        let add = |(sum, greatest): &mut (f64, f64), square: f64| {
+            *sum += square;
+            *greatest = if square > *greatest { square } else { *greatest };
+        };
+        self.agents.push(id);
+        add(&mut self.mean, mean_square(radius) * wider * wider);
+        let least = radius.bounds().0 * wider;
+        add(&mut self.least, least * least);
+    }
+
+    /// Whether they surely do not fit.
+    fn crowding(self, scenario: &Scenario) -> Option<Crowding> {
+        let is_few = self.agents.len() < FEW;
+        // Whoever does not fit with the least radius does not fit with any.
+        let (squares, greatest) = if is_few { self.least } else { self.mean };
+        let (bodies, reach) = (PI * squares, greatest.sqrt());
+        let (around, bounds) = (Vec2::new(reach, reach), self.shape.bounds());
+        let bounds = Bounds { low: bounds.low - around, high: bounds.high + around };
+        let solids = solids(scenario, &bounds);
+        // The grid is needed only where it may be tight: no more is taken than all solids together have.
+        let taken: f64 = solids.iter().map(|solid| solid.area()).sum();
+        if bodies <= JAMMED * (self.shape.area() - taken) {
+            return None;
+        }
+        let grid = Grid::new(self.shape, reach, bounds, &solids);
+        if is_few {
+            let free = grid.most_free();
+            return (bodies > free).then_some(Crowding { agents: self.agents, bodies, free, share: None });
+        }
+        // Bodies jam where they are among others. What they cover beyond the rim, where no centre can be, may be filled.
+        let (inner, outer) = grid.free();
+        let (free, most) = (inner + outer, JAMMED * inner + outer);
+        let share = if free > 0.0 { most / free } else { JAMMED };
+        (bodies > most).then_some(Crowding { agents: self.agents, bodies, free, share: Some(share) })
+    }
 }
 
 /// The shapes whose bodies cannot all fit, judged by area before anything is drawn. A body counts as in the
 /// shape when its centre is, so what lies within a radius of the shape counts as room.
 pub fn check_area(scenario: &Scenario) -> Vec<Crowding> {
-    let mut groups: Vec<(&Shape, Vec<AgentId>, f64, f64)> = Vec::new();
+    let mut crowds: Vec<Crowd<'_>> = Vec::new();
     // Who comes in later waits until there is room.
     let arrivals = Arrivals::new(scenario);
     for (k, agent) in scenario.agents.iter().enumerate().filter(|(k, _)| !arrivals.comes(*k)) {
         let Position::Within(shape) = &agent.start.position else { continue };
         let wider = agent.particle.map_or(1.0, |particle| particle.radius_factor);
-        let square = mean_square(&agent.body.radius) * wider * wider;
-        let index = groups.iter().rposition(|group| group.0 == shape).unwrap_or_else(|| {
-            groups.push((shape, Vec::new(), 0.0, 0.0));
-            groups.len() - 1
+        let index = crowds.iter().rposition(|crowd| crowd.shape == shape).unwrap_or_else(|| {
+            crowds.push(Crowd { shape, agents: Vec::new(), mean: (0.0, 0.0), least: (0.0, 0.0) });
+            crowds.len() - 1
         });
-        let group = &mut groups[index];
-        group.1.push(AgentId(k as u32));
-        group.2 += PI * square;
-        group.3 = if square > group.3 { square } else { group.3 };
+        crowds[index].add(AgentId(k as u32), &agent.body.radius, wider);
     }
-    let mut out = Vec::new();
-    for (shape, agents, bodies, square) in groups {
-        let reach = square.sqrt();
-        let (around, bounds) = (Vec2::new(reach, reach), shape.bounds());
-        let bounds = Bounds { low: bounds.low - around, high: bounds.high + around };
-        let solids = solids(scenario, &bounds);
-        // The grid is needed only where it may be tight: no more is taken than all solids together have.
-        let taken: f64 = solids.iter().map(|solid| solid.area()).sum();
-        if bodies <= JAMMED * (shape.area() - taken) {
-            continue;
-        }
-        let free = free_area(shape, reach, &bounds, &solids);
-        if bodies > JAMMED * free {
-            out.push(Crowding { agents, bodies, free });
-        }
-    }
-    out
+    crowds.into_iter().filter_map(|crowd| crowd.crowding(scenario)).collect()
 }
 
 #[cfg(test)]
@@ -119,16 +195,25 @@ mod tests {
         let blocks = blocks();
         let solids: Vec<&Shape> = blocks.iter().collect();
         let hall = Shape::rectangle(Vec2::new(0.0, 0.0), Vec2::new(80.0, 80.0));
-        let bounds = hall.bounds();
-        let free = free_area(&hall, 0.0, &bounds, &solids);
+        let grid = Grid::new(&hall, 0.0, hall.bounds(), &solids);
+        let (free, outer) = grid.free();
         // The grid's points are half a metre apart and fall into each block alike.
-        assert!((free - 6_000.0).abs() < 1e-6, "{free}");
-        let cell = (bounds.high - bounds.low) / f64::from(GRID);
-        let points = (0..GRID * GRID).map(|k| {
-            let place = Vec2::new(f64::from(k % GRID) + 0.5, f64::from(k / GRID) + 0.5);
-            bounds.low + place.component_mul(&cell)
-        });
-        let all = points.filter(|p| !solids.iter().any(|solid| solid.contains(*p))).count();
-        assert_eq!(free, all as f64 * cell.x * cell.y);
+        assert!((free - 6_000.0).abs() < 1e-6 && outer == 0.0, "{free} {outer}");
+        let all = grid.points().filter(|p| !solids.iter().any(|solid| solid.contains(*p))).count();
+        assert_eq!(free, grid.area(all));
+        assert!(grid.most_free() >= free);
+    }
+
+    #[test]
+    fn of_a_disc_no_less_is_free_than_it_takes() {
+        for k in 0..40 {
+            let (radius, reach) = (f64::from(k) * 0.01, 0.25);
+            let spot = Shape::Circle { centre: Vec2::new(0.3, 0.1), radius };
+            let around = Vec2::new(radius + reach, radius + reach);
+            let bounds = Bounds { low: Vec2::new(0.3, 0.1) - around, high: Vec2::new(0.3, 0.1) + around };
+            let free = Grid::new(&spot, reach, bounds, &[]).most_free();
+            let exact = PI * (radius + reach) * (radius + reach);
+            assert!(exact <= free && free < 1.04 * exact, "{radius}: {free} {exact}");
+        }
     }
 }

@@ -9,9 +9,10 @@ pub(super) const PAGES: &[Page] = &[
         title: "people cannot be placed",
         text: "\
 People who start in the same shape, or near the same person, need more room than there is; obstacles count, and bodies\n\
-that are thrown and then pushed apart jam at about 84 % of an area. Or even the smallest body that can be drawn is too\n\
-large for the place: a corridor that is narrower, a distance at which two bodies overlap. This is said before the first\n\
-trial; what only bad luck makes impossible leaves its trial unresolved.\n\
+that are thrown and then pushed apart jam at about 84 % of an area. What bodies cover beyond the rim of their shape\n\
+may be filled, and fewer than twenty in a shape are refused only if they take more than all there is. Or even the\n\
+smallest body that can be drawn is too large for the place: a corridor that is narrower, a distance at which two\n\
+bodies overlap. This is said before the first trial; what only bad luck makes impossible leaves its trial unresolved.\n\
 \n\
 Wrong:\n\
 \x20   region hall: rect (0, 0) .. (10, 4)\n\

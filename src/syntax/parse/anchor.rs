@@ -117,6 +117,8 @@ fn sets(name: &str, mark: &str) -> bool {
 #[derive(Clone, Debug)]
 pub(super) struct Way {
     at: usize,
+    /// Where the last token on the way starts.
+    last: usize,
     /// The byte at which the part was found to be wrong: what stands there may be the slip.
     blamed: usize,
     /// Brackets that are open.
@@ -129,7 +131,7 @@ pub(super) struct Way {
 
 impl Way {
     pub(super) fn from(at: usize, blamed: usize) -> Self {
-        Self { at, blamed, open: Vec::new(), ends: false, torn: false }
+        Self { at, last: at, blamed, open: Vec::new(), ends: false, torn: false }
     }
 
     /// Goes on to a later byte.
@@ -142,6 +144,7 @@ impl Way {
             }
             let token = lexeme::first(rest);
             self.pass(token);
+            self.last = self.at;
             self.at += token.len().max(1);
         }
     }
@@ -170,8 +173,24 @@ impl Way {
         self.reach(text, at);
         match anchor {
             Anchor::Surely => !self.torn,
-            Anchor::Unless => self.is_even() && self.ends && self.blamed != at,
+            Anchor::Unless => {
+                self.is_even() && self.ends && self.blamed != at && !self.is_second_word(text, at)
+            }
         }
+    }
+
+    /// Whether a name that is set follows right after a word that is the slip: of two words before a sign of equality nobody
+    /// knows which is meant.
+    fn is_second_word(&self, text: &str, at: usize) -> bool {
+        let rest = &text[at..];
+        let name = lexeme::first(rest);
+        let behind = &rest[name.len()..];
+        let mark = lexeme::first(&behind[lexeme::all_trivia(behind)..]);
+        self.last == self.blamed
+            && self.last < at
+            && text[self.last..].starts_with(lexeme::starts_name)
+            && sets(name, mark)
+            && !nouns::is_keyword(name)
     }
 }
 
@@ -219,6 +238,9 @@ mod tests {
         ] {
             assert_eq!((sure(text, Anchor::Unless), sure(text, Anchor::Surely)), (unless, surely), "{text}");
         }
+        let behind = |text: &str| Way::from(0, 6).allows(text, text.find("mass").unwrap(), Anchor::Unless);
+        assert!(!behind("(1 0) speed mass = 1"), "of two words before one sign nobody knows which is meant");
+        assert!(behind("(1 0) speed 2 mass = 1"));
         assert!(!Way::from(0, 2).allows("a mass = 1", 2, Anchor::Unless), "what is blamed may be the slip");
     }
 }
