@@ -16,6 +16,7 @@ use super::study::Texts;
 use super::symbols::{Scope, ScopeId};
 use super::told::Told;
 use super::typed::Typed;
+use super::wording::{Frame, Uses};
 use crate::base::decimal::Decimal;
 use crate::base::geometry::{Shape, Vec2};
 use crate::base::tick::{Clock, Tick};
@@ -51,8 +52,8 @@ pub(super) struct Locals {
     pub(super) names: Vec<(String, Option<Arc<Typed>>)>,
     /// Where the arguments of a function are written that is called, by their places among the names.
     pub(super) written: Vec<(usize, Span)>,
-    /// Where the names of quantifiers over copies of a process are bound, by their places among the names.
-    pub(super) copies: Vec<(usize, Span)>,
+    /// What the bound names are called in texts.
+    pub(super) frame: Option<Arc<Frame>>,
     /// Number of enclosing folds over agents.
     pub(super) running: u32,
     /// The process, and which of its copies, whose names come next.
@@ -161,11 +162,10 @@ pub(super) struct Elaborator<'a> {
     pub(super) texts: Texts,
     /// Where a use of an argument stands, and where what it stands for is written, in the present call.
     pub(super) aliases: BTreeMap<Span, Span>,
-    /// Where a name is used that is called otherwise elsewhere: one of a process inside it, or the copy that a quantifier is
-    /// at; with what it is called, and where that quantifier names it.
-    pub(super) owned: BTreeMap<Span, (String, Option<Span>)>,
-    /// Names of the agents of quantifiers.
-    pub(super) variables: BTreeSet<String>,
+    /// Where names are used that stand for something else.
+    pub(super) uses: Uses,
+    /// What they stand for at the present place.
+    pub(super) frame: Option<Arc<Frame>>,
     /// Where the name of a bare number stands, and where that is declared.
     pub(super) bare: BTreeMap<Span, Span>,
     /// Of each file, an exponent that hangs on parameters: so does the unit of what it raises.
@@ -247,8 +247,8 @@ impl<'a> Elaborator<'a> {
             known: Default::default(),
             texts: Texts::default(),
             aliases: BTreeMap::new(),
-            owned: BTreeMap::new(),
-            variables: BTreeSet::new(),
+            uses: Uses::default(),
+            frame: None,
             bare: BTreeMap::new(),
             exponents: BTreeMap::new(),
             unknowns: 0,

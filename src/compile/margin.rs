@@ -234,7 +234,7 @@ impl Rewriting<'_, '_> {
                 self.elaborator.iff(a, b)
             }
             Form::Plain(_) | Form::Each(..) | Form::Someone(..) => {
-                self.text.clone_from(&part.text);
+                self.text = self.elaborator.said_of(part);
                 self.condition(&part.truth())
             }
         }

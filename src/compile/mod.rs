@@ -48,6 +48,7 @@ mod told;
 mod typed;
 mod ways;
 mod weight;
+mod wording;
 mod world;
 mod written;
 

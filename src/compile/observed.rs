@@ -2,16 +2,16 @@
 
 use super::dimension::Dimension;
 use super::elaborator::Elaborator;
-use super::phrase::Phrase;
+use super::study::Part;
+use super::wording::Frame;
 use crate::logic::{Node, NodeId, Relation, SignalId, Term, TermId};
 use crate::model::{AgentId, Bool, Num, Who};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
+use std::sync::Arc;
 
 /// How many conditions on states it may have.
 const MOST_ATOMS: usize = 5_000;
-/// Of how many of them the parts are known.
-const MOST_WITH_PARTS: usize = 1_000;
 
 impl Elaborator<'_> {
     /// A formula node, shared with equal ones.
@@ -26,7 +26,7 @@ impl Elaborator<'_> {
 
     /// The formula that reads a truth value of the present state. Each way in which a query says it counts, so that it is
     /// told in words of its own.
-    pub(super) fn atom(&mut self, truth: Bool, span: Span, phrase: Option<&Phrase>) -> NodeId {
+    pub(super) fn atom(&mut self, truth: Bool, span: Span, phrase: Option<&Arc<Part>>) -> NodeId {
         let text = self.words(span);
         self.atom_worded(truth, span, text, phrase)
     }
@@ -37,24 +37,38 @@ impl Elaborator<'_> {
         truth: Bool,
         span: Span,
         text: String,
-        phrase: Option<&Phrase>,
+        phrase: Option<&Arc<Part>>,
     ) -> NodeId {
         let node = self.atom_said(truth, span, text, false);
-        if let (Node::Atom(atom), Some(phrase)) = (&self.tree.nodes[node.0 as usize], phrase)
-            && self.texts.parts.len() < MOST_WITH_PARTS
-            && !self.texts.parts.contains_key(&atom.0)
+        if let (Node::Atom(atom), Some(part)) = (&self.tree.nodes[node.0 as usize], phrase)
+            && !part.is_plain()
         {
-            let atom = atom.0;
-            if let Some(part) = self.part(phrase).filter(|part| !part.is_plain()) {
-                self.texts.parts.insert(atom, part);
-            }
+            self.texts.parts.entry(atom.0).or_insert_with(|| part.clone());
         }
         node
     }
 
     /// The text of a place; arguments of a function are what it was called with.
     pub(super) fn words(&self, span: Span) -> String {
-        self.worded(span, &self.meant(span))
+        self.told((span, self.frame.as_ref()))
+    }
+
+    /// The words of a part.
+    pub(super) fn said_of(&self, part: &Part) -> String {
+        match &part.said {
+            Some(said) => said.to_string(),
+            None => self.told((part.place, part.frame.as_ref())),
+        }
+    }
+
+    fn told(&self, (place, frame): (Span, Option<&Arc<Frame>>)) -> String {
+        let people = |who: Who| match who {
+            // Whoever comes and goes has another name each time.
+            Who::Agent(id) if !self.passing.contains(&id) => self.agent_names.get(id.0 as usize).cloned(),
+            _ => None,
+        };
+        let told = self.uses.worded(self.sources, (place, frame), &people);
+        told.unwrap_or_else(|| bare(&self.text(place)).to_owned())
     }
 
     /// One that nobody wrote is another than what somebody wrote in the same words.

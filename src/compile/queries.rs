@@ -7,7 +7,7 @@ use super::measures::{Observed, Sketch};
 use super::number::Number;
 use super::settings::Setting;
 use super::starts::Starts;
-use super::study::{Ask, Column, Estimator, Measure, Query, Said, Study, Target, World};
+use super::study::{Ask, Column, Estimator, Measure, Query, Said, Study, Target, Texts, World};
 use super::symbols::ScopeId;
 use crate::base::decimal::Decimal;
 use crate::model::Scenario;
@@ -216,7 +216,7 @@ impl<'a> Compiler<'a> {
         // What was observed for checking only is not observed in trials.
         elaborator.tree = crate::logic::Tree::default();
         elaborator.atoms.clear();
-        elaborator.texts = super::study::Texts::default();
+        elaborator.texts = Texts::default();
         elaborator.signals.clear();
     }
 
@@ -451,6 +451,7 @@ impl<'a> Compiler<'a> {
         let described: Vec<_> = (0..self.sites.len()).map(named).collect();
         let mut worlds = Vec::with_capacity(self.sites.len());
         let mut title = String::new();
+        let sources: Arc<[Source]> = self.input.sources.into();
         for (site, settings) in self.sites.into_iter().zip(described) {
             let Some(scenario) = site.scenario else { return (None, diagnostics) };
             title.clone_from(&scenario.title);
@@ -461,7 +462,7 @@ impl<'a> Compiler<'a> {
                 scenario,
                 atoms: elaborator.atoms,
                 written,
-                texts: elaborator.texts,
+                texts: Texts { sources: sources.clone(), uses: elaborator.uses, ..elaborator.texts },
                 signals: elaborator.signals,
                 tree: elaborator.tree,
                 columns: site.columns,

@@ -1,10 +1,11 @@
 //! What compilation yields: worlds to run and questions to answer about them.
 
 use super::dimension::Dimension;
+use super::wording::{Frame, Uses};
 use super::written::Written;
 use crate::logic::{NodeId, Relation, TermId, Tree};
 use crate::model::{AgentId, Bool, Num, Scenario, Set};
-use crate::syntax::source::Span;
+use crate::syntax::source::{Source, Span};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -65,12 +66,12 @@ pub struct Origins {
 }
 
 /// How what is observed was written.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct Texts {
     /// Each atom.
     pub atoms: Vec<String>,
     /// Those of them that are made of others, by their number.
-    pub parts: BTreeMap<u32, Part>,
+    pub parts: BTreeMap<u32, Arc<Part>>,
     /// Those of them that ask whether someone has the left side of an implication, which nobody wrote.
     pub cases: BTreeSet<u32>,
     /// Those of them that ask whether somebody is there, where a quantifier does and nobody wrote it.
@@ -79,13 +80,21 @@ pub struct Texts {
     pub signals: Vec<(String, Dimension)>,
     /// Comparisons of numbers over time, by the index of their node, and the dimension of their sides.
     pub comparisons: BTreeMap<u32, (String, Dimension)>,
+    /// The files, for the words of parts.
+    pub sources: Arc<[Source]>,
+    /// Where in them names are used that stand for something else.
+    pub uses: Uses,
 }
 
-/// A condition of one state as it was written.
+/// A condition of one state as it was written. Few are ever told, so its words are made only then.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
-    /// Its text, in which arguments of functions are what they stand for.
-    pub text: String,
+    /// Where it is written.
+    pub(super) place: Span,
+    /// What names stand for there.
+    pub(super) frame: Option<Arc<Frame>>,
+    /// Its words, where nobody wrote it.
+    pub(super) said: Option<Box<str>>,
     /// What it is made of.
     pub form: Form,
 }
@@ -96,25 +105,25 @@ pub enum Form {
     /// Nothing that is a condition.
     Plain(Bool),
     /// A name or a call stands for another.
-    Named(Box<Part>),
+    Named(Arc<Part>),
     /// Not.
-    Not(Box<Part>),
+    Not(Arc<Part>),
     /// All of them.
-    All(Vec<Part>),
+    All(Vec<Arc<Part>>),
     /// Any of them.
-    Any(Vec<Part>),
+    Any(Vec<Arc<Part>>),
     /// Both or neither.
-    Both(Box<Part>, Box<Part>),
+    Both(Arc<Part>, Arc<Part>),
     /// It is true of each of a set, who is the running one in it.
-    Each(Set, Box<Part>),
+    Each(Set, Arc<Part>),
     /// It is true of someone of a set.
-    Someone(Set, Box<Part>),
+    Someone(Set, Arc<Part>),
 }
 
 impl Part {
     /// The condition itself.
     pub fn truth(&self) -> Bool {
-        let all = |list: &[Self]| list.iter().map(Self::truth).collect();
+        let all = |list: &[Arc<Self>]| list.iter().map(|one| one.truth()).collect();
         match &self.form {
             Form::Plain(truth) => truth.clone(),
             Form::Named(inner) => inner.truth(),

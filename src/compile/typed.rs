@@ -2,7 +2,7 @@
 
 use super::dimension::{Dimension, describe};
 use super::number::Number;
-use super::phrase::Phrase;
+use super::study::Part;
 use crate::logic::{NodeId, TermId};
 use crate::model::{BarrierId, BehaviourId, Bool, Num, RegionId, Set, Who};
 use std::sync::Arc;
@@ -23,7 +23,7 @@ pub(super) enum Typed {
     /// A vector of a state.
     Vector(Num, Num, Dimension),
     /// A truth value of a state, and how it was written where a witness may speak of it.
-    Truth(Bool, Option<Arc<Phrase>>),
+    Truth(Bool, Option<Arc<Part>>),
     /// One agent.
     Agent(Who),
     /// A set of agents.
@@ -68,8 +68,13 @@ impl Typed {
     }
 
     /// How a truth value was written.
-    pub(super) fn phrase(&self) -> Option<Arc<Phrase>> {
+    pub(super) fn phrase(&self) -> Option<Arc<Part>> {
         if let Self::Truth(_, phrase) = self { phrase.clone() } else { None }
+    }
+
+    /// The same, and what has it no more.
+    pub(super) fn take_phrase(&mut self) -> Option<Arc<Part>> {
+        if let Self::Truth(_, phrase) = self { phrase.take() } else { None }
     }
 
     /// What it is called in messages.

@@ -2,7 +2,7 @@
 
 use super::budget::Budget;
 use super::culprits::{NAMED, Search};
-use super::grounds::{copies, grounds};
+use super::grounds::{copies, each, grounds};
 use super::subject::Subject;
 use super::words;
 use crate::base::tick::{Clock, Tick};
@@ -127,7 +127,18 @@ pub(super) fn number(
         let never =
             value == f64::INFINITY && matches!(subject.tree.terms[root.0 as usize], Term::TimeUntil(_));
         let text = if never { "not within the horizon".to_owned() } else { words::brief(value, unit) };
+        let is_beyond =
+            |source: &Source| matches!(source, Source::Signal { value, .. } if !value.is_finite());
         match found.as_slice() {
+            // A condition that comes true gives a time that is finite.
+            several
+                if !value.is_finite()
+                    && !never
+                    && !matches!(several, [Source::Signal { .. }])
+                    && !several.iter().any(is_beyond) =>
+            {
+                (None, text)
+            }
             [Source::Formula(reason)] => {
                 let closing = closing(subject, reason, recording, &state_at);
                 (Some(reason.to), format!("{text}, when {closing}"))
@@ -138,15 +149,7 @@ pub(super) fn number(
             }
             [] => (None, text),
             several => {
-                let told = |source: &Source| match source {
-                    Source::Formula(reason) => {
-                        let closing = closing(subject, reason, recording, &state_at);
-                        format!("{closing} at {}", moment(subject, reason.to))
-                    }
-                    signal @ Source::Signal { .. } => {
-                        origin(subject, signal, true, (&state_at, recording.stop))
-                    }
-                };
+                let told = |source: &Source| full(subject, source, recording, &state_at);
                 let list: Vec<String> =
                     several.iter().map(told).filter(|said| !said.is_empty()).take(NAMED).collect();
                 (None, format!("{text}: {}", list.join(" and ")))
@@ -221,6 +224,22 @@ fn origin(
     said
 }
 
+/// One of several sources of a number, with its moment.
+fn full(
+    subject: &Subject,
+    source: &Source,
+    recording: &Recording<'_>,
+    state_at: &impl Fn(Tick) -> Option<State>,
+) -> String {
+    match source {
+        Source::Formula(reason) => {
+            let closing = closing(subject, reason, recording, state_at);
+            format!("{closing} at {}", moment(subject, reason.to))
+        }
+        signal @ Source::Signal { .. } => origin(subject, signal, true, (state_at, recording.stop)),
+    }
+}
+
 fn moment(subject: &Subject, at: Tick) -> String {
     match subject.program.scenario.clock {
         Clock::Steps => format!("step {}", at.0),
@@ -230,14 +249,15 @@ fn moment(subject: &Subject, at: Tick) -> String {
 
 /// `: crowd[3], user`, or nothing; people of sources by the number of their arrival, as in the state.
 fn names(subject: &Subject, who: &[AgentId], state: Option<&State>) -> String {
-    let scenario: &Scenario = &subject.program.scenario;
-    let name = |id: &AgentId| {
-        let agent = scenario.agents.get(id.0 as usize)?;
-        let arrival = state.and_then(|state| state.queues.arrival(&scenario.sources, *id, 0));
-        Some(arrival.unwrap_or_else(|| agent.name.clone()))
-    };
-    let names: Vec<String> = who.iter().filter_map(name).collect();
+    let names: Vec<String> = who.iter().filter_map(|id| name_of(subject, *id, state)).collect();
     if names.is_empty() { String::new() } else { format!(": {}", names.join(", ")) }
+}
+
+fn name_of(subject: &Subject, id: AgentId, state: Option<&State>) -> Option<String> {
+    let scenario: &Scenario = &subject.program.scenario;
+    let agent = scenario.agents.get(id.0 as usize)?;
+    let arrival = state.and_then(|state| state.queues.arrival(&scenario.sources, id, 0));
+    Some(arrival.unwrap_or_else(|| agent.name.clone()))
 }
 
 /// A reason in words.
@@ -271,7 +291,7 @@ fn closing(
             }
             let of = |state: &State| {
                 let asked = Search::of(subject, state, stop);
-                copies(&subject.program.scenario, condition, reason.value, &asked)
+                copies(&subject.program.scenario, (condition, reason.value), false, &asked)
             };
             let copies = state.as_ref().map_or_else(Vec::new, of);
             let colon = if copies.is_empty() { "" } else { ": " };
@@ -280,9 +300,9 @@ fn closing(
         Node::Compare(..) => {
             let Some((text, _)) = subject.texts.comparisons.get(&reason.leaf.0) else { return String::new() };
             let found = sides(&subject.tree, reason.leaf, reason.to, recording);
-            let signals = found.iter().filter(|source| matches!(source, Source::Signal { .. }));
-            let told = |source: &Source| origin(subject, source, true, (state_at, recording.stop));
-            let list: Vec<String> = signals.take(NAMED).map(told).collect();
+            let told = |source: &Source| full(subject, source, recording, state_at);
+            let list: Vec<String> =
+                found.iter().map(told).filter(|said| !said.is_empty()).take(NAMED).collect();
             if list.is_empty() {
                 let Some(state) = state_at(reason.to) else { return format!("`{text}` {word}") };
                 let mut search = Search::of(subject, &state, recording.stop);
@@ -298,29 +318,38 @@ fn closing(
 /// A condition that is made of others in words, with those of them that decide in a state and the agents in these.
 fn because(
     (subject, stop): (&Subject, &dyn Fn() -> bool),
-    (part, text): (&study::Part, &str),
+    (part, whole): (&study::Part, &str),
     truth: bool,
     state: &State,
 ) -> Option<String> {
     let found = grounds(part, truth, &Search::of(subject, state, stop))?;
     let mut search = Search::of(subject, state, stop);
     let (mut said, mut owners): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
-    for ground in &found {
-        let (text, condition) = (&ground.part.text, ground.condition());
+    let people = |at: usize, who: Who| {
+        let id = match who {
+            Who::Agent(id) => Some(id),
+            Who::Running(of) => found[at].given.get(of as usize).copied(),
+        };
+        id.and_then(|id| name_of(subject, id, Some(state)))
+    };
+    let parts: Vec<&study::Part> = found.iter().map(|ground| ground.part).collect();
+    let texts = subject.texts.words(&parts, &people)?;
+    for (ground, text) in found.iter().zip(&texts) {
+        let condition = ground.condition();
         ground.given.iter().for_each(|id| search.name(*id));
         search.walk(&condition, ground.truth);
         search.name_members(text, |tell| condition.mentions(tell));
-        let of =
-            copies(&subject.program.scenario, &condition, ground.truth, &Search::of(subject, state, stop));
-        owners.extend(of);
+        let asked = Search::of(subject, state, stop);
+        let is_part = !std::ptr::eq(ground.part, part);
+        owners.extend(copies(&subject.program.scenario, (&condition, ground.truth), is_part, &asked));
         said.push(words::condition((text, ground.truth)));
     }
-    owners.dedup();
+    let owners = each(owners);
     let mut named = names(subject, &search.named(), Some(state));
     if named.is_empty() && !owners.is_empty() {
         named = format!(": {}", owners.join(", "));
     }
-    Some(words::because((text, truth), &said) + &named)
+    Some(words::because((whole, truth), &said) + &named)
 }
 
 /// The agents who are there of whom a comparison of numbers over time speaks one by one.

@@ -116,9 +116,14 @@ fn few<'p>(found: Vec<Ground<'p>>, whole: impl Fn() -> Vec<Ground<'p>>) -> Vec<G
 }
 
 /// The copies of processes that make a condition true or false: they may be spoken of by a name that they share, as `a` in
-/// `forall a in sensor`.
-pub(super) fn copies(scenario: &Scenario, condition: &Bool, truth: bool, asked: &impl Asked) -> Vec<String> {
-    let (mut part, mut truth, mut narrowed) = (condition, truth, false);
+/// `forall a in sensor`. Of what `narrowed` says is a part of another, those are told on whom it depends as a whole.
+pub(super) fn copies(
+    scenario: &Scenario,
+    (condition, truth): (&Bool, bool),
+    narrowed: bool,
+    asked: &impl Asked,
+) -> Vec<String> {
+    let (mut part, mut truth, mut narrowed) = (condition, truth, narrowed);
     loop {
         part = match part {
             Bool::Not(inner) => {
@@ -142,7 +147,18 @@ pub(super) fn copies(scenario: &Scenario, condition: &Bool, truth: bool, asked: 
     let owner = |id: &VariableId| Some(variables.get(id.0 as usize)?.name.rsplit_once('.')?.0.to_owned());
     let mut found: Vec<String> = read.iter().filter_map(owner).collect();
     found.retain(|copy| copy.ends_with(']'));
-    found.dedup();
+    let found = each(found);
     // What depends on many of them is about none of them.
     if found.len() > 2 { Vec::new() } else { found }
+}
+
+/// Each of some names once, in the order of their mention.
+pub(super) fn each(names: Vec<String>) -> Vec<String> {
+    let mut kept: Vec<String> = Vec::new();
+    for name in names {
+        if !kept.contains(&name) {
+            kept.push(name);
+        }
+    }
+    kept
 }

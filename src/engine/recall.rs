@@ -5,16 +5,17 @@
 
 use super::answer::waits;
 use super::budget::Budget;
-use super::grounds::{Asked, copies, grounds};
+use super::grounds::{Asked, copies, each, grounds};
 use super::subject::Subject;
 use super::words;
 use crate::base::instant::Instant;
 use crate::base::random::TrialKey;
-use crate::compile::study::Root;
+use crate::compile::study::{Part, Root};
 use crate::kernel::process::{Sight, View};
 use crate::kernel::{Scratch, State, dynamics, start};
 use crate::logic::Reading;
 use crate::model::{AgentId, Bool, Set};
+use std::sync::Arc;
 
 /// Most atoms that are named.
 const NAMED: usize = 3;
@@ -67,7 +68,12 @@ pub(super) fn decision(
         }
         Some(Reading::Value(value)) => {
             let value_text = words::brief(value, unit);
-            let text = if what.is_empty() { value_text } else { format!("{value_text}, when {what}") };
+            // A condition that comes true gives a time that is finite.
+            let text = if what.is_empty() || !value.is_finite() {
+                value_text
+            } else {
+                format!("{value_text}, when {what}")
+            };
             Some((at, Some(value), text))
         }
         _ if what.is_empty() => Some((at, None, "its time was over".to_owned())),
@@ -228,15 +234,19 @@ impl Past {
         let mut owners: Vec<String> = Vec::new();
         let mut said: Vec<String> = Vec::new();
         match subject.texts.parts.get(&(atom as u32)) {
-            None => owners = copies(scenario, subject.atoms().get(atom)?, truth, self),
+            None => owners = copies(scenario, (subject.atoms().get(atom)?, truth), false, self),
             Some(part) => {
-                for ground in grounds(part, truth, self)? {
+                let found = grounds(part, truth, self)?;
+                let parts: Vec<&Part> = found.iter().map(|ground| ground.part).collect();
+                let texts = subject.texts.words(&parts, &|_, _| None)?;
+                for (ground, words) in found.iter().zip(texts) {
                     let condition = ground.condition();
-                    owners.extend(copies(scenario, &condition, ground.truth, self));
-                    let is_whole = ground.part.text == *text;
+                    let is_part = !std::ptr::eq(ground.part, Arc::as_ptr(part));
+                    owners.extend(copies(scenario, (&condition, ground.truth), is_part, self));
+                    let is_whole = words == *text;
                     match lasting {
                         _ if is_whole => {}
-                        Told::Now => said.push(words::condition((&ground.part.text, ground.truth))),
+                        Told::Now => said.push(words::condition((&words, ground.truth))),
                         Told::Lasting(since) => {
                             let own = self.since(&condition);
                             // What came later is no reason, nor what changed for what never did.
@@ -245,14 +255,13 @@ impl Past {
                             if own.is_some_and(|own| is_later(own) || !is_single(&condition)) {
                                 return None;
                             }
-                            said.push(lasted(&ground.part.text, ground.truth, own));
+                            said.push(lasted(&words, ground.truth, own));
                         }
                     }
                 }
             }
         }
-        owners.sort();
-        owners.dedup();
+        let owners = each(owners);
         let names = if owners.is_empty() { String::new() } else { format!(": {}", owners.join(", ")) };
         Some((said, names))
     }

@@ -21,7 +21,10 @@ process lamp { choose
 process bulb[3] {
   var k: 0 .. 9 = 0
   when k < 9 -> k = k + 1
-  let good = k < 3 | k > 7 }
+  let good = k < 3 | k > 7
+  let low(z) = k < z
+  let most(z) = low(z) | k > 9
+  let odd = most(2) | low(1) }
 "#;
 
 /// Names of properties of them.
@@ -31,6 +34,9 @@ let close(p) = near(p, me, 2 m) & speed(p) < 3 m/s
 let twice(v) = 2 * v
 let least(p) = min<=2 s (distance(p, me))
 let lonely(p) = !(exists a in crowd: distance(a, p) < 1 m & speed(a) < 9 m/s & a in exit)
+let alone(p) = !(exists a in others(p): near(a, p, 100 m) & speed(a) < 9 m/s)
+let less(v, w) = v < w & v + v > w
+let h0(v) = speed(v) > 9 m/s & v in room
 property slow = speed(me) < 0.1 m/s & x(position(me)) > 0.5 m
 property quick = !slow
 property fine = quick | you in room
@@ -51,7 +57,8 @@ let ok(which, n) = which.up | which.jobs < n
 /// What decided the first trial, for each formula.
 fn told(scenario: &str, cases: &[(&str, &str)]) {
     let queries: String = cases.iter().map(|(formula, _)| format!("check P({formula}) >= 0.5\n")).collect();
-    let properties = if scenario == PEOPLE { format!("{NAMED}{queries}") } else { queries };
+    let through: String = (1..=70).map(|k| format!("let h{k}(v) = h{}(v)\n", k - 1)).collect();
+    let properties = if scenario == PEOPLE { format!("{NAMED}{through}{queries}") } else { queries };
     let place = Place::new(&[("a.scn", scenario), ("a.bltl", &properties)]);
     let said = place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "json", "--max-trials", "1"]);
     assert!(said.code != Some(2), "{}", said.err);
@@ -88,6 +95,16 @@ fn of_a_condition_of_several_parts_those_are_named_that_decided() {
                 "`me in room <=> you in room` is false because `me in room` is false and `you in room` is true: me, you",
             ),
             ("G<=1 s (you in room => me in room)", "`you in room` is true: you; `me in room` is false: me"),
+            // A chain is one, however it nests.
+            (
+                "F<=1 s (me in room | me in exit | lamp.n > 3 | crowd[1] in room)",
+                "`me in room | me in exit | lamp.n > 3 | crowd[1] in room` is false: me, crowd[1]",
+            ),
+            (
+                "F<=0.5 s time_until(me in exit) < time_until(you in room)",
+                "`time_until(me in exit) < time_until(you in room)` is false: `me in exit` is true: me at 2.1 s and \
+                 `you in room` is true: you at 0.5 s",
+            ),
             ("if(me in exit, 1, 0) == 1", "`if(me in exit, 1, 0) == 1` is false: me"),
             ("distance(me, you) < 1 m", "`distance(me, you) < 1 m` is false: me, you"),
             (
@@ -157,12 +174,26 @@ fn arguments_are_told_as_what_they_stand_for() {
                 "least(you) > 9 m",
                 "`least(you) > 9 m` is false: `distance(you, me)` is 5.099 m at 0 s: you, me",
             ),
-            // One `a` is another than the other.
+            // One `a` is another than the other, so both are told by their own names.
             (
                 "G<=1 s (forall a in crowd: lonely(a))",
-                "`forall a in crowd: lonely(a)` is false because `distance(a, p) < 1 m & speed(a) < 9 m/s & a in exit, \
-                 where p = a` is true: crowd[1]",
+                "`forall a in crowd: lonely(a)` is false because `distance(crowd[1], crowd[1]) < 1 m & speed(crowd[1]) < \
+                 9 m/s & crowd[1] in exit` is true: crowd[1]",
             ),
+            (
+                "G<=1 s (forall a in crowd: alone(a))",
+                "`forall a in crowd: alone(a)` is false because `distance(me, crowd[1]) < 100 m` is true and \
+                 `speed(me) < 9 m/s` is true: crowd[1], me",
+            ),
+            // What is long is cut, between words and outside of brackets.
+            (
+                "F<=1 s less(distance(me, you) + distance(you, crowd[1]) + speed(me) * 1 s + distance(crowd[1], me), 1 m)",
+                "`less(distance(me, you) + distance(you, crowd[1]) + speed(me) * 1 s + distance(crowd[1], me), 1 m)` is \
+                 false because `distance(me, you) + distance(you, crowd[1]) + speed(me) * 1 s + … < 1 m` is false: me, you, \
+                 crowd[1]",
+            ),
+            // However many functions it goes through.
+            ("F<=1 s h70(you)", "`h70(you)` is false because `speed(you) > 9 m/s` is false: you"),
         ],
     );
 }
@@ -176,6 +207,16 @@ fn names_inside_processes_are_told_as_outside() {
             (
                 "G<=1 s (forall b in bulb: b.good)",
                 "`forall b in bulb: b.good` is false because `bulb[1].k < 3` is false and `bulb[1].k > 7` is false: bulb[1]",
+            ),
+            (
+                "G<=1 s (forall b in bulb: F<=1 s (b.k > 3 & b.odd))",
+                "`bulb[1].k > 3 & bulb[1].odd` is false because `bulb[1].most(2) | bulb[1].low(1)` is false: bulb[1]",
+            ),
+            // Each is named once.
+            (
+                "F<=1 s (bulb[2].k + bulb[1].k > 30 | bulb[2].k + bulb[1].k > 40)",
+                "`bulb[2].k + bulb[1].k > 30 | bulb[2].k + bulb[1].k > 40` is false because `bulb[2].k + bulb[1].k > 30` is \
+                 false and `bulb[2].k + bulb[1].k > 40` is false: bulb[1], bulb[2]",
             ),
         ],
     );
@@ -241,5 +282,24 @@ fn what_lasts_no_time_is_no_reason_and_an_infinity_that_is_no_time_is_none() {
             ("F<=5 s (p.s == 1) | (F<=5 s (q.n == 1))", "`q.n == 1` is true"),
         ],
     );
-    assert_eq!(lowest(JUMPS, "time_until(q.n == 1) + 1 s / r.n"), "∞ s, when `q.n == 1` is true");
+    assert_eq!(lowest(STEPS, "time_until(n.n > 9) - time_until(n.n == 3)"), "∞ steps");
+    assert_eq!(lowest(JUMPS, "time_until(q.n == 1) + 1 s / r.n"), "∞ s");
+}
+
+#[test]
+fn conditions_have_parts_however_many_they_are() {
+    const MANY: &str = "scenario \"Many\"\nhorizon = 5 steps
+process m[600] { var k: 0 .. 9 = 0  when k < 9 -> k = k + 1 }\n";
+    let chain: Vec<String> = (0..70).map(|k| format!("p.k < {}", 100 + k)).collect();
+    let chain = format!("let chain(p) = {} & p.k > 8\n", chain.join(" & "));
+    let queries = "check P(forall a in m: F<=2 steps (a.k < 9 | a.k > 7)) >= 0.5
+check P(forall a in m: F<=2 steps (a.k < 8 | a.k > 6)) >= 0.5
+check P(F<=2 steps (m[600].k > 3 & m[1].k < 9)) >= 0.5\ncheck P(F<=2 steps chain(m[2])) >= 0.5\n";
+    let place = Place::new(&[("a.scn", MANY), ("a.bltl", &format!("{chain}{queries}"))]);
+    let said = place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "json", "--max-trials", "1"]);
+    assert!(said.code != Some(2), "{}", said.err);
+    let json = said.json();
+    let what = |k: usize| json["results"][k]["witnesses"][0]["what"].as_str().unwrap_or_default().to_owned();
+    assert_eq!(what(2), "`m[600].k > 3 & m[1].k < 9` is false because `m[600].k > 3` is false: m[600]");
+    assert_eq!(what(3), "`chain(m[2])` is false because `m[2].k > 8` is false: m[2]");
 }

@@ -28,6 +28,7 @@ impl Elaborator<'_> {
             return self.lower_name(&function.name, function.span, locals);
         }
         if let Some(decl) = self.function_inside(&function.name, locals) {
+            self.note_inside(function.span);
             return self.lower_let((0, decl), expr.span, arguments, locals);
         }
         if let Some(called) = self.call_inside_behaviour(function, expr.span, arguments, locals) {

@@ -2,7 +2,7 @@
 
 use super::super::dimension::Dimension;
 use super::super::elaborator::{Elaborator, Locals, Lowered, Reported};
-use super::super::phrase::{Phrase, Shape};
+use super::super::study::{Form, Part};
 use super::super::told::Told;
 use super::super::typed::Typed;
 use crate::base::tick::Clock;
@@ -17,7 +17,7 @@ impl Elaborator<'_> {
     pub(super) fn lower_not(&mut self, span: Span, operand: &Expr, locals: &Locals) -> Lowered<Typed> {
         match self.lower(operand, locals)? {
             Typed::Truth(truth, phrase) => {
-                let phrase = phrase.and_then(|phrase| self.phrase(span, Shape::Not(phrase)));
+                let phrase = phrase.and_then(|phrase| self.phrase(span, Form::Not(phrase)));
                 Ok(Typed::Truth(negated(truth), phrase))
             }
             Typed::Formula(node) => Ok(Typed::Formula(self.node(Node::Not(node)))),
@@ -49,7 +49,7 @@ impl Elaborator<'_> {
     fn connect(
         &mut self,
         (op, span): (BinaryOp, Span),
-        a: (Typed, Span),
+        mut a: (Typed, Span),
         mut b: (Typed, Span),
         locals: &Locals,
     ) -> Lowered<Typed> {
@@ -57,7 +57,8 @@ impl Elaborator<'_> {
         let monitored = self.temporal && locals.running == 0 && op == BinaryOp::Implies;
         let states = matches!((&a.0, &b.0), (Typed::Truth(..), Typed::Truth(..))) && !monitored;
         if states {
-            let phrase = self.connected(op, span, (a.0.phrase(), b.0.phrase()), a.1);
+            let phrases = (a.0.take_phrase(), b.0.take_phrase());
+            let phrase = self.connected(op, span, phrases, a.1);
             let (a, b) = (self.as_truth(a.0, a.1)?, self.as_truth(b.0, b.1)?);
             let truth = match op {
                 BinaryOp::And => all(a, b),
@@ -92,19 +93,20 @@ impl Elaborator<'_> {
         &self,
         op: BinaryOp,
         span: Span,
-        sides: (Option<Arc<Phrase>>, Option<Arc<Phrase>>),
+        sides: (Option<Arc<Part>>, Option<Arc<Part>>),
         left: Span,
-    ) -> Option<Arc<Phrase>> {
+    ) -> Option<Arc<Part>> {
         let sides = match (op, sides) {
-            (BinaryOp::Iff, (a, b)) => return self.phrase(span, Shape::Both(a?, b?)),
-            (BinaryOp::Implies, (a, b)) => (a.and_then(|a| self.phrase(left, Shape::Not(a))), b),
+            (BinaryOp::Iff, (a, b)) => return self.phrase(span, Form::Both(a?, b?)),
+            (BinaryOp::Implies, (a, b)) => {
+                let sides = [a.and_then(|a| self.phrase(left, Form::Not(a))), b];
+                let list: Vec<_> = sides.into_iter().flatten().collect();
+                return if list.is_empty() { None } else { self.phrase(span, Form::Any(list)) };
+            }
             (_, sides) => sides,
         };
         let list: Vec<_> = [sides.0, sides.1].into_iter().flatten().collect();
-        if list.is_empty() {
-            return None;
-        }
-        self.phrase(span, if op == BinaryOp::And { Shape::All(list) } else { Shape::Any(list) })
+        if list.is_empty() { None } else { self.chained(span, op == BinaryOp::And, list) }
     }
 
     /// Both formulas or neither.

@@ -19,7 +19,7 @@ pub(super) use logic::relation;
 use super::dimension::{self, Dimension};
 use super::elaborator::{Elaborator, Locals, Lowered, MOST_NODES, Reported};
 use super::number::Number;
-use super::phrase::{Phrase, Shape};
+use super::study::{Form, Part};
 use super::typed::Typed;
 use super::weight::Weight;
 use crate::logic::{Node, NodeId, TermId};
@@ -33,26 +33,23 @@ impl Elaborator<'_> {
     /// What an expression means.
     pub(super) fn lower(&mut self, expr: &Expr, locals: &Locals) -> Lowered<Typed> {
         self.descend(expr.span)?;
-        let lowered = self.lower_kind(expr, locals);
-        self.depth -= 1;
-        match lowered {
+        let around = std::mem::replace(&mut self.frame, locals.frame.clone());
+        let lowered = match self.lower_kind(expr, locals) {
             Ok(Typed::Truth(truth, phrase)) if self.temporal => {
                 Ok(self.phrased(expr, (truth, phrase), locals))
             }
             other => other,
-        }
+        };
+        self.frame = around;
+        self.depth -= 1;
+        lowered
     }
 
     /// A condition that knows how it is written here.
-    fn phrased(
-        &mut self,
-        expr: &Expr,
-        (truth, phrase): (Bool, Option<Arc<Phrase>>),
-        locals: &Locals,
-    ) -> Typed {
+    fn phrased(&mut self, expr: &Expr, (truth, phrase): (Bool, Option<Arc<Part>>), locals: &Locals) -> Typed {
         let phrase = match (matches!(truth, Bool::Constant(_)), phrase, &expr.kind) {
             (true, ..) => None,
-            (false, None, _) => self.phrase(expr.span, Shape::Plain(truth.clone())),
+            (false, None, _) => self.phrase(expr.span, Form::Plain(truth.clone())),
             // An argument is what it stands for.
             (false, Some(inner), ExprKind::Name(name))
                 if locals.names.iter().any(|(bound, _)| bound == name) =>
@@ -60,7 +57,7 @@ impl Elaborator<'_> {
                 Some(inner)
             }
             (false, Some(inner), ExprKind::Name(_) | ExprKind::Call { .. } | ExprKind::Member(..)) => {
-                self.phrase(expr.span, Shape::Named(inner))
+                self.phrase(expr.span, Form::Named(inner))
             }
             (false, phrase, _) => phrase,
         };
@@ -244,7 +241,7 @@ impl Elaborator<'_> {
     pub(super) fn as_formula(&mut self, typed: Typed, span: Span) -> Lowered<NodeId> {
         match typed {
             Typed::Formula(node) => Ok(node),
-            Typed::Truth(truth, phrase) => Ok(self.atom(truth, span, phrase.as_deref())),
+            Typed::Truth(truth, phrase) => Ok(self.atom(truth, span, phrase.as_ref())),
             found => self.mismatch(span, "a condition", &found),
         }
     }

@@ -6,11 +6,13 @@ use super::super::process::Declared;
 use super::super::symbols::{Meaning, ScopeId, unknown};
 use super::super::typed::Typed;
 use super::super::weight::Weight;
+use super::super::wording::{Frame, Given, Use};
 use super::{BUILT_IN, counted_arguments};
 use crate::model::{Bool, Set, Who};
 use crate::syntax::ast::{Expr, ExprKind, Ident, LetDecl};
 use crate::syntax::diagnostic::{Diagnostic, Label};
 use crate::syntax::source::Span;
+use std::sync::Arc;
 
 use super::super::dimension::{self, Dimension};
 
@@ -36,10 +38,8 @@ impl<'a> Elaborator<'a> {
             if let Some((_, meant)) = locals.written.iter().find(|(argument, _)| *argument == at) {
                 self.aliases.insert(span, *meant);
             }
-            if let Typed::Process { process, copy } = **typed
-                && let Some((_, bound)) = locals.copies.iter().find(|(variable, _)| *variable == at)
-            {
-                self.note_copy((process, copy), span, *bound);
+            if self.temporal {
+                self.uses.at.insert(span, Use::Given(at as u32));
             }
             self.count_copy(Weight::of(typed), span)?;
             return Ok((**typed).clone());
@@ -47,7 +47,7 @@ impl<'a> Elaborator<'a> {
         if let Some(process) = locals.process
             && let Some(inside) = self.lower_inside(process, name, span)
         {
-            self.note_owner(process, name, span);
+            self.note_inside(span);
             return inside;
         }
         if let Some(inside) = self.lower_inside_behaviour(name, span, locals) {
@@ -328,6 +328,12 @@ impl<'a> Elaborator<'a> {
         for ((name, value), argument) in decl.arguments.iter().zip(values).zip(arguments) {
             inner.written.push((inner.names.len(), argument.span));
             inner.bind(&name.name, value);
+        }
+        if self.temporal {
+            let process = inner.process.and_then(|process| self.label(process));
+            let written = |(at, span): &(usize, Span)| (*at as u32, Given::Written(*span));
+            let given = inner.written.iter().map(written).collect();
+            inner.frame = Some(Arc::new(Frame { caller: locals.frame.clone(), given, process }));
         }
         let (before, unknowns) = (self.diagnostics.len(), self.unknowns);
         let value = self.expand(inner.scope, &path, span, |this| this.lower(&decl.body, &inner));

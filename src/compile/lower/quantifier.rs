@@ -4,8 +4,9 @@
 //! member, because each member's formula is monitored on its own.
 
 use super::super::elaborator::{Elaborator, Locals, Lowered, Reported};
-use super::super::phrase::{Phrase, Shape};
+use super::super::study::{Form, Part};
 use super::super::typed::Typed;
+use super::super::wording::Given;
 use crate::logic::{Node, NodeId, Operation, Term, TermId};
 use crate::model::{AgentId, Arithmetic, Bool, Fold, Num, Set, Who};
 use crate::syntax::ast::{Aggregate, BinaryOp, Expr, ExprKind, Ident, Quantifier};
@@ -19,7 +20,7 @@ use std::sync::Arc;
 struct Case {
     truth: Bool,
     text: String,
-    phrase: Option<Arc<Phrase>>,
+    phrase: Option<Arc<Part>>,
 }
 
 impl Elaborator<'_> {
@@ -32,9 +33,7 @@ impl Elaborator<'_> {
         body: &Expr,
         locals: &Locals,
     ) -> Lowered<Typed> {
-        if !self.variables.contains(&variable.name) {
-            self.variables.insert(variable.name.clone());
-        }
+        self.uses.bind(variable, locals.names.len());
         let members = match self.lower(set, locals) {
             Ok(Typed::Processes(process)) => {
                 self.counted(process, set.span)?;
@@ -54,13 +53,13 @@ impl Elaborator<'_> {
             return self.write_out(span, quantifier, variable, &set, body, locals);
         }
         let mut inner = locals.clone();
-        inner.bind(&variable.name, Typed::Agent(Who::Running(locals.running)));
+        inner.bind_person(variable, Who::Running(locals.running), self.temporal);
         inner.running += 1;
         let typed = self.lower(body, &inner)?;
         let phrase = typed.phrase();
         match quantifier {
             Quantifier::Forall => {
-                let phrase = phrase.and_then(|one| self.phrase(span, Shape::Each(set.clone(), one)));
+                let phrase = phrase.and_then(|one| self.phrase(span, Form::Each(set.clone(), one)));
                 let all = Bool::Forall(set.clone(), Box::new(self.as_truth(typed, body.span)?));
                 let watched = self.temporal && locals.running == 0;
                 let Some(left) = (if watched { self.left_side(body, &inner)? } else { None }) else {
@@ -69,15 +68,15 @@ impl Elaborator<'_> {
                 // "Each a: if p then q" is "if some a has p, then each a: if p then q"; so the monitor sees whether
                 // anybody ever had p.
                 let some = self.someone((variable, place, set), left, span);
-                let some = self.atom_worded(some.truth, span, some.text, some.phrase.as_deref());
+                let some = self.atom_worded(some.truth, span, some.text, some.phrase.as_ref());
                 if let Node::Atom(atom) = &self.tree.nodes[some.0 as usize] {
                     self.texts.cases.insert(atom.0);
                 }
-                let (none, all) = (self.node(Node::Not(some)), self.atom(all, span, phrase.as_deref()));
+                let (none, all) = (self.node(Node::Not(some)), self.atom(all, span, phrase.as_ref()));
                 Ok(Typed::Formula(self.node(Node::Or(vec![none, all]))))
             }
             Quantifier::Exists => {
-                let phrase = phrase.and_then(|one| self.phrase(span, Shape::Someone(set.clone(), one)));
+                let phrase = phrase.and_then(|one| self.phrase(span, Form::Someone(set.clone(), one)));
                 Ok(Typed::Truth(Bool::Exists(set, Box::new(self.as_truth(typed, body.span)?)), phrase))
             }
             Quantifier::Count => {
@@ -108,7 +107,7 @@ impl Elaborator<'_> {
                 }
                 let set = self.as_set(members, place)?;
                 let mut inner = locals.clone();
-                inner.bind(&variable.name, Typed::Agent(Who::Running(locals.running)));
+                inner.bind_person(variable, Who::Running(locals.running), self.temporal);
                 inner.running += 1;
                 let left = self.left_side(body, &inner)?;
                 Ok(left.map(|left| self.someone((variable, place, set), left, body.span)))
@@ -120,8 +119,8 @@ impl Elaborator<'_> {
     /// That someone of a set has a left side: nobody wrote it, so it is worded here.
     fn someone(&self, (variable, place, set): (&Ident, Span, Set), left: Case, span: Span) -> Case {
         let text = format!("exists {} in {}: {}", variable.name, self.words(place), left.text);
-        let someone = left.phrase.map(|one| Shape::Someone(set.clone(), one));
-        let phrase = someone.and_then(|shape| self.unwritten(span, shape, text.clone()));
+        let someone = left.phrase.map(|one| Form::Someone(set.clone(), one));
+        let phrase = someone.and_then(|shape| self.unwritten(span, shape, &text));
         Case { truth: Bool::Exists(set, Box::new(left.truth)), text, phrase }
     }
 
@@ -139,7 +138,10 @@ impl Elaborator<'_> {
         let mut each = Vec::new();
         for copy in self.copies(process) {
             let mut inner = locals.clone();
-            inner.copies.push((inner.names.len(), variable.span));
+            if let Typed::Process { process, copy } = copy {
+                let label = self.label((process, copy));
+                inner.give(label.map(Given::Copy));
+            }
             inner.bind(&variable.name, copy);
             each.push(if formulas {
                 self.inside_a_formula(|this| this.lower(body, &inner))?
@@ -164,7 +166,7 @@ impl Elaborator<'_> {
                 let all = quantifier == Quantifier::Forall;
                 // Conditions without parts are those of the whole; whose they are is found all the same.
                 let phrases = phrases.filter(|list| !list.iter().all(|one| one.is_plain()));
-                let shape = |list| if all { Shape::All(list) } else { Shape::Any(list) };
+                let shape = |list| if all { Form::All(list) } else { Form::Any(list) };
                 let phrase = phrases.and_then(|list| self.phrase(span, shape(list)));
                 Ok(Typed::Truth(if all { Bool::And(truths) } else { Bool::Or(truths) }, phrase))
             }
@@ -236,7 +238,7 @@ impl Elaborator<'_> {
         let mut each = Vec::with_capacity(members.len());
         for &id in &members {
             let mut inner = locals.clone();
-            inner.bind(&variable.name, Typed::Agent(Who::Agent(id)));
+            inner.bind_person(variable, Who::Agent(id), self.temporal);
             each.push(if quantifier == Quantifier::Count {
                 self.inside_a_formula(|this| this.lower(body, &inner))?
             } else {

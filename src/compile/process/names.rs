@@ -4,10 +4,12 @@ use super::Inside;
 use crate::compile::elaborator::{Elaborator, Locals, Lowered, Reported};
 use crate::compile::symbols::{Meaning, unknown};
 use crate::compile::typed::Typed;
+use crate::compile::wording::{Frame, Use};
 use crate::model::{Bool, Comparison, Domain, Num};
 use crate::syntax::ast::{Expr, ExprKind, Ident, LetDecl};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
+use std::sync::Arc;
 
 impl<'a> Elaborator<'a> {
     /// A name inside a process, if it has it.
@@ -19,8 +21,6 @@ impl<'a> Elaborator<'a> {
     ) -> Option<Lowered<Typed>> {
         let process = self.processes.get(at as usize)?;
         let inside = *process.names.get(name)?;
-        let locals = Locals { process: Some((at, copy)), ..Locals::of(0) };
-        let path = format!("{}.{name}", process.decl.name.name);
         Some(match inside {
             Inside::Lost => Err(Reported),
             Inside::Early => self.too_early((at, "a variable of"), span),
@@ -50,6 +50,9 @@ impl<'a> Elaborator<'a> {
                 if self.is_cut(body.span) {
                     return Some(Err(Reported));
                 }
+                let path = format!("{}.{name}", process.decl.name.name);
+                let frame = self.label((at, copy)).map(|label| Arc::new(Frame::inside(label)));
+                let locals = Locals { process: Some((at, copy)), frame, ..Locals::of(0) };
                 self.expand(0, &path, span, |this| this.lower(body, &locals))
             }
         })
@@ -74,20 +77,18 @@ impl<'a> Elaborator<'a> {
         Some(self.report(error.hint("what variables start with is known before a trial starts")))
     }
 
-    /// Notes what a name used inside a process is called outside.
-    pub(in crate::compile) fn note_owner(&mut self, (at, copy): (u32, u32), name: &str, span: Span) {
-        let Some(process) = self.processes.get(at as usize).filter(|_| self.temporal) else { return };
-        let owner = &process.decl.name.name;
-        let number = if process.is_array() { format!("[{}]", copy + 1) } else { String::new() };
-        self.owned.insert(span, (format!("{owner}{number}.{name}"), None));
+    /// Notes that a name used inside a process is one of it.
+    pub(in crate::compile) fn note_inside(&mut self, span: Span) {
+        if self.temporal {
+            self.uses.at.insert(span, Use::Inside);
+        }
     }
 
-    /// Notes which copy of a process a quantifier is at where its name is used.
-    pub(in crate::compile) fn note_copy(&mut self, (process, copy): (u32, u32), span: Span, bound: Span) {
-        if let Some(process) = self.processes.get(process as usize).filter(|_| self.temporal) {
-            let text = format!("{}[{}]", process.decl.name.name, copy + 1);
-            self.owned.insert(span, (text, Some(bound)));
-        }
+    /// What a process or a copy of one is called where a text may speak of it.
+    pub(in crate::compile) fn label(&self, (at, copy): (u32, u32)) -> Option<Arc<str>> {
+        let process = self.processes.get(at as usize).filter(|_| self.temporal)?;
+        let name = &process.decl.name.name;
+        Some(if process.is_array() { format!("{name}[{}]", copy + 1).into() } else { name.as_str().into() })
     }
 
     fn too_early<T>(&mut self, (at, what): (u32, &str), span: Span) -> Lowered<T> {
