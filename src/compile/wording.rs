@@ -217,7 +217,12 @@ impl Filling<'_> {
                     text.push_str(&name);
                     names.push((name, owner));
                 }
-                Standing::As(words) => text.push_str(&words),
+                Standing::As(words, owner) => {
+                    text.push_str(&words);
+                    // Who is called like a name within would be taken for that.
+                    is_changed |= owner.is_some();
+                    names.extend(owner.map(|owner| (words, owner)));
+                }
                 Standing::For(filled) => {
                     is_changed = true;
                     let words = short(&filled.text);
@@ -263,7 +268,9 @@ impl Filling<'_> {
         loop {
             let given = match kind {
                 Use::Inside => match frame.and_then(|frame| frame.process.as_ref()) {
-                    Some(process) => return Some(Standing::As(format!("{process}.{}", self.raw(used)))),
+                    Some(process) => {
+                        return Some(Standing::As(format!("{process}.{}", self.raw(used)), None));
+                    }
                     None => None,
                 },
                 Use::Given(at) => frame.and_then(|frame| frame.given(at)),
@@ -277,11 +284,11 @@ impl Filling<'_> {
                         None => return Some(Standing::For(self.fill(used, frame, depth + 1)?)),
                     }
                 }
-                Some(Given::Copy(label)) => return Some(Standing::As(label.to_string())),
+                Some(Given::Copy(label)) => return Some(Standing::As(label.to_string(), None)),
                 Some(Given::Person(who)) => {
                     let owner = Owner::Person(*who);
                     return Some(match (self.people)(*who) {
-                        Some(name) => Standing::As(name),
+                        Some(name) => Standing::As(name, Some(owner)),
                         None => Standing::of(self.raw(used), owner, is_argument),
                     });
                 }
@@ -321,8 +328,8 @@ impl Filling<'_> {
 enum Standing {
     /// The name.
     Itself(Owner),
-    /// These words.
-    As(String),
+    /// These words, for a person or a copy.
+    As(String, Option<Owner>),
     /// A text.
     For(Arc<Filled>),
 }

@@ -303,3 +303,19 @@ check P(F<=2 steps (m[600].k > 3 & m[1].k < 9)) >= 0.5\ncheck P(F<=2 steps chain
     assert_eq!(what(2), "`m[600].k > 3 & m[1].k < 9` is false because `m[600].k > 3` is false: m[600]");
     assert_eq!(what(3), "`chain(m[2])` is false because `m[2].k > 8` is false: m[2]");
 }
+
+#[test]
+fn who_is_called_like_a_name_within_is_not_taken_for_it() {
+    let model = PEOPLE.replace(
+        "agents crowd[1]",
+        "agent a: person { at = (15, 3) velocity = (0, 0) m/s }\nagents crowd[1]",
+    );
+    let properties = "let has(p) = exists a in crowd: distance(a, p) < 1 cm
+check P(G<=1 s (forall a in others(me): x(position(a)) < 14 m | has(a))) >= 0.5\n";
+    let place = Place::new(&[("a.scn", &model), ("a.bltl", properties)]);
+    let said = place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "json", "--max-trials", "1"]);
+    assert_eq!(
+        said.json()["results"][0]["witnesses"][0]["what"],
+        "`forall a in others(me): x(position(a)) < 14 m | has(a)` is false: a"
+    );
+}
