@@ -117,6 +117,13 @@ fn of_walls(scene: &Crowd, one: &Person) -> Vec2 {
             felt[k].1 = felt[k].1.min(given.max(0.0));
         }
     }
+    if is_crowded {
+        let given = |k: usize| felt[k].1 + (0..n).map(|j| c(j, k, &felt) * felt[j].1).sum::<f64>();
+        let less: Vec<f64> = (0..n).map(|k| (alone[k] / given(k)).min(1.0)).collect();
+        for (one, less) in felt.iter_mut().zip(less) {
+            one.1 *= less;
+        }
+    }
     for _ in 0..if is_crowded { 16 } else { 0 } {
         let next = |k: usize| {
             let given: f64 = (0..n).map(|j| c(j, k, &felt) * felt[j].1).sum();

@@ -3,7 +3,8 @@
 //! Faces that push with f along unit vectors n give g >= 0 such that the sum over all j of `max(0, n_i . n_j) g_j` is at
 //! least `f_i`, and just that where `g_i > 0`: a linear complementarity problem. So those that push against each other,
 //! or at right angles, do not know of each other. Of two at an angle, c its cosine, the first gives
-//! `(f_1 - c f_2)/(1 - c^2)`, at least 0 and at most `f_1`. With more, the least of these is where Jacobi's iteration begins
+//! `(f_1 - c f_2)/(1 - c^2)`, at least 0 and at most `f_1`. With more, the least of these, and so much less as they are
+//! too much together, is where Jacobi's iteration begins
 //! (projected, each row damped by its sum; Cottle, Pang, Stone 1992, chapter 5): all at once, so that their order does not
 //! matter, and a fixed number of times, so that what comes out changes as smoothly as what goes in.
 
@@ -90,6 +91,22 @@ pub(super) fn share<S: Simd>(part: Part<S>, pushes: &mut [Push]) {
     if !several.any_true() {
         return;
     }
+    // Where many halve with each other they give too much together: so much less.
+    for i in 0..pushes.len() {
+        let mut given = part.load(&pushes[i].shared);
+        for j in 0..pushes.len() {
+            if i != j && pushes[i].structure == pushes[j].structure {
+                given += cosine(part, &pushes[i], &pushes[j]) * part.load(&pushes[j].shared);
+            }
+        }
+        let own = part.load(&pushes[i].alone);
+        let less = given.simd_gt(own * part.c(1.0 + 1e-12));
+        let shared = part.load(&pushes[i].shared);
+        part.store(less.select(shared * own / given, shared), &mut pushes[i].next);
+    }
+    for push in &mut *pushes {
+        part.store_in(several, part.load(&push.next), &mut push.shared);
+    }
     for _ in 0..ITERATIONS {
         for i in 0..pushes.len() {
             let (mut given, mut row) = (zero, one);
@@ -139,6 +156,20 @@ pub(super) fn share_depths(touches: &mut [Touch]) {
         }
         if others > 1 {
             iterations = ITERATIONS;
+        }
+    }
+    if iterations > 0 {
+        for i in 0..touches.len() {
+            let own = touches[i];
+            let fellow =
+                |(j, other): &(usize, &Touch)| *j != i && own.structure == other.structure && touching(other);
+            let others = touches.iter().enumerate().filter(fellow);
+            let given = others.fold(own.depth, |sum, (_, other)| sum + cosine(&own, other) * other.depth);
+            let is_less = touching(&own) && given > own.alone * (1.0 + 1e-12);
+            touches[i].next = if is_less { own.depth * own.alone / given } else { own.depth };
+        }
+        for touch in &mut *touches {
+            touch.depth = touch.next;
         }
     }
     for _ in 0..iterations {

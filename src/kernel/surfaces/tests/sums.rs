@@ -434,6 +434,28 @@ fn a_rounded_corner_pushes_alike_however_it_is_drawn_and_nothing_jumps() {
 }
 
 #[test]
+fn however_many_share_they_give_what_one_would() {
+    for count in [1, 3, 10, 15, 20, 40] {
+        let same = vec![wall(&[p(-5.0, 0.0), p(5.0, 0.0)]); count];
+        let found = force(&same, p(0.0, 0.5), 0.08);
+        assert!((found.y / alone(0.5, 0.08) - 1.0).abs() < 0.01, "{count} {found}");
+    }
+    // At the centre of a half circle, and about it.
+    for count in [16, 64, 128] {
+        let corner = |k: i32| {
+            let (sin, cos) = crate::base::math::sin_cos_turn(f64::from(k) / f64::from(count) * 0.5);
+            p(0.5 * cos, 0.5 * sin)
+        };
+        let apse = wall(&(0..=count).map(corner).collect::<Vec<_>>());
+        for y in [-0.002, -0.001, 0.0, 0.001, 0.002] {
+            let found = force(std::slice::from_ref(&apse), p(0.0, y), 0.08);
+            let ratio = found.norm() / alone(0.5, 0.08);
+            assert!((0.5..1.6).contains(&ratio), "{count} {y} {ratio}");
+        }
+    }
+}
+
+#[test]
 fn the_order_of_many_that_share_does_not_matter() {
     let fin = |k: i32| {
         let (sin, cos) = crate::base::math::sin_cos_turn(f64::from(k) / 16.0);
