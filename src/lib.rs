@@ -46,6 +46,7 @@
 //! ```
 
 pub mod base;
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod compile;
 pub mod data;
