@@ -354,11 +354,13 @@ fn a_particle_of_one_is_a_person_and_two_of_several_have_their_own_law() {
             Some(Particle { persons, repulsion: 0.25, friction: 0.0, radius_factor: 1.0, tau_factor: 1.0 })
         };
         let (mut persons, mut ones) = (scene(None).start(layout), scene(particle(1)).start(layout));
-        let (start, twos) = (scene(None).start(layout), scene(particle(2)).start(layout));
-        for k in 0..10 {
-            let wall_free = |run: &Run| (run.force(k) - walls_only(run, k)).norm();
-            close(wall_free(&twos), 0.25 * wall_free(&start), 1e-9);
-        }
+        let pair = |drive| {
+            let body = |x: f64| Person { drive, particle: particle(2), ..person(p(x, 0.0)) };
+            crowd(vec![body(0.0), body(0.6)], "0.01").start(layout).force(1).x
+        };
+        let (social, drive) = (2000.0 * (-0.1f64 / 0.08).exp(), 80.0 * 1.34 / 0.5);
+        close(pair(1.34), 0.25 * social * drive / (social + drive), 1e-9);
+        assert_eq!(pair(0.0), 0.0, "nothing drives");
         persons.steps(100);
         ones.steps(100);
         assert_eq!(crowd::bits_of(&persons.state, 0), crowd::bits_of(&ones.state, 0));
@@ -382,14 +384,6 @@ fn a_particle_of_one_is_a_person_and_two_of_several_have_their_own_law() {
         close(run.velocity(0).x - run.velocity(1).x, (-1e4 * 0.1 * (2.0 / 80.0) * 0.001f64).exp(), 1e-5);
         assert!(run.velocity(0).y.abs() < 1e-4, "{}", run.velocity(0).y);
     }
-}
-
-fn walls_only(run: &Run, k: usize) -> Vec2 {
-    let at = run.at(k);
-    let push = |distance: f64| {
-        if distance < 0.25 + 16.0 * 0.08 { 2000.0 * ((0.25 - distance) / 0.08).exp() } else { 0.0 }
-    };
-    p(push(at.x) - push(4.0 - at.x), push(at.y) - push(2.0 - at.y))
 }
 
 /// Four a square metre in a closed box; neighbours overlap by up to 0.1 m, with `pushed` every tenth more.

@@ -199,11 +199,15 @@ fn plain(scene: &Crowd, i: usize) -> Vec2 {
             let weight = lambda + (1.0 - lambda) * (1.0 + cos_phi) / 2.0;
             if gap > -16.0 * b { a * (gap / b).exp() * weight } else { 0.0 }
         };
-        let factor = match (one.particle, other.particle) {
-            (Some(a), Some(b)) if a.persons > 1 && b.persons > 1 => 0.5 * (a.repulsion + b.repulsion),
-            _ => 1.0,
+        let social = term(one.a, one.b, one.lambda) + term(one.a2, one.b2, one.lambda2);
+        let drive = one.mass * one.drive / one.tau;
+        force += n * match (one.particle, other.particle) {
+            (Some(a), Some(b)) if a.persons > 1 && b.persons > 1 && drive > 0.0 => {
+                0.5 * (a.repulsion + b.repulsion) * social * drive / (social + drive)
+            }
+            (Some(a), Some(b)) if a.persons > 1 && b.persons > 1 => 0.0,
+            _ => social,
         };
-        force += n * (factor * (term(one.a, one.b, one.lambda) + term(one.a2, one.b2, one.lambda2)));
     }
     force += of_walls(scene, one);
     for (members, attraction) in &scene.groups {
@@ -243,6 +247,7 @@ fn random(n: usize, side: f64, kind: Kind, rng: &mut Numbers) -> Crowd {
             b2: if kind.own_b { rng.between(0.3, 1.0) } else { 0.6 },
             lambda2: rng.between(0.0, 1.0),
             present: k % 7 != 3,
+            drive: if k % 5 == 2 { 0.0 } else { rng.between(0.5, 2.0) },
             particle: (kind.ties && k % 3 > 0).then(|| Particle {
                 persons: (k % 3) as u32,
                 repulsion: rng.between(0.1, 2.0),

@@ -6,7 +6,8 @@
 //! direction (so Lambda is defined in someone who stands). It is zero by definition beyond touching
 //! distance + `REACH` B, where e^-16 of the force at touch is left: so both layouts sum the same pairs.
 //! A second exponential term of the same form acts between bodies alone. Walls: equation (5) without its
-//! compression, which is contact (and counted once).
+//! compression, which is contact (and counted once). Between two bodies of several persons the social force
+//! is bounded (`social::bounded`).
 
 use super::noise;
 use super::pace::fastest;
@@ -23,7 +24,7 @@ const APPROACH: f64 = 5.0;
 /// A body of several persons.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tie {
-    /// Factor of the social force towards another such body.
+    /// Factor of the bounded social force towards another such body.
     pub(super) repulsion: f64,
     /// Friction constant towards another such body, kg/(m s).
     pub(super) friction: f64,
@@ -46,8 +47,8 @@ pub struct Forces {
     pub(super) groups: Vec<Cohesion>,
     /// Per agent: set in a body of several persons. Empty if there are not two of them.
     pub(super) ties: Vec<Option<Tie>>,
-    /// B (and B of the second term), if it is the same constant in all bodies and no factor of a pair
-    /// comes in: then one exponential serves both bodies of a pair.
+    /// B (and B of the second term), if it is the same constant in all bodies and no two are of several
+    /// persons: then one exponential serves both bodies of a pair.
     pub(super) shared: Option<(f64, f64)>,
     /// Whether any body has the second term.
     pub(super) second: bool,
@@ -107,12 +108,12 @@ impl Forces {
         }
     }
 
-    /// Factor of the social force between two agents.
+    /// Factor of the bounded social force between two bodies of several persons.
     #[inline(always)]
-    pub(super) fn factor(&self, i: usize, j: usize) -> f64 {
+    pub(super) fn repulsion(&self, i: usize, j: usize) -> Option<f64> {
         match (self.ties.get(i), self.ties.get(j)) {
-            (Some(Some(a)), Some(Some(b))) => 0.5 * (a.repulsion + b.repulsion),
-            _ => 1.0,
+            (Some(Some(a)), Some(Some(b))) => Some(0.5 * (a.repulsion + b.repulsion)),
+            _ => None,
         }
     }
 

@@ -9,7 +9,7 @@ use super::contact::Contacts;
 use super::forces::{Forces, REACH};
 use super::nearby::amply_around;
 use super::program::Program;
-use super::social::{Sum, Term, cohesion, repel};
+use super::social::{Sum, Term, bounded, cohesion, repel};
 use super::state::State;
 use super::surfaces::{self, Bodies};
 use super::vector::{Doubles, Part, larger, parts};
@@ -96,6 +96,8 @@ struct Neighbours {
 pub(super) struct Lanewise {
     walkers: Vec<Walker>,
     seconds: Vec<Kept>,
+    /// What drives each body, m v0/tau, N. Empty without two bodies of several persons.
+    drives: Vec<Lanes>,
     neighbours: Neighbours,
     /// How far beyond touching each body is felt or may be touched, with the skin, m.
     reaches: Vec<Lanes>,
@@ -163,6 +165,13 @@ impl Lanewise {
         self.walkers.resize(state.agents, Walker::default());
         if forces.second {
             self.seconds.resize(state.agents, Kept::default());
+        }
+        self.drives.resize(forces.ties.len(), Lanes::ZERO);
+        for (i, drive) in self.drives.iter_mut().enumerate() {
+            for part in parts(simd) {
+                let of = |field: &[Lanes]| part.load(&field[i]);
+                part.store((of(&state.mass) * of(&state.speed) / of(&state.tau)).abs(), drive);
+            }
         }
         for (i, walker) in self.walkers.iter_mut().enumerate() {
             walker.x = state.x[i];
@@ -305,15 +314,18 @@ impl Lanewise {
                         contacts.push_pair(i as u32, j, part.bits(touching));
                     }
                     let theirs = o.term.load(part, rate);
-                    // Without a shared B: bodies of several persons may be among them.
-                    let factor = if SHARED { q } else { q * part.c(forces.factor(i, j as usize)) };
-                    let (way, over) = ((dx, dy), (q, factor));
-                    let (mut on_i, mut on_j) = repel::<S, SHARED>(part, gap, way, over, (&own, &theirs));
+                    let (mut on_i, mut on_j) = repel::<S, SHARED>(part, gap, (dx, dy), q, (&own, &theirs));
                     if SECOND {
                         let theirs = seconds[j as usize].load(part, rate2);
-                        let more = repel::<S, SHARED>(part, gap, way, over, (&own2, &theirs));
+                        let more = repel::<S, SHARED>(part, gap, (dx, dy), q, (&own2, &theirs));
                         on_i += more.0;
                         on_j += more.1;
+                    }
+                    // Without a shared B: bodies of several persons may be among them.
+                    if !SHARED && let Some(repulsion) = forces.repulsion(i, j as usize) {
+                        let drive = |k: usize| part.load(&self.drives[k]);
+                        on_i = bounded(part, on_i, d, drive(i)) * part.c(repulsion);
+                        on_j = bounded(part, on_j, d, drive(j as usize)) * part.c(repulsion);
                     }
                     fx += on_i * dx;
                     fy += on_i * dy;

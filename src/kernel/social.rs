@@ -62,19 +62,33 @@ impl<S: Simd> Term<S> {
     }
 }
 
-/// Force on the first and on the second of a pair over their distance 1/q, times `factor`/q; `gap` is their
-/// overlap, (dx, dy) = n/q points from the second to the first. With `SHARED` both have the first one's B.
+/// Force on the first and on the second of a pair over their distance 1/q; `gap` is their overlap,
+/// (dx, dy) = n/q points from the second to the first. With `SHARED` both have the first one's B.
 #[inline(always)]
 pub(super) fn repel<S: Simd, const SHARED: bool>(
     part: Part<S>,
     gap: Doubles<S>,
     (dx, dy): (Doubles<S>, Doubles<S>),
-    (q, factor): (Doubles<S>, Doubles<S>),
+    q: Doubles<S>,
     (one, other): (&Term<S>, &Term<S>),
 ) -> (Doubles<S>, Doubles<S>) {
-    let e = decay(part, gap * one.rate) * factor;
-    let e2 = if SHARED { e } else { decay(part, gap * other.rate) * factor };
+    let e = decay(part, gap * one.rate) * q;
+    let e2 = if SHARED { e } else { decay(part, gap * other.rate) * q };
     (e * one.towards(dx, dy, q), e2 * other.away(dx, dy, q))
+}
+
+/// The social force F of one body of several persons on another, where D drives that one: F D/(F + D), which is below
+/// both. However deep the two overlap, it holds nobody back whose drive is stronger, so that groups pass through each
+/// other (Given-Wilson et al. 2017, section 4.2). F is given, and handed back, over the distance.
+#[inline(always)]
+pub(super) fn bounded<S: Simd>(
+    part: Part<S>,
+    force: Doubles<S>,
+    distance: Doubles<S>,
+    drive: Doubles<S>,
+) -> Doubles<S> {
+    // The last term is for a body that nothing drives and nothing pushes.
+    force * (drive / (drive + (force * distance).abs() + part.c(1e-300)))
 }
 
 /// Whether `decay` of some lane is above zero.

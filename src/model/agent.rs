@@ -70,7 +70,8 @@ pub struct Particle {
     /// Number of persons; the mass is the sum of so many draws, A is multiplied by it, noise divided by
     /// its square root.
     pub persons: u32,
-    /// Factor of the social force between two particles of more than one person.
+    /// Factor of the bounded social force between two particles of more than one person: the largest share of
+    /// what drives a body that the other takes away.
     pub repulsion: f64,
     /// Friction constant where two such particles overlap, kg/(m s).
     pub friction: f64,

@@ -5,6 +5,7 @@
 mod arrivals;
 mod behaviours;
 mod draws;
+mod groups;
 mod presence;
 mod reuse;
 #[path = "../processes/texts.rs"]

@@ -52,8 +52,10 @@ pub(super) struct Cells {
     a2: Vec<f64>,
     term: Terms,
     second: Terms,
-    /// Factor of the social force towards bodies of several persons; NaN in a single person.
+    /// Factor of the bounded social force towards bodies of several persons; NaN in a single person.
     tie: Vec<f64>,
+    /// What drives each body, m v0/tau, N. Empty without two bodies of several persons, as `tie` is.
+    drive: Vec<f64>,
     /// The forces.
     fx: Vec<f64>,
     fy: Vec<f64>,

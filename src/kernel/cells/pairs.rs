@@ -10,7 +10,7 @@ use super::{Cells, Terms};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::kernel::contact::Contacts;
 use crate::kernel::forces::Forces;
-use crate::kernel::social::{Sum, Term, repel};
+use crate::kernel::social::{Sum, Term, bounded, repel};
 use crate::kernel::vector::{Part, first_part, parts, width};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -37,7 +37,7 @@ pub(super) struct Touch {
 
 impl Cells {
     /// All social forces between agents. With `SHARED` one B for all; with `SECOND` the second term too; with
-    /// `TIES` a factor for pairs of bodies of several persons.
+    /// `TIES` a bound for pairs of bodies of several persons.
     #[inline(always)]
     pub(super) fn pairs<S: Simd, const SHARED: bool, const SECOND: bool, const TIES: bool>(
         &mut self,
@@ -141,19 +141,20 @@ impl Cells {
             self.touches[found] = Touch { one: i as u32, others: j as u32, lanes };
             found += usize::from(!lanes.is_empty());
             let both = (&term.one(part, i, rates.0), &term.eight(part, j, rates.0));
-            let (mut on_i, mut on_j) = repel::<S, SHARED>(part, gap, (dx, dy), (q, q), both);
+            let (mut on_i, mut on_j) = repel::<S, SHARED>(part, gap, (dx, dy), q, both);
             if SECOND {
                 let both = (&second.one(part, i, rates.1), &second.eight(part, j, rates.1));
-                let more = repel::<S, SHARED>(part, gap, (dx, dy), (q, q), both);
+                let more = repel::<S, SHARED>(part, gap, (dx, dy), q, both);
                 on_i += more.0;
                 on_j += more.1;
             }
             if TIES {
                 let both = part.c(self.tie[i]) + part.slice(&self.tie[j..j + LANES]);
                 let mean = part.c(0.5) * both;
-                let factor = mean.simd_eq(mean).select(mean, part.c(1.0));
-                on_i *= factor;
-                on_j *= factor;
+                let tied = mean.simd_eq(mean);
+                let (of_i, of_j) = (part.c(self.drive[i]), part.slice(&self.drive[j..j + LANES]));
+                on_i = tied.select(bounded(part, on_i, d, of_i) * mean, on_i);
+                on_j = tied.select(bounded(part, on_j, d, of_j) * mean, on_j);
             }
             part.take(on_j * dx, &mut fx[j..j + LANES]);
             part.take(on_j * dy, &mut fy[j..j + LANES]);

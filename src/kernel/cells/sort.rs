@@ -93,9 +93,14 @@ impl Cells {
         }
         if !forces.ties.is_empty() {
             self.tie.clear();
-            self.tie.extend(self.agent.iter().map(|&agent| {
-                forces.ties.get(agent as usize).copied().flatten().map_or(f64::NAN, |tie| tie.repulsion)
-            }));
+            self.drive.clear();
+            for agent in self.agent.iter().map(|&agent| agent as usize) {
+                let tie = forces.ties.get(agent).copied().flatten();
+                let of = |field: &[Lanes]| field[agent / LANES].0[agent % LANES];
+                let drive = || (of(&state.mass) * of(&state.speed) / of(&state.tau)).abs();
+                self.tie.push(tie.map_or(f64::NAN, |tie| tie.repulsion));
+                self.drive.push(tie.map_or(0.0, |_| drive()));
+            }
         }
     }
 
