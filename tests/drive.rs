@@ -8,7 +8,7 @@ use smc::base::random::TrialKey;
 use smc::base::tick::{Clock, Tick};
 use smc::kernel::drive::steer;
 use smc::kernel::start::load;
-use smc::kernel::{Layout, Program, State};
+use smc::kernel::{Layout, Program, Scratch, State, refresh};
 use smc::model::{
     Agent, AgentId, Body, Family, Goal, Law, Leg, Move, Moves, Position, Region, RegionId, Route, Scenario,
     Scene, Start,
@@ -406,5 +406,63 @@ fn both_layouts_steer_alike() {
             assert_eq!(f[agent].0[0].to_bits(), g[slot.block].0[slot.lane].to_bits());
         }
         assert_eq!(a.present[agent].has(0), b.present[slot.block].has(slot.lane));
+    }
+}
+
+/// The way from a point to where a body of 0.25 m aims: the rectangle, the disc, the triangle, and a point.
+fn aim(goal: usize, at: Vec2) -> Vec2 {
+    match goal {
+        0 => p(at.x.clamp(10.25, 11.75), at.y.clamp(0.25, 3.75)) - at,
+        1 => p(5.0, 5.0) - at,
+        2 => p(10.0, 0.0) - at,
+        _ => p(4.0, 1.0) - at,
+    }
+}
+
+/// Place after 1.6 s by the method of Runge and Kutta with steps of a tenth of a millisecond.
+fn by_runge_kutta(goal: usize, start: Vec2, velocity: Vec2) -> Vec2 {
+    let (h, steps) = (1e-4, 16_000);
+    let slope = |x: Vec2, v: Vec2| (v, (aim(goal, x).normalize() * 1.25 - v) / 0.5);
+    let (mut x, mut v) = (start, velocity);
+    for _ in 0..steps {
+        let a = slope(x, v);
+        let b = slope(x + a.0 * (0.5 * h), v + a.1 * (0.5 * h));
+        let c = slope(x + b.0 * (0.5 * h), v + b.1 * (0.5 * h));
+        let d = slope(x + c.0 * h, v + c.1 * h);
+        x += (a.0 + b.0 * 2.0 + c.0 * 2.0 + d.0) * (h / 6.0);
+        v += (a.1 + b.1 * 2.0 + c.1 * 2.0 + d.1) * (h / 6.0);
+    }
+    x
+}
+
+#[test]
+fn a_walk_whose_direction_turns_is_of_second_order_in_the_step() {
+    let starts = [
+        (legs(vec![region(0)]), p(8.0, 6.0), p(1.0, 1.5)),
+        (legs(vec![region(1)]), p(2.0, 4.0), p(0.0, 1.5)),
+        (legs(vec![region(2)]), p(7.5, -1.5), p(1.5, -0.5)),
+        (legs(vec![via(4.0, 1.0)]), p(2.0, 0.0), p(0.0, 1.8)),
+    ];
+    for (goal, (route, start, velocity)) in starts.into_iter().enumerate() {
+        let wanted = by_runge_kutta(goal, start, velocity);
+        for layout in [Layout::Trials, Layout::Agents] {
+            let error = |step: &str, steps: u32| {
+                let scene = scenario(vec![agent(start, velocity, route.clone())]);
+                let scene = Scenario { clock: Clock::Stepped(Decimal::parse(step).unwrap()), ..scene };
+                let program = Program { layout, ..Program::new(Arc::new(scene)) };
+                let (mut state, mut scratch) = (State::new(layout, 1), Scratch::new());
+                load(&program, &mut state, 0, key(0), None).unwrap();
+                refresh(&program, &mut state, &mut scratch, Mask::lane(0));
+                for _ in 0..steps {
+                    smc::kernel::step(&program, &mut state, &mut scratch);
+                }
+                (at(&state) - wanted).norm()
+            };
+            let errors = [error("0.04", 40), error("0.02", 80), error("0.01", 160)];
+            assert!(errors[1] < 5e-4, "goal {goal}, {layout:?}: {errors:?}");
+            for pair in errors.windows(2) {
+                assert!((3.5..4.5).contains(&(pair[0] / pair[1])), "goal {goal}, {layout:?}: {errors:?}");
+            }
+        }
     }
 }

@@ -11,7 +11,9 @@
 //!    `v <- v0 e + (v - v0 e) c + s sqrt(1 - c^2) xi` with c = exp(-dt/tau), s the stationary standard
 //!    deviation, xi two standard normal numbers: relaxation and variance are exact for every dt;
 //! 4. half a drift as in 2;
-//! 5. the driver looks at the new positions (`drive::steer`);
+//! 5. the driver looks at the new positions (`drive::steer`). Where that turns the direction of someone's leg, the
+//!    velocity is changed by half of `v0 (1 - c)` times the turn: the step was driven along the mean of both directions
+//!    (unless they are more than a right angle apart: then it led past the aim);
 //! 6. the slow force `F(x_{n+1})`, and half a kick by it.
 //!
 //! One evaluation of the slow force and one draw of noise a step, second order in dt. Where a lane has no

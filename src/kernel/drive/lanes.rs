@@ -75,8 +75,18 @@ pub(super) fn steer<S: Simd>(
     let drive = load(simd, block, &state.drive);
     let speed = load(simd, block, &state.speed);
     let turning = walking & turns & !reached;
-    turning.select(dx * inverse, ex).store_slice(&mut state.ex[block].0);
-    turning.select(dy * inverse, ey).store_slice(&mut state.ey[block].0);
+    let (new_x, new_y) = (turning.select(dx * inverse, ex), turning.select(dy * inverse, ey));
+    new_x.store_slice(&mut state.ex[block].0);
+    new_y.store_slice(&mut state.ey[block].0);
+    // The step just made was driven along the direction at its beginning: half of what the driving force would have
+    // been more along the present one. Nothing where a step leads past the aim. The difference is +0 where a leg, a
+    // rest or advice ended, and changes no bit.
+    let (zero, one) = (Vector::splat(simd, 0.0), Vector::splat(simd, 1.0));
+    let rest = Vector::splat(simd, 0.5) * (one - load(simd, block, &state.decay)) * drive;
+    let rest = (ex * new_x + ey * new_y).simd_gt(zero).select(rest, zero);
+    let (vx, vy) = (load(simd, block, &state.vx), load(simd, block, &state.vy));
+    (vx - rest * (ex - new_x)).store_slice(&mut state.vx[block].0);
+    (vy - rest * (ey - new_y)).store_slice(&mut state.vy[block].0);
     let wanted = reached.select(Vector::splat(simd, 0.0), speed);
     walking.select(wanted, drive).store_slice(&mut state.drive[block].0);
     let done = Mask(reached.to_bitmask() as u8);

@@ -59,8 +59,8 @@ pub(super) fn renew(program: &Program, state: &mut State, slot: Slot) {
     Person::new(program, state, slot.block, slot.lane).renew();
 }
 
-/// Updates driving direction, driving speed and presence of all agents in all occupied lanes. To be called
-/// once a step, with the new positions and the ticks that belong to them.
+/// Updates driving direction, driving speed and presence of all agents in all occupied lanes, and velocities by what the
+/// turn of the direction in the step adds. To be called once a step, with the new positions and the ticks that belong to them.
 pub fn steer(program: &Program, state: &mut State) {
     steer_at(Level::new(), program, state);
 }
