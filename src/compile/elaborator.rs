@@ -321,7 +321,8 @@ impl<'a> Elaborator<'a> {
 
     /// Whether a known name is looked for that an unknown one may mean: after many errors that only takes time.
     pub(super) fn looks_for_names(&self) -> bool {
-        self.diagnostics.len() < MOST_LOOKED_FOR
+        let mut errors = self.diagnostics.iter().filter(|one| one.severity == Severity::Error);
+        errors.nth(MOST_LOOKED_FOR - 1).is_none()
     }
 
     /// The text of a span in one line, without comments.

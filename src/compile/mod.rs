@@ -41,6 +41,7 @@ mod scenery;
 mod settings;
 mod sources;
 mod starts;
+mod step;
 pub mod study;
 mod sweeps;
 mod symbols;

@@ -224,6 +224,7 @@ impl<'a> Elaborator<'a> {
             self.keep_starts(people, sources);
             return Err(Reported);
         }
+        self.check_step(file, &people.agents);
         let title = file
             .items
             .iter()

@@ -288,6 +288,52 @@ source door: adult { at = uniform in hall  every = exponential(10 s)  route = (2
 }
 
 #[test]
+fn a_step_that_is_too_long_for_the_forces_is_warned_of_once() {
+    let model = |step: &str, kinds: &str| {
+        format!(
+            "horizon = 1 s\nstep = {step}\nparam n = 7\nscene {{ region hall: rect (0, 0) .. (9, 9) }}\n{kinds}\n\
+             agents crowd[n]: adult {{ at = uniform in hall }}\nagent me: adult {{ at = (20, 2) }}\n"
+        )
+    };
+    let preset = |name: &str| format!("kind adult: sfm preset {name}");
+    let (helbing, vissim) = (preset("helbing2000"), preset("vissim2008"));
+    let heavy = "kind adult: sfm preset helbing2000 { mass = uniform(50 kg, 90 kg)  A = 4000 N }";
+    let cases: [(&str, &str, &[&str]); 9] = [
+        ("0.1 s", &helbing, &["`adult` (at most 0.0461 s)", "`step = 0.025 s`", "n = 6"]),
+        ("1 s / 10", &helbing, &["`step = 0.025 s`"]),
+        ("1 s / 20", &helbing, &["`step = 0.025 s`"]),
+        ("1 s / 15", &helbing, &["`step = 1 s / 30`"]),
+        ("0.1 s", &preset("johansson2007"), &["(at most 0.05 s)", "`step = 0.05 s`", "tenth of `tau`"]),
+        ("0.05 s", &vissim, &["(at most 0.04 s)", "`step = 0.025 s`", "tenth of `tau`"]),
+        ("0.05 s", heavy, &["(at most 0.0258 s)", "`step = 0.025 s`"]),
+        ("0.025 s", heavy, &[]),
+        ("0.04 s", &helbing, &[]),
+    ];
+    for (step, kinds, wanted) in cases {
+        let text = model(step, kinds);
+        let place =
+            Place::new(&[("a.scn", &text), ("a.bltl", "estimate P(F<=0 s contact(me)) within 0.3\n")]);
+        for words in [&["check", "a.scn", "a.bltl", "-q"][..], &["simulate", "a.scn"]] {
+            let said = place.call(words);
+            assert_eq!(said.code, Some(0), "{}", said.err);
+            assert_eq!(
+                said.err.matches("W0801").count(),
+                usize::from(!wanted.is_empty()),
+                "{step}: {}",
+                said.err
+            );
+            for part in wanted {
+                assert!(said.err.contains(part), "{part}: {}", said.err);
+            }
+        }
+    }
+    // Two bodies that meet nothing else.
+    let text = model("0.05 s", &helbing).replace("n = 7", "n = 1");
+    let place = Place::new(&[("a.scn", &text), ("a.bltl", "estimate P(F<=0 s contact(me)) within 0.3\n")]);
+    assert!(!place.call(&["check", "a.scn", "a.bltl", "-q"]).err.contains("W0801"));
+}
+
+#[test]
 fn levels_are_never_rounded_up() {
     let mut properties = "family confidence 95 %\n".to_owned();
     for _ in 0..3 {

@@ -1,4 +1,4 @@
-//! Pages of E08xx: what happens while trials run.
+//! Pages of E08xx and W08xx: what happens while trials run.
 
 use super::Page;
 
@@ -35,5 +35,22 @@ Wrong:\n\
 Right:\n\
 \x20   estimate P(F<=60 s (clearance(user) <= 0 m)) by splitting()\n\
 \x20   estimate P(F<=60 s (clearance(user) <= 0 m & !sensor.failed)) by splitting()",
+    },
+    Page {
+        code: "W0801",
+        title: "the step is too long for the forces",
+        text: "\
+Bodies that touch push each other apart with a force that changes fast. A step of more than 2 / sqrt(n A / (m B)) lets\n\
+them swing farther and farther apart, until trials diverge; n is how many bodies and barriers can touch one body at\n\
+once, at most 6, and with a second social term A2 / B2 is added to A / B. A step of more than a tenth of `tau` is too\n\
+coarse for the way back to the driving speed. Of a distribution counts the value that one draw in 740 goes beyond.\n\
+What behaviours change does not count.\n\
+\n\
+Probably wrong:\n\
+\x20   step = 0.1 s\n\
+\x20   kind adult: sfm preset helbing2000\n\
+Clear:\n\
+\x20   step = 0.025 s\n\
+\x20   kind adult: sfm preset helbing2000",
     },
 ];

@@ -1,0 +1,113 @@
+//! Whether the step is short enough for the forces of the scenario.
+//!
+//! A body of mass m that touches n others feels a social force that falls with n A/B a metre. Steps of more than
+//! 2/sqrt(n A/(m B)) let it swing farther from one to the next (the bound of the Störmer-Verlet method), and more
+//! than a tenth of tau is coarse beside the way back to the driving velocity. Of a law counts the value that one
+//! draw in 740 goes beyond, as 3 standard deviations of a normal one.
+
+use super::elaborator::Elaborator;
+use super::symbols::Meaning;
+use crate::base::decimal::Decimal;
+use crate::base::math::{at_least, at_most};
+use crate::base::tick::Clock;
+use crate::model::{Agent, AgentId, Law};
+use crate::syntax::ast::{Item, ScenarioFile};
+use crate::syntax::diagnostic::Diagnostic;
+use std::collections::BTreeMap;
+
+/// Discs of one size that can touch another one at once.
+const MOST_NEIGHBOURS: usize = 6;
+/// Share of draws below the least value that counts.
+const RARE: f64 = 0.00135;
+/// Parts into which a step is cut so that what was a whole number of steps stays one, and decimals end.
+const PARTS: [i64; 5] = [1, 2, 4, 5, 8];
+
+/// The longest steps for a body, s.
+#[derive(Clone, Copy)]
+struct Longest {
+    force: f64,
+    relaxation: f64,
+}
+
+impl Longest {
+    /// For someone who can touch so many others at once.
+    fn of(agent: &Agent, neighbours: usize) -> Self {
+        let least = |law: &Law| law.draw(RARE);
+        let most = |law: &Law| law.draw(1.0 - RARE);
+        let body = &agent.body;
+        // A body of several persons has their mass and their force.
+        let slope = most(&body.a) / least(&body.b) + most(&body.a2) / least(&body.b2);
+        let rate = neighbours as f64 * most(&body.attention) * slope / least(&body.mass);
+        let slower = agent.particle.map_or(1.0, |particle| particle.tau_factor);
+        Self { force: 2.0 / at_least(rate, 0.0).sqrt(), relaxation: slower * least(&body.tau) / 10.0 }
+    }
+
+    fn both(self) -> f64 {
+        at_most(self.force, self.relaxation)
+    }
+}
+
+impl Elaborator<'_> {
+    /// Warns of a step that is too long for the forces of some kinds.
+    pub(super) fn check_step(&mut self, file: &ScenarioFile, agents: &[Agent]) {
+        let Clock::Stepped(step) = self.clock else { return };
+        let setting = file.items.iter().find_map(|item| match item {
+            Item::Setting { name, value } if name.name == "step" => Some(value.span),
+            _ => None,
+        });
+        let others = agents.len().saturating_sub(1) + self.scene.barriers.len();
+        let neighbours = others.min(MOST_NEIGHBOURS);
+        let mut kinds: BTreeMap<&str, Longest> = BTreeMap::new();
+        for item in &file.items {
+            let (name, kind) = match item {
+                Item::Agents(decl) => (&decl.name, &decl.kind),
+                Item::Group(decl) => (&decl.name, &decl.kind),
+                Item::Source(decl) => (&decl.name, &decl.kind),
+                _ => continue,
+            };
+            let members = match self.scopes[0].get(&name.name).map(|entry| &entry.meaning) {
+                Some(Meaning::Agent(one)) => std::slice::from_ref(one),
+                Some(Meaning::Agents { members, .. }) => members,
+                _ => continue,
+            };
+            // All who are declared together have one body.
+            let Some(agent) = members.first().and_then(|&AgentId(id)| agents.get(id as usize)) else {
+                continue;
+            };
+            let longest = Longest::of(agent, neighbours);
+            if longest.both() < step.to_f64() {
+                let known = kinds.entry(&kind.name).or_insert(longest);
+                if longest.both() < known.both() {
+                    *known = longest;
+                }
+            }
+        }
+        let (Some(span), Some(first)) = (setting, kinds.values().next().copied()) else { return };
+        let strictest = kinds.values().fold(first, |a, b| if b.both() < a.both() { *b } else { a });
+        let named = |(kind, longest): (&&str, &Longest)| {
+            format!("`{kind}` (at most {} s)", (longest.both() * 1e4).floor() / 1e4)
+        };
+        let names: Vec<String> = kinds.iter().map(named).collect();
+        let text = format!("a step of {step} s is too long for {}", names.join(" and "));
+        let mut warning = Diagnostic::warning("W0801", span, text);
+        let reason = if strictest.force < strictest.relaxation {
+            format!("2 / sqrt(n A / (m B)) with n = {neighbours} is the longest step for bodies that touch")
+        } else {
+            "a tenth of `tau` is the longest step for driving".to_owned()
+        };
+        if let Some(shorter) = shorter(step, strictest.both()) {
+            warning = warning.hint(format!("write `step = {shorter}`: {reason}"));
+        }
+        self.note(warning);
+    }
+}
+
+/// A part of a step that is no longer than a limit, as it is written.
+fn shorter(step: Decimal, limit: f64) -> Option<String> {
+    let powers = std::iter::successors(Some(1_i64), |power| power.checked_mul(10)).take(12);
+    let parts = powers.flat_map(|power| PARTS.map(|part| part * power));
+    let fits = |part: &Decimal| part.to_f64() <= limit;
+    let part = parts.filter_map(|count| step.div(Decimal::whole(count))).find(fits)?;
+    let ends = Decimal::parse(&part.to_string()) == Some(part);
+    Some(if ends { format!("{part} s") } else { format!("{} s / {}", part.numerator(), part.denominator()) })
+}
