@@ -12,7 +12,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Codes of errors of queries that hang on no value, besides those of names, kinds and units.
 const VALUELESS: [&str; 6] = ["E0204", "E0507", "E0508", "E0603", "E0606", "E0607"];
 /// Codes of numbers that hang on no other value where they are written as such.
-const WRITTEN: [&str; 8] = ["E0402", "E0404", "E0405", "E0503", "E0601", "E0602", "E0604", "E0605"];
+const WRITTEN: [&str; 9] = ["E0402", "E0404", "E0405", "E0503", "E0601", "E0602", "E0604", "E0605", "E0710"];
 /// The world in which nothing is set.
 const PLAIN: usize = 0;
 /// Most worlds that an error names, and most words in which it is said.

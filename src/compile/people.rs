@@ -409,6 +409,9 @@ impl<'a> Elaborator<'a> {
                         let said = "this distance must be positive";
                         self.report(Diagnostic::error("E0405", within.span, said))
                     }
+                    Ok(distance) => {
+                        self.in_reach(within.span, Vec2::new(distance.value, 0.0)).map(|_| distance)
+                    }
                     distance => distance,
                 };
                 self.declared_before(of, agent)?;
@@ -422,12 +425,9 @@ impl<'a> Elaborator<'a> {
                 Ok(Position::Near { agent: id, within: distance.value })
             }
             Value::Plain(expr) => match self.lower(expr, &Locals::default())? {
-                Typed::Point(x, y) if x.dimension == Dimension::LENGTH => {
-                    Ok(Position::Point(Vec2::new(x.value, y.value)))
-                }
+                Typed::Point(x, y) => self.place(expr.span, (x, y)).map(Position::Point),
                 // A region as a start means its inside.
                 Typed::Region(id) => self.region_shape(id, expr.span).map(Position::Within),
-                Typed::Point(x, _) => self.wrong_dimension(expr.span, Dimension::LENGTH, x.dimension),
                 found => self.mismatch(expr.span, "a point, a region or `uniform in` a shape", &found),
             },
             other => {

@@ -73,12 +73,10 @@ impl<'a> Elaborator<'a> {
                     }
                     *next += 1;
                 }
-                SceneItem::Point { name, at } => {
-                    match self.point_of(at, Dimension::LENGTH, &Locals::default()) {
-                        Ok(at) => self.scene.points.push((name.name.clone(), at)),
-                        Err(Reported) => self.doubt(0, &name.name),
-                    }
-                }
+                SceneItem::Point { name, at } => match self.point_of(at, &Locals::default()) {
+                    Ok(at) => self.scene.points.push((name.name.clone(), at)),
+                    Err(Reported) => self.doubt(0, &name.name),
+                },
                 SceneItem::Import { path, filter, .. } => self.import(path, filter.as_ref(), files),
             }
         }
@@ -123,7 +121,7 @@ impl<'a> Elaborator<'a> {
     }
 
     fn corner(&mut self, point: &Expr) -> Lowered<Vec2> {
-        self.point_of(point, Dimension::LENGTH, &Locals::default())
+        self.point_of(point, &Locals::default())
     }
 
     /// Where a wall begins. `wall south (0, 0) -- …` lacks a colon: it reads as a call.
@@ -147,8 +145,8 @@ impl<'a> Elaborator<'a> {
     pub(super) fn shape(&mut self, shape: &ShapeExpr, locals: &Locals) -> Lowered<Shape> {
         match shape {
             ShapeExpr::Named(name) => self.named_shape(name),
-            ShapeExpr::Circle { centre, radius, .. } => {
-                let middle = self.point_of(centre, Dimension::LENGTH, locals);
+            ShapeExpr::Circle { centre, radius, span } => {
+                let middle = self.point_of(centre, locals);
                 let size = self.number_of(radius, Dimension::LENGTH, locals)?;
                 if size.value <= 0.0 {
                     return self.report(Diagnostic::error(
@@ -157,13 +155,13 @@ impl<'a> Elaborator<'a> {
                         "the radius of a circle must be positive",
                     ));
                 }
-                Ok(Shape::Circle { centre: middle?, radius: size.value })
+                let circle = Shape::Circle { centre: middle?, radius: size.value };
+                self.in_reach(*span, circle.bounds().low)?;
+                self.in_reach(*span, circle.bounds().high)?;
+                Ok(circle)
             }
             ShapeExpr::Rectangle { a, b, span } => {
-                let corners = (
-                    self.point_of(a, Dimension::LENGTH, locals),
-                    self.point_of(b, Dimension::LENGTH, locals),
-                );
+                let corners = (self.point_of(a, locals), self.point_of(b, locals));
                 let (a, b) = (corners.0?, corners.1?);
                 if a.x == b.x || a.y == b.y {
                     return self.report(Diagnostic::error("E0401", *span, "this rectangle has no area"));
@@ -172,8 +170,7 @@ impl<'a> Elaborator<'a> {
             }
             ShapeExpr::Polygon { outline, holes, span } => {
                 let ring = |this: &mut Self, points: &[Expr]| -> Lowered<Vec<Vec2>> {
-                    let corners: Vec<_> =
-                        points.iter().map(|p| this.point_of(p, Dimension::LENGTH, locals)).collect();
+                    let corners: Vec<_> = points.iter().map(|p| this.point_of(p, locals)).collect();
                     corners.into_iter().collect()
                 };
                 let outline = ring(self, outline);

@@ -6,7 +6,6 @@ use super::laws::{truncate, value_span};
 use super::people::People;
 use super::symbols::Meaning;
 use super::typed::Typed;
-use crate::base::geometry::Vec2;
 use crate::base::tick::Tick;
 use crate::model::{Goal, Leg, Move, Moves, Route, Who};
 use crate::syntax::ast::{self, Expr, MoveOption, MovesDecl, Value};
@@ -71,10 +70,7 @@ impl<'a> Elaborator<'a> {
         }
         match self.lower(expr, locals)? {
             Typed::Region(id) => Ok(Goal::Region(id)),
-            Typed::Point(x, y) if x.dimension == Dimension::LENGTH => {
-                Ok(Goal::Point(Vec2::new(x.value, y.value)))
-            }
-            Typed::Point(x, _) => self.wrong_dimension(expr.span, Dimension::LENGTH, x.dimension),
+            Typed::Point(x, y) => self.place(expr.span, (x, y)).map(Goal::Point),
             found => self.mismatch(expr.span, "a region or a point to go to", &found),
         }
     }

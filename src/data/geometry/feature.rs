@@ -1,7 +1,7 @@
 //! Features: a shape with a name and properties.
 
 use super::ring;
-use crate::base::geometry::{Polygon, Vec2};
+use crate::base::geometry::{Polygon, Vec2, coordinate_fault};
 
 /// A shape and what is said of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,15 +78,15 @@ impl GeometryError {
     }
 }
 
-/// A point, refused where it is not finite.
+/// A point, refused where its coordinates are too large.
 pub(super) fn point(p: Vec2) -> Result<Geometry, String> {
-    finite(&[p])?;
+    in_reach(&[p])?;
     Ok(Geometry::Point(p))
 }
 
-/// A line, refused where it is not finite or all in one place.
+/// A line, refused where its coordinates are too large or it is all in one place.
 pub(super) fn line(mut points: Vec<Vec2>) -> Result<Geometry, String> {
-    finite(&points)?;
+    in_reach(&points)?;
     points.dedup();
     if points.len() < 2 {
         return Err("a line needs two points apart from each other".into());
@@ -99,7 +99,7 @@ pub(super) fn polygon(rings: Vec<Vec<Vec2>>) -> Result<Geometry, String> {
     let mut good = Vec::with_capacity(rings.len());
     for (k, points) in rings.into_iter().enumerate() {
         let what = if k == 0 { "the outline".to_owned() } else { format!("hole {k}") };
-        finite(&points)?;
+        in_reach(&points)?;
         good.push(ring::checked(points).map_err(|fault| format!("{what} {fault}"))?);
     }
     let mut good = good.into_iter();
@@ -111,11 +111,8 @@ pub(super) fn polygon(rings: Vec<Vec<Vec2>>) -> Result<Geometry, String> {
     }
 }
 
-fn finite(points: &[Vec2]) -> Result<(), String> {
-    match points.iter().find(|p| !(p.x.is_finite() && p.y.is_finite())) {
-        Some(p) => Err(format!("the point ({}, {}) is not finite", p.x, p.y)),
-        None => Ok(()),
-    }
+fn in_reach(points: &[Vec2]) -> Result<(), String> {
+    points.iter().find_map(|p| coordinate_fault(*p)).map_or(Ok(()), Err)
 }
 
 #[cfg(test)]
@@ -143,8 +140,11 @@ mod tests {
         assert_eq!(fault(vec![square(0.0, 1.0), square(0.5, 0.5)]), "hole 1 has fewer than three corners");
         let mut bad = square(0.0, 1.0);
         bad[2].x = f64::NAN;
-        assert_eq!(fault(vec![bad]), "the point (NaN, 1) is not finite");
+        assert_eq!(fault(vec![bad]), "a coordinate must lie between -1e6 m and 1e6 m (got NaN m)");
         assert!(line(vec![Vec2::zeros(), Vec2::zeros()]).is_err());
         assert!(point(Vec2::new(f64::INFINITY, 0.0)).is_err());
+        assert!(point(Vec2::new(-1e6, 1e6)).is_ok());
+        let far = point(Vec2::new(500_000.0, 5_400_000.0)).unwrap_err();
+        assert_eq!(far, "a coordinate must lie between -1e6 m and 1e6 m (got 5.4e6 m)");
     }
 }

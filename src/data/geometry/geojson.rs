@@ -9,7 +9,7 @@ use geojson::{GeoJson, GeometryValue, JsonValue, Position};
 ///
 /// # Errors
 /// Text that is no `GeoJSON` (one error, with its place where the parser knows it); else every feature with
-/// a point that is not finite, a line in one place, or a ring that is degenerate or meets itself.
+/// too large coordinates, a line in one place, or a ring that is degenerate or meets itself.
 pub fn read_geojson(text: &str) -> Result<Vec<Feature>, Vec<GeometryError>> {
     select_geojson(text, &mut |_, _| true)
 }

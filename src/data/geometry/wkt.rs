@@ -26,7 +26,7 @@ const WORDS: [&str; 11] = [
 /// Reads all geometries, as features without name and properties. Empty ones are passed over.
 ///
 /// # Errors
-/// Every geometry that does not parse, is not finite, or is a line in one place or a degenerate ring, with
+/// Every geometry that does not parse, has too large coordinates, or is a line in one place or a degenerate ring, with
 /// the place where it begins.
 pub fn read_wkt(text: &str) -> Result<Vec<Feature>, Vec<GeometryError>> {
     let (mut found, mut errors) = (Vec::new(), Vec::new());
@@ -215,7 +215,7 @@ mod tests {
         assert_eq!(errors[0].message, "this is no WKT: `oops` is no number");
         assert_eq!(errors[3].message, "this is no WKT: `x` is no number");
         assert_eq!(errors[1].message, "the outline has fewer than three corners");
-        assert_eq!(errors[2].message, "the point (inf, 0) is not finite");
+        assert_eq!(errors[2].message, "a coordinate must lie between -1e6 m and 1e6 m (got inf m)");
     }
 
     #[test]

@@ -10,7 +10,7 @@
 
 use super::line::{LineError, fields, quoted};
 use super::recording::{Person, Recording, Sample};
-use crate::base::geometry::Vec2;
+use crate::base::geometry::{Vec2, coordinate_fault};
 use std::collections::BTreeMap;
 
 /// Seconds between two annotations, in every sequence of the set.
@@ -37,7 +37,7 @@ struct Row {
 /// Reads a whole `obsmat.txt`. Empty lines are passed over.
 ///
 /// # Errors
-/// Every bad line: not eight columns, a field that is not a finite number, a frame or id that is no whole
+/// Every bad line: not eight columns, a field that is not a finite number, a position too far from the origin, a frame or id that is no whole
 /// number from 0 to 4294967295, and a person who is in one frame twice; in the order of the lines. A text
 /// without any row is one error, and so is one whose velocities tell of another interval.
 pub fn read_eth_biwi(text: &str) -> Result<Recording, Vec<LineError>> {
@@ -117,11 +117,15 @@ fn read_row(number: usize, line: &str, errors: &mut Vec<LineError>) -> Option<Ro
             errors.push(LineError::at(number, column, message));
         }
     }
+    let position = Vec2::new(values[2], values[4]);
+    if let Some(fault) = coordinate_fault(position) {
+        errors.push(LineError::whole(number, fault));
+    }
     (errors.len() == before).then(|| Row {
         line: number,
         frame: values[0] as u32,
         id: values[1] as u32,
-        position: Vec2::new(values[2], values[4]),
+        position,
         velocity: Vec2::new(values[5], values[7]),
     })
 }
@@ -209,6 +213,8 @@ mod tests {
                 "line 6, column 24: vy `NaN` is not a finite number",
             ]
         );
+        let far = read_eth_biwi("1 1 0 0 2e6 0 0 0\n").unwrap_err();
+        assert_eq!(far[0].to_string(), "line 1: a coordinate must lie between -1e6 m and 1e6 m (got 2e6 m)");
         assert_eq!(read_eth_biwi(" \n").unwrap_err()[0].to_string(), "there is no observation in this file");
     }
 

@@ -93,4 +93,17 @@ Right:\n\
 \x20   trial,safe\n\
 \x20   0,true",
     },
+    Page {
+        code: "E0710",
+        title: "a coordinate is too large",
+        text: "\
+Coordinates lie between -1e6 m and 1e6 m. Numbers have about 16 digits, so that far from the origin the small steps of\n\
+people would be lost in rounding. This holds for starts, shapes, walls, points and goals, and for imports (E0704) and\n\
+recordings (E0702). Coordinates of maps are often that large: subtract a common origin from all of them.\n\
+\n\
+Wrong:\n\
+\x20   agent user: adult { at = (691608, 5334762) }\n\
+Right:\n\
+\x20   agent user: adult { at = (108, 262) }",
+    },
 ];
