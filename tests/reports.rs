@@ -115,6 +115,11 @@ fn estimates() -> Vec<QueryResult> {
             counts: Counts { trials: 1_000, unresolved: 2, ..Counts::default() },
             clipped: 3,
             shrunk: 40,
+            warnings: vec![
+                "bodies overlapped at the start and were made smaller in 40 trials; in trial 3: `user` at the wall `south` \
+                 from a radius of 0.3 m to 0.2 m"
+                    .into(),
+            ],
             stopped_by: Stop::Plan,
             distribution: Some(Distribution {
                 histogram: Some(Histogram {

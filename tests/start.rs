@@ -5,11 +5,11 @@ use smc::base::geometry::{Polygon, Segment, Shape, Vec2};
 use smc::base::lanes::{LANES, Lanes, Mask};
 use smc::base::random::{Purpose, Stream, TrialKey, name_hash};
 use smc::base::tick::{Clock, Tick};
-use smc::kernel::start::{Fault, check_area, load};
+use smc::kernel::start::{Fault, Overlapped, check_area, load};
 use smc::kernel::{Layout, Program, State};
 use smc::model::{
-    Agent, AgentId, Barrier, Body, Family, Goal, Law, Leg, Move, Moves, Obstacle, Particle, Position, Region,
-    RegionId, Route, Scenario, Scene, Start,
+    Agent, AgentId, Barrier, BarrierId, Body, Family, Goal, Law, Leg, Move, Moves, Obstacle, Particle,
+    Position, Region, RegionId, Route, Scenario, Scene, Start,
 };
 use std::sync::Arc;
 
@@ -222,7 +222,7 @@ fn bodies_are_apart_in_their_shape_and_off_the_barriers() {
     for index in 0..200 {
         let lane = index as usize % LANES;
         let loaded = load(&program, &mut state, lane, key(index), None).unwrap();
-        assert_eq!((loaded.shrunk_pairs, loaded.shrunk_at_barriers), (0, 0));
+        assert_eq!(loaded.shrunk, []);
         assert_eq!(overlaps(&state, lane), 0);
         for k in 1..41 {
             let at = p(state.x[k].0[lane], state.y[k].0[lane]);
@@ -246,7 +246,7 @@ fn a_crowded_shape_is_relaxed() {
     for index in 0..20 {
         let loaded = load(&program, &mut state, 0, key(index), None).unwrap();
         assert!(loaded.pushed > 0);
-        assert_eq!(loaded.shrunk_pairs, 0, "trial {index}");
+        assert_eq!(loaded.shrunk, [], "trial {index}");
         assert_eq!(overlaps(&state, 0), 0);
         for k in 0..26 {
             assert!(shape.distance(p(state.x[k].0[0], state.y[k].0[0])) < 1e-9);
@@ -269,7 +269,14 @@ fn overlapping_points_shrink_to_touch() {
     let program = Program::new(Arc::new(scenario(agents)));
     let mut state = empty(&program);
     let loaded = load(&program, &mut state, 0, key(1), None).unwrap();
-    assert_eq!((loaded.shrunk_pairs, loaded.shrunk_at_barriers, loaded.pushed), (1, 1, 0));
+    let at: Vec<_> = loaded.shrunk.iter().map(|one| (one.agent.0, one.at, one.from)).collect();
+    let wanted = [
+        (0, Overlapped::Agent(AgentId(1)), 0.25),
+        (1, Overlapped::Agent(AgentId(0)), 0.25),
+        (3, Overlapped::Barrier(BarrierId(0)), 0.25),
+    ];
+    assert_eq!((at.as_slice(), loaded.pushed), (&wanted[..], 0));
+    assert!(loaded.shrunk.iter().all(|one| one.to == state.radius[one.agent.0 as usize].0[0]));
     let radius = |k: usize| state.radius[k].0[0];
     assert!((radius(0) - 0.15).abs() < 1e-12 && (radius(1) - 0.15).abs() < 1e-12);
     assert!(radius(0) + radius(1) <= 0.3);
@@ -333,7 +340,7 @@ fn a_large_crowd_has_its_own_layout_and_no_overlaps() {
     assert_eq!(program.layout, Layout::Agents);
     let mut state = empty(&program);
     let loaded = load(&program, &mut state, 0, key(0), None).unwrap();
-    assert_eq!((loaded.shrunk_pairs, overlaps(&state, 0)), (0, 0));
+    assert_eq!((loaded.shrunk.len(), overlaps(&state, 0)), (0, 0));
     assert!(state.present[..1000 / LANES].iter().all(|&mask| mask == Mask::ALL));
     assert_eq!(state.occupied, Mask::lane(0));
 }
@@ -376,7 +383,7 @@ fn what_is_allowed_of_few_can_be_placed() {
         let mut state = empty(&program);
         for index in 0..50 {
             let loaded = load(&program, &mut state, 0, key(index), None).unwrap();
-            assert_eq!((loaded.shrunk_pairs, overlaps(&state, 0)), (0, 0), "{shape:?}");
+            assert_eq!((loaded.shrunk.len(), overlaps(&state, 0)), (0, 0), "{shape:?}");
         }
         assert!(f64::from(count) * 0.09 * std::f64::consts::PI > 0.84 * covered(&shape, 0.3));
     }

@@ -12,7 +12,7 @@ use crate::data::table::{
     Held, Row, StateRow, write_csv, write_json, write_json_lines, write_states_csv, write_states_json,
     write_states_json_lines,
 };
-use crate::engine::{no_start, placeable};
+use crate::engine::{no_start, placeable, smaller};
 use crate::kernel::{Program, Scratch, Slot, State, dynamics, start};
 use crate::model::{AgentId, Domain, Scenario};
 use crate::report::ExitCode as Exit;
@@ -28,6 +28,8 @@ struct Record<'s> {
     arrival: Option<String>,
     position: Vec2,
     velocity: Vec2,
+    /// Whether the agent is in the scene.
+    present: bool,
     /// The radius, m, and the values of all variables of processes; truth as 1 or 0.
     signals: Vec<f64>,
     /// States of behaviours, in the order of their declaration; empty in who has none.
@@ -47,6 +49,8 @@ struct Walk<'p> {
     running: bool,
     /// Jumps since the start of the trial, in continuous time.
     jumps: u64,
+    /// Trials in which bodies were made smaller at the start, and the first of them.
+    shrunk: (u64, Option<TrialKey>),
     /// Trials that ended before their time.
     notes: Vec<String>,
     /// Whether the model was wrong in one of them.
@@ -66,6 +70,7 @@ impl<'p> Walk<'p> {
             agent: 0,
             running: false,
             jumps: 0,
+            shrunk: (0, None),
             notes: Vec::new(),
             is_wrong: false,
         }
@@ -80,7 +85,10 @@ impl<'p> Walk<'p> {
                 }
                 let key = TrialKey { seed: self.arguments.seed, index: self.trial, branch: 0 };
                 match start::load(self.program, &mut self.state, 0, key, self.advice) {
-                    Ok(_) => {
+                    Ok(loaded) => {
+                        if !loaded.shrunk.is_empty() {
+                            self.shrunk = (self.shrunk.0 + 1, self.shrunk.1.or(Some(key)));
+                        }
                         let lanes = crate::base::lanes::Mask::lane(0);
                         dynamics::refresh(self.program, &mut self.state, &mut self.scratch, lanes);
                         self.running = true;
@@ -180,14 +188,15 @@ impl<'p> Iterator for Walk<'p> {
 
     fn next(&mut self) -> Option<Record<'p>> {
         let agents = self.program.scenario.agents.len();
-        // Only who is in the scene has a row.
-        let slot = loop {
+        // An agent of a source, which keeps many more places than are taken, has rows while it is in the scene.
+        let (slot, present) = loop {
             if self.agent == 0 && !self.advance() || agents == 0 {
                 return None;
             }
             let slot = self.state.slot(self.agent, 0);
-            if self.state.present[slot.block].has(slot.lane) {
-                break slot;
+            let present = self.state.present[slot.block].has(slot.lane);
+            if present || !self.program.arrivals.comes(self.agent) {
+                break (slot, present);
             }
             self.agent = (self.agent + 1) % agents;
         };
@@ -199,18 +208,19 @@ impl<'p> Iterator for Walk<'p> {
             arrival: self.state.queues.arrival(&self.program.scenario.sources, AgentId(self.agent as u32), 0),
             position: Vec2::new(at(&self.state.x), at(&self.state.y)),
             velocity: Vec2::new(at(&self.state.vx), at(&self.state.vy)),
-            signals: std::iter::once(at(&self.state.radius))
+            present,
+            signals: std::iter::once(if present { at(&self.state.radius) } else { f64::NAN })
                 .chain(self.state.variables.iter().map(|lanes| lanes.0[0]))
                 .collect(),
-            modes: modes(self.program, &self.state, slot),
+            modes: modes(self.program, &self.state, present.then_some(slot)),
         };
         self.agent = (self.agent + 1) % agents;
         Some(record)
     }
 }
 
-/// The names of the states of all behaviours in a slot.
-fn modes<'p>(program: &'p Program, state: &State, slot: Slot) -> Vec<&'p str> {
+/// The names of the states of all behaviours in a slot; empty without one.
+fn modes<'p>(program: &'p Program, state: &State, slot: Option<Slot>) -> Vec<&'p str> {
     let declared = &program.scenario.behaviours.declared;
     let modes = &state.behaviours.modes;
     declared
@@ -218,7 +228,8 @@ fn modes<'p>(program: &'p Program, state: &State, slot: Slot) -> Vec<&'p str> {
         .enumerate()
         .filter(|(_, behaviour)| !behaviour.states.is_empty())
         .map(|(k, behaviour)| {
-            let mode = modes.get(k).map_or(-1.0, |modes| modes[slot.block].0[slot.lane]);
+            let here = modes.get(k).zip(slot);
+            let mode = here.map_or(-1.0, |(modes, slot)| modes[slot.block].0[slot.lane]);
             // Nobody is in a state with a negative number.
             let name = if mode < 0.0 { None } else { behaviour.states.get(mode as usize) };
             name.map_or("", String::as_str)
@@ -327,6 +338,9 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
         },
         None => write(arguments.format, BufWriter::new(std::io::stdout().lock()), &scenario, &mut walk),
     };
+    if let (trials, Some(first)) = walk.shrunk {
+        say(&format!("warning: {}\n", smaller(&program, first, trials)));
+    }
     for note in &walk.notes {
         say(&format!("warning: {note}\n"));
     }
@@ -366,7 +380,7 @@ fn write(
         },
         position: record.position,
         velocity: record.velocity,
-        present: true,
+        present: record.present,
         signals: record.signals.into(),
         words: record.modes,
     });

@@ -18,7 +18,7 @@ use super::told::Told;
 use super::typed::Typed;
 use super::wording::{Frame, Uses};
 use crate::base::decimal::Decimal;
-use crate::base::geometry::{Shape, Vec2, coordinate_fault};
+use crate::base::geometry::Shape;
 use crate::base::tick::{Clock, Tick};
 use crate::data::tracks::Recording;
 use crate::logic::Tree;
@@ -474,33 +474,6 @@ impl<'a> Elaborator<'a> {
                 self.report(error)
             }
             found => self.mismatch(expr.span, "a number", &found),
-        }
-    }
-
-    /// A place known at compile time, m.
-    pub(super) fn point_of(&mut self, expr: &Expr, locals: &Locals) -> Lowered<Vec2> {
-        match self.lower(expr, locals)? {
-            Typed::Point(x, y) => self.place(expr.span, (x, y)),
-            found => self.mismatch(expr.span, "a point such as `(1, 2)`", &found),
-        }
-    }
-
-    /// A point as a place of the plane, m.
-    pub(super) fn place(&mut self, span: Span, (x, y): (Number, Number)) -> Lowered<Vec2> {
-        if x.dimension != Dimension::LENGTH {
-            return self.wrong_dimension(span, Dimension::LENGTH, x.dimension);
-        }
-        self.in_reach(span, Vec2::new(x.value, y.value))
-    }
-
-    /// A point that a scene can have: rounding swallows the steps of people far from the origin.
-    pub(super) fn in_reach(&mut self, span: Span, p: Vec2) -> Lowered<Vec2> {
-        match coordinate_fault(p) {
-            None => Ok(p),
-            Some(fault) => {
-                let error = Diagnostic::error("E0710", span, fault);
-                self.report(error.hint("subtract a common origin from all coordinates"))
-            }
         }
     }
 

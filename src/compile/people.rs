@@ -409,10 +409,7 @@ impl<'a> Elaborator<'a> {
                         let said = "this distance must be positive";
                         self.report(Diagnostic::error("E0405", within.span, said))
                     }
-                    Ok(distance) => {
-                        self.in_reach(within.span, Vec2::new(distance.value, 0.0)).map(|_| distance)
-                    }
-                    distance => distance,
+                    far => far.and_then(|d| self.in_reach(within.span, Vec2::new(d.value, 0.0)).map(|_| d)),
                 };
                 self.declared_before(of, agent)?;
                 let typed = self.lower(agent, &Locals::default())?;
@@ -475,6 +472,7 @@ impl<'a> Elaborator<'a> {
             self.define_empty(&decl.name, decl.plural || decl.count.is_some(), with);
             return;
         };
+        let found = self.onto_rims(recorded, found, &base.radius);
         let own_speed = decl.body.iter().any(|f| f.name.name == "speed");
         let Ok(members) = self.people(&decl.name, found.len(), decl.plural, people, |k| {
             let velocity = found[k].velocity;

@@ -1,12 +1,13 @@
 //! Starts that no trial can make, whatever is drawn: in an obstacle, on a wall, at one point with somebody else,
 //! or where the smallest bodies that can be drawn find no room.
 //!
-//! What overlaps only in part is no error: radii shrink until the bodies touch, and the report counts the trials.
+//! What overlaps only in part is no error: radii shrink until the bodies touch, and the report names them. A given
+//! point is refused where a barrier would leave less than half of the radius.
 
 use super::elaborator::Elaborator;
 use super::people::People;
 use super::symbols::Meaning;
-use crate::base::geometry::{Bounds, Shape, Vec2};
+use crate::base::geometry::{Bounds, Shape, Vec2, rotated};
 use crate::model::{Agent, AgentId, Barrier, Obstacle, Position};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -14,6 +15,12 @@ use std::collections::BTreeMap;
 
 /// Nearer than this two points are one, m: far above rounding, far below what anyone sees.
 const ONE_POINT: f64 = 1e-6;
+
+/// Share of its radius that a body keeps at least beside a barrier where its start is given.
+const LEAST_LEFT: f64 = 0.5;
+
+/// Most barriers that are left one after the other on the way to a free place.
+const MOST_MOVES: u32 = 64;
 
 /// Discs that are thrown and pushed jam at about this share of an area.
 const JAMMED: f64 = 0.84;
@@ -31,7 +38,12 @@ pub(super) fn written(places: &[(AgentId, Span)], agent: AgentId) -> Option<Span
 }
 
 /// A barrier and the rectangle around it.
-type Solid<'b> = (&'b Barrier, Bounds);
+pub(super) type Solid<'b> = (&'b Barrier, Bounds);
+
+/// The barriers of a scene with their rectangles.
+pub(super) fn solids(barriers: &[Barrier]) -> Vec<Solid<'_>> {
+    barriers.iter().filter_map(|barrier| Some((barrier, around(barrier)?))).collect()
+}
 
 fn around(barrier: &Barrier) -> Option<Bounds> {
     match &barrier.obstacle {
@@ -57,6 +69,30 @@ fn nearest<'b>(barriers: &[Solid<'b>], p: Vec2, reach: f64) -> Option<(&'b Barri
         }
     }
     best
+}
+
+/// A barrier that leaves a disc at a point less of its radius than a given start may lose, and its distance.
+pub(super) fn in_the_way<'b>(barriers: &[Solid<'b>], p: Vec2, radius: f64) -> Option<(&'b Barrier, f64)> {
+    let reach = LEAST_LEFT * radius;
+    nearest(barriers, p, if reach > ONE_POINT { reach } else { ONE_POINT })
+}
+
+/// A point near another one at which a disc touches no barrier: out of each barrier that is in the way the shortest way.
+pub(super) fn beside(barriers: &[Solid<'_>], from: Vec2, radius: f64) -> Option<Vec2> {
+    let mut p = from;
+    for _ in 0..MOST_MOVES {
+        let Some((barrier, distance)) = nearest(barriers, p, radius) else { return Some(p) };
+        let surface = barrier.obstacle.nearest_on_surface(p);
+        let mut out = if distance < 0.0 { surface - p } else { p - surface };
+        if out.norm() <= ONE_POINT {
+            // On the rim: the direction in which it is left behind soonest.
+            let turned = |k: i32| rotated(Vec2::new(1.0, 0.0), f64::from(k) * std::f64::consts::TAU / 16.0);
+            let left = |way: &Vec2| barrier.obstacle.distance(surface + way * radius);
+            out = (0..16).map(turned).max_by(|a, b| left(a).total_cmp(&left(b)))?;
+        }
+        p = surface + out * ((radius + ONE_POINT) / out.norm());
+    }
+    None
 }
 
 /// The smallest radius that a trial can give somebody, m.
@@ -95,8 +131,7 @@ impl Elaborator<'_> {
     /// Refuses the starts that no trial can make.
     pub(super) fn check_places(&mut self, people: &People) {
         let scene = self.scene.clone();
-        let barriers: Vec<Solid<'_>> =
-            scene.barriers.iter().filter_map(|barrier| Some((barrier, around(barrier)?))).collect();
+        let barriers = solids(&scene.barriers);
         let mut points: BTreeMap<(i64, i64), AgentId> = BTreeMap::new();
         let mut near: BTreeMap<AgentId, Vec<(AgentId, f64)>> = BTreeMap::new();
         // The last declaration about which something was said.
@@ -147,7 +182,7 @@ impl Elaborator<'_> {
         }
     }
 
-    /// In an obstacle, on a wall, or, for who must touch nothing, beside one.
+    /// In an obstacle, on a wall, so near one that little is left of the body, or, where nothing may be touched, beside one.
     fn beside_barriers(
         &self,
         agent: &Agent,
@@ -157,26 +192,31 @@ impl Elaborator<'_> {
         span: Span,
     ) -> Option<Diagnostic> {
         let (name, radius) = (&agent.name, least_radius(agent));
-        let (barrier, distance) = nearest(barriers, p, if comes { radius } else { ONE_POINT })?;
-        let (article, what) = match barrier.obstacle {
+        let found = if comes { nearest(barriers, p, radius) } else { in_the_way(barriers, p, radius) };
+        let (barrier, distance) = found?;
+        let (place, what) = match barrier.obstacle {
             Obstacle::Wall(_) => ("on", "wall"),
             Obstacle::Solid(_) if distance < 0.0 => ("inside", "obstacle"),
             Obstacle::Solid(_) => ("on the rim of", "obstacle"),
         };
-        let called = match barrier.name.as_str() {
-            "" if what == "wall" => "a wall".to_owned(),
-            "" => "an obstacle".to_owned(),
-            known => format!("the {what} `{known}`"),
-        };
+        let called = barrier.phrase();
         let error = if distance <= ONE_POINT {
-            Diagnostic::error("E0409", span, format!("`{name}` starts {article} {called}"))
+            Diagnostic::error("E0409", span, format!("`{name}` starts {place} {called}"))
                 .hint("nobody can stand there: move the start or the barrier")
-        } else if distance < radius {
+        } else if comes && distance < radius {
             let text = format!(
                 "nobody finds room to come in here: {called} is {distance:.3} m away, and `{name}` has a radius of at \
                  least {radius:.3} m"
             );
             Diagnostic::error("E0801", span, text).hint("people of a source come in where they touch nothing")
+        } else if !comes && distance < LEAST_LEFT * radius {
+            let text = format!(
+                "`{name}` starts {distance:.3} m from {called}, which leaves less than half of its radius ({radius:.3} m)"
+            );
+            let hint = format!(
+                "move the start at least {radius:.3} m away from the {what}, or give a smaller radius"
+            );
+            Diagnostic::error("E0409", span, text).hint(hint)
         } else {
             return None;
         };

@@ -3,9 +3,11 @@
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::files::Files;
+use super::places;
 use super::scenery::missing;
 use super::symbols::{Meaning, unknown};
 use crate::data::tracks::{LineError, Observation, Recording, read_eth_biwi};
+use crate::model::Law;
 use crate::syntax::ast::{Expr, Ident, Recorded, Text};
 use crate::syntax::diagnostic::Diagnostic;
 use std::collections::BTreeSet;
@@ -164,6 +166,50 @@ impl<'a> Elaborator<'a> {
             }
         }
         Ok(chosen)
+    }
+
+    /// Puts those who were recorded in a barrier, or so near one that they could not start there, beside it.
+    pub(super) fn onto_rims(
+        &mut self,
+        recorded: &Recorded,
+        mut found: Vec<Observation>,
+        radius: &Law,
+    ) -> Vec<Observation> {
+        let barriers = places::solids(&self.scene.barriers);
+        let (least, most) = radius.bounds();
+        let room = if most.is_finite() { most } else { least };
+        let mut moved = Vec::new();
+        for person in &mut found {
+            let Some((barrier, distance)) = places::in_the_way(&barriers, person.position, least) else {
+                continue;
+            };
+            // Where there is no room beside it, the start is refused.
+            let Some(p) = places::beside(&barriers, person.position, room) else { continue };
+            let place = match distance {
+                ..0.0 => format!("inside {}", barrier.phrase()),
+                _ => format!("{distance:.3} m from {}", barrier.phrase()),
+            };
+            let by = (p - person.position).norm();
+            let (id, x, y) = (person.id, p.x, p.y);
+            moved.push(format!(
+                "person {id} was recorded {place}, and starts {by:.3} m away at ({x:.3}, {y:.3})"
+            ));
+            person.position = p;
+        }
+        if !moved.is_empty() {
+            let title = match moved.len() {
+                1 => "a person was recorded inside or close to a barrier and starts beside it".to_owned(),
+                many => {
+                    format!("{many} persons were recorded inside or close to barriers and start beside them")
+                }
+            };
+            let more = moved.len().saturating_sub(SHOWN_LINES);
+            moved.truncate(SHOWN_LINES);
+            let rest = if more > 0 { format!("; and {more} more") } else { String::new() };
+            let warning = Diagnostic::warning("W0701", recorded.span, title);
+            self.note(warning.label(moved.join("; ") + &rest));
+        }
+        found
     }
 
     fn identity(&mut self, expr: &Expr) -> Lowered<u32> {

@@ -5,8 +5,10 @@ use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::files::Files;
 use super::filter;
 use super::lower::{DISTRIBUTIONS, FUNCTIONS};
+use super::number::Number;
 use super::symbols::Meaning;
-use crate::base::geometry::{Polygon, Segment, Shape, Vec2};
+use super::typed::Typed;
+use crate::base::geometry::{Polygon, Segment, Shape, Vec2, coordinate_fault};
 use crate::data::geometry::{Feature, Geometry, PropertyValue, Select, read_wkt, select_geojson};
 use crate::model::{Barrier, BarrierId, Obstacle, Region, RegionId};
 use crate::syntax::ast::{Expr, ExprKind, Ident, SceneItem, ShapeExpr, Text};
@@ -208,6 +210,33 @@ impl<'a> Elaborator<'a> {
                     return self.report(Diagnostic::error("E0401", *span, "this polygon has no area"));
                 }
                 Ok(Shape::Polygon(polygon))
+            }
+        }
+    }
+
+    /// A place known at compile time, m.
+    pub(super) fn point_of(&mut self, expr: &Expr, locals: &Locals) -> Lowered<Vec2> {
+        match self.lower(expr, locals)? {
+            Typed::Point(x, y) => self.place(expr.span, (x, y)),
+            found => self.mismatch(expr.span, "a point such as `(1, 2)`", &found),
+        }
+    }
+
+    /// A point as a place of the plane, m.
+    pub(super) fn place(&mut self, span: Span, (x, y): (Number, Number)) -> Lowered<Vec2> {
+        if x.dimension != Dimension::LENGTH {
+            return self.wrong_dimension(span, Dimension::LENGTH, x.dimension);
+        }
+        self.in_reach(span, Vec2::new(x.value, y.value))
+    }
+
+    /// A point that a scene can have: rounding swallows the steps of people far from the origin.
+    pub(super) fn in_reach(&mut self, span: Span, p: Vec2) -> Lowered<Vec2> {
+        match coordinate_fault(p) {
+            None => Ok(p),
+            Some(fault) => {
+                let error = Diagnostic::error("E0710", span, fault);
+                self.report(error.hint("subtract a common origin from all coordinates"))
             }
         }
     }

@@ -17,6 +17,7 @@ use super::tally::Tally;
 use super::watch::Watch;
 use super::witness;
 use super::words;
+use crate::base::random::TrialKey;
 use crate::compile::study::{Ask, Measure, MeasureKind, Query, Root, Sought};
 use crate::logic::{Term, TermId, Tree};
 use crate::stats::{Coverage, Decision};
@@ -184,6 +185,7 @@ impl Answers<'_> {
         let known = counts.unresolved < counts.trials && !cut;
         result.distribution = inquiry.procedure.distribution().filter(|_| known);
         Self::tell(&mut result, subject, &inquiry.tally, measure.target.column);
+        self.note_shrunk(&mut result, &[(subject, &inquiry.tally)]);
         self.lament_one(&mut result, subject, &inquiry.tally, measure.target.column);
         let picks = match (&measure.kind, kind) {
             (MeasureKind::Probability, _) | (_, Kind::Check) => witness::sides(&inquiry.tally),
@@ -249,6 +251,15 @@ impl Answers<'_> {
             result
                 .warnings
                 .push(format!("nobody was there whenever it asked about those who are, in all of {trials}"));
+        }
+    }
+
+    /// Says which bodies were made smaller in the first trial in which any was.
+    pub(super) fn note_shrunk(&self, result: &mut QueryResult, tallies: &[(&Subject, &Tally)]) {
+        let mut found = tallies.iter().filter_map(|(subject, tally)| Some((subject, tally.first_shrunk?)));
+        if let Some((subject, index)) = found.next() {
+            let key = TrialKey { seed: self.call.seed, index, branch: 0 };
+            result.warnings.push(cause::smaller(&subject.program, key, result.shrunk));
         }
     }
 
@@ -323,6 +334,7 @@ impl Answers<'_> {
         result.replay = self.replay(query, MAX_TRIALS, gap.pairs);
         let joined = total(&gap.sides);
         Self::tell(&mut result, subject, &joined, first.target.column);
+        self.note_shrunk(&mut result, &[(subjects[0], &gap.sides[0]), (subjects[1], &gap.sides[1])]);
         let lost = (0..2).find_map(|side| {
             let index = gap.sides[side].first[2]?;
             let settings = result.settings.iter().chain(&settings[side]).cloned().collect();
@@ -373,6 +385,8 @@ impl Answers<'_> {
         let joined = total(&podium.tallies);
         result.replay = self.replay(query, "--total-trials", joined.counts.trials);
         Self::tell(&mut result, subject, &joined, measure.target.column);
+        let tallies: Vec<_> = podium.tallies.iter().map(|tally| (subject, tally)).collect();
+        self.note_shrunk(&mut result, &tallies);
         let lost = podium.tallies.iter().enumerate().find_map(|(arm, tally)| {
             let item = Item { advice: Some((*moves, arm)), index: tally.first[2]? };
             Some(First { subject, column: measure.target.column, item, settings: result.settings.clone() })

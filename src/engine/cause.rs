@@ -9,9 +9,13 @@ use crate::base::lanes::Mask;
 use crate::base::random::TrialKey;
 use crate::base::tick::Tick;
 use crate::kernel::process::{self, Sight};
+use crate::kernel::start::Overlapped;
 use crate::kernel::{Code, Program, Readings, Scratch, State, dynamics, start};
 use crate::logic::Needs;
-use crate::model::{Scenario, TOP_SPEED};
+use crate::model::{AgentId, Scenario, TOP_SPEED};
+
+/// Most bodies that are named of those that were made smaller.
+const MOST_SHRUNK: usize = 3;
 
 /// Jumps between looks at the clock.
 const JUMPS_BETWEEN_LOOKS: u64 = 1 << 12;
@@ -106,7 +110,7 @@ fn runaway(scenario: &Scenario, state: &State) -> String {
     let beyond = |speed: f64| speed.is_nan() || speed > TOP_SPEED;
     let found = scenario.agents.iter().enumerate().find_map(|(agent, declared)| {
         let speed = speed(agent).filter(|speed| beyond(*speed))?;
-        let id = crate::model::AgentId(agent as u32);
+        let id = AgentId(agent as u32);
         let arrival = state.queues.arrival(&scenario.sources, id, 0);
         Some((arrival.unwrap_or_else(|| declared.name.clone()), speed))
     });
@@ -127,9 +131,39 @@ fn moment(scenario: &Scenario, tick: u64) -> String {
     }
 }
 
+/// Which bodies overlap at the start of a trial and are made smaller, where that happens in some number of trials.
+pub fn smaller(program: &Program, key: TrialKey, trials: u64) -> String {
+    let mut state = State::new(program.layout, program.scenario.agents.len());
+    let shrunk =
+        start::load(program, &mut state, 0, key, None).map(|loaded| loaded.shrunk).unwrap_or_default();
+    let scenario = &program.scenario;
+    let agent = |id: AgentId| format!("`{}`", scenario.agents[id.0 as usize].name);
+    let mut said: Vec<String> = shrunk
+        .iter()
+        .take(MOST_SHRUNK)
+        .map(|one| {
+            let at = match one.at {
+                Overlapped::Agent(other) => agent(other),
+                Overlapped::Barrier(barrier) => scenario.scene.barriers[barrier.0 as usize].phrase(),
+            };
+            let (from, to) = (words::brief(one.from, "m"), words::brief(one.to, "m"));
+            format!("{} at {at} from a radius of {from} to {to}", agent(one.agent))
+        })
+        .collect();
+    if let Some(more @ 1..) = shrunk.len().checked_sub(MOST_SHRUNK) {
+        said.push(format!("{more} more"));
+    }
+    let trials = if trials == 1 { "1 trial".to_owned() } else { format!("{trials} trials") };
+    format!(
+        "bodies overlapped at the start and were made smaller in {trials}; in trial {}: {}",
+        key.index,
+        said.join(", ")
+    )
+}
+
 /// Why a trial cannot start, and what helps.
 pub fn no_start(scenario: &Scenario, fault: start::Fault) -> String {
-    let name = |agent: crate::model::AgentId| {
+    let name = |agent: AgentId| {
         scenario.agents.get(agent.0 as usize).map_or("somebody", |agent| agent.name.as_str())
     };
     match fault {

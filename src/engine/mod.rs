@@ -41,7 +41,7 @@ mod words;
 mod worker;
 
 pub use budget::Budget;
-pub use cause::{divergence, no_start};
+pub use cause::{divergence, no_start, smaller};
 pub use executor::{Executor, Threads};
 pub use fault::Fault;
 pub use flaw::Flaw;

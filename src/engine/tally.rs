@@ -14,6 +14,8 @@ pub(super) struct Tally {
     pub(super) clipped: u64,
     /// Trials in which radii were shrunk.
     pub(super) shrunk: u64,
+    /// Index of the first of these.
+    pub(super) first_shrunk: Option<u64>,
     /// Implications that were triggered in some trial.
     pub(super) triggered: u64,
     /// Index of the first trial that passes, of the first that fails, and of the first that is unresolved.
@@ -57,6 +59,9 @@ impl Tally {
         self.steps += steps;
         self.shrunk += shrunk;
         self.triggered |= triggered;
+        if shrunk > 0 && self.first_shrunk.is_none() {
+            self.first_shrunk = trials.clone().find(|(_, cell)| cell.shrunk).map(|(index, _)| index);
+        }
         for (first, truth) in self.first.iter_mut().zip([true, false]) {
             if first.is_none() {
                 let mut of_this = trials.clone().filter(|(_, cell)| cell.reading == Reading::Truth(truth));
@@ -71,7 +76,10 @@ impl Tally {
     pub(super) fn add(&mut self, index: u64, cell: &Cell, range: Option<(f64, f64)>) {
         self.counts.trials += 1;
         self.steps += cell.steps;
-        self.shrunk += u64::from(cell.shrunk);
+        if cell.shrunk {
+            self.shrunk += 1;
+            self.first_shrunk.get_or_insert(index);
+        }
         self.triggered |= cell.triggered;
         let place = match cell.reading {
             Reading::Truth(true) => {

@@ -99,7 +99,7 @@ impl Worker {
                         };
                         let key = TrialKey { seed, index: item.index, branch: 0 };
                         let shrunk = match start::load(program, &mut self.state, lane, key, item.advice) {
-                            Ok(start) => start.shrunk_pairs > 0 || start.shrunk_at_barriers > 0,
+                            Ok(start) => !start.shrunk.is_empty(),
                             Err(_) => {
                                 // A trial that cannot start is unresolved in every column.
                                 finished.places.push(place);

@@ -48,7 +48,45 @@ pub struct Region {
     pub shape: Shape,
 }
 
+impl Barrier {
+    /// What it is called in texts: the wall `south`, an obstacle.
+    pub fn phrase(&self) -> String {
+        let (what, article) = match self.obstacle {
+            Obstacle::Wall(_) => ("wall", "a"),
+            Obstacle::Solid(_) => ("obstacle", "an"),
+        };
+        if self.name.is_empty() { format!("{article} {what}") } else { format!("the {what} `{}`", self.name) }
+    }
+}
+
 impl Obstacle {
+    /// The point of the barrier's surface nearest to `p`.
+    pub fn nearest_on_surface(&self, p: Vec2) -> Vec2 {
+        match self {
+            Self::Wall(segments) => {
+                let mut best = (f64::INFINITY, p);
+                for segment in segments {
+                    let q = segment.nearest(p);
+                    let distance = (p - q).norm();
+                    if distance < best.0 {
+                        best = (distance, q);
+                    }
+                }
+                best.1
+            }
+            Self::Solid(Shape::Circle { centre, radius }) => {
+                let from = p - centre;
+                let distance = from.norm();
+                if distance > 0.0 {
+                    centre + from * (radius / distance)
+                } else {
+                    centre + Vec2::new(*radius, 0.0)
+                }
+            }
+            Self::Solid(Shape::Polygon(polygon)) => polygon.nearest_on_outline(p),
+        }
+    }
+
     /// Distance from `p` to the barrier's surface; negative inside a solid.
     pub fn distance(&self, p: Vec2) -> f64 {
         match self {

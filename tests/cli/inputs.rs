@@ -1,6 +1,6 @@
 //! Files of every kind: missing, empty, binary, deep, from standard input; formatting.
 
-use crate::program::{Place, SMALL};
+use crate::program::{Place, SMALL, recordings};
 
 #[test]
 fn bad_files_are_refused_with_a_reason() {
@@ -185,6 +185,81 @@ fn nobody_comes_twice_from_a_recording() {
         assert!(found.err.starts_with("error[E0703]") && found.err.contains(said), "{}", found.err);
         assert_eq!(found.err.matches("error").count(), 1, "{}", found.err);
     }
+}
+
+#[test]
+fn those_recorded_in_an_obstacle_start_beside_it() {
+    let tracks =
+        "1 1 2.25 0 0.5 0 0 0.5\n1 2 5 0 0.5 0 0 0.5\n11 1 2.25 0 0.7 0 0 0.5\n11 2 5 0 0.7 0 0 0.5\n";
+    let scenario = "\
+horizon = 1 s  step = 0.02 s
+tracks t = eth_biwi \"t.txt\"
+scene { obstacle box: rect (2, 0) .. (4, 1)  wall (5.05, 0) -- (5.05, 1) }
+kind adult: sfm preset helbing2000 { radius = uniform(0.25 m, 0.3 m) }
+agents all: adult from t at 0 s
+";
+    let property = "check P(F<=1 s contact(all[1])) <= 0.9\n";
+    let place = Place::new(&[("t.txt", tracks), ("a.scn", scenario), ("a.bltl", property)]);
+    let said = place.call(&["check", "a.scn", "a.bltl", "-q"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    assert!(
+        said.err.contains("warning[W0701]: 2 persons were recorded inside or close to barriers"),
+        "{}",
+        said.err
+    );
+    let moved = "person 1 was recorded inside the obstacle `box`, and starts 0.550 m away at (1.700, 0.500)";
+    assert!(said.err.contains(moved), "{}", said.err);
+    let moved = "person 2 was recorded 0.050 m from a wall, and starts 0.250 m away at (4.750, 0.500)";
+    assert!(said.err.contains(moved), "{}", said.err);
+    assert!(!said.out.contains("made smaller"), "{}", said.out);
+}
+
+#[test]
+fn a_recorded_instant_is_usable_although_somebody_was_recorded_in_an_obstacle() {
+    let Some(data) = recordings() else { return };
+    let scenario = "\
+horizon = 0.4 s  step = 0.02 s
+tracks hotel = eth_biwi \"seq_hotel/obsmat.txt\"
+scene { import \"hotel-obstacles.geojson\" where source == \"map.png\" }
+kind adult: sfm preset helbing2000 { noise = 0.08 m/s }
+agents all: adult from hotel at 533.59 s
+";
+    let property = "estimate P(F<=0.4 s contact(all[1])) within 0.1\n";
+    let place = Place::new(&[("a.scn", scenario), ("a.bltl", property)]);
+    let said = place.call(&["check", "a.scn", "a.bltl", "-q", "--data", data.to_str().unwrap()]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    assert!(
+        said.err.contains("W0701") && said.err.contains(" was recorded inside the obstacle"),
+        "{}",
+        said.err
+    );
+    assert!(!said.out.contains("unresolved"), "{}", said.out);
+}
+
+#[test]
+fn bodies_that_are_made_smaller_are_named_with_what_they_overlap() {
+    let scenario = "\
+horizon = 1 s  step = 0.02 s
+scene { wall south: (0, 0) -- (9, 0)  wall (0, 3) -- (9, 3) }
+kind adult: sfm preset helbing2000 { radius = 0.3 m }
+agent near: adult { at = (1, 0.2) }
+agents two[2]: adult { at = near near within 1 m  radius = 0.1 m }
+agent left: adult { at = (5, 1.5) }
+agent right: adult { at = (5.45, 1.5) }
+";
+    let property = "check P(F<=1 s contact(near)) <= 0.9\n";
+    let place = Place::new(&[("a.scn", scenario), ("a.bltl", property)]);
+    let checked = place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "json"]).json();
+    let (result, trials) = (&checked["results"][0], &checked["results"][0]["trials"]);
+    assert_eq!(&result["shrunk"], trials);
+    let bodies = "in trial 0: `near` at the wall `south` from a radius of 0.3 m to 0.2 m, `left` at `right` from a radius \
+                  of 0.3 m to 0.225 m, `right` at `left` from a radius of 0.3 m to 0.225 m";
+    let wanted = format!("bodies overlapped at the start and were made smaller in {trials} trials; {bodies}");
+    assert_eq!(result["warnings"][0], wanted);
+    let traced = place.call(&["simulate", "a.scn", "--trials", "2"]);
+    assert_eq!(traced.code, Some(0), "{}", traced.err);
+    let wanted = format!("bodies overlapped at the start and were made smaller in 2 trials; {bodies}");
+    assert!(traced.err.contains(&wanted), "{}", traced.err);
 }
 
 #[test]

@@ -212,6 +212,39 @@ fn people_who_come_in_have_rows_while_they_are_there_and_states_have_columns() {
 }
 
 #[test]
+fn an_agent_that_has_left_keeps_its_rows_without_numbers() {
+    let scenario = "horizon = 6 s\nstep = 0.1 s\n\
+        process coin { var n: 0 .. 100 = 0  when n < 100 -> n = n + 1 }\n\
+        kind adult: sfm preset helbing2000 { noise = 0 m/s  speed = 1 m/s }\n\
+        behaviour phone { state idle { after 9 s -> idle } }\n\
+        agent gone: adult with phone { at = (0, 0)  route = (3, 0) then leave }\n\
+        agent stays: adult { at = (0, 5) }\n\
+        source doors: adult { at = (0, 10)  every = 2 s  limit = 1  route = (1.5, 10) }\n";
+    let place = Place::new(&[("a.scn", scenario)]);
+    let rows = rows(&place, "a.scn", &[]);
+    let of = |agent: &str| -> Vec<&Value> { rows.iter().filter(|row| row["agent"] == agent).collect() };
+    assert_eq!((of("gone").len(), of("stays").len()), (61, 61), "a row for each state");
+    let (here, left): (Vec<&Value>, Vec<&Value>) =
+        of("gone").into_iter().partition(|row| row["present"] == true);
+    assert!(!here.is_empty() && !left.is_empty());
+    assert!(
+        here.iter().all(|row| row["x"].is_number() && row["radius"].is_number() && row["phone"] == "idle")
+    );
+    for row in left {
+        for empty in ["x", "y", "vx", "vy", "speed", "radius", "phone"] {
+            assert_eq!(row[empty], Value::Null, "{empty} in {row}");
+        }
+        assert!(row["time"].is_number() && row["coin.n"].is_number() && row["present"] == false, "{row}");
+    }
+    // The one place of the source is taken by one person after the other, each under a name of its own.
+    assert!(["doors[1]", "doors[2]"].iter().all(|name| !of(name).is_empty()));
+    let doors = rows.iter().filter(|row| row["agent"].as_str().unwrap().starts_with("doors"));
+    assert!(doors.clone().count() < 61 && doors.clone().all(|row| row["present"] == true));
+    let csv = place.call(&["simulate", "a.scn", "--until", "6"]).out;
+    assert!(csv.lines().any(|line| line.contains(",gone,,,,,,0,,")), "{csv}");
+}
+
+#[test]
 fn show_prints_conditions_and_processes_as_written() {
     let place = Place::new(&[
         ("robot.scn", include_str!("../../models/robot.scn")),

@@ -2,8 +2,8 @@
 
 use crate::base::geometry::Vec2;
 
-/// How far, in annotation steps, a time may lie from a frame and still mean that frame.
-const SAME_FRAME: f64 = 1e-6;
+/// How far, in frames of the film, a time may lie from an annotated frame and still mean that frame.
+const SAME_FRAME: f64 = 0.5;
 
 /// One person in one annotated frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,7 +102,8 @@ impl Recording {
         Some((self.time_of(samples.first()?.frame), self.time_of(samples.last()?.frame)))
     }
 
-    /// Everybody present at a time in seconds, by ascending id: as annotated on a frame, else halfway in
+    /// Everybody present at a time in seconds, by ascending id: as annotated on a frame that is no more than half a
+    /// frame of the film away, else in
     /// proportion between the two frames of the same person around it. Nobody is present before the first
     /// or after the last frame of a track, nor in a hole of it longer than the usual step.
     pub fn at(&self, time: f64) -> Vec<Observation> {
@@ -111,9 +112,11 @@ impl Recording {
         if !frame.is_finite() {
             return Vec::new();
         }
-        let whole = frame.round();
-        if (frame - whole).abs() <= SAME_FRAME * f64::from(self.stride) {
-            frame = whole;
+        let after = self.frames.partition_point(|&annotated| f64::from(annotated) < frame - SAME_FRAME);
+        let around = self.frames[after..].iter().map(|&annotated| f64::from(annotated)).take(2);
+        let nearest = around.min_by(|a, b| (a - frame).abs().total_cmp(&(b - frame).abs()));
+        if let Some(annotated) = nearest.filter(|annotated| (annotated - frame).abs() <= SAME_FRAME) {
+            frame = annotated;
         }
         self.people.iter().filter_map(|person| self.seen(person, frame)).collect()
     }
@@ -185,6 +188,17 @@ mod tests {
             seen,
             [Observation { id: 1, position: Vec2::new(0.25, 0.0), velocity: Vec2::new(0.5, 1.0) }]
         );
+    }
+
+    #[test]
+    fn a_time_within_half_a_frame_of_an_annotated_one_means_that_frame() {
+        let r = recording();
+        // Frame 20 is at 0.4 s, and a frame of the film lasts 0.04 s.
+        assert_eq!(r.at(0.419), r.at(0.4));
+        assert_eq!(r.at(0.381), r.at(0.4));
+        assert_ne!(r.at(0.379), r.at(0.4));
+        assert_eq!(ids(&r.at(1.619)), [1]);
+        assert_eq!(ids(&r.at(1.621)), [0; 0]);
     }
 
     #[test]

@@ -22,18 +22,38 @@ use super::state::{Layout, State};
 use crate::base::geometry::Vec2;
 use crate::base::lanes::{Lanes, Mask};
 use crate::base::random::TrialKey;
-use crate::model::{AgentId, Move, Parameter, Route};
+use crate::model::{AgentId, BarrierId, Move, Parameter, Route};
 use body::Parameters;
 
 /// What loading a trial found worth counting.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Loaded {
-    /// Pairs of neighbours that overlapped at the start and whose radii were shrunk to touch.
-    pub shrunk_pairs: u32,
-    /// Bodies that overlapped a wall or obstacle at the start and whose radius was shrunk to touch it.
-    pub shrunk_at_barriers: u32,
+    /// Bodies that overlapped something at the start and whose radii were shrunk to touch it.
+    pub shrunk: Vec<Shrunk>,
     /// Bodies that found no free place by chance and were pushed apart.
     pub pushed: u32,
+}
+
+/// A body that was made smaller at the start of a trial.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shrunk {
+    /// Whose body.
+    pub agent: AgentId,
+    /// What it overlapped.
+    pub at: Overlapped,
+    /// Its radius before, m.
+    pub from: f64,
+    /// Its radius after, m.
+    pub to: f64,
+}
+
+/// What a body overlapped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Overlapped {
+    /// The body of another agent, which was made smaller by the same factor.
+    Agent(AgentId),
+    /// A wall or an obstacle.
+    Barrier(BarrierId),
 }
 
 /// Why a trial cannot begin.

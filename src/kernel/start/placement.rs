@@ -5,11 +5,11 @@ use super::body::Laws;
 use super::crowd::Crowd;
 use super::relaxation::{self, Room};
 use super::sampler::Sampler;
-use super::{Fault, Loaded};
+use super::{Fault, Loaded, Overlapped, Shrunk};
 use crate::base::geometry::{Bounds, Shape, Vec2};
 use crate::base::random::{Purpose, Stream, TrialKey};
 use crate::kernel::nearby::Nearby;
-use crate::model::{AgentId, Barrier, Body, Obstacle, Position, Scenario, Scene};
+use crate::model::{AgentId, Barrier, BarrierId, Body, Obstacle, Position, Scenario, Scene};
 use std::sync::Arc;
 
 /// How often a free place is sought by chance.
@@ -128,6 +128,11 @@ impl<'a> Ground<'a> {
 
     /// The barriers whose bounds are within `reach` of a point.
     pub(super) fn near(self, p: Vec2, reach: f64) -> impl Iterator<Item = &'a Obstacle> {
+        self.barriers_near(p, reach).map(move |barrier| &self.scene.barriers[barrier as usize].obstacle)
+    }
+
+    /// The same by their numbers.
+    fn barriers_near(self, p: Vec2, reach: f64) -> impl Iterator<Item = u32> {
         let close = move |b: &Bounds| {
             p.x > b.low.x - reach && p.x < b.high.x + reach && p.y > b.low.y - reach && p.y < b.high.y + reach
         };
@@ -135,7 +140,14 @@ impl<'a> Ground<'a> {
         (0..candidates.len())
             .map(move |k| &self.barriers.list[candidates[k] as usize])
             .filter(move |(_, bounds)| close(bounds))
-            .map(move |(barrier, _)| &self.scene.barriers[*barrier as usize].obstacle)
+            .map(|(barrier, _)| *barrier)
+    }
+
+    /// The barrier nearest to a point among those within reach, and its distance.
+    fn nearest(self, p: Vec2, reach: f64) -> Option<(BarrierId, f64)> {
+        self.barriers_near(p, reach)
+            .map(|k| (BarrierId(k), self.scene.barriers[k as usize].obstacle.distance(p)))
+            .min_by(|(_, a), (_, b)| a.total_cmp(b))
     }
 
     /// Smallest gap between a disc and the barriers within its reach; infinite without any.
@@ -238,23 +250,29 @@ fn shrink(crowd: &mut Crowd, ground: Ground<'_>, placed: &[bool], counts: &mut L
                 return Err(Fault::Together { agents: (AgentId(body as u32), AgentId(other as u32)) });
             }
             if distance < sum {
-                let factor = distance / sum * TOUCH;
-                crowd.radii[body] *= factor;
-                crowd.radii[other] *= factor;
-                counts.shrunk_pairs += 1;
+                for (one, met) in [(body, other), (other, body)] {
+                    let at = Overlapped::Agent(AgentId(met as u32));
+                    let to = crowd.radii[one] * (distance / sum * TOUCH);
+                    counts.shrunk.push(made_smaller(crowd, one, at, to));
+                }
             }
         }
         let radius = crowd.radii[body];
-        let room = ground.gap(p, radius) + radius;
+        let Some((barrier, room)) = ground.nearest(p, radius) else { continue };
         if room <= ONE_POINT {
             return Err(Fault::Inside { agent: AgentId(body as u32) });
         }
         if room < radius {
-            crowd.radii[body] = room * TOUCH;
-            counts.shrunk_at_barriers += 1;
+            counts.shrunk.push(made_smaller(crowd, body, Overlapped::Barrier(barrier), room * TOUCH));
         }
     }
     Ok(())
+}
+
+/// Gives a body a smaller radius.
+fn made_smaller(crowd: &mut Crowd, body: usize, at: Overlapped, to: f64) -> Shrunk {
+    let from = std::mem::replace(&mut crowd.radii[body], to);
+    Shrunk { agent: AgentId(body as u32), at, from, to }
 }
 
 #[cfg(test)]

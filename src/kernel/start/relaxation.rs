@@ -118,7 +118,7 @@ fn push(crowd: &Crowd, rooms: &[Room<'_>], ground: Ground<'_>, body: usize, swee
     for obstacle in ground.near(at, radius) {
         let distance = obstacle.distance(at);
         if distance < radius {
-            let surface = nearest_on_surface(obstacle, at);
+            let surface = obstacle.nearest_on_surface(at);
             let outward = if distance < 0.0 { surface - at } else { at - surface };
             let length = outward.norm();
             if length > 0.0 {
@@ -127,32 +127,6 @@ fn push(crowd: &Crowd, rooms: &[Room<'_>], ground: Ground<'_>, body: usize, swee
         }
     }
     push
-}
-
-fn nearest_on_surface(obstacle: &Obstacle, p: Vec2) -> Vec2 {
-    match obstacle {
-        Obstacle::Wall(segments) => {
-            let mut best = (f64::INFINITY, p);
-            for segment in segments {
-                let q = segment.nearest(p);
-                let distance = (p - q).norm();
-                if distance < best.0 {
-                    best = (distance, q);
-                }
-            }
-            best.1
-        }
-        Obstacle::Solid(Shape::Circle { centre, radius }) => {
-            let from = p - centre;
-            let distance = from.norm();
-            if distance > 0.0 {
-                centre + from * (radius / distance)
-            } else {
-                centre + Vec2::new(*radius, 0.0)
-            }
-        }
-        Obstacle::Solid(Shape::Polygon(polygon)) => polygon.nearest_on_outline(p),
-    }
 }
 
 fn crosses_wall(ground: Ground<'_>, from: Vec2, to: Vec2) -> bool {

@@ -138,13 +138,6 @@ fn facts(page: &mut String, result: &QueryResult, swept: bool) {
     for warning in &result.warnings {
         let _ = writeln!(page, "<p class=\"warning\">{head}{}</p>", escape(warning));
     }
-    if result.shrunk > 0 {
-        let trials = counted(result.shrunk, "trial");
-        let _ = writeln!(
-            page,
-            "<p class=\"warning\">{head}people overlapped at the start and were made smaller in {trials}</p>"
-        );
-    }
     for Witness { shows, value, trial, time, unit, what, command } in &result.witnesses {
         let _ = writeln!(
             page,

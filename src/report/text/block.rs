@@ -207,18 +207,11 @@ pub(super) fn cause(result: &QueryResult) -> &'static str {
     }
 }
 
-/// Warnings of a result, and how often bodies were shrunk.
+/// Warnings of a result.
 pub(super) fn remarks(text: &mut String, result: &QueryResult, at: &str, palette: Palette) {
     let warning = palette.paint(Paint::Caution, "warning:");
     for said in &result.warnings {
         line(text, &format!("{warning} {at}{said}"));
-    }
-    if result.shrunk > 0 {
-        let trials = counted(result.shrunk, "trial");
-        line(
-            text,
-            &format!("{warning} {at}people overlapped at the start and were made smaller in {trials}"),
-        );
     }
 }
 

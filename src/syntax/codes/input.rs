@@ -1,4 +1,4 @@
-//! Pages of E07xx: files.
+//! Pages of E07xx and W07xx: files.
 
 use super::Page;
 
@@ -105,5 +105,20 @@ Wrong:\n\
 \x20   agent user: adult { at = (691608, 5334762) }\n\
 Right:\n\
 \x20   agent user: adult { at = (108, 262) }",
+    },
+    Page {
+        code: "W0701",
+        title: "a person was recorded inside or close to a barrier",
+        text: "\
+The center of a recorded person lies inside an obstacle or on a wall, or so near one that less than half of the radius\n\
+would be left. The agent starts beside it, at the nearest place found where the largest radius of its kind touches no\n\
+barrier. Recorded positions are those of heads, and outlines of obstacles are rarely exact.\n\
+\n\
+Probably wrong:\n\
+\x20   obstacle bench: rect (0, 0) .. (4, 3)\n\
+\x20   agent user: adult from hotel at 646.8 s id 367\n\
+Clear:\n\
+\x20   obstacle bench: rect (0, 0) .. (0.8, 2.5)\n\
+\x20   agent user: adult from hotel at 646.8 s id 367",
     },
 ];

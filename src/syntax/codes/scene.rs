@@ -95,8 +95,9 @@ Right:\n\
         code: "E0409",
         title: "nobody can start there",
         text: "\
-The middle of a body lies inside an obstacle or on a wall, or two people start at the same point. Bodies that overlap in\n\
-part, or reach over a wall, are no error: their radii shrink until they touch, and the report counts the trials.\n\
+The center of a body lies inside an obstacle or on a wall, or so near one that less than half of the radius would be\n\
+left, or two people start at the same point. Bodies that overlap less are no error: their radii shrink until they\n\
+touch, and the report says whose, at what, and how much.\n\
 \n\
 Wrong:\n\
 \x20   obstacle pillar: circle (10, 2) radius 0.3 m\n\
