@@ -4,18 +4,23 @@ use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::files::Files;
 use super::filter;
+use super::laws::value_span;
 use super::lower::{DISTRIBUTIONS, FUNCTIONS};
 use super::number::Number;
 use super::symbols::Meaning;
 use super::typed::Typed;
 use crate::base::geometry::{Polygon, Segment, Shape, Vec2, coordinate_fault};
-use crate::data::geometry::{Feature, Geometry, PropertyValue, Select, read_wkt, select_geojson};
+use crate::data::geometry::{self, Feature, Geometry, PropertyValue, Select, read_wkt, select_geojson};
 use crate::model::{Barrier, BarrierId, Obstacle, Region, RegionId};
-use crate::syntax::ast::{Expr, ExprKind, Ident, SceneItem, ShapeExpr, Text};
+use crate::syntax::ast::{Expr, ExprKind, Field, Ident, SceneItem, ShapeExpr, Text, Value};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::collections::BTreeSet;
 
+/// Walls that miss each other by less are told, m.
+const NEAR_MISS: f64 = 0.05;
+/// Within at most so many metres walls are joined.
+const WIDEST_SNAP: f64 = 1.0;
 /// Most names of properties that a warning lists.
 const MOST_NAMES: usize = 8;
 
@@ -79,7 +84,10 @@ impl<'a> Elaborator<'a> {
                     Ok(at) => self.scene.points.push((name.name.clone(), at)),
                     Err(Reported) => self.doubt(0, &name.name),
                 },
-                SceneItem::Import { path, filter, .. } => self.import(path, filter.as_ref(), files),
+                SceneItem::Import { path, filter, fields, .. } => {
+                    let snap = self.snap(fields);
+                    self.import(path, filter.as_ref(), snap, files);
+                }
             }
         }
     }
@@ -262,7 +270,78 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn import(&mut self, path: &Text, filter: Option<&Expr>, files: &Files) {
+    /// Within how many metres the walls of an import are joined; 0 unless it says so.
+    fn snap(&mut self, fields: &[Field]) -> Lowered<f64> {
+        let mut snap = Ok(0.0);
+        for (k, field) in fields.iter().enumerate() {
+            let (name, at) = (&field.name, value_span(&field.value));
+            snap = if name.name != "snap" {
+                let known = std::iter::once("snap");
+                self.report(super::symbols::unknown("field", &name.name, name.span, "E0207", known))
+            } else if k > 0 {
+                self.report(Diagnostic::error("E0202", name.span, "`snap` is set twice"))
+            } else if let Value::Plain(expr) = &field.value {
+                match self.number_of(expr, Dimension::LENGTH, &Locals::default()).map(|number| number.value) {
+                    Ok(value) if !(0.0 < value && value <= WIDEST_SNAP) => {
+                        let text =
+                            format!("`snap` must be positive and at most {WIDEST_SNAP} m (got {value} m)");
+                        self.report(Diagnostic::error("E0405", at, text))
+                    }
+                    value => value,
+                }
+            } else {
+                self.report(Diagnostic::error("E0305", at, "expected a length such as `5 cm`"))
+            };
+        }
+        snap
+    }
+
+    /// Joins the walls of an import that nearly meet, or tells of them.
+    fn join_walls(&mut self, path: &Text, first: usize, snap: f64) {
+        let imported = &mut self.scene.barriers[first..];
+        let edges: Vec<Segment> = imported
+            .iter()
+            .filter_map(|barrier| match &barrier.obstacle {
+                Obstacle::Solid(Shape::Polygon(polygon)) => Some(polygon.segments()),
+                _ => None,
+            })
+            .flatten()
+            .collect();
+        let mut walls: Vec<&mut Vec<Segment>> = imported
+            .iter_mut()
+            .filter_map(|barrier| match &mut barrier.obstacle {
+                Obstacle::Wall(pieces) => Some(pieces),
+                Obstacle::Solid(_) => None,
+            })
+            .collect();
+        let lines: Vec<Vec<Segment>> = walls.iter().map(|pieces| (**pieces).clone()).collect();
+        if snap > 0.0 {
+            for (pieces, joined) in walls.iter_mut().zip(geometry::snap(&lines, &edges, snap)) {
+                **pieces = joined;
+            }
+            let imported = self.scene.barriers.split_off(first);
+            let whole = imported.into_iter().filter(|one| one.obstacle != Obstacle::Wall(Vec::new()));
+            self.scene.barriers.extend(whole);
+        } else if let Some(slips) = geometry::slips(&lines, &edges, NEAR_MISS) {
+            let counted = |count: usize, one: &str, many: &str| match count {
+                0 => None,
+                1 => Some(format!("1 {one}")),
+                count => Some(format!("{count} {many}")),
+            };
+            let gaps = counted(slips.gaps, "gap of less than 5 cm", "gaps of less than 5 cm");
+            let twice = counted(slips.doubled, "wall drawn twice", "walls drawn twice");
+            let what: Vec<String> = gaps.into_iter().chain(twice).collect();
+            let warning =
+                Diagnostic::warning("W0702", path.span, format!("this file has {}", what.join(" and ")))
+                    .label(format!("for example at ({:.3}, {:.3})", slips.place.x, slips.place.y));
+            let text = self.text(path.span);
+            self.note(
+                warning.hint(format!("write `import {text} {{ snap = 5 cm }}` to join and merge them")),
+            );
+        }
+    }
+
+    fn import(&mut self, path: &Text, filter: Option<&Expr>, snap: Lowered<f64>, files: &Files) {
         let (mut total, mut wrong) = (0, None);
         let mut known: BTreeSet<String> = BTreeSet::new();
         let mut unknown: Vec<(&str, Span)> = filter.into_iter().flat_map(filter::names).collect();
@@ -305,7 +384,11 @@ impl<'a> Elaborator<'a> {
             };
             self.scene.barriers.push(Barrier { name: feature.name, obstacle });
         }
-        if self.scene.barriers.len() == before && all_known {
+        let taken = self.scene.barriers.len() - before;
+        if let Ok(snap) = snap {
+            self.join_walls(path, before, snap);
+        }
+        if taken == 0 && all_known {
             let have = if total == 1 { "1 feature".to_owned() } else { format!("{total} features") };
             let warning = Diagnostic::warning(
                 "W0401",

@@ -263,6 +263,49 @@ agent right: adult { at = (5.45, 1.5) }
 }
 
 #[test]
+fn walls_of_imports_that_nearly_meet_are_told_and_joined() {
+    let walls = "LINESTRING (0 0, 9 0)\nLINESTRING (9.004 0.003, 9 5)\nLINESTRING (1 0.02, 8 0.02)\nLINESTRING (4 5, 4 0.01)\n";
+    let scenario = |how: &str| {
+        format!(
+            "horizon = 1 s  step = 0.02 s\nscene {{\n  wall own: (0, 9) -- (9, 9)\n  import \"w.wkt\"{how}\n  wall other: (0, 10) -- (9, 10)\n}}\n\
+             kind adult: sfm preset helbing2000\nagent me: adult {{ at = (2, 2) }}\n"
+        )
+    };
+    let place = Place::new(&[
+        ("w.wkt", walls),
+        ("plain.scn", &scenario("")),
+        ("a.scn", &scenario(" { snap = 5 cm }")),
+    ]);
+    let plain = place.call(&["show", "plain.scn"]);
+    assert_eq!(plain.code, Some(0), "{}", plain.err);
+    let told = "warning[W0702]: this file has 2 gaps of less than 5 cm and 1 wall drawn twice";
+    assert!(plain.err.contains(told), "{}", plain.err);
+    assert!(plain.err.contains("write `import \"w.wkt\" { snap = 5 cm }`"), "{}", plain.err);
+    let snapped = place.call(&["show", "a.scn"]);
+    assert_eq!((snapped.code, snapped.err.as_str()), (Some(0), ""));
+    let shown: Vec<&str> = snapped.out.lines().filter(|line| line.starts_with("  wall")).collect();
+    let wanted = [
+        "  wall own: 1 segment, 9 m",
+        "  wall other: 1 segment, 9 m",
+        "  wall: 1 segment, 9 m",
+        "  wall: 1 segment, 5 m",
+        "  wall: 1 segment, 5 m",
+    ];
+    assert_eq!(shown, wanted);
+    for (how, said) in [
+        ("{ snap = 0 m }", "error[E0405]: `snap` must be positive and at most 1 m (got 0 m)"),
+        ("{ snap = 2 }", "error[E0303]"),
+        ("{ snip = 5 cm }", "error[E0207]: unknown field `snip`"),
+        ("{ snap = 5 cm  snap = 6 cm }", "error[E0202]: `snap` is set twice"),
+    ] {
+        place.write("a.scn", scenario(how).as_bytes());
+        let found = place.call(&["show", "a.scn"]);
+        assert_eq!((found.code, found.err.matches("error").count()), (Some(2), 1), "{}", found.err);
+        assert!(found.err.starts_with(said), "{}", found.err);
+    }
+}
+
+#[test]
 fn what_comes_from_standard_input_is_formatted_as_what_it_is() {
     let place = Place::new(&[]);
     let said = place.fed(&["fmt", "-"], "estimate   P(true) within 0.1");

@@ -6,8 +6,10 @@
 pub mod feature;
 pub mod geojson;
 pub mod ring;
+pub mod snap;
 pub mod wkt;
 
 pub use feature::{Feature, Geometry, GeometryError, PropertyValue, Select};
 pub use geojson::{read_geojson, select_geojson};
+pub use snap::{Slips, slips, snap};
 pub use wkt::read_wkt;

@@ -124,6 +124,8 @@ pub enum SceneItem {
         path: Text,
         /// Which features: comparisons of their properties with texts and numbers, joined by `&`, `|`, `!`.
         filter: Option<Expr>,
+        /// How it is taken: `{ snap = 5 cm }`.
+        fields: Vec<Field>,
         /// Where.
         span: Span,
     },

@@ -121,4 +121,17 @@ Clear:\n\
 \x20   obstacle bench: rect (0, 0) .. (0.8, 2.5)\n\
 \x20   agent user: adult from hotel at 646.8 s id 367",
     },
+    Page {
+        code: "W0702",
+        title: "walls of a file nearly meet",
+        text: "\
+Ends of walls miss another wall or an obstacle by less than 5 cm, or a wall lies beside another one, as where the two sides\n\
+of a thin wall are drawn. Such walls do not touch, so that each pushes for itself: twice as hard as one. With `snap` ends\n\
+that near to each other are joined, ends near another wall are moved onto it, and pieces along a longer one are merged.\n\
+\n\
+Probably wrong:\n\
+\x20   import \"building.geojson\"\n\
+Clear:\n\
+\x20   import \"building.geojson\" { snap = 5 cm }",
+    },
 ];

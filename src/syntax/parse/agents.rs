@@ -89,7 +89,7 @@ impl Builder<'_> {
         Some(Recorded { tracks, at, only, except, span })
     }
 
-    fn body(&mut self, mut parts: Parts<'_>) -> Vec<Field> {
+    pub(super) fn body(&mut self, mut parts: Parts<'_>) -> Vec<Field> {
         let Some(fields) = parts.part(Rule::fields) else { return Vec::new() };
         self.report_faults(&fields);
         Parts::of(fields)

@@ -28,7 +28,7 @@ impl Builder<'_> {
                 Some(filter) => Some(self.expr(filter)?),
                 None => None,
             };
-            return Some(SceneItem::Import { path, filter, span });
+            return Some(SceneItem::Import { path, filter, fields: self.body(parts), span });
         }
         let name = parts.part(Rule::name).map(|name| self.declared(&name));
         match rule {

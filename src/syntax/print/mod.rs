@@ -67,6 +67,12 @@ mod tests {
         assert_eq!(scenario("kind a:b{x=1 y=2}"), "kind a: b { x = 1; y = 2 }\n");
         assert_eq!(scenario("kind a:b{x=1\nyy=2}"), "kind a: b {\n  x  = 1\n  yy = 2\n}\n");
         assert_eq!(scenario("scene{}"), "scene {}\n");
+        let import = "scene {\n  import \"a.json\" where level == 2 { snap = 5 cm }\n  region a: rect (0, 0) .. (1, 1)\n}\n";
+        assert_eq!(scenario(import), import);
+        assert_eq!(
+            scenario("scene{import \"a.wkt\"{snap=5cm}}"),
+            "scene { import \"a.wkt\" { snap = 5 cm } }\n"
+        );
     }
 
     #[test]
