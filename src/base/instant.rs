@@ -6,6 +6,7 @@
 //! thirds to some 32 digits.
 
 use super::decimal::Decimal;
+use super::rounding::{product, quotient, sum, sum_of_ordered};
 
 /// Of a time, what millions of sums of two doubles may be off, amply: what is nearer to each other is at one time.
 const NOISE: f64 = 1.0 / (1_u128 << 78) as f64;
@@ -56,10 +57,7 @@ impl Instant {
 
     /// One number of two doubles by another.
     fn quotient(numerator: (f64, f64), denominator: (f64, f64)) -> Self {
-        let seconds = numerator.0 / denominator.0;
-        let (product, error) = product(seconds, denominator.0);
-        let low = numerator.1 - seconds * denominator.1;
-        let rest = (((numerator.0 - product) - error) + low) / denominator.0;
+        let (seconds, rest) = quotient(numerator, denominator);
         if rest.is_finite() { Self::of_parts(seconds, rest) } else { Self::exactly(seconds) }
     }
 
@@ -109,35 +107,6 @@ impl Instant {
     }
 }
 
-/// A sum and its rounding error.
-#[inline]
-fn sum(a: f64, b: f64) -> (f64, f64) {
-    let sum = a + b;
-    let of_b = sum - a;
-    (sum, (a - (sum - of_b)) + (b - of_b))
-}
-
-/// The same, of which the first is larger.
-#[inline]
-fn sum_of_ordered(a: f64, b: f64) -> (f64, f64) {
-    let sum = a + b;
-    (sum, b - (sum - a))
-}
-
-/// A product and its rounding error.
-#[inline]
-fn product(a: f64, b: f64) -> (f64, f64) {
-    /// Splits a double into two of half as many digits.
-    fn halves(x: f64) -> (f64, f64) {
-        let scaled = 134_217_729.0 * x;
-        let high = scaled - (scaled - x);
-        (high, x - high)
-    }
-    let product = a * b;
-    let ((a, a_low), (b, b_low)) = (halves(a), halves(b));
-    (product, ((a * b - product) + a * b_low + a_low * b) + a_low * b_low)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -182,18 +151,6 @@ mod tests {
                     assert_eq!(due.floor_by(units) - now.floor_by(units), two, "{start} {parts:?}");
                 }
             }
-        }
-    }
-
-    #[test]
-    fn products_are_exact() {
-        // Whole numbers, so that the product can be had exactly.
-        for (a, b) in [
-            (9_007_199_254_740_881_i64, 4_503_599_627_370_449_i64),
-            (123_456_789_012_345, 98_765_432_109_876),
-        ] {
-            let (product, error) = product(a as f64, b as f64);
-            assert_eq!(product as i128 + error as i128, i128::from(a) * i128::from(b));
         }
     }
 }

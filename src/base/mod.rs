@@ -12,5 +12,6 @@ pub mod lanes;
 #[allow(clippy::excessive_precision, reason = "coefficients stand as published")]
 pub mod math;
 pub mod random;
+pub mod rounding;
 pub mod special;
 pub mod tick;

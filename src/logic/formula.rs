@@ -174,6 +174,13 @@ impl Operation {
     }
 }
 
+/// A mean that rounding may have moved, brought back between the least and the greatest value that it averages; none (NaN)
+/// if one is none.
+#[inline(always)]
+pub(super) fn bracket(mean: f64, least: f64, most: f64) -> f64 {
+    Operation::Max.apply(Operation::Min.apply(mean, most), least)
+}
+
 /// A number of the states from the present one on.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Term {

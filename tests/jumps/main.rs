@@ -7,6 +7,7 @@ mod chain;
 mod delays;
 mod errors;
 mod exact;
+mod means;
 mod random;
 mod rare;
 mod robust;

@@ -188,14 +188,14 @@ fn formula() -> impl Strategy<Value = Formula> {
 }
 
 /// For each state the rates to all states, in thirds per second; many are 0, and some states are never left.
-type Rates = Vec<[u32; STATES]>;
+pub(crate) type Rates = Vec<[u32; STATES]>;
 
-fn rates() -> impl Strategy<Value = Rates> {
+pub(crate) fn rates() -> impl Strategy<Value = Rates> {
     let rate = || prop_oneof![3 => Just(0u32), 4 => 1u32..=9];
     proptest::collection::vec([rate(), rate(), rate(), rate()], STATES)
 }
 
-fn scenario(rates: &Rates) -> String {
+pub(crate) fn scenario(rates: &Rates) -> String {
     let mut text =
         format!("horizon = {} s\nprocess c {{ var s: 0 .. {} = 0\n", f64::from(HORIZON) / 4.0, STATES - 1);
     for (from, row) in rates.iter().enumerate() {

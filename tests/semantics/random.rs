@@ -206,6 +206,8 @@ pub(crate) fn trial(random: &mut TestRandom, states: u64) -> Trial {
                 0 => f64::NAN,
                 1 => -0.0,
                 2..=4 => random.below(7) as f64 * 0.5 - 1.5,
+                // Decimals, whose sums are rounded.
+                5 => random.below(7) as f64 * 0.1,
                 _ => value,
             };
             signal.push(value);

@@ -171,12 +171,21 @@ impl Prefix<'_> {
                 }
                 let count = states.clone().count();
                 let numbers: Option<Vec<f64>> = states.map(|k| self.number(*x, k)).collect();
-                let reduced = numbers?.into_iter().reduce(|a, b| match aggregation {
-                    Aggregation::Min => combined(Operation::Min, a, b),
-                    Aggregation::Max => combined(Operation::Max, a, b),
-                    Aggregation::Sum | Aggregation::Mean => a + b,
-                })?;
-                Some(if *aggregation == Aggregation::Mean { reduced / count as f64 } else { reduced })
+                let numbers = numbers?;
+                let reduced = |by: Aggregation| {
+                    numbers.iter().copied().reduce(|a, b| match by {
+                        Aggregation::Min => combined(Operation::Min, a, b),
+                        Aggregation::Max => combined(Operation::Max, a, b),
+                        Aggregation::Sum | Aggregation::Mean => a + b,
+                    })
+                };
+                let value = reduced(*aggregation)?;
+                if *aggregation == Aggregation::Mean {
+                    // A mean lies between the least and the greatest value that it averages.
+                    let below = combined(Operation::Min, value / count as f64, reduced(Aggregation::Max)?);
+                    return Some(combined(Operation::Max, below, reduced(Aggregation::Min)?));
+                }
+                Some(value)
             }
             Term::Later(Tick(by), x) => self.number(*x, at + by),
             Term::AtEnd(x) => self.number(*x, self.horizon),

@@ -25,6 +25,9 @@ const RELATIONS: [Relation; 6] = [
 /// Draws trees and signals; one seed gives the whole case.
 pub(crate) struct Draw(pub(crate) u64);
 
+/// Values that signals of decimals have.
+const DECIMALS: [f64; 5] = [0.0, 0.1, 0.2, 0.3, 0.7];
+
 impl Draw {
     pub(crate) fn below(&mut self, n: u64) -> u64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -233,6 +236,91 @@ fn check(tree: &Tree, root: Root, horizon: u64, draw: &mut Draw) -> Result<(), T
     Ok(())
 }
 
+/// Jumps whose signals are decimals, which sums round.
+fn decimals(draw: &mut Draw, horizon: u64) -> Vec<Jump> {
+    let mut jumps = draw.jumps(0, horizon);
+    for jump in &mut jumps {
+        jump.signals
+            .iter_mut()
+            .for_each(|signal| *signal = DECIMALS[*signal as usize + draw.below(2) as usize]);
+    }
+    jumps
+}
+
+/// A mean of decimals from the start, compared with a decimal, against the exact sum.
+fn decimal_mean(seed: u64, horizon: u64) -> Result<(), TestCaseError> {
+    let mut draw = Draw(seed);
+    let mut tree = Tree::default();
+    let x = tree.term(Term::Signal(SignalId(0)));
+    let mean = tree.term(Term::Window(Aggregation::Mean, draw.window(true), x));
+    let c = tree.term(Term::Constant(DECIMALS[draw.below(5) as usize]));
+    let root = tree.node(Node::Compare(RELATIONS[draw.below(6) as usize], mean, c));
+    let Ok(mut monitor) = SignalMonitor::formula(&tree, root, Tick(horizon), Decimal::whole(1)) else {
+        return Err(TestCaseError::reject("not for this horizon"));
+    };
+    for _ in 0..8 {
+        let jumps = decimals(&mut draw, horizon);
+        let expected = Signal { tree: &tree, jumps: &jumps, horizon, seen: 2 * horizon + 1 }.truth(root, 0);
+        let found = observe(&mut monitor, &jumps).0;
+        prop_assert_eq!(Some(found), expected.map(Reading::Truth), "{:?} {:?}", tree, jumps);
+    }
+    Ok(())
+}
+
+/// Further jumps at which the signals stay as they are change no bit of the reading and of its time.
+fn undisturbed(seed: u64, depth: u32, metric: bool, horizon: u64) -> Result<(), TestCaseError> {
+    let mut draw = Draw(seed);
+    let mut tree = Tree::default();
+    let endless = draw.below(2) == 0;
+    let made = if metric {
+        let of = draw.term(&mut tree, depth, endless);
+        let mean = tree.term(Term::Window(Aggregation::Mean, draw.window(true), of));
+        SignalMonitor::metric(&tree, mean, Tick(horizon), Decimal::whole(1))
+    } else {
+        let of = draw.term(&mut tree, 1, endless);
+        let w = Window { from: Tick(0), to: Some(Tick(draw.below(4) * GRID)) };
+        let mean = tree.term(Term::Window(Aggregation::Mean, draw.window(endless), of));
+        let c = tree.term(Term::Constant(DECIMALS[draw.below(5) as usize]));
+        let high = tree.node(Node::Compare(RELATIONS[draw.below(6) as usize], mean, c));
+        let other = draw.node(&mut tree, depth, true, endless);
+        let root = match draw.below(3) {
+            0 => Node::Globally(w, high),
+            1 => Node::Finally(w, high),
+            _ => Node::Until(w, high, other),
+        };
+        let root = tree.node(root);
+        SignalMonitor::formula(&tree, root, Tick(horizon), Decimal::whole(1))
+    };
+    let Ok(mut monitor) = made else { return Err(TestCaseError::reject("not for this horizon")) };
+    for _ in 0..4 {
+        let mut jumps: Vec<(f64, Jump)> = decimals(&mut draw, horizon)
+            .into_iter()
+            .map(|jump| (jump.at as f64 + draw.below(1000) as f64 * 1e-3 * draw.below(2) as f64, jump))
+            .collect();
+        jumps[0].0 = 0.0;
+        jumps.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut more = jumps.clone();
+        for _ in 0..12 {
+            let at = draw.below(horizon * 1_000_000) as f64 * 1e-6;
+            let k = more.partition_point(|jump| jump.0 <= at);
+            more.insert(k, (at, more[k - 1].1.clone()));
+        }
+        let mut run = |jumps: &[(f64, Jump)]| {
+            monitor.start();
+            for (at, jump) in jumps {
+                monitor.jump(*at, &jump.atoms, &jump.signals);
+            }
+            let bits = match monitor.finish() {
+                Reading::Value(value) => value.to_bits(),
+                reading => u64::from(reading == Reading::Truth(true)),
+            };
+            (bits, monitor.decided_at().to_bits())
+        };
+        prop_assert_eq!(run(&jumps), run(&more), "{:?} {:?}", tree, more);
+    }
+    Ok(())
+}
+
 fn settings(cases: u32) -> ProptestConfig {
     ProptestConfig {
         cases,
@@ -275,6 +363,21 @@ proptest! {
     #[test]
     fn metrics(seed in any::<u64>(), horizon in 1u64..9) {
         case(seed, 2, true, true, horizon)?;
+    }
+
+    #[test]
+    fn means_of_decimals(seed in any::<u64>(), horizon in 1u64..9) {
+        decimal_mean(seed, horizon * GRID)?;
+    }
+
+    #[test]
+    fn means_do_not_depend_on_other_jumps(seed in any::<u64>(), horizon in 2u64..9) {
+        undisturbed(seed, 1, true, horizon * GRID)?;
+    }
+
+    #[test]
+    fn comparisons_of_means_do_not_depend_on_other_jumps(seed in any::<u64>(), horizon in 4u64..12) {
+        undisturbed(seed, 1, false, horizon * GRID)?;
     }
 }
 

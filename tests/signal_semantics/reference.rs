@@ -122,6 +122,18 @@ impl Signal<'_> {
             | (Term::Window(Aggregation::Max, w, x), Greater | AtLeast) => any(each(*w, *x)),
             (Term::Window(Aggregation::Min, w, x), Greater | AtLeast)
             | (Term::Window(Aggregation::Max, w, x), Less | AtMost) => all(each(*w, *x)),
+            (Term::Window(Aggregation::Mean, w, of), _) => {
+                let parts = self.parts(*w, *of, at)?;
+                let excess = parts.iter().map(|(value, length)| (value - c, *length));
+                let whole = |(excess, length): (f64, u64)| {
+                    excess.is_finite().then_some((excess * 2f64.powi(90)) as i128 * i128::from(length))
+                };
+                // Whole numbers of the last bit of any decimal here, so that the sign is exact.
+                match excess.map(whole).sum::<Option<i128>>() {
+                    Some(sum) => Some(relation.holds(sum.signum() as f64, 0.0)),
+                    None => Some(relation.holds(self.number(x, at)?, c)),
+                }
+            }
             (Term::TimeUntil(goal), _) => {
                 let within = |relation: Relation| {
                     let mut late = (at..=2 * self.horizon).filter(|&k| {
@@ -140,6 +152,18 @@ impl Signal<'_> {
             }
             _ => Some(relation.holds(self.number(x, at)?, c)),
         }
+    }
+
+    /// The values of a window and for how many half ticks each lasts; of a window of one instant, the value there.
+    fn parts(&self, w: Window, x: TermId, at: u64) -> Option<Vec<(f64, u64)>> {
+        let places = self.window(w, at);
+        let (first, last) = (*places.start(), *places.end());
+        let values: Option<Vec<f64>> = places.clone().map(|k| self.number(x, k)).collect();
+        // An interval counts as far as it lies between the ends.
+        let length = |k: u64| if k % 2 == 1 { (k + 1).min(last) - (k - 1).max(first) } else { 0 };
+        let alone = |k: u64| if first == last { 1 } else { length(k) };
+        let parts = places.zip(values?).map(|(k, value)| (value, alone(k)));
+        Some(parts.filter(|part| part.1 > 0).collect())
     }
 
     pub(crate) fn number(&self, id: TermId, at: u64) -> Option<f64> {
@@ -161,25 +185,22 @@ impl Signal<'_> {
                 }
                 Some(f64::INFINITY)
             }
+            Term::Window(Aggregation::Mean, w, x) => {
+                let parts = self.parts(*w, *x, at)?;
+                let (sum, time) = parts.iter().fold((0.0, 0), |(sum, time), (value, length)| {
+                    (sum + value * *length as f64, time + length)
+                });
+                let least = parts.iter().map(|part| part.0).fold(f64::INFINITY, f64::min);
+                let most = parts.iter().map(|part| part.0).fold(f64::NEG_INFINITY, f64::max);
+                Some((sum / time as f64).min(most).max(least))
+            }
             Term::Window(aggregation, w, x) => {
-                let places = self.window(*w, at);
-                let (first, last) = (*places.start(), *places.end());
-                let values: Option<Vec<f64>> = places.clone().map(|k| self.number(*x, k)).collect();
+                let values: Option<Vec<f64>> = self.window(*w, at).map(|k| self.number(*x, k)).collect();
                 let values = values?;
                 Some(match aggregation {
                     Aggregation::Min => values.into_iter().reduce(f64::min)?,
                     Aggregation::Max => values.into_iter().reduce(f64::max)?,
-                    Aggregation::Sum => panic!("no sum in continuous time"),
-                    Aggregation::Mean if first == last => values[0],
-                    Aggregation::Mean => {
-                        // An interval counts as far as it lies between the ends.
-                        let length = |k: u64| {
-                            let (from, to) = (time(k - 1), time(k + 1));
-                            (to.min(time(last)) - from.max(time(first))).max(0.0)
-                        };
-                        let parts = places.zip(values).filter(|(k, _)| k % 2 == 1);
-                        parts.map(|(k, value)| value * length(k)).sum::<f64>() / (time(last) - time(first))
-                    }
+                    Aggregation::Sum | Aggregation::Mean => panic!("no sum in continuous time"),
                 })
             }
         }

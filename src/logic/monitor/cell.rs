@@ -48,6 +48,32 @@ pub(super) enum Arithmetic {
     Abs,
 }
 
+/// The least and the greatest of the numbers that a mean averages.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Extent {
+    pub(super) least: Lanes,
+    pub(super) most: Lanes,
+}
+
+impl Extent {
+    pub(super) const EMPTY: Self =
+        Self { least: Lanes::splat(f64::INFINITY), most: Lanes::splat(f64::NEG_INFINITY) };
+
+    /// One number more.
+    #[inline(always)]
+    pub(super) fn with(self, value: Lanes) -> Self {
+        Self {
+            least: self.least.zip(value, |x, y| Operation::Min.apply(x, y)),
+            most: self.most.zip(value, |x, y| Operation::Max.apply(x, y)),
+        }
+    }
+
+    /// This in the lanes of the set, the other elsewhere.
+    pub(super) fn within(self, lanes: u8, other: Self) -> Self {
+        Self { least: select(lanes, self.least, other.least), most: select(lanes, self.most, other.most) }
+    }
+}
+
 /// What a cell computes.
 #[derive(Clone, Debug)]
 pub(super) enum Machine {
@@ -88,7 +114,7 @@ pub(super) enum Machine {
     /// Arithmetic of two answers.
     CombineHeld(Arithmetic, Ref, Ref),
     /// An aggregate from the only position on over a number of the present state.
-    Fold { aggregation: Aggregation, child: usize, states: u64 },
+    Fold { aggregation: Aggregation, child: usize, states: u64, extent: Box<Extent> },
     /// Time until a truth of the present state, from the only position on.
     Time { child: Ref, from: u64 },
     /// Time until an answer about the state at the horizon, seen from there: none or for ever.
@@ -219,7 +245,8 @@ impl Cell {
                     settled[lane] = 0;
                 }
             }
-            Machine::Fold { aggregation, .. } => {
+            Machine::Fold { aggregation, extent, .. } => {
+                **extent = Extent::EMPTY.within(lanes, **extent);
                 let identity = numbers::identity(*aggregation);
                 self.value = select(lanes, Lanes::splat(identity), self.value);
             }
@@ -332,6 +359,7 @@ impl Cell {
                 size_of_val(&**all)
             }
             Machine::TimeLate { ticks, .. } => ticks.bytes(),
+            Machine::Fold { extent, .. } => size_of_val(&**extent),
             _ => 0,
         };
         size_of::<Self>() + own + self.track.bytes() + self.numbers.bytes()

@@ -1,12 +1,13 @@
 //! Numbers: arithmetic, aggregates over windows, times, and comparisons.
 //!
 //! A number that is none (NaN) makes every comparison with it false, and every aggregate, smaller and
-//! larger of it none. Sums run over the states in ascending order.
+//! larger of it none. Sums run over the states in ascending order; a mean lies between the least and the greatest number that
+//! it averages.
 
-use super::cell::{Arithmetic, Cell, Context, Machine, Place, Ref, events, planes, truth};
+use super::cell::{Arithmetic, Cell, Context, Extent, Machine, Place, Ref, events, planes, truth};
 use super::track::{Numbers, Track, select};
 use crate::base::lanes::{Lanes, Mask};
-use crate::logic::formula::{Aggregation, Operation, Relation};
+use crate::logic::formula::{Aggregation, Operation, Relation, bracket};
 
 /// Lanes in which the relation holds.
 #[inline(always)]
@@ -55,8 +56,13 @@ fn gather(aggregation: Aggregation, so_far: Lanes, next: Lanes) -> Lanes {
 }
 
 #[inline(always)]
-fn finish(aggregation: Aggregation, so_far: Lanes, states: u64) -> Lanes {
-    if aggregation == Aggregation::Mean { so_far.map(|sum| sum / states as f64) } else { so_far }
+fn finish(aggregation: Aggregation, mut so_far: Lanes, states: u64, extent: &Extent) -> Lanes {
+    if aggregation == Aggregation::Mean {
+        for (lane, sum) in so_far.0.iter_mut().enumerate() {
+            *sum = bracket(*sum / states as f64, extent.least.0[lane], extent.most.0[lane]);
+        }
+    }
+    so_far
 }
 
 /// The lanes in which an answer is known.
@@ -108,12 +114,15 @@ pub(super) fn step(cell: &mut Cell, before: &[Cell], cx: &Context) {
                 cell.t |= fresh;
             }
         }
-        Machine::Fold { aggregation, child, states } => {
+        Machine::Fold { aggregation, child, states, extent } => {
             let asked = cell.need & cx.work;
             let mut value = gather(*aggregation, cell.value, before[*child].value);
+            if *aggregation == Aggregation::Mean {
+                **extent = extent.with(before[*child].value).within(asked, **extent);
+            }
             let done = asked & cell.last;
             if done != 0 {
-                value = select(done, finish(*aggregation, value, *states), value);
+                value = select(done, finish(*aggregation, value, *states, extent), value);
                 cell.t |= done;
             }
             cell.value = select(asked, value, cell.value);
@@ -219,11 +228,15 @@ pub(super) fn step(cell: &mut Cell, before: &[Cell], cx: &Context) {
 
 /// The aggregate over the states `from ..= to`, ascending.
 fn fold(aggregation: Aggregation, before: &[Cell], child: Ref, from: u64, to: u64) -> Lanes {
-    let mut value = Lanes::splat(identity(aggregation));
+    let (mut value, mut extent) = (Lanes::splat(identity(aggregation)), Extent::EMPTY);
     for at in from..=to {
-        value = gather(aggregation, value, number(before, child, at));
+        let next = number(before, child, at);
+        value = gather(aggregation, value, next);
+        if aggregation == Aggregation::Mean {
+            extent = extent.with(next);
+        }
     }
-    finish(aggregation, value, to - from + 1)
+    finish(aggregation, value, to - from + 1, &extent)
 }
 
 /// The recurrence of the time until a truth: none if it holds, else one tick more than at the next

@@ -3,7 +3,7 @@
 use super::Recording;
 use super::graph::{Graph, Slot};
 use crate::base::tick::Tick;
-use crate::logic::formula::{Aggregation, Operation};
+use crate::logic::formula::{Aggregation, Operation, bracket};
 use std::collections::VecDeque;
 
 /// A truth: false.
@@ -337,8 +337,11 @@ impl Work<'_> {
                 return None;
             }
             let mut sum = self.number(of, first)?;
+            let (mut least, mut most) = (sum, sum);
             for k in first + 1..=last {
-                sum += self.number(of, k)?;
+                let next = self.number(of, k)?;
+                sum += next;
+                (least, most) = (Operation::Min.apply(least, next), Operation::Max.apply(most, next));
             }
             let count = last - first + 1;
             work += count;
@@ -346,7 +349,7 @@ impl Work<'_> {
                 work = 0;
                 given_up = (self.recording.stop)();
             }
-            Some(if mean { sum / count as f64 } else { sum })
+            Some(if mean { bracket(sum / count as f64, least, most) } else { sum })
         })
     }
 }

@@ -3,6 +3,8 @@
 //! Nothing is stored; a state costs a few comparisons of its instants with the bounds in seconds.
 
 use super::Reading;
+use super::integral::Integral;
+use super::moment::{Moment, Scale};
 use super::present::Present;
 use crate::base::instant::Instant;
 use crate::logic::flat::Sort;
@@ -63,17 +65,22 @@ pub(super) struct Direct {
     pub(super) question: Question,
     pub(super) from: Instant,
     pub(super) to: Instant,
-    /// So far: smallest, largest or integral.
+    /// So far: smallest or largest.
     folded: Option<f64>,
+    /// So far, of a mean: up to which moment, and the pieces.
+    integral: (Moment, Integral),
+    scale: Scale,
 }
 
 impl Direct {
-    pub(super) fn new(question: Question, from: Instant, to: Instant) -> Self {
-        Self { question, from, to, folded: None }
+    pub(super) fn new(question: Question, (from, to): (Instant, Instant), scale: Scale) -> Self {
+        let integral = (scale.at(from), Integral::EMPTY);
+        Self { question, from, to, folded: None, integral, scale }
     }
 
     pub(super) fn clear(&mut self) {
         self.folded = None;
+        self.integral = (self.scale.at(self.from), Integral::EMPTY);
     }
 
     /// The present state lasts from `start` to before `end`; infinite after the horizon. The reading, and
@@ -102,25 +109,25 @@ impl Direct {
         if !self.from.is_before(stay.end) {
             return None;
         }
-        let (from, to) = (self.from.seconds, self.to.seconds);
-        let (left, right) = (stay.start.seconds.max(from), stay.end.seconds.min(to));
         self.folded = Some(match (aggregation, self.folded) {
             (Aggregation::Min, Some(folded)) => Operation::Min.apply(folded, value),
             (Aggregation::Max, Some(folded)) => Operation::Max.apply(folded, value),
-            (Aggregation::Min | Aggregation::Max, None) => value,
-            (Aggregation::Sum | Aggregation::Mean, folded) => {
-                folded.unwrap_or(0.0) + if right > left { value * (right - left) } else { 0.0 }
-            }
+            _ => value,
         });
+        if aggregation == Aggregation::Mean {
+            let (from, integral) = &mut self.integral;
+            let to = self.scale.at(if self.to.is_before(stay.end) { self.to } else { stay.end });
+            integral.add(value, *from, to);
+            *from = to;
+        }
         if !self.to.is_before(stay.end) {
             return None;
         }
-        let folded = self.folded.unwrap_or(f64::NAN);
         let value = match aggregation {
-            Aggregation::Mean if from == to => value,
-            Aggregation::Mean => folded / (to - from),
-            _ => folded,
+            Aggregation::Mean if self.from.is_before(self.to) => self.integral.1.mean(),
+            Aggregation::Mean => value,
+            _ => self.folded.unwrap_or(f64::NAN),
         };
-        Some((Reading::Value(value), to))
+        Some((Reading::Value(value), self.to.seconds))
     }
 }

@@ -9,6 +9,7 @@ mod average;
 mod cells;
 mod direct;
 mod glance;
+mod integral;
 mod moment;
 mod number;
 mod plan;

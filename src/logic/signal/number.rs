@@ -1,5 +1,6 @@
 //! Cells that hold a number over time, and how they learn it from their operands, in order.
 
+use super::integral::Integral;
 use super::moment::{FOREVER, Moment, Scale, instant};
 use super::stream::Stream;
 use super::track::Known;
@@ -33,15 +34,17 @@ pub(super) enum Source {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Folded {
     next: Moment,
-    /// Smallest, largest, or integral.
+    /// Smallest or largest.
     value: f64,
+    /// Of a mean.
+    integral: Integral,
     last: f64,
 }
 
 impl Folded {
     /// Nothing yet, of a window from `from` on.
     pub(super) fn new(from: Moment) -> Self {
-        Self { next: from, value: f64::NAN, last: f64::NAN }
+        Self { next: from, value: f64::NAN, integral: Integral::EMPTY, last: f64::NAN }
     }
 }
 
@@ -190,17 +193,15 @@ fn fold(
     while folded.next <= to && folded.next < x.known {
         let (end, value) = x.around(folded.next);
         let end = end.min(to + 1);
-        let length = end / 2 - folded.next / 2;
         let first = folded.next == from;
         folded.value = match aggregation {
             Aggregation::Min if !first => Operation::Min.apply(folded.value, value),
             Aggregation::Max if !first => Operation::Max.apply(folded.value, value),
-            Aggregation::Min | Aggregation::Max => value,
-            Aggregation::Sum | Aggregation::Mean => {
-                (if first { 0.0 } else { folded.value })
-                    + if length > 0 { value * length as f64 } else { 0.0 }
-            }
+            _ => value,
         };
+        if aggregation == Aggregation::Mean {
+            folded.integral.add(value, folded.next, end);
+        }
         (folded.next, folded.last) = (end, value);
     }
     if folded.next <= to {
@@ -208,7 +209,7 @@ fn fold(
     }
     Some(match aggregation {
         Aggregation::Mean if from == to => folded.last,
-        Aggregation::Mean => folded.value / ((to - from) / 2) as f64,
+        Aggregation::Mean => folded.integral.mean(),
         _ => folded.value,
     })
 }

@@ -40,13 +40,23 @@ impl Stream {
         }
     }
 
-    /// The number around a moment, which is known and kept, and the first moment after its piece.
-    pub(super) fn around(&self, at: Moment) -> (Moment, f64) {
+    /// Index of the piece around a moment, which is known and kept.
+    fn index(&self, at: Moment) -> usize {
         let last = self.pieces.len().saturating_sub(1);
-        let k = match self.pieces.get(last) {
+        match self.pieces.get(last) {
             Some(piece) if piece.0 <= at => last,
             _ => self.pieces.partition_point(|piece| piece.0 <= at).saturating_sub(1),
-        };
+        }
+    }
+
+    /// The first moment of the piece around a moment, which is known and kept.
+    pub(super) fn since(&self, at: Moment) -> Moment {
+        self.pieces.get(self.index(at)).map_or(self.first, |piece| piece.0)
+    }
+
+    /// The number around a moment, which is known and kept, and the first moment after its piece.
+    pub(super) fn around(&self, at: Moment) -> (Moment, f64) {
+        let k = self.index(at);
         let end = self.pieces.get(k + 1).map_or(self.known, |next| next.0);
         (end, self.pieces.get(k).map_or(f64::NAN, |piece| piece.1))
     }

@@ -5,7 +5,7 @@ use crate::base::lanes::Lanes;
 use crate::base::tick::Tick;
 use crate::logic::formula::{Aggregation, NodeId, Operation, Relation, Term, TermId, Window};
 use crate::logic::invalid::Invalid;
-use crate::logic::monitor::cell::{Arithmetic, Machine, Place, Ref};
+use crate::logic::monitor::cell::{Arithmetic, Extent, Machine, Place, Ref};
 use crate::logic::monitor::numbers::combine;
 use crate::logic::monitor::track::Numbers;
 
@@ -291,7 +291,8 @@ impl Builder<'_> {
         let reach = below.width.map_or(self.horizon, |width| hi + width);
         self.touch(child, (lo, reach));
         if lo == hi && child.place == Place::Now {
-            let machine = Machine::Fold { aggregation, child: child.cell, states: reach - lo + 1 };
+            let (states, extent) = (reach - lo + 1, Box::new(Extent::EMPTY));
+            let machine = Machine::Fold { aggregation, child: child.cell, states, extent };
             return Ok(Made::Of(self.answer(machine, (lo, reach), 0, true)));
         }
         let smallest = match aggregation {

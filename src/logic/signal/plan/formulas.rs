@@ -123,10 +123,15 @@ impl Builder<'_> {
             (Term::Window(Mean, w, x), _) if w.to == Some(w.from) => {
                 self.through_window((w.from, w.to), (relation, *x, c), true, range)
             }
-            (Term::Window(Mean, w, x), _) if range.0 < range.1 => {
+            (Term::Window(Mean, w, x), _) => {
                 let (from, to) = self.shifts(*w);
-                let of = self.number(*x, self.through((from, to), range))?;
-                self.add_truth(Machine::Average(Average { of, from, to, relation, constant: c }), range)
+                let of = self.excess(*x, c, self.through((from, to), range))?;
+                if range.0 < range.1 {
+                    return self.add_truth(Machine::Average(Average { of, from, to, relation }), range);
+                }
+                let mean = self.average(of, self.through((from, to), range), range)?;
+                let zero = self.fixed(0.0, range)?;
+                self.add_truth(Machine::Compare(relation, mean, zero), range)
             }
             (Term::TimeUntil(goal), _) if !c.is_nan() => match relation {
                 AtMost => self.soon(*goal, c, false, range),

@@ -143,7 +143,7 @@ impl Builder<'_> {
             },
         };
         let (from, to) = (self.scale.exact(window.from), window.to.map(|to| self.scale.exact(to)));
-        Some(Direct::new(question, from, to.unwrap_or(self.scale.horizon())))
+        Some(Direct::new(question, (from, to.unwrap_or(self.scale.horizon())), self.scale))
     }
 
     fn probe(&self, id: NodeId) -> Option<Probe> {

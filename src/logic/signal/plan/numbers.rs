@@ -11,6 +11,18 @@ impl Builder<'_> {
         self.add_number(Source::Fixed(value), range)
     }
 
+    /// How much more a number is than a constant. The mean of that has the sign of the comparison where all values lie on one
+    /// side of the constant, which the rounded mean need not have.
+    pub(super) fn excess(&mut self, x: TermId, constant: f64, range: Range) -> Result<usize, Invalid> {
+        let (x, constant) = (self.number(x, range)?, self.fixed(constant, range)?);
+        self.add_number(Source::Combine(Operation::Subtract, x, constant), range)
+    }
+
+    /// The mean of a number from one moment to another, asked about at one moment.
+    pub(super) fn average(&mut self, of: usize, (from, to): Range, at: Range) -> Result<usize, Invalid> {
+        self.add_number(Source::Fold { aggregation: Aggregation::Mean, from, to, of }, at)
+    }
+
     /// A number at some moments.
     pub(super) fn number(&mut self, id: TermId, range: Range) -> Result<usize, Invalid> {
         if let Some(&known) = self.known_numbers.get(&(id.0, range)) {
