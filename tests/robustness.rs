@@ -233,3 +233,42 @@ fn points_of_all_have_the_depth_in_a_region_as_their_margin() {
         assert!((result["estimate"].as_f64().unwrap() - margin).abs() < 1e-9, "{formula}: {result}");
     }
 }
+
+#[test]
+fn conditions_that_parameters_decide_have_margins() {
+    let process =
+        "param mode = 1 in 0 .. 5\nprocess w { var x: 0 .. 9 = 0\n  when x < 9 TIME-> x = x + 1 }\n";
+    for (head, time, unit) in [("horizon = 4 s\n", "after 1.5 s ", " s"), ("horizon = 4 steps\n", "", "")] {
+        let model = head.to_owned() + &process.replace("TIME", time);
+        let f = format!("F<=0{unit}");
+        let margins = [
+            (format!("{f} (w.x > 2 | mode >= 2)"), -1.0),
+            (format!("{f} (w.x > 2 | w.x - w.x + mode >= 2)"), -1.0),
+            (format!("{f} (w.x > -2 & mode >= 0)"), 1.0),
+            (format!("{f} !(w.x > 2 | mode >= 2)"), 1.0),
+            (format!("{f} (w.x >= -9 & !(2 <= mode))"), 1.0),
+            (format!("G<=2{unit} (mode > 0.25 | w.x > 5)"), 0.75),
+            (format!("F<=2{unit} (mode > 3) | G<=1{unit} (w.x > 7)"), -2.0),
+            (format!("(mode > 0.25) U<=1{unit} (w.x > -3)"), 3.0),
+            (format!("{f} (w.x < 3 & (mode == 1 => mode < 3))"), 2.0),
+            (format!("min<=2{unit} (w.x + mode) > 0.5 & mode > 0.75"), 0.25),
+        ];
+        for (formula, margin) in margins {
+            let query = format!("estimate E(robustness({formula})) in -10 .. 10 by fixed(trials = 2)\n");
+            let place = Place::new(&[("a.scn", &model), ("a.bltl", &query)]);
+            let said = place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "json"]);
+            assert_eq!(said.code, Some(0), "{formula}: {}", said.err);
+            let found = said.json()["results"][0]["estimate"].as_f64().unwrap();
+            assert!((found - margin).abs() < 1e-9, "{formula}: {found}");
+        }
+        // The witness names the condition whose margin it is.
+        if unit.is_empty() {
+            let query =
+                "estimate E(robustness(F<=0 (w.x > 2 | mode >= 2))) in -10 .. 10 by fixed(trials = 2)\n";
+            let place = Place::new(&[("a.scn", &model), ("a.bltl", query)]);
+            let json = place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "json"]).json();
+            let what = &json["results"][0]["witnesses"][0]["what"];
+            assert_eq!(what, "margin -1, of `mode >= 2`", "{what}");
+        }
+    }
+}

@@ -8,7 +8,6 @@
 
 use super::formula::{NodeId, Relation, Tree};
 use super::offline::{Offline, Recording, Slot};
-use super::reach::Part;
 use crate::base::tick::Tick;
 use std::collections::VecDeque;
 
@@ -25,7 +24,7 @@ pub struct Critical {
 
 /// The comparison and the state that the robustness of `root` at state 0 comes from; the first of several.
 pub fn critical(tree: &Tree, root: NodeId, recording: &Recording) -> Option<Critical> {
-    let offline = Offline::new(tree, Part::Node(root), 0, recording).ok()?;
+    let offline = Offline::measured(tree, root, recording).ok()?;
     let root = offline.slot(root)?;
     let mut margins = Margins { offline: &offline, of: Vec::with_capacity(root + 1) };
     for slot in 0..=root {

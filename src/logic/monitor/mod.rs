@@ -65,7 +65,7 @@ impl Monitor {
     /// When a bound looks beyond the horizon, a window is empty, the tree is malformed, too deep or too
     /// large, or the clock has no steps.
     pub fn formula(tree: &Tree, root: NodeId, horizon: Tick, clock: Clock) -> Result<Self, Invalid> {
-        Plan::new(tree, Part::Node(root), horizon, clock, true).map(|plan| Self::of(plan, clock))
+        Plan::new(tree, Part::Node(root), horizon, clock, false).map(|plan| Self::of(plan, clock))
     }
 
     /// The monitor of the metric `root`, with the same conditions. Times are in seconds of the clock.
@@ -73,7 +73,7 @@ impl Monitor {
     /// # Errors
     /// As for a formula.
     pub fn metric(tree: &Tree, root: TermId, horizon: Tick, clock: Clock) -> Result<Self, Invalid> {
-        Plan::new(tree, Part::Term(root), horizon, clock, true).map(|plan| Self::of(plan, clock))
+        Plan::new(tree, Part::Term(root), horizon, clock, false).map(|plan| Self::of(plan, clock))
     }
 
     fn of(plan: Plan, clock: Clock) -> Self {

@@ -40,7 +40,7 @@ impl Robustness {
     /// # Errors
     /// As for a monitor, and where a comparison has no margin.
     pub fn new(tree: &Tree, root: NodeId, horizon: Tick, clock: Clock) -> Result<Self, Invalid> {
-        let plan = Plan::new(tree, Part::Node(root), horizon, clock, false)?;
+        let plan = Plan::new(tree, Part::Node(root), horizon, clock, true)?;
         let mut margins = Vec::with_capacity(plan.cells.len());
         for (cell, &(latency, kept)) in plan.cells.iter().zip(&plan.spans) {
             match cell.machine {

@@ -60,10 +60,18 @@ pub(super) struct Graph {
     /// The value of each number that is the same everywhere.
     pub(super) constants: Vec<Option<f64>>,
     horizon: u64,
+    /// Whether a comparison of constants is one of each state.
+    margins: bool,
 }
 
 /// The graph of a part that is asked about at the state `at`.
-pub(super) fn graph(tree: &Tree, root: Part, at: u64, recording: &Recording<'_>) -> Result<Graph, Invalid> {
+pub(super) fn graph(
+    tree: &Tree,
+    root: Part,
+    at: u64,
+    recording: &Recording<'_>,
+    margins: bool,
+) -> Result<Graph, Invalid> {
     let mut graph = Graph {
         slots: Vec::new(),
         leaves: Vec::new(),
@@ -72,6 +80,7 @@ pub(super) fn graph(tree: &Tree, root: Part, at: u64, recording: &Recording<'_>)
         terms: vec![None; tree.terms.len()],
         constants: vec![None; tree.terms.len()],
         horizon: recording.horizon.0,
+        margins,
     };
     for part in children_first(tree, root)? {
         match part {
@@ -176,10 +185,10 @@ impl Graph {
         recording: &Recording<'_>,
     ) -> Result<usize, Invalid> {
         match (self.constants[x.0 as usize], self.constants[y.0 as usize]) {
-            (Some(x), Some(y)) => Ok(self.push(Slot::Fixed(relation.holds(x, y)), None)),
+            (Some(a), Some(b)) if !self.margins => Ok(self.push(Slot::Fixed(relation.holds(a, b)), None)),
             (None, Some(c)) => self.against(tree, id, (relation, x, c), recording),
             (Some(c), None) => self.against(tree, id, (relation.flipped(), y, c), recording),
-            (None, None) => {
+            _ => {
                 let (x, y) = (self.of_term(x)?, self.of_term(y)?);
                 Ok(self.push(Slot::Compare(relation, x, y), Some(id)))
             }
@@ -196,7 +205,7 @@ impl Graph {
     ) -> Result<usize, Invalid> {
         use Aggregation::{Max, Min};
         use Relation::{AtLeast, AtMost, Greater, Less};
-        if let Some(x) = self.constants[x.0 as usize] {
+        if let (Some(x), false) = (self.constants[x.0 as usize], self.margins) {
             return Ok(self.push(Slot::Fixed(relation.holds(x, c)), None));
         }
         let (from, to, x, any) = match (&tree.terms[x.0 as usize], relation) {

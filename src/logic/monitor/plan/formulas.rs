@@ -237,7 +237,7 @@ impl Builder<'_> {
                 self.keep(child, latency);
                 self.late(Machine::Chain { first: None, second: child }, (lo, hi), latency, true, false)
             }
-            Some(width) if self.slides && self.facts[child.cell].in_order => {
+            Some(width) if !self.margins && self.facts[child.cell].in_order => {
                 let latency = width.saturating_add(delay);
                 self.late(Machine::Slide { child, width, cut }, (lo, hi), latency, true, false)
             }

@@ -142,8 +142,8 @@ struct Builder<'t> {
     /// The value of each term that is the same everywhere.
     constants: Vec<Option<f64>>,
     watches: BTreeMap<u32, Watched>,
-    /// Whether cells that settle in order may slide (else windows are doubled).
-    slides: bool,
+    /// Whether margins are asked for: then windows are doubled where others slide, and a comparison of constants has a margin.
+    margins: bool,
 }
 
 impl Plan {
@@ -152,7 +152,7 @@ impl Plan {
         root: Part,
         horizon: Tick,
         clock: Clock,
-        slides: bool,
+        margins: bool,
     ) -> Result<Self, Invalid> {
         if clock.is_jumps() {
             return Err(Invalid::NoSteps);
@@ -177,7 +177,7 @@ impl Plan {
             numbers: BTreeMap::new(),
             constants: vec![None; tree.terms.len()],
             watches: BTreeMap::new(),
-            slides,
+            margins,
         };
         for part in order {
             builder.note(part);

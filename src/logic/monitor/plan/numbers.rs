@@ -36,7 +36,7 @@ impl Builder<'_> {
         hi: u64,
     ) -> Result<Made<bool>, Invalid> {
         match (self.constants[x.0 as usize], self.constants[y.0 as usize]) {
-            (Some(x), Some(y)) => Ok(Made::Constant(relation.holds(x, y))),
+            (Some(x), Some(y)) => Ok(self.compared_constants(relation, x, y, lo, hi)),
             (None, Some(y)) => self.against(relation, x, y, lo, hi),
             (Some(x), None) => self.against(relation.flipped(), y, x, lo, hi),
             (None, None) => {
@@ -63,7 +63,7 @@ impl Builder<'_> {
         use Aggregation::{Max, Min};
         use Relation::{AtLeast, AtMost, Greater, Less};
         if let Some(x) = self.constants[x.0 as usize] {
-            return Ok(Made::Constant(relation.holds(x, c)));
+            return Ok(self.compared_constants(relation, x, c, lo, hi));
         }
         match (&self.tree.terms[x.0 as usize], relation) {
             (Term::Later(by, x), _) => Ok(self.against(relation, *x, c, lo + by.0, hi + by.0)?.later(by.0)),
@@ -136,6 +136,14 @@ impl Builder<'_> {
     }
 
     fn compared(&mut self, relation: Relation, x: Ref, y: Ref, lo: u64, hi: u64) -> Ref {
+    fn compared_constants(&mut self, relation: Relation, x: f64, y: f64, lo: u64, hi: u64) -> Made<bool> {
+        if !self.margins {
+            return Made::Constant(relation.holds(x, y));
+        }
+        let (x, y) = (self.fixed(x), self.fixed(y));
+        Made::Of(self.compared(relation, x, y, lo, hi))
+    }
+
         let ahead = common(x, y);
         if let (Some(ahead), true) = (ahead, of_now(x, y)) {
             let key = NowKey::Compare(relation as u8, x.cell, y.cell);

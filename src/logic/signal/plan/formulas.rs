@@ -100,7 +100,7 @@ impl Builder<'_> {
     fn against(&mut self, relation: Relation, x: TermId, c: f64, range: Range) -> Result<Ref, Invalid> {
         use Aggregation::{Max, Mean, Min};
         use Relation::{AtLeast, AtMost, Equal, Greater, Less, Unequal};
-        if let Some(value) = self.term_constants[x.0 as usize] {
+        if let (Some(value), false) = (self.term_constants[x.0 as usize], self.margins) {
             return self.add_truth(Machine::Fixed(relation.holds(value, c)), range);
         }
         if let Some(slot) = self.compare_now(relation, x, c) {

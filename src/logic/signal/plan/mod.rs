@@ -27,7 +27,7 @@ pub(super) fn plan(
     horizon: Tick,
     quantum: Decimal,
 ) -> Result<(Present, Way, Scale, Vec<Watched>), Invalid> {
-    let (mut builder, order, asked) = prepare(tree, root, horizon, quantum)?;
+    let (mut builder, order, asked) = prepare(tree, root, horizon, quantum, false)?;
     let scale = builder.scale;
     let mut watched = Vec::new();
     for part in order {
@@ -55,7 +55,7 @@ pub(super) fn plan_cells(
     horizon: Tick,
     quantum: Decimal,
 ) -> Result<(Present, Vec<Truth>, Ref, Scale), Invalid> {
-    let (mut builder, order, _) = prepare(tree, Part::Node(root), horizon, quantum)?;
+    let (mut builder, order, _) = prepare(tree, Part::Node(root), horizon, quantum, true)?;
     for part in order {
         builder.note(part);
     }
@@ -69,6 +69,7 @@ fn prepare(
     root: Part,
     horizon: Tick,
     quantum: Decimal,
+    margins: bool,
 ) -> Result<(Builder<'_>, Vec<Part>, Asked), Invalid> {
     let order = children_first(tree, root)?;
     if horizon.0 > LONGEST_HORIZON {
@@ -86,6 +87,7 @@ fn prepare(
     let builder = Builder {
         tree,
         scale,
+        margins,
         present: Present::default(),
         truths: Vec::new(),
         numbers: Vec::new(),
@@ -107,6 +109,8 @@ type Range = (Moment, Moment);
 struct Builder<'t> {
     tree: &'t Tree,
     scale: Scale,
+    /// Whether margins are asked for: then a comparison of constants has one, too.
+    margins: bool,
     present: Present,
     truths: Vec<Truth>,
     numbers: Vec<Number>,

@@ -35,7 +35,7 @@ impl Builder<'_> {
         let of = |id: &NodeId| self.node_constants[id.0 as usize];
         match &self.tree.nodes[id.0 as usize] {
             Node::Constant(truth) => Some(*truth),
-            Node::Compare(relation, x, y) => {
+            Node::Compare(relation, x, y) if !self.margins => {
                 Some(relation.holds(self.term_constants[x.0 as usize]?, self.term_constants[y.0 as usize]?))
             }
             Node::Not(x) => of(x).map(|truth| !truth),
