@@ -13,7 +13,7 @@ use crate::base::random::TrialKey;
 use crate::compile::study::{Part, Root};
 use crate::kernel::process::{Sight, View};
 use crate::kernel::{Scratch, State, dynamics, start};
-use crate::logic::Reading;
+use crate::logic::{Reading, open_atoms};
 use crate::model::{AgentId, Bool, Set};
 use std::sync::Arc;
 
@@ -42,7 +42,14 @@ pub(super) fn decision(
     let horizon = subject.program.scenario.clock.seconds(subject.horizon);
     // Monitors round times of jumps by less than this, some units in the last place.
     let slack = 1e-15 * horizon;
-    let used = subject.atoms_of(column);
+    let (tree, clock) = (&subject.tree, subject.program.scenario.clock);
+    let used = match subject.columns[column] {
+        Root::Formula(root) => match open_atoms(tree, root, subject.horizon, clock).ok()? {
+            Some(atoms) => atoms.into_iter().map(|atom| atom.0 as usize).collect(),
+            None => return Some((0.0, None, "it does not depend on what happens".to_owned())),
+        },
+        _ => subject.atoms_of(column),
+    };
     let parts = parts(subject, &used);
     let view = subject.view_beside(column, &parts);
     let mut past = Past { at: at + slack, parts, ..Past::default() };

@@ -1,11 +1,12 @@
 //! Why a trial satisfies or violates a formula: the atoms and comparisons, each with the states at which
 //! it had a value, that together force the verdict whatever the rest of the trial is.
 
-use super::formula::{NodeId, Tree};
+use super::formula::{AtomId, Node, NodeId, Tree};
 use super::invalid::Invalid;
 use super::offline::{FALSE, OPEN, Offline, Recording, Slot, TRUE, turned};
-use super::reach::{Part, last_state};
-use crate::base::tick::Tick;
+use super::reach::{Part, below, last_state};
+use crate::base::tick::{Clock, Tick};
+use std::collections::BTreeSet;
 
 /// An atom or comparison had this value at all states `from ..= to`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,7 +37,7 @@ pub struct Explanation {
 /// # Errors
 /// When the formula cannot be monitored with the recording's horizon.
 pub fn explain(tree: &Tree, root: NodeId, recording: &Recording) -> Result<Explanation, Invalid> {
-    let (needed, _) = last_state(tree, Part::Node(root), Some(recording.horizon))?;
+    let (needed, _) = last_state(tree, Part::Node(root), Some(recording.horizon), recording.clock)?;
     if needed > recording.horizon {
         return Err(Invalid::BeyondHorizon { needed: needed.0, horizon: recording.horizon.0 });
     }
@@ -44,6 +45,39 @@ pub fn explain(tree: &Tree, root: NodeId, recording: &Recording) -> Result<Expla
     let verdict = offline.truth(root, 0);
     let reasons = if verdict.is_some() { explain_at(&offline, root, 0) } else { Vec::new() };
     Ok(Explanation { verdict, reasons })
+}
+
+/// The atoms that can matter to the truth of a formula: not those inside parts that constants alone decide. `None` if they
+/// decide all of it.
+///
+/// # Errors
+/// When the tree is malformed or too deep.
+pub fn open_atoms(
+    tree: &Tree,
+    root: NodeId,
+    horizon: Tick,
+    clock: Clock,
+) -> Result<Option<BTreeSet<AtomId>>, Invalid> {
+    let (atoms, signals, stop) = (|_, _| false, |_, _| f64::NAN, || false);
+    let nothing = Recording { atoms: &atoms, signals: &signals, seen: 0, horizon, clock, stop: &stop };
+    let offline = Offline::new(tree, Part::Node(root), 0, &nothing)?;
+    let (mut open, mut known, mut next) = (BTreeSet::new(), BTreeSet::new(), vec![Part::Node(root)]);
+    while let Some(part) = next.pop() {
+        let (key, decided) = match part {
+            Part::Node(id) => ((false, id.0), offline.truth(id, 0).is_some()),
+            Part::Term(id) => ((true, id.0), false),
+        };
+        if decided || !known.insert(key) {
+            continue;
+        }
+        if let Part::Node(id) = part
+            && let Node::Atom(atom) = &tree.nodes[id.0 as usize]
+        {
+            open.insert(*atom);
+        }
+        next.extend(below(tree, part)?.into_iter().map(|(child, _)| child));
+    }
+    Ok((!known.is_empty()).then_some(open))
 }
 
 /// What forces the truth of a formula, which is known, at a state.
@@ -187,6 +221,24 @@ mod tests {
     use super::*;
     use crate::base::tick::Clock;
     use crate::logic::formula::{Aggregation, AtomId, Node, Relation, SignalId, Term, Window};
+
+    #[test]
+    fn what_constants_decide_is_not_open() {
+        let mut tree = Tree::default();
+        let [p, q] = [0, 1].map(|k| tree.node(Node::Atom(AtomId(k))));
+        let no = tree.node(Node::Constant(false));
+        let (never, not) = (tree.node(Node::And(vec![p, no])), tree.node(Node::Not(no)));
+        let soon = tree.node(Node::Finally(window(0, 2), p));
+        let vacuous = tree.node(Node::Or(vec![not, soon]));
+        let all = tree.node(Node::Globally(window(0, 3), vacuous));
+        let open = |root| open_atoms(&tree, root, Tick(9), Clock::Steps).unwrap();
+        assert_eq!((open(all), open(never)), (None, None));
+        assert_eq!(open(soon), Some(BTreeSet::from([AtomId(0)])));
+        let mut more = tree.clone();
+        let either = more.node(Node::Or(vec![never, q]));
+        let found = open_atoms(&more, either, Tick(9), Clock::Steps).unwrap();
+        assert_eq!(found, Some(BTreeSet::from([AtomId(1)])));
+    }
 
     fn window(from: u64, to: u64) -> Window {
         Window { from: Tick(from), to: Some(Tick(to)) }

@@ -15,7 +15,7 @@ pub mod signal;
 mod source;
 
 pub use critical::{Critical, critical};
-pub use explain::{Explanation, Reason, explain};
+pub use explain::{Explanation, Reason, explain, open_atoms};
 pub use flat::{Flat, Present, Sort};
 pub use formula::{
     Aggregation, AtomId, Node, NodeId, Operation, Relation, SignalId, Term, TermId, Tree, Window,
@@ -25,7 +25,7 @@ pub use monitor::robustness::Robustness;
 pub use monitor::{Antecedent, Monitor};
 pub use need::Needs;
 pub use offline::Recording;
-pub use reach::{Part, Reach, leaves, reach};
+pub use reach::{Part, Reach, leaves, looks_ahead, reach};
 pub use signal::robustness::{Bounds, SignalRobustness};
 pub use signal::{Glance, Reading, SignalMonitor};
 pub use source::{Source, sides, sources};

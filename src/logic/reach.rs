@@ -1,7 +1,7 @@
 //! How far into a trial a formula looks: the order of its parts, and the last state that each of them is
 //! asked about.
 
-use super::formula::{AtomId, Node, NodeId, SignalId, Term, TermId, Tree, Window};
+use super::formula::{AtomId, Node, NodeId, Relation, SignalId, Term, TermId, Tree, Window};
 use super::invalid::Invalid;
 use crate::base::tick::{Clock, Tick};
 use std::collections::BTreeSet;
@@ -60,6 +60,54 @@ pub(super) fn below(tree: &Tree, part: Part) -> Result<Vec<(Part, Ask)>, Invalid
             Term::TimeUntil(x) => vec![node(x, Ask::Within(Window { from: Tick(0), to: None }))],
         },
     })
+}
+
+/// Of a comparison of a time until something with a constant: that something, and the window in which it is asked about,
+/// as it is by `F<=c`; no window where the constant alone decides.
+fn timed(tree: &Tree, part: Part, clock: Clock) -> Option<(NodeId, Option<Window>)> {
+    /// No bound is beyond.
+    const FAR: u64 = 1 << 41;
+    let Part::Node(id) = part else { return None };
+    let Node::Compare(relation, x, y) = &tree.nodes[id.0 as usize] else { return None };
+    let term = |id: &TermId| &tree.terms[id.0 as usize];
+    let (goal, c, relation) = match (term(x), term(y)) {
+        (Term::TimeUntil(goal), Term::Constant(c)) => (*goal, *c, *relation),
+        (Term::Constant(c), Term::TimeUntil(goal)) => (*goal, *c, relation.flipped()),
+        _ => return None,
+    };
+    let strictly = match relation {
+        Relation::AtMost | Relation::Greater => false,
+        Relation::Less | Relation::AtLeast => true,
+        Relation::Equal | Relation::Unequal => return None,
+    };
+    if !c.is_finite() {
+        return None;
+    }
+    // Of states the last one in time counts; in continuous time all up to the constant do.
+    let is_out = |ticks: u64| match (clock.seconds(Tick(ticks)), clock.is_jumps()) {
+        (time, false) => time > c || strictly && time >= c,
+        (time, true) => time >= c,
+    };
+    let (mut first, mut beyond) = (0, FAR);
+    while first < beyond {
+        let middle = first + (beyond - first) / 2;
+        if is_out(middle) { beyond = middle } else { first = middle + 1 }
+    }
+    let last = if clock.is_jumps() { (c >= 0.0).then_some(first) } else { first.checked_sub(1) };
+    Some((goal, last.map(|last| Window { from: Tick(0), to: Some(Tick(last)) })))
+}
+
+/// Whether a part looks at other states than the one in which it is asked about.
+///
+/// # Errors
+/// When the tree is malformed or too deep.
+pub fn looks_ahead(tree: &Tree, root: Part) -> Result<bool, Invalid> {
+    for part in children_first(tree, root)? {
+        if below(tree, part)?.iter().any(|(_, ask)| !matches!(ask, Ask::Here)) {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }
 
 /// All parts below `root` and itself, children first.
@@ -121,9 +169,10 @@ impl Asked {
 }
 
 /// Where the parts below `root`, asked about at tick 0, are asked about. With a horizon, parts below one that ranges up to
-/// it are asked about there too, so that a bound looks beyond it. In `dense` time the left operand of an until is asked
+/// it are asked about there too, so that a bound looks beyond it. In continuous time the left operand of an until is asked
 /// about up to just before the end of its window, which is a tick further than the last state before it.
-pub(super) fn asked(tree: &Tree, root: Part, horizon: Option<Tick>, dense: bool) -> Result<Asked, Invalid> {
+pub(super) fn asked(tree: &Tree, root: Part, horizon: Option<Tick>, clock: Clock) -> Result<Asked, Invalid> {
+    let dense = clock.is_jumps();
     let order = children_first(tree, root)?;
     let slot = |part: Part| match part {
         Part::Node(id) => id.0 as usize,
@@ -136,7 +185,13 @@ pub(super) fn asked(tree: &Tree, root: Part, horizon: Option<Tick>, dense: bool)
     for part in order.into_iter().rev() {
         let Some((from, at)) = parts[slot(part)] else { continue };
         last = last.max(at);
-        for (child, ask) in below(tree, part)? {
+        let children = match timed(tree, part, clock) {
+            Some((goal, window)) => {
+                window.map(|window| (Part::Node(goal), Ask::Within(window))).into_iter().collect()
+            }
+            None => below(tree, part)?,
+        };
+        for (child, ask) in children {
             let earliest = match ask {
                 Ask::Within(window) => from.saturating_add(window.from.0),
                 Ask::AtEnd => end(from),
@@ -176,8 +231,13 @@ pub(super) fn asked(tree: &Tree, root: Part, horizon: Option<Tick>, dense: bool)
 
 /// The last state that `root`, asked about at state 0, looks at through bounds alone, and whether some
 /// part ranges up to the horizon.
-pub(super) fn last_state(tree: &Tree, root: Part, horizon: Option<Tick>) -> Result<(Tick, bool), Invalid> {
-    asked(tree, root, horizon, false).map(|asked| (Tick(asked.last), asked.to_horizon))
+pub(super) fn last_state(
+    tree: &Tree,
+    root: Part,
+    horizon: Option<Tick>,
+    clock: Clock,
+) -> Result<(Tick, bool), Invalid> {
+    asked(tree, root, horizon, clock).map(|asked| (Tick(asked.last), asked.to_horizon))
 }
 
 /// How far a formula or metric looks.
@@ -194,7 +254,7 @@ pub struct Reach {
 /// # Errors
 /// When a window is empty, or the tree is malformed or too deep.
 pub fn reach(tree: &Tree, root: Part, horizon: Tick, clock: Clock) -> Result<Reach, Invalid> {
-    let asked = asked(tree, root, Some(horizon), clock.is_jumps())?;
+    let asked = asked(tree, root, Some(horizon), clock)?;
     Ok(Reach { ticks: asked.last, unbounded: asked.to_horizon })
 }
 
@@ -226,6 +286,7 @@ pub fn leaves(tree: &Tree, roots: &[Part]) -> Result<(BTreeSet<AtomId>, BTreeSet
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::decimal::Decimal;
     use crate::logic::formula::AtomId;
 
     fn window(from: u64, to: Option<u64>) -> Window {
@@ -238,10 +299,10 @@ mod tests {
         let a = tree.node(Node::Atom(AtomId(0)));
         let inner = tree.node(Node::Finally(window(1, Some(4)), a));
         let outer = tree.node(Node::Globally(window(0, Some(10)), inner));
-        assert_eq!(last_state(&tree, Part::Node(outer), None), Ok((Tick(14), false)));
+        assert_eq!(last_state(&tree, Part::Node(outer), None, Clock::Steps), Ok((Tick(14), false)));
         let until = tree.node(Node::Until(window(0, Some(3)), inner, a));
         assert_eq!(
-            last_state(&tree, Part::Node(until), None),
+            last_state(&tree, Part::Node(until), None, Clock::Steps),
             Ok((Tick(6), false)),
             "nothing depends on the left operand of an until in its last state"
         );
@@ -255,11 +316,40 @@ mod tests {
         let endless = tree.node(Node::Until(window(0, None), next, q));
         let states = reach(&tree, Part::Node(endless), Tick(9), Clock::Steps);
         assert_eq!(states, Ok(Reach { ticks: 9, unbounded: true }));
-        let dense = asked(&tree, Part::Node(endless), Some(Tick(9)), true).unwrap();
+        let dense = asked(&tree, Part::Node(endless), Some(Tick(9)), Clock::Jumps(Decimal::ONE)).unwrap();
         assert_eq!(dense.last, 10, "it is asked about up to the very end of continuous time");
         let weak = tree.node(Node::WeakUntil(window(0, None), next, q));
         let states = reach(&tree, Part::Node(weak), Tick(9), Clock::Steps);
         assert_eq!(states, Ok(Reach { ticks: 10, unbounded: true }));
+    }
+
+    #[test]
+    fn a_time_that_is_compared_is_asked_about_as_far_as_finally_is() {
+        let mut tree = Tree::default();
+        let p = tree.node(Node::Atom(AtomId(0)));
+        let goal = tree.node(Node::Finally(window(0, Some(2)), p));
+        let time = tree.term(Term::TimeUntil(goal));
+        let second = |text: &str| Clock::Stepped(Decimal::parse(text).unwrap());
+        for (relation, clock, c, last) in [
+            (Relation::AtMost, Clock::Steps, 1.0, 3),
+            (Relation::Less, Clock::Steps, 1.0, 2),
+            (Relation::AtLeast, Clock::Steps, 1.5, 3),
+            (Relation::Greater, second("0.1"), 0.3, 5),
+            (Relation::AtMost, Clock::Jumps(Decimal::ONE), 1.0, 3),
+            (Relation::Less, Clock::Jumps(Decimal::ONE), 1.5, 4),
+            (Relation::Less, Clock::Steps, 0.0, 0),
+            (Relation::AtMost, Clock::Steps, -1.0, 0),
+            (Relation::AtMost, Clock::Steps, f64::INFINITY, 11),
+            (Relation::Equal, Clock::Steps, 1.0, 11),
+        ] {
+            let limit = tree.term(Term::Constant(c));
+            for node in [Node::Compare(relation, time, limit), Node::Compare(relation.flipped(), limit, time)]
+            {
+                let root = tree.node(node);
+                let found = reach(&tree, Part::Node(root), Tick(9), clock).unwrap();
+                assert_eq!(found, Reach { ticks: last, unbounded: last == 11 }, "{relation:?} {c}");
+            }
+        }
     }
 
     #[test]
@@ -278,13 +368,13 @@ mod tests {
         let mut tree = Tree::default();
         let a = tree.node(Node::Not(NodeId(1)));
         tree.node(Node::Not(a));
-        assert_eq!(last_state(&tree, Part::Node(a), None), Err(Invalid::Malformed));
-        assert_eq!(last_state(&tree, Part::Node(NodeId(9)), None), Err(Invalid::Malformed));
+        assert_eq!(last_state(&tree, Part::Node(a), None, Clock::Steps), Err(Invalid::Malformed));
+        assert_eq!(last_state(&tree, Part::Node(NodeId(9)), None, Clock::Steps), Err(Invalid::Malformed));
         let empty = tree.node(Node::Finally(window(3, Some(2)), NodeId(4)));
         tree.node(Node::Constant(true));
         let _ = empty;
         assert_eq!(
-            last_state(&tree, Part::Node(NodeId(2)), None),
+            last_state(&tree, Part::Node(NodeId(2)), None, Clock::Steps),
             Err(Invalid::Malformed),
             "a child that does not exist"
         );
@@ -297,10 +387,10 @@ mod tests {
         for _ in 0..500 {
             x = tree.node(Node::And(vec![x, x]));
         }
-        assert_eq!(last_state(&tree, Part::Node(x), None), Ok((Tick(0), false)));
+        assert_eq!(last_state(&tree, Part::Node(x), None, Clock::Steps), Ok((Tick(0), false)));
         for _ in 0..600 {
             x = tree.node(Node::Not(x));
         }
-        assert!(matches!(last_state(&tree, Part::Node(x), None), Err(Invalid::TooDeep { .. })));
+        assert!(matches!(last_state(&tree, Part::Node(x), None, Clock::Steps), Err(Invalid::TooDeep { .. })));
     }
 }

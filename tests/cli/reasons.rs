@@ -257,3 +257,23 @@ fn why_a_trial_is_unresolved_is_what_made_it_so() {
         assert!(result["warnings"].to_string().contains(said), "{said}: {}", result["warnings"]);
     }
 }
+
+#[test]
+fn a_left_side_that_parameters_make_false_never_had_a_case_in_either_time() {
+    let process =
+        "param mode = 1 in 0 .. 5\nprocess w { var x: 0 .. 5 = 0\n  when x < 5 TIME-> x = x + 1 }\n";
+    for (head, time, unit) in [("horizon = 10 s\n", "at 1 /s ", " s"), ("horizon = 10 steps\n", "", "")] {
+        let model = head.to_owned() + &process.replace("TIME", time);
+        let query =
+            |left: &str| format!("estimate P(G<=3{unit} ({left} => F<=2{unit} w.x == 0)) within 0.1\n");
+        let properties = query("w.x > 1 & mode == 2")
+            + &query("w.x > 1 & w.x - w.x + mode == 2")
+            + &query("w.x < 1 & mode == 1");
+        let place = Place::new(&[("a.scn", &model), ("a.bltl", &properties)]);
+        let json = place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "json"]).json();
+        let never = |k: usize| json["results"][k]["warnings"].to_string().contains("never triggered");
+        assert_eq!((never(0), never(1), never(2)), (true, true, false), "{json:#}");
+        let witness = &json["results"][0]["witnesses"][0];
+        assert_eq!(witness["what"], "it does not depend on what happens", "{witness}");
+    }
+}

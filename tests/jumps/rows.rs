@@ -260,3 +260,32 @@ fn what_is_due_at_a_bound_happens_by_then() {
         }
     }
 }
+
+#[test]
+fn a_time_compared_with_a_constant_is_refused_where_finally_is_and_means_the_same() {
+    let steps = "horizon = 4 steps\nprocess p { var s: 0 .. 5 = 0\nwhen s < 5 -> s = s + 1 }\n";
+    let steps_of = ["1 steps", "2 steps", "3 steps", "4 steps"];
+    for (scenario, inner, bounds) in
+        [(steps, "F<=2 (p.s == 3)", steps_of), (STAIRS, "F<=8 s (p.s == 3)", ["1 s", "2 s", "2.5 s", "10 s"])]
+    {
+        let mut accepted = 0;
+        for bound in bounds {
+            let pairs = [
+                (format!("time_until({inner}) <= {bound}"), format!("F<={bound} {inner}")),
+                (format!("{bound} >= time_until({inner})"), format!("F<={bound} {inner}")),
+                (format!("time_until({inner}) > {bound}"), format!("!F<={bound} {inner}")),
+                (format!("G (time_until(p.s == 3) <= {bound})"), format!("G F<={bound} (p.s == 3)")),
+            ];
+            for (time, finally) in pairs {
+                let query = |formula: &str| format!("estimate P({formula}) by fixed(trials = 3)");
+                let is_legal = |formula: &str| compiled(scenario, &query(formula)).is_ok();
+                assert_eq!(is_legal(&time), is_legal(&finally), "{time}");
+                if is_legal(&time) {
+                    accepted += 1;
+                    assert_eq!(count(scenario, &time, 3), count(scenario, &finally, 3), "{time}");
+                }
+            }
+        }
+        assert_eq!(accepted, 6);
+    }
+}

@@ -55,6 +55,11 @@ impl Scale {
         Self { bits, horizon: horizon.0, seconds_per_tick, units_per_second, ticks_per_unit, units, quantum }
     }
 
+    /// The length of a tick, s.
+    pub(super) fn quantum(self) -> Decimal {
+        self.quantum
+    }
+
     /// The moment right after the instant of the horizon.
     pub(super) fn end(self) -> Moment {
         self.shift(Tick(self.horizon)) + 1

@@ -161,7 +161,7 @@ impl Plan {
             return Err(Invalid::TooLong { horizon: horizon.0, limit: LONGEST_HORIZON });
         }
         let order = children_first(tree, root)?;
-        let (needed, endless) = last_state(tree, root, Some(horizon))?;
+        let (needed, endless) = last_state(tree, root, Some(horizon), clock)?;
         if needed > horizon {
             return Err(Invalid::BeyondHorizon { needed: needed.0, horizon: horizon.0 });
         }

@@ -130,12 +130,12 @@ impl Builder<'_> {
             }
         }
         // Windows of the later positions may be cut; if all are, there is no bound.
-        let width = (lo + within < self.horizon || lo == self.horizon).then_some(within);
+        let is_bounded = hi + within <= self.horizon || lo + within < self.horizon;
+        let width = is_bounded.then_some(within);
         let child = self.formula(goal, lo, self.horizon.min(hi.saturating_add(within)))?;
         Ok(self.some_state(child, Tick(0), width, lo, hi))
     }
 
-    fn compared(&mut self, relation: Relation, x: Ref, y: Ref, lo: u64, hi: u64) -> Ref {
     fn compared_constants(&mut self, relation: Relation, x: f64, y: f64, lo: u64, hi: u64) -> Made<bool> {
         if !self.margins {
             return Made::Constant(relation.holds(x, y));
@@ -144,6 +144,7 @@ impl Builder<'_> {
         Made::Of(self.compared(relation, x, y, lo, hi))
     }
 
+    fn compared(&mut self, relation: Relation, x: Ref, y: Ref, lo: u64, hi: u64) -> Ref {
         let ahead = common(x, y);
         if let (Some(ahead), true) = (ahead, of_now(x, y)) {
             let key = NowKey::Compare(relation as u8, x.cell, y.cell);

@@ -184,7 +184,9 @@ impl Builder<'_> {
         if within < Moment::from(strictly) {
             return self.add_truth(Machine::Fixed(false), range);
         }
-        // What begins right after an instant comes at that instant's time.
+        // What begins right after an instant comes at that instant's time, unless to see that the goal had to look beyond the
+        // horizon.
+        let last = last - self.scale.shift(self.last_asked(goal)?);
         let operand = self.truth(goal, (range.0, (range.1 + within + 1).min(last)))?;
         self.add_truth(Machine::Reach(Seen::Soon { within, strictly }, operand), range)
     }

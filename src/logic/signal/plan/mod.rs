@@ -7,14 +7,14 @@ mod numbers;
 use super::cells::{Cell, Cells, Root};
 use super::moment::{FOREVER, LONGEST_HORIZON, Moment, Scale};
 use super::number::{Number, Source};
-use super::present::Present;
+use super::present::{Code, Present};
 use super::truth::{Machine, Ref, Truth};
 use super::{Watched, Way};
 use crate::base::decimal::Decimal;
-use crate::base::tick::Tick;
+use crate::base::tick::{Clock, Tick};
 use crate::logic::formula::{Node, NodeId, Tree, Window};
 use crate::logic::invalid::Invalid;
-use crate::logic::reach::{Asked, Part, asked, children_first};
+use crate::logic::reach::{Asked, Part, asked, children_first, last_state};
 use std::collections::BTreeMap;
 
 /// Most cells.
@@ -78,7 +78,7 @@ fn prepare(
     if quantum.is_negative() || quantum.numerator() == 0 {
         return Err(Invalid::NoSteps);
     }
-    let asked = asked(tree, root, Some(horizon), true)?;
+    let asked = asked(tree, root, Some(horizon), Clock::Jumps(quantum))?;
     let needed = asked.last;
     if needed > horizon.0 {
         return Err(Invalid::BeyondHorizon { needed, horizon: horizon.0 });
@@ -127,15 +127,26 @@ struct Builder<'t> {
 }
 
 impl Builder<'_> {
-    /// Where the left side of an implication is in the code of present states: `a => b` is lowered to `!a | b`.
-    fn antecedent(&self, part: Part) -> Option<usize> {
+    /// Where the left side of an implication is in the code of present states: `a => b` is lowered to `!a | b`. One that is
+    /// the same everywhere stands there, too.
+    fn antecedent(&mut self, part: Part) -> Option<usize> {
         let Part::Node(id) = part else { return None };
         let Node::Or(parts) = &self.tree.nodes[id.0 as usize] else { return None };
         let [first, _] = parts.as_slice() else { return None };
         match &self.tree.nodes[first.0 as usize] {
-            Node::Not(antecedent) => self.node_slots[antecedent.0 as usize],
+            Node::Not(antecedent) => match self.node_constants[antecedent.0 as usize] {
+                Some(true) => Some(self.present.add(Code::All([].into()))),
+                Some(false) => Some(self.present.add(Code::Any([].into()))),
+                None => self.node_slots[antecedent.0 as usize],
+            },
             _ => None,
         }
+    }
+
+    /// Up to which tick a formula looks that is asked about at the start, through bounds alone.
+    fn last_asked(&self, id: NodeId) -> Result<Tick, Invalid> {
+        let clock = Clock::Jumps(self.scale.quantum());
+        last_state(self.tree, Part::Node(id), None, clock).map(|(last, _)| last)
     }
 
     /// The last moment of a trial.
