@@ -3,6 +3,7 @@
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::number::Number;
+use super::observed::bare;
 use super::study::{Column, MeasureKind, Root, Sought};
 use super::symbols::{Meaning, ScopeId};
 use super::told::Told;
@@ -10,7 +11,7 @@ use super::typed::Typed;
 use crate::base::tick::Clock;
 use crate::logic::{
     Invalid, Monitor, Node, NodeId, Part, Relation, Robustness, SignalMonitor, SignalRobustness, Term,
-    TermId, leaves, reach,
+    TermId, leaves, looks_ahead, reach,
 };
 use crate::syntax::ast::{self, BinaryOp, Expr, ExprKind, Moment};
 use crate::syntax::diagnostic::Diagnostic;
@@ -96,6 +97,24 @@ impl Elaborator<'_> {
         Ok((Column { root: Root::Formula(node), text }, unbounded))
     }
 
+    /// Warns of a formula without a temporal operator.
+    fn warn_of_first_state(&mut self, node: NodeId, span: Span) {
+        if !self.reads_states(node) || looks_ahead(&self.tree, Part::Node(node)).unwrap_or(true) {
+            return;
+        }
+        let (text, bound) = (self.text(span), self.duration(self.horizon.0));
+        let is_name = text.chars().all(|c| c.is_alphanumeric() || "_.".contains(c));
+        let inner = match bare(&text) {
+            _ if is_name => text,
+            long if long.len() > 60 => "(…)".to_owned(),
+            short => format!("({short})"),
+        };
+        let warning = Diagnostic::warning("W0502", span, "this is read in the first state").hint(format!(
+            "write `G<={bound} {inner}` if it has to hold all the time, `F<={bound} {inner}` if it has to happen"
+        ));
+        self.note(warning);
+    }
+
     /// Whether a formula reads any state. One that is refused for its shape counts as if it did.
     fn reads_states(&self, node: NodeId) -> bool {
         leaves(&self.tree, &[Part::Node(node)])
@@ -167,6 +186,7 @@ impl Elaborator<'_> {
             this.temporal = false;
             this.as_formula(typed?, formula.span)
         })?;
+        self.warn_of_first_state(node, formula.span);
         let unbounded = self.within_horizon(Part::Node(node), formula.span)?;
         self.watchable(Root::Robustness(node, Sought::Value), formula.span)?;
         Ok((node, dimension, unbounded))
@@ -214,6 +234,9 @@ impl Elaborator<'_> {
                     Some(robust) => robust,
                     None => self.formula_column(&measure.body, scope),
                 };
+                if let Ok((Column { root: Root::Formula(node), .. }, _)) = &formula {
+                    self.warn_of_first_state(*node, measure.body.span);
+                }
                 let observed = formula.map(|(column, unbounded)| Observed {
                     column,
                     kind: MeasureKind::Probability,

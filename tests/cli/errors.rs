@@ -353,3 +353,59 @@ fn a_stream_of_outcomes_that_is_none_is_an_object_too() {
     assert_eq!(said.code, Some(2));
     assert!(said.json()["error"]["message"].as_str().unwrap().contains("a.csv"), "{}", said.out);
 }
+
+#[test]
+fn a_formula_without_a_temporal_operator_is_read_in_the_first_state() {
+    let scenario = "horizon = 9 steps\nparam mode = 1 in 0 .. 5\nprocess w { var x: 0 .. 9 = 0  when x < 9 -> x = x + 1 }\n";
+    let warned = |property: &str| {
+        let place = Place::new(&[("a.scn", scenario), ("a.bltl", property)]);
+        let said = place.call(&["check", "a.scn", "a.bltl", "-q", "--max-trials", "4"]);
+        let warnings = said.err.matches("warning[").count();
+        assert_eq!(
+            said.err.matches("warning[W0502]: this is read in the first state").count(),
+            warnings,
+            "{}",
+            said.err
+        );
+        (warnings, said.err)
+    };
+    let (count, text) = warned("property low = w.x < 3\ncheck P(low) >= 0.5\ncheck P(G<=9 low) >= 0.5\n");
+    assert_eq!(count, 1, "{text}");
+    assert!(
+        text.contains("a.bltl:2:9") && text.contains("write `G<=9 steps low` if it has to hold"),
+        "{text}"
+    );
+    for formula in ["w.x < 3 & w.x >= mode", "robustness(w.x < 3) > 0"] {
+        assert_eq!(warned(&format!("estimate P({formula})\n")).0, 1, "{formula}");
+    }
+    for formula in [
+        "F<=0 (w.x < 3)",
+        "time_until(w.x == 3) <= 4 steps",
+        "max<=3 (w.x) > 2",
+        "X (w.x == 1)",
+        "w.x == 0 => F (w.x == 3)",
+        "robustness(G<=3 (w.x < 3.5)) > 0",
+    ] {
+        assert_eq!(warned(&format!("estimate P({formula})\n")).0, 0, "{formula}");
+    }
+}
+
+#[test]
+fn real_variables_are_not_to_be_compared_for_equality_and_ranges_have_a_limit() {
+    let place = |model: &str, property: &str| {
+        let place = Place::new(&[("a.scn", model), ("a.bltl", property)]);
+        place.call(&["check", "a.scn", "a.bltl", "-q", "--max-trials", "4"]).err
+    };
+    let model = "horizon = 9 steps\nprocess tank { var level = 0  var n: 0 .. 9 = 0\n  when level != 1 & n < 9 -> { level = level + 0.1; n = n + 1 } }\n";
+    let said = place(
+        model,
+        "check P(F (2 * tank.level == 0.6)) >= 0.5\ncheck P(F (tank.n == 3 & tank.level > 0.5 & round(tank.level) == 1)) >= 0.5\n",
+    );
+    assert_eq!(said.matches("warning[W0503]: `level` is a real number").count(), 2, "{said}");
+    assert!(said.contains("a.scn:3:8") && said.contains("a.bltl:1:12"), "{said}");
+    let said = place(&model.replace("0 .. 9", "0 .. 1e18"), "check P(F (tank.n == 3)) >= 0.5\n");
+    assert!(said.contains("error[E0405]: `1e18` is too large for the end of a range"), "{said}");
+    assert!(said.contains("the limit is 4503599627370495"), "{said}");
+    let said = place(&model.replace("0 .. 9", "0 .. 9.5"), "check P(F (tank.n == 3)) >= 0.5\n");
+    assert!(said.contains("the ends of a range must be whole"), "{said}");
+}

@@ -206,6 +206,12 @@ impl Elaborator<'_> {
         if measured {
             self.note_margin(da, whole);
         }
+        if !margin && let Some(name) = self.real_in(&a).or_else(|| self.real_in(&b)) {
+            let said = format!("`{name}` is a real number, which is rounded, and is compared for equality");
+            let warning = Diagnostic::warning("W0503", whole, said)
+                .hint("compare with `<` or `>`, or within a tolerance, as in `abs(x - 0.3) < 1e-9`; for whole numbers declare a range, as in `var x: 0 .. 10 = 0`");
+            self.note(warning);
+        }
         Ok(Typed::truth(Bool::Compare(comparison(op), Box::new(a), Box::new(b))))
     }
 

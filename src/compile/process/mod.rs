@@ -55,6 +55,9 @@ impl<'a> Inside<'a> {
     }
 }
 
+/// The ends of ranges are below this, so that all sums and differences of them are exact.
+const LARGEST: i64 = 1 << 52;
+
 /// A process under elaboration.
 pub(super) struct Declared<'a> {
     decl: &'a ProcessDecl,
@@ -102,6 +105,18 @@ impl<'a> Declared<'a> {
 
     fn variable(&self, copy: u32, place: usize) -> VariableId {
         VariableId(self.first + copy * self.variables.len() as u32 + place as u32)
+    }
+
+    /// The name of a variable, if it is one of real numbers of this process.
+    fn real(&self, id: VariableId) -> Option<&'a str> {
+        let at = id.0.checked_sub(self.first)? as usize;
+        if at >= self.variables.len() * self.copies.unwrap_or(1) as usize {
+            return None;
+        }
+        let place = at % self.variables.len();
+        let is_it = |inside: &Inside| matches!(inside, Inside::Variable(k) if *k == place);
+        let (name, _) = self.names.iter().find(|(_, inside)| is_it(inside))?;
+        (self.variables[place].1 == Domain::Real).then_some(*name)
     }
 }
 
@@ -293,7 +308,14 @@ impl Elaborator<'_> {
     fn whole(&mut self, expr: &Expr, locals: &Locals) -> Lowered<i64> {
         let number = self.number_of(expr, Dimension::NONE, locals)?;
         match number.as_whole() {
-            Some(whole) if whole.abs() < 1 << 52 => Ok(whole),
+            Some(whole) if whole.abs() < LARGEST => Ok(whole),
+            _ if number.value.fract() == 0.0 => {
+                let said = format!("`{}` is too large for the end of a range", self.text(expr.span));
+                let error = Diagnostic::error("E0405", expr.span, said)
+                    .label(format!("the limit is {}, in either direction", LARGEST - 1))
+                    .hint("write `real` instead of a range for a number of any size");
+                self.report(error)
+            }
             _ => self.report(Diagnostic::error("E0405", expr.span, "the ends of a range must be whole")),
         }
     }

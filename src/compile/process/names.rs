@@ -5,7 +5,7 @@ use crate::compile::elaborator::{Elaborator, Locals, Lowered, Reported};
 use crate::compile::symbols::{Meaning, unknown};
 use crate::compile::typed::Typed;
 use crate::compile::wording::{Frame, Use};
-use crate::model::{Bool, Comparison, Domain, Num};
+use crate::model::{Bool, Comparison, Domain, Function, Num};
 use crate::syntax::ast::{Expr, ExprKind, Ident, LetDecl};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -56,6 +56,17 @@ impl<'a> Elaborator<'a> {
                 self.expand(0, &path, span, |this| this.lower(body, &locals))
             }
         })
+    }
+
+    /// The name of a variable of real numbers from which a number is computed, if there is one and nothing rounds it.
+    pub(in crate::compile) fn real_in(&self, num: &Num) -> Option<&'a str> {
+        match num {
+            Num::Variable(id) => self.processes.iter().find_map(|process| process.real(*id)),
+            Num::Apply(Function::Floor | Function::Ceil | Function::Round, _) => None,
+            Num::Apply(_, of) | Num::Fold(_, _, of) => self.real_in(of),
+            Num::Combine(_, a, b) | Num::If(_, a, b) => self.real_in(a).or_else(|| self.real_in(b)),
+            _ => None,
+        }
     }
 
     /// A name of the process whose variables are being settled, if it has it: they start from nothing that it declares.

@@ -136,6 +136,27 @@ Probably wrong:\n\
 \x20   estimate E(speed(user)) in 0 m/s .. 3 m/s\n\
 Clear:\n\
 \x20   estimate E(speed(user) at end) in 0 m/s .. 3 m/s\n\
-\x20   estimate E(max<=10 s (speed(user))) in 0 m/s .. 3 m/s",
+\x20   estimate E(max<=10 s (speed(user))) in 0 m/s .. 3 m/s\n\
+\n\
+A formula without a temporal operator is read in the first state, too.\n\
+\n\
+Probably wrong:\n\
+\x20   check P(clearance(user) > 0.3 m) >= 0.9\n\
+Clear:\n\
+\x20   check P(G<=10 s (clearance(user) > 0.3 m)) >= 0.9",
+    },
+    Page {
+        code: "W0503",
+        title: "a real number is compared for equality",
+        text: "\
+Variables of processes without a range are floating-point numbers: 0.1 added three times is not 0.3. A comparison with\n\
+`==` or `!=` is then decided by rounding.\n\
+\n\
+Probably wrong:\n\
+\x20   process tank { var level = 0  when level < 1 -> level = level + 0.1 }\n\
+\x20   property full = F<=20 (tank.level == 1)\n\
+Clear:\n\
+\x20   property full = F<=20 (tank.level > 0.95)\n\
+\x20   process tank { var tenths: 0 .. 10 = 0  when tenths < 10 -> tenths = tenths + 1 }",
     },
 ];
