@@ -14,7 +14,8 @@ use smc::base::random::{Purpose, Stream, TrialKey};
 use smc::stats::calibration::{Boundary, Table};
 use smc::stats::ranking::{Allocation, Booleans, Each, Race};
 use smc::stats::{
-    AnyEstimator, Estimator, Evidence, Massart, Okamoto, Outcome, Plan, Spending, Sprt, Test, TwoSprt,
+    AnyEstimator, Estimator, Evidence, Hypothesis, Massart, Okamoto, Outcome, Plan, Spending, Sprt, Test,
+    TwoSprt,
 };
 use std::hint::black_box;
 use std::time::Instant;
@@ -57,7 +58,7 @@ fn tests() {
     let (Ok(sprt), Ok(sprt2), Ok(evidence)) = (
         Sprt::new(0.9, 0.01, 0.01, 0.01),
         TwoSprt::new(0.9, 0.01, 0.01, 0.01),
-        Evidence::new(0.9, 0.01, 0.01),
+        Evidence::new(Hypothesis::AtLeast, 0.9, 0.01, 0.01),
     ) else {
         return;
     };
@@ -206,7 +207,7 @@ fn time() {
     if let Ok(mut sprt) = Sprt::new(0.9, 0.000_001, 1e-9, 1e-9) {
         per_trial("SPRT", &mut |x| sprt.observe(x).is_some());
     }
-    if let Ok(mut evidence) = Evidence::new(0.9, 1e-9, 1e-9) {
+    if let Ok(mut evidence) = Evidence::new(Hypothesis::AtLeast, 0.9, 1e-9, 1e-9) {
         per_trial("e-process", &mut |x| evidence.observe(x).is_some());
     }
     if let Ok(mut mean) = smc::stats::Mean::fixed(0.0, 1.0, 10_000_000, 0.05) {

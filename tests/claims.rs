@@ -74,6 +74,29 @@ fn the_check_of_an_expectation_takes_no_more_trials_than_its_sequence_needs() {
     assert!(early["interval"].as_str().unwrap().starts_with("time-uniform"), "{early:#}");
 }
 
+/// Of the two claims of a check one is the opposite of the other: where P equals the threshold only one is false.
+#[test]
+fn a_check_certifies_the_side_that_it_asks_about() {
+    let near = "P(F<=10 s p.over)";
+    let asked = [(">=", 0.3), (">=", 0.7), (">", 0.3), (">", 0.7), ("<", 0.3), ("<", 0.7), ("<=", 0.3), ("<=", 0.7)];
+    let text: String =
+        asked.iter().map(|(relation, theta)| format!("check {near} {relation} {theta}\n")).collect();
+    let found = run(UNIFORM, &text, &[]);
+    for ((relation, theta), result) in asked.into_iter().zip(&found) {
+        let holds = (theta < 0.5) == relation.starts_with('>');
+        let certified = match (holds, relation) {
+            (true, relation) => relation,
+            (false, ">=") => "<",
+            (false, ">") => "<=",
+            (false, "<") => ">=",
+            (false, _) => ">",
+        };
+        assert_eq!(result["verdict"], if holds { "satisfied" } else { "violated" });
+        let certified = format!("{near} {certified} {theta}, error at most 0.01");
+        assert_eq!(result["certifies"], certified, "{relation}");
+    }
+}
+
 #[test]
 fn an_undecided_check_of_a_family_errs_no_more_than_its_share() {
     let one = "check P(F<=10 s p.over) >= 0.5\n";
@@ -218,7 +241,7 @@ fn checks_of_quantiles_say_what_their_figures_are_of() {
     );
     assert_eq!(
         result["certifies"],
-        "Q(0.5, time_until(p.over)) >= 7 s, since P(time_until(p.over) < 7 s) < 0.5, error at most 0.01"
+        "Q(0.5, time_until(p.over)) >= 7 s, tested as P(time_until(p.over) < 7 s) <= 0.5, error at most 0.01"
     );
     let place = Place::new(&[("a.scn", UNIFORM), ("a.bltl", properties)]);
     let text = place.call(&["check", "a.scn", "a.bltl", "-q"]).out;

@@ -63,7 +63,7 @@ fn checks_of_quantiles_are_right_at_the_values_of_a_metric() {
         let verdict = if *holds { "satisfied" } else { "violated" };
         assert_eq!(result["verdict"], verdict, "{query}: {result}");
         // What is certified is about the trials that were counted, and true.
-        let claim = result["certifies"].as_str().unwrap().split_once(", since ").unwrap().1;
+        let claim = result["certifies"].as_str().unwrap().split_once(", tested as ").unwrap().1;
         let (strict, rest) = match claim.strip_prefix("P(c.x at end <= ") {
             Some(rest) => (false, rest),
             None => (true, claim.strip_prefix("P(c.x at end < ").unwrap()),
@@ -72,7 +72,8 @@ fn checks_of_quantiles_are_right_at_the_values_of_a_metric() {
         let bound: f64 = bound.parse().unwrap();
         let below = |x: f64| if strict { x < bound } else { x <= bound };
         let p = 0.3 * f64::from(u8::from(below(1.0))) + 0.7 * f64::from(u8::from(below(2.0)));
-        let level: f64 = rest[2..].split_once(',').unwrap().0.parse().unwrap();
+        let level: f64 =
+            rest.trim_start_matches(['<', '>', '=']).trim_start().split_once(',').unwrap().0.parse().unwrap();
         assert!(if rest.starts_with('>') { p > level } else { p < level }, "{query}: {claim}");
     }
 }

@@ -9,8 +9,9 @@ use crate::stats::calibration::Level;
 use crate::stats::quantile::Sample;
 use crate::stats::test::Verdict as TestVerdict;
 use crate::stats::{
-    self, AnyEstimator, AnyTest, Coverage, Decision, EstimatorReadings, Evidence, FixedSize, Gbas, Massart,
-    Mean, Okamoto, Outcome, Plan, Spending, Sprt, Statement, TestReadings, ThreeWay, TwoSprt,
+    self, AnyEstimator, AnyTest, Coverage, Decision, EstimatorReadings, Evidence, FixedSize, Gbas,
+    Hypothesis, Massart, Mean, Okamoto, Outcome, Plan, Spending, Sprt, Statement, TestReadings, ThreeWay,
+    TwoSprt,
 };
 use stats::Estimator as _;
 use stats::Test as _;
@@ -67,13 +68,17 @@ impl Procedure {
     /// The procedure of a check or an estimate. `seed` addresses what a procedure draws for itself.
     pub(super) fn new(ask: &Ask, seed: u64) -> Result<Self, Fault> {
         match ask {
-            Ask::Check { measure, threshold, test, .. } => Self::test(measure, *threshold, test),
+            Ask::Check { measure, at_least, or_equal, threshold, test, .. } => {
+                // `>=` and `<` put the threshold above, `>` and `<=` below.
+                let hypothesis = if at_least == or_equal { Hypothesis::AtLeast } else { Hypothesis::Above };
+                Self::test(measure, hypothesis, *threshold, test)
+            }
             Ask::Estimate { measure, estimator } => Self::estimate(measure, estimator, seed),
             Ask::Compare { .. } | Ask::Rank { .. } => Err(Fault::Unsuitable),
         }
     }
 
-    fn test(measure: &Measure, theta: f64, test: &Test) -> Result<Self, Fault> {
+    fn test(measure: &Measure, hypothesis: Hypothesis, theta: f64, test: &Test) -> Result<Self, Fault> {
         let test = match *test {
             Test::Sprt { alpha, beta, indifference } => {
                 AnyTest::Sprt(Sprt::new(theta, indifference, alpha, beta)?)
@@ -84,9 +89,11 @@ impl Procedure {
             Test::Plan { alpha, beta, indifference } => {
                 AnyTest::Plan(Plan::new(theta, indifference, alpha, beta)?)
             }
-            Test::EProcess { alpha, beta } => AnyTest::Evidence(Evidence::new(theta, alpha, beta)?),
+            Test::EProcess { alpha, beta } => {
+                AnyTest::Evidence(Evidence::new(hypothesis, theta, alpha, beta)?)
+            }
             Test::ThreeWay { alpha, indifference } => {
-                AnyTest::ThreeWay(ThreeWay::new(theta, indifference, alpha)?)
+                AnyTest::ThreeWay(ThreeWay::new(hypothesis, theta, indifference, alpha)?)
             }
             Test::Interval { delta } => {
                 let MeasureKind::Expectation { range: (low, high), .. } = measure.kind else {

@@ -112,18 +112,20 @@ pub(super) fn decided(said: &Said) -> String {
 }
 
 /// What the decided check of a quantile certifies, if that is about the level it asks for: the claim about the
-/// quantile, and the probability that it follows from.
+/// quantile, and what was tested.
 pub(super) fn quantile(said: &Said, level: f64, statement: &Statement) -> Option<String> {
     let event = said.event.as_ref()?;
-    // P(m <= x) > q makes the q-quantile at most x, and P(m < x) < q makes it at least x.
+    // The q-quantile is at most x exactly if P(m <= x) >= q. It is below x if P(m < x) > q, and not if P(m < x) < q; at
+    // equality it may be either, so one of the two claims is true there as well.
     let (relation, beyond) = match (statement.claim, event.relation) {
-        (Claim::Above(theta), relation) if theta == level => (relation, ">"),
+        (Claim::AtLeast(theta), "<=") if theta == level => ("<=", ">="),
         (Claim::Below(theta), "<=") if theta == level => (">", "<"),
-        (Claim::Below(theta), _) if theta == level => (">=", "<"),
+        (Claim::Above(theta), "<") if theta == level => ("<", ">"),
+        (Claim::AtMost(theta), "<") if theta == level => (">=", "<="),
         _ => return None,
     };
     Some(format!(
-        "{} {relation} {}, since P({event}) {beyond} {}, error at most {}",
+        "{} {relation} {}, tested as P({event}) {beyond} {}, error at most {}",
         said.measure,
         event.bound,
         number(level),
@@ -185,7 +187,9 @@ pub(super) fn because((text, value): (&str, bool), grounds: &[String]) -> String
 pub(super) fn statement(subject: &str, statement: &Statement, unit: &str) -> String {
     let claim = match statement.claim {
         Claim::Above(bound) => format!("{subject} > {}", quantity(bound, unit)),
+        Claim::AtLeast(bound) => format!("{subject} >= {}", quantity(bound, unit)),
         Claim::Below(bound) => format!("{subject} < {}", quantity(bound, unit)),
+        Claim::AtMost(bound) => format!("{subject} <= {}", quantity(bound, unit)),
         Claim::Between(low, high) => {
             format!("{} < {subject} < {}", quantity(low, unit), quantity(high, unit))
         }
@@ -215,22 +219,22 @@ mod tests {
             event: Some(Event { metric: "f(a)".to_owned(), relation, bound: "3 m".to_owned() }),
         };
         let said = |relation, claim| quantile(&of(relation), 0.9, &Statement { claim, error: 0.01 });
-        let (above, below) = (Claim::Above(0.9), Claim::Below(0.9));
+        let below = Claim::Below(0.9);
         assert_eq!(
-            said("<", below).unwrap(),
-            "Q(0.9, f(a)) >= 3 m, since P(f(a) < 3 m) < 0.9, error at most 0.01"
+            said("<", Claim::AtMost(0.9)).unwrap(),
+            "Q(0.9, f(a)) >= 3 m, tested as P(f(a) < 3 m) <= 0.9, error at most 0.01"
         );
         assert_eq!(
-            said("<", above).unwrap(),
-            "Q(0.9, f(a)) < 3 m, since P(f(a) < 3 m) > 0.9, error at most 0.01"
+            said("<", Claim::Above(0.9)).unwrap(),
+            "Q(0.9, f(a)) < 3 m, tested as P(f(a) < 3 m) > 0.9, error at most 0.01"
         );
         assert_eq!(
-            said("<=", above).unwrap(),
-            "Q(0.9, f(a)) <= 3 m, since P(f(a) <= 3 m) > 0.9, error at most 0.01"
+            said("<=", Claim::AtLeast(0.9)).unwrap(),
+            "Q(0.9, f(a)) <= 3 m, tested as P(f(a) <= 3 m) >= 0.9, error at most 0.01"
         );
         assert_eq!(
             said("<=", below).unwrap(),
-            "Q(0.9, f(a)) > 3 m, since P(f(a) <= 3 m) < 0.9, error at most 0.01"
+            "Q(0.9, f(a)) > 3 m, tested as P(f(a) <= 3 m) < 0.9, error at most 0.01"
         );
         // An indifference region certifies another level.
         assert_eq!(said("<=", Claim::Above(0.88)), None);

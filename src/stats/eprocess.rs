@@ -6,7 +6,7 @@
 
 use super::invalid::{Invalid, probability, region};
 use super::sprt::SLACK;
-use super::{Claim, Counts, Decision, Statement, Test};
+use super::{Claim, Counts, Decision, Hypothesis, Statement, Test};
 use crate::base::math;
 use crate::base::special::{beta_tails, ln_beta};
 
@@ -104,9 +104,10 @@ impl OneSided {
     }
 }
 
-/// P > theta or P < theta, each with its own error, for every P.
+/// P above or below theta, each with its own error, for every P.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Evidence {
+    hypothesis: Hypothesis,
     theta: f64,
     alpha: f64,
     beta: f64,
@@ -118,12 +119,14 @@ pub struct Evidence {
 
 impl Evidence {
     /// `alpha` bounds the error of deciding `Below` though P >= theta, `beta` that of deciding `Above`
-    /// though P <= theta (the roles they have in the SPRT).
-    pub fn new(theta: f64, alpha: f64, beta: f64) -> Result<Self, Invalid> {
+    /// though P <= theta (the roles they have in the SPRT). At P = theta only that decision is wrong which the
+    /// hypothesis denies.
+    pub fn new(hypothesis: Hypothesis, theta: f64, alpha: f64, beta: f64) -> Result<Self, Invalid> {
         probability("theta", theta)?;
         probability("alpha", alpha)?;
         probability("beta", beta)?;
         Ok(Self {
+            hypothesis,
             theta,
             alpha,
             beta,
@@ -135,7 +138,7 @@ impl Evidence {
         })
     }
 
-    /// The logarithms of the evidence that P > theta and that P < theta.
+    /// The logarithms of the evidence that P is above theta and that it is below.
     pub fn logs(&self) -> (f64, f64) {
         let Counts { successes, failures } = self.counts;
         (self.above.log(successes, failures), self.below.log(failures, successes))
@@ -168,9 +171,10 @@ impl Test for Evidence {
     }
 
     fn certifies(&self, decision: Decision) -> Statement {
+        let (above, below) = self.hypothesis.claims(self.theta);
         match decision {
-            Decision::Above => Statement { claim: Claim::Above(self.theta), error: self.beta },
-            Decision::Below => Statement { claim: Claim::Below(self.theta), error: self.alpha },
+            Decision::Above => Statement { claim: above, error: self.beta },
+            Decision::Below => Statement { claim: below, error: self.alpha },
             Decision::Within => Statement { claim: Claim::Between(self.theta, self.theta), error: 1.0 },
         }
     }
@@ -180,9 +184,10 @@ impl Test for Evidence {
     }
 }
 
-/// P > theta, P < theta, or P within the indifference of theta; it stops for every P.
+/// P above theta, P below theta, or P within the indifference of theta; it stops for every P.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ThreeWay {
+    hypothesis: Hypothesis,
     theta: f64,
     ends: (f64, f64),
     error: f64,
@@ -198,11 +203,12 @@ pub struct ThreeWay {
 
 impl ThreeWay {
     /// `error` bounds the probability of any wrong decision; each part is run at half of it.
-    pub fn new(theta: f64, indifference: f64, error: f64) -> Result<Self, Invalid> {
+    pub fn new(hypothesis: Hypothesis, theta: f64, indifference: f64, error: f64) -> Result<Self, Invalid> {
         let ends = region(theta, indifference)?;
         probability("error", error)?;
         let half = 0.5 * error;
         Ok(Self {
+            hypothesis,
             theta,
             ends,
             error,
@@ -251,9 +257,10 @@ impl Test for ThreeWay {
     }
 
     fn certifies(&self, decision: Decision) -> Statement {
+        let (above, below) = self.hypothesis.claims(self.theta);
         let claim = match decision {
-            Decision::Above => Claim::Above(self.theta),
-            Decision::Below => Claim::Below(self.theta),
+            Decision::Above => above,
+            Decision::Below => below,
             Decision::Within => Claim::Between(self.ends.0, self.ends.1),
         };
         Statement { claim, error: self.error }
@@ -276,7 +283,7 @@ mod tests {
     #[test]
     fn the_lazy_stop_is_the_stop_of_checking_every_index() {
         for (run, p) in [0.5, 0.85, 0.88, 0.93, 0.99].into_iter().enumerate() {
-            let mut test = Evidence::new(0.9, 0.01, 0.02).unwrap();
+            let mut test = Evidence::new(Hypothesis::AtLeast, 0.9, 0.01, 0.02).unwrap();
             let mut n = run as u64 * 1_000_000;
             loop {
                 let decision = test.observe(outcome(n, p));
@@ -315,7 +322,7 @@ mod tests {
     #[test]
     fn thresholds_at_the_very_ends_do_no_harm() {
         for theta in [f64::MIN_POSITIVE, 1e-16, 1.0 - f64::EPSILON] {
-            let mut test = Evidence::new(theta, 0.01, 0.01).unwrap();
+            let mut test = Evidence::new(Hypothesis::AtLeast, theta, 0.01, 0.01).unwrap();
             for k in 0..100 {
                 test.observe(k % 2 == 0);
             }
@@ -323,10 +330,74 @@ mod tests {
         }
     }
 
+    /// Exact probabilities, at P = theta, of having decided above and below by `trials`.
+    fn decided_at_the_threshold(theta: f64, error: f64, trials: u64) -> (f64, f64) {
+        let test = Evidence::new(Hypothesis::AtLeast, theta, error, error).unwrap();
+        // Mass of going on with so many successes.
+        let mut open = vec![1.0];
+        let (mut above, mut below) = (0.0, 0.0);
+        let (mut most, mut fewest) = (test.above.wanted, test.below.wanted);
+        for n in 1..=trials {
+            let mut next = vec![0.0; open.len() + 1];
+            for (s, mass) in open.iter().enumerate() {
+                next[s] += (1.0 - theta) * mass;
+                next[s + 1] += theta * mass;
+            }
+            // The fewest successes, and failures, that decide at n trials.
+            while most < n && test.above.log(most, n - most) < test.above.threshold {
+                most += 1;
+            }
+            while fewest < n && test.below.log(fewest, n - fewest) < test.below.threshold {
+                fewest += 1;
+            }
+            for (s, mass) in next.iter_mut().enumerate() {
+                if *mass == 0.0 {
+                    continue;
+                }
+                let s = s as u64;
+                if s >= most && test.above.log(s, n - s) >= test.above.threshold {
+                    above += std::mem::take(mass);
+                } else if n - s >= fewest && test.below.log(n - s, s) >= test.below.threshold {
+                    below += std::mem::take(mass);
+                }
+            }
+            open = next;
+        }
+        (above, below)
+    }
+
+    /// A family of four checks of fair coins that shares an error of 20 %, each at its threshold.
+    #[test]
+    fn at_the_threshold_only_one_certificate_is_false() {
+        let error = 0.05;
+        let (above, below) = decided_at_the_threshold(0.5, error, 4_000);
+        let wrong = |hypothesis: Hypothesis| {
+            let (upper, lower) = hypothesis.claims(0.5);
+            above * f64::from(u8::from(!holds(upper, 0.5))) + below * f64::from(u8::from(!holds(lower, 0.5)))
+        };
+        let family = |each: f64| 1.0 - (1.0 - each) * (1.0 - each) * (1.0 - each) * (1.0 - each);
+        for hypothesis in [Hypothesis::AtLeast, Hypothesis::Above] {
+            assert!(wrong(hypothesis) > 0.6 * error, "{hypothesis:?}: some decide");
+            assert!(wrong(hypothesis) <= error && family(wrong(hypothesis)) <= 0.2, "{hypothesis:?}");
+        }
+        // Strict claims on both sides are both false there.
+        assert!(above + below > error && family(above + below) > 0.2, "{above} {below}");
+    }
+
+    fn holds(claim: Claim, p: f64) -> bool {
+        match claim {
+            Claim::Above(x) => p > x,
+            Claim::AtLeast(x) => p >= x,
+            Claim::Below(x) => p < x,
+            Claim::AtMost(x) => p <= x,
+            Claim::Between(low, high) => low < p && p < high,
+        }
+    }
+
     #[test]
     fn three_answers() {
         let run = |p: f64| {
-            let mut test = ThreeWay::new(0.5, 0.1, 0.05).unwrap();
+            let mut test = ThreeWay::new(Hypothesis::AtLeast, 0.5, 0.1, 0.05).unwrap();
             (0..100_000).find_map(|n| test.observe(outcome(n, p)))
         };
         assert_eq!(run(0.5), Some(Decision::Within));

@@ -60,5 +60,5 @@ pub use plan::Plan;
 pub use sequence::Sequence;
 pub use spending::Spending;
 pub use sprt::Sprt;
-pub use test::{AnyTest, Claim, Decision, Statement, Test, TestReadings, Verdict};
+pub use test::{AnyTest, Claim, Decision, Hypothesis, Statement, Test, TestReadings, Verdict};
 pub use two_sprt::TwoSprt;

@@ -18,10 +18,35 @@ pub enum Decision {
 pub enum Claim {
     /// P > the number.
     Above(f64),
+    /// P >= the number.
+    AtLeast(f64),
     /// P < the number.
     Below(f64),
+    /// P <= the number.
+    AtMost(f64),
     /// P lies strictly between the two numbers.
     Between(f64, f64),
+}
+
+/// What a test without an indifference region decides about. One side is the opposite of the other, so whatever P is only
+/// one of them is false, and no more than the error of that one is ever at stake. With the threshold on neither side both
+/// would be false at P = theta, and their errors would add up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Hypothesis {
+    /// P >= theta against P < theta.
+    AtLeast,
+    /// P > theta against P <= theta.
+    Above,
+}
+
+impl Hypothesis {
+    /// What deciding for the upper or for the lower side claims.
+    pub(super) const fn claims(self, theta: f64) -> (Claim, Claim) {
+        match self {
+            Self::AtLeast => (Claim::AtLeast(theta), Claim::Below(theta)),
+            Self::Above => (Claim::Above(theta), Claim::AtMost(theta)),
+        }
+    }
 }
 
 /// A claim and the probability, at most, with which the procedure makes it when it is wrong.

@@ -1,7 +1,7 @@
 //! T1 to T6 and T20: tests of a probability.
 
 use super::tally::{Tally, uniform};
-use smc::stats::{Decision, Evidence, Sprt, Test, ThreeWay, TwoSprt};
+use smc::stats::{Decision, Evidence, Hypothesis, Sprt, Test, ThreeWay, TwoSprt};
 
 /// Runs a fresh test at `p` up to `cap` trials.
 fn run(mut test: impl Test, seed: u64, run: u32, p: f64, cap: u64) -> (Option<Decision>, f64) {
@@ -70,7 +70,7 @@ fn two_sprt(runs: u32) {
 }
 
 fn evidence(runs: u32) {
-    let test = Evidence::new(0.9, 0.01, 0.01).unwrap();
+    let test = Evidence::new(Hypothesis::AtLeast, 0.9, 0.01, 0.01).unwrap();
     let decisions: Vec<_> = (0..runs).map(|k| run(test.clone(), 9, k, 0.9, 10_000).0).collect();
     let share = |wanted| Tally::over(runs, |k| (decisions[k as usize] == wanted, 0.0));
     let (high, low) = (share(Some(Decision::Above)), share(Some(Decision::Below)));
@@ -84,7 +84,7 @@ fn evidence(runs: u32) {
 }
 
 fn three_way(runs: u32) {
-    let test = ThreeWay::new(0.5, 0.1, 0.05).unwrap();
+    let test = ThreeWay::new(Hypothesis::AtLeast, 0.5, 0.1, 0.05).unwrap();
     for p in [0.5, 0.55, 0.6, 0.4, 0.8] {
         let wrong = |decision| match decision {
             Decision::Above => p <= 0.5,
