@@ -32,7 +32,7 @@ impl<'a> Compiler<'a> {
         let elaborator = &mut self.sites[site].elaborator;
         // What is wrong with the measure, the threshold and the procedure is said at once.
         let (observed, sketch) = elaborator.measure(measure, scope);
-        let bound = elaborator.threshold(threshold, sketch, &locals);
+        let bound = elaborator.threshold(relation, threshold, sketch, &locals);
         let allowance = Allowance { family, claims: 1 };
         let confidence = elaborator.delta(clauses, &locals);
         let width = elaborator.no_width(clauses, sketch.what);
@@ -232,7 +232,13 @@ impl Elaborator<'_> {
 
     /// What a measure is compared with: a number in its unit, between 0 and 1 if it is a probability and within the range
     /// of an expectation.
-    fn threshold(&mut self, threshold: &Expr, sketch: Sketch, locals: &Locals) -> Lowered<Number> {
+    fn threshold(
+        &mut self,
+        relation: BinaryOp,
+        threshold: &Expr,
+        sketch: Sketch,
+        locals: &Locals,
+    ) -> Lowered<Number> {
         // Without a metric nobody knows the unit of the threshold.
         let bound = self.number_in(threshold, sketch, locals)?;
         let theta = bound.value;
@@ -240,9 +246,15 @@ impl Elaborator<'_> {
             let hint = if theta > 1.0 && theta <= 100.0 {
                 format!("a share is written with its sign: `{theta} %`")
             } else {
-                let near = if theta <= 0.0 { "`<= 0.001`" } else { "`>= 0.999`" };
+                let near = if theta <= 0.0 { 0.001 } else { 0.999 };
+                let sign = match relation {
+                    BinaryOp::Less => "<",
+                    BinaryOp::AtMost => "<=",
+                    BinaryOp::Greater => ">",
+                    _ => ">=",
+                };
                 format!(
-                    "that something is certain or impossible cannot be decided by sampling; ask for {near}"
+                    "sampling cannot decide whether something is certain or impossible; write `{sign} {near}`"
                 )
             };
             let error = Diagnostic::error(
