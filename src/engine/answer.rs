@@ -1,6 +1,7 @@
 //! Answers: what a procedure has found, put into words and numbers.
 
 use super::budget::{Budget, DEFAULT_TRIALS};
+use super::call::Call;
 use super::cause;
 use super::cell::Item;
 use super::contrast::Contrast;
@@ -9,7 +10,6 @@ use super::fault::Fault;
 use super::method;
 use super::outcome::{Counts, Kind, QueryResult, Shows, Stop, Verdict, Witness};
 use super::race::Contest;
-use super::session::Call;
 use super::standing;
 use super::subject::Subject;
 use super::survey::{Inquiry, Survey};
@@ -305,21 +305,21 @@ impl Answers<'_> {
         result.warnings.push(format!("{how_many}{shown}"));
     }
 
-    /// Runs a comparison, and its result.
+    /// Runs a comparison for its share of the time, and its result.
     pub(super) fn contrast(
         &self,
-        contrast: Contrast<'_>,
+        contrast: &mut Contrast<'_>,
         executor: &dyn Executor,
+        share: &Budget,
         watch: &dyn Watch,
-    ) -> Result<QueryResult, Fault> {
-        let started = self.budget.elapsed() - contrast.ahead();
+    ) -> Result<Option<QueryResult>, Fault> {
         let query = contrast.query();
         let Ask::Compare { first, second, settings, delta, .. } = &query.ask else {
             return Err(Fault::Unsuitable);
         };
         let subjects = [contrast.subject(0), contrast.subject(1)];
         let subject = subjects[0];
-        let gap = contrast.run(executor, self.budget, watch)?;
+        let Some(gap) = contrast.run(executor, (self.budget, share), watch)? else { return Ok(None) };
         let mut result = self.blank(query, Kind::Compare);
         let unit = unit(first);
         result.method = method::of(&query.ask, None);
@@ -358,23 +358,23 @@ impl Answers<'_> {
         }
         result.unit = unit;
         result.compare = Some(standing::sides(&gap, &labels, *delta));
-        result.elapsed_s = self.budget.elapsed() - started;
-        Ok(result)
+        result.elapsed_s = contrast.spent;
+        Ok(Some(result))
     }
 
-    /// Runs a ranking, and its result.
+    /// Runs a ranking for its share of the time, and its result.
     pub(super) fn race(
         &self,
-        mut contest: Contest<'_>,
+        contest: &mut Contest<'_>,
         executor: &dyn Executor,
+        share: &Budget,
         watch: &dyn Watch,
-    ) -> Result<QueryResult, Fault> {
-        let started = self.budget.elapsed() - contest.ahead();
+    ) -> Result<Option<QueryResult>, Fault> {
         let query = contest.query();
         let Ask::Rank { moves, measure, delta, .. } = &query.ask else {
             return Err(Fault::Unsuitable);
         };
-        let podium = contest.run(executor, self.budget, watch)?;
+        let Some(podium) = contest.run(executor, (self.budget, share), watch)? else { return Ok(None) };
         let field = contest.field();
         let subject = field.subject;
         let declared = &subject.program.scenario.moves[*moves];
@@ -419,8 +419,8 @@ impl Answers<'_> {
             result.witnesses = self.witnesses(&result, subject, field.column, Some((*moves, arm)), &picks);
         }
         result.rank = Some(ranked);
-        result.elapsed_s = self.budget.elapsed() - started;
-        Ok(result)
+        result.elapsed_s = contest.spent;
+        Ok(Some(result))
     }
 }
 

@@ -3,8 +3,8 @@
 //! The clock never decides what a trial yields, only how many trials are consumed; with a deadline a result
 //! is a function of input, seed and the number of trials.
 
-use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 /// Default number of trials of one query.
@@ -30,7 +30,7 @@ pub struct Budget {
     pub max_total: Option<u64>,
     deadline: Option<Instant>,
     started: Instant,
-    interrupted: AtomicBool,
+    interrupted: Arc<AtomicBool>,
     /// Since when it is known that no more should be started.
     stopped: OnceLock<Instant>,
 }
@@ -50,20 +50,37 @@ impl Budget {
             max_total: None,
             deadline: timeout.and_then(|t| started.checked_add(t)),
             started,
-            interrupted: AtomicBool::new(false),
+            interrupted: Arc::default(),
             stopped: OnceLock::new(),
         }
     }
 
-    /// A budget that starts now and ends after so many seconds, for trials that are run ahead.
+    /// A part of it that starts now and ends after so many seconds, for trials that are run ahead.
     #[allow(clippy::disallowed_methods, reason = "the engine keeps deadlines; trials never see the clock")]
     pub fn ahead(&self, seconds: f64) -> Self {
+        self.until(Instant::now().checked_add(Duration::from_secs_f64(seconds)))
+    }
+
+    /// A part of the time that is left: one of so many equal ones. Without a deadline, or as the last, all of it.
+    #[allow(clippy::disallowed_methods, reason = "the engine keeps deadlines; trials never see the clock")]
+    pub fn share(&self, of: usize) -> Self {
+        let parts = u32::try_from(of.max(1)).unwrap_or(u32::MAX);
+        self.until(match self.deadline {
+            Some(end) if parts > 1 => {
+                let now = Instant::now();
+                Some(now + end.saturating_duration_since(now) / parts)
+            }
+            end => end,
+        })
+    }
+
+    fn until(&self, deadline: Option<Instant>) -> Self {
         Self {
             max_trials: self.max_trials,
             max_total: self.max_total,
-            deadline: Instant::now().checked_add(Duration::from_secs_f64(seconds)),
+            deadline,
             started: self.started,
-            interrupted: AtomicBool::new(self.is_interrupted()),
+            interrupted: self.interrupted.clone(),
             stopped: OnceLock::new(),
         }
     }

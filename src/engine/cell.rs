@@ -30,6 +30,14 @@ impl Cell {
     /// What is known before the first state.
     pub(super) const BLANK: Self =
         Self { reading: Reading::Unresolved, steps: 0, triggered: 0, shrunk: false };
+    /// Not decided when its trial was cut.
+    pub(super) const OPEN: Self = Self { steps: u64::MAX, ..Self::BLANK };
+
+    /// Whether it was not decided when its trial was cut.
+    #[inline]
+    pub(super) const fn is_open(&self) -> bool {
+        self.steps == u64::MAX
+    }
 }
 
 /// A trial of a table: which option of which moves is followed, and the index of the trial.

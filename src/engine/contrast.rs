@@ -13,7 +13,7 @@ use super::survey::LARGEST_ROUND;
 use super::tally::Tally;
 use super::watch::{Forecast, Watch};
 use crate::compile::methods;
-use crate::compile::study::{Ask, MeasureKind, Query};
+use crate::compile::study::{MeasureKind, Query};
 use crate::stats::{self, Difference, Mean};
 
 /// The procedure of a comparison.
@@ -76,6 +76,12 @@ pub(super) struct Contrast<'s> {
     within: Option<f64>,
     delta: f64,
     ahead: Option<[Rehearsal; 2]>,
+    /// What each side consumed.
+    tallies: [Tally; 2],
+    /// The mean of each side, for expectations.
+    means: Vec<Mean>,
+    /// Seconds that it has taken so far.
+    pub(super) spent: f64,
 }
 
 impl<'s> Contrast<'s> {
@@ -91,6 +97,16 @@ impl<'s> Contrast<'s> {
             MeasureKind::Expectation { range, .. } => Some(*range),
             _ => None,
         };
+        let means = match range {
+            Some((low, high)) => [(); 2]
+                .map(|()| match within {
+                    Some(_) => Mean::running(low, high, delta),
+                    None => Mean::fixed(low, high, methods::PLANNED_TRIALS, delta),
+                })
+                .into_iter()
+                .collect::<Result<_, _>>()?,
+            None => Vec::new(),
+        };
         let procedure = match range {
             None => Procedure::Probability(Difference::new(delta, within)?),
             Some((low, high)) => {
@@ -102,7 +118,8 @@ impl<'s> Contrast<'s> {
             }
         };
         let jobs = [0, 1].map(|side| Job::new(sides.subjects[side], vec![sides.columns[side]], seed));
-        Ok(Self { query, jobs, procedure, range, within, delta, ahead: None })
+        let tallies = Default::default();
+        Ok(Self { query, jobs, procedure, range, within, delta, ahead: None, tallies, means, spent: 0.0 })
     }
 
     /// The query.
@@ -113,6 +130,11 @@ impl<'s> Contrast<'s> {
     /// The subject of a side.
     pub(super) fn subject(&self, side: usize) -> &'s Subject {
         self.jobs[side].subject
+    }
+
+    /// Whether no pair was read yet.
+    pub(super) fn is_unread(&self) -> bool {
+        self.tallies[0].counts.trials == 0
     }
 
     fn planned(&self, budget: &Budget) -> u64 {
@@ -141,6 +163,7 @@ impl<'s> Contrast<'s> {
         }
         .min(budget.max_trials);
         self.ahead = sides.iter().all(Rehearsal::is_complete).then_some(sides);
+        self.spent = self.ahead.iter().flatten().map(|ahead| ahead.seconds).sum();
         Ok(Forecast {
             query: self.query.text.clone(),
             settings: self.query.settings.clone(),
@@ -160,53 +183,43 @@ impl<'s> Contrast<'s> {
         }
     }
 
-    /// Seconds that its first pairs have taken already.
-    pub(super) fn ahead(&self) -> f64 {
-        self.ahead.iter().flatten().map(|ahead| ahead.seconds).sum()
-    }
-
-    /// Runs until the interval is narrow enough, or the pairs are spent.
+    /// Runs until the interval is narrow enough, or the pairs are spent; `None` if its share of the time is over before,
+    /// and the time of the call is not.
     pub(super) fn run(
-        mut self,
+        &mut self,
         executor: &dyn Executor,
-        budget: &Budget,
+        (budget, share): (&Budget, &Budget),
         watch: &dyn Watch,
-    ) -> Result<Gap, Fault> {
+    ) -> Result<Option<Gap>, Fault> {
         let planned = self.planned(budget);
         let most = planned.min(budget.max_trials);
-        let mut tallies = [Tally::default(), Tally::default()];
-        let mut means: Vec<Mean> = match (self.range, &self.query.ask) {
-            (Some((low, high)), Ask::Compare { delta, .. }) => (0..2)
-                .map(|_| match self.within {
-                    Some(_) => Mean::running(low, high, *delta),
-                    None => Mean::fixed(low, high, planned, *delta),
-                })
-                .collect::<Result<_, _>>()?,
-            _ => Vec::new(),
-        };
-        let mut next = 0u64;
-        let started = budget.elapsed();
+        let (started, spent) = (budget.elapsed(), self.spent);
         let stop = 'sampling: loop {
+            self.spent = spent + budget.elapsed() - started;
+            let next = self.tallies[0].counts.trials;
             if next >= most {
                 break if self.within.is_none() && most == planned { Stop::Plan } else { Stop::Cap };
             }
             let halt = || if budget.is_interrupted() { Stop::Interrupt } else { Stop::Deadline };
-            if budget.must_stop() {
+            if share.must_stop() {
+                if !budget.must_stop() {
+                    return Ok(None);
+                }
                 break halt();
             }
             let (items, first, second) = match self.ahead.take() {
                 Some([first, second]) => (first.items, first.cells, second.cells),
                 None => {
                     let width = executor.width(&self.jobs[0]) as u64;
-                    let size = round(next, width, budget.elapsed() - started, budget).min(most - next);
+                    let size = round(next, width, self.spent, share).min(most - next);
                     let items = Item::run(next, size);
-                    let first = executor.run(&self.jobs[0], &items, budget)?;
-                    let second = executor.run(&self.jobs[1], &items, budget)?;
+                    let first = executor.run(&self.jobs[0], &items, share)?;
+                    let second = executor.run(&self.jobs[1], &items, share)?;
                     (items, first, second)
                 }
             };
             for (item, pair) in items.iter().zip(first.rows().zip(second.rows())) {
-                let (Some(a), Some(b)) = pair else { break 'sampling halt() };
+                let (Some(a), Some(b)) = pair else { continue 'sampling };
                 let (a, b): (&Cell, &Cell) = (&a[0], &b[0]);
                 for (job, cell) in self.jobs.iter().zip([a, b]) {
                     if cell.reading == Reading::Faulty {
@@ -214,8 +227,8 @@ impl<'s> Contrast<'s> {
                     }
                 }
                 for (side, cell) in [a, b].into_iter().enumerate() {
-                    tallies[side].add(item.index, cell, self.range);
-                    if let Some(mean) = means.get_mut(side) {
+                    self.tallies[side].add(item.index, cell, self.range);
+                    if let Some(mean) = self.means.get_mut(side) {
                         mean.observe(value(cell));
                     }
                 }
@@ -238,13 +251,14 @@ impl<'s> Contrast<'s> {
                     break 'sampling Stop::Width;
                 }
             }
-            next += items.len() as u64;
-            watch.consumed(&self.query.text, next, Some(most));
+            watch.consumed(&self.query.text, next + items.len() as u64, Some(most));
         };
-        Ok(self.finish(tallies, means, stop))
+        self.spent = spent + budget.elapsed() - started;
+        Ok(Some(self.finish(stop)))
     }
 
-    fn finish(&self, tallies: [Tally; 2], means: Vec<Mean>, stop: Stop) -> Gap {
+    fn finish(&mut self, stop: Stop) -> Gap {
+        let (tallies, means) = (std::mem::take(&mut self.tallies), std::mem::take(&mut self.means));
         let (interval, estimate, alone, unresolved) = match &self.procedure {
             Procedure::Probability(difference) => {
                 let (low, high) = difference.pairs();

@@ -24,21 +24,28 @@ pub struct Cells {
     list: Vec<Cell>,
     /// Which trials were finished in time.
     finished: Vec<bool>,
+    /// Whether the cells that are not decided are marked: with a deadline, after which those that are decided count though
+    /// their trial is not finished.
+    marked: bool,
 }
 
 impl Cells {
     /// Room for a round.
     pub fn new(items: usize, width: usize) -> Self {
         let mut cells = Self::default();
-        cells.clear(items, width);
+        cells.clear(items, width, false);
         cells
     }
 
     /// The same room for another round.
-    fn clear(&mut self, items: usize, width: usize) {
+    fn clear(&mut self, items: usize, width: usize, marked: bool) {
         self.width = width;
-        // Rows that are not finished are not shown, so what they hold may stay.
-        self.list.resize(items * width, Cell::BLANK);
+        self.marked = marked;
+        if marked {
+            self.list.clear();
+        }
+        // Without marks rows that are not finished are not shown, so what they hold may stay.
+        self.list.resize(items * width, Cell::OPEN);
         self.finished.clear();
         self.finished.resize(items, false);
     }
@@ -68,6 +75,22 @@ impl Cells {
     /// How many trials in a row are finished, from the first on.
     pub fn ready(&self) -> usize {
         self.finished.iter().position(|finished| !finished).unwrap_or(self.finished.len())
+    }
+
+    /// A trial was cut: the cells that were decided before, and marks for the others.
+    fn put_cut(&mut self, place: usize, row: &[Cell]) {
+        if self.marked {
+            self.list[place * self.width..][..self.width].copy_from_slice(row);
+        }
+    }
+
+    /// In how many trials in a row a column is decided, from the first on; where that is not known, how many are finished.
+    pub fn decided(&self, column: usize) -> usize {
+        if !self.marked {
+            return self.ready();
+        }
+        let open = |place: usize| !self.finished[place] && self.list[place * self.width + column].is_open();
+        (0..self.finished.len()).position(open).unwrap_or(self.finished.len())
     }
 
     /// The cells of one column, trial by trial, finished or not.
@@ -130,10 +153,10 @@ impl<'s> Job<'s> {
         }
     }
 
-    /// Room for a round.
-    pub(super) fn cells(&self, items: usize) -> Cells {
+    /// Room for a round; `marked` if what a cut trial has decided is to count.
+    pub(super) fn cells(&self, items: usize, marked: bool) -> Cells {
         let mut cells = self.room.lock().ok().and_then(|mut room| room.pop()).unwrap_or_default();
-        cells.clear(items, self.columns.len());
+        cells.clear(items, self.columns.len(), marked);
         cells
     }
 
@@ -192,7 +215,7 @@ impl Executor for Threads {
 
     fn run(&self, job: &Job<'_>, items: &[Item], budget: &Budget) -> Result<Cells, Invalid> {
         let next = AtomicUsize::new(0);
-        let mut cells = job.cells(items.len());
+        let mut cells = job.cells(items.len(), budget.has_deadline());
         let threads = self.pool.current_num_threads();
         // No more workers than there is work for.
         let workers = threads.min(items.len().div_ceil(job.lanes())).max(1);
@@ -225,7 +248,36 @@ impl Executor for Threads {
             for (k, place) in finished.places.iter().enumerate() {
                 cells.put(*place, &finished.cells[k * width..][..width]);
             }
+            for (place, row) in &finished.cut {
+                cells.put_cut(*place, row);
+            }
         }
         Ok(cells)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::walker::tests::subject;
+    use std::time::Duration;
+
+    #[test]
+    fn a_trial_that_is_cut_hands_over_what_it_has_decided() {
+        let model =
+            "horizon = 10 steps\nprocess c { var x = false\n  when !x -> 0.5: x = true | 0.5: { } }\n";
+        let subject = subject(model, &["F<=#0 !c.x".to_owned(), "F c.x".to_owned()]);
+        let job = Job::new(&subject, vec![0, 1], 1);
+        let threads = Threads::new(Some(1)).unwrap();
+        let cut = |timeout| {
+            let budget = Budget::new(u64::MAX, timeout);
+            budget.interrupt();
+            let cells = threads.run(&job, &Item::run(0, 16), &budget).unwrap();
+            (cells.ready(), cells.decided(0), cells.decided(1))
+        };
+        // After the first state, which decides the first column of the trials that are on their way.
+        assert_eq!(cut(Some(Duration::from_mins(10))), (0, LANES, 0));
+        // Without a deadline nothing is handed over.
+        assert_eq!(cut(None), (0, 0, 0));
     }
 }

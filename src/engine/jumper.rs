@@ -90,7 +90,7 @@ impl Jumper {
                         finished.push(place, &vec![Cell::BLANK; width]);
                         continue;
                     }
-                    cells[lane * width..][..width].fill(Cell { steps: OPEN, ..Cell::BLANK });
+                    cells[lane * width..][..width].fill(Cell::OPEN);
                     self.busy[lane] = Some(place);
                     self.open[lane] = width;
                     loaded |= Mask::lane(lane);
@@ -124,7 +124,10 @@ impl Jumper {
             }
             rounds += 1;
             if budget.is_interrupted() || (rounds.is_multiple_of(CLOCK_EVERY) && budget.is_over()) {
-                self.busy = [None; LANES];
+                for (lane, busy) in self.busy.iter_mut().enumerate() {
+                    let row = &cells[lane * width..][..width];
+                    finished.cut.extend(busy.take().map(|place| (place, row.to_vec())));
+                }
                 self.state.occupied = Mask::NONE;
                 return finished;
             }
@@ -140,7 +143,7 @@ impl Jumper {
         let (atoms, signals) = self.view.of(&self.state, &mut self.sight, lane);
         let monitors = &mut self.monitors[lane * width..][..width];
         for (monitor, cell) in monitors.iter_mut().zip(row) {
-            if cell.steps != OPEN {
+            if !cell.is_open() {
                 continue;
             }
             let found = match (jumped || faulty, faulty) {
@@ -158,6 +161,3 @@ impl Jumper {
         }
     }
 }
-
-/// Steps of a cell that is not decided yet.
-const OPEN: u64 = u64::MAX;

@@ -3,6 +3,7 @@
 mod answer;
 mod blame;
 pub mod budget;
+mod call;
 mod cause;
 pub mod cell;
 mod contrast;
@@ -41,13 +42,14 @@ mod words;
 mod worker;
 
 pub use budget::Budget;
+pub use call::Call;
 pub use cause::{divergence, no_start, smaller};
 pub use executor::{Executor, Threads};
 pub use fault::Fault;
 pub use flaw::Flaw;
 pub use ranks::Ranks;
 pub use room::{overfull_starts, placeable};
-pub use session::{Call, forecast, run};
+pub use session::{forecast, run};
 pub use subject::Subject;
 pub use watch::{Forecast, Nobody, Outlook, Watch};
 pub use words::at_most;

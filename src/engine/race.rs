@@ -133,6 +133,12 @@ pub(super) struct Contest<'s> {
     procedure: Procedure,
     range: Option<(f64, f64)>,
     ahead: Option<Rehearsal>,
+    /// What each option consumed.
+    tallies: Vec<Tally>,
+    /// The mean of each option, for expectations.
+    means: Vec<Mean>,
+    /// Seconds that it has taken so far.
+    pub(super) spent: f64,
 }
 
 /// What a round runs: the items, and for each share of it their places; and whether the budget cut any share.
@@ -152,7 +158,15 @@ impl<'s> Contest<'s> {
             _ => None,
         };
         let job = Job::new(field.subject, vec![field.column], seed);
-        Ok(Self { query, field, job, procedure, range, ahead: None })
+        let arms = field.deviations.len();
+        let means = match range {
+            Some((low, high)) => (0..arms)
+                .map(|_| Mean::running(low, high, field.rule.1 / arms as f64))
+                .collect::<Result<_, _>>()?,
+            None => Vec::new(),
+        };
+        let tallies = vec![Tally::default(); arms];
+        Ok(Self { query, field, job, procedure, range, ahead: None, tallies, means, spent: 0.0 })
     }
 
     /// The query.
@@ -163,6 +177,11 @@ impl<'s> Contest<'s> {
     /// The field.
     pub(super) fn field(&self) -> &Field<'s> {
         &self.field
+    }
+
+    /// Whether no trial was read yet.
+    pub(super) fn is_unread(&self) -> bool {
+        self.tallies.iter().all(|tally| tally.counts.trials == 0)
     }
 
     fn scale(&self) -> f64 {
@@ -222,6 +241,7 @@ impl<'s> Contest<'s> {
         let trials = trials.max(rehearsal.items.len() as u64).min(most);
         let seconds = rehearsal.seconds_per_trial(self.job.subject.most_steps());
         self.ahead = rehearsal.is_complete().then_some(rehearsal);
+        self.spent = self.ahead.as_ref().map_or(0.0, |ahead| ahead.seconds);
         Ok(Forecast {
             query: self.query.text.clone(),
             settings: self.query.settings.clone(),
@@ -230,38 +250,32 @@ impl<'s> Contest<'s> {
         })
     }
 
-    /// Seconds that its first round has taken already.
-    pub(super) fn ahead(&self) -> f64 {
-        self.ahead.as_ref().map_or(0.0, |ahead| ahead.seconds)
-    }
-
-    /// Runs until the ranking is certified, or the budget is spent.
+    /// Runs until the ranking is certified, or the budget is spent; `None` if its share of the time is over before, and
+    /// the time of the call is not.
     pub(super) fn run(
         &mut self,
         executor: &dyn Executor,
-        budget: &Budget,
+        (budget, share): (&Budget, &Budget),
         watch: &dyn Watch,
-    ) -> Result<Podium, Fault> {
+    ) -> Result<Option<Podium>, Fault> {
         let arms = self.field.deviations.len();
         // Each option's interval is one of as many that hold jointly.
         let delta = self.field.rule.1 / arms as f64;
-        let mut means: Vec<Mean> = match self.range {
-            Some((low, high)) => {
-                (0..arms).map(|_| Mean::running(low, high, delta)).collect::<Result<_, _>>()?
-            }
-            None => Vec::new(),
-        };
-        let mut tallies = vec![Tally::default(); arms];
+        let (started, spent) = (budget.elapsed(), self.spent);
         let stop = loop {
+            self.spent = spent + budget.elapsed() - started;
             let round = self.round(budget.max_trials);
             if round.shares.is_empty() || self.procedure.finished() {
                 break if matches!(self.procedure, Procedure::Each(_)) { Stop::Plan } else { Stop::Width };
             }
             let halt = || if budget.is_interrupted() { Stop::Interrupt } else { Stop::Deadline };
-            if budget.must_stop() {
+            if share.must_stop() {
+                if !budget.must_stop() {
+                    return Ok(None);
+                }
                 break halt();
             }
-            let consumed: u64 = tallies.iter().map(|t| t.counts.trials).sum();
+            let consumed: u64 = self.tallies.iter().map(|t| t.counts.trials).sum();
             let left = budget.max_total.map_or(u64::MAX, |total| total.saturating_sub(consumed));
             if left == 0 || round.items.is_empty() {
                 break Stop::Cap;
@@ -269,18 +283,24 @@ impl<'s> Contest<'s> {
             let wanted = round.items.len().min(usize::try_from(left).unwrap_or(usize::MAX));
             let rows = match self.ahead.take() {
                 Some(ahead) => ahead.cells,
-                None => executor.run(&self.job, &round.items[..wanted], budget)?,
+                None => executor.run(&self.job, &round.items[..wanted], share)?,
             };
             // What follows an unfinished trial is not looked at, so that their number says which they are.
             let prefix = (0..wanted).take_while(|place| rows.row(*place).is_some()).count();
-            if !self.read(&round, &rows, prefix, &mut tallies, &mut means)? {
+            if prefix < wanted && !budget.must_stop() {
+                // What a round had finished counts only where the call ends: else their number would not say which they are.
+                return Ok(None);
+            }
+            if !self.read(&round, &rows, prefix)? {
                 break if prefix == wanted { Stop::Cap } else { halt() };
             }
             if round.cut {
                 break Stop::Cap;
             }
-            watch.consumed(&self.query.text, tallies.iter().map(|t| t.counts.trials).sum(), None);
+            watch.consumed(&self.query.text, self.tallies.iter().map(|t| t.counts.trials).sum(), None);
         };
+        self.spent = spent + budget.elapsed() - started;
+        let (tallies, means) = (std::mem::take(&mut self.tallies), std::mem::take(&mut self.means));
         let choice = self.procedure.choice(&self.field.deviations);
         let values = (0..arms)
             .map(|arm| match means.get(arm) {
@@ -299,18 +319,12 @@ impl<'s> Contest<'s> {
                 }
             })
             .collect();
-        Ok(Podium { tallies, values, finished: self.procedure.finished(), choice, stop, scale: self.scale() })
+        let finished = self.procedure.finished();
+        Ok(Some(Podium { tallies, values, finished, choice, stop, scale: self.scale() }))
     }
 
     /// Shows the first trials of a round to the procedure, option by option; false where these are not all.
-    fn read(
-        &mut self,
-        round: &Round,
-        rows: &Cells,
-        prefix: usize,
-        tallies: &mut [Tally],
-        means: &mut [Mean],
-    ) -> Result<bool, Fault> {
+    fn read(&mut self, round: &Round, rows: &Cells, prefix: usize) -> Result<bool, Fault> {
         let mut complete = true;
         for (share, places) in round.shares.iter().zip(&round.places) {
             let mut cells = Vec::with_capacity(places.len());
@@ -322,8 +336,8 @@ impl<'s> Contest<'s> {
                         if row[0].reading == Reading::Faulty {
                             return Err(super::trial::fault(self.field.subject, item, self.job.seed));
                         }
-                        tallies[share.arm].add(item.index, &row[0], self.range);
-                        if let Some(mean) = means.get_mut(share.arm) {
+                        self.tallies[share.arm].add(item.index, &row[0], self.range);
+                        if let Some(mean) = self.means.get_mut(share.arm) {
                             mean.observe(value(&row[0]));
                         }
                         cells.push(row[0]);

@@ -2,6 +2,7 @@
 
 use super::answer::Answers;
 use super::budget::{Budget, DEFAULT_TRIALS};
+use super::call::Call;
 use super::contrast::{Contrast, Sides};
 use super::executor::Executor;
 use super::fault::Fault;
@@ -13,60 +14,15 @@ use super::race::{Contest, Field};
 use super::room::all_placeable;
 use super::splitting::Question;
 use super::subject::Subject;
-use super::survey::{Broken, Inquiry, Survey};
+use super::survey::{Advance, Inquiry, Survey};
 use super::tally::Tally;
 use super::watch::{Outlook, Watch};
 use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Query, Study};
 use crate::stats::Levels;
+use std::collections::VecDeque;
 
-/// What the command line adds to a study.
-pub struct Call<'c> {
-    /// Seed of all random numbers.
-    pub seed: u64,
-    /// The call up to its options, for replay lines: `smc check a.scn b.bltl --set density=0.8`.
-    pub command: String,
-    /// The same without sweeps.
-    pub point: String,
-    /// The call that shows a trial: `smc simulate a.scn --set density=0.8`.
-    pub simulate: String,
-    /// Indices of the queries to ask; all of them if empty.
-    pub only: Vec<usize>,
-    /// File and line of a span, for reports.
-    pub place: &'c (dyn Fn(crate::syntax::source::Span) -> (String, usize) + Sync),
-    /// Name for reports where the scenario has no title.
-    pub file: String,
-}
-
-impl Call<'_> {
-    /// The call that shows a trial under some settings: each takes the place of one of the call, and the last of several
-    /// of one name holds.
-    pub(super) fn simulate_with(&self, settings: &[(String, String)], trial: u64) -> String {
-        let mut command = String::new();
-        for (k, piece) in self.simulate.split(" --set ").enumerate() {
-            let quoted = piece.strip_prefix('\'');
-            let name = quoted.unwrap_or(piece).split('=').next().unwrap_or_default();
-            if k > 0 && settings.iter().any(|(own, _)| own == name) {
-                // What follows the value stays.
-                let end = quoted.map_or_else(
-                    || piece.find(' ').unwrap_or(piece.len()),
-                    |rest| rest.find('\'').map_or(piece.len(), |at| at + 2),
-                );
-                command.push_str(&piece[end..]);
-                continue;
-            }
-            if k > 0 {
-                command.push_str(" --set ");
-            }
-            command.push_str(piece);
-        }
-        for (k, (name, value)) in settings.iter().enumerate() {
-            if settings[k + 1..].iter().all(|(later, _)| later != name) {
-                command.push_str(&format!(" --set '{name}={value}'"));
-            }
-        }
-        format!("{command} --seed {} --trial {trial}", self.seed)
-    }
-}
+/// A query gets no larger part of the time than one of so many for its first trial.
+const FEW_PARTS: usize = 8;
 
 /// Runs a study.
 pub fn run(
@@ -86,15 +42,49 @@ pub fn run(
     let mut results: Vec<Option<QueryResult>> = asked.iter().map(|_| None).collect();
     let mut failure = None;
     let mut levels = Levels::default();
-    for group in groups {
-        let (found, broken) = session.answer(group, (executor, &mut levels), watch)?;
-        for (k, result) in found {
-            results[k] = Some(result);
+    if budget.has_deadline() {
+        // A question about a rare event cannot be paused: it gets its share when the others had theirs.
+        groups.sort_by_key(|group| matches!(group.sampling, Sampling::Split(_)));
+    }
+    let mut waiting: VecDeque<Group<'_>> = groups.into();
+    let mut paused = VecDeque::new();
+    let mut times = 1;
+    while let Some(group) = waiting.pop_front() {
+        // Those that are open share the time that is left; what one of them leaves goes to the others, in further turns.
+        let parts = ((waiting.len() + 1) / times).max(1);
+        let share = budget.share(parts);
+        match session.turn(group, (executor, &mut levels), &share, watch)? {
+            Turn::Over(found, broken) => {
+                for (k, result) in found {
+                    results[k] = Some(result);
+                }
+                if let Some(flaw) = broken {
+                    failure = Some(Failure::Model(flaw));
+                    break;
+                }
+            }
+            // With many queries a share may be too short for one trial: then one gets more, before none gets any.
+            Turn::Paused(group) if parts > FEW_PARTS && group.is_unread() => {
+                times *= 2;
+                waiting.push_front(*group);
+                continue;
+            }
+            Turn::Paused(group) => paused.push_back(*group),
+            Turn::Apart(both) => {
+                let [fast, slow] = *both;
+                waiting.push_front(slow);
+                waiting.push_front(fast);
+            }
         }
-        // What was decided before stays decided.
-        if let Some(flaw) = broken {
-            failure = Some(Failure::Model(flaw));
-            break;
+        times = 1;
+        if waiting.is_empty() {
+            std::mem::swap(&mut waiting, &mut paused);
+        }
+    }
+    // What was decided before stays decided.
+    for group in waiting.into_iter().chain(paused) {
+        for (k, result) in session.decided(group)? {
+            results[k] = Some(result);
         }
     }
     watch.finished();
@@ -198,6 +188,18 @@ struct Group<'q> {
     sampling: Sampling<'q>,
 }
 
+impl Group<'_> {
+    /// Whether no trial was read for it yet.
+    fn is_unread(&self) -> bool {
+        match &self.sampling {
+            Sampling::Survey(survey) => survey.inquiries.iter().all(|i| i.tally.counts.trials == 0),
+            Sampling::Contrast(contrast) => contrast.is_unread(),
+            Sampling::Race(contest) => contest.is_unread(),
+            Sampling::Split(_) => true,
+        }
+    }
+}
+
 /// How they are answered.
 #[allow(clippy::large_enum_variant, reason = "there are as many as queries")]
 enum Sampling<'q> {
@@ -241,8 +243,18 @@ fn range(measure: &Measure) -> Option<(f64, f64)> {
     }
 }
 
-/// Results by the places of their queries, and what was wrong with the model.
-type Answered = (Vec<(usize, QueryResult)>, Option<Box<Flaw>>);
+/// Results by the places of their queries.
+type Answered = Vec<(usize, QueryResult)>;
+
+/// What came of a turn of a group.
+enum Turn<'q> {
+    /// Its results, and what was wrong with the model, if a trial showed that it is.
+    Over(Answered, Option<Box<Flaw>>),
+    /// It goes on when the others had their turn.
+    Paused(Box<Group<'q>>),
+    /// It goes on in two groups, because the queries of the second hold the others up.
+    Apart(Box<[Group<'q>; 2]>),
+}
 
 /// What is wrong with the model, if the fault is one of it.
 fn flaw(fault: Fault) -> Result<Box<Flaw>, Fault> {
@@ -357,35 +369,83 @@ impl<'a> Session<'a> {
         Contest::new(query, field, self.call.seed)
     }
 
-    /// The results of a group, by the places of its queries; and what was wrong with the model, if a trial
-    /// showed that it is.
-    fn answer(
+    /// Runs a group for its share of the time.
+    fn turn<'q>(
         &self,
-        group: Group<'_>,
+        group: Group<'q>,
         (executor, levels): (&dyn Executor, &mut Levels),
+        share: &Budget,
         watch: &dyn Watch,
-    ) -> Result<Answered, Fault> {
+    ) -> Result<Turn<'q>, Fault> {
         let Group { mut places, sampling } = group;
         let answers = Answers { call: self.call, budget: self.budget };
+        let budgets = (self.budget, share);
         let mut broken = None;
         let results = match sampling {
             Sampling::Survey(mut survey) => {
-                if let Some(Broken { index, fault }) = survey.run((executor, levels), self.budget, watch)? {
-                    broken = Some(flaw(fault)?);
-                    // Those that had stopped before that trial do not know of it.
-                    let mut decided = survey.inquiries.iter().map(|inquiry| inquiry.stopped_before(index));
-                    places.retain(|_| decided.next().unwrap_or(false));
-                    survey.inquiries.retain(|inquiry| inquiry.stopped_before(index));
+                match survey.run((executor, levels), budgets, watch)? {
+                    Advance::Stopped => {}
+                    Advance::Paused => {
+                        return Ok(Turn::Paused(Box::new(Group {
+                            places,
+                            sampling: Sampling::Survey(survey),
+                        })));
+                    }
+                    Advance::Broken(found) => {
+                        broken = Some(flaw(found.fault)?);
+                        // Those that had stopped before that trial do not know of it.
+                        survey.keep(&mut places, |inquiry| inquiry.stopped_before(found.index));
+                    }
+                    Advance::Apart(columns) => {
+                        let (slow, fast) = places
+                            .into_iter()
+                            .zip(&survey.inquiries)
+                            .partition::<Vec<_>, _>(|(_, inquiry)| columns.contains(&inquiry.column));
+                        let of =
+                            |list: Vec<(usize, &Inquiry<'_>)>| list.into_iter().map(|(k, _)| k).collect();
+                        let (slow, fast) = (of(slow), of(fast));
+                        let apart = survey.part(&columns);
+                        return Ok(Turn::Apart(Box::new([
+                            Group { places: fast, sampling: Sampling::Survey(survey) },
+                            Group { places: slow, sampling: Sampling::Survey(apart) },
+                        ])));
+                    }
                 }
                 answers.survey(survey)
             }
-            Sampling::Contrast(contrast) => answers.contrast(contrast, executor, watch).map(|one| vec![one]),
-            Sampling::Race(contest) => answers.race(contest, executor, watch).map(|one| vec![one]),
-            Sampling::Split(question) => answers.split(&question, executor, watch).map(|one| vec![one]),
+            Sampling::Contrast(mut contrast) => match answers.contrast(&mut contrast, executor, share, watch)
+            {
+                Ok(None) => {
+                    return Ok(Turn::Paused(Box::new(Group {
+                        places,
+                        sampling: Sampling::Contrast(contrast),
+                    })));
+                }
+                result => result.map(Vec::from_iter),
+            },
+            Sampling::Race(mut contest) => match answers.race(&mut contest, executor, share, watch) {
+                Ok(None) => {
+                    return Ok(Turn::Paused(Box::new(Group { places, sampling: Sampling::Race(contest) })));
+                }
+                result => result.map(Vec::from_iter),
+            },
+            Sampling::Split(question) => {
+                answers.split(&question, executor, share, watch).map(|one| vec![one])
+            }
         };
-        match results {
-            Ok(results) => Ok((places.into_iter().zip(results).collect(), broken)),
-            Err(fault) => Ok((Vec::new(), Some(flaw(fault)?))),
-        }
+        Ok(match results {
+            Ok(results) => Turn::Over(places.into_iter().zip(results).collect(), broken),
+            Err(fault) => Turn::Over(Vec::new(), Some(flaw(fault)?)),
+        })
+    }
+
+    /// The results of the queries of a group that have stopped; the others are left out.
+    fn decided(&self, group: Group<'_>) -> Result<Answered, Fault> {
+        let Group { mut places, sampling: Sampling::Survey(mut survey) } = group else {
+            return Ok(Vec::new());
+        };
+        survey.keep(&mut places, |inquiry| inquiry.stop.is_some());
+        let answers = Answers { call: self.call, budget: self.budget };
+        Ok(places.into_iter().zip(answers.survey(survey)?).collect())
     }
 }

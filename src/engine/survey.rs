@@ -15,10 +15,13 @@ use super::rehearsal::Rehearsal;
 use super::subject::Subject;
 use super::tally::Tally;
 use super::watch::{Forecast, Watch};
+use crate::base::math;
 use crate::compile::study::{Ask, Query};
 use crate::stats::Levels;
 use crate::stats::calibration::Patience;
 
+/// A trial that takes so many times as many steps for one column as for another holds that one up.
+const MUCH_LONGER: f64 = 16.0;
 /// Largest round.
 pub(super) const LARGEST_ROUND: u64 = 16_384;
 
@@ -52,6 +55,22 @@ pub(super) struct Survey<'q> {
     /// The queries.
     pub(super) inquiries: Vec<Inquiry<'q>>,
     ahead: Option<Rehearsal>,
+    /// The next trial.
+    next: u64,
+    /// Seconds that it has taken so far.
+    spent: f64,
+}
+
+/// How far a survey came in its share of the time.
+pub(super) enum Advance {
+    /// Each inquiry has stopped.
+    Stopped,
+    /// Its share is over, and the time of the call is not.
+    Paused,
+    /// It came to a trial in which the model is wrong.
+    Broken(Broken),
+    /// These columns hold the others up.
+    Apart(Vec<usize>),
 }
 
 /// A trial in which the model is wrong, the first that was read.
@@ -78,7 +97,23 @@ impl Inquiry<'_> {
 impl<'q> Survey<'q> {
     /// A survey of some inquiries about one subject.
     pub(super) fn new(subject: &'q Subject, inquiries: Vec<Inquiry<'q>>, seed: u64) -> Self {
-        Self { job: Job::new(subject, columns(&inquiries), seed), inquiries, ahead: None }
+        let job = Job::new(subject, columns(&inquiries), seed);
+        Self { job, inquiries, ahead: None, next: 0, spent: 0.0 }
+    }
+
+    /// Leaves the inquiries about some columns to a survey of their own, which goes on where this one is.
+    pub(super) fn part(&mut self, slow: &[usize]) -> Self {
+        let (slow, rest) =
+            std::mem::take(&mut self.inquiries).into_iter().partition(|i| slow.contains(&i.column));
+        self.inquiries = rest;
+        Self { next: self.next, spent: self.spent, ..Self::new(self.job.subject, slow, self.job.seed) }
+    }
+
+    /// Leaves out some inquiries, and their places.
+    pub(super) fn keep(&mut self, places: &mut Vec<usize>, kept: impl Fn(&Inquiry<'_>) -> bool) {
+        let mut list = self.inquiries.iter().map(&kept);
+        places.retain(|_| list.next().unwrap_or(false));
+        self.inquiries.retain(kept);
     }
 
     /// The subject.
@@ -117,35 +152,44 @@ impl<'q> Survey<'q> {
         Ok(forecasts)
     }
 
-    /// Runs until each inquiry has stopped, or up to a trial in which the model is wrong.
+    /// Runs until each inquiry has stopped, its share of the time is over, or up to a trial in which the model is wrong.
     pub(super) fn run(
         &mut self,
         (executor, levels): (&dyn Executor, &mut Levels),
-        budget: &Budget,
+        (budget, share): (&Budget, &Budget),
         watch: &dyn Watch,
-    ) -> Result<Option<Broken>, Fault> {
+    ) -> Result<Advance, Fault> {
         // The trials that were run ahead are its own.
-        let started = budget.elapsed() - self.ahead.as_ref().map_or(0.0, |ahead| ahead.seconds);
+        self.spent += self.ahead.as_ref().map_or(0.0, |ahead| ahead.seconds);
+        let started = budget.elapsed() - self.spent;
         if budget.max_trials == 0 {
             self.inquiries.iter_mut().for_each(|inquiry| inquiry.stop = Some(Stop::Cap));
         }
-        let mut broken = self.rounds((executor, started), 0..u64::MAX, budget, watch)?;
+        let mut advance = self.rounds((executor, started), u64::MAX, (budget, share), watch)?;
         // Proofs come when nobody reads on without one, so that none of them keeps others from their trials.
         for k in 0..self.inquiries.len() {
+            // Who stops before the trial in which the model is wrong does not know of it.
+            let end = match &advance {
+                Advance::Stopped => u64::MAX,
+                Advance::Broken(broken) => broken.index,
+                Advance::Paused | Advance::Apart(_) => break,
+            };
             if !self.inquiries[k].waits {
                 continue;
             }
-            // Who stops before the trial in which the model is wrong does not know of it.
-            let end = broken.as_ref().map_or(u64::MAX, |broken| broken.index);
-            if let Some(found) = self.go_on((executor, started), (k, end), levels, (budget, watch))? {
-                broken = Some(found);
+            match self.go_on((executor, started), (k, end), levels, (budget, share), watch)? {
+                Advance::Stopped => {}
+                Advance::Paused if matches!(advance, Advance::Broken(_)) => {}
+                other => advance = other,
             }
         }
-        let seconds = budget.elapsed() - started;
-        for inquiry in self.inquiries.iter_mut().filter(|i| i.seconds == 0.0) {
-            inquiry.seconds = seconds;
+        self.spent = budget.elapsed() - started;
+        if !matches!(advance, Advance::Paused | Advance::Apart(_)) {
+            for inquiry in self.inquiries.iter_mut().filter(|i| i.seconds == 0.0) {
+                inquiry.seconds = self.spent;
+            }
         }
-        Ok(broken)
+        Ok(advance)
     }
 
     /// Proves the level for which an inquiry waits, and reads on, up to a trial.
@@ -154,12 +198,16 @@ impl<'q> Survey<'q> {
         (executor, started): (&dyn Executor, f64),
         (k, end): (usize, u64),
         levels: &mut Levels,
-        (budget, watch): (&Budget, &dyn Watch),
-    ) -> Result<Option<Broken>, Fault> {
+        (budget, share): (&Budget, &Budget),
+        watch: &dyn Watch,
+    ) -> Result<Advance, Fault> {
         let inquiry = &mut self.inquiries[k];
         let read = inquiry.tally.counts.trials;
         let capped = read >= budget.max_trials;
-        let settled = prove(&inquiry.procedure, levels, budget)?;
+        let settled = prove(&inquiry.procedure, levels, share)?;
+        if settled.is_none() && !budget.must_stop() {
+            return Ok(Advance::Paused);
+        }
         inquiry.waits = false;
         inquiry.stop = match &settled {
             Some(procedure) if procedure.is_finished() => Some(Stop::Width),
@@ -167,38 +215,47 @@ impl<'q> Survey<'q> {
             _ => ended(budget),
         };
         let Some(procedure) = settled.filter(|one| one.is_finished() || inquiry.stop.is_none()) else {
-            return Ok(None);
+            return Ok(Advance::Stopped);
         };
         let before = std::mem::replace(&mut inquiry.procedure, procedure);
         if inquiry.stop.is_some() {
             inquiry.stop = Some(inquiry.reason());
             inquiry.seconds = budget.elapsed() - started;
-            return Ok(None);
+            return Ok(Advance::Stopped);
         }
-        let broken = self.rounds((executor, started), read..end, budget, watch)?;
+        self.next = read;
+        let advance = self.rounds((executor, started), end, (budget, share), watch)?;
         let inquiry = &mut self.inquiries[k];
-        if inquiry.stop.is_none() {
+        let unread = inquiry.tally.counts.trials == read;
+        match (&advance, inquiry.stop) {
+            (Advance::Paused, _) | (_, Some(_)) if unread => {
+                // Time was up: it says what it would have said without the proof.
+                inquiry.procedure = before;
+                inquiry.waits = inquiry.stop.is_none();
+            }
             // It comes to the trial in which the model is wrong.
-            inquiry.lost = true;
-        } else if inquiry.tally.counts.trials == read {
-            // Time was up: it says what it would have said without the proof.
-            inquiry.procedure = before;
+            (Advance::Stopped | Advance::Broken(_), None) => inquiry.lost = true,
+            _ => {}
         }
-        Ok(broken)
+        Ok(advance)
     }
 
-    /// Rounds over trials, until nobody reads on.
+    /// Rounds over trials up to one, until nobody reads on.
     fn rounds(
         &mut self,
         (executor, started): (&dyn Executor, f64),
-        trials: std::ops::Range<u64>,
-        budget: &Budget,
+        end: u64,
+        (budget, share): (&Budget, &Budget),
         watch: &dyn Watch,
-    ) -> Result<Option<Broken>, Fault> {
-        let mut next = trials.start;
+    ) -> Result<Advance, Fault> {
         let mut items = Vec::new();
-        while next < trials.end && self.inquiries.iter().any(Inquiry::is_open) {
-            if budget.must_stop() {
+        // A round that takes longer than this without a trial to its name is of trials that are too long for some column.
+        let patience = share.seconds_left().map(|seconds| 0.5 * seconds);
+        while self.next < end && self.inquiries.iter().any(Inquiry::is_open) {
+            if share.must_stop() {
+                if !budget.must_stop() {
+                    return Ok(Advance::Paused);
+                }
                 close(&mut self.inquiries, budget);
                 break;
             }
@@ -211,42 +268,69 @@ impl<'q> Survey<'q> {
                     self.job.narrow(columns(&self.inquiries));
                     let width = executor.width(&self.job) as u64;
                     items.clear();
-                    let size = round(&self.inquiries, next, width, budget);
-                    items.extend(Item::row(next, size.min(trials.end - next)));
-                    executor.run(&self.job, &items, budget)?
+                    let size = round(&self.inquiries, self.next, width, share);
+                    items.extend(Item::row(self.next, size.min(end - self.next)));
+                    match patience.zip(share.seconds_left()) {
+                        Some((most, left)) if most < left && self.job.columns.len() > 1 => {
+                            executor.run(&self.job, &items, &share.ahead(most))?
+                        }
+                        _ => executor.run(&self.job, &items, share)?,
+                    }
                 }
             };
-            next += items.len() as u64;
-            match self.read(&items, &cells, started, budget) {
-                Ok(true) => {}
-                Ok(false) => {
-                    close(&mut self.inquiries, budget);
-                    break;
-                }
-                Err(item) => {
-                    self.inquiries.iter_mut().filter(|i| i.is_open()).for_each(|i| i.lost = true);
-                    let fault = super::trial::fault(self.job.subject, item, self.job.seed);
-                    return Ok(Some(Broken { index: item.index, fault }));
-                }
+            if let Err(item) = self.read(&items, &cells, started, budget) {
+                self.inquiries.iter_mut().filter(|i| i.is_open()).for_each(|i| i.lost = true);
+                let fault = super::trial::fault(self.job.subject, item, self.job.seed);
+                return Ok(Advance::Broken(Broken { index: item.index, fault }));
             }
+            self.next += cells.ready().min(items.len()) as u64;
+            let slow = if share.has_deadline() { self.slow(&cells) } else { Vec::new() };
             self.job.reuse(cells);
             if let Some(inquiry) = self.inquiries.iter().find(|i| i.is_open()) {
-                let expected = forecast::inquiry(&inquiry.query.ask, &inquiry.procedure, &inquiry.glimpse);
+                let (next, procedure) = (self.next, &inquiry.procedure);
+                let expected = forecast::inquiry(&inquiry.query.ask, procedure, &inquiry.glimpse);
                 watch.consumed(&inquiry.query.text, next, expected.map(|n| n.max(next)));
             }
+            if !slow.is_empty() && !budget.must_stop() {
+                return Ok(Advance::Apart(slow));
+            }
         }
-        Ok(None)
+        Ok(Advance::Stopped)
     }
 
-    /// Shows a round to the inquiries; false where time ended it, and the first trial in which somebody sees that the
-    /// model is wrong. None of them depends on what another one finds, so each reads in one go, trial by trial, up to
-    /// where it stops.
-    fn read(&mut self, items: &[Item], cells: &Cells, started: f64, budget: &Budget) -> Result<bool, Item> {
-        // What follows an unfinished trial is not looked at: outcomes count in index order.
-        let ready = &items[..cells.ready().min(items.len())];
+    /// The columns that hold the others up: in which no trial of a round was decided in its time, or trials take much longer.
+    fn slow(&self, cells: &Cells) -> Vec<usize> {
+        let open: Vec<&Inquiry<'_>> = self.inquiries.iter().filter(|i| i.is_open()).collect();
+        let steps = |inquiry: &Inquiry<'_>| {
+            let place = self.job.columns.iter().position(|c| *c == inquiry.column);
+            match inquiry.tally.counts.trials {
+                0 if place.is_some_and(|place| cells.decided(place) > 0) => 1.0,
+                0 => f64::INFINITY,
+                trials => math::at_least(inquiry.tally.steps as f64 / trials as f64, 1.0),
+            }
+        };
+        let least = open.iter().map(|inquiry| steps(inquiry)).fold(f64::INFINITY, math::at_most);
+        let slow = open.iter().filter(|inquiry| steps(inquiry) > MUCH_LONGER * least);
+        let mut slow: Vec<usize> = slow.map(|inquiry| inquiry.column).collect();
+        slow.sort_unstable();
+        slow.dedup();
+        slow
+    }
+
+    /// Shows a round to the inquiries; the first trial in which somebody sees that the model is wrong. None of them
+    /// depends on what another one finds, so each reads in one go, trial by trial, up to where it stops.
+    fn read(&mut self, items: &[Item], cells: &Cells, started: f64, budget: &Budget) -> Result<(), Item> {
         let mut faulty: Option<usize> = None;
+        // Where the call ends, a trial that is cut hands over what it has decided.
+        let last = budget.must_stop();
         for inquiry in self.inquiries.iter_mut().filter(|i| i.is_open()) {
             if let Some(place) = self.job.columns.iter().position(|c| *c == inquiry.column) {
+                // What follows an open trial is not looked at: outcomes count in index order.
+                let ready = if last { cells.decided(place) } else { cells.ready() };
+                let ready = &items[..ready.min(items.len())];
+                if ready.is_empty() {
+                    continue;
+                }
                 match inquiry.read(ready, cells.column(place), budget.max_trials) {
                     Ok(stop) => inquiry.stop = stop,
                     Err(at) => faulty = Some(faulty.map_or(at, |first| first.min(at))),
@@ -256,11 +340,7 @@ impl<'q> Survey<'q> {
                 }
             }
         }
-        if let Some(at) = faulty {
-            return Err(items[at]);
-        }
-        // Nobody needs what was not finished, if all have stopped before it.
-        Ok(ready.len() == items.len() || !self.inquiries.iter().any(Inquiry::is_open))
+        faulty.map_or(Ok(()), |at| Err(items[at]))
     }
 }
 

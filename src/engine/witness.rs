@@ -3,11 +3,11 @@
 
 use super::blame;
 use super::budget::Budget;
+use super::call::Call;
 use super::cell::Reading;
 use super::observer::Observer;
 use super::outcome::{Shows, Witness};
 use super::recall;
-use super::session::Call;
 use super::subject::{Subject, lost};
 use super::tally::Tally;
 use crate::base::lanes::Mask;

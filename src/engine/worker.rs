@@ -42,6 +42,8 @@ pub(super) struct Finished {
     pub(super) places: Vec<usize>,
     /// The cells, trial by trial.
     pub(super) cells: Vec<Cell>,
+    /// Trials that were cut: the place of each item, and its cells.
+    pub(super) cut: Vec<(usize, Vec<Cell>)>,
 }
 
 impl Finished {
@@ -130,7 +132,7 @@ impl Worker {
             self.observe(subject, &mut cells, &mut finished);
             rounds += 1;
             if budget.is_interrupted() || (rounds.is_multiple_of(clock_every) && budget.is_over()) {
-                self.drop_all();
+                self.cut_all(&mut cells, &mut finished);
                 return finished;
             }
             if !self.state.occupied.is_empty() {
@@ -140,8 +142,19 @@ impl Worker {
         }
     }
 
-    fn drop_all(&mut self) {
-        self.busy = [None; LANES];
+    /// Ends all trials; what is decided in them is kept.
+    fn cut_all(&mut self, cells: &mut [Cell], finished: &mut Finished) {
+        let width = self.columns.len();
+        for (lane, busy) in self.busy.iter_mut().enumerate() {
+            let Some(busy) = busy.take() else { continue };
+            let row = &mut cells[lane * width..][..width];
+            for (cell, settled) in row.iter_mut().zip(&self.settled) {
+                if !settled.has(lane) {
+                    *cell = Cell::OPEN;
+                }
+            }
+            finished.cut.push((busy.place, row.to_vec()));
+        }
         self.state.occupied = Mask::NONE;
     }
 

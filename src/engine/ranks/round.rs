@@ -26,7 +26,7 @@ pub(super) struct Round<'r, 's> {
 impl<'r, 's> Round<'r, 's> {
     /// A round of which nothing is leased yet.
     pub(super) fn new(world: usize, job: &'r Job<'s>, items: &'r [Item]) -> Self {
-        let cells = job.cells(items.len());
+        let cells = job.cells(items.len(), false);
         Self { world, job, items, cells, open: items.len(), next: 0, lost: Vec::new() }
     }
 

@@ -4,6 +4,7 @@
 use super::{DISAGREEMENT, Found, Question, run};
 use crate::base::math;
 use crate::engine::answer::Answers;
+use crate::engine::budget::Budget;
 use crate::engine::executor::Executor;
 use crate::engine::fault::Fault;
 use crate::engine::method;
@@ -23,11 +24,12 @@ impl Answers<'_> {
         &self,
         question: &Question<'_>,
         executor: &dyn Executor,
+        share: &Budget,
         watch: &dyn Watch,
     ) -> Result<QueryResult, Fault> {
         let started = self.budget.elapsed();
         let Question { query, subject, column, rule, .. } = *question;
-        let found = run(question, executor, self.budget, watch)?;
+        let found = run(question, executor, share, watch)?;
         let mut result = self.blank(query, Kind::Estimate);
         result.method = method::of(&query.ask, None);
         result.stopped_by = found.stop;
