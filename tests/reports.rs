@@ -218,6 +218,7 @@ fn run() -> Run {
         scenario: "Corridor with an oncoming crowd".into(),
         seed: 7,
         version: "0.1.0".into(),
+        trials: results.iter().map(|result| result.counts.trials).sum(),
         results,
         warnings: vec!["param width is never used".into()],
         replay: "smc check corridor.scn corridor.bltl --seed 7 --set 'density=0.2..0.8 by 0.6'".into(),
@@ -246,6 +247,7 @@ fn text_in_colour_says_the_same() {
 fn text_of_a_run_that_ended_early() {
     let mut run = Run { interrupted: true, warnings: vec![], ..run() };
     run.results.truncate(1);
+    run.trials = run.results[0].counts.trials;
     run.results[0].stopped_by = Stop::Interrupt;
     run.failure = Some(Failure::Input("trial 12: two commands of `die` are enabled, s = 3".into()));
     insta::assert_snapshot!(render(&run, Format::Text, Palette::PLAIN));

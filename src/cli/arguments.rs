@@ -7,7 +7,7 @@ use std::path::PathBuf;
 #[derive(Debug, Parser)]
 #[command(name = "smc", version, about, long_about = None, max_term_width = 100)]
 #[command(
-    after_help = "Exit codes: 0 satisfied, 1 violated, 2 wrong call or input, 3 undecided, 130 interrupted, 70 a bug.\n\
+    after_help = "Exit codes: 0 satisfied, 1 violated, 2 wrong call or input, 3 undecided, 4 short of time or trials, 130 interrupted, 70 a bug.\n\
     Start with: smc check models/corridor.scn properties/corridor.bltl"
 )]
 pub(super) struct Arguments {

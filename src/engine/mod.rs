@@ -29,6 +29,7 @@ mod rehearsal;
 mod room;
 mod runner;
 mod session;
+mod shortfall;
 mod splitting;
 mod standing;
 pub mod subject;

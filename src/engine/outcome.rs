@@ -4,6 +4,7 @@
 
 pub use super::finding::{Finding, Spot};
 use super::flaw::Flaw;
+pub use super::shortfall::Shortfall;
 use crate::base::fingerprint::Fingerprint;
 
 /// Everything one call has computed.
@@ -23,6 +24,8 @@ pub struct Run {
     pub diagnostics: Vec<Finding>,
     /// Warnings that belong to no query.
     pub warnings: Vec<String>,
+    /// Consumed trials; those that several queries share are counted once.
+    pub trials: u64,
     /// Whether it was interrupted; the results are what is known so far.
     pub interrupted: bool,
     /// What ended the run early, if anything did.

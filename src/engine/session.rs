@@ -19,7 +19,7 @@ use super::tally::Tally;
 use super::watch::{Outlook, Watch};
 use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Query, Study};
 use crate::stats::Levels;
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 
 /// A query gets no larger part of the time than one of so many for its first trial.
 const FEW_PARTS: usize = 8;
@@ -88,6 +88,7 @@ pub fn run(
         }
     }
     watch.finished();
+    let trials = consumed(&asked, &results);
     let results: Vec<QueryResult> = results.into_iter().flatten().collect();
     Ok(Run {
         scenario: if study.title.is_empty() { call.file.clone() } else { study.title.clone() },
@@ -96,12 +97,30 @@ pub fn run(
         inputs: Vec::new(),
         diagnostics: Vec::new(),
         warnings: Vec::new(),
+        trials,
         interrupted: budget.is_interrupted(),
         failure,
         replay: again(call, budget, &results),
         results,
         elapsed_s: budget.elapsed(),
     })
+}
+
+/// Consumed trials of all results. Checks and estimates of a world read the same trials, each the first so many.
+fn consumed(asked: &[&Query], results: &[Option<QueryResult>]) -> u64 {
+    let mut shared = BTreeMap::new();
+    let mut alone = 0;
+    for (query, result) in asked.iter().zip(results) {
+        let trials = result.as_ref().map_or(0, |result| result.counts.trials);
+        match surveyed(&query.ask) {
+            Some(world) => {
+                let most: &mut u64 = shared.entry(world).or_default();
+                *most = trials.max(*most);
+            }
+            None => alone += trials,
+        }
+    }
+    alone + shared.values().sum::<u64>()
 }
 
 /// The call that gives the same results again. Where the clock ended something, each query has its own.

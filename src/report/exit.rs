@@ -7,6 +7,8 @@ use crate::engine::outcome::{Failure, Run, Verdict};
 pub enum ExitCode {
     /// 0: every `check` is satisfied, everything was computed.
     Success,
+    /// 4: a query that is no `check` was not begun or fell short of what it asks, for lack of time or of trials.
+    Incomplete,
     /// 3: a `check` is undecided within the budget, and none is violated.
     Undecided,
     /// 1: a `check` is violated.
@@ -24,6 +26,7 @@ impl ExitCode {
     pub const fn code(self) -> u8 {
         match self {
             Self::Success => 0,
+            Self::Incomplete => 4,
             Self::Undecided => 3,
             Self::Violated => 1,
             Self::Interrupted => 130,
@@ -32,14 +35,14 @@ impl ExitCode {
         }
     }
 
-    /// The one of two that counts: 70 > 2 > 130 > 1 > 3 > 0.
+    /// The one of two that counts: 70 > 2 > 130 > 1 > 3 > 4 > 0.
     #[must_use]
     pub const fn worse(self, other: Self) -> Self {
         if self as u8 >= other as u8 { self } else { other }
     }
 }
 
-/// The exit code of a run. Only a `check` can make it 1 or 3.
+/// The exit code of a run. Only a `check` can make it 1 or 3, and only another query 4.
 pub fn exit_code(run: &Run) -> ExitCode {
     let start = match &run.failure {
         Some(Failure::Bug(_)) => ExitCode::Bug,
@@ -51,6 +54,7 @@ pub fn exit_code(run: &Run) -> ExitCode {
         code.worse(match result.verdict {
             Some(Verdict::Violated) => ExitCode::Violated,
             Some(Verdict::Undecided) => ExitCode::Undecided,
+            None if result.shortfall().is_some() => ExitCode::Incomplete,
             Some(Verdict::Satisfied) | None => ExitCode::Success,
         })
     })
@@ -59,7 +63,7 @@ pub fn exit_code(run: &Run) -> ExitCode {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::outcome::{Kind, QueryResult};
+    use crate::engine::outcome::{Kind, QueryResult, Stop};
 
     fn run(verdicts: &[Option<Verdict>], interrupted: bool, failure: Option<Failure>) -> u8 {
         let results = verdicts
@@ -70,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn the_order_is_70_2_130_1_3_0() {
+    fn the_order_is_70_2_130_1_3_4_0() {
         use Verdict::{Satisfied, Undecided, Violated};
         let all = [Some(Satisfied), Some(Undecided), Some(Violated), None];
         assert_eq!(run(&all, true, Some(Failure::Bug(String::new()))), 70);
@@ -80,5 +84,11 @@ mod tests {
         assert_eq!(run(&all[..2], false, None), 3);
         assert_eq!(run(&all[..1], false, None), 0);
         assert_eq!(run(&[None], false, None), 0);
+        let short =
+            |verdict| QueryResult { verdict, stopped_by: Stop::Cap, ..QueryResult::new(0, Kind::Check, "") };
+        let of = |list: &[Option<Verdict>]| {
+            exit_code(&Run { results: list.iter().map(|v| short(*v)).collect(), ..Run::default() }).code()
+        };
+        assert_eq!([of(&[None]), of(&[Some(Satisfied), None]), of(&[Some(Undecided), None])], [4, 4, 3]);
     }
 }

@@ -86,6 +86,9 @@ fn result(result: &QueryResult) -> Value {
     put("shrunk", json!(result.shrunk));
     put("steps", json!(result.steps));
     put("stopped_by", json!(result.stopped_by.name()));
+    if let Some(shortfall) = result.shortfall() {
+        put("shortfall", json!(shortfall.name()));
+    }
     if let Some(Comparison { first, second, difference }) = &result.compare {
         put("first", side(first));
         put("second", side(second));

@@ -85,7 +85,7 @@ fn a_deadline_is_kept_and_what_is_known_is_certified() {
             let said = place.call(&["check", "a.scn", "a.bltl", "--format", "json", "--timeout", "50ms"]);
             let taken = started.elapsed();
             let result = said.json()["results"][0].clone();
-            assert_eq!((said.code, &result["stopped_by"]), (Some(0), &"deadline".into()));
+            assert_eq!((said.code, &result["stopped_by"]), (Some(4), &"deadline".into()));
             assert!(result["gap"].as_f64().unwrap() > 0.0);
             assert!(result["choice"].is_string());
             taken

@@ -2,6 +2,7 @@
 
 #![allow(clippy::disallowed_methods, reason = "tests read and write files and call the program")]
 
+mod budgets;
 mod calls;
 mod errors;
 mod forecasts;

@@ -5,7 +5,7 @@ mod histogram;
 
 use super::number::{count, counted, duration};
 use super::{certified, endless, one_line, settings, text};
-use crate::engine::outcome::{Interval, QueryResult, Run, Status, Verdict, Witness};
+use crate::engine::outcome::{Interval, QueryResult, Run, Shortfall, Status, Verdict, Witness};
 use chart::{Mark, Tone};
 use std::fmt::Write as _;
 
@@ -19,13 +19,12 @@ pub fn render(run: &Run) -> String {
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n"
     );
-    let trials = run.results.iter().map(|r| r.counts.trials).sum::<u64>();
     let _ = writeln!(
         page,
         "<header>\n<h1>{title}</h1>\n<p>seed {}, smc {}, {} in {}</p>\n<p class=\"tally\">{}</p>\n</header>",
         run.seed,
         escape(&run.version),
-        counted(trials, "trial"),
+        counted(run.trials, "trial"),
         duration(run.elapsed_s),
         tally(run)
     );
@@ -71,7 +70,8 @@ fn section(page: &mut String, group: &[&QueryResult]) {
     let place = if first.file.is_empty() { String::new() } else { format!("{}:{}", first.file, first.line) };
     let _ = writeln!(
         page,
-        "<section>\n<h2><span class=\"badge {word}\">{word}</span> <code>{}</code> <small>{}</small></h2>",
+        "<section>\n<h2><span class=\"badge {}\">{word}</span> <code>{}</code> <small>{}</small></h2>",
+        word.replace(' ', "-"),
         escape(&one_line(&first.query)),
         escape(&place)
     );
@@ -114,13 +114,14 @@ fn severity(word: &str) -> u8 {
     match word {
         "violated" => 3,
         "undecided" => 2,
-        "satisfied" => 1,
+        "satisfied" | "incomplete" | "not begun" => 1,
         _ => 0,
     }
 }
 
 fn word(result: &QueryResult) -> &'static str {
-    result.verdict.map_or("computed", Verdict::name)
+    let computed = result.shortfall().map_or("computed", Shortfall::name);
+    result.verdict.map_or(computed, Verdict::name)
 }
 
 /// The lines of one result under its chart.

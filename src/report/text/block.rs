@@ -3,7 +3,7 @@
 use super::columns::{Cell, lines};
 use super::{compare, distribution, rank};
 use crate::engine::at_most;
-use crate::engine::outcome::{Interval, Kind, QueryResult, Rare, Shows, Stop, Verdict, Witness};
+use crate::engine::outcome::{Interval, Kind, QueryResult, Rare, Shortfall, Shows, Stop, Verdict, Witness};
 use crate::report::number::{count, counted, duration, interval, plain};
 use crate::report::palette::{Paint, Palette};
 use crate::report::{certified, one_line, settings};
@@ -31,6 +31,7 @@ pub(super) fn write(text: &mut String, result: &QueryResult, palette: Palette) {
         line(text, &format!("certified: {statement}"));
     }
     line(text, &trials(result));
+    shortfall(text, result, palette);
     if let Some(rare) = &result.rare {
         self::rare(text, rare);
     }
@@ -154,6 +155,21 @@ fn rare(text: &mut String, rare: &Rare) {
             ),
         );
     }
+}
+
+/// How a result falls short of what was asked.
+pub(super) fn shortfall(text: &mut String, result: &QueryResult, palette: Palette) {
+    let Some(shortfall) = result.shortfall() else { return };
+    let lacking = if result.stopped_by == Stop::Cap { "trials" } else { "time" };
+    let said = match (shortfall, result.kind) {
+        (Shortfall::NotBegun, _) => format!("{lacking} did not suffice for one trial"),
+        (Shortfall::Incomplete, Kind::Rank) => {
+            format!("{lacking} did not suffice for a choice that is certain enough")
+        }
+        (Shortfall::Incomplete, _) => format!("{lacking} did not suffice for what the query asks"),
+    };
+    let word = palette.paint(Paint::Caution, &format!("{}:", shortfall.name()));
+    line(text, &format!("{word} {said}"));
 }
 
 /// The counts and why sampling stopped.

@@ -11,7 +11,7 @@ pub(super) use block::{counts, moment, printed, shown, trials};
 
 use super::number::{count, counted, duration};
 use super::palette::{Paint, Palette};
-use crate::engine::outcome::{QueryResult, Run, Verdict};
+use crate::engine::outcome::{QueryResult, Run, Shortfall, Verdict};
 use std::fmt::Write as _;
 
 /// The report of a run, ending with its replay line.
@@ -59,12 +59,6 @@ pub(super) fn same_sweep(a: &QueryResult, b: &QueryResult) -> bool {
     a.index == b.index && !a.settings.is_empty() && !b.settings.is_empty() && simple(a) && simple(b)
 }
 
-/// Whether a query has got any trials, or needs none: one option is the best without.
-fn begun(result: &QueryResult) -> bool {
-    let chosen = result.rank.as_ref().is_some_and(|rank| rank.choice.is_some());
-    result.counts.trials > 0 || chosen
-}
-
 /// Results query by query: a sweep comes point by point, with all queries at each.
 pub(super) fn by_query(results: &[QueryResult]) -> Vec<&QueryResult> {
     let mut ordered: Vec<&QueryResult> = results.iter().collect();
@@ -72,18 +66,20 @@ pub(super) fn by_query(results: &[QueryResult]) -> Vec<&QueryResult> {
     ordered
 }
 
-/// How many queries there are of each verdict, without it, and without a trial, each with its word.
+/// How many queries there are of each verdict, and of those without one how many are computed, fall short, and have no trial;
+/// each with its word.
 pub(super) fn tally(run: &Run) -> Vec<(u64, &'static str, Paint)> {
-    let number = |verdict| {
-        run.results.iter().filter(|r| r.verdict == verdict && (verdict.is_some() || begun(r))).count() as u64
+    let number = |verdict| run.results.iter().filter(|r| r.verdict == Some(verdict)).count() as u64;
+    let computed = |shortfall| {
+        run.results.iter().filter(|r| r.verdict.is_none() && r.shortfall() == shortfall).count() as u64
     };
-    let idle = run.results.iter().filter(|r| r.verdict.is_none() && !begun(r)).count() as u64;
     let all = [
-        (number(Some(Verdict::Satisfied)), "satisfied", Paint::Good),
-        (number(Some(Verdict::Violated)), "violated", Paint::Bad),
-        (number(Some(Verdict::Undecided)), "undecided", Paint::Caution),
-        (number(None), "computed", Paint::Neutral),
-        (idle, "not begun", Paint::Caution),
+        (number(Verdict::Satisfied), "satisfied", Paint::Good),
+        (number(Verdict::Violated), "violated", Paint::Bad),
+        (number(Verdict::Undecided), "undecided", Paint::Caution),
+        (computed(None), "computed", Paint::Neutral),
+        (computed(Some(Shortfall::Incomplete)), Shortfall::Incomplete.name(), Paint::Caution),
+        (computed(Some(Shortfall::NotBegun)), Shortfall::NotBegun.name(), Paint::Caution),
     ];
     all.into_iter().filter(|(n, ..)| *n > 0).collect()
 }
@@ -93,7 +89,7 @@ fn summary(run: &Run, palette: Palette) -> String {
         .into_iter()
         .map(|(n, word, paint)| palette.paint(paint, &format!("{} {word}", count(n))))
         .collect();
-    let trials = run.results.iter().map(|r| r.counts.trials).sum::<u64>();
+    let trials = run.trials;
     let mut text = if parts.is_empty() { "no results".to_owned() } else { parts.join(", ") };
     let _ = write!(text, "; {} in {}", counted(trials, "trial"), duration(run.elapsed_s));
     if run.elapsed_s > 0.0 && trials > 0 {

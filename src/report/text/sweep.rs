@@ -53,8 +53,11 @@ fn common(first: &QueryResult, results: &[&QueryResult]) -> QueryResult {
 }
 
 fn row(result: &QueryResult, same_cause: bool) -> Vec<Cell> {
-    let (word, paint) = block::word(result);
-    let word = if result.verdict.is_some() { word } else { "" };
+    let (word, paint) = match result.shortfall() {
+        Some(shortfall) => (shortfall.name(), Paint::Caution),
+        None if result.verdict.is_none() => ("", Paint::Neutral),
+        None => block::word(result),
+    };
     let (estimate, interval) = result.estimate.map_or_else(Default::default, |estimate| {
         block::printed(result, &Interval { estimate, low: result.low, high: result.high })
     });
