@@ -11,7 +11,7 @@ use super::rehearsal::Rehearsal;
 use super::subject::Subject;
 use super::survey::LARGEST_ROUND;
 use super::tally::Tally;
-use super::watch::{Forecast, Watch};
+use super::watch::{Forecast, Likely, Watch};
 use crate::compile::methods;
 use crate::compile::study::{MeasureKind, Query};
 use crate::stats::{self, Difference, Mean};
@@ -159,16 +159,16 @@ impl<'s> Contrast<'s> {
         let width = self.range.map_or(1.0, |(low, high)| high - low);
         let pairs = match self.within {
             Some(within) => forecast::contrast(&glimpse, width, within, self.delta),
-            None => methods::PLANNED_TRIALS,
+            None => Likely::exactly(methods::PLANNED_TRIALS),
         }
-        .min(budget.max_trials);
+        .map(|n| n.min(budget.max_trials));
         self.ahead = sides.iter().all(Rehearsal::is_complete).then_some(sides);
         self.spent = self.ahead.iter().flatten().map(|ahead| ahead.seconds).sum();
         Ok(Forecast {
             query: self.query.text.clone(),
             settings: self.query.settings.clone(),
-            trials: 2 * pairs,
-            seconds: pairs as f64 * seconds,
+            trials: pairs.map(|n| 2 * n),
+            seconds: pairs.likely as f64 * seconds,
         })
     }
 

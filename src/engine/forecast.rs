@@ -5,10 +5,16 @@
 
 use super::cell::{Cell, Reading};
 use super::procedure::Procedure;
-use crate::base::math::ln;
+use super::watch::Likely;
+use crate::base::math::{self, ln};
 use crate::base::special::normal_quantile;
 use crate::compile::study::{Ask, Estimator, MeasureKind, Ranking, Test};
 use crate::stats;
+
+/// Error of what a few trials say of a share.
+const UNSURE: f64 = 0.08;
+/// Steps from one end of it to the other.
+const STEPS: u32 = 24;
 
 /// First readings of a column.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -72,6 +78,30 @@ impl Glimpse {
         if self.trials() > 0.0 { self.sum() / self.trials() } else { 0.0 }
     }
 
+    /// What the readings say themselves.
+    fn guess(&self, least: f64) -> Guess {
+        Guess { share: self.share(), mean: self.mean(), variance: self.variance(least) }
+    }
+
+    /// What the truth may be as well, beside them. `least` is a distance that one more reading could have.
+    fn guesses(&self, least: f64) -> Vec<Guess> {
+        let (n, middle) = (self.trials(), self.guess(least));
+        let read = stats::Counts { successes: self.held, failures: self.truths - self.held };
+        let shares = stats::clopper_pearson::interval(read, UNSURE);
+        let spread = self.variance(0.0);
+        let off = 2.0 * ((spread + least * least / (n + 1.0)) / n.max(1.0)).sqrt();
+        let mut guesses = Vec::new();
+        for k in 0..=STEPS {
+            // From end to end.
+            let at = f64::from(k) / f64::from(STEPS);
+            let share = (shares.low + at * (shares.high - shares.low)).clamp(1e-9, 1.0 - 1e-9);
+            let mean = middle.mean + (2.0 * at - 1.0) * off;
+            let other = 4.0 * spread + 4.0 * least * least / (n + 1.0);
+            guesses.extend([0.3 * spread, other].map(|variance| Guess { share, mean, variance }));
+        }
+        guesses
+    }
+
     /// Variance; with few trials never far below that of one more reading at distance `least`.
     fn variance(&self, least: f64) -> f64 {
         let n = self.trials().max(1.0);
@@ -88,14 +118,47 @@ fn until_narrow(variance: f64, range: f64, epsilon: f64, delta: f64) -> f64 {
     2.6 * variance * level / (epsilon * epsilon) + 3.0 * range * level / epsilon
 }
 
-/// Trials that a check or estimate is likely to take.
-pub(super) fn inquiry(ask: &Ask, procedure: &Procedure, glimpse: &Glimpse) -> Option<u64> {
+/// What the truth may be.
+#[derive(Clone, Copy)]
+struct Guess {
+    /// The share of successes.
+    share: f64,
+    mean: f64,
+    variance: f64,
+}
+
+/// Trials that a check or estimate takes: with what the first of them say, and with what the truth may be as well.
+pub(super) fn inquiry(ask: &Ask, procedure: &Procedure, glimpse: &Glimpse) -> Option<Likely> {
     let limit = procedure.limit();
     if procedure.is_planned() {
-        return limit;
+        return limit.map(Likely::exactly);
     }
-    let p = glimpse.share();
-    let trials = match ask {
+    let (Ask::Check { measure, .. } | Ask::Estimate { measure, .. }) = ask else {
+        return limit.map(Likely::exactly);
+    };
+    let scale = match measure.kind {
+        MeasureKind::Expectation { range: (low, high), .. } => high - low,
+        MeasureKind::Probability | MeasureKind::Quantile { .. } => 1.0,
+    };
+    let Some(likely) = trials(ask, glimpse.guess(0.1 * scale)) else { return limit.map(Likely::exactly) };
+    // Runs of one procedure at one truth scatter as well.
+    let (fewer, more) = match ask {
+        Ask::Check { .. } => (0.25, 3.0),
+        Ask::Estimate { estimator: Estimator::Massart { .. } | Estimator::Spending { .. }, .. } => (0.9, 2.2),
+        _ if matches!(measure.kind, MeasureKind::Expectation { .. }) => (0.4, 2.0),
+        _ => (0.8, 1.25),
+    };
+    let all = glimpse.guesses(0.1 * scale).into_iter().filter_map(|guess| trials(ask, guess));
+    let (least, most) =
+        all.fold((likely, likely), |(least, most), n| (math::at_most(n, least), math::at_least(n, most)));
+    let whole = |n: f64| (math::at_most(n, 1e18) as u64).clamp(1, limit.unwrap_or(u64::MAX).max(1));
+    Some(Likely { least: whole(fewer * least), likely: whole(likely), most: whole(more * most) })
+}
+
+/// Trials that a check or estimate takes, if the truth is as guessed; `None` where they do not depend on it.
+fn trials(ask: &Ask, guess: Guess) -> Option<f64> {
+    let p = guess.share;
+    Some(match ask {
         Ask::Check {
             threshold,
             test: Test::Sprt { alpha, beta, indifference } | Test::Sprt2 { alpha, beta, indifference },
@@ -111,10 +174,10 @@ pub(super) fn inquiry(ask: &Ask, procedure: &Procedure, glimpse: &Glimpse) -> Op
             one(threshold - 0.5 * indifference).max(one(threshold + 0.5 * indifference))
         }
         Ask::Check { threshold, test: Test::Interval { delta }, measure, .. } => {
-            let MeasureKind::Expectation { range: (low, high), .. } = measure.kind else { return limit };
+            let MeasureKind::Expectation { range: (low, high), .. } = measure.kind else { return None };
             let range = high - low;
-            let gap = (glimpse.mean() - threshold).abs().max(1e-6 * range);
-            until_narrow(glimpse.variance(0.1 * range), range, gap, *delta)
+            let gap = (guess.mean - threshold).abs().max(1e-6 * range);
+            until_narrow(guess.variance, range, gap, *delta)
         }
         Ask::Estimate { measure, estimator } => match (*estimator, &measure.kind) {
             (
@@ -131,14 +194,12 @@ pub(super) fn inquiry(ask: &Ask, procedure: &Procedure, glimpse: &Glimpse) -> Op
                 z * z / (epsilon * epsilon * p)
             }
             (Estimator::Default { epsilon, delta }, MeasureKind::Expectation { range: (low, high), .. }) => {
-                let range = high - low;
-                until_narrow(glimpse.variance(0.1 * range), range, epsilon, delta)
+                until_narrow(guess.variance, high - low, epsilon, delta)
             }
-            _ => return limit,
+            _ => return None,
         },
-        Ask::Check { test: Test::Plan { .. }, .. } | Ask::Compare { .. } | Ask::Rank { .. } => return limit,
-    };
-    Some((trials.min(1e18) as u64).clamp(1, limit.unwrap_or(u64::MAX).max(1)))
+        Ask::Check { test: Test::Plan { .. }, .. } | Ask::Compare { .. } | Ask::Rank { .. } => return None,
+    })
 }
 
 /// Wald's expected number of trials of a sequential probability ratio test where the share is `p`: the mean
@@ -153,8 +214,14 @@ fn wald(p: f64, theta: f64, indifference: f64, alpha: f64, beta: f64) -> f64 {
 }
 
 /// Pairs that a comparison is likely to take; `glimpse` is that of the differences.
-pub(super) fn contrast(glimpse: &Glimpse, range: f64, epsilon: f64, delta: f64) -> u64 {
-    (until_narrow(glimpse.variance(0.1 * range), 2.0 * range, epsilon, delta)).min(1e18) as u64
+pub(super) fn contrast(glimpse: &Glimpse, range: f64, epsilon: f64, delta: f64) -> Likely {
+    let least = 0.1 * range;
+    let of = |guess: Guess| until_narrow(guess.variance, 2.0 * range, epsilon, delta);
+    let likely = of(glimpse.guess(least));
+    let all = glimpse.guesses(least).into_iter().map(of);
+    let (fewest, most) = all.fold((likely, likely), |(a, b), n| (math::at_most(n, a), math::at_least(n, b)));
+    let whole = |n: f64| math::at_most(n, 1e18) as u64;
+    Likely { least: whole(0.4 * fewest), likely: whole(likely), most: whole(2.0 * most) }
 }
 
 /// Trials that a ranking is likely to take, of all options together; `glimpses` are those of the options,
@@ -164,10 +231,11 @@ pub(super) fn race(
     differences: &[Glimpse],
     scale: f64,
     (epsilon, delta, ranking): (f64, f64, Ranking),
-) -> u64 {
+) -> Likely {
     let arms = glimpses.len().max(2) as f64;
     if ranking == Ranking::Okamoto {
-        return (arms as u64).saturating_mul(stats::okamoto::size(epsilon / scale, delta / arms));
+        let each = stats::okamoto::size(epsilon / scale, delta / arms);
+        return Likely::exactly((arms as u64).saturating_mul(each));
     }
     let level = ln(arms / delta);
     let best = glimpses.iter().map(Glimpse::mean).fold(f64::NEG_INFINITY, f64::max);
@@ -175,7 +243,9 @@ pub(super) fn race(
         let gap = (best - one.mean()).max(epsilon);
         2.0 * difference.variance(0.1 * scale) * level / (gap * gap) + scale * level / gap
     };
-    glimpses.iter().zip(differences).map(of).sum::<f64>().min(1e18) as u64
+    let likely = math::at_most(glimpses.iter().zip(differences).map(of).sum::<f64>(), 1e17);
+    // Who leads is not sure yet, and how far the others are behind.
+    Likely { least: (0.1 * likely) as u64, likely: likely as u64, most: (4.0 * likely) as u64 }
 }
 
 #[cfg(test)]
@@ -202,6 +272,6 @@ mod tests {
         let rule = (0.02, 0.05, Ranking::Betting);
         let level = race(&[with(0.5), with(0.5)], &[with(0.0), with(0.5)], 1.0, rule);
         let apart = race(&[with(0.9), with(0.1)], &[with(0.0), with(0.8)], 1.0, rule);
-        assert!(level > 5 * apart, "{level} {apart}");
+        assert!(level.likely > 5 * apart.likely, "{level:?} {apart:?}");
     }
 }

@@ -52,5 +52,5 @@ pub use ranks::Ranks;
 pub use room::{overfull_starts, placeable};
 pub use session::{forecast, run};
 pub use subject::Subject;
-pub use watch::{Forecast, Nobody, Outlook, Watch};
+pub use watch::{Forecast, Likely, Nobody, Outlook, Watch};
 pub use words::at_most;

@@ -238,7 +238,7 @@ impl<'s> Contest<'s> {
             .collect();
         let most = (arms as u64).saturating_mul(budget.max_trials);
         let trials = forecast::race(&glimpses, &differences, self.scale(), self.field.rule);
-        let trials = trials.max(rehearsal.items.len() as u64).min(most);
+        let trials = trials.map(|n| n.max(rehearsal.items.len() as u64).min(most));
         let seconds = rehearsal.seconds_per_trial(self.job.subject.most_steps());
         self.ahead = rehearsal.is_complete().then_some(rehearsal);
         self.spent = self.ahead.as_ref().map_or(0.0, |ahead| ahead.seconds);
@@ -246,7 +246,7 @@ impl<'s> Contest<'s> {
             query: self.query.text.clone(),
             settings: self.query.settings.clone(),
             trials,
-            seconds: trials as f64 * seconds,
+            seconds: trials.likely as f64 * seconds,
         })
     }
 

@@ -13,6 +13,27 @@ const SEEN: usize = 16;
 /// Longest rehearsal of one job, s.
 const LONGEST: f64 = 0.5;
 
+/// A first run that is shorter than this is mostly the making of workers: trials are timed by longer runs, s.
+const SHORT: f64 = 0.01;
+/// Most trials of such a run.
+const MOST_TIMED: u64 = 8192;
+
+/// Seconds a trial takes once workers are made, where a first run of so many was short.
+pub(super) fn timed(
+    job: &Job<'_>,
+    (mut count, mut each): (u64, f64),
+    executor: &dyn Executor,
+    budget: &Budget,
+) -> Result<f64, Fault> {
+    while each * (count as f64) < SHORT && count < MOST_TIMED {
+        count *= 8;
+        let before = budget.elapsed();
+        executor.run(job, &Item::run(0, count), &budget.ahead(LONGEST))?;
+        each = (budget.elapsed() - before) / count as f64;
+    }
+    Ok(each)
+}
+
 /// The first trials of a job.
 pub(super) struct Rehearsal {
     /// Which trials.

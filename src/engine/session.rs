@@ -16,7 +16,7 @@ use super::splitting::Question;
 use super::subject::Subject;
 use super::survey::{Advance, Inquiry, Survey};
 use super::tally::Tally;
-use super::watch::{Outlook, Watch};
+use super::watch::{Forecast, Outlook, Watch};
 use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Query, Study};
 use crate::stats::Levels;
 use std::collections::{BTreeMap, VecDeque};
@@ -195,7 +195,10 @@ fn outlook(
             Sampling::Split(question) => vec![question.rehearse(executor, budget)?],
         };
         // Checks and estimates of one scenario share their trials.
-        outlook.seconds += forecasts.iter().map(|f| f.seconds).fold(0.0, f64::max);
+        let longest = |of: &dyn Fn(&Forecast) -> f64| forecasts.iter().map(of).fold(0.0, f64::max);
+        outlook.seconds += longest(&|f| f.seconds);
+        outlook.between.0 += longest(&|f| f.seconds_between().0);
+        outlook.between.1 += longest(&|f| f.seconds_between().1);
         outlook.queries.extend(forecasts);
     }
     Ok(Some(outlook))

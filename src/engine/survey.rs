@@ -11,10 +11,10 @@ use super::fault::Fault;
 use super::forecast::{self, Glimpse};
 use super::outcome::Stop;
 use super::procedure::Procedure;
-use super::rehearsal::Rehearsal;
+use super::rehearsal::{self, Rehearsal};
 use super::subject::Subject;
 use super::tally::Tally;
-use super::watch::{Forecast, Watch};
+use super::watch::{Forecast, Likely, Watch};
 use crate::base::math;
 use crate::compile::study::{Ask, Query};
 use crate::stats::Levels;
@@ -22,6 +22,8 @@ use crate::stats::calibration::Patience;
 
 /// A trial that takes so many times as many steps for one column as for another holds that one up.
 const MUCH_LONGER: f64 = 16.0;
+/// Forecasts that are shorter are not worth a look at the time of a trial, s.
+const WORTH_TIMING: f64 = 1.0;
 /// Largest round.
 pub(super) const LARGEST_ROUND: u64 = 16_384;
 
@@ -131,7 +133,7 @@ impl<'q> Survey<'q> {
         // As many on every machine, whatever a round would be.
         let size = Rehearsal::size(width).min(most(&self.inquiries, 0, budget).max(1)).min(budget.max_trials);
         let rehearsal = Rehearsal::run(&self.job, Item::run(0, size), executor, budget)?;
-        let seconds = rehearsal.seconds_per_trial(self.job.subject.most_steps());
+        let mut seconds = rehearsal.seconds_per_trial(self.job.subject.most_steps());
         let forecast = |inquiry: &Inquiry<'_>| {
             let mut glimpse = Glimpse::default();
             let range = inquiry.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
@@ -139,15 +141,22 @@ impl<'q> Survey<'q> {
                 rehearsal.seen().for_each(|row| glimpse.read(&row[place], range));
             }
             let expected = forecast::inquiry(&inquiry.query.ask, &inquiry.procedure, &glimpse);
-            let trials = expected.unwrap_or(u64::MAX).min(budget.max_trials);
+            let trials = expected.unwrap_or(Likely::exactly(u64::MAX)).map(|n| n.min(budget.max_trials));
             Forecast {
                 query: inquiry.query.text.clone(),
                 settings: inquiry.query.settings.clone(),
                 trials,
-                seconds: trials as f64 * seconds,
+                seconds: 0.0,
             }
         };
-        let forecasts = self.inquiries.iter().map(forecast).collect();
+        let mut forecasts: Vec<Forecast> = self.inquiries.iter().map(forecast).collect();
+        let most = forecasts.iter().map(|forecast| forecast.trials.most).max().unwrap_or(0);
+        if rehearsal.is_complete() && most as f64 * seconds > WORTH_TIMING {
+            seconds = rehearsal::timed(&self.job, (size, seconds), executor, budget)?;
+        }
+        for forecast in &mut forecasts {
+            forecast.seconds = forecast.trials.likely as f64 * seconds;
+        }
         self.ahead = rehearsal.is_complete().then_some(rehearsal);
         Ok(forecasts)
     }
@@ -289,7 +298,7 @@ impl<'q> Survey<'q> {
             if let Some(inquiry) = self.inquiries.iter().find(|i| i.is_open()) {
                 let (next, procedure) = (self.next, &inquiry.procedure);
                 let expected = forecast::inquiry(&inquiry.query.ask, procedure, &inquiry.glimpse);
-                watch.consumed(&inquiry.query.text, next, expected.map(|n| n.max(next)));
+                watch.consumed(&inquiry.query.text, next, expected.map(|n| n.likely.max(next)));
             }
             if !slow.is_empty() && !budget.must_stop() {
                 return Ok(Advance::Apart(slow));

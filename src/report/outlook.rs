@@ -1,23 +1,32 @@
 //! Forecasts of a call, as text and as JSON.
 
-use super::number::counted;
+use super::number::{count, counted};
 use crate::engine::{Forecast, Outlook};
 use serde_json::{Value, json};
 
 /// One line a query, and one for the whole.
 pub fn text(outlook: &Outlook) -> String {
     let mut text = String::new();
-    for Forecast { query, settings, trials, seconds } in &outlook.queries {
-        let trials = counted(rough(*trials), "trial");
+    for forecast in &outlook.queries {
+        let Forecast { query, settings, trials, .. } = forecast;
+        let (least, most) = (least(trials.least), rough(trials.most));
+        let trials = if trials.least == trials.most {
+            format!("about {}", counted(most, "trial"))
+        } else {
+            format!("{} to {}", count(least), counted(most, "trial"))
+        };
         let query = super::one_line(query);
         let under: Vec<String> = settings.iter().map(|(name, value)| format!("{name} = {value}")).collect();
         let under = if under.is_empty() { String::new() } else { format!("   {}", under.join(", ")) };
-        text.push_str(&format!("forecast: about {trials}, {}: {query}{under}\n", duration(*seconds)));
+        text.push_str(&format!(
+            "forecast: {trials}, {}: {query}{under}\n",
+            between(forecast.seconds_between())
+        ));
     }
     if outlook.queries.len() > 1 {
         text.push_str(&format!(
             "forecast: {} in all; checks and estimates of one scenario share trials\n",
-            duration(outlook.seconds)
+            between(outlook.between)
         ));
     }
     text
@@ -31,7 +40,9 @@ pub fn json(outlook: &Outlook) -> String {
         json!({
             "query": forecast.query,
             "settings": settings,
-            "trials": rough(forecast.trials),
+            "trials": rough(forecast.trials.likely),
+            "least": least(forecast.trials.least),
+            "most": rough(forecast.trials.most),
             "seconds": forecast.seconds,
         })
     };
@@ -39,13 +50,32 @@ pub fn json(outlook: &Outlook) -> String {
     format!("{:#}\n", json!({ "schema": 1, "forecast": queries, "seconds": outlook.seconds }))
 }
 
-/// Two digits are enough for a forecast.
-fn rough(n: u64) -> u64 {
+/// Two digits are enough for a forecast: the last place that counts.
+fn place(n: u64) -> u64 {
     let mut scale = 1;
     while n / scale >= 100 {
         scale *= 10;
     }
-    n.div_ceil(scale) * scale
+    scale
+}
+
+fn rough(n: u64) -> u64 {
+    n.div_ceil(place(n)) * place(n)
+}
+
+/// The lower end of a range, rounded outward.
+fn least(n: u64) -> u64 {
+    n / place(n) * place(n)
+}
+
+/// A range of durations.
+fn between((low, high): (f64, f64)) -> String {
+    let (low, high) = (duration(low), duration(high));
+    match (low == high, low.strip_prefix("about ")) {
+        (true, _) => high,
+        (false, Some(low)) => format!("{low} to {}", high.trim_start_matches("about ")),
+        (false, None) => format!("at most {high}"),
+    }
 }
 
 fn duration(seconds: f64) -> String {
@@ -63,6 +93,7 @@ fn duration(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::engine::Likely;
 
     #[test]
     fn a_forecast_has_two_digits() {
@@ -76,15 +107,21 @@ mod tests {
         let one = Forecast {
             query: "estimate\n  P(safe)".to_owned(),
             settings: vec![("density".to_owned(), "0.2".to_owned())],
-            trials: 53,
+            trials: Likely { least: 20, likely: 53, most: 2_000 },
             seconds: 3.2,
         };
-        let outlook = Outlook { queries: vec![one.clone()], seconds: 3.2 };
+        let outlook = Outlook { queries: vec![one.clone()], ..Outlook::default() };
+        assert_eq!(
+            text(&outlook),
+            "forecast: 20 to 2,000 trials, 1 s to 2 min: estimate P(safe)   density = 0.2\n"
+        );
+        let known = Forecast { trials: Likely::exactly(53), ..one.clone() };
+        let outlook = Outlook { queries: vec![known], ..Outlook::default() };
         assert_eq!(
             text(&outlook),
             "forecast: about 53 trials, about 3 s: estimate P(safe)   density = 0.2\n"
         );
-        let outlook = Outlook { queries: vec![one.clone(), one], seconds: 6.4 };
+        let outlook = Outlook { queries: vec![one.clone(), one], ..Outlook::default() };
         assert_eq!(text(&outlook).lines().count(), 3);
     }
 }

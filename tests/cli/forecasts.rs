@@ -21,24 +21,63 @@ fn trials(list: &Value) -> Vec<f64> {
     list.as_array().unwrap().iter().map(|q| q["trials"].as_f64().unwrap()).collect()
 }
 
-#[test]
-fn a_forecast_is_of_the_right_size() {
-    let place = place();
-    for name in ["die", "leader"] {
-        let (model, properties) = (format!("{name}.scn"), format!("{name}.bltl"));
-        let call = ["check", &model, &properties, "--format", "json", "-q"];
-        let forecast = place.call(&[&call[..], &["--forecast"]].concat());
-        assert_eq!(forecast.code, Some(0));
-        let told = trials(&forecast.json()["forecast"]);
-        let ran = trials(&place.call(&call).json()["results"]);
-        assert_eq!(told.len(), ran.len());
-        // From 8 to 16 trials a share is known to a tenth or two: that is what a forecast can be off by.
-        for (told, ran) in told.iter().zip(&ran) {
-            assert!(*told < 40.0 * ran && *ran < 40.0 * told, "{name}: {told} forecast, {ran} consumed");
-        }
-        let near = told.iter().zip(&ran).filter(|(told, ran)| **told < 4.0 * **ran && **ran < 4.0 * **told);
-        assert!(2 * near.count() > told.len(), "{name}: {told:?} forecast, {ran:?} consumed");
+/// Of how many queries of a model the number of trials lay in the range that was forecast, and of how many not.
+fn foretold(place: &Place, name: &str, seed: u32, words: &[&str]) -> Vec<String> {
+    let (model, properties, seed) = (format!("{name}.scn"), format!("{name}.bltl"), seed.to_string());
+    let call = ["check", &model, &properties, "--format", "json", "-q", "--seed", &seed];
+    let call = [&call[..], words].concat();
+    let told = place.call(&[&call[..], &["--forecast"]].concat());
+    assert_eq!(told.code, Some(0), "{}", told.err);
+    let told = told.json()["forecast"].as_array().unwrap().clone();
+    let ran = place.call(&call).json()["results"].as_array().unwrap().clone();
+    let paths = |result: &Value| result["splitting"]["paths"].as_f64().unwrap_or(0.0);
+    let mut lines = Vec::new();
+    for told in &told {
+        // Results are in the order of the queries, forecasts in that of the groups that answer them.
+        let same = |one: &&Value| one["query"] == told["query"] && one["settings"] == told["settings"];
+        let ran = ran.iter().find(same).unwrap();
+        let number = ran["trials"].as_f64().unwrap() + paths(ran);
+        let (least, most) = (told["least"].as_f64().unwrap(), told["most"].as_f64().unwrap());
+        let word = if (least..=most).contains(&number) { "inside" } else { "outside" };
+        lines.push(format!("{word} {name} {seed}: {least} .. {most}, {number}: {}", told["query"]));
     }
+    lines
+}
+
+fn mostly_inside(lines: &[String]) {
+    let inside = lines.iter().filter(|line| line.starts_with("inside")).count();
+    assert!(10 * inside >= 9 * lines.len(), "{inside} of {}:\n{}", lines.len(), lines.join("\n"));
+}
+
+#[test]
+fn nine_of_ten_forecasts_hold() {
+    let place = place();
+    let seeds = (0..3).flat_map(|seed| ["die", "leader"].map(|name| (name, seed)));
+    let lines: Vec<String> = seeds.flat_map(|(name, seed)| foretold(&place, name, seed, &[])).collect();
+    mostly_inside(&lines);
+}
+
+#[test]
+#[ignore = "takes all models at twenty seeds"]
+fn nine_of_ten_forecasts_of_all_models_hold() {
+    let place = Place::new(&[]);
+    let mut names = Vec::new();
+    for folder in ["models", "properties"] {
+        for file in std::fs::read_dir(format!("{}/{folder}", env!("CARGO_MANIFEST_DIR"))).unwrap() {
+            let path = file.unwrap().path();
+            place.write(path.file_name().unwrap().to_str().unwrap(), &std::fs::read(&path).unwrap());
+            names.extend(
+                path.file_stem().filter(|_| folder == "models").map(|s| s.to_str().unwrap().to_owned()),
+            );
+        }
+    }
+    names.sort();
+    // The hotel needs recordings.
+    names.retain(|name| name != "hotel");
+    let seeds = (0..20).flat_map(|seed| names.iter().map(move |name| (name, seed)));
+    let lines: Vec<String> =
+        seeds.flat_map(|(name, seed)| foretold(&place, name, seed, &["--max-trials", "20000"])).collect();
+    mostly_inside(&lines);
 }
 
 #[test]

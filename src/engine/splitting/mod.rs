@@ -14,7 +14,7 @@ use super::outcome::Stop;
 use super::rehearsal::Rehearsal;
 use super::subject::Subject;
 use super::tally::Tally;
-use super::watch::{Forecast, Watch};
+use super::watch::{Forecast, Likely, Watch};
 use crate::base::random::TrialKey;
 use crate::compile::study::{Query, Splitting as Rule};
 use crate::stats::splitting::{Adaptive, AnyScheme, Effort, Scheme, Spread, Start};
@@ -27,6 +27,8 @@ use path::Path;
 const DISAGREEMENT: f64 = 0.01;
 /// Paths in units of those that start, for forecasts.
 const DECADES: u64 = 5;
+/// The same, at most.
+const MOST_DECADES: u64 = 20;
 /// Plain trials of a round.
 const ROUND: u64 = 4096;
 
@@ -82,14 +84,17 @@ impl<'s> Question<'s> {
         let few = width.min(self.rule.plain).min(budget.max_trials);
         let rehearsal = Rehearsal::run(&job, Item::run(0, few), executor, budget)?;
         let seconds = rehearsal.seconds_per_trial(self.subject.most_steps());
-        // How many levels there will be is not known: as many as two decades take.
-        let paths = self.rule.runs.saturating_mul(self.rule.replicas).saturating_mul(DECADES);
-        let trials = self.rule.plain.saturating_add(paths).min(budget.max_trials);
+        // How many levels there will be is not known: from none to those of eight decades, and likely those of two.
+        let started = self.rule.runs.saturating_mul(self.rule.replicas);
+        let paths = Likely { least: 1, likely: DECADES, most: MOST_DECADES };
+        let trials = paths.map(|times| {
+            self.rule.plain.saturating_add(started.saturating_mul(times)).min(budget.max_trials)
+        });
         Ok(Forecast {
             query: self.query.text.clone(),
             settings: self.query.settings.clone(),
             trials,
-            seconds: trials as f64 * seconds,
+            seconds: trials.likely as f64 * seconds,
         })
     }
 }
