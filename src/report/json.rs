@@ -11,6 +11,9 @@ use crate::engine::outcome::{
 };
 use serde_json::{Map, Value, json};
 
+/// Below this doubles tell all whole numbers apart.
+const LARGEST_WHOLE: f64 = 9_007_199_254_740_992.0;
+
 /// The report of a run, indented, ending with a line end.
 pub fn render(run: &Run) -> String {
     format!("{:#}\n", object(run))
@@ -39,6 +42,15 @@ pub fn object(run: &Run) -> Value {
         object["error"] = json!({ "bug": failure.is_bug(), "message": failure.message() });
     }
     object
+}
+
+/// A number; one without a fraction is written without one, so that counts are whole.
+fn number(x: f64) -> Value {
+    if x.fract() == 0.0 && x.abs() < LARGEST_WHOLE { json!(x as i64) } else { json!(x) }
+}
+
+fn maybe(x: Option<f64>) -> Value {
+    x.map_or(Value::Null, number)
 }
 
 fn finding(finding: &Finding) -> Value {
@@ -71,9 +83,9 @@ fn result(result: &QueryResult) -> Value {
     put("verdict", json!(result.verdict.map(crate::engine::outcome::Verdict::name)));
     put("certifies", json!(result.certifies));
     put("within", json!(result.within));
-    put("estimate", json!(result.estimate));
-    put("low", json!(result.low));
-    put("high", json!(result.high));
+    put("estimate", maybe(result.estimate));
+    put("low", number(result.low));
+    put("high", number(result.high));
     put("censored", json!(result.censored.is_some()));
     put("of", json!(result.of));
     put("unit", json!(result.unit));
@@ -96,7 +108,7 @@ fn result(result: &QueryResult) -> Value {
     }
     if let Some(Ranking { choice, gap, tied, options }) = &result.rank {
         put("choice", json!(choice));
-        put("gap", json!(gap));
+        put("gap", number(*gap));
         put("tied", json!(tied));
         let options = options.iter().map(|option| {
             let mut object = numbered("option", &option.label, &option.value, &option.counts);
@@ -121,7 +133,7 @@ fn result(result: &QueryResult) -> Value {
 fn method(method: &Method) -> Value {
     let mut object = Map::new();
     object.insert("name".into(), json!(method.name));
-    object.extend(method.numbers.iter().map(|(name, value)| (name.clone(), json!(value))));
+    object.extend(method.numbers.iter().map(|(name, value)| (name.clone(), number(*value))));
     Value::Object(object)
 }
 
@@ -137,7 +149,7 @@ fn counts(counts: &Counts) -> Map<String, Value> {
 
 fn interval(value: &Interval) -> Map<String, Value> {
     let fields = [("estimate", value.estimate), ("low", value.low), ("high", value.high)];
-    fields.into_iter().map(|(name, value)| (name.to_owned(), json!(value))).collect()
+    fields.into_iter().map(|(name, value)| (name.to_owned(), number(value))).collect()
 }
 
 fn numbered(key: &str, label: &str, value: &Interval, trials: &Counts) -> Map<String, Value> {
@@ -161,8 +173,8 @@ fn witness(witness: &Witness, against: bool) -> Value {
             Shows::Lowest | Shows::Highest => None,
         },
         "trial": witness.trial,
-        "value": witness.value,
-        "time": witness.time,
+        "value": maybe(witness.value),
+        "time": number(witness.time),
         "what": witness.what,
         "command": witness.command,
     })
@@ -190,8 +202,8 @@ fn rare(found: &Rare) -> Value {
 fn distribution(found: &Distribution) -> Value {
     let histogram = found.histogram.as_ref().map(|histogram| {
         json!({
-            "low": histogram.low,
-            "high": histogram.high,
+            "low": number(histogram.low),
+            "high": number(histogram.high),
             "counts": histogram.counts,
             "below": histogram.below,
             "beyond": histogram.beyond,
@@ -207,7 +219,10 @@ fn distribution(found: &Distribution) -> Value {
             Value::Object(object)
         })
         .collect();
-    let empirical: Vec<Value> =
-        found.empirical.iter().map(|step| json!({ "value": step.value, "share": step.share })).collect();
+    let empirical: Vec<Value> = found
+        .empirical
+        .iter()
+        .map(|step| json!({ "value": number(step.value), "share": number(step.share) }))
+        .collect();
     json!({ "histogram": histogram, "quantiles": quantiles, "empirical": empirical, "band": found.band })
 }

@@ -108,3 +108,23 @@ fn shared_trials_are_counted_once() {
     let said = place.call(&["check", "a.scn", "a.bltl", "-q"]);
     assert!(said.out.contains("3 computed; 80 trials in "), "{}", said.out);
 }
+
+#[test]
+fn whole_numbers_are_whole() {
+    let model =
+        "horizon = 5 steps\nprocess c { var x: 0 .. 9 = 0\n  when true -> 0.5: x = x + 1 | 0.5: { } }\n";
+    let properties = "estimate Q(0.5, c.x at end) by fixed(trials = 100)\n";
+    let place = Place::new(&[("a.scn", model), ("a.bltl", properties)]);
+    let result = &place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "json"]).json()["results"][0];
+    for value in [
+        &result["method"]["trials"],
+        &result["estimate"],
+        &result["low"],
+        &result["distribution"]["histogram"]["low"],
+        &result["distribution"]["empirical"][0]["value"],
+        &result["witnesses"][0]["value"],
+    ] {
+        assert!(value.is_i64(), "{value} in {result:#}");
+    }
+    assert_eq!(result["method"]["level"], 0.5);
+}
