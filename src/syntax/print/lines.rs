@@ -11,6 +11,8 @@ pub(super) struct Line {
     pub(super) assign: Option<usize>,
     /// The comment at its end.
     pub(super) comment: Option<String>,
+    /// The column in which that stood.
+    pub(super) stood: usize,
     /// An empty line stands before it.
     pub(super) empty_before: bool,
 }
@@ -27,6 +29,7 @@ pub(super) fn join(mut lines: Vec<Line>) -> String {
     align(
         &mut lines,
         |line| line.assign.map(|at| line.text[..at].chars().count()),
+        |_, _| false,
         |line, blanks| {
             if let Some(at) = line.assign {
                 line.text.insert_str(at, &" ".repeat(blanks));
@@ -36,6 +39,7 @@ pub(super) fn join(mut lines: Vec<Line>) -> String {
     align(
         &mut lines,
         |line| line.comment.as_ref().map(|_| line.width()),
+        |one, other| one.stood == other.stood,
         |line, blanks| {
             line.text.push_str(&" ".repeat(blanks + 2));
         },
@@ -55,25 +59,32 @@ pub(super) fn join(mut lines: Vec<Line>) -> String {
     text
 }
 
-/// Widens the lines of each run of neighbours with a column to the widest of them.
-fn align(lines: &mut [Line], column: impl Fn(&Line) -> Option<usize>, widen: impl Fn(&mut Line, usize)) {
-    let mut first = 0;
-    while first < lines.len() {
-        let mut end = first + 1;
-        if column(&lines[first]).is_some() {
-            while end < lines.len()
-                && column(&lines[end]).is_some()
-                && lines[end].indent == lines[first].indent
-                && !lines[end].empty_before
-            {
-                end += 1;
-            }
-            let widest = lines[first..end].iter().filter_map(&column).max().unwrap_or(0);
-            for line in &mut lines[first..end] {
-                let blanks = widest - column(line).unwrap_or(widest);
-                widen(line, blanks);
+/// Widens the lines of each run with a column to the widest of them. A run is of neighbours with one indentation, and of
+/// lines without an empty line between them that were aligned, whatever stands between them.
+fn align(
+    lines: &mut [Line],
+    column: impl Fn(&Line) -> Option<usize>,
+    were_aligned: impl Fn(&Line, &Line) -> bool,
+    widen: impl Fn(&mut Line, usize),
+) {
+    let mut run: Vec<usize> = Vec::new();
+    for at in 0..=lines.len() {
+        let goes_on = lines.get(at).is_some_and(|line| !line.empty_before);
+        let has_column = lines.get(at).is_some_and(|line| column(line).is_some());
+        if goes_on && !has_column {
+            continue;
+        }
+        let joins = run.last().is_some_and(|&last| {
+            let is_neighbour = last + 1 == at && lines[last].indent == lines[at].indent;
+            goes_on && (is_neighbour || were_aligned(&lines[last], &lines[at]))
+        });
+        if !joins {
+            let widest = run.iter().filter_map(|&k| column(&lines[k])).max().unwrap_or(0);
+            for k in run.drain(..) {
+                let blanks = widest - column(&lines[k]).unwrap_or(widest);
+                widen(&mut lines[k], blanks);
             }
         }
-        first = end;
+        run.extend(has_column.then_some(at));
     }
 }

@@ -76,6 +76,32 @@ mod tests {
     }
 
     #[test]
+    fn comments_in_one_column_stay_in_one_column() {
+        let text = "\
+process  p {       // open
+  var a: 0..1 = 0  // a
+  var bbbbbbb: 0..1 = 0
+  when a == 0 -> a = 1
+  var c: 0..1 = 0  // c
+}                  // close
+
+const d = 1        // apart
+";
+        let expected = "\
+process p {          // open
+  var a: 0 .. 1 = 0  // a
+  var bbbbbbb: 0 .. 1 = 0
+  when a == 0 -> a = 1
+  var c: 0 .. 1 = 0  // c
+}                    // close
+
+const d = 1  // apart
+";
+        assert_eq!(scenario(text), expected);
+        assert_eq!(scenario(expected), expected);
+    }
+
+    #[test]
     fn comments_stay() {
         let text = "// top\n\n\n\nconst a=1 // one\nconst bb=2// two\n/* own */\nkind k:b{ // open\n  x=1 // last\n  // alone\n}\n// end";
         assert_eq!(

@@ -136,7 +136,7 @@ impl Writer<'_> {
             }
             let comment = gap[start..stop].trim_end();
             if to_line_end && !self.lines.last().is_some_and(|line| line.text.is_empty()) {
-                self.trail(comment);
+                self.trail(comment, base + start);
             } else {
                 if !self.lines.last().is_some_and(|line| line.text.is_empty()) {
                     self.push(" ");
@@ -161,7 +161,7 @@ impl Writer<'_> {
             let breaks = gap[end..start].matches('\n').count();
             let comment = gap[start..stop].trim_end();
             if breaks == 0 && !self.lines.is_empty() {
-                self.trail(comment);
+                self.trail(comment, self.at + start);
             } else {
                 self.line(comment.to_owned(), breaks > 1);
             }
@@ -191,10 +191,15 @@ impl Writer<'_> {
         }
     }
 
-    fn trail(&mut self, comment: &str) {
+    /// A comment at the end of a line, which begins at a byte of the source.
+    fn trail(&mut self, comment: &str, at: usize) {
+        let before = &self.text[..at];
+        let stood = before[before.rfind('\n').map_or(0, |end| end + 1)..].chars().count();
         if let Some(line) = self.lines.last_mut() {
             let trail = line.comment.get_or_insert_default();
-            if !trail.is_empty() {
+            if trail.is_empty() {
+                line.stood = stood;
+            } else {
                 trail.push(' ');
             }
             trail.push_str(comment);
