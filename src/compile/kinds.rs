@@ -46,13 +46,13 @@ impl Elaborator<'_> {
             return Ok(Kind::default());
         }
         let Some((_, meaning)) = self.find(&name.name, 0) else {
-            let kinds: Vec<String> = self.scopes[0]
+            let looked_at = if self.looks_for_names() { usize::MAX } else { 0 };
+            let declared = self.scopes[0]
                 .entries()
+                .take(looked_at)
                 .filter(|(_, e)| matches!(e.meaning, Meaning::Kind(_)))
-                .map(|(n, _)| n.to_owned())
-                .chain(["sfm".to_owned()])
-                .collect();
-            let error = unknown("kind", &name.name, name.span, "E0208", kinds.iter().map(String::as_str));
+                .map(|(n, _)| n);
+            let error = unknown("kind", &name.name, name.span, "E0208", declared.chain(["sfm"]));
             return self.report(error);
         };
         let Meaning::Kind(decl) = meaning else {

@@ -13,7 +13,7 @@ use crate::syntax::ast::process::{BehaviourDecl, BehaviourItem, Choice, StateDec
 use crate::syntax::ast::{Field, LetDecl, Value};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 impl<'a> Elaborator<'a> {
@@ -27,8 +27,11 @@ impl<'a> Elaborator<'a> {
         let mut out = Conduct::default();
         let mut guards = 0;
         let mut failed = self.check_lets(decl, locals, variables).err();
+        let names = states(decl).map(|state| state.name.name.as_str());
+        // Of a name that is declared twice the first state.
+        let numbers: BTreeMap<&str, u32> = names.zip(0..).collect::<Vec<_>>().into_iter().rev().collect();
         for state in states(decl) {
-            match self.mode(decl, state, locals, variables, &mut guards) {
+            match self.mode(&numbers, state, locals, variables, &mut guards) {
                 Ok(mode) => out.states.push(mode),
                 Err(reported) => failed = Some(reported),
             }
@@ -99,7 +102,7 @@ impl<'a> Elaborator<'a> {
 
     fn mode(
         &mut self,
-        decl: &'a BehaviourDecl,
+        numbers: &BTreeMap<&str, u32>,
         state: &'a StateDecl,
         locals: &Locals,
         variables: usize,
@@ -120,7 +123,6 @@ impl<'a> Elaborator<'a> {
             };
             failed = lowered.err().or(failed);
         }
-        let names: Vec<&str> = states(decl).map(|state| state.name.name.as_str()).collect();
         for transition in &state.transitions {
             let trigger = match &transition.after {
                 Some(after) => self.delay(after, locals).map(Trigger::After),
@@ -129,7 +131,7 @@ impl<'a> Elaborator<'a> {
                     Ok(Trigger::When(*guards - 1))
                 }
             };
-            let number = |name: &str| names.iter().position(|known| *known == name).unwrap_or(0) as u32;
+            let number = |name: &str| numbers.get(name).copied().unwrap_or(0);
             let targets = self.choices(&transition.targets, transition.span, locals, number);
             match (trigger, targets) {
                 (Ok(trigger), Ok(targets)) => mode.transitions.push(Transition { trigger, targets }),

@@ -17,7 +17,7 @@ use crate::syntax::ast::process::{BehaviourDecl, BehaviourItem, StateDecl};
 use crate::syntax::ast::{Expr, ExprKind, Ident, LetDecl};
 use crate::syntax::diagnostic::{Diagnostic, Label, Severity};
 use crate::syntax::source::{Source, Span};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// What happens to agents from outside.
@@ -40,6 +40,31 @@ pub(super) struct With<'a> {
     pub(super) most: u32,
 }
 
+/// Most names that a hint lists.
+const MOST_LISTED: usize = 20;
+
+/// Names that may be meant.
+struct Names<'n> {
+    /// In order of writing.
+    written: Vec<&'n str>,
+    sorted: BTreeSet<&'n str>,
+}
+
+impl<'n> Names<'n> {
+    fn of(names: impl Iterator<Item = &'n str>) -> Self {
+        let written: Vec<&str> = names.collect();
+        Self { sorted: written.iter().copied().collect(), written }
+    }
+
+    fn listed(&self) -> String {
+        let mut list = self.written[..self.written.len().min(MOST_LISTED)].join(", ");
+        if self.written.len() > MOST_LISTED {
+            list.push_str(&format!(" and {} more", self.written.len() - MOST_LISTED));
+        }
+        list
+    }
+}
+
 fn states(decl: &BehaviourDecl) -> impl Iterator<Item = &StateDecl> {
     decl.items
         .iter()
@@ -56,7 +81,7 @@ impl<'a> Elaborator<'a> {
         self.behaviours.push(decl);
         self.check_arguments(&decl.arguments);
         let mut seen: BTreeMap<&str, &Ident> = BTreeMap::new();
-        let names: Vec<&str> = states(decl).map(|state| state.name.name.as_str()).collect();
+        let names = Names::of(states(decl).map(|state| state.name.name.as_str()));
         for item in &decl.items {
             let name = match item {
                 BehaviourItem::State(state) => {
@@ -71,7 +96,11 @@ impl<'a> Elaborator<'a> {
                             .hint("the only event is `advice`: a move is suggested to the agent; what happens around it is a condition of a state, as in `when self in exit -> …`, `when contact(self) -> …`");
                         self.note(error);
                     }
-                    self.check_targets(on.choices.iter().map(|choice| &choice.target), &OUTCOMES, "reaction");
+                    self.check_targets(
+                        on.choices.iter().map(|choice| &choice.target),
+                        &Names::of(OUTCOMES.into_iter()),
+                        "reaction",
+                    );
                     &on.event
                 }
             };
@@ -84,7 +113,7 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn check_state(&mut self, state: &'a StateDecl, names: &[&str]) {
+    fn check_state(&mut self, state: &'a StateDecl, names: &Names<'_>) {
         for (at, field) in state.fields.iter().enumerate() {
             let name = field.name.name.as_str();
             if let Some(first) = state.fields[..at].iter().find(|first| first.name.name == name) {
@@ -110,13 +139,15 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn check_targets(&mut self, targets: impl Iterator<Item = &'a Ident>, known: &[&str], what: &str) {
+    fn check_targets(&mut self, targets: impl Iterator<Item = &'a Ident>, known: &Names<'_>, what: &str) {
         for target in targets {
-            if !known.contains(&target.name.as_str()) {
-                let error = unknown(what, &target.name, target.span, "E0201", known.iter().copied());
+            if !known.sorted.contains(target.name.as_str()) {
+                let looked_at = if self.looks_for_names() { usize::MAX } else { 0 };
+                let names = known.written.iter().copied().take(looked_at);
+                let error = unknown(what, &target.name, target.span, "E0201", names);
                 let error = match &error.hint {
                     Some(_) => error,
-                    None => error.hint(format!("known are {}", known.join(", "))),
+                    None => error.hint(format!("known are {}", known.listed())),
                 };
                 self.note(error);
             }
