@@ -44,10 +44,10 @@ impl Files {
         self.contents.insert(path.into(), contents);
     }
 
-    /// The contents of a path.
+    /// The contents of a path, without the mark of UTF-8 that some programs write first.
     pub fn get(&self, path: &str) -> Result<&[u8], String> {
         match self.contents.get(path) {
-            Some(Ok(bytes)) => Ok(bytes),
+            Some(Ok(bytes)) => Ok(bytes.strip_prefix("\u{FEFF}".as_bytes()).unwrap_or(bytes)),
             Some(Err(reason)) => Err(reason.clone()),
             None => Err(format!("`{path}` was not opened")),
         }
