@@ -15,3 +15,4 @@ pub mod random;
 pub mod rounding;
 pub mod special;
 pub mod tick;
+pub mod visible;

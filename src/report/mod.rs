@@ -19,6 +19,7 @@ pub mod text;
 pub use exit::{ExitCode, exit_code};
 pub use palette::Palette;
 
+use crate::base::visible::{self, visible};
 use crate::engine::outcome::{QueryResult, Run};
 
 /// Formats of a report.
@@ -40,12 +41,29 @@ pub enum Format {
 /// The report of a run, ending with a line end. Only text uses the palette.
 pub fn render(run: &Run, format: Format, palette: Palette) -> String {
     match format {
-        Format::Text => text::render(run, palette),
+        Format::Text => painted(&text::render(run, Palette::PLAIN), &text::render(run, palette)),
         Format::Json => json::render(run),
-        Format::Junit => junit::render(run),
-        Format::Github => github::render(run),
+        Format::Junit => visible(&junit::render(run)).into_owned(),
+        Format::Github => visible(&github::render(run)).into_owned(),
         Format::Html => html::render(run),
     }
+}
+
+/// A painted text as it is shown: only codes that the plain text lacks are those of the palette.
+fn painted(plain: &str, painted: &str) -> String {
+    let (mut plain, mut painted, mut text) = (plain, painted, String::new());
+    while let Some(c) = painted.chars().next() {
+        let code = Palette::code(painted).filter(|code| !plain.starts_with(code));
+        if let Some(code) = code {
+            text.push_str(code);
+            painted = &painted[code.len()..];
+        } else {
+            visible::push(&mut text, c);
+            painted = &painted[c.len_utf8()..];
+            plain = plain.get(c.len_utf8()..).unwrap_or_default();
+        }
+    }
+    text
 }
 
 /// A query on one line, as written.
@@ -71,5 +89,24 @@ fn certified(result: &QueryResult) -> String {
     match &result.within {
         Some(within) if !result.certifies.is_empty() => format!("{}, within {within}", result.certifies),
         _ => result.certifies.clone(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_the_codes_of_the_palette_reach_a_terminal() {
+        let run = Run { scenario: "\u{1b}[1ma\u{1b}[0m\u{1b}]0;b\u{7}".to_owned(), ..Run::default() };
+        let title = "\\u{1b}[1ma\\u{1b}[0m\\u{1b}]0;b\\u{7}";
+        assert!(render(&run, Format::Text, Palette::PLAIN).starts_with(&format!("{title}\n")));
+        let colored = render(&run, Format::Text, Palette::ANSI);
+        assert!(colored.starts_with("\u{1b}[1m") && colored.contains(title), "{colored:?}");
+        assert_eq!(
+            colored.matches('\u{1b}').count(),
+            2 * colored.matches("\u{1b}[0m").count(),
+            "{colored:?}"
+        );
     }
 }

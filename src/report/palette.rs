@@ -29,6 +29,13 @@ impl Palette {
     /// Paints with ANSI codes.
     pub const ANSI: Self = Self { colours: true };
 
+    /// The code of a colour or weight that a text begins with.
+    pub fn code(text: &str) -> Option<&str> {
+        let inside = text.strip_prefix("\u{1b}[")?;
+        let end = inside.find(|c: char| c != ';' && !c.is_ascii_digit())?;
+        inside[end..].starts_with('m').then(|| &text[..end + 3])
+    }
+
     /// A text as it shall look.
     pub fn paint(self, paint: Paint, text: &str) -> String {
         if !self.colours || text.is_empty() {

@@ -3,16 +3,20 @@
 
 use super::diagnostic::{Diagnostic, Label, Severity};
 use super::source::Source;
+use crate::base::visible::{same_length, visible};
 use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// Renders diagnostics, each followed by an empty line. `color`: with ANSI colours.
 pub fn render(diagnostics: &[Diagnostic], sources: &[Source], color: bool) -> String {
+    let sources = &shown_sources(sources);
     let renderer = if color { Renderer::styled() } else { Renderer::plain() };
     let renderer = renderer.decor_style(DecorStyle::Ascii);
     let mut text = String::new();
     for diagnostic in diagnostics {
+        let diagnostic = &shown(diagnostic);
         let (group, cuts) = group(diagnostic, sources);
         let rendered = renderer.render(&[group]);
         if cuts.iter().all(|cut| cut.characters == 0) {
@@ -23,6 +27,37 @@ pub fn render(diagnostics: &[Diagnostic], sources: &[Source], color: bool) -> St
         text.push_str("\n\n");
     }
     text
+}
+
+/// Sources as they are shown, with all places where they were. The renderer replaces controls of one byte itself; a mark of
+/// UTF-8 at the start stays.
+fn shown_sources(sources: &[Source]) -> Cow<'_, [Source]> {
+    let start = |source: &Source| if source.text.starts_with('\u{FEFF}') { '\u{FEFF}'.len_utf8() } else { 0 };
+    let is_fine = |source: &Source| {
+        let (name, text) = (visible(&source.name), same_length(&source.text[start(source)..]));
+        matches!((name, text), (Cow::Borrowed(_), Cow::Borrowed(_)))
+    };
+    if sources.iter().all(is_fine) {
+        return Cow::Borrowed(sources);
+    }
+    let replaced = sources.iter().map(|source| {
+        let (mark, rest) = source.text.split_at(start(source));
+        let text = format!("{mark}{}", same_length(rest));
+        Source::new(source.id, visible(&source.name).into_owned(), text)
+    });
+    Cow::Owned(replaced.collect())
+}
+
+/// A diagnostic as it is shown. What it quotes beside the marked source is in these texts.
+fn shown(diagnostic: &Diagnostic) -> Diagnostic {
+    let mut shown = diagnostic.clone();
+    let labels = shown.place.iter_mut().chain(&mut shown.related).map(|label| &mut label.text);
+    for text in labels.chain([&mut shown.title]).chain(&mut shown.hint) {
+        if let Cow::Owned(escaped) = visible(text) {
+            *text = escaped;
+        }
+    }
+    shown
 }
 
 /// Characters that the line of a snippet lost at its start before it was rendered.
