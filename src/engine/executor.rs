@@ -190,13 +190,11 @@ pub struct Threads {
 }
 
 impl Threads {
-    /// A pool of `threads` threads; all cores for `None`.
+    /// A pool of `threads` threads; all cores for `None`. Without a number the pool would read the environment.
     pub fn new(threads: Option<usize>) -> Result<Self, rayon::ThreadPoolBuildError> {
-        let mut builder = rayon::ThreadPoolBuilder::new();
-        if let Some(threads) = threads {
-            builder = builder.num_threads(threads.max(1));
-        }
-        Ok(Self { pool: builder.build()? })
+        let cores = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+        let threads = threads.unwrap_or_else(cores).max(1);
+        Ok(Self { pool: rayon::ThreadPoolBuilder::new().num_threads(threads).build()? })
     }
 }
 
