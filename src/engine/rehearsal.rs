@@ -13,7 +13,9 @@ const SEEN: usize = 16;
 /// Longest rehearsal of one job, s.
 const LONGEST: f64 = 0.5;
 
-/// A first run that is shorter than this is mostly the making of workers: trials are timed by longer runs, s.
+/// Part of a first run is the making of workers, which matters where it is shorter than this, s.
+const COLD: f64 = 0.1;
+/// A run that is shorter than this times no trials, s.
 const SHORT: f64 = 0.01;
 /// Most trials of such a run.
 const MOST_TIMED: u64 = 8192;
@@ -21,17 +23,22 @@ const MOST_TIMED: u64 = 8192;
 /// Seconds a trial takes once workers are made, where a first run of so many was short.
 pub(super) fn timed(
     job: &Job<'_>,
-    (mut count, mut each): (u64, f64),
+    (mut count, each): (u64, f64),
     executor: &dyn Executor,
     budget: &Budget,
 ) -> Result<f64, Fault> {
-    while each * (count as f64) < SHORT && count < MOST_TIMED {
-        count *= 8;
+    if each * count as f64 > COLD {
+        return Ok(each);
+    }
+    loop {
         let before = budget.elapsed();
         executor.run(job, &Item::run(0, count), &budget.ahead(LONGEST))?;
-        each = (budget.elapsed() - before) / count as f64;
+        let taken = budget.elapsed() - before;
+        if taken > SHORT || count >= MOST_TIMED {
+            return Ok(taken / count as f64);
+        }
+        count *= 8;
     }
-    Ok(each)
 }
 
 /// The first trials of a job.
