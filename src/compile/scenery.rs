@@ -328,9 +328,13 @@ impl<'a> Elaborator<'a> {
                 1 => Some(format!("1 {one}")),
                 count => Some(format!("{count} {many}")),
             };
-            let gaps = counted(slips.gaps, "gap of less than 5 cm", "gaps of less than 5 cm");
+            let ends = counted(
+                slips.ends,
+                "end of a wall that misses another wall by less than 5 cm",
+                "ends of walls that miss another wall by less than 5 cm",
+            );
             let twice = counted(slips.doubled, "wall drawn twice", "walls drawn twice");
-            let what: Vec<String> = gaps.into_iter().chain(twice).collect();
+            let what: Vec<String> = ends.into_iter().chain(twice).collect();
             let warning =
                 Diagnostic::warning("W0702", path.span, format!("this file has {}", what.join(" and ")))
                     .label(format!("for example at ({:.3}, {:.3})", slips.place.x, slips.place.y));

@@ -278,7 +278,7 @@ fn walls_of_imports_that_nearly_meet_are_told_and_joined() {
     ]);
     let plain = place.call(&["show", "plain.scn"]);
     assert_eq!(plain.code, Some(0), "{}", plain.err);
-    let told = "warning[W0702]: this file has 2 gaps of less than 5 cm and 1 wall drawn twice";
+    let told = "warning[W0702]: this file has 3 ends of walls that miss another wall by less than 5 cm and 1 wall drawn twice";
     assert!(plain.err.contains(told), "{}", plain.err);
     assert!(plain.err.contains("write `import \"w.wkt\" { snap = 5 cm }`"), "{}", plain.err);
     let snapped = place.call(&["show", "a.scn"]);

@@ -21,7 +21,7 @@ type Piece = (usize, Segment);
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slips {
     /// Loose ends of walls that miss another wall or an obstacle.
-    pub gaps: usize,
+    pub ends: usize,
     /// Pieces of walls that lie beside a piece of another wall or an edge of an obstacle.
     pub doubled: usize,
     /// One of these places.
@@ -85,17 +85,16 @@ pub fn slips(walls: &[Vec<Segment>], edges: &[Segment], tolerance: f64) -> Optio
         let is_lesser = other >= count || rank(&piece) < rank(&found);
         doubled[own] |= !is_own && is_apart && is_lesser && along(&piece, &found, tolerance).is_some();
     }
-    let gaps: Vec<Vec2> = (0..count)
-        .flat_map(|k| {
-            let piece = pieces[k].1;
-            [(piece.a, nearest[k][0]), (piece.b, nearest[k][1])]
-        })
+    // The ends of a piece that lies beside another one are near that one, too.
+    let loose: Vec<Vec2> = (0..count)
+        .filter(|k| !doubled[*k])
+        .flat_map(|k| [(segments[k].a, nearest[k][0]), (segments[k].b, nearest[k][1])])
         .filter(|(p, distance)| is_loose(*p) && (JOINED..=tolerance).contains(distance))
         .map(|(p, _)| p)
         .collect();
     let twice: Vec<Vec2> = (0..count).filter(|k| doubled[*k]).map(|k| middle(&pieces[k].1)).collect();
-    let place = *gaps.first().or(twice.first())?;
-    Some(Slips { gaps: gaps.len(), doubled: twice.len(), place })
+    let place = *loose.first().or(twice.first())?;
+    Some(Slips { ends: loose.len(), doubled: twice.len(), place })
 }
 
 fn listed(walls: &[Vec<Segment>]) -> Vec<Piece> {
@@ -278,7 +277,7 @@ mod tests {
         assert_eq!(found[2], [[2000, 0, 2000, 1000]]);
         assert_eq!(found[3], [[2000, 1000, 1000, 1000]]);
         let before = slips(&room, &[], SNAP).unwrap();
-        assert_eq!((before.gaps, before.doubled), (3, 0));
+        assert_eq!((before.ends, before.doubled), (3, 0));
         assert_eq!(slips(&snap(&room, &[], SNAP), &[], SNAP), None);
     }
 
@@ -298,7 +297,8 @@ mod tests {
         assert_eq!(found[1], [[0; 4]; 0]);
         assert_eq!(found[2], [[9000, 0, 11000, 40]]);
         assert_eq!(found[3], [[3000, -1000, 3000, 1000]]);
-        assert_eq!(slips(&twice, &[], SNAP).unwrap().doubled, 2);
+        let found = slips(&twice, &[], SNAP).unwrap();
+        assert_eq!((found.ends, found.doubled), (0, 2));
         assert_eq!(slips(&snap(&twice, &[], SNAP), &[], SNAP), None);
     }
 
@@ -308,7 +308,7 @@ mod tests {
         let walls = [wall(&[(0.03, 1.0), (2.0, 1.0)]), wall(&[(-0.02, 0.2), (-0.02, 1.8)])];
         assert_eq!(snapped(&walls, &edge), [vec![[0, 1000, 2000, 1000]], vec![]]);
         let found = slips(&walls, &edge, SNAP).unwrap();
-        assert_eq!((found.gaps, found.doubled, found.place), (1, 1, Vec2::new(0.03, 1.0)));
+        assert_eq!((found.ends, found.doubled, found.place), (1, 1, Vec2::new(0.03, 1.0)));
     }
 
     #[test]
