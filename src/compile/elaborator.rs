@@ -154,6 +154,10 @@ pub(super) struct Elaborator<'a> {
     pub(super) tree: Tree,
     /// Truth values observed.
     pub(super) atoms: Vec<Bool>,
+    /// How many of them stood before the present measure.
+    pub(super) atoms_before: usize,
+    /// Whether the present measure has more of them than there may be: what it stands for is not known.
+    pub(super) overflown: bool,
     /// Numbers observed.
     pub(super) signals: Vec<Num>,
     /// Where nodes, terms, atoms and signals are.
@@ -182,6 +186,8 @@ pub(super) struct Elaborator<'a> {
     pub(super) is_astray: bool,
     /// What was found wrong.
     pub(super) diagnostics: Vec<Diagnostic>,
+    /// Codes and places of all that was ever noted: only what stands here can be among the diagnostics.
+    noted: BTreeSet<(&'static str, Option<Span>)>,
     /// What is known of margins, while the formula of a robustness is lowered.
     pub(super) margins: Option<Margins>,
     /// Present depth of lowering.
@@ -243,6 +249,8 @@ impl<'a> Elaborator<'a> {
             temporal: false,
             tree: Tree::default(),
             atoms: Vec::new(),
+            atoms_before: 0,
+            overflown: false,
             signals: Vec::new(),
             known: Default::default(),
             texts: Texts::default(),
@@ -257,6 +265,7 @@ impl<'a> Elaborator<'a> {
             circles: Vec::new(),
             is_astray: false,
             diagnostics: Vec::new(),
+            noted: BTreeSet::new(),
             margins: None,
             depth: 0,
             outermost: Span::default(),
@@ -294,7 +303,8 @@ impl<'a> Elaborator<'a> {
         if self.is_astray && diagnostic.severity == Severity::Error && !self.is_sure(&diagnostic) {
             return;
         }
-        if !self.diagnostics.contains(&diagnostic) {
+        let place = diagnostic.place.as_ref().map(|place| place.span);
+        if self.noted.insert((diagnostic.code, place)) || !self.diagnostics.contains(&diagnostic) {
             self.diagnostics.push(diagnostic);
         }
     }
@@ -309,9 +319,10 @@ impl<'a> Elaborator<'a> {
     }
 
     /// Whether an error of some code was found at a place: said once, it need not be looked for again.
-    pub(super) fn is_said(&self, code: &str, place: Span) -> bool {
+    pub(super) fn is_said(&self, code: &'static str, place: Span) -> bool {
         let at = |one: &Diagnostic| one.place.as_ref().is_some_and(|label| label.span == place);
-        self.diagnostics.iter().any(|one| one.code == code && at(one))
+        self.noted.contains(&(code, Some(place)))
+            && self.diagnostics.iter().any(|one| one.code == code && at(one))
     }
 
     /// Whether an error was found.

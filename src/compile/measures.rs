@@ -73,6 +73,9 @@ impl Elaborator<'_> {
         let typed = self.lower(body, &Locals::of(scope));
         self.temporal = false;
         let node = self.as_formula(typed?, body.span)?;
+        if self.overflown {
+            return Err(Reported);
+        }
         // What is wrong with a whole property is said where it is declared, however often it is asked about.
         let place = match &body.kind {
             ExprKind::Name(name) => match self.find(name, scope) {
@@ -228,6 +231,7 @@ impl Elaborator<'_> {
     /// A measure, and what is known of it where something is wrong with it; a quantile or expectation has the dimension of
     /// its metric.
     pub(super) fn measure(&mut self, measure: &ast::Measure, scope: ScopeId) -> (Lowered<Observed>, Sketch) {
+        (self.atoms_before, self.overflown) = (self.atoms.len(), false);
         let (observed, sketch) = match &measure.kind {
             ast::MeasureKind::Probability => {
                 let formula = match self.robust_enough(&measure.body, scope) {

@@ -76,7 +76,7 @@ impl Elaborator<'_> {
         if let Bool::Constant(value) = truth {
             return self.node(Node::Constant(value));
         }
-        if self.atoms.len() >= MOST_ATOMS {
+        if self.atoms.len() - self.atoms_before >= MOST_ATOMS {
             if !self.failed() {
                 let error = Diagnostic::error(
                     "E0211",
@@ -86,6 +86,7 @@ impl Elaborator<'_> {
                 .hint("quantifiers over formulas are written out for every agent; quantify over states where you can");
                 self.note(error);
             }
+            self.overflown = true;
             return self.node(Node::Constant(false));
         }
         let (said, unsaid) = (&self.texts.atoms, &self.texts.implied);

@@ -216,6 +216,7 @@ impl<'a> Compiler<'a> {
         // What was observed for checking only is not observed in trials.
         elaborator.tree = crate::logic::Tree::default();
         elaborator.atoms.clear();
+        elaborator.atoms_before = 0;
         elaborator.texts = Texts::default();
         elaborator.signals.clear();
     }
