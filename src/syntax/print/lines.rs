@@ -75,8 +75,9 @@ fn align(
             continue;
         }
         let joins = run.last().is_some_and(|&last| {
-            let is_neighbour = last + 1 == at && lines[last].indent == lines[at].indent;
-            goes_on && (is_neighbour || were_aligned(&lines[last], &lines[at]))
+            goes_on
+                && (last + 1 == at && lines[last].indent == lines[at].indent
+                    || were_aligned(&lines[last], &lines[at]))
         });
         if !joins {
             let widest = run.iter().filter_map(|&k| column(&lines[k])).max().unwrap_or(0);
