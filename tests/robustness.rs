@@ -261,6 +261,15 @@ fn conditions_that_parameters_decide_have_margins() {
             let found = said.json()["results"][0]["estimate"].as_f64().unwrap();
             assert!((found - margin).abs() < 1e-9, "{formula}: {found}");
         }
+        // A named one, too, whatever it was asked for before.
+        let query = format!(
+            "const strict = mode >= 2\nestimate P(F<=2{unit} (strict | w.x > 0)) by fixed(trials = 2)\n\
+             estimate E(robustness({f} (w.x > 2 | strict))) in -10 .. 10 by fixed(trials = 2)\n"
+        );
+        let place = Place::new(&[("a.scn", &model), ("a.bltl", &query)]);
+        let json = place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "json"]).json();
+        let found = json["results"][1]["estimate"].as_f64().unwrap();
+        assert!((found + 1.0).abs() < 1e-9, "{found}");
         // The witness names the condition whose margin it is.
         if unit.is_empty() {
             let query =

@@ -83,10 +83,14 @@ fn timed(tree: &Tree, part: Part, clock: Clock) -> Option<(NodeId, Option<Window
     if !c.is_finite() {
         return None;
     }
-    // Of states the last one in time counts; in continuous time all up to the constant do.
-    let is_out = |ticks: u64| match (clock.seconds(Tick(ticks)), clock.is_jumps()) {
-        (time, false) => time > c || strictly && time >= c,
-        (time, true) => time >= c,
+    // Of states the last one in time counts; in continuous time all up to the constant do, which is the nearest tick, as that of a
+    // bound is.
+    let is_out = |ticks: u64| {
+        if clock.is_jumps() {
+            return clock.seconds(Tick(2 * ticks + 1)) / 2.0 >= c;
+        }
+        let time = clock.seconds(Tick(ticks));
+        time > c || strictly && time >= c
     };
     let (mut first, mut beyond) = (0, FAR);
     while first < beyond {
@@ -336,7 +340,8 @@ mod tests {
             (Relation::AtLeast, Clock::Steps, 1.5, 3),
             (Relation::Greater, second("0.1"), 0.3, 5),
             (Relation::AtMost, Clock::Jumps(Decimal::ONE), 1.0, 3),
-            (Relation::Less, Clock::Jumps(Decimal::ONE), 1.5, 4),
+            (Relation::Less, Clock::Jumps(Decimal::ONE), 1.75, 4),
+            (Relation::AtMost, Clock::Jumps(Decimal::ONE), 1.25, 3),
             (Relation::Less, Clock::Steps, 0.0, 0),
             (Relation::AtMost, Clock::Steps, -1.0, 0),
             (Relation::AtMost, Clock::Steps, f64::INFINITY, 11),

@@ -126,7 +126,9 @@ impl Signal<'_> {
                 let parts = self.parts(*w, *of, at)?;
                 let excess = parts.iter().map(|(value, length)| (value - c, *length));
                 let whole = |(excess, length): (f64, u64)| {
-                    excess.is_finite().then_some((excess * 2f64.powi(90)) as i128 * i128::from(length))
+                    excess
+                        .is_finite()
+                        .then_some((excess * (1_u128 << 90) as f64) as i128 * i128::from(length))
                 };
                 // Whole numbers of the last bit of any decimal here, so that the sign is exact.
                 match excess.map(whole).sum::<Option<i128>>() {

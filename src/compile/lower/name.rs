@@ -8,7 +8,7 @@ use super::super::typed::Typed;
 use super::super::weight::Weight;
 use super::super::wording::{Frame, Given, Use};
 use super::{BUILT_IN, counted_arguments};
-use crate::model::{Bool, Set, Who};
+use crate::model::{Set, Who};
 use crate::syntax::ast::{Expr, ExprKind, Ident, LetDecl};
 use crate::syntax::diagnostic::{Diagnostic, Label};
 use crate::syntax::source::Span;
@@ -189,9 +189,9 @@ impl<'a> Elaborator<'a> {
     ) -> Lowered<Typed> {
         let key = (scope, name.to_owned());
         // A condition has a margin at each place where it is asked for.
-        let is_margin = |known: &Lowered<Typed>| matches!(known, Ok(Typed::Truth(truth, _)) if !matches!(truth, Bool::Constant(_)));
         let asks = self.margins.is_some();
-        if let Some(known) = self.constants.get(&key).filter(|known| !(asks && is_margin(known))) {
+        let has_margin = |known: &Lowered<Typed>| asks && matches!(known, Ok(Typed::Truth(..)));
+        if let Some(known) = self.constants.get(&key).filter(|known| !has_margin(known)) {
             let weight = known.as_ref().map(Weight::of).map_err(|reported| *reported)?;
             self.count_copy(weight, span)?;
             return self.constants.get(&key).cloned().unwrap_or(Err(Reported));
@@ -201,7 +201,7 @@ impl<'a> Elaborator<'a> {
             self.journal.push((Vain::Constant, key.clone()));
         }
         // Who is among people is not settled before all are.
-        if !matches!(value, Ok(Typed::Agents { .. })) {
+        if !matches!(value, Ok(Typed::Agents { .. })) && !has_margin(&value) {
             self.constants.insert(key, value.clone());
         }
         value

@@ -50,7 +50,7 @@ impl<'a> Offline<'a> {
         at: u64,
         recording: &'a Recording<'a>,
     ) -> Result<Self, Invalid> {
-        Self::of(graph(tree, root, at, recording, false)?, tree, recording)
+        Ok(Self::of(graph(tree, root, at, recording, false)?, tree, recording))
     }
 
     /// The same of a formula at the first state, where a comparison of constants is one of each state, so that it has a margin.
@@ -59,12 +59,12 @@ impl<'a> Offline<'a> {
         root: NodeId,
         recording: &'a Recording<'a>,
     ) -> Result<Self, Invalid> {
-        Self::of(graph(tree, Part::Node(root), 0, recording, true)?, tree, recording)
+        Ok(Self::of(graph(tree, Part::Node(root), 0, recording, true)?, tree, recording))
     }
 
-    fn of(graph: Graph, tree: &'a Tree, recording: &'a Recording<'a>) -> Result<Self, Invalid> {
+    fn of(graph: Graph, tree: &'a Tree, recording: &'a Recording<'a>) -> Self {
         let tracks = tracks(&graph, recording);
-        Ok(Self { tree, recording, graph, tracks })
+        Self { tree, recording, graph, tracks }
     }
 
     /// The slots of all parts, children first.

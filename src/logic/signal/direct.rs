@@ -67,20 +67,29 @@ pub(super) struct Direct {
     pub(super) to: Instant,
     /// So far: smallest or largest.
     folded: Option<f64>,
-    /// So far, of a mean: up to which moment, and the pieces.
-    integral: (Moment, Integral),
+    average: Option<Box<Average>>,
+}
+
+/// How far a mean has come.
+#[derive(Clone, Debug)]
+struct Average {
     scale: Scale,
+    reached: Moment,
+    integral: Integral,
 }
 
 impl Direct {
     pub(super) fn new(question: Question, (from, to): (Instant, Instant), scale: Scale) -> Self {
-        let integral = (scale.at(from), Integral::EMPTY);
-        Self { question, from, to, folded: None, integral, scale }
+        let is_mean = matches!(question, Question::Fold { aggregation: Aggregation::Mean, .. });
+        let average = Average { scale, reached: scale.at(from), integral: Integral::EMPTY };
+        Self { question, from, to, folded: None, average: is_mean.then(|| Box::new(average)) }
     }
 
     pub(super) fn clear(&mut self) {
         self.folded = None;
-        self.integral = (self.scale.at(self.from), Integral::EMPTY);
+        if let Some(average) = &mut self.average {
+            (average.reached, average.integral) = (average.scale.at(self.from), Integral::EMPTY);
+        }
     }
 
     /// The present state lasts from `start` to before `end`; infinite after the horizon. The reading, and
@@ -114,19 +123,18 @@ impl Direct {
             (Aggregation::Max, Some(folded)) => Operation::Max.apply(folded, value),
             _ => value,
         });
-        if aggregation == Aggregation::Mean {
-            let (from, integral) = &mut self.integral;
-            let to = self.scale.at(if self.to.is_before(stay.end) { self.to } else { stay.end });
-            integral.add(value, *from, to);
-            *from = to;
+        if let Some(average) = &mut self.average {
+            let to = average.scale.at(if self.to.is_before(stay.end) { self.to } else { stay.end });
+            average.integral.add(value, average.reached, to);
+            average.reached = to;
         }
         if !self.to.is_before(stay.end) {
             return None;
         }
-        let value = match aggregation {
-            Aggregation::Mean if self.from.is_before(self.to) => self.integral.1.mean(),
-            Aggregation::Mean => value,
-            _ => self.folded.unwrap_or(f64::NAN),
+        let value = match &self.average {
+            Some(average) if self.from.is_before(self.to) => average.integral.mean(),
+            Some(_) => value,
+            None => self.folded.unwrap_or(f64::NAN),
         };
         Some((Reading::Value(value), self.to.seconds))
     }

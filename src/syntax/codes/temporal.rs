@@ -154,9 +154,9 @@ Variables of processes without a range are floating-point numbers: 0.1 added thr
 \n\
 Probably wrong:\n\
 \x20   process tank { var level = 0  when level < 1 -> level = level + 0.1 }\n\
-\x20   property full = F<=20 (tank.level == 1)\n\
+\x20   property full = F<=20 s (tank.level == 1)\n\
 Clear:\n\
-\x20   property full = F<=20 (tank.level > 0.95)\n\
-\x20   process tank { var tenths: 0 .. 10 = 0  when tenths < 10 -> tenths = tenths + 1 }",
+\x20   process tank { var level = 0  when level < 1 -> level = level + 0.1 }\n\
+\x20   property full = F<=20 s (tank.level > 0.95)",
     },
 ];
