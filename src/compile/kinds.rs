@@ -7,6 +7,7 @@ use super::symbols::{Meaning, unknown};
 use crate::model::{Body, Law, TOP_SPEED};
 use crate::syntax::ast::{Field, Ident, KindDecl};
 use crate::syntax::diagnostic::Diagnostic;
+use std::collections::BTreeMap;
 
 /// The parameters of a kind as far as they are known.
 #[derive(Clone, Debug, Default)]
@@ -127,8 +128,10 @@ impl Elaborator<'_> {
         locals: &Locals,
     ) -> Vec<&'f Field> {
         let mut rest = Vec::new();
-        for (at, field) in fields.iter().enumerate() {
-            if let Some(first) = fields[..at].iter().find(|f| f.name.name == field.name.name) {
+        let mut set: BTreeMap<&str, &Field> = BTreeMap::new();
+        for field in fields {
+            let first = *set.entry(&field.name.name).or_insert(field);
+            if !std::ptr::eq(first, field) {
                 let error = Diagnostic::error(
                     "E0202",
                     field.name.span,

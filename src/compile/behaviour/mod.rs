@@ -14,7 +14,7 @@ use super::symbols::{Meaning, unknown};
 use super::typed::Typed;
 use crate::model::{AgentId, Attached, Behaviour, BehaviourId, Behaviours, Mode, Parameter, Route, Who};
 use crate::syntax::ast::process::{BehaviourDecl, BehaviourItem, StateDecl};
-use crate::syntax::ast::{Expr, ExprKind, Ident, LetDecl};
+use crate::syntax::ast::{Expr, ExprKind, Field, Ident, LetDecl};
 use crate::syntax::diagnostic::{Diagnostic, Label, Severity};
 use crate::syntax::source::{Source, Span};
 use std::collections::{BTreeMap, BTreeSet};
@@ -114,9 +114,11 @@ impl<'a> Elaborator<'a> {
     }
 
     fn check_state(&mut self, state: &'a StateDecl, names: &Names<'_>) {
-        for (at, field) in state.fields.iter().enumerate() {
+        let mut set: BTreeMap<&str, &Field> = BTreeMap::new();
+        for field in &state.fields {
             let name = field.name.name.as_str();
-            if let Some(first) = state.fields[..at].iter().find(|first| first.name.name == name) {
+            let first = *set.entry(name).or_insert(field);
+            if !std::ptr::eq(first, field) {
                 let error = Diagnostic::error("E0202", field.name.span, format!("`{name}` is set twice"))
                     .related(first.name.span, "first set here");
                 self.note(error);
