@@ -23,6 +23,17 @@ pub(super) fn input(title: impl Into<String>) -> Diagnostic {
         .hint("names are relative to the folder of the call; `-` is standard input")
 }
 
+/// Time was up before the first trial.
+pub(super) fn late() -> Diagnostic {
+    Diagnostic::placeless("E0921", "time was up before the first trial")
+        .hint("give more time with `--timeout`, or make the scenario smaller")
+}
+
+/// The call was interrupted before the first trial.
+pub(super) fn interrupted() -> Diagnostic {
+    Diagnostic::placeless("E0922", "interrupted before the first trial")
+}
+
 /// What the engine refuses, each of it.
 pub(super) fn refusals(fault: &Fault) -> Vec<Diagnostic> {
     match fault {
@@ -47,6 +58,8 @@ pub(super) fn refusal(fault: &Fault) -> Diagnostic {
         },
         Fault::Procedure { place, reason } => Diagnostic::error("E0604", *place, reason.to_string())
             .hint("`smc explain E0604` says what each procedure takes"),
+        Fault::Memory { place, .. } => Diagnostic::error("E0923", *place, fault.to_string())
+            .hint("one value is kept for each trial of each `E` and `Q`: set a smaller `--max-trials`, or ask fewer of them at once with `--only`"),
         Fault::Model(flaw) => of_model(flaw),
         Fault::Statistics(reason) => Diagnostic::placeless("E0604", reason.to_string())
             .hint("`smc explain E0604` says what each procedure takes"),

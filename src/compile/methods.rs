@@ -26,6 +26,10 @@ pub const PLANNED_TRIALS: u64 = 1000;
 /// Fewest plain trials beside splitting.
 const LEAST_PLAIN: u64 = 100;
 
+/// Bytes that one path of splitting takes, about, and most paths at once.
+const BYTES_OF_A_PATH: u64 = 400;
+const MOST_PATHS: u64 = 5_000_000;
+
 /// Both, where neither failed: what is wrong with each is said before this is asked.
 pub(super) fn both<A, B>(a: Lowered<A>, b: Lowered<B>) -> Lowered<(A, B)> {
     Ok((a?, b?))
@@ -406,13 +410,25 @@ impl Elaborator<'_> {
         let replicas = self.whole_in(replicas, "replicas", (10, 1_000_000), 1000, None);
         let runs = self.whole_in(runs, "runs", (2, 1000), 20, None);
         // Of what is wrong follows no default and no bound.
-        let (paths, times) = (replicas.unwrap_or(1_000_000), runs.unwrap_or(1000));
-        let usual = (paths * times / 2).max(LEAST_PLAIN);
+        let (most, times) = (replicas.unwrap_or(1_000_000), runs.unwrap_or(1000));
+        let usual = (most * times / 2).max(LEAST_PLAIN);
         let plain = self.whole_in(plain, "plain", (LEAST_PLAIN, 1_000_000_000), usual, None);
         let delta = self.claimed(arguments.values[3], delta, allowance);
-        let kill = self.whole_in(kill, "kill", (1, paths - 1), (paths / 10).max(1), of);
+        let kill = self.whole_in(kill, "kill", (1, most - 1), (most / 10).max(1), of);
         let ((replicas, runs), (plain, kill)) = both(both(replicas, runs), both(plain, kill))?;
         let delta = delta?;
+        let paths = replicas * runs;
+        if paths > MOST_PATHS {
+            let gigabytes = |paths: u64| (paths * BYTES_OF_A_PATH) as f64 / 1e9;
+            let (taken, limit) = (gigabytes(paths), gigabytes(MOST_PATHS));
+            let said = format!("{paths} paths at once take {taken:.1} GB; the limit is {limit:.1} GB");
+            let error = Diagnostic::error("E0923", method.span, said);
+            let fewer = MOST_PATHS / runs;
+            let error = of.into_iter().fold(error, Diagnostic::hanging_on);
+            return self.report(error.hint(format!(
+                "there is a path for each of the replicas in each of the runs: write `replicas = {fewer}`"
+            )));
+        }
         arguments.sound()?;
         misplaced?;
         Ok(Estimator::Splitting(Splitting { adaptive, replicas, runs, kill, plain, delta, level: 0 }))

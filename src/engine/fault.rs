@@ -1,8 +1,14 @@
 //! What can go wrong in the engine.
 
 use super::flaw::Flaw;
+use super::session::MOST_VALUES;
 use crate::syntax::source::Span;
 use thiserror::Error;
+
+/// What so many values take, GB.
+fn gigabytes(values: u64) -> f64 {
+    values as f64 * 8.0 / 1e9
+}
 
 /// Why a query cannot be run.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -35,6 +41,14 @@ pub enum Fault {
     /// Places where more people are to start than fit, each as a fault of its own.
     #[error("{}", .0.first().map(ToString::to_string).unwrap_or_default())]
     Crowded(Vec<Fault>),
+    /// More values than fit into memory.
+    #[error("the values of metrics take {:.1} GB; the limit is {:.1} GB", gigabytes(*.values), gigabytes(MOST_VALUES))]
+    Memory {
+        /// The first query of those that share trials.
+        place: Span,
+        /// How many values are kept at most.
+        values: u64,
+    },
     /// A trial in which the model is wrong.
     #[error("{0}")]
     Model(Box<Flaw>),

@@ -189,6 +189,14 @@ impl Procedure {
         }
     }
 
+    /// How many values it keeps at most.
+    pub(super) fn most_values(&self, max_trials: u64) -> u64 {
+        match self {
+            Self::Test(_) | Self::Probability(_) => 0,
+            Self::Mean { .. } | Self::Quantile { .. } => self.limit().unwrap_or(u64::MAX).min(max_trials),
+        }
+    }
+
     /// Whether the number of trials is fixed beforehand.
     pub(super) fn is_planned(&self) -> bool {
         match self {

@@ -23,6 +23,8 @@ use std::collections::{BTreeMap, VecDeque};
 
 /// A query gets no larger part of the time than one of so many for its first trial.
 const FEW_PARTS: usize = 8;
+/// Most values of metrics that are kept at once: their distribution is reported.
+pub(super) const MOST_VALUES: u64 = 1 << 28;
 
 /// Runs a study.
 pub fn run(
@@ -36,6 +38,7 @@ pub fn run(
     let subjects = subjects(study, &asked)?;
     let session = Session { call, budget, subjects: &subjects };
     let mut groups = session.groups(&asked)?;
+    watch.samples();
     if let Some(outlook) = outlook(&mut groups, executor, budget)? {
         watch.forecast(&outlook);
     }
@@ -326,7 +329,12 @@ impl<'a> Session<'a> {
                     let inquiries = together
                         .iter()
                         .map(|&k| self.inquiry(asked[k]).map_err(refused(asked[k])))
-                        .collect::<Result<_, _>>()?;
+                        .collect::<Result<Vec<_>, _>>()?;
+                    let kept = inquiries.iter().map(|one| one.procedure.most_values(self.budget.max_trials));
+                    let values = kept.fold(0, u64::saturating_add);
+                    if values > MOST_VALUES {
+                        return Err(Fault::Memory { place: query.span, values });
+                    }
                     (together, Sampling::Survey(Survey::new(self.subject(world)?, inquiries, self.call.seed)))
                 }
                 Ask::Compare { .. } => {

@@ -61,6 +61,9 @@ pub trait Watch {
     /// What the call is likely to take; told once, before sampling, and never where there is a deadline.
     fn forecast(&self, _outlook: &Outlook) {}
 
+    /// The first trial is about to run: scenes and stopping rules are prepared.
+    fn samples(&self) {}
+
     /// So many trials of a query are consumed, of so many that are expected.
     fn consumed(&self, _query: &str, _trials: u64, _of: Option<u64>) {}
 

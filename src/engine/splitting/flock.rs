@@ -143,7 +143,7 @@ impl<'s> Flock<'s> {
         };
         executor.everywhere(&|| {
             let mut take = || {
-                if broken.load(Ordering::Relaxed) {
+                if broken.load(Ordering::Relaxed) || budget.must_stop() {
                     return None;
                 }
                 let place = next.fetch_add(1, Ordering::Relaxed);

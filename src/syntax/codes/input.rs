@@ -1,4 +1,4 @@
-//! Pages of E07xx and W07xx: files.
+//! Pages of E07xx, W07xx and E092x: files.
 
 use super::Page;
 
@@ -9,7 +9,7 @@ pub(super) const PAGES: &[Page] = &[
         title: "a file cannot be read",
         text: "\
 The file is not there, is a directory or may not be read. Files that a scenario names are looked for beside it, then\n\
-under each `--data` directory. Standard input can be read once.\n\
+under each `--data` directory. Standard input can be read once. An input has 256 MB at most.\n\
 \n\
 Wrong:\n\
 \x20   tracks hotel = eth_biwi \"obsmat.txt\"\n\
@@ -133,5 +133,53 @@ Probably wrong:\n\
 \x20   import \"building.geojson\"\n\
 Clear:\n\
 \x20   import \"building.geojson\" { snap = 5 cm }",
+    },
+    Page {
+        code: "E0920",
+        title: "an output would overwrite an input",
+        text: "\
+A file that the call reads is also named as the file that it writes. Nothing is written. Two names stand for one file\n\
+where links lead to it.\n\
+\n\
+Wrong:\n\
+\x20   smc simulate corridor.scn -o corridor.scn\n\
+Right:\n\
+\x20   smc simulate corridor.scn -o corridor.csv",
+    },
+    Page {
+        code: "E0921",
+        title: "time was up before the first trial",
+        text: "\
+The time of `--timeout` is for the whole call: reading, compiling and preparing are parts of it. Nothing was sampled, so\n\
+nothing is known. The exit code is that of a check which time leaves undecided.\n\
+\n\
+Wrong:\n\
+\x20   smc check city.scn evacuation.bltl --timeout 50ms\n\
+Right:\n\
+\x20   smc check city.scn evacuation.bltl --timeout 1min",
+    },
+    Page {
+        code: "E0922",
+        title: "the call was interrupted before the first trial",
+        text: "\
+A signal ended the call while it was reading, compiling or preparing. Nothing was sampled, so nothing is known. A signal\n\
+while trials run is gentle: what is known so far is printed.\n\
+\n\
+Wrong:\n\
+\x20   smc check city.scn evacuation.bltl & kill -INT $!\n\
+Right:\n\
+\x20   smc check city.scn evacuation.bltl --timeout 1min",
+    },
+    Page {
+        code: "E0923",
+        title: "this takes more memory than there may be",
+        text: "\
+Splitting keeps all paths of all runs: `replicas` times `runs`, about 400 bytes each, 2 GB at most. `E` and `Q` keep one\n\
+value for each trial, since their distribution is reported: 8 bytes each, 2.1 GB at most for all queries that share trials.\n\
+\n\
+Wrong:\n\
+\x20   estimate P(arrives) by splitting(replicas = 1000000, runs = 1000)\n\
+Right:\n\
+\x20   estimate P(arrives) by splitting(replicas = 1000, runs = 20)",
     },
 ];
