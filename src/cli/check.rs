@@ -1,12 +1,14 @@
 //! `smc check`: decide, estimate, compare, rank.
 
 use super::arguments::{Check, OutputFormat};
+use super::deadline::{Deadline, Ended, Phase};
 use super::progress::Progress;
 use super::ranks::Crew;
 use super::shelf::{Shelf, pack};
 use super::terminal::{Colors, print, say};
-use super::{complaint, inputs, ranks};
+use super::{complaint, inputs, output, ranks};
 use crate::base::fingerprint::Fingerprint;
+use crate::base::visible::visible;
 use crate::compile::Study;
 use crate::compile::nearest::nearest;
 use crate::engine::budget::DEFAULT_TRIALS;
@@ -15,21 +17,36 @@ use crate::engine::{Budget, Call, Fault, Outlook, Ranks, Threads, forecast, run 
 use crate::report::{self, ExitCode as Exit, Format, Palette};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
+use std::path::Path;
 use std::sync::Arc;
 
 /// Runs the command.
 pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
+    let mut budget = Budget::new(arguments.max_trials.unwrap_or(DEFAULT_TRIALS), arguments.timeout);
+    budget.max_total = arguments.total_trials;
+    let budget = Arc::new(budget);
+    let deadline = Deadline::watch(&budget, ender(arguments, colors));
     let shelf = if arguments.ranks.is_some() { Shelf::Kept(Vec::new()) } else { Shelf::Files };
     let mut inputs = inputs::load_from(shelf, &arguments.model, &arguments.properties);
     let shelf = std::mem::replace(&mut inputs.shelf, Shelf::Files);
+    if inputs.study.is_none() {
+        deadline.enter(Phase::Printing);
+    }
     super::diagnose(&inputs, colors);
+    let overwritten = output::guard(arguments.report.as_deref(), &inputs.paths).err();
     let desk = Desk {
         arguments,
         colors,
+        deadline: deadline.clone(),
         sources: &inputs.sources,
         findings: inputs::findings(&inputs.diagnostics, &inputs.sources),
+        errors: inputs.errors,
         prints: inputs.prints.clone(),
+        page: arguments.report.as_deref().filter(|_| overwritten.is_none()),
     };
+    if let Some(error) = overwritten {
+        return desk.refuse(error);
+    }
     let Some(study) = &inputs.study else { return desk.refused() };
     let only = match chosen(study, &arguments.only) {
         Ok(only) => only,
@@ -44,18 +61,7 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
             "warning: {most} threads are as many as help here; results are the same with any number\n"
         ));
     }
-    let threads = arguments.threads.map(|threads| threads.min(most));
-    let mut budget = Budget::new(arguments.max_trials.unwrap_or(DEFAULT_TRIALS), arguments.timeout);
-    budget.max_total = arguments.total_trials;
-    let budget = Arc::new(budget);
-    let interrupted = Arc::clone(&budget);
-    // Only the first interruption is gentle.
-    let _ = ctrlc::set_handler(move || {
-        if interrupted.is_interrupted() {
-            std::process::exit(i32::from(Exit::Interrupted.code()));
-        }
-        interrupted.interrupt();
-    });
+    let threads = arguments.threads.unwrap_or_else(cores).min(most);
     let crew = match crew(arguments, study, &shelf, threads, &budget) {
         Ok(crew) => crew,
         Err(error) => return desk.refuse(error),
@@ -72,12 +78,13 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
         file: arguments.model.scenario.clone(),
     };
     if arguments.forecast {
+        deadline.enter(Phase::Sampling);
         return match forecast(study, &call, crew.executor(), &budget) {
             Ok(outlook) => desk.tell(&outlook),
             Err(fault) => desk.fault(&fault),
         };
     }
-    let progress = Progress::new(arguments.quiet);
+    let progress = Progress::new(arguments.quiet, deadline);
     match run_study(study, &call, crew.executor(), &budget, &progress) {
         Ok(mut run) => {
             // An interruption ends ranks too.
@@ -96,13 +103,13 @@ fn crew(
     arguments: &Check,
     study: &Study,
     shelf: &Shelf,
-    threads: Option<usize>,
+    threads: usize,
     budget: &Budget,
 ) -> Result<Crew, Diagnostic> {
-    let own =
-        Threads::new(threads).map_err(|error| complaint::refusal(&Fault::Threads(error.to_string())))?;
+    let own = Threads::new(Some(threads))
+        .map_err(|error| complaint::refusal(&Fault::Threads(error.to_string())))?;
     let Some(count) = arguments.ranks.map(usize::from) else { return Ok(Crew::Alone(own)) };
-    let each = (threads.unwrap_or_else(cores) / count).max(1);
+    let each = (threads / count).max(1);
     let packed = pack(&arguments.model, &arguments.properties, shelf);
     let (children, lines) = ranks::start(count)
         .map_err(|reason| complaint::argument(reason, "leave `--ranks` out: threads do the same"))?;
@@ -124,17 +131,23 @@ fn most_threads() -> usize {
 struct Desk<'a> {
     arguments: &'a Check,
     colors: Colors,
+    deadline: Deadline,
     sources: &'a [Source],
     findings: Vec<Finding>,
+    /// How many errors there are.
+    errors: usize,
     prints: Vec<(String, Fingerprint)>,
+    /// The page that is written beside.
+    page: Option<&'a Path>,
 }
 
 impl Desk<'_> {
     /// Prints a forecast.
     fn tell(self, outlook: &Outlook) -> Exit {
+        self.deadline.enter(Phase::Printing);
         let text = match self.arguments.format {
             OutputFormat::Json => report::outlook::json(outlook),
-            OutputFormat::Text => report::outlook::text(outlook),
+            OutputFormat::Text => visible(&report::outlook::text(outlook)).into_owned(),
             OutputFormat::Junit | OutputFormat::Github => {
                 return self.refuse(complaint::argument(
                     "`--forecast` is no result of a test",
@@ -155,16 +168,18 @@ impl Desk<'_> {
 
     /// The same for several reasons.
     fn refuse_for(mut self, errors: &[Diagnostic]) -> Exit {
+        self.deadline.enter(Phase::Printing);
         complaint::tell_all(errors, self.sources, self.colors);
         self.findings.extend(inputs::findings(errors, self.sources));
+        self.errors += errors.len();
         self.refused()
     }
 
     /// The inputs are wrong; standard error has said how.
     fn refused(self) -> Exit {
-        let mut errors = self.findings.iter().filter(|finding| finding.error);
-        let first = errors.next().map_or_else(|| "the inputs are wrong".to_owned(), Finding::line);
-        let reason = match errors.count() {
+        let first = self.findings.iter().find(|finding| finding.error);
+        let first = first.map_or_else(|| "the inputs are wrong".to_owned(), Finding::line);
+        let reason = match self.errors.saturating_sub(1) {
             0 => first,
             1 => format!("{first} (and 1 more error)"),
             more => format!("{first} (and {more} more errors)"),
@@ -194,12 +209,13 @@ impl Desk<'_> {
         {
             complaint::tell(&complaint::output(reason), &[], self.colors);
         }
-        page(self.arguments, &run, self.colors);
+        page(self.page, &run, self.colors);
         Exit::Wrong
     }
 
     /// Prints the results of a run.
     fn finish(mut self, run: Run) -> Exit {
+        self.deadline.enter(Phase::Printing);
         let broken = match &run.failure {
             Some(Failure::Model(flaw)) => Some(complaint::of_model(flaw)),
             _ => None,
@@ -215,21 +231,62 @@ impl Desk<'_> {
         if let Some(error) = &broken {
             complaint::tell(error, self.sources, self.colors);
         }
-        exit.worse(page(self.arguments, &run, self.colors))
+        exit.worse(page(self.page, &run, self.colors))
     }
 }
 
-/// A report of a call that a bug ended, in formats for machines.
-pub(super) fn fallen(chosen: OutputFormat, scenario: String, seed: u64) {
+/// What reports that a call ended before its first trial, on standard error and in formats for machines.
+fn ender(arguments: &Check, colors: Colors) -> impl Fn(Ended) -> Exit + Clone + Send + 'static {
     let run = Run {
-        scenario,
-        seed,
+        scenario: arguments.model.scenario.clone(),
+        seed: arguments.seed,
         version: env!("CARGO_PKG_VERSION").to_owned(),
-        failure: Some(Failure::Bug("smc has a bug; standard error says more".to_owned())),
+        replay: format!("{} --seed {}", command("check", arguments, true), arguments.seed),
         ..Run::default()
     };
+    let chosen = arguments.format;
+    move |ended| {
+        let mut run = run.clone();
+        let error = match ended {
+            Ended::Late => {
+                let error = complaint::late();
+                run.diagnostics = inputs::findings(std::slice::from_ref(&error), &[]);
+                run.failure = Some(Failure::Late(error.title.clone()));
+                error
+            }
+            Ended::Interrupted => {
+                run.interrupted = true;
+                complaint::interrupted()
+            }
+        };
+        complaint::tell(&error, &[], colors);
+        let exit = report::exit_code(&run);
+        for_machines(chosen, &run);
+        exit
+    }
+}
+
+/// A report of a call whose command line cannot be understood, in formats for machines.
+pub(super) fn misused(chosen: OutputFormat, message: &str) {
+    let error = Diagnostic::placeless("E0705", message);
+    let run = Run {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        diagnostics: inputs::findings(&[error], &[]),
+        failure: Some(Failure::Input(message.to_owned())),
+        ..Run::default()
+    };
+    for_machines(chosen, &run);
+}
+
+/// A report of a call that ended without results, in formats for machines.
+pub(super) fn without_results(chosen: OutputFormat, scenario: String, seed: u64, failure: Failure) {
+    let version = env!("CARGO_PKG_VERSION").to_owned();
+    for_machines(chosen, &Run { scenario, seed, version, failure: Some(failure), ..Run::default() });
+}
+
+fn for_machines(chosen: OutputFormat, run: &Run) {
     if chosen != OutputFormat::Text {
-        let _ = print(&report::render(&run, format(chosen), Palette::PLAIN));
+        let _ = print(&report::render(run, format(chosen), Palette::PLAIN));
     }
 }
 
@@ -243,16 +300,13 @@ const fn format(chosen: OutputFormat) -> Format {
 }
 
 /// Writes the page that was asked for, if one was.
-#[allow(clippy::disallowed_methods, reason = "files are written by the command line")]
-fn page(arguments: &Check, run: &Run, colors: Colors) -> Exit {
-    if let Some(path) = &arguments.report
-        && let Err(error) = std::fs::write(path, report::render(run, Format::Html, Palette::PLAIN))
-    {
-        let error = format!("`{}` cannot be written: {error}", path.display());
-        complaint::tell(&complaint::output(error), &[], colors);
-        return Exit::Wrong;
-    }
-    Exit::Success
+fn page(path: Option<&Path>, run: &Run, colors: Colors) -> Exit {
+    let Some(path) = path else { return Exit::Success };
+    let text = report::render(run, Format::Html, Palette::PLAIN);
+    let Err(error) = output::write(path, |out| out.write_all(text.as_bytes())) else { return Exit::Success };
+    let error = format!("`{}` cannot be written: {error}", path.display());
+    complaint::tell(&complaint::output(error), &[], colors);
+    Exit::Wrong
 }
 
 /// Indices of the queries that `--only` names.

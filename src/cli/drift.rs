@@ -10,7 +10,7 @@ use crate::stats::Cusum;
 use crate::syntax::diagnostic::Diagnostic;
 use serde_json::json;
 use std::fs::File;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Read};
 
 /// Outcomes on average to a false alarm, at least, unless the call says otherwise.
 const QUIET: f64 = 1000.0;
@@ -23,12 +23,17 @@ pub(super) fn run(arguments: &Drift, colors: Colors) -> Exit {
         Err(error) => {
             complaint::tell(&error, &[], colors);
             if arguments.format == DriftFormat::Json {
-                let error = json!({ "schema": 1, "error": { "bug": false, "message": error.title } });
-                let _ = print(&format!("{error}\n"));
+                let _ = print_error(&error.title);
             }
             Exit::Wrong
         }
     }
+}
+
+/// Writes an error as an object.
+pub(super) fn print_error(message: &str) -> Result<(), String> {
+    let error = json!({ "schema": 1, "error": { "bug": false, "message": message } });
+    print(&format!("{error}\n"))
 }
 
 /// Whether there was an alarm.
@@ -93,13 +98,33 @@ fn table(reason: String) -> Diagnostic {
         .hint("one outcome a line: 0 or 1, true or false; `--column` picks one of a table")
 }
 
+/// Most bytes of one line: a device that has no lines must not fill the memory.
+const LONGEST: u64 = 1 << 20;
+
+/// The lines of a file. A stream may be longer than any file: of its lines only one is kept.
 #[allow(clippy::disallowed_methods, reason = "the command line opens files")]
-fn lines(name: &str) -> Result<Box<dyn Iterator<Item = std::io::Result<Vec<u8>>>>, String> {
-    if name == "-" {
-        return Ok(Box::new(std::io::stdin().lock().split(b'\n')));
-    }
-    let file = File::open(name).map_err(|error| format!("`{name}` cannot be opened: {error}"))?;
-    Ok(Box::new(BufReader::new(file).split(b'\n')))
+fn lines(name: &str) -> Result<impl Iterator<Item = std::io::Result<Vec<u8>>>, String> {
+    let mut from: Box<dyn BufRead> = if name == "-" {
+        Box::new(std::io::stdin().lock())
+    } else {
+        Box::new(BufReader::new(
+            File::open(name).map_err(|error| format!("`{name}` cannot be opened: {error}"))?,
+        ))
+    };
+    Ok(std::iter::from_fn(move || {
+        let mut line = Vec::new();
+        match from.by_ref().take(LONGEST + 1).read_until(b'\n', &mut line) {
+            Ok(0) => None,
+            Ok(_) if line.len() as u64 > LONGEST => {
+                Some(Err(std::io::Error::other("a line is longer than 1 MB")))
+            }
+            Ok(_) => {
+                line.pop_if(|last| *last == b'\n');
+                Some(Ok(line))
+            }
+            Err(error) => Some(Err(error)),
+        }
+    }))
 }
 
 fn summary(arguments: &Drift, cusum: &Cusum, successes: u64, alarms: &[u64]) -> String {

@@ -3,16 +3,17 @@
 use super::arguments::{Format, Language};
 use super::complaint;
 use super::inputs;
-use super::terminal::{Colors, print, say};
+use super::output;
+use super::terminal::{Colors, print, say, warn};
 use crate::report::ExitCode as Exit;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::parse::decode;
 use crate::syntax::print::{format_properties, format_scenario};
 use crate::syntax::render::render;
 use crate::syntax::source::{Source, SourceId};
+use std::path::Path;
 
 /// Runs the command.
-#[allow(clippy::disallowed_methods, reason = "files are opened by the command line")]
 pub(super) fn run(arguments: &Format, colors: Colors) -> Exit {
     let mut exit = Exit::Success;
     for (at, name) in arguments.files.iter().enumerate() {
@@ -70,7 +71,7 @@ pub(super) fn run(arguments: &Format, colors: Colors) -> Exit {
         };
         if arguments.check {
             if text != source.text {
-                say(&format!("{} is not formatted\n", inputs::shown(name)));
+                warn(&format!("{} is not formatted\n", inputs::shown(name)));
                 exit = exit.worse(Exit::Violated);
             }
         } else if name == "-" {
@@ -79,7 +80,7 @@ pub(super) fn run(arguments: &Format, colors: Colors) -> Exit {
                 return Exit::Wrong;
             }
         } else if text != source.text
-            && let Err(error) = std::fs::write(name, &text)
+            && let Err(error) = output::write(Path::new(name), |out| out.write_all(text.as_bytes()))
         {
             complaint::tell(&complaint::output(format!("`{name}` cannot be written: {error}")), &[], colors);
             exit = Exit::Wrong;

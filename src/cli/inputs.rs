@@ -12,11 +12,21 @@ use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::parse::{continues_name, decode, parse_properties, parse_scenario, parse_value};
 use crate::syntax::source::{Source, SourceId, Span};
 use std::collections::BTreeMap;
-use std::io::Read;
+use std::fs::File;
+use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 /// Code of a parameter that is set wrongly.
 const SETTING: &str = "E0210";
+
+/// Most errors of one code that are shown.
+const MOST_OF_A_KIND: usize = 100;
+
+/// Most bytes of one input.
+const MOST_BYTES: u64 = 256 << 20;
+
+/// The file that standard input is read from, on systems that give it a name.
+pub(super) const STDIN: &str = "/dev/stdin";
 
 /// All that was read, and what was found wrong with it.
 pub(super) struct Inputs {
@@ -24,12 +34,16 @@ pub(super) struct Inputs {
     pub(super) sources: Vec<Source>,
     /// Errors and warnings.
     pub(super) diagnostics: Vec<Diagnostic>,
+    /// How many errors there are, those included that are only counted.
+    pub(super) errors: usize,
     /// Each file and the fingerprint of its bytes.
     pub(super) prints: Vec<(String, Fingerprint)>,
     /// What compilation yields, if nothing is wrong.
     pub(super) study: Option<Study>,
     /// What was opened, for others who are to compile the same.
     pub(super) shelf: Shelf,
+    /// The files that were opened, where they were found.
+    pub(super) paths: Vec<PathBuf>,
 }
 
 /// Errors and warnings as reports quote them.
@@ -51,23 +65,54 @@ pub(super) fn findings(diagnostics: &[Diagnostic], sources: &[Source]) -> Vec<Fi
 }
 
 /// Bytes of a file, or of standard input for `-`.
-#[allow(clippy::disallowed_methods, reason = "files are opened by the command line")]
 pub(super) fn read(name: &str) -> Result<Vec<u8>, String> {
     if name == "-" {
-        let mut bytes = Vec::new();
-        return match std::io::stdin().lock().read_to_end(&mut bytes) {
-            Ok(_) => Ok(bytes),
-            Err(error) => Err(format!("standard input cannot be read: {error}")),
-        };
+        return whole(std::io::stdin().lock()).map_err(|error| format!("standard input {error}"));
     }
-    if Path::new(name).is_dir() {
-        return Err(format!("`{name}` is a directory"));
-    }
-    std::fs::read(name).map_err(|error| match error.kind() {
-        std::io::ErrorKind::NotFound => format!("there is no file `{name}`"),
-        std::io::ErrorKind::PermissionDenied => format!("`{name}` may not be read"),
-        _ => format!("`{name}` cannot be read: {error}"),
+    read_file(Path::new(name)).map_err(|error| match error {
+        Unread::Missing => format!("there is no file `{name}`"),
+        error => format!("`{name}` {error}"),
     })
+}
+
+/// Why an input has no bytes, after its name.
+#[derive(Debug, thiserror::Error)]
+enum Unread {
+    #[error("is not there")]
+    Missing,
+    #[error("may not be read")]
+    Forbidden,
+    #[error("is a directory")]
+    Directory,
+    #[error("is larger than {} MB, the limit of an input", MOST_BYTES >> 20)]
+    Large,
+    #[error("cannot be read: {0}")]
+    Other(std::io::Error),
+}
+
+impl From<std::io::Error> for Unread {
+    fn from(error: std::io::Error) -> Self {
+        match error.kind() {
+            ErrorKind::NotFound => Self::Missing,
+            ErrorKind::PermissionDenied => Self::Forbidden,
+            _ => Self::Other(error),
+        }
+    }
+}
+
+#[allow(clippy::disallowed_methods, reason = "files are opened by the command line")]
+fn read_file(path: &Path) -> Result<Vec<u8>, Unread> {
+    if path.is_dir() {
+        return Err(Unread::Directory);
+    }
+    whole(File::open(path)?)
+}
+
+/// All bytes of an input that is not too large. What a file says of its size is not trusted: a device says 0.
+fn whole(from: impl Read) -> Result<Vec<u8>, Unread> {
+    let mut bytes = Vec::new();
+    from.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > MOST_BYTES { Err(Unread::Large) } else { Ok(bytes) }
 }
 
 /// Name of a source for people.
@@ -80,10 +125,12 @@ struct Reader {
     sources: Vec<Source>,
     prints: Vec<(String, Fingerprint)>,
     diagnostics: Vec<Diagnostic>,
+    paths: Vec<PathBuf>,
 }
 
 impl Reader {
     fn source(&mut self, name: &str) -> Option<Source> {
+        self.paths.push(PathBuf::from(if name == "-" { STDIN } else { name }));
         let id = SourceId(self.sources.len() as u16);
         let bytes = match self.shelf.open(name, || read(name)) {
             Ok(bytes) => bytes,
@@ -201,6 +248,27 @@ fn is_error(diagnostic: &Diagnostic) -> bool {
     diagnostic.severity == Severity::Error
 }
 
+/// Of each kind of error or warning the first ones, and how many more there are.
+fn first_of_each_kind(mut diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    let mut found: BTreeMap<(Severity, &'static str), usize> = BTreeMap::new();
+    diagnostics.retain(|one| {
+        let count = found.entry((one.severity, one.code)).or_default();
+        *count += 1;
+        *count <= MOST_OF_A_KIND
+    });
+    for ((severity, code), count) in found {
+        if let Some(more) = count.checked_sub(MOST_OF_A_KIND).filter(|more| *more > 0) {
+            let title = if more == 1 {
+                "1 more of this kind".to_owned()
+            } else {
+                format!("{more} more of this kind")
+            };
+            diagnostics.push(Diagnostic { severity, ..Diagnostic::placeless(code, title) });
+        }
+    }
+    diagnostics
+}
+
 /// Where more people are to start than fit, but for what is known to be wrong there.
 fn crowded(starts: &[Starts], known: &[Diagnostic]) -> Vec<Diagnostic> {
     let place = |one: &Diagnostic| one.place.as_ref().map(|place| place.span);
@@ -262,9 +330,9 @@ pub(super) fn load(model: &Model, properties: &[String]) -> Inputs {
 }
 
 /// The same, with files from a shelf.
-#[allow(clippy::disallowed_methods, reason = "files are opened by the command line")]
 pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> Inputs {
-    let mut reader = Reader { shelf, sources: Vec::new(), prints: Vec::new(), diagnostics: Vec::new() };
+    let mut reader =
+        Reader { shelf, sources: Vec::new(), prints: Vec::new(), diagnostics: Vec::new(), paths: Vec::new() };
     let twice = std::iter::once(&model.scenario).chain(properties).filter(|name| *name == "-").count() > 1;
     if twice {
         reader.diagnostics.push(Diagnostic::placeless("E0701", "standard input can be read once only"));
@@ -310,7 +378,9 @@ pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> I
     for request in requests(&scenario) {
         let contents = reader.shelf.open(&request.path, || {
             find(&request.path, &model.scenario, &model.data).and_then(|path| {
-                std::fs::read(&path).map_err(|e| format!("`{}` cannot be read: {e}", request.path))
+                let bytes = read_file(&path).map_err(|error| format!("`{}` {error}", request.path));
+                reader.paths.push(path);
+                bytes
             })
         });
         if let Ok(bytes) = &contents {
@@ -318,7 +388,7 @@ pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> I
         }
         files.insert(request.path, contents);
     }
-    let Reader { shelf, sources, prints, mut diagnostics } = reader;
+    let Reader { shelf, sources, prints, mut diagnostics, paths } = reader;
     let mut study = None;
     if complete {
         let input = Input {
@@ -354,5 +424,7 @@ pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> I
         let warning = Diagnostic::warning("W0602", Span::new(source.id, 0, 0), "nothing is asked");
         diagnostics.push(warning.hint("add a query, as in `check P(safe) >= 0.9` or `estimate P(safe)`"));
     }
-    Inputs { sources, diagnostics, prints, study, shelf }
+    let errors = diagnostics.iter().filter(|one| is_error(one)).count();
+    let diagnostics = first_of_each_kind(diagnostics);
+    Inputs { sources, diagnostics, errors, prints, study, shelf, paths }
 }

@@ -3,11 +3,13 @@
 mod arguments;
 mod check;
 mod complaint;
+mod deadline;
 mod drift;
 mod explain;
 mod format;
 mod inputs;
 mod manual;
+mod output;
 mod progress;
 mod ranks;
 mod shelf;
@@ -15,10 +17,13 @@ mod show;
 mod simulate;
 mod terminal;
 
+use crate::base::visible::visible;
+use crate::engine::outcome::Failure;
 use crate::report::ExitCode as Exit;
 use crate::syntax::render::render;
-use arguments::{Arguments, Command};
-use clap::Parser;
+use arguments::{Arguments, Command, OutputFormat};
+use clap::{Parser, ValueEnum};
+use std::borrow::Cow;
 use std::process;
 use terminal::{Colors, say};
 
@@ -32,10 +37,13 @@ pub fn run() -> process::ExitCode {
     }
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
-        Err(error) => {
-            let fine = !error.use_stderr();
+        Err(error) if !error.use_stderr() => {
             let _ = error.print();
-            return process::ExitCode::from(if fine { 0 } else { Exit::Wrong.code() });
+            return process::ExitCode::from(Exit::Success.code());
+        }
+        Err(error) => {
+            misused(&error);
+            return process::ExitCode::from(Exit::Wrong.code());
         }
     };
     let asked = if let Command::Check(check) = &arguments.command {
@@ -49,7 +57,8 @@ pub fn run() -> process::ExitCode {
         Ok(Err(_)) => {
             say("this is a bug in smc; please report it with the files of this call\n");
             if let Some((format, scenario, seed)) = asked {
-                check::fallen(format, scenario, seed);
+                let bug = Failure::Bug("smc has a bug; standard error says more".to_owned());
+                check::without_results(format, scenario, seed, bug);
             }
             Exit::Bug
         }
@@ -60,6 +69,36 @@ pub fn run() -> process::ExitCode {
         }
     };
     process::ExitCode::from(exit.code())
+}
+
+/// Reports that the command line cannot be understood, in the format that it asks for as far as it can be.
+fn misused(error: &clap::Error) {
+    let text = error.to_string();
+    match visible(&text) {
+        Cow::Borrowed(_) => _ = error.print(),
+        Cow::Owned(shown) => say(&shown),
+    }
+    let words: Vec<String> =
+        std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
+    // Usage and tips follow after an empty line.
+    let message = text.split("\n\n").next().unwrap_or_default();
+    let message = message.strip_prefix("error: ").unwrap_or(message);
+    let message = &message.split_whitespace().collect::<Vec<_>>().join(" ");
+    let format = format_of(&words);
+    if words.iter().any(|word| word == "check")
+        && let Some(format) = format.and_then(|name| OutputFormat::from_str(name, false).ok())
+    {
+        check::misused(format, message);
+    } else if words.iter().any(|word| word == "drift") && format == Some("json") {
+        let _ = drift::print_error(message);
+    }
+}
+
+/// The last format that words ask for.
+fn format_of(words: &[String]) -> Option<&str> {
+    let inline = words.iter().filter_map(|word| word.strip_prefix("--format="));
+    let apart = words.windows(2).filter(|pair| pair[0] == "--format").map(|pair| pair[1].as_str());
+    inline.chain(apart).last()
 }
 
 /// Runs the program as a rank of another one, which hears of it if that fails.

@@ -1,5 +1,7 @@
 //! Progress on standard error, where that is a terminal.
 
+use super::deadline::{Deadline, Phase};
+use crate::base::visible::visible;
 use crate::engine::{Outlook, Watch};
 use crate::report::outlook;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -12,11 +14,12 @@ const WORTH_TELLING: f64 = 2.0;
 pub(super) struct Progress {
     bar: Option<ProgressBar>,
     quiet: bool,
+    deadline: Deadline,
 }
 
 impl Progress {
     /// On a terminal a line that changes; elsewhere nothing but long forecasts.
-    pub(super) fn new(quiet: bool) -> Self {
+    pub(super) fn new(quiet: bool, deadline: Deadline) -> Self {
         let bar = (!quiet && std::io::stderr().is_terminal()).then(|| {
             let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(10));
             let style = ProgressStyle::with_template("{spinner} {wide_msg} {elapsed}")
@@ -24,7 +27,7 @@ impl Progress {
             bar.set_style(style);
             bar
         });
-        Self { bar, quiet }
+        Self { bar, quiet, deadline }
     }
 }
 
@@ -34,17 +37,21 @@ impl Watch for Progress {
         if self.quiet || outlook.seconds < WORTH_TELLING {
             return;
         }
-        let lines = outlook::text(outlook);
+        let lines = visible(&outlook::text(outlook)).into_owned();
         match &self.bar {
             Some(bar) => lines.lines().for_each(|line| bar.println(line)),
             None => super::terminal::say(&lines),
         }
     }
 
+    fn samples(&self) {
+        self.deadline.enter(Phase::Sampling);
+    }
+
     fn consumed(&self, query: &str, trials: u64, of: Option<u64>) {
         let Some(bar) = &self.bar else { return };
         let of = of.map_or(String::new(), |of| format!(" of about {of}"));
-        bar.set_message(format!("{trials}{of} trials · {query}"));
+        bar.set_message(format!("{trials}{of} trials · {}", visible(query)));
         bar.tick();
     }
 

@@ -3,7 +3,8 @@
 use super::arguments::{Simulate, TableFormat};
 use super::complaint;
 use super::inputs;
-use super::terminal::{Colors, say};
+use super::output;
+use super::terminal::{Colors, warn};
 use crate::base::geometry::Vec2;
 use crate::base::random::{MOST_TRIALS, TrialKey};
 use crate::base::tick::{Clock, Tick};
@@ -18,6 +19,7 @@ use crate::model::{AgentId, Domain, Scenario};
 use crate::report::ExitCode as Exit;
 use std::io::{BufWriter, Write};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// One agent in one state.
 struct Record<'s> {
@@ -55,6 +57,8 @@ struct Walk<'p> {
     notes: Vec<String>,
     /// Whether the model was wrong in one of them.
     is_wrong: bool,
+    /// Whether a signal asks to stop.
+    interrupted: Arc<AtomicBool>,
 }
 
 impl<'p> Walk<'p> {
@@ -73,12 +77,16 @@ impl<'p> Walk<'p> {
             shrunk: (0, None),
             notes: Vec::new(),
             is_wrong: false,
+            interrupted: Arc::default(),
         }
     }
 
     /// Goes to the next state that is written; false when all trials are done.
     fn advance(&mut self) -> bool {
         loop {
+            if self.interrupted.load(Ordering::Relaxed) {
+                return false;
+            }
             if !self.running {
                 if self.trial >= self.arguments.trial.saturating_add(self.arguments.trials) {
                     return false;
@@ -276,7 +284,6 @@ fn refuse(reason: impl Into<String>, hint: impl Into<String>, colors: Colors) ->
 }
 
 /// Runs the command.
-#[allow(clippy::disallowed_methods, reason = "files are opened by the command line")]
 pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
     if arguments.every == 0 || arguments.trials == 0 {
         let option = if arguments.every == 0 { "--every" } else { "--trials" };
@@ -289,6 +296,10 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
     let inputs = inputs::load(&arguments.model, &[]);
     super::diagnose(&inputs, colors);
     let Some(study) = &inputs.study else { return Exit::Wrong };
+    if let Err(error) = output::guard(arguments.output.as_deref(), &inputs.paths) {
+        complaint::tell(&error, &[], colors);
+        return Exit::Wrong;
+    }
     let Some(world) = study.worlds.last() else { return Exit::Wrong };
     if study.worlds.len() > 2 {
         return refuse(
@@ -327,30 +338,37 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
     }
     let program = Program::new(scenario.clone());
     let mut walk = Walk::new(&program, arguments, advice, last);
-    let written = match &arguments.output {
-        Some(path) => match std::fs::File::create(path) {
-            Ok(file) => write(arguments.format, BufWriter::new(file), &scenario, &mut walk),
-            Err(error) => {
-                let error = format!("`{}` cannot be written: {error}", path.display());
-                complaint::tell(&complaint::output(error), &[], colors);
-                return Exit::Wrong;
+    if arguments.output.is_some() {
+        // The file gets its name only when it is complete: the first signal ends the table, the second one the process.
+        let interrupted = Arc::clone(&walk.interrupted);
+        let _ = ctrlc::set_handler(move || {
+            if interrupted.swap(true, Ordering::Relaxed) {
+                std::process::exit(i32::from(Exit::Interrupted.code()));
             }
-        },
+        });
+    }
+    let written = match &arguments.output {
+        Some(path) => output::write(path, |out| write(arguments.format, out, &scenario, &mut walk)),
         None => write(arguments.format, BufWriter::new(std::io::stdout().lock()), &scenario, &mut walk),
     };
     if let (trials, Some(first)) = walk.shrunk {
         say(&format!("warning: {}\n", smaller(&program, first, trials)));
     }
     for note in &walk.notes {
-        say(&format!("warning: {note}\n"));
+        warn(&format!("warning: {note}\n"));
     }
     match written {
         // As a check of the same trial would.
         Ok(_) if walk.is_wrong => Exit::Wrong,
+        Ok(_) if walk.interrupted.load(Ordering::Relaxed) => Exit::Interrupted,
         Ok(_) => Exit::Success,
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Exit::Success,
         Err(error) => {
-            complaint::tell(&complaint::output(error.to_string()), &[], colors);
+            let error = match &arguments.output {
+                Some(path) => format!("`{}` cannot be written: {error}", path.display()),
+                None => error.to_string(),
+            };
+            complaint::tell(&complaint::output(error), &[], colors);
             Exit::Wrong
         }
     }

@@ -1,6 +1,7 @@
 //! Standard output and standard error: colours, broken pipes.
 
 use super::arguments::ColorChoice;
+use crate::base::visible::visible;
 use std::io::{IsTerminal, Write};
 
 /// Where colours are wanted.
@@ -44,7 +45,12 @@ pub(super) fn print_to_reader(text: &str) -> Result<bool, String> {
     }
 }
 
-/// Writes to standard error; nothing can be done where that fails.
+/// Writes text that may quote anything to standard error.
+pub(super) fn warn(text: &str) {
+    say(&visible(text));
+}
+
+/// Writes what is ready for a terminal to standard error; nothing can be done where that fails.
 pub(super) fn say(text: &str) {
     let mut err = std::io::stderr().lock();
     let _ = err.write_all(text.as_bytes());

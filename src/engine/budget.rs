@@ -128,8 +128,8 @@ impl Budget {
         self.must_stop() && self.stopped.get_or_init(Instant::now).elapsed().as_secs_f64() > self.grace()
     }
 
-    /// How long explanations may still take.
-    fn grace(&self) -> f64 {
+    /// Seconds that explanations may still take after the end.
+    pub fn grace(&self) -> f64 {
         self.deadline.map_or(MOST_GRACE, |deadline| {
             let given = deadline.saturating_duration_since(self.started).as_secs_f64();
             (SHARE_OF_GRACE * given).clamp(LEAST_GRACE, MOST_GRACE)

@@ -43,6 +43,8 @@ pub enum Failure {
     Input(String),
     /// A trial shows that the model is wrong.
     Model(Box<Flaw>),
+    /// Time was up before the first trial.
+    Late(String),
     /// A bug in `smc`.
     Bug(String),
 }
@@ -51,7 +53,7 @@ impl Failure {
     /// What happened.
     pub fn message(&self) -> String {
         match self {
-            Self::Input(message) | Self::Bug(message) => message.clone(),
+            Self::Input(message) | Self::Late(message) | Self::Bug(message) => message.clone(),
             Self::Model(flaw) => flaw.to_string(),
         }
     }

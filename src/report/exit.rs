@@ -47,6 +47,7 @@ pub fn exit_code(run: &Run) -> ExitCode {
     let start = match &run.failure {
         Some(Failure::Bug(_)) => ExitCode::Bug,
         Some(Failure::Input(_) | Failure::Model(_)) => ExitCode::Wrong,
+        Some(Failure::Late(_)) => ExitCode::Undecided,
         None if run.interrupted => ExitCode::Interrupted,
         None => ExitCode::Success,
     };

@@ -36,9 +36,9 @@ pub fn render(run: &Run) -> String {
     }
     match &run.failure {
         // Those of the front end are annotated one by one.
-        Some(Failure::Input(_) | Failure::Model(_))
+        Some(Failure::Input(_) | Failure::Model(_) | Failure::Late(_))
             if run.diagnostics.iter().any(|finding| finding.error) => {}
-        Some(failure @ (Failure::Input(_) | Failure::Model(_))) => {
+        Some(failure @ (Failure::Input(_) | Failure::Model(_) | Failure::Late(_))) => {
             let _ = writeln!(page, "::error title=smc::{}", data(&failure.message()));
         }
         Some(Failure::Bug(message)) => {

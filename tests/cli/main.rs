@@ -5,9 +5,12 @@
 mod budgets;
 mod calls;
 mod errors;
+mod escapes;
 mod forecasts;
 mod formats;
 mod inputs;
+mod limits;
+mod outputs;
 mod program;
 mod ranks;
 mod reasons;

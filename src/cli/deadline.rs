@@ -1,0 +1,80 @@
+//! Time and signals of a call while it does not sample: while it compiles, prepares scenes and stopping rules, and prints.
+//! The engine keeps both while it samples. Before that there is no result to lose, so the process simply ends.
+
+use crate::engine::Budget;
+use crate::report::ExitCode as Exit;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
+use std::time::Duration;
+
+/// Least time that preparation may still take after the deadline: what is nearly ready should sample.
+const LEAST_GRACE: Duration = Duration::from_millis(250);
+
+/// What a call is at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Phase {
+    /// Files are read and compiled, scenes and stopping rules are prepared.
+    Preparing,
+    /// Trials run.
+    Sampling,
+    /// Something is printed.
+    Printing,
+}
+
+/// Why a call ended before its first trial.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Ended {
+    /// Time was up.
+    Late,
+    /// By a signal.
+    Interrupted,
+}
+
+/// What a call is at, for those who may end it. Whoever holds the lock while it prepares ends it.
+#[derive(Clone)]
+pub(super) struct Deadline(Arc<Mutex<Phase>>);
+
+impl Deadline {
+    /// Watches the time of a budget and the signals. `end` reports why the call ended before its first trial; the
+    /// process exits with what it returns.
+    pub(super) fn watch(budget: &Arc<Budget>, end: impl Fn(Ended) -> Exit + Clone + Send + 'static) -> Self {
+        let deadline = Self(Arc::new(Mutex::new(Phase::Preparing)));
+        let (own, signalled, on_signal) = (deadline.clone(), Arc::clone(budget), end.clone());
+        // Only the first interruption is gentle, and only while trials run.
+        let _ = ctrlc::set_handler(move || {
+            let phase = match own.0.try_lock() {
+                Ok(phase) => phase,
+                Err(TryLockError::Poisoned(poisoned)) => poisoned.into_inner(),
+                Err(TryLockError::WouldBlock) => std::process::exit(i32::from(Exit::Interrupted.code())),
+            };
+            match *phase {
+                Phase::Preparing => std::process::exit(i32::from(on_signal(Ended::Interrupted).code())),
+                Phase::Sampling if !signalled.is_interrupted() => signalled.interrupt(),
+                Phase::Sampling | Phase::Printing => {
+                    std::process::exit(i32::from(Exit::Interrupted.code()));
+                }
+            }
+        });
+        if let Some(left) = budget.seconds_left() {
+            let own = deadline.clone();
+            let grace = Duration::from_secs_f64(budget.grace()).max(LEAST_GRACE);
+            // Without this thread the call is late, and nothing else is lost.
+            let _ = std::thread::Builder::new().spawn(move || {
+                std::thread::sleep(Duration::from_secs_f64(left).saturating_add(grace));
+                let phase = own.lock();
+                if *phase == Phase::Preparing {
+                    std::process::exit(i32::from(end(Ended::Late).code()));
+                }
+            });
+        }
+        deadline
+    }
+
+    /// The call goes on to something else. It does not return where the call is ended.
+    pub(super) fn enter(&self, next: Phase) {
+        *self.lock() = next;
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Phase> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
