@@ -57,6 +57,24 @@ fn examples_keep_tree_and_comments_and_settle_at_once() {
 }
 
 #[test]
+fn shipped_files_are_formatted() {
+    let mut count = 0;
+    for folder in ["models", "properties"] {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.file_name().unwrap().to_str().unwrap();
+            if name.ends_with(".scn") || name.ends_with(".bltl") {
+                let text = std::fs::read_to_string(&path).unwrap();
+                assert!(format(name, &text) == text, "`smc fmt` changes {name}");
+                count += 1;
+            }
+        }
+    }
+    assert!(count > 20, "{count}");
+}
+
+#[test]
 fn comments_may_stand_between_any_two_words() {
     let mut tried = 0;
     for entry in std::fs::read_dir("tests/languages").unwrap() {
