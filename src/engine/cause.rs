@@ -151,7 +151,7 @@ pub fn smaller(program: &Program, key: TrialKey, trials: u64) -> String {
         })
         .collect();
     if let Some(more @ 1..) = shrunk.len().checked_sub(MOST_SHRUNK) {
-        said.push(format!("{more} more"));
+        said.push(format!("and {more} more"));
     }
     let trials = if trials == 1 { "1 trial".to_owned() } else { format!("{trials} trials") };
     format!(

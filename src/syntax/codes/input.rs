@@ -115,9 +115,11 @@ would be left. The agent starts beside it, at the nearest place found where the 
 barrier. Recorded positions are those of heads, and outlines of obstacles are rarely exact.\n\
 \n\
 Probably wrong:\n\
+\x20   tracks hotel = eth_biwi \"seq_hotel/obsmat.txt\"\n\
 \x20   obstacle bench: rect (0, 0) .. (4, 3)\n\
 \x20   agent user: adult from hotel at 646.8 s id 367\n\
 Clear:\n\
+\x20   tracks hotel = eth_biwi \"seq_hotel/obsmat.txt\"\n\
 \x20   obstacle bench: rect (0, 0) .. (0.8, 2.5)\n\
 \x20   agent user: adult from hotel at 646.8 s id 367",
     },
