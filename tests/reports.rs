@@ -1,8 +1,8 @@
 //! Every report format over one rich run.
 
 use smc::engine::outcome::{
-    Comparison, Counts, Distribution, Failure, Histogram, Interval, Kind, Method, Quantile, QueryResult,
-    RankedOption, Ranking, Run, Shows, Side, Status, Step, Stop, Verdict, Witness,
+    Comparison, Counts, Decider, Distribution, Failure, Histogram, Interval, Kind, Method, Quantile,
+    QueryResult, RankedOption, Ranking, Run, Shows, Side, Status, Step, Stop, Verdict, Witness,
 };
 use smc::report::{ExitCode, Format, Palette, exit_code, json, render};
 
@@ -53,6 +53,15 @@ fn checks() -> Vec<QueryResult> {
                 time: 3.42,
                 unit: "s",
                 what: "gap(oncoming[4]) > 0.1 m".into(),
+                decider: Some(Decider {
+                    agent: "oncoming[4]".into(),
+                    place: [9.2, 1.4],
+                    value: Some(0.03),
+                    unit: "m".into(),
+                    against: None,
+                    other: None,
+                    is_between: true,
+                }),
                 command: "smc simulate corridor.scn --seed 7 --trial 17".into(),
             }],
             ..result(0, Kind::Check, safe)

@@ -2,6 +2,7 @@
 
 use super::budget::Budget;
 use super::culprits::{NAMED, Search};
+use super::decider::{self, Decider};
 use super::grounds::{copies, each, grounds};
 use super::subject::Subject;
 use super::words;
@@ -68,15 +69,18 @@ impl Record {
     }
 }
 
-/// What decided the truth of a formula in a trial, in words; empty where nothing in particular did.
+/// What decided, in words, and the agent and number that did.
+pub(super) type Said = (String, Option<Decider>);
+
+/// What decided the truth of a formula in a trial; no words where nothing in particular did.
 pub(super) fn truth(
     subject: &Subject,
     root: NodeId,
     (record, budget): (&Record, &Budget),
     state_at: impl Fn(Tick) -> Option<State>,
-) -> String {
+) -> Said {
     record.read(subject, budget, |recording| {
-        let Ok(explanation) = explain(&subject.tree, root, recording) else { return String::new() };
+        let Ok(explanation) = explain(&subject.tree, root, recording) else { return Said::default() };
         // Of those who are not there nothing is to be said, unless there is nobody else.
         let absent = |reason: &&Reason| {
             let Node::Atom(atom) = subject.tree.nodes[reason.leaf.0 as usize] else { return false };
@@ -96,20 +100,22 @@ pub(super) fn truth(
             then.filter(|one| *one == last || !goes_without(one)).collect::<Vec<&Reason>>()
         };
         match last {
-            None if explanation.reasons.len() > 1 => "none of those it asks about is there".to_owned(),
+            None if explanation.reasons.len() > 1 => {
+                ("no agent of the quantified set was present".to_owned(), None)
+            }
             None if explanation.reasons.len() == 1 => {
                 closing(subject, &explanation.reasons[0], recording, &state_at)
             }
             Some(reason) => {
                 let then = of_then(reason);
                 let told = if then.len() <= 2 { then } else { vec![reason] };
-                let mut list: Vec<String> =
-                    told.into_iter().map(|one| closing(subject, one, recording, &state_at)).collect();
+                let (mut list, deciders): (Vec<String>, Vec<Option<Decider>>) =
+                    told.into_iter().map(|one| closing(subject, one, recording, &state_at)).unzip();
                 list.dedup();
-                list.join("; ")
+                (list.join("; "), deciders.into_iter().flatten().next())
             }
-            None if explanation.verdict.is_some() => "it does not depend on what happens".to_owned(),
-            None => String::new(),
+            None if explanation.verdict.is_some() => ("it does not depend on what happens".to_owned(), None),
+            None => Said::default(),
         }
     })
 }
@@ -140,7 +146,7 @@ pub(super) fn number(
                 (None, text)
             }
             [Source::Formula(reason)] => {
-                let closing = closing(subject, reason, recording, &state_at);
+                let (closing, _) = closing(subject, reason, recording, &state_at);
                 (Some(reason.to), format!("{text}, when {closing}"))
             }
             [Source::Signal { at, .. }] => {
@@ -233,7 +239,7 @@ fn full(
 ) -> String {
     match source {
         Source::Formula(reason) => {
-            let closing = closing(subject, reason, recording, state_at);
+            let (closing, _) = closing(subject, reason, recording, state_at);
             format!("{closing} at {}", moment(subject, reason.to))
         }
         signal @ Source::Signal { .. } => origin(subject, signal, true, (state_at, recording.stop)),
@@ -266,15 +272,15 @@ fn closing(
     reason: &Reason,
     recording: &Recording<'_>,
     state_at: &impl Fn(Tick) -> Option<State>,
-) -> String {
+) -> Said {
     let word = words::truth(reason.value);
     match &subject.tree.nodes[reason.leaf.0 as usize] {
         Node::Atom(atom) if let Bool::Present(Who::Agent(id)) = &subject.atoms()[atom.0 as usize] => {
             let name = subject.program.scenario.agents.get(id.0 as usize).map_or("", |agent| &agent.name);
-            format!("{name} is {}there", if reason.value { "" } else { "not " })
+            (format!("{name} is {}there", if reason.value { "" } else { "not " }), None)
         }
         Node::Atom(atom) => {
-            let Some(text) = subject.texts.atoms.get(atom.0 as usize) else { return String::new() };
+            let Some(text) = subject.texts.atoms.get(atom.0 as usize) else { return Said::default() };
             let condition = &subject.atoms()[atom.0 as usize];
             let stop = recording.stop;
             if let Some((part, state)) = subject.texts.parts.get(&atom.0).zip(state_at(reason.to))
@@ -282,12 +288,15 @@ fn closing(
             {
                 return because;
             }
-            let blamed = |state: &State| blamed((subject, stop), condition, text, reason.value, state);
             let state = state_at(reason.to);
-            let who = state.as_ref().map_or_else(Vec::new, blamed);
-            let named = names(subject, &who, state.as_ref());
-            if !named.is_empty() {
-                return format!("`{text}` {word}{named}");
+            if let Some(state) = &state {
+                let mut search = Search::of(subject, state, stop);
+                search.walk(condition, reason.value);
+                search.name_members(text, |tell| condition.mentions(tell));
+                let (named, decider) = decided(subject, search, state);
+                if !named.is_empty() {
+                    return (format!("`{text}` {word}{named}"), decider);
+                }
             }
             let of = |state: &State| {
                 let asked = Search::of(subject, state, stop);
@@ -295,23 +304,26 @@ fn closing(
             };
             let copies = state.as_ref().map_or_else(Vec::new, of);
             let colon = if copies.is_empty() { "" } else { ": " };
-            format!("`{text}` {word}{colon}{}", copies.join(", "))
+            (format!("`{text}` {word}{colon}{}", copies.join(", ")), None)
         }
         Node::Compare(..) => {
-            let Some((text, _)) = subject.texts.comparisons.get(&reason.leaf.0) else { return String::new() };
+            let Some((text, _)) = subject.texts.comparisons.get(&reason.leaf.0) else {
+                return Said::default();
+            };
             let found = sides(&subject.tree, reason.leaf, reason.to, recording);
             let told = |source: &Source| full(subject, source, recording, state_at);
             let list: Vec<String> =
                 found.iter().map(told).filter(|said| !said.is_empty()).take(NAMED).collect();
             if list.is_empty() {
-                let Some(state) = state_at(reason.to) else { return format!("`{text}` {word}") };
+                let Some(state) = state_at(reason.to) else { return (format!("`{text}` {word}"), None) };
                 let mut search = Search::of(subject, &state, recording.stop);
                 spoken_of(&mut search, subject, reason.leaf);
-                return format!("`{text}` {word}{}", names(subject, &search.named(), Some(&state)));
+                let (named, decider) = decided(subject, search, &state);
+                return (format!("`{text}` {word}{named}"), decider);
             }
-            format!("`{text}` {word}: {}", list.join(" and "))
+            (format!("`{text}` {word}: {}", list.join(" and ")), None)
         }
-        _ => String::new(),
+        _ => Said::default(),
     }
 }
 
@@ -321,7 +333,7 @@ fn because(
     (part, whole): (&study::Part, &str),
     truth: bool,
     state: &State,
-) -> Option<String> {
+) -> Option<Said> {
     let found = grounds(part, truth, &Search::of(subject, state, stop))?;
     let mut search = Search::of(subject, state, stop);
     let (mut said, mut owners): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
@@ -345,11 +357,11 @@ fn because(
         said.push(words::condition((text, ground.truth)));
     }
     let owners = each(owners);
-    let mut named = names(subject, &search.named(), Some(state));
+    let (mut named, decider) = decided(subject, search, state);
     if named.is_empty() && !owners.is_empty() {
         named = format!(": {}", owners.join(", "));
     }
-    Some(words::because((whole, truth), &said) + &named)
+    Some((words::because((whole, truth), &said) + &named, decider))
 }
 
 /// The agents who are there of whom a comparison of numbers over time speaks one by one.
@@ -363,16 +375,16 @@ fn spoken_of(search: &mut Search<'_>, subject: &Subject, leaf: NodeId) {
     }
 }
 
-/// The agents that make an atom true or false in a state.
-fn blamed(
-    (subject, stop): (&Subject, &dyn Fn() -> bool),
-    atom: &Bool,
-    text: &str,
-    truth: bool,
-    state: &State,
-) -> Vec<AgentId> {
-    let mut search = Search::of(subject, state, stop);
-    search.walk(atom, truth);
-    search.name_members(text, |tell| atom.mentions(tell));
-    search.named()
+/// Who was found, in words: the first with its place and the number that was compared.
+fn decided(subject: &Subject, search: Search<'_>, state: &State) -> Said {
+    let name = |id| name_of(subject, id, Some(state));
+    let decider = decider::decider(&search, &subject.program.scenario, name);
+    let named = search.named();
+    let said = match &decider {
+        Some(decider) => {
+            decider::written(decider, &named.iter().filter_map(|id| name(*id)).collect::<Vec<_>>())
+        }
+        None => names(subject, &named, Some(state)),
+    };
+    (said, decider)
 }

@@ -21,12 +21,44 @@ pub(super) struct Search<'s> {
     found: Vec<AgentId>,
     /// How many quantifiers are around: what is said of their members is about those.
     inside: u32,
+    /// The comparisons that decide; of the members of a set those of the first.
+    compared: Vec<(Num, Num)>,
+    /// Whether the first agent was found as a member of a set.
+    is_member: bool,
 }
 
 impl<'s> Search<'s> {
     /// Nobody found yet.
     pub(super) fn of(subject: &'s Subject, state: &'s State, stop: &'s dyn Fn() -> bool) -> Self {
-        Self { subject, state, stop, found: Vec::new(), inside: 0 }
+        Self { subject, state, stop, found: Vec::new(), inside: 0, compared: Vec::new(), is_member: false }
+    }
+
+    /// Those who were found.
+    pub(super) fn found(&self) -> &[AgentId] {
+        &self.found
+    }
+
+    /// The comparison that decides, if it is just one and about the first who was found.
+    pub(super) fn compared(&self) -> Option<(&Num, &Num)> {
+        let [(a, b)] = &self.compared[..] else { return None };
+        let mut is_about = false;
+        for side in [a, b] {
+            side.mentions(&mut |id| is_about |= Some(&id) == self.found.first());
+        }
+        is_about.then_some((a, b))
+    }
+
+    /// Whether the first who was found is a member of a set that is asked about.
+    pub(super) const fn is_member(&self) -> bool {
+        self.is_member
+    }
+
+    /// What some numbers are in this state.
+    pub(super) fn values(&self, nums: &[Num]) -> Vec<f64> {
+        let code = Code::compile(&self.subject.program.scenario, &[], nums);
+        let mut readings = Readings::default();
+        code.run(&self.subject.program, self.state, &mut readings);
+        readings.signals.iter().map(|lanes| lanes.0[0]).collect()
     }
 
     /// Whether nobody was found.
@@ -98,7 +130,7 @@ impl<'s> Search<'s> {
         }
     }
 
-    fn is_there(&self, id: AgentId) -> bool {
+    pub(super) fn is_there(&self, id: AgentId) -> bool {
         let slot = self.state.slot(id.0 as usize, 0);
         self.state.present[slot.block].has(slot.lane)
     }
@@ -139,19 +171,30 @@ impl<'s> Search<'s> {
                 }
                 let members = self.members(set);
                 for (id, one) in self.those(&members, truth, |id| instantiate_bool(body, 0, id)) {
+                    self.is_member |= self.found.is_empty();
+                    let is_first = self.found.is_empty() || self.found.first() == Some(&id);
                     self.name(id);
+                    let compared = self.compared.len();
                     self.inside += 1;
                     self.walk(&one, truth);
                     self.inside -= 1;
+                    if !is_first {
+                        self.compared.truncate(compared);
+                    }
                     if self.found.len() >= NAMED {
                         return;
                     }
                 }
             }
             Bool::Compare(_, a, b) => {
+                let compared = ((**a).clone(), (**b).clone());
+                if !self.compared.contains(&compared) {
+                    self.compared.push(compared);
+                }
                 let before = self.found.len();
                 self.extremum(a);
                 self.extremum(b);
+                self.is_member |= before == 0 && !self.found.is_empty();
                 if self.found.len() == before && self.inside == 0 {
                     self.name_all_in(a);
                     self.name_all_in(b);
@@ -207,11 +250,7 @@ impl<'s> Search<'s> {
         let mut best: Option<(AgentId, f64)> = None;
         for some in in_chunks(&self.members(set)) {
             let values: Vec<Num> = some.iter().map(|id| instantiate_num(body, 0, *id)).collect();
-            let code = Code::compile(&self.subject.program.scenario, &[], &values);
-            let mut readings = Readings::default();
-            code.run(&self.subject.program, self.state, &mut readings);
-            for (id, value) in some.iter().zip(&readings.signals) {
-                let value = value.0[0];
+            for (id, value) in some.iter().zip(self.values(&values)) {
                 let better = |best: f64| if smallest { value < best } else { value > best };
                 // What is not a number comes last.
                 let first = best.is_none_or(|(_, best)| better(best) || best.is_nan() && !value.is_nan());

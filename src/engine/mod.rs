@@ -8,6 +8,7 @@ mod cause;
 pub mod cell;
 mod contrast;
 mod culprits;
+mod decider;
 pub mod executor;
 mod fault;
 pub mod finding;

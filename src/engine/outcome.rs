@@ -2,6 +2,7 @@
 //!
 //! Everything but the times is a function of input, seed and version. Counts are those of consumed trials.
 
+pub use super::decider::Decider;
 pub use super::finding::{Finding, Spot};
 use super::flaw::Flaw;
 pub use super::shortfall::Shortfall;
@@ -320,6 +321,8 @@ pub struct Witness {
     pub unit: &'static str,
     /// The atom or number that decided it, with its agents.
     pub what: String,
+    /// The agent that decided it, with the number that was compared.
+    pub decider: Option<Decider>,
     /// Command that shows the trial.
     pub command: String,
 }

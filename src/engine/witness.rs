@@ -66,7 +66,7 @@ fn witness(
     }
     if program.scenario.clock.is_jumps() {
         let (time, value, what) = recall::decision(subject, column, (trial, call.seed), dimension, budget)?;
-        return Some(Witness { shows, trial, value, time, unit, what, command });
+        return Some(Witness { shows, trial, value, time, unit, what, decider: None, command });
     }
     let code = subject.code(&[column]);
     let mut observer = subject.observer(column).ok()?;
@@ -109,7 +109,7 @@ fn witness(
             let end = seconds(state.ticks[0]);
             let what = format!("outside of its range, nobody knows how far: the trial ends at {end} {unit}");
             let time = left.map_or(end, seconds);
-            return Some(Witness { shows, trial, value: None, time, unit, what, command });
+            return Some(Witness { shows, trial, value: None, time, unit, what, decider: None, command });
         }
         observer.observe(lane, &readings);
         if let Some(clipped) = clipped.as_mut().filter(|_| left.is_none()) {
@@ -133,6 +133,7 @@ fn witness(
         states.get(tick.0 as usize).cloned().or_else(|| replay(subject, key, advice, tick.0))
     };
     let now = Tick(state.ticks[0]);
+    let mut decider = None;
     let (value, at, what) = match (subject.columns[column], &observer) {
         (Root::Formula(_), Observer::Formula(monitor)) if record.is_full() => {
             (None, Tick(monitor.decided_at()[0]), String::new())
@@ -141,7 +142,9 @@ fn witness(
             (Some(monitor.value().0[0]), Tick(monitor.decided_at()[0]), String::new())
         }
         (Root::Formula(root), Observer::Formula(monitor)) => {
-            (None, Tick(monitor.decided_at()[0]), blame::truth(subject, root, (&record, budget), state_at))
+            let (what, by) = blame::truth(subject, root, (&record, budget), state_at);
+            decider = by;
+            (None, Tick(monitor.decided_at()[0]), what)
         }
         (Root::Robustness(root, _), _) => {
             let value = match observer.reading(0) {
@@ -150,7 +153,8 @@ fn witness(
             };
             if record.is_full() {
                 let time = program.scenario.clock.seconds(now);
-                return Some(Witness { shows, trial, value, time, unit, what: String::new(), command });
+                let what = String::new();
+                return Some(Witness { shows, trial, value, time, unit, what, decider: None, command });
             }
             let (at, what) = blame::margin(subject, root, (value, dimension), (&record, budget), state_at);
             (value, at.unwrap_or(now), what)
@@ -164,7 +168,7 @@ fn witness(
         _ => return None,
     };
     let time = program.scenario.clock.seconds(at);
-    Some(Witness { shows, trial, value, time, unit, what, command })
+    Some(Witness { shows, trial, value, time, unit, what, decider, command })
 }
 
 /// States kept while a witness is run; those of large crowds are made again instead.

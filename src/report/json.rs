@@ -165,7 +165,7 @@ fn side(side: &Side) -> Value {
 }
 
 fn witness(witness: &Witness, against: bool) -> Value {
-    json!({
+    let mut shown = json!({
         "shows": witness.shows.name(),
         "passing": match witness.shows {
             Shows::Fails => Some(against),
@@ -177,7 +177,21 @@ fn witness(witness: &Witness, against: bool) -> Value {
         "time": number(witness.time),
         "what": witness.what,
         "command": witness.command,
-    })
+    });
+    if let (Some(decider), Some(fields)) = (&witness.decider, shown.as_object_mut()) {
+        let mut by = json!({ "agent": decider.agent, "place": decider.place });
+        if let (Some(value), Some(fields)) =
+            (decider.value.filter(|value| value.is_finite()), by.as_object_mut())
+        {
+            fields.insert("value".to_owned(), json!(value));
+            fields.insert("unit".to_owned(), json!(decider.unit));
+        }
+        if let (Some(other), Some(fields)) = (&decider.other, by.as_object_mut()) {
+            fields.insert("other".to_owned(), json!(other));
+        }
+        fields.insert("decided_by".to_owned(), by);
+    }
+    shown
 }
 
 fn rare(found: &Rare) -> Value {

@@ -314,7 +314,7 @@ estimate P(late) by fixed(trials = 12)
         }
     }
     assert!(named > 0);
-    assert_eq!(json["results"][0]["witnesses"][0]["what"], "none of those it asks about is there");
+    assert_eq!(json["results"][0]["witnesses"][0]["what"], "no agent of the quantified set was present");
     let warnings = json["results"][0]["warnings"].to_string();
     assert!(warnings.contains("nobody was there") && !warnings.contains("implications"), "{warnings}");
 }

@@ -73,48 +73,60 @@ fn of_a_condition_of_several_parts_those_are_named_that_decided() {
     told(
         PEOPLE,
         &[
-            ("F<=1 s slow", "`slow` is false because `speed(me) < 0.1 m/s` is false: me"),
-            ("G<=1 s quick", "`quick` is true because `speed(me) < 0.1 m/s` is false: me"),
-            ("G<=1 s fine", "`fine` is true because `speed(me) < 0.1 m/s` is false: me"),
-            ("F<=1 s !fine", "`!fine` is false because `speed(me) < 0.1 m/s` is false: me"),
+            (
+                "F<=1 s slow",
+                "`slow` is false because `speed(me) < 0.1 m/s` is false: 1 m/s of me at (2, 2) m",
+            ),
+            (
+                "G<=1 s quick",
+                "`quick` is true because `speed(me) < 0.1 m/s` is false: 1 m/s of me at (2, 2) m",
+            ),
+            ("G<=1 s fine", "`fine` is true because `speed(me) < 0.1 m/s` is false: 1 m/s of me at (2, 2) m"),
+            (
+                "F<=1 s !fine",
+                "`!fine` is false because `speed(me) < 0.1 m/s` is false: 1 m/s of me at (2, 2) m",
+            ),
             (
                 "G<=1 s (me in exit | you in room)",
-                "`me in exit | you in room` is true because `you in room` is true: you",
+                "`me in exit | you in room` is true because `you in room` is true: you at (6, 1) m",
             ),
             (
                 "F<=1 s (me in exit | distance(me, you) < 1 m)",
-                "`me in exit | distance(me, you) < 1 m` is false because `me in exit` is false and \
-                 `distance(me, you) < 1 m` is false: me, you",
+                "`me in exit | distance(me, you) < 1 m` is false because `me in exit` is false and `distance(me, you) < 1 m` is false: 4.123 m of me at (2, 2) m to you",
             ),
             (
                 "G<=1 s (speed(me) < 9 m/s & you in room & speed(you) < 9 m/s)",
-                "`speed(me) < 9 m/s & you in room & speed(you) < 9 m/s` is true: me, you",
+                "`speed(me) < 9 m/s & you in room & speed(you) < 9 m/s` is true: me at (2, 2) m, you",
             ),
             (
                 "G<=1 s (me in room <=> you in room)",
-                "`me in room <=> you in room` is false because `me in room` is false and `you in room` is true: me, you",
+                "`me in room <=> you in room` is false because `me in room` is false and `you in room` is true: me at (1, 2) m, you",
             ),
-            ("G<=1 s (you in room => me in room)", "`you in room` is true: you; `me in room` is false: me"),
+            (
+                "G<=1 s (you in room => me in room)",
+                "`you in room` is true: you at (6, 1) m; `me in room` is false: me at (1, 2) m",
+            ),
             // A chain is one, however it nests.
             (
                 "F<=1 s (me in room | me in exit | lamp.n > 3 | crowd[1] in room)",
-                "`me in room | me in exit | lamp.n > 3 | crowd[1] in room` is false: me, crowd[1]",
+                "`me in room | me in exit | lamp.n > 3 | crowd[1] in room` is false: me at (2, 2) m, crowd[1]",
             ),
             (
                 "F<=0.5 s time_until(me in exit) < time_until(you in room)",
-                "`time_until(me in exit) < time_until(you in room)` is false: `me in exit` is true: me at 2.1 s and \
-                 `you in room` is true: you at 0.5 s",
+                "`time_until(me in exit) < time_until(you in room)` is false: `me in exit` is true: me at (3.1, 2) m at 2.1 s and `you in room` is true: you at (6, 1) m at 0.5 s",
             ),
-            ("if(me in exit, 1, 0) == 1", "`if(me in exit, 1, 0) == 1` is false: me"),
-            ("distance(me, you) < 1 m", "`distance(me, you) < 1 m` is false: me, you"),
+            ("if(me in exit, 1, 0) == 1", "`if(me in exit, 1, 0) == 1` is false: me at (1, 2) m"),
+            (
+                "distance(me, you) < 1 m",
+                "`distance(me, you) < 1 m` is false: 5.099 m of me at (1, 2) m to you",
+            ),
             (
                 "mean<=1 s (distance(me, you)) < 1 m",
-                "`mean<=1 s (distance(me, you)) < 1 m` is false: me, you",
+                "`mean<=1 s (distance(me, you)) < 1 m` is false: me at (1, 2) m, you",
             ),
             (
                 "time_until(you in room & speed(me) > 0.1 m/s) < 1 s",
-                "`you in room & speed(me) > 0.1 m/s` is true because `you in room` is true and `speed(me) > 0.1 m/s` \
-                 is true: you, me",
+                "`you in room & speed(me) > 0.1 m/s` is true because `you in room` is true and `speed(me) > 0.1 m/s` is true: you at (6, 1) m, me",
             ),
         ],
     );
@@ -127,17 +139,16 @@ fn of_a_quantifier_it_is_the_first_of_whom_it_is_said_and_the_part_that_decided(
         &[
             (
                 "G<=1 s (forall a in crowd: speed(a) < 9 m/s & a in room)",
-                "`forall a in crowd: speed(a) < 9 m/s & a in room` is false because `a in room` is false: crowd[1]",
+                "`forall a in crowd: speed(a) < 9 m/s & a in room` is false because `a in room` is false: crowd[1] at (9, 1) m",
             ),
             (
                 "F<=1 s (exists a in crowd: a in room | a in exit)",
-                "`exists a in crowd: a in room | a in exit` is true because `a in exit` is true: crowd[1]",
+                "`exists a in crowd: a in room | a in exit` is true because `a in exit` is true: crowd[1] at (9, 1) m",
             ),
             // Nobody wrote the `!` that an implication is made of.
             (
                 "G<=1 s (forall a in crowd: a in exit => a in room)",
-                "`forall a in crowd: a in exit => a in room` is false because `a in exit` is true and `a in room` is \
-                 false: crowd[1]",
+                "`forall a in crowd: a in exit => a in room` is false because `a in exit` is true and `a in room` is false: crowd[1] at (9, 1) m",
             ),
             // Nobody wrote that there is no case.
             ("G<=1 s (forall a in crowd: close(a) => a in exit)", "`exists a in crowd: close(a)` is false"),
@@ -151,20 +162,19 @@ fn arguments_are_told_as_what_they_stand_for() {
     told(
         PEOPLE,
         &[
-            ("f(me, room, 1 s)", "`me in room` is false: me"),
+            ("f(me, room, 1 s)", "`me in room` is false: me at (2, 2) m"),
             // Both functions call their argument `p`.
             (
                 "F<=1 s close(you)",
-                "`close(you)` is false because `distance(you, me) < 2 m` is false: you, me",
+                "`close(you)` is false because `distance(you, me) < 2 m` is false: 4.123 m of you at (6, 1) m to me",
             ),
             (
                 "G<=1 s (close(you) | close(crowd[1]))",
-                "`close(you) | close(crowd[1])` is false because `distance(you, me) < 2 m` is false and \
-                 `distance(crowd[1], me) < 2 m` is false: you, me, crowd[1]",
+                "`close(you) | close(crowd[1])` is false because `distance(you, me) < 2 m` is false and `distance(crowd[1], me) < 2 m` is false: you at (6, 1) m, me, crowd[1]",
             ),
             (
                 "F<=1 s (twice(distance(me, you) - 1 m) < 1 m)",
-                "`twice(distance(me, you) - 1 m) < 1 m` is false: me, you",
+                "`twice(distance(me, you) - 1 m) < 1 m` is false: me at (2, 2) m, you",
             ),
             (
                 "min<=1 s (twice(distance(me, you) - 1 m)) < 1 m",
@@ -177,23 +187,22 @@ fn arguments_are_told_as_what_they_stand_for() {
             // One `a` is another than the other, so both are told by their own names.
             (
                 "G<=1 s (forall a in crowd: lonely(a))",
-                "`forall a in crowd: lonely(a)` is false because `distance(crowd[1], crowd[1]) < 1 m & speed(crowd[1]) < \
-                 9 m/s & crowd[1] in exit` is true: crowd[1]",
+                "`forall a in crowd: lonely(a)` is false because `distance(crowd[1], crowd[1]) < 1 m & speed(crowd[1]) < 9 m/s & crowd[1] in exit` is true: crowd[1] at (9, 1) m",
             ),
             (
                 "G<=1 s (forall a in crowd: alone(a))",
-                "`forall a in crowd: alone(a)` is false because `distance(me, crowd[1]) < 100 m` is true and \
-                 `speed(me) < 9 m/s` is true: crowd[1], me",
+                "`forall a in crowd: alone(a)` is false because `distance(me, crowd[1]) < 100 m` is true and `speed(me) < 9 m/s` is true: crowd[1] at (9, 1) m, me",
             ),
             // What is long is cut, between words and outside of brackets.
             (
                 "F<=1 s less(distance(me, you) + distance(you, crowd[1]) + speed(me) * 1 s + distance(crowd[1], me), 1 m)",
-                "`less(distance(me, you) + distance(you, crowd[1]) + speed(me) * 1 s + distance(crowd[1], me), 1 m)` is \
-                 false because `distance(me, you) + distance(you, crowd[1]) + speed(me) * 1 s + … < 1 m` is false: me, you, \
-                 crowd[1]",
+                "`less(distance(me, you) + distance(you, crowd[1]) + speed(me) * 1 s + distance(crowd[1], me), 1 m)` is false because `distance(me, you) + distance(you, crowd[1]) + speed(me) * 1 s + … < 1 m` is false: 15.19 m of me at (2, 2) m, you, crowd[1]",
             ),
             // However many functions it goes through.
-            ("F<=1 s h70(you)", "`h70(you)` is false because `speed(you) > 9 m/s` is false: you"),
+            (
+                "F<=1 s h70(you)",
+                "`h70(you)` is false because `speed(you) > 9 m/s` is false: 0 m/s of you at (6, 1) m",
+            ),
         ],
     );
 }
@@ -316,6 +325,49 @@ check P(G<=1 s (forall a in others(me): x(position(a)) < 14 m | has(a))) >= 0.5\
     let said = place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "json", "--max-trials", "1"]);
     assert_eq!(
         said.json()["results"][0]["witnesses"][0]["what"],
-        "`forall a in others(me): x(position(a)) < 14 m | has(a)` is false: a"
+        "`forall a in others(me): x(position(a)) < 14 m | has(a)` is false: 15 m of a at (15, 3) m"
     );
+}
+
+#[test]
+fn the_number_that_decided_and_its_place_are_those_of_the_trace() {
+    let properties = "let gap(a) = distance(me, a) - radius(me) - radius(a)
+check P(G<=2 s (forall a in others(me): gap(a) > 4 m)) >= 0.5
+check P(G<=2 s (clearance(you) > 4 m)) >= 0.5\n";
+    let place = Place::new(&[("a.scn", PEOPLE), ("a.bltl", properties)]);
+    let said = place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "json", "--max-trials", "1"]);
+    let json = said.json();
+    let trace = place.call(&["simulate", "a.scn", "--seed", "0"]).out;
+    let mut rows = csv::Reader::from_reader(trace.as_bytes());
+    let heads: Vec<String> = rows.headers().unwrap().iter().map(str::to_owned).collect();
+    let rows: Vec<csv::StringRecord> = rows.records().map(Result::unwrap).collect();
+    for k in [0, 1] {
+        let witness = &json["results"][k]["witnesses"][0];
+        let by = &witness["decided_by"];
+        let time = witness["time"].as_f64().unwrap();
+        let number = |agent: &str, head: &str| {
+            let column = |head: &str| heads.iter().position(|name| name == head).unwrap();
+            let is_it = |row: &&csv::StringRecord| {
+                let then: f64 = row[column("time")].parse().unwrap();
+                (then - time).abs() < 1e-9 && &row[column("agent")] == agent
+            };
+            rows.iter().find(is_it).unwrap()[column(head)].parse::<f64>().unwrap()
+        };
+        let agent = by["agent"].as_str().unwrap();
+        let other = by["other"].as_str().unwrap_or("me");
+        let at = [number(agent, "x"), number(agent, "y")];
+        let distance = f64::hypot(at[0] - number(other, "x"), at[1] - number(other, "y"));
+        let gap = distance - number(agent, "radius") - number(other, "radius");
+        let near = |said: &serde_json::Value, value: f64| (said.as_f64().unwrap() - value).abs() < 1e-9;
+        assert!(near(&by["place"][0], at[0]) && near(&by["place"][1], at[1]), "{by} {at:?}");
+        assert!(near(&by["value"], gap) && by["unit"] == "m", "{by} {gap}");
+        assert!(gap < 4.0, "{gap}");
+        let what = witness["what"].as_str().unwrap();
+        assert!(what.contains(&format!(" at ({}, {}) m", round(at[0]), round(at[1]))), "{what}");
+    }
+    assert_eq!(json["results"][1]["witnesses"][0]["decided_by"]["agent"], "you");
+}
+
+fn round(length: f64) -> f64 {
+    (length * 100.0).round() / 100.0
 }

@@ -139,7 +139,7 @@ fn facts(page: &mut String, result: &QueryResult, swept: bool) {
     for warning in &result.warnings {
         let _ = writeln!(page, "<p class=\"warning\">{head}{}</p>", escape(warning));
     }
-    for Witness { shows, value, trial, time, unit, what, command } in &result.witnesses {
+    for Witness { shows, value, trial, time, unit, what, command, .. } in &result.witnesses {
         let _ = writeln!(
             page,
             "<p>{} in trial {}, {} {}: <code>{}</code></p>\n<pre>{}</pre>",
