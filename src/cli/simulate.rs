@@ -352,7 +352,7 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
         None => write(arguments.format, BufWriter::new(std::io::stdout().lock()), &scenario, &mut walk),
     };
     if let (trials, Some(first)) = walk.shrunk {
-        say(&format!("warning: {}\n", smaller(&program, first, trials)));
+        warn(&format!("warning: {}\n", smaller(&program, first, trials)));
     }
     for note in &walk.notes {
         warn(&format!("warning: {note}\n"));
