@@ -90,10 +90,10 @@ pub(super) struct Check {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
     pub(super) ranks: Option<u16>,
     /// Most trials of one query (of a ranking: of one option); one million by default.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = parse_count)]
     pub(super) max_trials: Option<u64>,
     /// Most trials of one ranking, over all its options.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = parse_count)]
     pub(super) total_trials: Option<u64>,
     /// Time for the whole call, such as `50ms`, `2s`, `5min`; no limit by default. To show what decided a trial
     /// may take a quarter of it more, at least 20 ms and at most a second.
@@ -152,8 +152,8 @@ pub(super) struct Simulate {
     /// Write every N-th state only.
     #[arg(long, default_value_t = 1, value_name = "N")]
     pub(super) every: u64,
-    /// Stop at this time in seconds instead of the horizon.
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    /// Stop at this time instead of the horizon: `2.5s`; a bare number is in seconds.
+    #[arg(long, value_name = "TIME", allow_negative_numbers = true, value_parser = parse_moment)]
     pub(super) until: Option<f64>,
     /// Format of the table.
     #[arg(long, value_enum, default_value_t = TableFormat::Csv)]
@@ -265,8 +265,24 @@ fn parse_quiet(text: &str) -> Result<f64, String> {
     if value > 1.0 && value < 1e300 { Ok(value) } else { Err("a number above 1".to_owned()) }
 }
 
-/// A duration with its unit: `50ms`, `2s`, `1.5min`, `1h`.
-fn parse_duration(text: &str) -> Result<std::time::Duration, String> {
+/// A whole number: `20000`, `2e4`.
+fn parse_count(text: &str) -> Result<u64, String> {
+    let wrong = || format!("`{text}` is not a whole number: write 10000 or 1e4");
+    let exact = text.parse().ok();
+    let rounded = || text.parse().ok().filter(|n: &f64| *n >= 0.0 && *n <= 9e15 && n.fract() == 0.0);
+    exact.or_else(|| rounded().map(|n| n as u64)).ok_or_else(wrong)
+}
+
+/// A number of seconds, or a time with its unit.
+fn parse_moment(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(seconds) => Ok(seconds),
+        Err(_) => parse_seconds(text),
+    }
+}
+
+/// A time with its unit: `50ms`, `2s`, `1.5min`, `1h`.
+fn parse_seconds(text: &str) -> Result<f64, String> {
     let split = text.find(|c: char| c.is_alphabetic()).unwrap_or(text.len());
     let (digits, unit) = text.split_at(split);
     let scale = match unit {
@@ -274,11 +290,18 @@ fn parse_duration(text: &str) -> Result<std::time::Duration, String> {
         "s" => 1.0,
         "min" => 60.0,
         "h" => 3600.0,
-        "" => return Err("the unit is missing: write 50ms, 2s or 5min".to_owned()),
-        _ => return Err(format!("unknown unit `{unit}`: use ms, s, min or h")),
+        "" if digits.parse::<f64>().is_ok() => {
+            return Err(format!("the unit is missing: write {digits}s, {digits}ms or {digits}min"));
+        }
+        _ => return Err(format!("`{text}` is not a time: write 50ms, 2s, 5min or 1h")),
     };
     let value: f64 = digits.trim().parse().map_err(|_| format!("`{digits}` is not a number"))?;
-    let seconds = value * scale;
+    Ok(value * scale)
+}
+
+/// A positive duration with its unit.
+fn parse_duration(text: &str) -> Result<std::time::Duration, String> {
+    let seconds = parse_seconds(text)?;
     if seconds >= 1e9 {
         return Err("a timeout is shorter than 30 years; leave it out to wait as long as it takes".to_owned());
     }
@@ -305,5 +328,19 @@ mod tests {
         assert!(parse_duration("50").is_err());
         assert!(parse_duration("0s").is_err());
         assert!(parse_duration("5 parsecs").is_err());
+        assert_eq!(parse_moment("2s"), Ok(2.0));
+        assert_eq!(parse_moment("-2.5"), Ok(-2.5));
+        assert!(parse_moment("2x").is_err());
+    }
+
+    #[test]
+    fn counts_are_whole() {
+        for (text, count) in [("0", 0), ("1e4", 10_000), ("2.5e3", 2500), ("18446744073709551615", u64::MAX)]
+        {
+            assert_eq!(parse_count(text), Ok(count));
+        }
+        for text in ["1.5", "-1", "1e300", "NaN", "many", ""] {
+            assert!(parse_count(text).is_err(), "{text}");
+        }
     }
 }

@@ -98,6 +98,13 @@ impl fmt::Display for Dimension {
     }
 }
 
+/// The number of a text that is one number with a unit.
+pub(super) fn single_number(text: &str) -> Option<&str> {
+    let (number, unit) = text.split_once(' ')?;
+    let is_number = number.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.');
+    (is_number && !unit.contains([' ', '('])).then_some(number)
+}
+
 /// What a dimension is called in messages: `a length (m)`, `a pure number`.
 pub fn describe(dimension: Dimension) -> String {
     let name = match dimension {

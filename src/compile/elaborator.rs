@@ -1,7 +1,7 @@
 //! The state of compilation under one combination of parameter values.
 
 use super::behaviour::With;
-use super::dimension::{Dimension, describe};
+use super::dimension::{Dimension, describe, single_number};
 use super::failures::Vain;
 use super::interned::Interned;
 use super::kinds::Kind;
@@ -365,8 +365,8 @@ impl<'a> Elaborator<'a> {
             span,
             format!("expected {}, found {}", describe(expected), describe(found)),
         );
+        let text = self.text(span);
         if found.is_none() && !expected.is_none() {
-            let text = self.text(span);
             // A unit belongs to a number or a point.
             let is_number = text.ends_with(|c: char| c.is_ascii_digit() || c == '.' || c == ')')
                 && text.starts_with(|c: char| !c.is_alphabetic() && c != '_');
@@ -377,6 +377,9 @@ impl<'a> Elaborator<'a> {
             } else {
                 format!("write the unit where the number stands, or multiply: `{text} * 1 {unit}`")
             });
+        }
+        if let Some(number) = single_number(&text).filter(|_| !found.is_none() && !expected.is_none()) {
+            error = error.hint(format!("write `{number} {expected}`"));
         }
         if found.is_none() && !expected.is_none() {
             error.comes_of = self.bare_within(span);

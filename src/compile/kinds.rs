@@ -103,8 +103,12 @@ impl Elaborator<'_> {
                 }
             } else {
                 let error =
-                    unknown("preset", &preset.name, preset.span, "E0208", PRESETS.iter().map(|p| p.name))
-                        .hint(format!("known presets: {}", PRESETS.map(|p| p.name).join(", ")));
+                    unknown("preset", &preset.name, preset.span, "E0208", PRESETS.iter().map(|p| p.name));
+                let known = format!("known presets: {}", PRESETS.map(|p| p.name).join(", "));
+                let error = match error.hint.clone() {
+                    Some(near) => error.hint(format!("{near} {known}")),
+                    None => error.hint(known),
+                };
                 self.note(error);
                 kind = Err(Reported);
             }

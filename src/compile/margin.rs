@@ -8,6 +8,7 @@ use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Lowered};
 use super::lower::relation;
 use super::study::{Form, Part};
+use super::typed::Typed;
 use crate::base::tick::Clock;
 use crate::logic::{Invalid, Node, NodeId, Relation, Robustness, SignalRobustness, Term, TermId};
 use crate::model::{Arithmetic, Bool, Comparison, Field, Fold, Function, Num, Place, Set, Who};
@@ -24,9 +25,22 @@ pub(super) struct Margins {
     mixed: bool,
     /// How many numbers are around the present place: conditions inside a number are none of the formula.
     pub(super) inside: u32,
+    /// The first equality of numbers, which has none, and the comparison to write instead.
+    equality: Option<(Span, String)>,
 }
 
 impl Elaborator<'_> {
+    /// An equality: it has no margin.
+    pub(super) fn note_equality(&mut self, (left, right): (Span, Span), b: &Typed) {
+        if !matches!(b, Typed::Number(_)) || self.margins.as_ref().is_none_or(|m| m.equality.is_some()) {
+            return;
+        }
+        let instead = format!("{} >= {}", self.text(left), self.text(right));
+        if let Some(margins) = &mut self.margins {
+            margins.equality = Some((left.to(right), instead));
+        }
+    }
+
     /// A condition with a margin of this dimension.
     pub(super) fn note_margin(&mut self, dimension: Dimension, span: Span) {
         let Some(margins) = &mut self.margins else { return };
@@ -69,6 +83,11 @@ impl Elaborator<'_> {
             return Err(super::elaborator::Reported);
         }
         let Some((dimension, _)) = margins.first else {
+            if let Some((place, instead)) = margins.equality {
+                let title = format!("`{}` has no margin: `==` and `!=` are true or false", self.text(place));
+                let error = Diagnostic::error("E0610", place, title);
+                return self.report(error.hint(format!("write `{instead}`, or `<=`")));
+            }
             let error = Diagnostic::error("E0610", span, "nothing in this formula has a margin")
                 .hint("robustness measures how far comparisons with `<`, `<=`, `>`, `>=`, contacts and regions are from changing");
             return self.report(error);

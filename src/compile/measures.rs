@@ -269,11 +269,11 @@ impl Elaborator<'_> {
             // What is no number is perhaps meant as a formula, which has no range.
             None if metric.is_err() && self.is_refused_as_a_whole(&measure.body) => Err(Reported),
             None => {
-                let unit = dimension.map_or_else(String::new, |d| format!(" in {}", unit_hint(d)));
+                let unit = dimension.filter(|d| !d.is_none()).map_or_else(String::new, |d| format!(" {d}"));
                 let error =
                     Diagnostic::error("E0605", measure.span, "an expectation needs the range of its metric")
                         .hint(format!(
-                            "write `E(…) in lo .. hi`{unit}; values beyond are clipped and counted"
+                            "write the range of its values, as in `E(…) in 0{unit} .. 10{unit}`; values beyond are clipped and counted"
                         ));
                 self.report(error)
             }
@@ -478,8 +478,4 @@ impl Elaborator<'_> {
             Clock::Steps => format!("{ticks} steps"),
         }
     }
-}
-
-fn unit_hint(dimension: Dimension) -> String {
-    if dimension.is_none() { "pure numbers".to_owned() } else { format!("{dimension}") }
 }

@@ -80,9 +80,9 @@ impl<'a> Elaborator<'a> {
             let error = Diagnostic::error(
                 "E0209",
                 decl.name.span,
-                format!("where do those of `{}` go?", decl.name.name),
+                format!("source `{}` has no `route`", decl.name.name),
             )
-            .hint("set `route`: people of a source leave at its last goal");
+            .hint("write `route = …`; agents of a source leave at its last goal");
             return self.report(error);
         };
         match self.route(&field.value, &Locals::default())? {

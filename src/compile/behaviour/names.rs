@@ -2,7 +2,7 @@
 
 use super::{lets, states};
 use crate::compile::elaborator::{Elaborator, Locals, Lowered, Reported};
-use crate::compile::lower::counted_arguments;
+use crate::compile::lower::{FUNCTIONS, counted_arguments};
 use crate::compile::symbols::unknown;
 use crate::compile::typed::Typed;
 use crate::model::{BehaviourId, Bool, Comparison, Field, Num, Who};
@@ -72,7 +72,14 @@ impl<'a> Elaborator<'a> {
             let error = unknown("behaviour", &member.name, member.span, "E0201", known.into_iter());
             let error = match &error.hint {
                 Some(_) => error,
-                None => error.hint("numbers of agents are functions: `speed(user)`"),
+                None => {
+                    let who = self.text(base);
+                    error.hint(match member.name.as_str() {
+                        name @ ("x" | "y") => format!("write `{name}(position({who}))`"),
+                        name if FUNCTIONS.contains(&name) => format!("write `{name}({who})`"),
+                        _ => "numbers of agents are functions: `speed(user)`".to_owned(),
+                    })
+                }
             };
             return self.report(error);
         };

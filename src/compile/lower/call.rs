@@ -13,6 +13,7 @@ use crate::logic::Term;
 use crate::model::{Arithmetic, Axis, Bool, Field, Function, Num, Place, Set, Who};
 use crate::syntax::ast::{Expr, Ident};
 use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::parse::foreign_word;
 use crate::syntax::source::Span;
 
 impl Elaborator<'_> {
@@ -128,7 +129,11 @@ impl Elaborator<'_> {
                     .collect();
                 known.extend(declared.iter().map(String::as_str));
                 let error = unknown("function", name, function.span, "E0203", known.into_iter());
-                self.note(if matches!(name, "not" | "NOT") { error.hint("write `!(…)`") } else { error });
+                let within = arguments.iter().map(|argument| self.text(argument.span)).collect::<Vec<_>>();
+                self.note(match foreign_word(name, &within.join(", ")) {
+                    Some(hint) => error.hint(hint),
+                    None => error,
+                });
                 // Whatever it is, its arguments are what they are.
                 let _ = self.lower_all(arguments, locals);
                 Err(Reported)

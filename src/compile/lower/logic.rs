@@ -132,6 +132,9 @@ impl Elaborator<'_> {
         {
             return compared;
         }
+        if let Some(misread) = self.misread_comparison(left, right, locals) {
+            return misread;
+        }
         let sides = self.inside_a_number(|this| {
             let a = this.lower(left, locals);
             // `a.phone == looking` without such a behaviour: the state is unknown with it.
@@ -150,7 +153,21 @@ impl Elaborator<'_> {
         let a = if matches!(a, Typed::Infinity) { infinite(&b) } else { a };
         let b = if matches!(b, Typed::Infinity) { infinite(&a) } else { b };
         let span = Span { end: right.span.end, ..left.span };
+        if !margin {
+            self.note_equality((left.span, right.span), &b);
+        }
         match (&a, &b) {
+            (Typed::Agent(_), Typed::Agent(_)) => {
+                let error = Diagnostic::error(
+                    "E0305",
+                    whole,
+                    format!("`{}` compares agents, which are no numbers", self.text(whole)),
+                );
+                let other = self.text(right.span);
+                return self.report(error.hint(format!(
+                    "everybody but `{other}` is the set `others({other})`: `forall a in others({other}): …`"
+                )));
+            }
             (Typed::Tally(formulas), Typed::Number(bound)) if bound.dimension.is_none() => {
                 return Ok(Typed::Formula(self.tally(
                     formulas,

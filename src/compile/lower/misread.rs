@@ -1,13 +1,14 @@
 //! Units and words that are misspelt, so that they read as names.
 
-use super::super::elaborator::{Elaborator, Locals};
+use super::super::dimension;
+use super::super::elaborator::{Elaborator, Locals, Lowered};
 use super::super::nearest::nearest;
 use super::super::told::Told;
 use super::{BUILT_IN, DISTRIBUTIONS, FUNCTIONS};
 use crate::base::tick::Clock;
-use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Value};
+use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Moment, Value};
 use crate::syntax::diagnostic::Diagnostic;
-use crate::syntax::parse::{time_meant, unit_meant};
+use crate::syntax::parse::{foreign_word, time_meant, unit_meant};
 use crate::syntax::source::Span;
 
 /// The word before a shape in which somebody starts.
@@ -32,6 +33,72 @@ impl Elaborator<'_> {
         };
         self.note(Diagnostic::error("E0113", span, format!("unknown unit `{name}`")).hint(hint));
         true
+    }
+
+    /// What an unknown name may stand for: a variable of a process, a word of another language, a unit.
+    pub(super) fn misread_name(&self, name: &str) -> Option<String> {
+        let of_processes = self.paths_of(name);
+        if !of_processes.is_empty() {
+            return Some(format!("write {}", of_processes.join(" or ")));
+        }
+        foreign_word(name, "").or_else(|| {
+            dimension::unit(name)?;
+            Some(format!(
+                "a unit belongs to a number: `1 {name}`; one to divide by has no blank after the slash: `1 /{name}`"
+            ))
+        })
+    }
+
+    /// `P(p) >= 0.9` and `(x at end) > 3` inside a formula: the error, if it is so.
+    pub(super) fn misread_comparison<T>(
+        &mut self,
+        left: &Expr,
+        right: &Expr,
+        locals: &Locals,
+    ) -> Option<Lowered<T>> {
+        if let ExprKind::Call { function, .. } = &left.kind
+            && matches!(function.name.as_str(), "P" | "E" | "Q")
+            && !self.is_known(&function.name, locals)
+        {
+            let title = format!("`{}` stands only in queries, not in formulas", function.name);
+            let query = self.text(left.span.to(right.span));
+            let error = Diagnostic::error("E0504", function.span, title);
+            return Some(self.report(error.hint(format!("write a query of its own: `check {query}`"))));
+        }
+        let (span, inner, moment) = [left, right].into_iter().find_map(|side| match &side.kind {
+            ExprKind::At(inner, moment) => Some((side.span, inner.span, moment)),
+            _ => None,
+        })?;
+        let whole = left.span.to(right.span);
+        let before = self.text(Span { end: span.start, ..whole });
+        let behind = self.text(Span { start: span.end, ..whole });
+        let compared = format!("{before} {} {behind}", self.text(inner));
+        Some(self.misplaced_moment((span, inner), Some(compared.trim()), moment))
+    }
+
+    /// `… at end` elsewhere than around a whole metric.
+    pub(super) fn misplaced_moment<T>(
+        &mut self,
+        (span, inner): (Span, Span),
+        read: Option<&str>,
+        moment: &Moment,
+    ) -> Lowered<T> {
+        let (time, written) = match moment {
+            Moment::End => (self.duration(self.horizon.0), "at end".to_owned()),
+            Moment::Time(time) => (self.text(time.span), format!("at {}", self.text(time.span))),
+        };
+        let title = format!("`{written}` stands only around the whole metric of `E(…)` or `Q(…)`");
+        // `at` stands behind what is read, and a parenthesis behind it.
+        let source = self.sources.iter().find(|source| source.id == span.source);
+        let behind = source.map_or("", |source| source.slice(Span { start: inner.end, ..span }));
+        let at = behind.find("at").unwrap_or(0);
+        let start = inner.end + at as u32;
+        let end = start + behind[at..].trim_end_matches([')', ' ']).len() as u32;
+        let error = Diagnostic::error("E0504", Span { start, end, ..span }, title);
+        self.report(match read {
+            Some(read) => error.hint(format!("of a condition write `F[{time}, {time}] ({read})`")),
+            None => error.hint(format!("write it last: `E(… {written})`")),
+        })
     }
 
     /// Whether a name stands for anything.

@@ -129,13 +129,13 @@ impl Elaborator<'_> {
             ExprKind::Window(aggregate, bound, body) => {
                 self.lower_window(expr.span, *aggregate, bound, body, locals)
             }
-            ExprKind::At(..) => {
-                let error = Diagnostic::error(
-                    "E0504",
-                    expr.span,
-                    "`at` stands only directly inside `E(…)` and `Q(…)`",
+            ExprKind::At(inner, moment) => {
+                let is_number = matches!(
+                    &inner.kind,
+                    ExprKind::Call { .. } | ExprKind::Member(..) | ExprKind::Name(_) | ExprKind::Quantity(_)
                 );
-                self.report(error)
+                let read = Some(self.text(inner.span)).filter(|_| !is_number);
+                self.misplaced_moment((expr.span, inner.span), read.as_deref(), moment)
             }
         }
     }

@@ -14,7 +14,7 @@ use crate::syntax::diagnostic::{Diagnostic, Label};
 use crate::syntax::source::Span;
 use std::sync::Arc;
 
-use super::super::dimension::{self, Dimension};
+use super::super::dimension::Dimension;
 
 /// Down to what depth calls are followed whose arguments nobody knows.
 const FOLLOWED: u32 = 400;
@@ -163,10 +163,8 @@ impl<'a> Elaborator<'a> {
             known.extend(BUILT_IN.map(str::to_owned));
         }
         let error = unknown("name", name, span, "E0201", known.iter().map(String::as_str));
-        self.report(match dimension::unit(name) {
-            Some(_) => error.hint(format!(
-                "a unit belongs to a number: `1 {name}`; one to divide by has no blank after the slash: `1 /{name}`"
-            )),
+        self.report(match self.misread_name(name) {
+            Some(hint) => error.hint(hint),
             None => error,
         })
     }
@@ -485,7 +483,10 @@ impl<'a> Elaborator<'a> {
                 .hint(match count {
                     0 => "it has no members".to_owned(),
                     1 => "it has 1 member, `[1]`".to_owned(),
-                    count => format!("it has {count} members, counted from 1"),
+                    count => {
+                        let name = self.text(base.span);
+                        format!("it has {count} members, `{name}[1]` to `{name}[{count}]`")
+                    }
                 });
                 self.report(error)
             }

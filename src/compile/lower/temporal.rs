@@ -238,9 +238,16 @@ impl Elaborator<'_> {
                     let same = Decimal::parse(&time.to_string()).map(|time| self.clock.tick_at(time));
                     if same == Some(Ok(tick)) { format!("{time} s") } else { format!("#{}", tick.0) }
                 };
-                let error =
-                    Diagnostic::error("E0501", span, format!("this is no multiple of the step of {step} s"))
-                        .hint(format!("the nearest bounds are {} and {}", seconds(below), seconds(above)));
+                let error = Diagnostic::error(
+                    "E0501",
+                    span,
+                    format!("`{}` is no multiple of the step of {step} s", self.text(span)),
+                )
+                .hint(format!(
+                    "the nearest bounds are {} and {}",
+                    seconds(below),
+                    seconds(above)
+                ));
                 self.report(error)
             }
             _ => self.report(Diagnostic::error("E0501", span, "this time is out of range")),

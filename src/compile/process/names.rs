@@ -138,6 +138,16 @@ impl<'a> Elaborator<'a> {
         self.processes.iter().any(|process| process.names.contains_key(name))
     }
 
+    /// What a variable of processes is called elsewhere, with its process.
+    pub(in crate::compile) fn paths_of(&self, name: &str) -> Vec<String> {
+        let having = self.processes.iter().filter(|process| process.names.contains_key(name));
+        let path = |process: &super::Declared<'_>| {
+            let copy = if process.is_array() { "[1]" } else { "" };
+            format!("`{}{copy}.{name}`", process.decl.name.name)
+        };
+        having.map(path).take(3).collect()
+    }
+
     /// A function declared inside the process around the present place.
     pub(in crate::compile) fn function_inside(&self, name: &str, locals: &Locals) -> Option<&'a LetDecl> {
         let (at, _) = locals.process?;

@@ -48,6 +48,8 @@ pub(in crate::syntax) const CHARACTER: &str = "E0121";
 pub(in crate::syntax) const NO_FOLD: &str = "E0122";
 /// Several levels of a quantile where one fits.
 pub(in crate::syntax) const SEVERAL_LEVELS: &str = "E0124";
+/// The syntax of another language.
+pub(in crate::syntax) const FOREIGN: &str = "E0130";
 /// A temporal operator binds tighter than `=>`.
 pub(in crate::syntax) const OPEN_IMPLICATION: &str = "W0101";
 /// A power of a whole quantity.
@@ -323,6 +325,18 @@ Wrong:\n\
 Right:\n\
 \x20   check Q(0.9, time_until(user in exit)) <= 20 s\n\
 \x20   estimate Q(0.5, 0.9, time_until(user in exit))",
+    },
+    Page {
+        code: FOREIGN,
+        title: "the syntax of another language",
+        text: "\
+The text is known from PRISM, UPPAAL, a logic tool or Python. The hint writes it in this language, with the names of the file.\n\
+A time without a unit becomes one in seconds; a number of steps is written `#15` or `15 steps`.\n\
+\n\
+Wrong:\n\
+\x20   Pr[<=15](<> user in exit)\n\
+Right:\n\
+\x20   estimate P(F<=15 s (user in exit))",
     },
     Page {
         code: OPEN_IMPLICATION,

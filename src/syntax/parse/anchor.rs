@@ -168,6 +168,12 @@ impl Way {
         self.open.is_empty() && !self.torn
     }
 
+    /// Whether a bracket is open at a later byte.
+    pub(super) fn is_open_at(&mut self, text: &str, at: usize) -> bool {
+        self.reach(text, at);
+        !self.open.is_empty()
+    }
+
     /// Whether an item that seems to begin at a byte surely does.
     pub(super) fn allows(&mut self, text: &str, at: usize, anchor: Anchor) -> bool {
         self.reach(text, at);

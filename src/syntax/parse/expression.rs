@@ -397,6 +397,10 @@ impl Builder<'_> {
     fn paren(&mut self, pair: Pair<'_>, span: Span) -> Option<Built> {
         let mut parts = Parts::of(pair);
         let mut first = self.sequence(parts.part(Rule::expr)?)?;
+        if let Some(moment) = parts.part(Rule::read_at) {
+            first.expr = self.read_at(first.expr, moment)?;
+            first.height += 1;
+        }
         if let Some(second) = parts.part(Rule::expr) {
             let second = self.sequence(second)?;
             let unit = match parts.next() {
@@ -458,10 +462,20 @@ impl Builder<'_> {
             let set = self.sequence(over.part(Rule::set)?)?;
             let Some(fold) = aggregate(&function.name) else {
                 let title = format!("`{}` does not fold over a set", function.name);
-                self.say(
-                    Diagnostic::error(code::NO_FOLD, function.span, title)
-                        .hint("`min`, `max`, `sum` and `mean` take `… for a in S`"),
-                );
+                let quantifier = match function.name.as_str() {
+                    "all" => Some("forall"),
+                    "any" => Some("exists"),
+                    _ => None,
+                };
+                let error = Diagnostic::error(code::NO_FOLD, function.span, title);
+                let body = arguments.pop()?.expr.span;
+                self.say(match quantifier {
+                    Some(quantifier) => {
+                        let (set, body) = (self.source.slice(set.expr.span), self.source.slice(body));
+                        error.hint(format!("write `{quantifier} {} in {set}: {body}`", variable.name))
+                    }
+                    None => error.hint("`min`, `max`, `sum` and `mean` take `… for a in S`"),
+                });
                 return None;
             };
             return self.fold(Quantifier::Fold(fold), variable, set, arguments.pop()?, span);

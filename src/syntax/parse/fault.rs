@@ -147,9 +147,8 @@ impl Builder<'_> {
             diagnostic = diagnostic.hint("in property files that is an operator; another name is free");
         } else if let Some(word) = Self::meant(&fault) {
             diagnostic = diagnostic.hint(format!("did you mean `{word}`?"));
-        } else if fault.found == "at" && fault.after_value() && self.root != Rule::scenario_file {
-            diagnostic = diagnostic
-                .hint("`… at end` and `… at 5 s` stand in `E(…)` and `Q(…)`, around the whole metric");
+        } else if let Some(missing) = self.missing(&fault) {
+            diagnostic = diagnostic.hint(format!("write `{missing}` before {}", quote(fault.found)));
         }
         diagnostic
     }

@@ -11,6 +11,7 @@ mod builder;
 pub(super) mod comments;
 mod expression;
 mod fault;
+mod foreign;
 pub(super) mod grammar;
 mod lexeme;
 mod nesting;
@@ -25,6 +26,7 @@ mod scene;
 mod slips;
 mod units;
 
+pub(crate) use foreign::word as foreign_word;
 pub(crate) use lexeme::{continues_name, starts_name};
 pub use nouns::edits;
 pub(crate) use quantity::{time_meant, unit_meant};

@@ -82,6 +82,11 @@ pub(super) fn is_keyword(word: &str) -> bool {
     Rule::all_rules().iter().any(|&rule| keyword(rule) == Some(word))
 }
 
+/// The word or mark of a rule that is one.
+pub(super) fn token(rule: Rule) -> Option<&'static str> {
+    keyword(rule).or_else(|| mark(rule))
+}
+
 /// The mark of a rule that is one.
 fn mark(rule: Rule) -> Option<&'static str> {
     Some(match rule {

@@ -117,13 +117,8 @@ impl Builder<'_> {
             }
         };
         let mut body = self.expr(parts.part(Rule::expr)?)?;
-        if let Some(moment) = parts.part(Rule::moment) {
-            let span = body.span.to(self.span(&moment));
-            let moment = match Parts::of(moment).part(Rule::arith) {
-                Some(time) => Moment::Time(Box::new(self.expr(time)?)),
-                None => Moment::End,
-            };
-            body = Expr { kind: ExprKind::At(Box::new(body), moment), span };
+        if let Some(moment) = parts.part(Rule::moment).or_else(|| parts.part(Rule::read_at)) {
+            body = self.read_at(body, moment)?;
         }
         let range = match parts.part(Rule::measure_range) {
             Some(range) => {
@@ -135,6 +130,16 @@ impl Builder<'_> {
         };
         let each = kinds.into_iter();
         Some(each.map(|kind| Measure { kind, body: body.clone(), range: range.clone(), span }).collect())
+    }
+
+    /// `… at end`, `… at 5 s`
+    pub(super) fn read_at(&mut self, read: Expr, moment: Pair<'_>) -> Option<Expr> {
+        let span = read.span.to(self.span(&moment));
+        let moment = match moment.into_inner().find(|part| part.as_rule() == Rule::arith) {
+            Some(time) => Moment::Time(Box::new(self.expr(time)?)),
+            None => Moment::End,
+        };
+        Some(Expr { kind: ExprKind::At(Box::new(read), moment), span })
     }
 
     fn bindings(&mut self, pair: Pair<'_>) -> Option<Vec<Binding>> {

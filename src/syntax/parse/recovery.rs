@@ -83,7 +83,14 @@ impl Builder<'_> {
                         part.clone().into_inner().next().filter(|inner| inner.as_rule() == Rule::setting);
                     let is_bad =
                         inner.is_some_and(|pair| slips::unsigned(lexeme::first(pair.as_str())).is_some());
-                    last_bad_end = is_bad.then(|| end_of(&part));
+                    // What reads as a member within a bracket that a bad part has left open is a consequence, too.
+                    let is_within = last_bad_end.is_some_and(|end| !text[end..start].contains('\n'))
+                        && anchor != Some(anchor::Anchor::Surely)
+                        && way.as_mut().is_some_and(|way| way.is_open_at(text, start));
+                    if is_within {
+                        self.cut.push(Span::new(self.source.id, start, end_of(&part)));
+                    }
+                    last_bad_end = (is_bad || is_within).then(|| end_of(&part));
                 }
                 let is_member = !is_mark && part.as_span().start() < part.as_span().end();
                 before = is_member.then_some(part);

@@ -3,6 +3,7 @@
 
 use super::builder::Builder;
 use super::fault::{Fault, failure, starts_declaration};
+use super::grammar::Rule;
 use super::{lexeme, nesting, nouns, quantity};
 use crate::syntax::codes::syntax as code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -96,6 +97,31 @@ impl Builder<'_> {
         let title = format!("expected `{meant}`, found `{word}`");
         let error = Diagnostic::error(code::UNEXPECTED, self.place(at, word), title);
         Some(error.hint(format!("did you mean `{meant}`?")))
+    }
+
+    /// `(1 2)`, `region hall rect …`: the only word or mark with which, put before what was found on the same line, the
+    /// text goes on.
+    pub(super) fn missing(&self, fault: &Fault<'_>) -> Option<&'static str> {
+        let before = &self.text[fault.from..fault.at];
+        let lies_behind = before.trim_end_matches([' ', '\t']);
+        if fault.found.is_empty() || lies_behind.is_empty() || lies_behind.ends_with('\n') {
+            return None;
+        }
+        // Between two values `in` is an operator as any other, after a field an arrow is one of many ways to go on, and a
+        // bracket that is opened is closed somewhere.
+        let ends = [Rule::field_end, Rule::state_item_end].iter().any(|rule| fault.expected.contains(rule));
+        let wanted = fault.expected.iter().filter(|&&rule| match rule {
+            Rule::kw_in => !fault.after_value(),
+            Rule::t_arrow => !ends,
+            _ => true,
+        });
+        let mut wanted: Vec<_> = wanted.filter_map(|&rule| nouns::token(rule)).collect();
+        wanted.retain(|token| !matches!(*token, "(" | "[" | "{"));
+        wanted.sort_unstable();
+        wanted.dedup();
+        let again = |token: &&str| self.read_again(fault, fault.at..fault.at, &format!("{token} "));
+        let mut with = wanted.into_iter().filter(|token| again(token) == Again::Whole);
+        with.next().filter(|_| with.next().is_none())
     }
 
     /// How far the text goes on once a part of it before the fault is another.

@@ -11,7 +11,8 @@ use crate::syntax::source::Span;
 impl Builder<'_> {
     /// The diagnostic of a known slip.
     pub(super) fn slip(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
-        self.slip_in_text(fault)
+        self.slip_of_form(fault)
+            .or_else(|| self.slip_in_text(fault))
             .or_else(|| self.slip_of_bound(fault))
             .or_else(|| self.slip_of_unit_in_bound(fault))
             .or_else(|| self.slip_of_initial(fault))
@@ -19,6 +20,7 @@ impl Builder<'_> {
             .or_else(|| self.slip_of_bindings(fault))
             .or_else(|| self.slip_of_equals(fault))
             .or_else(|| self.slip_of_operator(fault))
+            .or_else(|| self.slip_of_if(fault))
             .or_else(|| self.slip_of_range(fault))
             .or_else(|| self.slip_of_quantifier(fault))
             .or_else(|| self.slip_of_sides(fault))
@@ -166,49 +168,14 @@ impl Builder<'_> {
         true
     }
 
-    /// Operators of other languages.
-    fn slip_of_operator(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
-        let say = |at: usize, found: &str, plain: &str| {
-            Diagnostic::error(
-                code::OPERATOR,
-                self.place(at, found),
-                format!("`{found}` is not an operator here"),
-            )
-            .hint(format!("write `{plain}`"))
-        };
-        let after_value = fault.after_value();
-        let plain = match fault.found {
-            "&&" => "&",
-            "||" => "|",
-            "and" | "AND" if after_value => "&",
-            "or" | "OR" if after_value => "|",
-            "implies" | "->" if after_value => "=>",
-            "iff" if after_value => "<=>",
-            "*" if !after_value && self.text[..fault.at].ends_with('*') => {
-                return Some(say(fault.at - 1, "**", "^"));
-            }
-            _ if after_value
-                && lexeme::word_before(self.text, fault.at).is_some_and(|(_, word)| word == "if") =>
-            {
-                let at = lexeme::word_before(self.text, fault.at)?.0;
-                let error = Diagnostic::error(code::OPERATOR, self.place(at, "if"), "`if` is a function");
-                return Some(
-                    error.hint("write `if(condition, then, otherwise)`; of formulas `(a => b) & (!a => c)`"),
-                );
-            }
-            "~" if !after_value => "!",
-            "is" if after_value => "==",
-            _ => {
-                // `not p`: the name `not` stands before the place.
-                let (at, word) = lexeme::word_before(self.text, fault.at)?;
-                return (after_value && matches!(word, "not" | "NOT")).then(|| say(at, word, "!"));
-            }
-        };
-        // Only a command, transition or route has arrows of its own.
-        if fault.found == "->" && fault.expected.contains(&Rule::t_arrow) {
+    /// `if a then b`
+    fn slip_of_if(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
+        let (at, word) = lexeme::word_before(self.text, fault.at)?;
+        if word != "if" || !fault.after_value() {
             return None;
         }
-        Some(say(fault.at, fault.found, plain))
+        let error = Diagnostic::error(code::OPERATOR, self.place(at, "if"), "`if` is a function");
+        Some(error.hint("write `if(condition, then, otherwise)`; of formulas `(a => b) & (!a => c)`"))
     }
 
     /// `check E(m) >= 1.5 in 0 .. 2`

@@ -1,0 +1,552 @@
+//! Spellings of other languages, and what to write instead: one table, which is consulted where the grammar fails.
+//!
+//! A pattern is a row of marks, words and holes. A hole keeps the text of the user, so the hint holds the user's own
+//! names. A spelling is reported only if the text reads on once it is replaced.
+
+use super::builder::Builder;
+use super::fault::{Fault, failure};
+use super::grammar::Rule;
+use super::{lexeme, quantity};
+use crate::syntax::codes::syntax as code;
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+use std::fmt::Write as _;
+use std::ops::Range;
+
+/// Bytes of its line before a fault, and bytes behind it, in which a spelling is looked for.
+const BEFORE: usize = 1 << 8;
+const REACH: usize = 1 << 10;
+/// Bytes of a hole that is quoted in a title.
+const SHORT: usize = 8;
+
+/// The file that a spelling is looked for in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum In {
+    Both,
+    Properties,
+    Scenario,
+}
+use In::{Both, Properties, Scenario};
+
+/// A spelling: file, language, pattern, replacement. In place of the language may stand a whole title, with `{}` for
+/// what was found.
+///
+/// `$` and a letter is a hole: `$n` a number, `$t` a time, `$w` a name with its members, `$q` a quoted text, `$r` a
+/// relation, `$o` a temporal operator, `$p` a weight, `$y` a type, `$l` the rest of the line, `$e` any text with even
+/// brackets, `$u` such updates, `$c` such a condition, in which `=` compares; digits tell holes apart. `@` is the place of the error; what stands before it is context. A replacement
+/// with `…` is not read, and one that starts with a blank is advice.
+type Row = (In, &'static str, &'static str, &'static str);
+
+/// Titles of several rows.
+const QUERY: &str = "a query starts with `check` or `estimate`, found `{}`";
+const ONE_SET: &str = "a quantifier goes over one set, found `{}`";
+const MOMENT: &str = "`at` reads a number once, and stands around the whole metric of `E(…)` or `Q(…)`";
+const UPDATE: &str = "an update is written with `=`, found `{}`";
+
+/// The forms of other languages.
+#[rustfmt::skip]
+const FORMS: &[Row] = &[
+    // Queries.
+    (Properties, "PRISM", "P $r $n [ $c ]", "check P($c) $r $n"),
+    (Properties, "PRISM", "P = ? [ $c ]", "estimate P($c)"),
+    (Properties, "PRISM", "Pmax = ? [ $c ]", "estimate P($c)"),
+    (Properties, "PRISM", "Pmin = ? [ $c ]", "estimate P($c)"),
+    (Properties, "PRISM", "R { $q } = ? [ C <= $n ]", "estimate E(sum<=$n ($q)) in … .. …"),
+    (Properties, "PRISM", "R { $q } = ? [ $e ]", "estimate E(sum<=… ($q)) in … .. …"),
+    (Properties, "PRISM", "R = ? [ $e ]", "estimate E(sum<=… (…)) in … .. …"),
+    (Properties, "PRISM", "S = ? [ $c ]", "estimate E(mean<=10 s (if($c, 1, 0))) in 0 .. 1"),
+    (Properties, "UPPAAL", "Pr [ <= $t ] ( < > $e )", "estimate P(F<=$t ($e))"),
+    (Properties, "UPPAAL", "Pr [ <= $t ] ( [ ] $e )", "estimate P(G<=$t ($e))"),
+    (Properties, "UPPAAL", "E [ <= $t ; $n ] ( max : $e )", "estimate E(max<=$t ($e)) in … .. …"),
+    (Properties, "UPPAAL", "E [ <= $t ; $n ] ( min : $e )", "estimate E(min<=$t ($e)) in … .. …"),
+    (Properties, "UPPAAL", "A [ ] $e", "check P(G ($e)) >= 0.99"),
+    (Properties, "UPPAAL", "A < > $e", "check P(F ($e)) >= 0.99"),
+    (Properties, "UPPAAL", "E < > $e", "check P(F ($e)) > 0.01"),
+    (Properties, "UPPAAL", "E [ ] $e", "check P(G ($e)) > 0.01"),
+    (Properties, "UPPAAL", "simulate [ $e1 ] { $e2 }", " `smc simulate` runs trials and writes their states"),
+    (Properties, "a threshold stands after `P(…)`, found `{}`", "check P @ $r $n ( $e )", "check P($e) $r $n"),
+    (Properties, QUERY, "P ( $e ) $r $n", "check P($e) $r $n"),
+    (Properties, QUERY, "P ( $e )", "estimate P($e)"),
+    (Properties, QUERY, "Q ( $e1 , $e2 )", "estimate Q($e1, $e2)"),
+    (Properties, QUERY, "E ( $e )", "estimate E($e)"),
+    // Formulas.
+    (Properties, MOMENT, "at end $r", " of a condition write `F[T, T] (…)` with the horizon for T"),
+    (Properties, MOMENT, "at $t $r", " of a condition write `F[$t, $t] (…)`"),
+    (Properties, "UPPAAL", "= $e1 @ -- > $e2", "= G ($e1 => F ($e2))"),
+    (Properties, "LTL", "< > _ [ $t1 , $t2 ]", "F[$t1, $t2]"),
+    (Properties, "LTL", "< > [ $t1 , $t2 ]", "F[$t1, $t2]"),
+    (Properties, "LTL", "[ ] _ [ $t1 , $t2 ]", "G[$t1, $t2]"),
+    (Properties, "LTL", "[ ] [ $t1 , $t2 ]", "G[$t1, $t2]"),
+    (Properties, "LTL", "< > $e", "F $e"),
+    (Properties, "LTL", "[ ] $e", "G $e"),
+    (Properties, "STL", "F_ [ $t1 , $t2 ]", "F[$t1, $t2]"),
+    (Properties, "STL", "G_ [ $t1 , $t2 ]", "G[$t1, $t2]"),
+    (Properties, "STL", "U_ [ $t1 , $t2 ]", "U[$t1, $t2]"),
+    (Properties, "STL", "ev_ [ $t1 , $t2 ]", "F[$t1, $t2]"),
+    (Properties, "STL", "alw_ [ $t1 , $t2 ]", "G[$t1, $t2]"),
+    (Properties, "STL", "eventually [ $t1 , $t2 ]", "F[$t1, $t2]"),
+    (Properties, "STL", "always [ $t1 , $t2 ]", "G[$t1, $t2]"),
+    (Properties, "LTL", "eventually $e", "F $e"),
+    (Properties, "LTL", "finally $e", "F $e"),
+    (Properties, "LTL", "always $e", "G $e"),
+    (Properties, "LTL", "globally $e", "G $e"),
+    (Properties, "LTL", "until", "U"),
+    (Properties, "an interval has two ends, found `{}`", "$o @ [ $t ]", "$o<=$t"),
+    (Properties, "a bound has no brackets, found `{}`", "$o @ [ <= $t ]", "$o<=$t"),
+    (Properties, "an interval stands in `[` and `]`, found `{}`", "$o @ { $t1 , $t2 }", "$o[$t1, $t2]"),
+    (Properties, "a bound has no brackets, found `{}`", "$o @ { <= $t }", "$o<=$t"),
+    (Both, "UPPAAL", "forall @ ( $w1 : $w2 )", "forall $w1 in $w2:"),
+    (Both, "UPPAAL", "exists @ ( $w1 : $w2 )", "exists $w1 in $w2:"),
+    (Both, ONE_SET, "forall $w1 in $w2 @ , $w3 : $e", "(forall $w1 in $w2: $e) & (forall $w1 in $w3: $e)"),
+    (Both, ONE_SET, "exists $w1 in $w2 @ , $w3 : $e", "(exists $w1 in $w2: $e) | (exists $w1 in $w3: $e)"),
+    (Both, "Python", "= $e1 @ if $e2 else $e3", "= if($e2, $e1, $e3)"),
+    (Both, "MATLAB", "~ =", "!="),
+    // Comments.
+    (Both, "Python", "# $l", "// $l"),
+    (Both, "MATLAB", "% $l", "// $l"),
+    // Declarations.
+    (Scenario, "PRISM", "dtmc", " leave it out: commands without rates make steps"),
+    (Scenario, "PRISM", "ctmc", " leave it out: commands with rates (`at 1 /s`) run in continuous time"),
+    (Scenario, "PRISM", "mdp", " leave it out: `choose` makes all enabled commands as likely"),
+    (Scenario, "PRISM", "module $w", "process $w {"),
+    (Scenario, "PRISM", "rewards $q", " leave it out: a query adds up a number, `estimate E(sum<=10 steps (…)) in 0 .. 10`"),
+    (Both, "PRISM", "const @ $y $w = $e", "const $w = $e"),
+    (Both, "PRISM", "formula $w = $c", "let $w = $c"),
+    (Properties, "PRISM", "label $q = $c", "property $q = $c"),
+    (Scenario, "PRISM", "label @ $q = $c", "label $q = $c"),
+    (Scenario, "PRISM", "$w : [ $e1 .. $e2 ] init $e3", "var $w: $e1 .. $e2 = $e3"),
+    (Scenario, "PRISM", "var $w : @ [ $e1 .. $e2 ] init $e3", "var $w: $e1 .. $e2 = $e3"),
+    (Scenario, "a range has no brackets, found `{}`", "var $w : @ [ $e1 .. $e2 ]", "var $w: $e1 .. $e2"),
+    (Scenario, "PRISM", "[ ] $c -> $u", "when $c -> $u"),
+    (Scenario, "PRISM", "[ $w ] $c -> $u", "when $c -> $u"),
+    (Scenario, "PRISM", "$p : $u1 @ + $p2 : $u2", "$p: $u1 | $p2: $u2"),
+    (Scenario, "PRISM", "( $w1 ' = $e1 ) & ( $w2 ' = $e2 )", "{ $w1 = $e1; $w2 = $e2 }"),
+    (Scenario, "PRISM", "( $w ' = $e )", "$w = $e"),
+    (Scenario, "UPPAAL", "int [ $e1 , $e2 ] $w = $e3", "var $w: $e1 .. $e2 = $e3"),
+    (Scenario, "UPPAAL", "int $w = $e", "var $w: 0 .. 10 = $e"),
+    (Scenario, "UPPAAL", "bool $w = $e", "var $w = $e"),
+    (Scenario, "UPPAAL", "$y $w = $e", "var $w: real = $e"),
+    (Scenario, "UPPAAL", "clock $w", " a process has no clocks: `when … after 3 s -> …` waits for a time"),
+    (Scenario, UPDATE, "$w @ + = $e", "$w = $w + $e"),
+    (Scenario, UPDATE, "$w @ - = $e", "$w = $w - $e"),
+    (Scenario, UPDATE, "$w @ + +", "$w = $w + 1"),
+    (Scenario, UPDATE, "$w @ --", "$w = $w - 1"),
+    (Scenario, "Python", "$w ( @ $w1 = $e1 , $w2 = $e2 )", "$w($e1, $e2)"),
+    (Scenario, "Python", "$w ( @ $w1 = $e1 )", "$w($e1)"),
+    (Scenario, "Python", "= @ [ $e1 , $e2 ]", "= ($e1, $e2)"),
+    (Scenario, "a number of agents stands after their name, found `{}`", "agents @ $n $w : $w2", "agents $w[$n]: $w2"),
+    (Scenario, "goals are joined by `->`, found `{}`", "route = $w1 @ , $w2", "route = $w1 -> $w2"),
+    (Scenario, "expected `in`, found `{}`", "uniform @ $w", "uniform in $w"),
+    (Scenario, "expected a quoted text, found `{}`", "import @ $w", "import \"$w\""),
+];
+
+/// Operators of other languages.
+#[rustfmt::skip]
+const OPERATORS: &[Row] = &[
+    (Both, "", "&&", "&"), (Both, "", "and", "&"), (Both, "", "AND", "&"),
+    (Both, "", "||", "|"), (Both, "", "or", "|"), (Both, "", "OR", "|"),
+    (Both, "", "implies", "=>"), (Both, "", "imply", "=>"), (Both, "", "->", "=>"), (Both, "", "iff", "<=>"),
+    (Both, "", "is", "=="), (Both, "", "~", "!"), (Both, "", "not", "!"), (Both, "", "NOT", "!"),
+    (Both, "", "**", "^"),
+];
+
+/// What else is written otherwise within a hole.
+const INSIDE: &[Row] = &[
+    (Scenario, "", "( $w1 ' = $e1 ) & ( $w2 ' = $e2 )", "{ $w1 = $e1; $w2 = $e2 }"),
+    (Scenario, "", "( $w ' = $e )", "$w = $e"),
+    (Scenario, "", "+ $p :", "| $p:"),
+    (Scenario, "", "$p :", "$p:"),
+];
+/// What is written otherwise within a condition of PRISM, where operators over time bind more loosely than others.
+#[rustfmt::skip]
+const CONDITION: &[Row] = &[
+    (Properties, "", "$c1 U <= $n $c2", "($c1) U<=$n ($c2)"),
+    (Properties, "", "$c1 U $c2", "($c1) U ($c2)"),
+    (Properties, "", "$o <= $n $c", "$o<=$n ($c)"),
+    (Properties, "", "$o $c", "$o ($c)"),
+    (Properties, "", "$q", "$q"),
+    (Both, "", "$w = $n", "$w == $n"),
+];
+
+/// Names and functions of other languages; `$a` is the text of the arguments.
+const WORDS: [(&str, &str); 20] = [
+    ("eventually", "F"),
+    ("finally", "F"),
+    ("ev", "F"),
+    ("always", "G"),
+    ("globally", "G"),
+    ("alw", "G"),
+    ("next", "X"),
+    ("not", "!(…)"),
+    ("NOT", "!(…)"),
+    ("True", "true"),
+    ("TRUE", "true"),
+    ("False", "false"),
+    ("FALSE", "false"),
+    ("inf", "∞"),
+    ("len", "count(a in $a)"),
+    ("dist", "distance"),
+    ("pos", "position"),
+    ("vel", "velocity"),
+    ("mod", "modulo"),
+    ("log", "ln"),
+];
+
+/// What to write for a name or function that is unknown here and known elsewhere.
+pub(crate) fn word(name: &str, arguments: &str) -> Option<String> {
+    let (_, ours) = WORDS.iter().find(|(foreign, _)| *foreign == name)?;
+    Some(format!("write `{}`", ours.replace("$a", arguments)))
+}
+
+/// The texts of the holes of a pattern, by their names, and the place of the error.
+#[derive(Default)]
+struct Found<'p> {
+    holes: Vec<(&'p str, Range<usize>)>,
+    here: usize,
+}
+
+/// The tokens of a text.
+struct Tokens<'t> {
+    text: &'t str,
+    spans: Vec<Range<usize>>,
+}
+
+impl<'t> Tokens<'t> {
+    fn of(text: &'t str, from: usize, end: usize) -> Self {
+        let (mut spans, mut at) = (Vec::new(), from);
+        while at < end {
+            let rest = &text[at..];
+            if let Some(length) = lexeme::trivia(rest) {
+                at += length;
+                continue;
+            }
+            let length = lexeme::first(rest).len().max(1);
+            spans.push(at..at + length);
+            at += length;
+        }
+        Self { text, spans }
+    }
+
+    fn get(&self, at: usize) -> &'t str {
+        self.spans.get(at).map_or("", |span| &self.text[span.clone()])
+    }
+
+    fn is_name(&self, at: usize) -> bool {
+        self.get(at).starts_with(lexeme::starts_name)
+    }
+
+    fn is_number(&self, at: usize) -> bool {
+        self.get(at).starts_with(|c: char| c.is_ascii_digit())
+    }
+
+    /// The bytes of some tokens.
+    fn bytes(&self, tokens: &Range<usize>) -> Range<usize> {
+        if tokens.is_empty() {
+            let at = self.spans.get(tokens.start).map_or(self.text.len(), |span| span.start);
+            return at..at;
+        }
+        self.spans[tokens.start].start..self.spans[tokens.end - 1].end
+    }
+
+    fn starts_line(&self, at: usize) -> bool {
+        let before = at.checked_sub(1).map_or(0, |before| self.spans[before].end);
+        self.text[before..self.spans.get(at).map_or(before, |span| span.start)].contains('\n')
+    }
+
+    /// Where a hole that starts at a token may end. The last one of a pattern goes as far as it can.
+    fn ends(&self, hole: &str, at: usize, is_last: bool) -> Vec<usize> {
+        let one = |fits: bool| if fits { vec![at + 1] } else { Vec::new() };
+        let token = self.get(at);
+        match hole.as_bytes().first() {
+            Some(b'n') => one(self.is_number(at)),
+            Some(b'q') => one(token.starts_with('"')),
+            Some(b'r') => one(matches!(token, ">=" | ">" | "<=" | "<")),
+            Some(b'o') => one(matches!(token, "F" | "G" | "X" | "U" | "W" | "R")),
+            Some(b'y') => one(matches!(token, "int" | "double" | "float" | "real" | "bool")),
+            Some(b't') if self.is_number(at) => {
+                vec![at + 1 + usize::from(quantity::UNITS.contains(&self.get(at + 1)))]
+            }
+            Some(b'w') if self.is_name(at) => {
+                let mut end = at + 1;
+                while self.get(end) == "." && self.is_name(end + 1) {
+                    end += 2;
+                }
+                vec![end]
+            }
+            Some(b'p') => {
+                let is_weight = |at: &usize| self.is_number(*at) || self.is_name(*at) || self.get(*at) == "/";
+                let end = (at..).take_while(is_weight).count() + at;
+                if end > at { vec![end] } else { Vec::new() }
+            }
+            Some(b'l') => {
+                let line = (at..self.spans.len()).take_while(|at| !self.starts_line(*at)).count();
+                vec![at + line]
+            }
+            Some(b'e' | b'c' | b'u') => self.even(at, is_last),
+            _ => Vec::new(),
+        }
+    }
+
+    /// The ends of texts with even brackets.
+    fn even(&self, start: usize, is_last: bool) -> Vec<usize> {
+        let (mut ends, mut open) = (Vec::new(), 0_usize);
+        for at in start..self.spans.len() {
+            match self.get(at) {
+                ";" if open == 0 => break,
+                _ if open == 0 && is_last && at > start && self.starts_line(at) => break,
+                "(" | "[" | "{" => open += 1,
+                ")" | "]" | "}" if open == 0 => break,
+                ")" | "]" | "}" => open -= 1,
+                _ => {}
+            }
+            if open == 0 {
+                ends.push(at + 1);
+            }
+        }
+        if is_last { ends.pop().into_iter().collect() } else { ends }
+    }
+
+    /// Where a pattern that starts at a token ends.
+    fn matched<'p>(&self, pattern: &[&'p str], at: usize, found: &mut Found<'p>) -> Option<usize> {
+        let Some((piece, rest)) = pattern.split_first() else { return Some(at) };
+        if *piece == "@" {
+            found.here = at;
+            return self.matched(rest, at, found);
+        }
+        let Some(hole) = piece.strip_prefix('$') else {
+            return if self.get(at) == *piece { self.matched(rest, at + 1, found) } else { None };
+        };
+        for end in self.ends(hole, at, rest.is_empty()) {
+            let before = found.holes.len();
+            found.holes.push((hole, at..end));
+            if let Some(end) = self.matched(rest, end, found) {
+                return Some(end);
+            }
+            found.holes.truncate(before);
+        }
+        None
+    }
+
+    /// A replacement with the texts of the holes.
+    fn filled(&self, template: &str, found: &Found<'_>, file: In) -> String {
+        let mut parts = template.split('$');
+        let mut filled = parts.next().unwrap_or("").to_owned();
+        for part in parts {
+            let length = part.find(|c: char| !c.is_ascii_alphanumeric()).unwrap_or(part.len());
+            let (hole, rest) = part.split_at(length);
+            if let Some((_, tokens)) = found.holes.iter().find(|(name, _)| *name == hole) {
+                let text = &self.text[self.bytes(tokens)];
+                match hole.as_bytes()[0] {
+                    b'e' | b'u' => filled.push_str(&inside(text, file, &[])),
+                    b'c' => filled.push_str(&inside(text, file, CONDITION)),
+                    b'q' => filled.push_str(text.trim_matches('"')),
+                    b't' if tokens.len() == 1 => drop(write!(filled, "{text} s")),
+                    _ => filled.push_str(text),
+                }
+            }
+            filled.push_str(rest);
+        }
+        filled
+    }
+}
+
+/// A hole in which spellings are replaced, too.
+fn inside(text: &str, file: In, more: &[Row]) -> String {
+    let tokens = Tokens::of(text, 0, text.len());
+    let (mut written, mut copied, mut at) = (String::new(), 0, 0);
+    while at < tokens.spans.len() {
+        let hit = INSIDE.iter().chain(more).filter(|row| row.0 == Both || row.0 == file).find_map(|row| {
+            let mut found = Found::default();
+            let end = tokens.matched(&pieces(row.2), at, &mut found)?;
+            Some((end, tokens.filled(row.3, &found, file)))
+        });
+        let Some((end, ours)) = hit else {
+            at += 1;
+            continue;
+        };
+        let bytes = tokens.bytes(&(at..end));
+        written.push_str(&text[copied..bytes.start]);
+        written.push_str(&ours);
+        (copied, at) = (bytes.end, end);
+    }
+    written.push_str(&text[copied..]);
+    written
+}
+
+fn pieces(pattern: &str) -> Vec<&str> {
+    pattern.split(' ').collect()
+}
+
+impl Builder<'_> {
+    /// A form of another language at a fault.
+    pub(super) fn slip_of_form(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
+        let hit = self.foreign(fault, FORMS)?;
+        let title = match hit.row.1 {
+            language if !language.contains(' ') => format!("`{}` is {language} syntax", hit.shown),
+            title => title.replace("{}", &hit.shown),
+        };
+        let error = Diagnostic::error(code::FOREIGN, hit.place, title);
+        Some(error.hint(match hit.ours.strip_prefix(' ') {
+            Some(advice) => advice.to_owned(),
+            None => format!("write `{}`", hit.ours),
+        }))
+    }
+
+    /// An operator of another language at a fault.
+    pub(super) fn slip_of_operator(&self, fault: &Fault<'_>) -> Option<Diagnostic> {
+        let hit = self.foreign(fault, OPERATORS)?;
+        let title = format!("`{}` is not an operator here", hit.shown);
+        Some(Diagnostic::error(code::OPERATOR, hit.place, title).hint(format!("write `{}`", hit.ours)))
+    }
+
+    /// The first spelling of a table that a fault lies in, and with which replaced the text reads on.
+    fn foreign(&self, fault: &Fault<'_>, rows: &'static [Row]) -> Option<Hit> {
+        let file = if self.root == Rule::property_file { Properties } else { Scenario };
+        let line = self.source.line_start(fault.at as u32) as usize;
+        let from = self.text.floor_char_boundary(fault.at.saturating_sub(BEFORE)).max(line).max(fault.from);
+        let end = self.text.floor_char_boundary(fault.at.saturating_add(REACH));
+        let tokens = Tokens::of(self.text, from, end);
+        let behind = tokens.spans.partition_point(|span| span.start <= fault.at);
+        let are_operators = rows.len() == OPERATORS.len();
+        let rows = || rows.iter().filter(|row| row.0 == Both || row.0 == file);
+        (0..behind).flat_map(|at| rows().map(move |row| (at, row))).find_map(|(at, row)| {
+            let first = row.2.split(' ').next()?;
+            // A percent sign within a line is a unit.
+            if !first.starts_with('$') && first != tokens.get(at) || first == "%" && at > 0 {
+                return None;
+            }
+            let mut found = Found { here: at, holes: Vec::new() };
+            let pattern = pieces(row.2);
+            let end = tokens.matched(&pattern, at, &mut found)?;
+            // A fault lies in what could not be read, or right behind it.
+            let next = tokens.spans.get(end).map_or(self.text.len(), |span| span.start);
+            let ours = tokens.filled(row.3, &found, file);
+            let bytes = tokens.bytes(&(at..end));
+            // Only a prefix, or the first half of a mark, is read as something else.
+            let is_operator = are_operators && !matches!(row.3, "!" | "^");
+            let is_late = fault.at > if is_operator { bytes.start } else { next };
+            if is_late || !self.reads_on(fault, bytes.clone(), &ours) {
+                return None;
+            }
+            let (place, shown) = self.shown(&tokens, &pattern, &found, end);
+            Some(Hit { row, place, shown, ours })
+        })
+    }
+
+    /// Whether the text can be read beyond a part once that is another. Advice and templates with gaps are not read.
+    fn reads_on(&self, fault: &Fault<'_>, part: Range<usize>, ours: &str) -> bool {
+        if ours.contains('…') || ours.starts_with(' ') {
+            return true;
+        }
+        let end = self.text.floor_char_boundary(part.end.saturating_add(REACH));
+        let before = format!("{}{ours}", &self.text[fault.from..part.start]);
+        let text = format!("{before}{}", &self.text[part.end..end]);
+        let start = lexeme::all_trivia(&text);
+        // What a comment leaves is whole: `n % 2)` is none.
+        let is_fine = |at: usize| at > before.len() && !ours.starts_with("//");
+        start >= text.len() || failure(fault.rule, &text, start).is_none_or(|(at, _)| is_fine(at))
+    }
+
+    /// The place of a spelling, and how it is quoted: up to its first long hole, and the marks at its end.
+    fn shown(&self, tokens: &Tokens<'_>, pattern: &[&str], found: &Found<'_>, end: usize) -> (Span, String) {
+        let is_long = |(hole, part): &&(&str, Range<usize>)| {
+            hole.starts_with(['e', 'c', 'u', 'l'])
+                && part.start >= found.here
+                && tokens.bytes(part).len() > SHORT
+        };
+        let head = found.holes.iter().find(is_long).map_or(end, |(_, part)| part.start);
+        let bytes = tokens.bytes(&(found.here..head));
+        let mut shown: String = self.text[bytes.clone()].split_whitespace().collect::<Vec<_>>().join(" ");
+        if shown.ends_with(')') && !shown.contains('(') {
+            shown.pop();
+        }
+        let marks = pattern.iter().rev().take_while(|piece| !piece.starts_with('$')).count();
+        if marks > 0 && head < end && !pattern.contains(&"@") {
+            let _ = write!(shown, " … {}", &self.text[tokens.bytes(&(end - marks..end))]);
+        }
+        (Span::new(self.source.id, bytes.start, bytes.end), shown)
+    }
+}
+
+/// A spelling that was found.
+struct Hit {
+    row: &'static Row,
+    place: Span,
+    /// The spelling, for the title.
+    shown: String,
+    /// What to write.
+    ours: String,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::syntax::parse::{parse_properties, parse_scenario};
+    use crate::syntax::source::{Source, SourceId};
+
+    /// Texts around a form.
+    const AROUND: [&str; 16] = [
+        "%",
+        "property p = %",
+        "property p = % (b)",
+        "property p = a % b",
+        "let p %",
+        "% var n = 1 }",
+        "process p { var n = 1 %",
+        "process p { % }",
+        "process p { var n: 0 .. 3 = 0 when n == 0 -> % }",
+        "process p { % = 0 }",
+        "scene { % }",
+        "agent a: k { at % }",
+        "agent a: k { at = % }",
+        "agent a: k { % }",
+        "horizon = 3 s\n%\nstep = 1 s",
+        "property p = a\n%\nproperty q = b",
+    ];
+
+    fn said(file: In, text: &str) -> Vec<Diagnostic> {
+        let source = Source::new(SourceId(0), "a", text);
+        if file == Properties { parse_properties(&source).1 } else { parse_scenario(&source).1 }
+    }
+
+    #[test]
+    fn each_form_is_told_and_what_is_to_be_written_can_be_read() {
+        let example = |text: &str, quoted: &str| {
+            let mut parts = text.split('$');
+            let first = parts.next().unwrap_or("").to_owned();
+            let filled = parts.map(|part| {
+                let text = match part.as_bytes()[0] {
+                    b'n' => "3",
+                    b't' => "3 s",
+                    b'q' => quoted,
+                    b'r' => ">=",
+                    b'o' => "F",
+                    b'p' => "0.5",
+                    b'y' => "double",
+                    b'c' => "b > 2",
+                    b'u' => "n = 1",
+                    b'l' => "words",
+                    b'e' => "b",
+                    _ => "a",
+                };
+                let rest = part.trim_start_matches(|c: char| c.is_ascii_alphanumeric());
+                format!("{text}{rest}")
+            });
+            filled.fold(first, |filled, part| filled + &part)
+        };
+        let is_right = |row: &Row| {
+            let (pattern, ours) = (example(&row.2.replace("@ ", ""), "\"a\""), example(row.3, "a"));
+            let hint = ours.strip_prefix(' ').map_or_else(|| format!("write `{ours}`"), str::to_owned);
+            let is_whole = !ours.contains('…') && !ours.starts_with(' ');
+            let files = [Properties, Scenario].into_iter().filter(|file| row.0 == Both || row.0 == *file);
+            files.flat_map(|file| AROUND.map(|around| (file, around))).any(|(file, around)| {
+                let errors = said(file, &around.replace('%', &pattern));
+                let right = said(file, &around.replace('%', &ours));
+                errors.iter().any(|error| error.hint.as_ref() == Some(&hint))
+                    && (!is_whole || right.is_empty())
+            })
+        };
+        let wrong: Vec<&str> = FORMS.iter().filter(|row| !is_right(row)).map(|row| row.2).collect();
+        assert!(wrong.is_empty(), "{wrong:#?}");
+    }
+}
