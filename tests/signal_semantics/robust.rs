@@ -65,7 +65,7 @@ impl Plain<'_> {
             Node::Constant(truth) => always(*truth),
             Node::Atom(_) => panic!("a robustness has no atoms"),
             Node::Compare(relation, x, y) => match (self.constant(*x), self.constant(*y)) {
-                (Some(x), Some(y)) => always(relation.holds(x, y)),
+                (Some(x), Some(y)) => Self::far(*relation, Some(x), Some(y)),
                 (None, Some(c)) => self.against(*relation, *x, c, at),
                 (Some(c), None) => self.against(relation.flipped(), *y, c, at),
                 _ => Self::far(*relation, self.now(*x, at), self.now(*y, at)),
@@ -122,7 +122,7 @@ impl Plain<'_> {
     fn against(&self, relation: Relation, x: TermId, c: f64, at: u64) -> Ends {
         use Relation::{AtLeast, AtMost, Equal, Greater, Less, Unequal};
         if let Some(x) = self.constant(x) {
-            return always(relation.holds(x, c));
+            return Self::far(relation, Some(x), Some(c));
         }
         let all = |w: Window, x: TermId| self.window(w, at).map(move |k| self.against(relation, x, c, k));
         match (&self.tree.terms[x.0 as usize], relation) {

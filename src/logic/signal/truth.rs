@@ -48,6 +48,8 @@ impl Seen {
 pub(super) enum Machine {
     /// The same everywhere.
     Fixed(bool),
+    /// A comparison of constants.
+    Alike(Relation, f64, f64),
     /// A truth of the present state.
     Present(usize),
     /// Any of them.
@@ -114,6 +116,9 @@ impl Truth {
         let track = &mut self.track;
         match &self.machine {
             Machine::Fixed(truth) => track.settle(Moment::MIN, Moment::MAX, *truth),
+            Machine::Alike(relation, x, y) => {
+                track.settle(Moment::MIN, Moment::MAX, relation.holds(*x, *y));
+            }
             Machine::Present(slot) => track.settle(step.from, step.to, step.present.truth(*slot)),
             Machine::Any(operands) => any(track, cells, operands),
             Machine::Reach(seen, operand) => {
@@ -161,7 +166,7 @@ impl Truth {
     pub(super) fn needs(&self, mut truth: impl FnMut(usize, Moment), mut number: impl FnMut(usize, Moment)) {
         let Some(open) = self.track.first_open() else { return };
         match &self.machine {
-            Machine::Fixed(_) | Machine::Present(_) => {}
+            Machine::Fixed(_) | Machine::Alike(..) | Machine::Present(_) => {}
             Machine::Any(operands) => operands.iter().for_each(|x| truth(x.cell, open)),
             Machine::Reach(Seen::Within { from, .. }, x) => truth(x.cell, open + from),
             Machine::Reach(Seen::Soon { .. }, x) => truth(x.cell, open),

@@ -89,7 +89,8 @@ impl Builder<'_> {
         match (self.term_constants[x.0 as usize], self.term_constants[y.0 as usize]) {
             (None, Some(c)) => self.against(relation, x, c, range),
             (Some(c), None) => self.against(relation.flipped(), y, c, range),
-            _ => {
+            (Some(x), Some(y)) => self.add_truth(Machine::Alike(relation, x, y), range),
+            (None, None) => {
                 let (x, y) = (self.number(x, range)?, self.number(y, range)?);
                 self.add_truth(Machine::Compare(relation, x, y), range)
             }
@@ -100,8 +101,8 @@ impl Builder<'_> {
     fn against(&mut self, relation: Relation, x: TermId, c: f64, range: Range) -> Result<Ref, Invalid> {
         use Aggregation::{Max, Mean, Min};
         use Relation::{AtLeast, AtMost, Equal, Greater, Less, Unequal};
-        if let (Some(value), false) = (self.term_constants[x.0 as usize], self.margins) {
-            return self.add_truth(Machine::Fixed(relation.holds(value, c)), range);
+        if let Some(value) = self.term_constants[x.0 as usize] {
+            return self.add_truth(Machine::Alike(relation, value, c), range);
         }
         if let Some(slot) = self.compare_now(relation, x, c) {
             return self.add_truth(Machine::Present(slot), range);

@@ -109,7 +109,7 @@ type Range = (Moment, Moment);
 struct Builder<'t> {
     tree: &'t Tree,
     scale: Scale,
-    /// Whether margins are asked for: then a comparison of constants has one, too.
+    /// Whether margins are asked for: then a comparison of constants has one, too, and is no constant.
     margins: bool,
     present: Present,
     truths: Vec<Truth>,

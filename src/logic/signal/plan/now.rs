@@ -66,6 +66,13 @@ impl Builder<'_> {
         };
         match &self.tree.nodes[id.0 as usize] {
             Node::Atom(atom) => Some(Code::Atom(atom.0 as usize)),
+            // Its margin is known in states to come.
+            Node::Compare(_, x, y)
+                if self.margins
+                    && [x, y].map(|x| self.term_constants[x.0 as usize]).iter().all(Option::is_some) =>
+            {
+                None
+            }
             Node::Compare(relation, x, y) => {
                 Some(Code::Compare(*relation, self.term_slots[x.0 as usize]?, self.term_slots[y.0 as usize]?))
             }

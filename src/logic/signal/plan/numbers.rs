@@ -1,6 +1,7 @@
 //! Cells of numbers.
 
 use super::super::number::Source;
+use super::super::present::Code;
 use super::{Builder, Range};
 use crate::logic::formula::{Aggregation, Operation, Term, TermId};
 use crate::logic::invalid::Invalid;
@@ -14,6 +15,11 @@ impl Builder<'_> {
     /// How much more a number is than a constant. The mean of that has the sign of the comparison where all values lie on one
     /// side of the constant, which the rounded mean need not have.
     pub(super) fn excess(&mut self, x: TermId, constant: f64, range: Range) -> Result<usize, Invalid> {
+        if let Some(slot) = self.term_slots[x.0 as usize] {
+            let constant = self.present.add(Code::Number(constant));
+            let slot = self.present.add(Code::Combine(Operation::Subtract, slot, constant));
+            return self.add_number(Source::Present(slot), range);
+        }
         let (x, constant) = (self.number(x, range)?, self.fixed(constant, range)?);
         self.add_number(Source::Combine(Operation::Subtract, x, constant), range)
     }

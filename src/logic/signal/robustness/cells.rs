@@ -127,6 +127,10 @@ impl Margin {
                 Machine::Fixed(truth) => {
                     own.push(self.end, if *truth { f64::INFINITY } else { f64::NEG_INFINITY });
                 }
+                Machine::Alike(relation, x, y) => {
+                    let margin = relation.margin(*x, *y);
+                    own.push(self.end, if margin.is_nan() { f64::NEG_INFINITY } else { margin });
+                }
                 Machine::Any(operands) => {
                     let operands: Vec<Reader<'_>> = operands.iter().map(read).collect();
                     fold::any(own, &operands, from);
