@@ -103,7 +103,7 @@ const d = 1  // apart
 
     #[test]
     fn comments_stay() {
-        let text = "// top\n\n\n\nconst a=1 // one\nconst bb=2// two\n/* own */\nkind k:b{ // open\n  x=1 // last\n  // alone\n}\n// end";
+        let text = "// top\n\n\n\nconst a=1 // one\nconst bb=2// two\n/* own */\nkind k:b{  // open\n  x=1 // last\n  // alone\n}\n// end";
         assert_eq!(
             scenario(text),
             "// top\n\nconst a  = 1  // one\nconst bb = 2  // two\n/* own */\nkind k: b {  // open\n  x = 1  // last\n  // alone\n}\n// end\n"
