@@ -52,9 +52,7 @@ pub fn render(run: &Run, format: Format, palette: Palette) -> String {
 /// A painted text as it is shown. Codes that stand in the plain text too are text; of equal ones in a row the first are those
 /// of the palette.
 fn painted(plain: &str, painted: &str) -> String {
-    let repeats = |text: &str, code: &str| {
-        (0..).take_while(|k| text.get(k * code.len()..).is_some_and(|rest| rest.starts_with(code))).count()
-    };
+    let repeats = |text: &str, code: &str| (text.len() - text.trim_start_matches(code).len()) / code.len();
     let (mut plain, mut painted, mut text) = (plain, painted, String::new());
     while let Some(c) = painted.chars().next() {
         let code = Palette::code(painted).filter(|code| repeats(painted, code) > repeats(plain, code));

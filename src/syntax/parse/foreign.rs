@@ -275,7 +275,7 @@ impl<'t> Tokens<'t> {
             }
             Some(b'p') => {
                 let is_weight = |at: &usize| self.is_number(*at) || self.is_name(*at) || self.get(*at) == "/";
-                let end = (at..).take_while(is_weight).count() + at;
+                let end = (at..self.spans.len()).take_while(is_weight).count() + at;
                 if end > at { vec![end] } else { Vec::new() }
             }
             Some(b'l') => {
