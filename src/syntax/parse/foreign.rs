@@ -108,7 +108,7 @@ const FORMS: &[Row] = &[
     (Scenario, "PRISM", "dtmc", " leave it out: commands without rates make steps"),
     (Scenario, "PRISM", "ctmc", " leave it out: commands with rates (`at 1 /s`) run in continuous time"),
     (Scenario, "PRISM", "mdp", " leave it out: `choose` makes all enabled commands as likely"),
-    (Scenario, "PRISM", "module $w", "process $w {"),
+    (Scenario, "PRISM", "module $w", "process $w { … }"),
     (Scenario, "PRISM", "rewards $q", " leave it out: a query adds up a number, `estimate E(sum<=10 steps (…)) in 0 .. 10`"),
     (Both, "PRISM", "const @ $y $w = $e", "const $w = $e"),
     (Both, "PRISM", "formula $w = $c", "let $w = $c"),
