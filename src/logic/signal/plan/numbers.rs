@@ -15,7 +15,8 @@ impl Builder<'_> {
     /// How much more a number is than a constant. The mean of that has the sign of the comparison where all values lie on one
     /// side of the constant, which the rounded mean need not have.
     pub(super) fn excess(&mut self, x: TermId, constant: f64, range: Range) -> Result<usize, Invalid> {
-        if let Some(slot) = self.term_slots[x.0 as usize] {
+        // A constant is known in states to come, too.
+        if let (Some(slot), None) = (self.term_slots[x.0 as usize], self.term_constants[x.0 as usize]) {
             let constant = self.present.add(Code::Number(constant));
             let slot = self.present.add(Code::Combine(Operation::Subtract, slot, constant));
             return self.add_number(Source::Present(slot), range);
