@@ -25,12 +25,23 @@ pub(super) struct Search<'s> {
     compared: Vec<(Num, Num)>,
     /// Whether the first agent was found as a member of a set.
     is_member: bool,
+    /// Whether the first agent was found as the one with the smallest or largest value of a fold.
+    is_extreme: bool,
 }
 
 impl<'s> Search<'s> {
     /// Nobody found yet.
     pub(super) fn of(subject: &'s Subject, state: &'s State, stop: &'s dyn Fn() -> bool) -> Self {
-        Self { subject, state, stop, found: Vec::new(), inside: 0, compared: Vec::new(), is_member: false }
+        Self {
+            subject,
+            state,
+            stop,
+            found: Vec::new(),
+            inside: 0,
+            compared: Vec::new(),
+            is_member: false,
+            is_extreme: false,
+        }
     }
 
     /// Those who were found.
@@ -38,10 +49,11 @@ impl<'s> Search<'s> {
         &self.found
     }
 
-    /// The comparison that decides, if it is just one and about the first who was found.
+    /// The comparison that decides, if it is just one and about the first who was found: by name, or as the
+    /// extreme of a fold.
     pub(super) fn compared(&self) -> Option<(&Num, &Num)> {
         let [(a, b)] = &self.compared[..] else { return None };
-        let mut is_about = false;
+        let mut is_about = self.is_extreme;
         for side in [a, b] {
             side.mentions(&mut |id| is_about |= Some(&id) == self.found.first());
         }
@@ -261,6 +273,7 @@ impl<'s> Search<'s> {
             }
         }
         if let Some((best, _)) = best {
+            self.is_extreme |= self.found.is_empty();
             self.name(best);
         }
     }

@@ -333,7 +333,8 @@ check P(G<=1 s (forall a in others(me): x(position(a)) < 14 m | has(a))) >= 0.5\
 fn the_number_that_decided_and_its_place_are_those_of_the_trace() {
     let properties = "let gap(a) = distance(me, a) - radius(me) - radius(a)
 check P(G<=2 s (forall a in others(me): gap(a) > 4 m)) >= 0.5
-check P(G<=2 s (clearance(you) > 4 m)) >= 0.5\n";
+check P(G<=2 s (clearance(you) > 4 m)) >= 0.5
+check P(G<=2 s (min(gap(a) for a in others(me)) > 4 m)) >= 0.5\n";
     let place = Place::new(&[("a.scn", PEOPLE), ("a.bltl", properties)]);
     let said = place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "json", "--max-trials", "1"]);
     let json = said.json();
@@ -341,7 +342,7 @@ check P(G<=2 s (clearance(you) > 4 m)) >= 0.5\n";
     let mut rows = csv::Reader::from_reader(trace.as_bytes());
     let heads: Vec<String> = rows.headers().unwrap().iter().map(str::to_owned).collect();
     let rows: Vec<csv::StringRecord> = rows.records().map(Result::unwrap).collect();
-    for k in [0, 1] {
+    for k in [0, 1, 2] {
         let witness = &json["results"][k]["witnesses"][0];
         let by = &witness["decided_by"];
         let time = witness["time"].as_f64().unwrap();
