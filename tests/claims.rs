@@ -1,12 +1,6 @@
 //! What results claim: nothing that the trials do not bear out, and under the right name.
 
-#![allow(clippy::disallowed_methods, reason = "a test reads its own files")]
-#![allow(dead_code, reason = "the program is called from other tests too")]
-
-#[path = "cli/program.rs"]
-mod program;
-
-use program::{Place, timeless};
+use crate::program::{Place, timeless};
 use serde_json::Value;
 
 /// Is over after a time between 5 s and 15 s, all alike.

@@ -1,8 +1,6 @@
 //! Codes of errors and warnings: each one that the sources use has a page, each page belongs to a code in use,
 //! its examples are wrong and right, and `smc explain` prints it.
 
-#![allow(clippy::disallowed_methods, reason = "a test reads the sources and calls the program")]
-
 use smc::syntax::codes::{page, pages};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

@@ -1,7 +1,5 @@
 //! Scenarios and property files through the front end: what is understood, and what is refused.
 
-#![allow(clippy::disallowed_methods, reason = "a test opens the files that a scenario names")]
-
 use smc::base::geometry::Vec2;
 use smc::compile::study::Ask;
 use smc::compile::{Files, Input, Study, compile, requests};

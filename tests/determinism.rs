@@ -1,8 +1,6 @@
 //! T16: every procedure comes to the same verdict, counts and numbers whatever the threads, the width of rounds, the
 //! order in which trials end, trials that are run a second time, and the number of processes, of which some may be lost.
 
-#![allow(clippy::disallowed_methods, reason = "a test sleeps and reads the clock")]
-
 use smc::compile::{Files, Input, Study, compile};
 use smc::engine::cell::Item;
 use smc::engine::executor::{Cells, Job};
@@ -17,7 +15,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-const SMALL: &str = include_str!("cli/small.scn");
+const SMALL: &str = include_str!("small.scn");
 
 /// Every procedure there is.
 const QUERIES: &str = "\

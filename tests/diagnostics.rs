@@ -1,8 +1,5 @@
 //! Planted errors: each file of `planted/` and what is said about it.
 
-#![allow(clippy::case_sensitive_file_extension_comparisons, reason = "names are given in lower case")]
-#![allow(clippy::disallowed_methods, reason = "a test reads its own files")]
-
 use smc::compile::{Files, Input, compile, own_errors};
 use smc::syntax::diagnostic::Diagnostic;
 use smc::syntax::parse::{decode, parse_properties, parse_scenario, parse_value};

@@ -1,12 +1,6 @@
 //! `smc drift`: alarms at once, exit codes, columns, errors with their line.
 
-#![allow(clippy::disallowed_methods, reason = "a test reads its own files")]
-#![allow(dead_code, reason = "the program is called from other tests too")]
-
-#[path = "cli/program.rs"]
-mod program;
-
-use program::Place;
+use crate::program::Place;
 use smc::stats::Cusum;
 use std::io::{BufRead, BufReader, Write};
 use std::process::Stdio;

@@ -1,10 +1,7 @@
 //! The moving part against closed forms (Helbing, Farkas, Vicsek 2000, with m = 80 kg, tau = 0.5 s,
 //! A = 2000 N, B = 0.08 m, R = 0.25 m unless said otherwise). Both layouts must meet each.
-#![allow(clippy::disallowed_methods, reason = "the platform's functions are the reference")]
 
-mod crowd;
-
-use crowd::{Crowd, NEVER, Person, Run, crowd, p, person, streams, wall};
+use crate::crowd::{Crowd, NEVER, Person, Run, crowd, p, person, streams, wall};
 use smc::base::geometry::Vec2;
 use smc::kernel::Layout;
 use smc::model::Particle;
@@ -363,7 +360,7 @@ fn a_particle_of_one_is_a_person_and_two_of_several_have_their_own_law() {
         assert_eq!(pair(0.0), 0.0, "nothing drives");
         persons.steps(100);
         ones.steps(100);
-        assert_eq!(crowd::bits_of(&persons.state, 0), crowd::bits_of(&ones.state, 0));
+        assert_eq!(crate::crowd::bits_of(&persons.state, 0), crate::crowd::bits_of(&ones.state, 0));
 
         // No compression between bodies of several, and their own friction.
         let body = |y: f64, v: f64| Person {

@@ -2,8 +2,6 @@
 //! each other. `ARCHITECTURE.md` has the picture; here every path that starts at the crate is read,
 //! and every one that climbs up to it by `super::`.
 
-#![allow(clippy::disallowed_methods, reason = "a test reads the sources")]
-
 use std::path::{Path, PathBuf};
 
 /// The floors, from the ground.

@@ -1,9 +1,6 @@
 //! The forces of both layouts against a plain, slow sum written from the equations.
-#![allow(clippy::disallowed_methods, reason = "the platform's functions are the reference")]
 
-mod crowd;
-
-use crowd::{Crowd, Numbers, Person, crowd, p, person, wall};
+use crate::crowd::{Crowd, Numbers, Person, crowd, p, person, wall};
 use smc::base::geometry::{Polygon, Segment, Shape, Vec2};
 use smc::base::lanes::Mask;
 use smc::kernel::{Layout, Scratch, State, refresh};
@@ -368,7 +365,7 @@ fn eight_different_trials_side_by_side_each_have_their_own_forces() {
 fn lists_and_cells_stay_right_while_people_walk() {
     // After many steps the kept list must still hold everyone in reach.
     for layout in [Layout::Trials, Layout::Agents] {
-        let mut scene = crowd::streams(60, 12.0, 6.0, 0.3, "0.02");
+        let mut scene = crate::crowd::streams(60, 12.0, 6.0, 0.3, "0.02");
         let mut run = scene.start(layout);
         for _ in 0..40 {
             run.steps(7);
@@ -385,7 +382,7 @@ fn lists_and_cells_stay_right_while_people_walk() {
 
 #[test]
 fn both_layouts_walk_the_same_ways() {
-    let scene = crowd::streams(50, 12.0, 5.0, 0.3, "0.01");
+    let scene = crate::crowd::streams(50, 12.0, 5.0, 0.3, "0.01");
     let (mut lanes, mut cells) = (scene.start(Layout::Trials), scene.start(Layout::Agents));
     lanes.steps(100);
     cells.steps(100);

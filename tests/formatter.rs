@@ -1,8 +1,5 @@
 //! The formatter: what it keeps, and that a second run changes nothing.
 
-#![allow(clippy::case_sensitive_file_extension_comparisons, reason = "names are given in lower case")]
-#![allow(clippy::disallowed_methods, reason = "a test reads its own files")]
-
 use proptest::prelude::*;
 use smc::syntax::parse::{parse_properties, parse_scenario};
 use smc::syntax::print::{format_properties, format_scenario};

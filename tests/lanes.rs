@@ -1,9 +1,7 @@
 //! One lane is one trial, with the same bits at every vector width: what one lane does moves no byte of
 //! another.
 
-mod crowd;
-
-use crowd::{Crowd, Person, bits_of, p, streams};
+use crate::crowd::{Crowd, Person, bits_of, p, streams};
 use fearless_simd::Level;
 use smc::base::lanes::Mask;
 use smc::kernel::{Layout, Program, Scratch, State, refresh, step};

@@ -1,19 +1,12 @@
 //! The same bytes on every machine: all models under emulated processors with shorter vectors.
 //!
 //! Needs `qemu-x86_64` and takes minutes, so it runs only when asked for:
-//! `cargo test --release --test machines -- --ignored --nocapture`.
+//! `cargo test --release --test suite machines:: -- --ignored --nocapture`.
 //!
 //! `SMC_ELSEWHERE` may name a call of the program as it was built for another machine, such as
 //! `qemu-aarch64 -L /usr/aarch64-linux-gnu target/aarch64-unknown-linux-gnu/release/smc`; it is held against this one.
 
-#![allow(clippy::disallowed_methods, reason = "tests read files and call programs")]
-#![allow(dead_code, reason = "the program is called from other tests too")]
-#![allow(clippy::print_stderr, reason = "a skipped test says so")]
-
-#[path = "cli/program.rs"]
-mod program;
-
-use program::{recordings, timeless};
+use crate::program::{recordings, timeless};
 use serde_json::Value;
 use std::path::Path;
 use std::process::{Command, Stdio};

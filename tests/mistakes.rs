@@ -6,9 +6,6 @@
 //! and beside marks) and a phrase of what to write (looked for in all that is said, the quoted source left out).
 //! `---- model.scn` stands before the base, `---- only model.scn` alone.
 
-#![allow(clippy::disallowed_methods, reason = "a test writes files and calls the program")]
-#![allow(clippy::print_stdout, reason = "the test prints which messages are poor")]
-
 use std::fmt::Write as _;
 use std::process::Command;
 

@@ -1,8 +1,6 @@
 //! Mutated examples through the whole front end: tokens dropped, doubled, swapped, replaced. Nothing panics, and
 //! what is refused is refused with a place inside the text.
 
-#![allow(clippy::disallowed_methods, reason = "a test reads its own files")]
-
 use proptest::prelude::*;
 use smc::compile::{Files, Input, compile, requests};
 use smc::syntax::parse::{parse_properties, parse_scenario};

@@ -1,7 +1,5 @@
 //! Depth: 200 levels of everything that nests in milliseconds, and what is too deep is refused with one error.
 
-#![allow(clippy::disallowed_methods, reason = "a test may read the clock")]
-
 use smc::syntax::parse::{parse_properties, parse_scenario};
 use smc::syntax::print::format_properties;
 use smc::syntax::source::{Source, SourceId};

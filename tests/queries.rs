@@ -1,13 +1,7 @@
 //! What queries ask for, seen from outside: strict checks of quantiles, combinations of sweeps, errors of families,
 //! widths with units, ranges of procedures, rankings with small budgets.
 
-#![allow(clippy::disallowed_methods, reason = "a test writes files and calls the program")]
-#![allow(dead_code, reason = "the program is called from other tests too")]
-
-#[path = "cli/program.rs"]
-mod program;
-
-use program::{Place, SMALL, Said};
+use crate::program::{Place, SMALL, Said};
 use serde_json::Value;
 
 /// `c.x` ends as 1 with probability `p`, else as 2.

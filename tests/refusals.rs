@@ -4,8 +4,6 @@
 //! `base.scn`, so that lines count from the planted text; `only model.scn` stands alone; `call` adds words to
 //! the command line.
 
-#![allow(clippy::disallowed_methods, reason = "a test writes files and calls the program")]
-
 use std::fmt::Write as _;
 use std::process::{Command, Output};
 

@@ -1,12 +1,6 @@
 //! A replay line gives the same result again, also after a deadline.
 
-#![allow(clippy::disallowed_methods, reason = "a test reads its own files")]
-#![allow(dead_code, reason = "the program is called from other tests too")]
-
-#[path = "cli/program.rs"]
-mod program;
-
-use program::{Place, SMALL, timeless};
+use crate::program::{Place, SMALL, timeless};
 use serde_json::Value;
 
 /// The level of its procedure is in no table and has to be proven.

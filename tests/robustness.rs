@@ -1,13 +1,7 @@
 //! Robustness in property files: its sign is the verdict, trial by trial; it stops as soon as its bounds force
 //! what is asked; it is estimated, checked, compared and ranked as any metric.
 
-#![allow(clippy::disallowed_methods, reason = "a test reads its own files")]
-#![allow(dead_code, reason = "the program is called from other tests too")]
-
-#[path = "cli/program.rs"]
-mod program;
-
-use program::{Place, SMALL, timeless};
+use crate::program::{Place, SMALL, timeless};
 use serde_json::Value;
 
 fn results(properties: &str, words: &[&str]) -> Vec<Value> {

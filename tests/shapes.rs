@@ -2,13 +2,7 @@
 //! each takes grows with its size and no faster, so all of them are over in no time; a limit says so where one is
 //! exceeded by far.
 
-#![allow(dead_code, reason = "the program is called from other tests too")]
-#![allow(clippy::disallowed_methods, reason = "tests read files and call programs")]
-
-#[path = "cli/program.rs"]
-mod program;
-
-use program::{Place, Said};
+use crate::program::{Place, Said};
 use serde_json::Value;
 
 /// A walk over three values; it takes `horizon` steps.
@@ -166,11 +160,11 @@ property p = G<=1 s (count(a in crowd: slow(speed(a))) * 2 >= 0)
 property q = G<=1 s (count(a in crowd: speed(a) > 0 m/s & busy > 1) * 2 >= 0)
 estimate P(p), P(q) by fixed(trials = 16)
 ";
-    let found = results(program::SMALL, properties);
+    let found = results(crate::program::SMALL, properties);
     assert_eq!((&found[0]["successes"], &found[1]["successes"]), (&16.into(), &16.into()));
     // A name that does stand for a formula over time is still one.
     let said = asked(
-        program::SMALL,
+        crate::program::SMALL,
         "property v = F<=1 s (travelled(user) > 0 m)\nlet w = v\nproperty p = count(a in crowd: w) * 2 >= 0\nestimate P(p)\n",
         &[],
     );
@@ -211,7 +205,7 @@ fn witnesses_in_continuous_time_say_what_lasted() {
         ("models/epidemic.scn", "properties/epidemic.bltl"),
     ];
     for (scenario, properties) in found {
-        let said = program::at_root(&[
+        let said = crate::program::at_root(&[
             "check",
             scenario,
             properties,

@@ -1,13 +1,7 @@
 //! Estimates by splitting in property files: near the exact value, the plain trials beside them, refused where
 //! these contradict, and the same bytes with any number of threads.
 
-#![allow(clippy::disallowed_methods, reason = "a test reads its own files")]
-#![allow(dead_code, reason = "the program is called from other tests too")]
-
-#[path = "cli/program.rs"]
-mod program;
-
-use program::{Place, SMALL, timeless};
+use crate::program::{Place, SMALL, timeless};
 use serde_json::Value;
 
 /// Wins with probability 0.3; many paths share a level.

@@ -3,12 +3,6 @@
 //! The recordings may not be shipped. They are looked for in the folder that `SMC_DATA` names, else beside
 //! the checkout; where they are absent the tests say so and pass.
 
-#![allow(
-    clippy::disallowed_methods,
-    clippy::print_stderr,
-    reason = "tests open files and say what they skip"
-)]
-
 use proptest::prelude::*;
 use smc::base::geometry::Vec2;
 use smc::data::geometry::{Geometry, PropertyValue, read_geojson, read_wkt};

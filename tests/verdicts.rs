@@ -1,13 +1,7 @@
 //! Verdicts of models and properties of the same name, as snapshots; and what must not change them: threads,
 //! other queries, a longer budget. Trials that diverge are held by every interval.
 
-#![allow(clippy::disallowed_methods, reason = "a test reads its own files")]
-#![allow(dead_code, reason = "the program is called from other tests too")]
-
-#[path = "cli/program.rs"]
-mod program;
-
-use program::{Place, SMALL, at_root, recordings, timeless};
+use crate::program::{Place, SMALL, at_root, recordings, timeless};
 use serde_json::Value;
 
 fn verdicts(stem: &str, words: &[&str]) -> Option<Value> {

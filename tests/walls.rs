@@ -1,10 +1,7 @@
 //! People at walls against closed forms (Helbing, Farkas, Vicsek 2000, with m = 80 kg, tau = 0.5 s, A = 2000 N,
 //! B = 0.08 m, R = 0.25 m unless said otherwise). Both layouts must meet each.
-#![allow(clippy::disallowed_methods, reason = "the platform's functions are the reference")]
 
-mod crowd;
-
-use crowd::{NEVER, Person, crowd, p, person, wall};
+use crate::crowd::{NEVER, Person, crowd, p, person, wall};
 use smc::base::geometry::{Polygon, Segment, Shape};
 use smc::kernel::Layout;
 use smc::model::Obstacle;

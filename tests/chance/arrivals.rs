@@ -1,6 +1,6 @@
 //! Arrivals against Poisson, departures, room, and the cap.
 
-use crate::{Batch, HEAD, agent, answered, compiled, near, scenario};
+use super::{Batch, HEAD, agent, answered, compiled, near, scenario};
 use smc::base::lanes::LANES;
 use smc::kernel::Layout;
 

@@ -1,6 +1,6 @@
 //! States of behaviours against their closed forms.
 
-use crate::{Batch, HEAD, agent, answered, compiled, near, scenario};
+use super::{Batch, HEAD, agent, answered, compiled, near, scenario};
 use smc::base::lanes::{LANES, Mask};
 use smc::kernel::Layout;
 use smc::model::Move;

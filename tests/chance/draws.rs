@@ -1,6 +1,6 @@
 //! Streams of random numbers are separate: what is added changes nobody else's draws.
 
-use crate::{Batch, HEAD, agent, scenario};
+use super::{Batch, HEAD, agent, scenario};
 use smc::base::lanes::LANES;
 use smc::kernel::Layout;
 

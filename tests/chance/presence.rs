@@ -1,6 +1,6 @@
 //! Only who is present counts: in sets, in quantified formulas, in tables.
 
-use crate::{HEAD, answered, compiled};
+use super::{HEAD, answered, compiled};
 
 /// A share of trials, of all of them.
 fn share(scenario: &str, formula: &str) -> f64 {

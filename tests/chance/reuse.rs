@@ -1,7 +1,7 @@
 //! Places of sources that are used again: few places last for long, everybody is a person of their own, and what follows
 //! single people says that it knows no more.
 
-use crate::{Batch, HEAD, answered, compiled, scenario};
+use super::{Batch, HEAD, answered, compiled, scenario};
 use smc::kernel::Layout;
 
 /// Somebody comes each `every` at 6 m, with own parameters, waits a drawn time on the way, and leaves at 2 m.

@@ -1,6 +1,6 @@
 //! What agents are like once states of behaviours are entered: values kept, turns at one time, waits gone on with.
 
-use crate::{Batch, scenario};
+use super::{Batch, scenario};
 use smc::base::lanes::LANES;
 use smc::kernel::Layout;
 

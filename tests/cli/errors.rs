@@ -1,6 +1,6 @@
 //! What is printed where something is wrong: the inputs, the model in some trial, or nothing could be sampled.
 
-use crate::formats::validated;
+use super::formats::validated;
 use crate::program::{Place, SMALL, Said, timeless};
 
 const WRONG: &str = "property p = F<=1 s contact(user)\ncheck P(q) >= 0.5\ncheck P(p) >= 2\n";

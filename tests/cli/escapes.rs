@@ -1,7 +1,7 @@
 //! Text that controls a terminal or hides is shown as escapes, whatever it stands in. Errors of the command line come in
 //! the format that it asks for.
 
-use crate::formats::validated;
+use super::formats::validated;
 use crate::program::{Place, SMALL, Said};
 
 /// A title and the like: a colour, the title of a window, marks of direction, characters without width.

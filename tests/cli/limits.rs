@@ -1,6 +1,6 @@
 //! Limits of time, memory and output, where nothing is sampled yet.
 
-use crate::formats::validated;
+use super::formats::validated;
 use crate::program::{Place, SMALL};
 use std::fmt::Write as _;
 use std::process::{Command, Stdio};

@@ -1,6 +1,6 @@
 //! Random expressions and states.
 
-use crate::AGENTS;
+use super::AGENTS;
 use proptest::prelude::*;
 use smc::base::lanes::{LANES, Mask};
 use smc::kernel::{Layout, State};

@@ -1,7 +1,7 @@
 //! Large crowds, whose clearances and contacts look only at who is near: the same bits as a look at all.
 
-use crate::plain::Plain;
-use crate::{p, scenario};
+use super::plain::Plain;
+use super::{p, scenario};
 use proptest::prelude::*;
 use smc::base::geometry::Segment;
 use smc::base::lanes::{LANES, Mask};

@@ -1,7 +1,7 @@
 //! Margins of conditions: their sign is the truth, lane by lane.
 
-use crate::cases::{Hidden, state, truth};
-use crate::{AGENTS, scenario, scene};
+use super::cases::{Hidden, state, truth};
+use super::{AGENTS, scenario, scene};
 use proptest::prelude::*;
 use smc::base::lanes::Lanes;
 use smc::compile::margin::margin;

@@ -1,6 +1,6 @@
 //! The plain evaluator: what each expression means, written down once more, without lanes.
 
-use crate::p;
+use super::p;
 use smc::base::decimal::Decimal;
 use smc::base::geometry::{Shape, Vec2};
 use smc::base::lanes::Lanes;

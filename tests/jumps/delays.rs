@@ -1,7 +1,7 @@
 //! What takes so long takes so long, whenever it begins: fixed delays after random times, against bounds of just that length.
 
-use crate::traces::trace;
-use crate::{compiled, count};
+use super::traces::trace;
+use super::{compiled, count};
 use smc::kernel::Program;
 
 const JOBS: &str = "horizon = 20 s

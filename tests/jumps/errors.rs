@@ -1,6 +1,6 @@
 //! What is wrong with rates, delays and questions in continuous time.
 
-use crate::{answered, compiled};
+use super::{answered, compiled};
 use smc::engine::outcome::Failure;
 
 const QUEUE: &str = include_str!("../../models/queue.scn");

@@ -1,7 +1,7 @@
 //! Models of the repository and small chains against uniformisation.
 
-use crate::chain::Chain;
-use crate::{answered, compiled, count, fits};
+use super::chain::Chain;
+use super::{answered, compiled, count, fits};
 
 const TRIALS: u64 = 20_000;
 

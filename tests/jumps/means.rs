@@ -1,8 +1,8 @@
 //! Means: jumps of a process that the number does not read change no outcome, and a mean lies between the values that it
 //! averages.
 
-use crate::random::{rates, scenario};
-use crate::{answered, compiled, count, fits};
+use super::random::{rates, scenario};
+use super::{answered, compiled, count, fits};
 use proptest::prelude::*;
 
 /// Means from the start, in windows that move, compared with decimals and with what the number may never leave.

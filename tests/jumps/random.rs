@@ -1,9 +1,9 @@
 //! Random small chains and random formulas: every verdict of the engine against a slow evaluation of the definition on
 //! the trace, and shares of trials against uniformisation.
 
-use crate::chain::Chain;
-use crate::traces::{program, trace};
-use crate::{answered, compiled, count, fits};
+use super::chain::Chain;
+use super::traces::{program, trace};
+use super::{answered, compiled, count, fits};
 use proptest::prelude::*;
 
 /// Number of states of a chain.

@@ -1,7 +1,7 @@
 //! Splitting in continuous time against uniformisation: exponential waits begin anew, delays keep what is left.
 
-use crate::chain::Chain;
-use crate::{answered, compiled};
+use super::chain::Chain;
+use super::{answered, compiled};
 use smc::engine::outcome::{QueryResult, Rare};
 
 const OVERFLOW: &str = include_str!("../../models/overflow.scn");

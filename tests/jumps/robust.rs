@@ -1,8 +1,8 @@
 //! Robustness in property files of continuous time: its sign is the verdict, its law is that of extremes, it is
 //! checked, estimated, compared and known early.
 
-use crate::chain::Chain;
-use crate::{answered, compiled};
+use super::chain::Chain;
+use super::{answered, compiled};
 use smc::engine::outcome::Verdict;
 
 const QUEUE: &str = include_str!("../../models/queue.scn");

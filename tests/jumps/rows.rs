@@ -1,7 +1,7 @@
 //! Every row of the table of meanings in continuous time, and the same processes seen at steps. Delays that are
 //! fixed make every instant known, so a formula holds in all trials or in none.
 
-use crate::{compiled, count};
+use super::{compiled, count};
 
 /// What holds always or never.
 fn exactly(scenario: &str, rows: &[(&str, bool)]) {
@@ -15,7 +15,7 @@ fn exactly(scenario: &str, rows: &[(&str, bool)]) {
 /// The value of a metric that is the same in all trials.
 fn value(scenario: &str, metric: &str) -> f64 {
     let study = compiled(scenario, &format!("estimate Q(0.5, {metric})")).unwrap_or_else(|e| panic!("{e}"));
-    let run = crate::answered(&study, 1, 1);
+    let run = super::answered(&study, 1, 1);
     run.results[0].estimate.unwrap()
 }
 
@@ -212,7 +212,7 @@ fn a_process_that_jumps_too_often_between_two_steps_ends_its_trial() {
     let text =
         "horizon = 4 s\nstep = 1 s\nprocess p { var s: 0 .. 1 = 0\n when true at 3000000 /s -> s = 1 - s }";
     let study = compiled(text, "estimate P(F[3 s, 3 s] (p.s == 0)) by fixed(trials = 3)").unwrap();
-    let counts = crate::answered(&study, 0, 1).results[0].counts;
+    let counts = super::answered(&study, 0, 1).results[0].counts;
     assert_eq!((counts.trials, counts.unresolved), (3, 3));
 }
 
@@ -220,7 +220,7 @@ fn a_process_that_jumps_too_often_between_two_steps_ends_its_trial() {
 fn implications_that_never_had_a_case_are_told() {
     let warned = |formula: &str| {
         let study = compiled(STAIRS, &format!("estimate P({formula}) by fixed(trials = 5)")).unwrap();
-        let run = crate::answered(&study, 1, 1);
+        let run = super::answered(&study, 1, 1);
         assert_eq!(run.results[0].counts.successes, 5, "{formula}");
         run.results[0].warnings.iter().any(|warning| warning.contains("never triggered"))
     };

@@ -1,6 +1,6 @@
 //! Traces of processes in continuous time: what must not change them, to the last bit.
 
-use crate::{answered, compiled};
+use super::{answered, compiled};
 use smc::base::random::TrialKey;
 use smc::kernel::process::Processes;
 use smc::kernel::{Program, Scratch, State, dynamics, start};

@@ -1,7 +1,7 @@
 //! Random small chains and random formulas: estimates against the probability of all paths, and each
 //! monitor against the definition on its own trace.
 
-use crate::{compiled, fits, shown};
+use super::{compiled, fits, shown};
 use proptest::prelude::*;
 
 /// Last state of a path.

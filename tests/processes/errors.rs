@@ -1,6 +1,6 @@
 //! What is wrong with a process is said before a trial where it can be seen, else with trial, time and state.
 
-use crate::{answered, compiled};
+use super::{answered, compiled};
 use smc::engine::outcome::Failure;
 
 fn refused(process: &str, code: &str) {

@@ -1,6 +1,6 @@
 //! The models in the repository and their exact values.
 
-use crate::{answered, compiled};
+use super::{answered, compiled};
 
 #[test]
 fn the_leader_is_elected_as_often_as_it_must_be() {

@@ -1,6 +1,6 @@
 //! Every row of the table of meanings, on a process, against exact values.
 
-use crate::{compiled, fits, shown};
+use super::{compiled, fits, shown};
 
 /// The die of Knuth and Yao, with a horizon that does not matter.
 pub(crate) fn die() -> String {

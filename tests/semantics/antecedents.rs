@@ -1,7 +1,7 @@
 //! Whether the left side of an implication was true, or was left open, somewhere: random left sides against the definition.
 
-use crate::random::{Sketch, TestRandom, Trial, settings, trial};
-use crate::reference::Prefix;
+use super::random::{Sketch, TestRandom, Trial, settings, trial};
+use super::reference::Prefix;
 use proptest::prelude::*;
 use smc::base::decimal::Decimal;
 use smc::base::lanes::{LANES, Lanes, Mask};
@@ -92,14 +92,14 @@ impl Case {
                 })
             };
             let now: Vec<(Trial, usize)> = lanes.iter().map(at).collect();
-            let atoms: Vec<Mask> = (0..crate::random::ATOMS)
+            let atoms: Vec<Mask> = (0..super::random::ATOMS)
                 .map(|a| {
                     let is =
                         |(trial, at): &(Trial, usize)| trial.atoms.get(a).is_some_and(|states| states[*at]);
                     Mask(now.iter().enumerate().fold(0, |m, (k, state)| m | u8::from(is(state)) << k))
                 })
                 .collect();
-            let signals: Vec<Lanes> = (0..crate::random::SIGNALS)
+            let signals: Vec<Lanes> = (0..super::random::SIGNALS)
                 .map(|s| {
                     Lanes(std::array::from_fn(|k| {
                         now[k].0.signals.get(s).map_or(7.0, |states| states[now[k].1])

@@ -1,6 +1,6 @@
 //! All Boolean traces up to length 8: verdict, and the state at which it falls.
 
-use crate::reference::{Prefix, holds};
+use super::reference::{Prefix, holds};
 use smc::base::lanes::{LANES, Lanes, Mask};
 use smc::base::tick::{Clock, Tick};
 use smc::logic::{AtomId, Monitor, Node, NodeId, Tree, Window};

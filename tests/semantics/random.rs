@@ -1,6 +1,6 @@
 //! Random formulas and metrics over lanes that start at different times and are filled again.
 
-use crate::reference::Prefix;
+use super::reference::Prefix;
 use proptest::prelude::*;
 use smc::base::lanes::{LANES, Lanes, Mask};
 use smc::base::tick::{Clock, Tick};

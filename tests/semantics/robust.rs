@@ -1,7 +1,7 @@
 //! Robustness against its plain definition, and its sign against the Boolean monitor.
 
-use crate::exhaustive::window;
-use crate::random::{Sketch, TestRandom};
+use super::exhaustive::window;
+use super::random::{Sketch, TestRandom};
 use proptest::prelude::*;
 use smc::base::lanes::{LANES, Lanes, Mask};
 use smc::base::tick::{Clock, Tick};

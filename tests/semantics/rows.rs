@@ -1,6 +1,6 @@
 //! One test for each row of the table in `docs/semantics.md`.
 
-use crate::exhaustive::window;
+use super::exhaustive::window;
 use smc::base::decimal::Decimal;
 use smc::base::lanes::{Lanes, Mask};
 use smc::base::tick::{Clock, Tick};

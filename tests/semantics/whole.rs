@@ -1,7 +1,7 @@
 //! What holds for a monitor as a whole: memory, triggered implications, explanations, odd inputs.
 
-use crate::exhaustive::window;
-use crate::reference::Prefix;
+use super::exhaustive::window;
+use super::reference::Prefix;
 use proptest::prelude::*;
 use smc::base::lanes::{LANES, Mask};
 use smc::base::tick::{Clock, Tick};
@@ -134,7 +134,7 @@ proptest! {
     /// Whoever sees nothing but the states that an explanation names comes to the same verdict.
     #[test]
     fn an_explanation_forces_the_verdict(
-        sketch in crate::random::Sketch::formula(3, false, true),
+        sketch in super::random::Sketch::formula(3, false, true),
         states in proptest::collection::vec(0u8..8, 25),
     ) {
         let mut tree = Tree::default();

@@ -1,7 +1,7 @@
 //! Random formulas and metrics over random signals: reading and moment of decision against the definition,
 //! and other ends of the trial that must not change them.
 
-use crate::reference::{Jump, Signal};
+use super::reference::{Jump, Signal};
 use proptest::prelude::*;
 use smc::base::decimal::Decimal;
 use smc::base::tick::Tick;

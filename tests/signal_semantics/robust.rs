@@ -1,8 +1,8 @@
 //! Robustness on signals against its definition, written plainly over the places of `reference.rs`: both bounds after
 //! every jump, and the sign against the Boolean monitor.
 
-use crate::random::{Draw, GRID};
-use crate::reference::Jump;
+use super::random::{Draw, GRID};
+use super::reference::Jump;
 use proptest::prelude::*;
 use smc::base::decimal::Decimal;
 use smc::base::tick::Tick;

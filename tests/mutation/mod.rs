@@ -1,10 +1,6 @@
 //! Mutations of every token of every example, and noise: nothing panics, the first error lies where the text was
 //! changed, and it is the only one.
 
-#![allow(clippy::case_sensitive_file_extension_comparisons, reason = "names are given in lower case")]
-#![allow(clippy::disallowed_methods, reason = "a test reads its own files")]
-#![allow(clippy::print_stderr, reason = "a skipped test says so")]
-
 mod front;
 mod pairs;
 

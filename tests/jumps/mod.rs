@@ -1,8 +1,6 @@
 //! Processes in continuous time against exact answers: uniformisation and a slow reference, written here, that
 //! share nothing with the program.
 
-#![allow(clippy::disallowed_methods, reason = "the platform's functions are the reference")]
-
 mod chain;
 mod delays;
 mod errors;
@@ -12,17 +10,15 @@ mod random;
 mod rare;
 mod robust;
 mod rows;
-#[path = "../processes/texts.rs"]
-mod texts;
 mod traces;
 
+pub(crate) use crate::texts::compiled;
 use smc::compile::Study;
 use smc::engine::outcome::Run;
-pub(crate) use texts::compiled;
 
 /// Runs a study with a seed.
 pub(crate) fn answered(study: &Study, seed: u64, threads: usize) -> Run {
-    texts::answered(study, seed, threads, 1_000_000)
+    crate::texts::answered(study, seed, threads, 1_000_000)
 }
 
 /// So many of a number of trials fulfil a formula.

@@ -1,15 +1,13 @@
 //! Processes against exact answers: chains are enumerated here, path by path or state by state, by code that
 //! shares nothing with the program.
 
-#![allow(clippy::disallowed_methods, reason = "the platform's functions are the reference")]
-
 mod chains;
 mod errors;
 mod examples;
 mod rows;
 mod tallies;
-mod texts;
 
+pub(crate) use crate::texts::compiled;
 use smc::base::lanes::{LANES, Mask};
 use smc::base::random::TrialKey;
 use smc::compile::Study;
@@ -17,11 +15,10 @@ use smc::compile::study::World;
 use smc::engine::Subject;
 use smc::engine::outcome::Run;
 use smc::kernel::{Readings, Scratch, State, dynamics, start};
-pub(crate) use texts::compiled;
 
 /// Runs a study with a seed.
 pub(crate) fn answered(study: &Study, seed: u64, threads: usize) -> Run {
-    texts::answered(study, seed, threads, 1_000_000)
+    crate::texts::answered(study, seed, threads, 1_000_000)
 }
 
 /// What trials show: the values of all variables at each tick, and the verdict of each column.

@@ -1,5 +1,4 @@
 //! A small crowd for tests of the kernel: people with constant parameters at fixed places.
-#![allow(dead_code, reason = "each test file uses a part of it")]
 
 use smc::base::decimal::Decimal;
 use smc::base::geometry::{Segment, Vec2};

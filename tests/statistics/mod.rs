@@ -2,9 +2,7 @@
 //! measurements, with the negative controls that must fail.
 //!
 //! Each check takes its number of replications. A part with few of them runs always; the full numbers are
-//! behind `--ignored` (`cargo test --release --test statistics -- --ignored`).
-
-#![allow(clippy::disallowed_methods, reason = "the platform's functions serve as the reference")]
+//! behind `--ignored` (`cargo test --release --test suite statistics:: -- --ignored`).
 
 mod arrival;
 mod bayes;

@@ -1,28 +1,24 @@
 //! Behaviours and sources: against what can be worked out by hand, and what they must not change.
 
-#![allow(clippy::disallowed_methods, reason = "the platform's functions are the reference")]
-
 mod arrivals;
 mod behaviours;
 mod draws;
 mod groups;
 mod presence;
 mod reuse;
-#[path = "../processes/texts.rs"]
-mod texts;
 mod turns;
 
+pub(crate) use crate::texts::answered;
 use smc::base::lanes::{LANES, Mask};
 use smc::base::random::TrialKey;
 use smc::compile::Study;
 use smc::kernel::{Layout, Program, Scratch, State, dynamics, start};
 use smc::model::Scenario;
 use std::sync::Arc;
-pub(crate) use texts::answered;
 
 /// Compiles two texts that are right.
 pub(crate) fn compiled(scenario: &str, properties: &str) -> Study {
-    texts::compiled(scenario, properties).unwrap_or_else(|errors| panic!("{errors}"))
+    crate::texts::compiled(scenario, properties).unwrap_or_else(|errors| panic!("{errors}"))
 }
 
 /// The scenario of a text.

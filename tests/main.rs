@@ -1,0 +1,48 @@
+//! All tests of the crate from outside, in one program: building it once is most of what a small change costs.
+#![allow(clippy::case_sensitive_file_extension_comparisons, reason = "names are given in lower case")]
+#![allow(
+    clippy::disallowed_methods,
+    reason = "tests read files, call programs and use the platform's functions"
+)]
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "a test says what was poor or skipped")]
+
+mod chance;
+mod claims;
+mod cli;
+mod codes;
+mod compile;
+mod crowd;
+mod determinism;
+mod diagnostics;
+mod drift;
+mod drive;
+mod dynamics;
+mod expressions;
+mod floors;
+mod forces;
+mod formatter;
+mod jumps;
+mod lanes;
+mod language;
+mod machines;
+mod mistakes;
+mod mutants;
+mod mutation;
+mod nesting;
+mod processes;
+mod program;
+mod queries;
+mod refusals;
+mod replay;
+mod reports;
+mod robustness;
+mod semantics;
+mod shapes;
+mod signal_semantics;
+mod splitting;
+mod start;
+mod statistics;
+mod texts;
+mod tracks;
+mod verdicts;
+mod walls;
