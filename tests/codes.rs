@@ -1,78 +1,59 @@
 //! Codes of errors and warnings: each one that the sources use has a page, each page belongs to a code in use,
 //! its examples are wrong and right, and `smc explain` prints it.
 
-use smc::syntax::codes::{page, pages};
-use std::collections::{BTreeMap, BTreeSet};
+use smc::syntax::codes::Code;
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Command;
 
-/// Quoted codes of a text.
-fn codes(text: &str) -> Vec<String> {
-    text.split('"')
-        .filter(|word| {
-            word.len() == 5 && word.starts_with(['E', 'W']) && word[1..].bytes().all(|b| b.is_ascii_digit())
-        })
-        .map(str::to_owned)
-        .collect()
-}
-
-/// All codes in the sources, with the first file that uses each; pages and tests do not count.
-fn in_use(directory: &Path, found: &mut BTreeMap<String, String>) {
+/// The sources, without their tests.
+fn sources(directory: &Path, text: &mut String) {
     for entry in std::fs::read_dir(directory).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
-            // The constants of the parser stand beside their pages.
-            if !path.ends_with("codes") {
-                in_use(&path, found);
-            }
-        } else if path.extension().is_some_and(|e| e == "rs") {
-            let text = std::fs::read_to_string(&path).unwrap();
-            let code = text.split("#[cfg(test)]").next().unwrap();
-            for code in codes(code) {
-                found.entry(code).or_insert_with(|| path.display().to_string());
-            }
+            sources(&path, text);
+        } else if path.extension().is_some_and(|e| e == "rs") && !path.ends_with("parse/code.rs") {
+            let code = std::fs::read_to_string(&path).unwrap();
+            text.push_str(code.split("#[cfg(test)]").next().unwrap());
         }
     }
 }
 
 #[test]
-fn every_code_has_a_page_and_every_page_a_code() {
+fn every_code_is_in_use() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let mut used = BTreeMap::new();
-    in_use(&root, &mut used);
-    // The parser names its codes: the constants that it uses.
-    let syntax = std::fs::read_to_string(root.join("syntax/codes/syntax.rs")).unwrap();
-    let mut parser = String::new();
-    for entry in std::fs::read_dir(root.join("syntax/parse")).unwrap() {
-        parser += &std::fs::read_to_string(entry.unwrap().path()).unwrap();
-    }
-    for line in syntax.lines().filter(|l| l.contains("const ") && l.contains(": &str")) {
-        let name = line.split("const ").nth(1).unwrap().split(':').next().unwrap();
-        let word = |text: &str| {
-            text.match_indices(name).any(|(at, _)| {
-                let inside = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_');
-                !inside(text[..at].chars().next_back()) && !inside(text[at + name.len()..].chars().next())
-            })
-        };
-        if word(&parser) {
-            used.insert(codes(line).remove(0), format!("the parser, as {name}"));
-        }
-    }
-    assert!(used.len() > 50, "the codes are found: {}", used.len());
-    let bare: Vec<_> = used.iter().filter(|(code, _)| page(code).is_none()).collect();
-    assert!(bare.is_empty(), "codes without a page: {bare:?}");
-    let idle: Vec<_> = pages().map(|p| p.code).filter(|code| !used.contains_key(*code)).collect();
+    let mut text = String::new();
+    sources(&root, &mut text);
+    let used: BTreeSet<&str> = text.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
+    // The parser gives names to its codes.
+    let parser = std::fs::read_to_string(root.join("syntax/parse/code.rs")).unwrap();
+    let is_named = |code: &str| {
+        parser.lines().any(|line| {
+            let name = line.split("const ").nth(1).and_then(|rest| rest.split(':').next());
+            line.contains(&format!("Code::{code};")) && name.is_some_and(|name| used.contains(name))
+        })
+    };
+    let written = |code: &&Code| text.contains(&format!("Code::{code}")) || is_named(code.name());
+    let idle: Vec<_> = Code::ALL.iter().filter(|code| !written(code)).collect();
     assert!(idle.is_empty(), "pages that no error leads to: {idle:?}");
+    // A page without a code would never be printed.
+    let pages = std::fs::read_dir(root.join("../docs/errors")).unwrap();
+    for page in pages {
+        let name = page.unwrap().path().file_stem().unwrap().to_str().unwrap().to_owned();
+        assert!(name.parse::<Code>().is_ok(), "{name} is no code");
+    }
 }
 
 #[test]
-fn every_page_has_a_wrong_and_a_right_example() {
-    for page in pages() {
-        let has = |words: [&str; 2]| words.iter().any(|w| page.text.contains(w));
-        assert!(has(["Wrong:\n", "Probably wrong:\n"]), "{}", page.code);
-        assert!(has(["Right:\n", "Clear:\n"]), "{}", page.code);
-        assert!(!page.title.ends_with('.'), "{}", page.code);
-        assert!(page.text.lines().all(|line| line.chars().count() <= 130), "{} is too wide", page.code);
+fn every_page_has_a_title_and_a_wrong_and_a_right_example() {
+    for code in Code::ALL {
+        let page = code.page();
+        let has = |words: [&str; 2]| words.iter().any(|w| page.contains(w));
+        assert!(page.starts_with(&format!("# {code}: ")), "{code}");
+        assert!(has(["\nWrong:\n", "\nProbably wrong:\n"]), "{code}");
+        assert!(has(["\nRight:\n", "\nClear:\n"]), "{code}");
+        assert!(!code.title().ends_with('.'), "{code}");
+        assert!(page.lines().all(|line| line.chars().count() <= 130), "{code} is too wide");
     }
 }
 
@@ -177,17 +158,20 @@ fn said([scenario, properties]: &[String; 2]) -> (BTreeSet<String>, String) {
 /// Examples that consist of declarations and queries; those about calls and other files are not tried.
 #[test]
 fn what_is_wrong_is_refused_and_what_is_right_is_not() {
+    fn lines(text: &str) -> Vec<&str> {
+        text.lines().map(str::trim).filter(|line| !line.is_empty()).collect()
+    }
     let (mut tried, mut faults) = (0, Vec::new());
-    for page in pages() {
+    for code in Code::ALL {
+        let page = code.page();
         // They are about what lacks, what the parser refuses before, a name that is a unit, and many trials.
-        if page.code.starts_with("E07") || ["E0505", "E0115", "E0802"].contains(&page.code) {
+        if code.is_of("E07") || [Code::E0505, Code::E0115, Code::E0802].contains(code) {
             continue;
         }
-        let asks = page.code != "W0602";
-        let (wrong, right) =
-            ["Right:\n", "Clear:\n"].iter().find_map(|word| page.text.split_once(word)).unwrap();
-        let wrong: Vec<&str> = wrong.split_once("rong:\n").unwrap().1.lines().map(str::trim).collect();
-        let right: Vec<&str> = right.lines().map(str::trim).collect();
+        let asks = *code != Code::W0602;
+        let (wrong, right) = ["Right:\n", "Clear:\n"].iter().find_map(|word| page.split_once(word)).unwrap();
+        let wrong: Vec<&str> = lines(wrong.split_once("rong:\n").unwrap().1);
+        let right: Vec<&str> = lines(right);
         // What declares a name again shows another way.
         let mut ways: Vec<Vec<&str>> = vec![Vec::new()];
         for line in right {
@@ -203,13 +187,13 @@ fn what_is_wrong_is_refused_and_what_is_right_is_not() {
         let ways: Option<Vec<_>> = ways.iter().map(|way| framed(way, asks)).collect();
         let (Some(wrong), Some(ways)) = (framed(&wrong, asks), ways) else { continue };
         let (codes, text) = said(&wrong);
-        if !codes.iter().eq([page.code]) {
-            faults.push(format!("{} is not what is wrong:\n{text}", page.code));
+        if !codes.iter().eq([code.name()]) {
+            faults.push(format!("{code} is not what is wrong:\n{text}"));
         }
         for way in &ways {
             let (codes, text) = said(way);
-            if !codes.iter().all(|code| code.starts_with('W') && code != page.code) {
-                faults.push(format!("{} is not right:\n{text}", page.code));
+            if !codes.iter().all(|said| said.starts_with('W') && said != code.name()) {
+                faults.push(format!("{code} is not right:\n{text}"));
             }
         }
         tried += 1;
@@ -222,12 +206,10 @@ fn what_is_wrong_is_refused_and_what_is_right_is_not() {
 fn explain_prints_the_page() {
     let explain =
         |code: &str| Command::new(env!("CARGO_BIN_EXE_smc")).args(["explain", code]).output().unwrap();
-    for page in pages() {
-        let output = explain(page.code);
-        let text = String::from_utf8(output.stdout).unwrap();
+    for code in Code::ALL {
+        let output = explain(code.name());
         assert_eq!(output.status.code(), Some(0));
-        assert!(text.starts_with(&format!("{}: {}\n", page.code, page.title)), "{text}");
-        assert!(text.contains(page.text.trim_end()), "{text}");
+        assert_eq!(String::from_utf8(output.stdout).unwrap(), code.page()[2..], "{code}");
     }
     assert_eq!(explain("e0303").status.code(), Some(0), "lower case is the same");
     let output = explain("E0333");

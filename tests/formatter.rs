@@ -188,7 +188,7 @@ proptest! {
             text.push_str(token);
         }
         let (_, said) = parse_properties(&Source::new(SourceId(0), "r.bltl", text.as_str()));
-        prop_assert!(said.iter().all(|d| d.code.starts_with('W')), "{text}\n{said:?}");
+        prop_assert!(said.iter().all(|d| d.code.is_of("W")), "{text}\n{said:?}");
         let once = format("r.bltl", &text);
         prop_assert_eq!(tree("r.bltl", &once), tree("r.bltl", &text), "{}\n{}", text, once);
         for comment in ["/* c */", "// c"] {

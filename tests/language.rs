@@ -80,7 +80,7 @@ fn read(text: &str) -> String {
     let source = Source::new(SourceId(0), "a.bltl", format!("property p_ = {text}"));
     let (file, said) = parse_properties(&source);
     assert!(
-        said.iter().all(|d| d.code.starts_with('W')),
+        said.iter().all(|d| d.code.is_of("W")),
         "{}",
         render(&said, std::slice::from_ref(&source), false)
     );

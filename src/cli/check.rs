@@ -15,6 +15,7 @@ use crate::engine::budget::DEFAULT_TRIALS;
 use crate::engine::outcome::{Failure, Finding, Run};
 use crate::engine::{Budget, Call, Fault, Outlook, Ranks, Threads, forecast, run as run_study};
 use crate::report::{self, ExitCode as Exit, Format, Palette};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
 use std::path::Path;
@@ -268,7 +269,7 @@ fn ender(arguments: &Check, colors: Colors) -> impl Fn(Ended) -> Exit + Clone + 
 
 /// A report of a call whose command line cannot be understood, in formats for machines.
 pub(super) fn misused(chosen: OutputFormat, message: &str) {
-    let error = Diagnostic::placeless("E0705", message);
+    let error = Diagnostic::placeless(Code::E0705, message);
     let run = Run {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         diagnostics: inputs::findings(&[error], &[]),

@@ -7,6 +7,7 @@ use crate::base::math;
 use crate::data::outcomes::{Column, Outcomes};
 use crate::report::ExitCode as Exit;
 use crate::stats::Cusum;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use serde_json::json;
 use std::fs::File;
@@ -94,7 +95,7 @@ fn watch(arguments: &Drift) -> Result<bool, Diagnostic> {
 
 /// Outcomes that cannot be read as such.
 fn table(reason: String) -> Diagnostic {
-    Diagnostic::placeless("E0707", reason)
+    Diagnostic::placeless(Code::E0707, reason)
         .hint("one outcome a line: 0 or 1, true or false; `--column` picks one of a table")
 }
 

@@ -8,6 +8,7 @@ use crate::compile::{Files, Input, Setting, SettingValue, Starts, Study, examine
 use crate::engine::outcome::{Finding, Spot};
 use crate::engine::overfull_starts;
 use crate::syntax::ast::{Item, PropertyItem, ScenarioFile};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::parse::{continues_name, decode, parse_properties, parse_scenario, parse_value};
 use crate::syntax::source::{Source, SourceId, Span};
@@ -17,7 +18,7 @@ use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 /// Code of a parameter that is set wrongly.
-const SETTING: &str = "E0210";
+const SETTING: Code = Code::E0210;
 
 /// Most errors of one code that are shown.
 const MOST_OF_A_KIND: usize = 100;
@@ -55,7 +56,7 @@ pub(super) fn findings(diagnostics: &[Diagnostic], sources: &[Source]) -> Vec<Fi
     };
     let one = |diagnostic: &Diagnostic| Finding {
         error: diagnostic.severity == Severity::Error,
-        code: diagnostic.code.to_owned(),
+        code: diagnostic.code.to_string(),
         spot: diagnostic.place.as_ref().and_then(|label| spot(label.span)),
         message: diagnostic.title.clone(),
         label: diagnostic.place.as_ref().map_or(String::new(), |label| label.text.clone()),
@@ -135,7 +136,7 @@ impl Reader {
         let bytes = match self.shelf.open(name, || read(name)) {
             Ok(bytes) => bytes,
             Err(reason) => {
-                self.diagnostics.push(Diagnostic::placeless("E0701", reason));
+                self.diagnostics.push(Diagnostic::placeless(Code::E0701, reason));
                 return None;
             }
         };
@@ -176,7 +177,7 @@ impl Reader {
     fn setting(&mut self, text: &str) -> Option<Setting> {
         let named = text.split_once('=').filter(|(name, _)| !name.trim().is_empty());
         let Some((name, value)) = named else {
-            let error = Diagnostic::placeless("E0210", format!("`--set {text}` sets nothing"))
+            let error = Diagnostic::placeless(Code::E0210, format!("`--set {text}` sets nothing"))
                 .hint("write `--set name=value` or `--set name=from..to by step`");
             self.diagnostics.push(error);
             return None;
@@ -187,8 +188,9 @@ impl Reader {
             None => SettingValue::One(self.expression(&label, value)?),
             Some((from, rest)) => {
                 let Some((to, by)) = rest.split_once(" by ") else {
-                    let error = Diagnostic::placeless("E0210", format!("the sweep `{value}` has no step"))
-                        .hint("write `--set name=0.1..0.8 by 0.1`");
+                    let error =
+                        Diagnostic::placeless(Code::E0210, format!("the sweep `{value}` has no step"))
+                            .hint("write `--set name=0.1..0.8 by 0.1`");
                     self.diagnostics.push(error);
                     return None;
                 };
@@ -250,7 +252,7 @@ fn is_error(diagnostic: &Diagnostic) -> bool {
 
 /// Of each kind of error or warning the first ones, and how many more there are.
 fn first_of_each_kind(mut diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
-    let mut found: BTreeMap<(Severity, &'static str), usize> = BTreeMap::new();
+    let mut found: BTreeMap<(Severity, Code), usize> = BTreeMap::new();
     diagnostics.retain(|one| {
         let count = found.entry((one.severity, one.code)).or_default();
         *count += 1;
@@ -335,7 +337,7 @@ pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> I
         Reader { shelf, sources: Vec::new(), prints: Vec::new(), diagnostics: Vec::new(), paths: Vec::new() };
     let twice = std::iter::once(&model.scenario).chain(properties).filter(|name| *name == "-").count() > 1;
     if twice {
-        reader.diagnostics.push(Diagnostic::placeless("E0701", "standard input can be read once only"));
+        reader.diagnostics.push(Diagnostic::placeless(Code::E0701, "standard input can be read once only"));
     }
     let mut scenario = ScenarioFile::default();
     let mut parsed = Vec::new();
@@ -349,7 +351,7 @@ pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> I
                     // Nothing but comments: as an empty file.
                     complete = false;
                     let title = format!("{} declares nothing", source.name);
-                    reader.diagnostics.push(Diagnostic::placeless("E0108", title));
+                    reader.diagnostics.push(Diagnostic::placeless(Code::E0108, title));
                 }
                 let hint = "these are properties; the scenario comes first, and properties after it";
                 reader.diagnostics.extend(misplaced(diagnostics, &source, is_of_properties, hint));
@@ -367,7 +369,7 @@ pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> I
     }
     for directory in model.data.iter().filter(|directory| !directory.is_dir()) {
         let what = if directory.exists() { "no directory" } else { "not there" };
-        let error = Diagnostic::placeless("E0701", format!("`--data {}` is {what}", directory.display()));
+        let error = Diagnostic::placeless(Code::E0701, format!("`--data {}` is {what}", directory.display()));
         reader
             .diagnostics
             .push(error.hint("it names a folder in which recordings and imports are looked for"));
@@ -415,13 +417,13 @@ pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> I
     } else if study.is_none() {
         // Nothing is refused without a word.
         let title = "what is wrong with these files shows nowhere else";
-        diagnostics.push(Diagnostic::placeless("E0305", title));
+        diagnostics.push(Diagnostic::placeless(Code::E0305, title));
     }
     if let (Some(study), Some(last)) = (&study, properties.last())
         && study.queries.is_empty()
         && let Some(source) = sources.iter().rfind(|source| source.name == shown(last))
     {
-        let warning = Diagnostic::warning("W0602", Span::new(source.id, 0, 0), "nothing is asked");
+        let warning = Diagnostic::warning(Code::W0602, Span::new(source.id, 0, 0), "nothing is asked");
         diagnostics.push(warning.hint("add a query, as in `check P(safe) >= 0.9` or `estimate P(safe)`"));
     }
     let errors = diagnostics.iter().filter(|one| is_error(one)).count();

@@ -1,6 +1,7 @@
 //! Files that are written: as a whole or not at all, and never over a file that the call reads.
 
 use super::inputs::STDIN;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -88,7 +89,7 @@ pub(super) fn guard(output: Option<&Path>, inputs: &[PathBuf]) -> Result<(), Dia
         _ => format!("the input `{}`", input.display()),
     };
     let title = format!("the output `{}` would overwrite {input}", output.display());
-    Err(Diagnostic::placeless("E0920", title).hint("write to another file"))
+    Err(Diagnostic::placeless(Code::E0920, title).hint("write to another file"))
 }
 
 /// Whether two names stand for one file.

@@ -4,6 +4,7 @@ use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::measures::Sketch;
 use super::nearest::nearest;
 use crate::syntax::ast::{Clauses, Method};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
@@ -43,7 +44,7 @@ impl Elaborator<'_> {
                 let hint = nearest(&argument.name.name, names.iter().copied())
                     .map_or(known, |n| format!("did you mean `{n}`?"));
                 let error = Diagnostic::error(
-                    "E0604",
+                    Code::E0604,
                     argument.name.span,
                     format!("`{}` has no argument `{}`", method.name.name, argument.name.name),
                 );
@@ -56,14 +57,14 @@ impl Elaborator<'_> {
                 && first.name.span != argument.name.span
             {
                 let text = format!("`{}` is given twice", argument.name.name);
-                let error = Diagnostic::error("E0604", argument.name.span, text);
+                let error = Diagnostic::error(Code::E0604, argument.name.span, text);
                 self.note(error.formal().related(first.name.span, "first given here"));
                 failed = true;
                 continue;
             }
             if let (Some(clause), "alpha" | "beta" | "delta") = (&clauses.confidence, names[at]) {
                 let text = format!("the error is given twice: by `confidence` and by `{}`", names[at]);
-                let error = Diagnostic::error("E0604", argument.name.span, text);
+                let error = Diagnostic::error(Code::E0604, argument.name.span, text);
                 self.note(error.formal().related(clause.span, "given here"));
                 failed = true;
                 continue;
@@ -88,8 +89,11 @@ impl Elaborator<'_> {
             None if arguments.failed => Err(Reported),
             None => {
                 let method = arguments.method;
-                let error =
-                    Diagnostic::error("E0604", method.span, format!("`{}` needs `{name}`", method.name.name));
+                let error = Diagnostic::error(
+                    Code::E0604,
+                    method.span,
+                    format!("`{}` needs `{name}`", method.name.name),
+                );
                 self.report(error.formal())
             }
         }

@@ -10,6 +10,7 @@ use super::study::{Ask, Measure, MeasureKind, Ranking, Target};
 use super::symbols::ScopeId;
 use crate::model::{AgentId, Who};
 use crate::syntax::ast::{self, BinaryOp, Binding, Clauses, Expr};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
@@ -42,7 +43,7 @@ impl<'a> Compiler<'a> {
             }),
             (What::Expectation, Some(method)) => {
                 let said = "a check of an expectation has one procedure only";
-                elaborator.report(Diagnostic::error("E0603", method.span, said))
+                elaborator.report(Diagnostic::error(Code::E0603, method.span, said))
             }
             (What::Quantile, _) => {
                 let level = match &measure.kind {
@@ -95,7 +96,7 @@ impl<'a> Compiler<'a> {
         for binding in first.iter().chain(second) {
             if let Some(common) = clauses.under.iter().find(|common| common.name.name == binding.name.name) {
                 let text = format!("`{}` is set twice", binding.name.name);
-                let error = Diagnostic::error("E0210", binding.name.span, text)
+                let error = Diagnostic::error(Code::E0210, binding.name.span, text)
                     .related(common.name.span, "set here for both sides")
                     .hint("leave one of them out");
                 self.sites[site].elaborator.note(error);
@@ -122,7 +123,7 @@ impl<'a> Compiler<'a> {
         let allowance = Allowance { family, claims: 1 };
         let quantile = sketch.what == What::Quantile;
         let comparable = if quantile {
-            let error = Diagnostic::error("E0607", measure.span, "quantiles cannot be compared directly")
+            let error = Diagnostic::error(Code::E0607, measure.span, "quantiles cannot be compared directly")
                 .hint("compare `P(metric <= bound)`, or estimate both");
             elaborator.report(error)
         } else {
@@ -157,7 +158,7 @@ impl<'a> Compiler<'a> {
         let moves = self.moves(site, what, agent, &locals);
         let elaborator = &mut self.sites[site].elaborator;
         let rankable = if sketch.what == What::Quantile {
-            let error = Diagnostic::error("E0607", measure.span, "moves are ranked by `P(…)` or `E(…)`");
+            let error = Diagnostic::error(Code::E0607, measure.span, "moves are ranked by `P(…)` or `E(…)`");
             elaborator.report(error)
         } else {
             Ok(())
@@ -169,7 +170,7 @@ impl<'a> Compiler<'a> {
         if let (Ok((.., Ranking::Okamoto)), What::Expectation, Some(method)) =
             (&procedure, sketch.what, &clauses.by)
         {
-            let error = Diagnostic::error("E0607", method.span, "`okamoto` ranks moves by `P(…)` only")
+            let error = Diagnostic::error(Code::E0607, method.span, "`okamoto` ranks moves by `P(…)` only")
                 .hint("the default ranks by `E(…)` too, and needs fewer trials");
             return elaborator.report(error);
         }
@@ -185,7 +186,7 @@ impl<'a> Compiler<'a> {
             Ok(())
         } else {
             let error =
-                Diagnostic::error("E0606", what.span, format!("`{}` cannot be ranked here", what.name))
+                Diagnostic::error(Code::E0606, what.span, format!("`{}` cannot be ranked here", what.name))
                     .hint("write `rank moves of …`");
             elaborator.report(error)
         };
@@ -202,7 +203,7 @@ impl<'a> Compiler<'a> {
         let options = scenario.moves[moves].options.len();
         if options > MOST_OPTIONS {
             let said = format!("a ranking is of at most {MOST_OPTIONS} options, and these are {options}");
-            return self.sites[site].elaborator.report(Diagnostic::error("E0606", agent.span, said));
+            return self.sites[site].elaborator.report(Diagnostic::error(Code::E0606, agent.span, said));
         }
         Ok(moves)
     }
@@ -227,7 +228,7 @@ impl Elaborator<'_> {
             "{first}for example `moves {alone} for 2 s {{ heading from -60 deg to 60 deg by 15 deg  stop }}`"
         );
         let said = format!("the scenario declares no moves of `{name}`");
-        self.report(Diagnostic::error("E0606", at, said).hint(hint))
+        self.report(Diagnostic::error(Code::E0606, at, said).hint(hint))
     }
 
     /// What a measure is compared with: a number in its unit, between 0 and 1 if it is a probability and within the range
@@ -258,7 +259,7 @@ impl Elaborator<'_> {
                 )
             };
             let error = Diagnostic::error(
-                "E0601",
+                Code::E0601,
                 threshold.span,
                 format!("a probability is compared with a number between 0 and 1, not with {theta}"),
             );
@@ -268,7 +269,7 @@ impl Elaborator<'_> {
             && (theta <= low || theta >= high)
         {
             let said = "this threshold lies outside the range of the metric";
-            return self.report(Diagnostic::error("E0601", threshold.span, said).hanging_on(range));
+            return self.report(Diagnostic::error(Code::E0601, threshold.span, said).hanging_on(range));
         }
         Ok(bound)
     }
@@ -295,7 +296,7 @@ fn unlike(
     let (first, second) = (side(kinds[0], &settings[0]), side(kinds[1], &settings[1]));
     let place = measure.range.as_ref().map_or(measure.span, |(low, high)| low.span.to(high.span));
     Diagnostic::error(
-        "E0605",
+        Code::E0605,
         place,
         format!("the sides of a comparison need one range: it is {first}, but {second}"),
     )

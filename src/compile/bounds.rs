@@ -4,6 +4,7 @@
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Lowered};
 use super::measures::{Sketch, What};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
@@ -25,7 +26,7 @@ impl Elaborator<'_> {
             Some((value, _)) if value > 0.0 && value < COIN => Ok(value),
             Some((value, span)) => {
                 let error = Diagnostic::error(
-                    "E0604",
+                    Code::E0604,
                     span,
                     format!("`{name}` is {value}, but lies between 0 and 0.5"),
                 );
@@ -48,14 +49,14 @@ impl Elaborator<'_> {
             } => (range.1 - range.0, Some(at), dimension),
             // Of what nobody knows no part is asked.
             _ if epsilon > 0.0 || sketch.what == What::Quantile => return Ok(epsilon),
-            _ => return self.report(Diagnostic::error("E0604", at, "a width must be positive")),
+            _ => return self.report(Diagnostic::error(Code::E0604, at, "a width must be positive")),
         };
         let part = epsilon / range;
         if (NARROWEST..=widest).contains(&part) {
             return Ok(epsilon);
         }
         if epsilon <= 0.0 {
-            return self.report(Diagnostic::error("E0604", at, "a width must be positive"));
+            return self.report(Diagnostic::error(Code::E0604, at, "a width must be positive"));
         }
         let unit = if dimension.is_none() { String::new() } else { format!(" {dimension}") };
         let (word, end, hint) = if part < NARROWEST {
@@ -65,7 +66,7 @@ impl Elaborator<'_> {
             ("above", widest * range, "every number would do: ask for a width that says something")
         };
         let said = format!("a width of {epsilon}{unit} is {word} {end}{unit}");
-        let error = Diagnostic::error("E0604", at, said).hint(hint);
+        let error = Diagnostic::error(Code::E0604, at, said).hint(hint);
         self.report(ranged.into_iter().fold(error, Diagnostic::hanging_on))
     }
 }

@@ -7,6 +7,7 @@ use super::measures::Sketch;
 use super::methods::{DEFAULT_DELTA, DEFAULT_LOSS, Stated, both, stated};
 use super::study::Ranking;
 use crate::syntax::ast::{Clauses, Method};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
@@ -22,7 +23,7 @@ impl Elaborator<'_> {
         let procedure = match &clauses.by {
             Some(method) => {
                 let said = "a comparison has one procedure only";
-                self.report(Diagnostic::error("E0603", method.span, said))
+                self.report(Diagnostic::error(Code::E0603, method.span, said))
             }
             None => Ok(()),
         };
@@ -94,7 +95,8 @@ impl Elaborator<'_> {
             (Some(found), _) => found,
             // What does not matter in metres nobody knows but who asks.
             (None, Some(dimension)) if !dimension.is_none() => {
-                let error = Diagnostic::error("E0604", measured, "how much worse may a choice be?").formal();
+                let error =
+                    Diagnostic::error(Code::E0604, measured, "how much worse may a choice be?").formal();
                 return self
                     .report(error.hint(format!("say what does not matter, in {dimension}: `within …`")));
             }

@@ -5,6 +5,7 @@
 
 use crate::base::decimal::Decimal;
 use crate::syntax::ast::UnitExpr;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use std::fmt;
 
@@ -171,14 +172,17 @@ pub fn resolve(expression: &UnitExpr) -> Result<Unit, Diagnostic> {
     let mut out = Unit { dimension: Dimension::NONE, exact: Some(Decimal::ONE), size: 1.0 };
     for factor in &expression.factors {
         let Some(unit) = unit(&factor.name.name) else {
-            let mut error =
-                Diagnostic::error("E0113", factor.name.span, format!("unknown unit `{}`", factor.name.name));
+            let mut error = Diagnostic::error(
+                Code::E0113,
+                factor.name.span,
+                format!("unknown unit `{}`", factor.name.name),
+            );
             if let Some(near) = super::nearest::nearest(&factor.name.name, UNITS.iter().copied()) {
                 error = error.hint(format!("did you mean `{near}`?"));
             }
             return Err(error);
         };
-        let too_large = || Diagnostic::error("E0302", expression.span, "this unit is out of range");
+        let too_large = || Diagnostic::error(Code::E0302, expression.span, "this unit is out of range");
         let power = factor.power;
         out.dimension =
             unit.dimension.power(power).and_then(|d| out.dimension.times(d)).ok_or_else(too_large)?;

@@ -24,6 +24,7 @@ use crate::data::tracks::Recording;
 use crate::logic::Tree;
 use crate::model::{AgentId, BehaviourId, Bool, Num, Scene};
 use crate::syntax::ast::{BehaviourDecl, Expr};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::source::{Source, SourceId, Span};
 use std::collections::{BTreeMap, BTreeSet};
@@ -187,7 +188,7 @@ pub(super) struct Elaborator<'a> {
     /// What was found wrong.
     pub(super) diagnostics: Vec<Diagnostic>,
     /// Codes and places of all that was ever noted: only what stands here can be among the diagnostics.
-    noted: BTreeSet<(&'static str, Option<Span>)>,
+    noted: BTreeSet<(Code, Option<Span>)>,
     /// What is known of margins, while the formula of a robustness is lowered.
     pub(super) margins: Option<Margins>,
     /// Present depth of lowering.
@@ -293,7 +294,7 @@ impl<'a> Elaborator<'a> {
         if diagnostic.place.as_ref().is_some_and(|place| self.is_cut(place.span)) {
             return;
         }
-        if ["E0302", "E0303"].contains(&diagnostic.code)
+        if [Code::E0302, Code::E0303].contains(&diagnostic.code)
             && let Some(place) = &diagnostic.place
         {
             // A file knows its own names and those of the scenario.
@@ -319,7 +320,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// Whether an error of some code was found at a place: said once, it need not be looked for again.
-    pub(super) fn is_said(&self, code: &'static str, place: Span) -> bool {
+    pub(super) fn is_said(&self, code: Code, place: Span) -> bool {
         let at = |one: &Diagnostic| one.place.as_ref().is_some_and(|label| label.span == place);
         self.noted.contains(&(code, Some(place)))
             && self.diagnostics.iter().any(|one| one.code == code && at(one))
@@ -344,7 +345,8 @@ impl<'a> Elaborator<'a> {
 
     /// Expected one thing, found another.
     pub(super) fn mismatch<T>(&mut self, span: Span, expected: &str, found: &Typed) -> Lowered<T> {
-        let error = Diagnostic::error("E0305", span, format!("expected {expected}, found {}", found.noun()));
+        let error =
+            Diagnostic::error(Code::E0305, span, format!("expected {expected}, found {}", found.noun()));
         self.report(error)
     }
 
@@ -361,7 +363,7 @@ impl<'a> Elaborator<'a> {
 
     pub(super) fn other_dimension(&self, span: Span, expected: Dimension, found: Dimension) -> Diagnostic {
         let mut error = Diagnostic::error(
-            "E0303",
+            Code::E0303,
             span,
             format!("expected {}, found {}", describe(expected), describe(found)),
         );
@@ -407,7 +409,7 @@ impl<'a> Elaborator<'a> {
         }
         if self.depth >= DEEPEST {
             let mut error = Diagnostic::error(
-                "E0211",
+                Code::E0211,
                 self.outermost,
                 format!("this nests deeper than {DEEPEST} once names are expanded"),
             );
@@ -432,14 +434,14 @@ impl<'a> Elaborator<'a> {
         if self.endless() {
             return Err(Reported);
         }
-        let error = Diagnostic::error("E0211", span, "this grows beyond reason once names are expanded")
+        let error = Diagnostic::error(Code::E0211, span, "this grows beyond reason once names are expanded")
             .hint("quantifiers over formulas are written out for every agent; quantify over states where you can");
         self.report(error)
     }
 
     /// Whether it was said that something nests or grows beyond reason.
     fn endless(&self) -> bool {
-        self.diagnostics.iter().any(|d| d.code == "E0211")
+        self.diagnostics.iter().any(|d| d.code == Code::E0211)
     }
 
     /// An error where names lead through too many others.
@@ -452,7 +454,7 @@ impl<'a> Elaborator<'a> {
         }
         let first = self.expanding.first().map_or("", |(_, name)| name.as_str());
         let text = format!("`{first}` leads through more than {DEEPEST} names");
-        self.report(Diagnostic::error("E0211", span, text))
+        self.report(Diagnostic::error(Code::E0211, span, text))
     }
 
     /// A number known at compile time, of a given dimension.
@@ -467,7 +469,7 @@ impl<'a> Elaborator<'a> {
             return self.wrong_dimension(expr.span, dimension, number.dimension);
         }
         if !number.value.is_finite() {
-            let error = Diagnostic::error("E0405", expr.span, "this is not a finite number");
+            let error = Diagnostic::error(Code::E0405, expr.span, "this is not a finite number");
             return self.report(error);
         }
         Ok(number)
@@ -483,8 +485,9 @@ impl<'a> Elaborator<'a> {
                     Typed::Num(num, _) if num.is_drawn() => "is not known before a trial",
                     _ => "changes during a trial",
                 };
-                let error = Diagnostic::error("E0304", expr.span, "this must be known before a trial starts")
-                    .label(format!("{} that {when}", found.noun()));
+                let error =
+                    Diagnostic::error(Code::E0304, expr.span, "this must be known before a trial starts")
+                        .label(format!("{} that {when}", found.noun()));
                 self.report(error)
             }
             found => self.mismatch(expr.span, "a number", &found),

@@ -2,6 +2,7 @@
 
 use crate::data::geometry::PropertyValue;
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, UnaryOp};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
@@ -81,7 +82,7 @@ fn side(expr: &Expr, feature: Described<'_>) -> Result<Side, Diagnostic> {
 
 fn wrong(expr: &Expr) -> Diagnostic {
     Diagnostic::error(
-        "E0305",
+        Code::E0305,
         expr.span,
         "a filter compares properties of features with texts, numbers or truth values",
     )

@@ -5,14 +5,25 @@ use super::dimension;
 use super::elaborator::Elaborator;
 use super::queries::Compiler;
 use super::symbols::Meaning;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::source::Span;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Codes of errors of queries that hang on no value, besides those of names, kinds and units.
-const VALUELESS: [&str; 6] = ["E0204", "E0507", "E0508", "E0603", "E0606", "E0607"];
+const VALUELESS: [Code; 6] = [Code::E0204, Code::E0507, Code::E0508, Code::E0603, Code::E0606, Code::E0607];
 /// Codes of numbers that hang on no other value where they are written as such.
-const WRITTEN: [&str; 9] = ["E0402", "E0404", "E0405", "E0503", "E0601", "E0602", "E0604", "E0605", "E0710"];
+const WRITTEN: [Code; 9] = [
+    Code::E0402,
+    Code::E0404,
+    Code::E0405,
+    Code::E0503,
+    Code::E0601,
+    Code::E0602,
+    Code::E0604,
+    Code::E0605,
+    Code::E0710,
+];
 /// The world in which nothing is set.
 const PLAIN: usize = 0;
 /// Most worlds that an error names, and most words in which it is said.
@@ -86,7 +97,7 @@ impl Compiler<'_> {
     /// none of these, in one that queries set.
     fn told(&self, finding: Finding) -> Diagnostic {
         let Finding { mut diagnostic, worlds, others } = finding;
-        if diagnostic.severity != Severity::Error && diagnostic.code != "W0501" {
+        if diagnostic.severity != Severity::Error && diagnostic.code != Code::W0501 {
             return diagnostic;
         }
         // What hangs on no value is so in all worlds in which that is asked.
@@ -151,11 +162,8 @@ impl Elaborator<'_> {
         if one.is_formal {
             return true;
         }
-        let is_circle = one.code == "E0205" && one.title.ends_with(BY_ITSELF);
-        if is_circle
-            || UNKNOWN.contains(&one.code)
-            || one.code.starts_with("E03")
-            || VALUELESS.contains(&one.code)
+        let is_circle = one.code == Code::E0205 && one.title.ends_with(BY_ITSELF);
+        if is_circle || UNKNOWN.contains(&one.code) || one.code.is_of("E03") || VALUELESS.contains(&one.code)
         {
             return true;
         }

@@ -6,6 +6,7 @@ use super::presets::{PARAMETERS, PRESETS, law};
 use super::symbols::{Meaning, unknown};
 use crate::model::{Body, Law, TOP_SPEED};
 use crate::syntax::ast::{Field, Ident, KindDecl};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use std::collections::BTreeMap;
 
@@ -53,7 +54,7 @@ impl Elaborator<'_> {
                 .take(looked_at)
                 .filter(|(_, e)| matches!(e.meaning, Meaning::Kind(_)))
                 .map(|(n, _)| n);
-            let error = unknown("kind", &name.name, name.span, "E0208", declared.chain(["sfm"]));
+            let error = unknown("kind", &name.name, name.span, Code::E0208, declared.chain(["sfm"]));
             return self.report(error);
         };
         let Meaning::Kind(decl) = meaning else {
@@ -61,7 +62,7 @@ impl Elaborator<'_> {
                 return Err(Reported);
             }
             let error = Diagnostic::error(
-                "E0206",
+                Code::E0206,
                 name.span,
                 format!("expected a kind, `{}` is {}", name.name, meaning.noun()),
             );
@@ -73,7 +74,7 @@ impl Elaborator<'_> {
             }
             self.circles.extend(self.expanding.iter().map(|(_, n)| n.clone()));
             return self.report(Diagnostic::error(
-                "E0205",
+                Code::E0205,
                 name.span,
                 format!("the kind `{}` is defined by itself", name.name),
             ));
@@ -103,7 +104,7 @@ impl Elaborator<'_> {
                 }
             } else {
                 let error =
-                    unknown("preset", &preset.name, preset.span, "E0208", PRESETS.iter().map(|p| p.name));
+                    unknown("preset", &preset.name, preset.span, Code::E0208, PRESETS.iter().map(|p| p.name));
                 let known = format!("known presets: {}", PRESETS.map(|p| p.name).join(", "));
                 let error = match error.hint.clone() {
                     Some(near) => error.hint(format!("{near} {known}")),
@@ -116,7 +117,7 @@ impl Elaborator<'_> {
         let rest = self.parameters(&decl.body, kind.as_mut().ok(), &Locals::default());
         for field in rest {
             let known = PARAMETERS.iter().map(|(n, ..)| *n);
-            let error = unknown("parameter", &field.name.name, field.name.span, "E0207", known);
+            let error = unknown("parameter", &field.name.name, field.name.span, Code::E0207, known);
             self.note(error);
             self.look_at(&field.value, &Locals::default());
             kind = Err(Reported);
@@ -137,7 +138,7 @@ impl Elaborator<'_> {
             let first = *set.entry(&field.name.name).or_insert(field);
             if !std::ptr::eq(first, field) {
                 let error = Diagnostic::error(
-                    "E0202",
+                    Code::E0202,
                     field.name.span,
                     format!("`{}` is set twice", field.name.name),
                 )
@@ -153,7 +154,9 @@ impl Elaborator<'_> {
             let law = match self.law(&field.value, dimension, locals) {
                 Ok(law) => match out_of_range(name, &law) {
                     None => Ok(law),
-                    Some(reason) => self.report(Diagnostic::error("E0405", value_span(&field.value), reason)),
+                    Some(reason) => {
+                        self.report(Diagnostic::error(Code::E0405, value_span(&field.value), reason))
+                    }
                 },
                 Err(reported) => Err(reported),
             };
@@ -179,10 +182,10 @@ impl Elaborator<'_> {
         if !missing.is_empty() {
             let title = format!("`{}` has no {}", name.name, missing.join(", "));
             // Said once, however many are of that kind.
-            if self.diagnostics.iter().any(|d| d.code == "E0209" && d.title == title) {
+            if self.diagnostics.iter().any(|d| d.code == Code::E0209 && d.title == title) {
                 return Err(Reported);
             }
-            let error = Diagnostic::error("E0209", name.span, title)
+            let error = Diagnostic::error(Code::E0209, name.span, title)
                 .hint("set them, or start from a preset: `kind adult: sfm preset helbing2000 { … }`");
             return self.report(error);
         }

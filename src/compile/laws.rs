@@ -7,6 +7,7 @@ use super::symbols::{Meaning, unknown};
 use crate::base::decimal::Decimal;
 use crate::model::{Family, Law};
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Value};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
@@ -87,16 +88,17 @@ impl Elaborator<'_> {
                             "distribution",
                             &function.name,
                             function.span,
-                            "E0203",
+                            Code::E0203,
                             DISTRIBUTIONS.into_iter(),
                         );
                         return self.report(error);
                     }
-                    let error = Diagnostic::error("E0404", law.span, "only a distribution can be truncated")
-                        .hint(format!(
-                            "for example `normal(mean, sd) in lo .. hi`; known are {}",
-                            DISTRIBUTIONS.join(", ")
-                        ));
+                    let error =
+                        Diagnostic::error(Code::E0404, law.span, "only a distribution can be truncated")
+                            .hint(format!(
+                                "for example `normal(mean, sd) in lo .. hi`; known are {}",
+                                DISTRIBUTIONS.join(", ")
+                            ));
                     return self.report(error);
                 };
                 let family = self.family(&drawn, law.span, dimension, locals)?;
@@ -106,7 +108,7 @@ impl Elaborator<'_> {
             }
             other => {
                 let error =
-                    Diagnostic::error("E0305", value_span(other), "expected a number or a distribution");
+                    Diagnostic::error(Code::E0305, value_span(other), "expected a number or a distribution");
                 self.report(error)
             }
         }
@@ -163,7 +165,7 @@ impl Elaborator<'_> {
         match law.validate() {
             Ok(()) => Ok(law),
             Err(reason) => {
-                let error = Diagnostic::error("E0404", span, reason);
+                let error = Diagnostic::error(Code::E0404, span, reason);
                 self.report(if dimension.is_none() {
                     error
                 } else {
@@ -189,14 +191,20 @@ impl Elaborator<'_> {
         let (family, by) = (family?, by?);
         self.validated(family.clone(), (f64::NEG_INFINITY, f64::INFINITY), Dimension::NONE, span)?;
         if !(by.value > 0.0 && by.value.is_finite()) {
-            let error =
-                Diagnostic::error("E0404", factor.span, "a distribution is multiplied by what is positive");
+            let error = Diagnostic::error(
+                Code::E0404,
+                factor.span,
+                "a distribution is multiplied by what is positive",
+            );
             return self.report(error);
         }
         let Some(mut scaled) = family.scaled(by.value) else {
-            let error =
-                Diagnostic::error("E0404", span, format!("no multiple of this `{}` is drawn", drawn.name))
-                    .hint("a multiple of `beta` leaves (0, 1), and a count has at most 4096 values");
+            let error = Diagnostic::error(
+                Code::E0404,
+                span,
+                format!("no multiple of this `{}` is drawn", drawn.name),
+            )
+            .hint("a multiple of `beta` leaves (0, 1), and a count has at most 4096 values");
             return self.report(error);
         };
         // Three times 0.1 s is 0.3 s, which a product of doubles misses.
@@ -283,11 +291,11 @@ impl Elaborator<'_> {
                 "choice" => "the values to choose from".to_owned(),
                 _ => format!("mean and standard deviation: `{name}(mean, sd)`"),
             };
-            return self.report(Diagnostic::error("E0204", span, format!("`{name}` takes {usage}")));
+            return self.report(Diagnostic::error(Code::E0204, span, format!("`{name}` takes {usage}")));
         }
         if matches!(name, "uniform_int" | "poisson" | "bernoulli") && !dimension.is_none() {
             let error = Diagnostic::error(
-                "E0404",
+                Code::E0404,
                 span,
                 format!("`{name}` gives pure numbers, here {dimension} is needed"),
             )
@@ -305,7 +313,7 @@ impl Elaborator<'_> {
             "uniform_int" => {
                 if first.fract() != 0.0 || second.fract() != 0.0 {
                     return self.report(Diagnostic::error(
-                        "E0404",
+                        Code::E0404,
                         span,
                         "the ends of `uniform_int` must be whole",
                     ));

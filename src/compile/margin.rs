@@ -12,6 +12,7 @@ use super::typed::Typed;
 use crate::base::tick::Clock;
 use crate::logic::{Invalid, Node, NodeId, Relation, Robustness, SignalRobustness, Term, TermId};
 use crate::model::{Arithmetic, Bool, Comparison, Field, Fold, Function, Num, Place, Set, Who};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::collections::BTreeMap;
@@ -53,7 +54,7 @@ impl Elaborator<'_> {
                 margins.mixed = true;
                 let name = |d: Dimension| super::dimension::describe(d);
                 let error = Diagnostic::error(
-                    "E0611",
+                    Code::E0611,
                     span,
                     format!(
                         "the robustness of a formula needs one unit: this is {}, before it was {}",
@@ -85,10 +86,10 @@ impl Elaborator<'_> {
         let Some((dimension, _)) = margins.first else {
             if let Some((place, instead)) = margins.equality {
                 let title = format!("`{}` has no margin: `==` and `!=` are true or false", self.text(place));
-                let error = Diagnostic::error("E0610", place, title);
+                let error = Diagnostic::error(Code::E0610, place, title);
                 return self.report(error.hint(format!("write `{instead}`, or `<=`")));
             }
-            let error = Diagnostic::error("E0610", span, "nothing in this formula has a margin")
+            let error = Diagnostic::error(Code::E0610, span, "nothing in this formula has a margin")
                 .hint("robustness measures how far comparisons with `<`, `<=`, `>`, `>=`, contacts and regions are from changing");
             return self.report(error);
         };
@@ -107,7 +108,7 @@ impl Elaborator<'_> {
         };
         match made {
             Some(Invalid::NoMargin | Invalid::MovingNumber) => {
-                let error = Diagnostic::error("E0610", span, "a condition in this formula has no margin")
+                let error = Diagnostic::error(Code::E0610, span, "a condition in this formula has no margin")
                     .label("it compares a number of several states")
                     .hint("compare state by state, or smallest and largest values: `min<=5 s (x) > c`");
                 self.report(error)

@@ -14,6 +14,7 @@ use crate::logic::{
     TermId, leaves, looks_ahead, reach,
 };
 use crate::syntax::ast::{self, BinaryOp, Expr, ExprKind, Moment};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
@@ -87,12 +88,12 @@ impl Elaborator<'_> {
         let unbounded = self.within_horizon(Part::Node(node), place)?;
         self.watchable(Root::Formula(node), place)?;
         if !matches!(self.tree.nodes[node.0 as usize], Node::Constant(_)) && !self.reads_states(node) {
-            let warning = Diagnostic::warning("W0501", place, "this is always the same")
+            let warning = Diagnostic::warning(Code::W0501, place, "this is always the same")
                 .hint("it does not depend on what happens in a trial");
             self.note(warning);
         }
         if let Node::Constant(value) = self.tree.nodes[node.0 as usize] {
-            let warning = Diagnostic::warning("W0501", place, format!("this is always {value}"))
+            let warning = Diagnostic::warning(Code::W0501, place, format!("this is always {value}"))
                 .hint("it does not depend on what happens in a trial");
             self.note(warning);
         }
@@ -112,7 +113,7 @@ impl Elaborator<'_> {
             long if long.len() > 60 => "(…)".to_owned(),
             short => format!("({short})"),
         };
-        let warning = Diagnostic::warning("W0502", span, "this is read in the first state").hint(format!(
+        let warning = Diagnostic::warning(Code::W0502, span, "this is read in the first state").hint(format!(
             "write `G<={bound} {inner}` if it has to hold all the time, `F<={bound} {inner}` if it has to happen"
         ));
         self.note(warning);
@@ -145,7 +146,7 @@ impl Elaborator<'_> {
             (Some(Moment::Time(_)), Some(Some(tick))) => term = self.term(Term::Later(tick, term)),
             (Some(_), _) => term = self.term(Term::AtEnd(term)),
             (None, _) if of_state => {
-                let warning = Diagnostic::warning("W0502", body.span, "this is read in the first state")
+                let warning = Diagnostic::warning(Code::W0502, body.span, "this is read in the first state")
                     .hint("write `… at end`, `… at 5 s`, or join states as in `max<=10 s (…)`");
                 self.note(warning);
             }
@@ -253,7 +254,7 @@ impl Elaborator<'_> {
         };
         match &measure.range {
             Some((low, _)) if !matches!(measure.kind, ast::MeasureKind::Expectation) => {
-                let error = Diagnostic::error("E0605", low.span, "only an expectation needs a range");
+                let error = Diagnostic::error(Code::E0605, low.span, "only an expectation needs a range");
                 (self.report(error), sketch)
             }
             _ => (observed, sketch),
@@ -271,7 +272,7 @@ impl Elaborator<'_> {
             None => {
                 let unit = dimension.filter(|d| !d.is_none()).map_or_else(String::new, |d| format!(" {d}"));
                 let error =
-                    Diagnostic::error("E0605", measure.span, "an expectation needs the range of its metric")
+                    Diagnostic::error(Code::E0605, measure.span, "an expectation needs the range of its metric")
                         .hint(format!(
                             "write the range of its values, as in `E(…) in 0{unit} .. 10{unit}`; values beyond are clipped and counted"
                         ));
@@ -322,7 +323,11 @@ impl Elaborator<'_> {
         let expected = Sketch { dimension: Some(least.dimension), ..sketch };
         let most = self.number_in(high, expected, locals)?;
         if least.value >= most.value {
-            return self.report(Diagnostic::error("E0605", low.span.to(high.span), "this range is empty"));
+            return self.report(Diagnostic::error(
+                Code::E0605,
+                low.span.to(high.span),
+                "this range is empty",
+            ));
         }
         Ok((least.value, most.value))
     }
@@ -330,7 +335,7 @@ impl Elaborator<'_> {
     /// Whether it was said of an expression that it is of another kind than what is wanted.
     fn is_refused_as_a_whole(&self, body: &Expr) -> bool {
         let at = |d: &Diagnostic| d.place.as_ref().map(|place| place.span);
-        self.diagnostics.iter().any(|d| d.code == "E0305" && at(d) == Some(body.span))
+        self.diagnostics.iter().any(|d| d.code == Code::E0305 && at(d) == Some(body.span))
     }
 
     fn quantile(
@@ -344,7 +349,7 @@ impl Elaborator<'_> {
         {
             // `Q(time_until(safe), 0.95)`
             let (metric, number) = (self.text(level.span), self.text(measure.body.span));
-            let error = Diagnostic::error("E0601", level.span, "the level of a quantile comes first")
+            let error = Diagnostic::error(Code::E0601, level.span, "the level of a quantile comes first")
                 .hint(format!("write `Q({number}, {metric})`"));
             return (self.report(error), Sketch::of(What::Quantile, None));
         }
@@ -353,7 +358,7 @@ impl Elaborator<'_> {
                 return Ok(number.value);
             }
             let said = "the level of a quantile lies between 0 and 1";
-            self.report(Diagnostic::error("E0601", level.span, said))
+            self.report(Diagnostic::error(Code::E0601, level.span, said))
         });
         let metric = self.metric_root(&measure.body, scope);
         let dimension = self.dimension_of(&metric, &measure.body, scope);
@@ -419,15 +424,15 @@ impl Elaborator<'_> {
                 } else {
                     "a longer step, shorter windows, or fewer of them in one another"
                 };
-                self.report(Diagnostic::error("E0509", span, reason.to_string()).hint(hint))
+                self.report(Diagnostic::error(Code::E0509, span, reason.to_string()).hint(hint))
             }
             // How far the horizon is nobody knows.
             Some(Invalid::BeyondHorizon { .. }) if self.told < Told::Whole => Ok(()),
             Some(reason @ Invalid::BeyondHorizon { .. }) => {
-                self.report(Diagnostic::error("E0502", span, reason.to_string()))
+                self.report(Diagnostic::error(Code::E0502, span, reason.to_string()))
             }
             Some(reason) => {
-                let code = if clock.is_jumps() { "E0508" } else { "E0504" };
+                let code = if clock.is_jumps() { Code::E0508 } else { Code::E0504 };
                 self.report(Diagnostic::error(code, span, reason.to_string()))
             }
         }
@@ -437,14 +442,14 @@ impl Elaborator<'_> {
     fn within_horizon(&mut self, part: Part, span: Span) -> Lowered<bool> {
         let reach = match reach(&self.tree, part, self.horizon, self.clock) {
             Ok(reach) => reach,
-            Err(reason) => return self.report(Diagnostic::error("E0504", span, reason.to_string())),
+            Err(reason) => return self.report(Diagnostic::error(Code::E0504, span, reason.to_string())),
         };
         if reach.ticks <= self.horizon.0 || self.told < Told::Whole {
             return Ok(reach.unbounded);
         }
         let (needed, horizon) = (self.duration(reach.ticks), self.duration(self.horizon.0));
         let mut error = Diagnostic::error(
-            "E0502",
+            Code::E0502,
             span,
             format!("this looks {needed} ahead, but the horizon is {horizon}"),
         );

@@ -9,6 +9,7 @@ use super::measures::{Sketch, What};
 use super::nearest::nearest;
 use super::study::{Estimator, Splitting, Test};
 use crate::syntax::ast::{Clauses, Expr, Method};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
@@ -65,7 +66,7 @@ impl Elaborator<'_> {
         let number = self.number_of(expr, Dimension::NONE, locals)?;
         if number.value <= 0.5 || number.value >= 1.0 {
             let error = Diagnostic::error(
-                "E0604",
+                Code::E0604,
                 expr.span,
                 format!("a confidence of {} does not lie above 50 % and below 100 %", number.value),
             )
@@ -86,7 +87,7 @@ impl Elaborator<'_> {
         let Some(expr) = &clauses.within else { return Ok(None) };
         let number = self.number_in(expr, sketch, locals)?;
         if number.value <= 0.0 {
-            return self.report(Diagnostic::error("E0604", expr.span, "`within` must be positive"));
+            return self.report(Diagnostic::error(Code::E0604, expr.span, "`within` must be positive"));
         }
         Ok(Some(number.value))
     }
@@ -101,8 +102,11 @@ impl Elaborator<'_> {
             let _ = self.number(&argument.value, locals);
         }
         let name = &method.name.name;
-        let error =
-            Diagnostic::error("E0603", method.name.span, format!("there is no procedure `{name}` for this"));
+        let error = Diagnostic::error(
+            Code::E0603,
+            method.name.span,
+            format!("there is no procedure `{name}` for this"),
+        );
         let hint = nearest(name, known.iter().copied())
             .map_or_else(|| format!("known here: {}", known.join(", ")), |n| format!("did you mean `{n}`?"));
         self.report(error.hint(hint))
@@ -111,7 +115,7 @@ impl Elaborator<'_> {
     /// That a check states no width.
     pub(super) fn no_width(&mut self, clauses: &Clauses, what: What) -> Lowered<()> {
         let Some(within) = &clauses.within else { return Ok(()) };
-        let error = Diagnostic::error("E0607", within.span, "a check has no `within`");
+        let error = Diagnostic::error(Code::E0607, within.span, "a check has no `within`");
         self.report(if what == What::Expectation {
             error.hint("it ends as soon as the interval of the mean lies on one side of the threshold")
         } else {
@@ -166,7 +170,7 @@ impl Elaborator<'_> {
                 if indifference < least {
                     let said =
                         format!("`indifference` is {indifference}, but is at least {least} with `{name}`");
-                    let error = Diagnostic::error("E0604", span, said);
+                    let error = Diagnostic::error(Code::E0604, span, said);
                     return self.report(error.hint("`sprt`, and the default test, know no such limit"));
                 }
                 Ok(match name {
@@ -207,8 +211,11 @@ impl Elaborator<'_> {
     ) -> Lowered<(f64, Span)> {
         let (indifference, span) = self.required(arguments, argument, "indifference")?;
         if indifference <= 0.0 {
-            let error =
-                Diagnostic::error("E0602", span, format!("`indifference` is {indifference}, but is above 0"));
+            let error = Diagnostic::error(
+                Code::E0602,
+                span,
+                format!("`indifference` is {indifference}, but is above 0"),
+            );
             return self.report(error.hint("leave the region out: the default test needs none"));
         }
         // Around what is no threshold nothing is asked of it.
@@ -219,7 +226,7 @@ impl Elaborator<'_> {
         }
         let round = |x: f64| (x * 1e12).round() / 1e12;
         let error = Diagnostic::error(
-            "E0602",
+            Code::E0602,
             span,
             format!("the indifference region {} to {} must lie inside (0, 1)", round(low), round(high)),
         )
@@ -243,8 +250,11 @@ impl Elaborator<'_> {
         let quantile = sketch.what == What::Quantile;
         let misplaced = match &clauses.within {
             Some(expr) if quantile => {
-                let error =
-                    Diagnostic::error("E0607", expr.span, "a quantile takes a number of trials, not a width");
+                let error = Diagnostic::error(
+                    Code::E0607,
+                    expr.span,
+                    "a quantile takes a number of trials, not a width",
+                );
                 self.report(error.hint(
                     "write `by fixed(trials = 2000)`; the interval follows from the order of the values",
                 ))
@@ -322,14 +332,14 @@ impl Elaborator<'_> {
         let Some((epsilon, span)) = self.width_of(clauses, within, &arguments)? else {
             delta?;
             arguments.sound()?;
-            let error = Diagnostic::error("E0604", method.span, format!("`{name}` needs `epsilon`"));
+            let error = Diagnostic::error(Code::E0604, method.span, format!("`{name}` needs `epsilon`"));
             return self.report(error.formal());
         };
         if name == "gbas" {
             // A relative error has no scale.
             if !(1e-4..=0.999).contains(&epsilon) {
                 let said = format!("a relative error of {epsilon} is not between 0.0001 and 0.999");
-                return self.report(Diagnostic::error("E0604", span, said));
+                return self.report(Diagnostic::error(Code::E0604, span, said));
             }
         } else {
             self.width((epsilon, span), sketch, WIDEST)?;
@@ -357,7 +367,7 @@ impl Elaborator<'_> {
         let misplaced = match &clauses.within {
             Some(expr) if !quantile => {
                 let said = "a number of trials that is fixed promises no width";
-                let error = Diagnostic::error("E0607", expr.span, said);
+                let error = Diagnostic::error(Code::E0607, expr.span, said);
                 self.report(
                     error.hint("leave out `by` and the trials follow from the width, or leave out `within`"),
                 )
@@ -372,7 +382,7 @@ impl Elaborator<'_> {
                 return Ok(trials as u64);
             }
             let said = format!("`trials` must be a whole number from 1 to {most:e}");
-            self.report(Diagnostic::error("E0604", span, said))
+            self.report(Diagnostic::error(Code::E0604, span, said))
         });
         let delta = self.claimed(arguments.values[1], delta, allowance);
         let (trials, delta) = both(trials, delta)?;
@@ -394,7 +404,7 @@ impl Elaborator<'_> {
     ) -> Lowered<Estimator> {
         let misplaced = match &clauses.within {
             Some(within) => {
-                let error = Diagnostic::error("E0607", within.span, "splitting promises no width").hint(
+                let error = Diagnostic::error(Code::E0607, within.span, "splitting promises no width").hint(
                     "choose the number of `replicas` and of `runs`; the interval follows from how they scatter",
                 );
                 self.report(error)
@@ -422,7 +432,7 @@ impl Elaborator<'_> {
             let gigabytes = |paths: u64| (paths * BYTES_OF_A_PATH) as f64 / 1e9;
             let (taken, limit) = (gigabytes(paths), gigabytes(MOST_PATHS));
             let said = format!("{paths} paths at once take {taken:.1} GB; the limit is {limit:.1} GB");
-            let error = Diagnostic::error("E0923", method.span, said);
+            let error = Diagnostic::error(Code::E0923, method.span, said);
             let fewer = MOST_PATHS / runs;
             let error = of.into_iter().fold(error, Diagnostic::hanging_on);
             return self.report(error.hint(format!(
@@ -450,7 +460,7 @@ impl Elaborator<'_> {
             }
             Some((value, span)) => {
                 let said = format!("`{name}` is {value}, but is a whole number from {low} to {high}");
-                let error = Diagnostic::error("E0604", span, said);
+                let error = Diagnostic::error(Code::E0604, span, said);
                 self.report(hangs_on.into_iter().fold(error, Diagnostic::hanging_on))
             }
         }
@@ -477,7 +487,7 @@ impl Elaborator<'_> {
         match (arguments.values[0], &clauses.within) {
             (Some((_, span)), Some(_)) => {
                 let said = "the width is given twice: by `within` and by `epsilon`";
-                self.report(Diagnostic::error("E0604", span, said).formal())
+                self.report(Diagnostic::error(Code::E0604, span, said).formal())
             }
             (Some(found), None) => Ok(Some(found)),
             (None, _) => stated(clauses, within),

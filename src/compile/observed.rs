@@ -6,6 +6,7 @@ use super::study::Part;
 use super::wording::Frame;
 use crate::logic::{Node, NodeId, Relation, SignalId, Term, TermId};
 use crate::model::{AgentId, Bool, Num, Who};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::sync::Arc;
@@ -79,7 +80,7 @@ impl Elaborator<'_> {
         if self.atoms.len() - self.atoms_before >= MOST_ATOMS {
             if !self.failed() {
                 let error = Diagnostic::error(
-                    "E0211",
+                    Code::E0211,
                     span,
                     format!("this is written out into more than {MOST_ATOMS} conditions"),
                 )

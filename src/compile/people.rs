@@ -11,6 +11,7 @@ use crate::base::geometry::Vec2;
 use crate::base::random::name_hash;
 use crate::model::{Agent, AgentId, Body, Group, Law, Particle, Position, Route, Start, TOP_SPEED, Who};
 use crate::syntax::ast::{AgentsDecl, Expr, ExprKind, Field, GroupDecl, Ident, Value};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::collections::BTreeSet;
@@ -88,7 +89,7 @@ impl<'a> Elaborator<'a> {
         match people.entities(path, size) {
             Some(first) => Ok(first),
             None => self.report(
-                Diagnostic::error("E0913", span, "with this there are more people than can be told apart")
+                Diagnostic::error(Code::E0913, span, "with this there are more people than can be told apart")
                     .hint("all who may come by sources count, about 16 million in all: let fewer come, or shorten the horizon"),
             ),
         }
@@ -99,19 +100,20 @@ impl<'a> Elaborator<'a> {
         let kind = self.kind(&decl.kind);
         let count = match (&decl.count, &decl.recorded) {
             (Some(count), None) if !decl.plural => {
-                let error = Diagnostic::error("E0402", count.span, "`agent` declares one")
+                let error = Diagnostic::error(Code::E0402, count.span, "`agent` declares one")
                     .hint(format!("write `agents {}[…]: …` for several", decl.name.name));
                 self.report(error)
             }
             (Some(count), None) => self.count(count),
             (Some(count), Some(_)) => {
-                let error = Diagnostic::error("E0402", count.span, "a recording decides how many there are")
-                    .hint("leave out the number in brackets");
+                let error =
+                    Diagnostic::error(Code::E0402, count.span, "a recording decides how many there are")
+                        .hint("leave out the number in brackets");
                 self.report(error)
             }
             (None, None) if decl.plural => {
                 let error = Diagnostic::error(
-                    "E0402",
+                    Code::E0402,
                     decl.name.span,
                     format!("how many `{}` are there?", decl.name.name),
                 )
@@ -162,12 +164,12 @@ impl<'a> Elaborator<'a> {
             let Some(field) = rest.iter().find(|f| f.name.name == name) else { return Ok(default) };
             let Value::Plain(expr) = &field.value else {
                 let place = value_span(&field.value);
-                return this.report(Diagnostic::error("E0305", place, "expected a number"));
+                return this.report(Diagnostic::error(Code::E0305, place, "expected a number"));
             };
             let number = this.number_of(expr, dimension, &Locals::default())?;
             if number.value < 0.0 {
                 let said = format!("`{name}` cannot be negative");
-                return this.report(Diagnostic::error("E0405", expr.span, said));
+                return this.report(Diagnostic::error(Code::E0405, expr.span, said));
             }
             Ok(number.value)
         };
@@ -190,7 +192,7 @@ impl<'a> Elaborator<'a> {
         };
         if let Some(span) = decl.particle {
             if count == 0 {
-                self.note(Diagnostic::error("E0402", span, "a body stands for at least one person"));
+                self.note(Diagnostic::error(Code::E0402, span, "a body stands for at least one person"));
                 self.define_empty(&decl.name, false, with);
                 return;
             }
@@ -305,21 +307,21 @@ impl<'a> Elaborator<'a> {
         let number = self.number_of(expr, Dimension::NONE, &Locals::default())?;
         match number.as_whole() {
             Some(n) if n < 0 => {
-                self.report(Diagnostic::error("E0402", expr.span, format!("there cannot be {n} of them")))
+                self.report(Diagnostic::error(Code::E0402, expr.span, format!("there cannot be {n} of them")))
             }
             Some(n) if n as usize <= MOST_AGENTS => Ok(n as usize),
             Some(n) => self.report(Diagnostic::error(
-                "E0402",
+                Code::E0402,
                 expr.span,
                 format!("{n} agents are more than {MOST_AGENTS}"),
             )),
             None if number.value > MOST_AGENTS as f64 && number.value.fract() == 0.0 => {
                 let text = format!("{} agents are more than {MOST_AGENTS}", number.value);
-                self.report(Diagnostic::error("E0402", expr.span, text))
+                self.report(Diagnostic::error(Code::E0402, expr.span, text))
             }
             None => {
                 let error = Diagnostic::error(
-                    "E0402",
+                    Code::E0402,
                     expr.span,
                     format!("the number of agents must be whole, this is {}", number.value),
                 )
@@ -341,7 +343,7 @@ impl<'a> Elaborator<'a> {
             Some(field) => self.position(name, &field.value, people),
             None if required => {
                 let error =
-                    Diagnostic::error("E0209", name.span, format!("where does `{}` start?", name.name))
+                    Diagnostic::error(Code::E0209, name.span, format!("where does `{}` start?", name.name))
                         .hint("set `at`: a point, `uniform in` a shape, or `near` another agent");
                 self.report(error)
             }
@@ -351,7 +353,7 @@ impl<'a> Elaborator<'a> {
             Some(Value::Plain(expr)) => self.velocity_of(expr),
             Some(other) => {
                 let said = "expected a velocity such as `(1, 0) m/s`";
-                self.report(Diagnostic::error("E0305", value_span(other), said))
+                self.report(Diagnostic::error(Code::E0305, value_span(other), said))
             }
             None => Ok(Vec2::zeros()),
         };
@@ -364,7 +366,7 @@ impl<'a> Elaborator<'a> {
             Typed::Point(x, _) => {
                 let found = describe(x.dimension);
                 let error =
-                    Diagnostic::error("E0303", expr.span, format!("expected a velocity, found {found}"))
+                    Diagnostic::error(Code::E0303, expr.span, format!("expected a velocity, found {found}"))
                         .hint("the unit follows the parentheses: `(1, 0) m/s`");
                 return self.report(error);
             }
@@ -373,7 +375,7 @@ impl<'a> Elaborator<'a> {
         if velocity.norm() > TOP_SPEED {
             let speed = (velocity.norm() * 1e3).round() / 1e3;
             let text = format!("nobody starts with {speed} m/s");
-            let error = Diagnostic::error("E0405", expr.span, text)
+            let error = Diagnostic::error(Code::E0405, expr.span, text)
                 .hint(format!("a trial in which somebody is faster than {TOP_SPEED} m/s has diverged"));
             return self.report(error);
         }
@@ -396,7 +398,7 @@ impl<'a> Elaborator<'a> {
             // All others that stand before are known.
             (format!("who comes by `{name}` is not there yet"), "start near an agent, or at a place")
         };
-        self.report(Diagnostic::error("E0403", agent.span, title).hint(hint))
+        self.report(Diagnostic::error(Code::E0403, agent.span, title).hint(hint))
     }
 
     /// The start of who is declared by a name.
@@ -407,7 +409,7 @@ impl<'a> Elaborator<'a> {
                 let distance = match self.number_of(within, Dimension::LENGTH, &Locals::default()) {
                     Ok(distance) if distance.value <= 0.0 => {
                         let said = "this distance must be positive";
-                        self.report(Diagnostic::error("E0405", within.span, said))
+                        self.report(Diagnostic::error(Code::E0405, within.span, said))
                     }
                     far => far.and_then(|d| self.in_reach(within.span, Vec2::new(d.value, 0.0)).map(|_| d)),
                 };
@@ -427,9 +429,11 @@ impl<'a> Elaborator<'a> {
                 Typed::Region(id) => self.region_shape(id, expr.span).map(Position::Within),
                 found => self.mismatch(expr.span, "a point, a region or `uniform in` a shape", &found),
             },
-            other => {
-                self.report(Diagnostic::error("E0305", value_span(other), "expected a place to start from"))
-            }
+            other => self.report(Diagnostic::error(
+                Code::E0305,
+                value_span(other),
+                "expected a place to start from",
+            )),
         }
     }
 
@@ -444,7 +448,7 @@ impl<'a> Elaborator<'a> {
     pub(super) fn only(&mut self, fields: &[&Field], known: &[&str]) {
         for field in fields.iter().filter(|field| !known.contains(&field.name.name.as_str())) {
             let all = known.iter().copied().chain(super::presets::PARAMETERS.iter().map(|(n, ..)| *n));
-            let error = unknown("field", &field.name.name, field.name.span, "E0207", all);
+            let error = unknown("field", &field.name.name, field.name.span, Code::E0207, all);
             self.note(error);
             // It may have been the radius.
             self.any_start = true;

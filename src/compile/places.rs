@@ -9,6 +9,7 @@ use super::people::People;
 use super::symbols::Meaning;
 use crate::base::geometry::{Bounds, Shape, Vec2, rotated};
 use crate::model::{Agent, AgentId, Barrier, Obstacle, Position};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::collections::BTreeMap;
@@ -201,14 +202,15 @@ impl Elaborator<'_> {
         };
         let called = barrier.phrase();
         let error = if distance <= ONE_POINT {
-            Diagnostic::error("E0409", span, format!("`{name}` starts {place} {called}"))
+            Diagnostic::error(Code::E0409, span, format!("`{name}` starts {place} {called}"))
                 .hint("nobody can stand there: move the start or the barrier")
         } else if comes && distance < radius {
             let text = format!(
                 "nobody finds room to come in here: {called} is {distance:.3} m away, and `{name}` has a radius of at \
                  least {radius:.3} m"
             );
-            Diagnostic::error("E0801", span, text).hint("people of a source come in where they touch nothing")
+            Diagnostic::error(Code::E0801, span, text)
+                .hint("people of a source come in where they touch nothing")
         } else if !comes && distance < LEAST_LEFT * radius {
             let text = format!(
                 "`{name}` starts {distance:.3} m from {called}, which leaves less than half of its radius ({radius:.3} m)"
@@ -216,7 +218,7 @@ impl Elaborator<'_> {
             let hint = format!(
                 "move the start at least {radius:.3} m away from the {what}, or give a smaller radius"
             );
-            Diagnostic::error("E0409", span, text).hint(hint)
+            Diagnostic::error(Code::E0409, span, text).hint(hint)
         } else {
             return None;
         };
@@ -256,7 +258,7 @@ impl Elaborator<'_> {
                     std::f64::consts::PI * room
                 );
                 self.note(
-                    Diagnostic::error("E0801", span, text)
+                    Diagnostic::error(Code::E0801, span, text)
                         .hint("fewer people, a larger distance, or smaller radii"),
                 );
                 return;
@@ -268,7 +270,7 @@ impl Elaborator<'_> {
 /// Two at one point.
 fn together(first: &Agent, second: &Agent, other: Option<Span>, span: Span) -> Diagnostic {
     let text = format!("`{}` and `{}` start at the same point", first.name, second.name);
-    let error = Diagnostic::error("E0409", span, text);
+    let error = Diagnostic::error(Code::E0409, span, text);
     match other {
         Some(other) if other != span => error
             .related(other, "taken here")
@@ -287,7 +289,7 @@ fn without_room(agent: &Agent, shape: &Shape, barriers: &[Solid<'_>], span: Span
         "`{}` finds no free place here: walls and obstacles leave no room for a radius of at least {radius:.3} m",
         agent.name
     );
-    Some(Diagnostic::error("E0801", span, text).hint("a larger shape to start from, or smaller radii"))
+    Some(Diagnostic::error(Code::E0801, span, text).hint("a larger shape to start from, or smaller radii"))
 }
 
 /// Two bodies that are larger than the distance at which they are to be.
@@ -300,7 +302,7 @@ fn too_near(agent: &Agent, anchor: &Agent, within: f64, span: Span) -> Option<Di
         "`{}` cannot start within {within} m of `{}`: their bodies touch at {sum:.3} m or more",
         agent.name, anchor.name
     );
-    Some(Diagnostic::error("E0801", span, text).hint("the distance is that of their middles"))
+    Some(Diagnostic::error(Code::E0801, span, text).hint("the distance is that of their middles"))
 }
 
 /// The first of the people of a declaration.

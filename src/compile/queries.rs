@@ -12,6 +12,7 @@ use super::symbols::ScopeId;
 use crate::base::decimal::Decimal;
 use crate::model::Scenario;
 use crate::syntax::ast::{self, Expr, PropertyFile, PropertyItem, QueryKind, ScenarioFile};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::source::{Source, Span};
 use std::collections::{BTreeMap, BTreeSet};
@@ -235,7 +236,7 @@ impl<'a> Compiler<'a> {
         for item in &file.items {
             if let PropertyItem::Family { confidence, .. } = item {
                 if let Some(first) = stated.replace(confidence.span) {
-                    let error = Diagnostic::error("E0202", confidence.span, "a file is one family")
+                    let error = Diagnostic::error(Code::E0202, confidence.span, "a file is one family")
                         .related(first, "its confidence is said here");
                     self.sites[base].elaborator.note(error);
                 }
@@ -248,7 +249,7 @@ impl<'a> Compiler<'a> {
             if let PropertyItem::Query(query) = item {
                 let settings = self.described(base, point, swept);
                 if let (Some(_), Some(span)) = (family, families::own_errors(&query.clauses)) {
-                    let warning = Diagnostic::warning("W0601", span, "this query leaves the family")
+                    let warning = Diagnostic::warning(Code::W0601, span, "this query leaves the family")
                         .hint("its own error counts instead of its share; leave it out to hold jointly with the others");
                     self.sites[base].elaborator.note(warning);
                 }
@@ -435,7 +436,7 @@ impl<'a> Compiler<'a> {
             && !diagnostics.iter().any(|d| d.severity == Severity::Error)
         {
             let text = "what is wrong with this query shows nowhere else";
-            diagnostics.push(Diagnostic::error("E0305", *query, text));
+            diagnostics.push(Diagnostic::error(Code::E0305, *query, text));
         }
         // What was cut short is refused by the parser; what was left out without an error, by whoever reads this.
         let fails = |all: &[Diagnostic]| all.iter().any(|one| one.severity == Severity::Error);

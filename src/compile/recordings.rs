@@ -9,6 +9,7 @@ use super::symbols::{Meaning, unknown};
 use crate::data::tracks::{LineError, Observation, Recording, read_eth_biwi};
 use crate::model::Law;
 use crate::syntax::ast::{Expr, Ident, Recorded, Text};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use std::collections::BTreeSet;
 use std::collections::btree_map::Entry;
@@ -27,7 +28,7 @@ impl<'a> Elaborator<'a> {
 
     fn recording(&mut self, format: &Ident, path: &Text, files: &Files) -> Lowered<Recording> {
         if format.name != "eth_biwi" {
-            let error = unknown("format", &format.name, format.span, "E0702", ["eth_biwi"].into_iter())
+            let error = unknown("format", &format.name, format.span, Code::E0702, ["eth_biwi"].into_iter())
                 .hint("known formats: eth_biwi");
             return self.report(error);
         }
@@ -36,7 +37,7 @@ impl<'a> Elaborator<'a> {
             Err(reason) => return self.report(missing(path.span, &reason)),
         };
         let Ok(text) = std::str::from_utf8(bytes) else {
-            return self.report(Diagnostic::error("E0702", path.span, "this file is not text in UTF-8"));
+            return self.report(Diagnostic::error(Code::E0702, path.span, "this file is not text in UTF-8"));
         };
         match read_eth_biwi(text) {
             Ok(recording) => Ok(recording),
@@ -45,7 +46,7 @@ impl<'a> Elaborator<'a> {
                 let more = errors.len().saturating_sub(SHOWN_LINES);
                 let rest = if more > 0 { format!("; and {more} more") } else { String::new() };
                 let error = Diagnostic::error(
-                    "E0702",
+                    Code::E0702,
                     path.span,
                     match errors.as_slice() {
                         [LineError { line: 0, .. }] => "this is no such recording".to_owned(),
@@ -73,7 +74,7 @@ impl<'a> Elaborator<'a> {
             Some((_, Meaning::Doubtful)) => return Err(Reported),
             Some((_, meaning)) => {
                 let error = Diagnostic::error(
-                    "E0206",
+                    Code::E0206,
                     name.span,
                     format!("expected a recording, `{}` is {}", name.name, meaning.noun()),
                 );
@@ -89,7 +90,7 @@ impl<'a> Elaborator<'a> {
                     "recording",
                     &name.name,
                     name.span,
-                    "E0201",
+                    Code::E0201,
                     recordings.iter().map(String::as_str),
                 );
                 return self.report(error);
@@ -106,7 +107,7 @@ impl<'a> Elaborator<'a> {
         let found = recording.at(time.value);
         if found.is_empty() {
             let near = recording.nearest_time(time.value);
-            let error = Diagnostic::error("E0703", recorded.at.span, "nobody was recorded at this time")
+            let error = Diagnostic::error(Code::E0703, recorded.at.span, "nobody was recorded at this time")
                 .hint(near.map_or("the recording is empty".to_owned(), |t| {
                     format!("the nearest time with people is {t} s")
                 }));
@@ -117,7 +118,7 @@ impl<'a> Elaborator<'a> {
             if !found.iter().any(|o| o.id == *id) {
                 let present: Vec<String> = found.iter().map(|o| o.id.to_string()).collect();
                 let error = Diagnostic::error(
-                    "E0703",
+                    Code::E0703,
                     expr.span,
                     format!("person {id} was not recorded at this time"),
                 )
@@ -134,7 +135,7 @@ impl<'a> Elaborator<'a> {
         for (expr, id) in asked {
             if named.contains(id) {
                 let text = format!("person {id} is named twice");
-                return self.report(Diagnostic::error("E0703", expr.span, text));
+                return self.report(Diagnostic::error(Code::E0703, expr.span, text));
             }
             named.push(*id);
         }
@@ -144,7 +145,7 @@ impl<'a> Elaborator<'a> {
             .collect();
         if !plural && chosen.len() != 1 {
             let error = Diagnostic::error(
-                "E0703",
+                Code::E0703,
                 recorded.span,
                 format!("{} people are recorded there, one is needed", chosen.len()),
             )
@@ -158,7 +159,7 @@ impl<'a> Elaborator<'a> {
                 }
                 Entry::Occupied(first) => {
                     let text = format!("person {} of `{}` is there already", person.id, name.name);
-                    let error = Diagnostic::error("E0703", recorded.span, text)
+                    let error = Diagnostic::error(Code::E0703, recorded.span, text)
                         .related(*first.get(), "taken here")
                         .hint(format!("leave this one out: `except {}`", person.id));
                     return self.report(error);
@@ -206,7 +207,7 @@ impl<'a> Elaborator<'a> {
             let more = moved.len().saturating_sub(SHOWN_LINES);
             moved.truncate(SHOWN_LINES);
             let rest = if more > 0 { format!("; and {more} more") } else { String::new() };
-            let warning = Diagnostic::warning("W0701", recorded.span, title);
+            let warning = Diagnostic::warning(Code::W0701, recorded.span, title);
             self.note(warning.label(moved.join("; ") + &rest));
         }
         found
@@ -216,7 +217,9 @@ impl<'a> Elaborator<'a> {
         let number = self.number_of(expr, Dimension::NONE, &Locals::default())?;
         match number.as_whole().and_then(|n| u32::try_from(n).ok()) {
             Some(id) => Ok(id),
-            None => self.report(Diagnostic::error("E0703", expr.span, "a person is known by a whole number")),
+            None => {
+                self.report(Diagnostic::error(Code::E0703, expr.span, "a person is known by a whole number"))
+            }
         }
     }
 }

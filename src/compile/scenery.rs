@@ -13,6 +13,7 @@ use crate::base::geometry::{Polygon, Segment, Shape, Vec2, coordinate_fault};
 use crate::data::geometry::{self, Feature, Geometry, PropertyValue, Select, read_wkt, select_geojson};
 use crate::model::{Barrier, BarrierId, Obstacle, Region, RegionId};
 use crate::syntax::ast::{Expr, ExprKind, Field, Ident, SceneItem, ShapeExpr, Text, Value};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::collections::BTreeSet;
@@ -100,13 +101,17 @@ impl<'a> Elaborator<'a> {
         let name = self.scene.regions[id.0 as usize].name.clone();
         let Some(Meaning::Region(_, written)) = self.scopes[0].get(&name).map(|e| e.meaning.clone()) else {
             return self.report(Diagnostic::error(
-                "E0205",
+                Code::E0205,
                 span,
                 format!("the region `{name}` is not known here"),
             ));
         };
         if self.expanding.iter().any(|(_, n)| *n == name) {
-            return self.report(Diagnostic::error("E0205", span, format!("`{name}` is defined by itself")));
+            return self.report(Diagnostic::error(
+                Code::E0205,
+                span,
+                format!("`{name}` is defined by itself"),
+            ));
         }
         self.expand_further(span)?;
         self.expanding.push((0, name));
@@ -121,7 +126,7 @@ impl<'a> Elaborator<'a> {
         let corners: Vec<_> = points.iter().enumerate().map(corner).collect();
         let corners: Vec<Vec2> = corners.into_iter().collect::<Lowered<_>>()?;
         if corners.windows(2).all(|pair| pair[0] == pair[1]) {
-            return self.report(Diagnostic::error("E0401", span, "this wall has no length"));
+            return self.report(Diagnostic::error(Code::E0401, span, "this wall has no length"));
         }
         Ok(corners
             .windows(2)
@@ -142,7 +147,7 @@ impl<'a> Elaborator<'a> {
             && !FUNCTIONS.into_iter().chain(DISTRIBUTIONS).any(|known| known == function.name)
         {
             let name = &function.name;
-            let error = Diagnostic::error("E0203", function.span, format!("unknown function `{name}`"));
+            let error = Diagnostic::error(Code::E0203, function.span, format!("unknown function `{name}`"));
             return self.report(error.hint(format!(
                 "a name is followed by `:`: `wall {name}: {}`",
                 self.text(Span { start: function.span.end, ..point.span },)
@@ -160,7 +165,7 @@ impl<'a> Elaborator<'a> {
                 let size = self.number_of(radius, Dimension::LENGTH, locals)?;
                 if size.value <= 0.0 {
                     return self.report(Diagnostic::error(
-                        "E0401",
+                        Code::E0401,
                         radius.span,
                         "the radius of a circle must be positive",
                     ));
@@ -174,7 +179,7 @@ impl<'a> Elaborator<'a> {
                 let corners = (self.point_of(a, locals), self.point_of(b, locals));
                 let (a, b) = (corners.0?, corners.1?);
                 if a.x == b.x || a.y == b.y {
-                    return self.report(Diagnostic::error("E0401", *span, "this rectangle has no area"));
+                    return self.report(Diagnostic::error(Code::E0401, *span, "this rectangle has no area"));
                 }
                 Ok(Shape::rectangle(a.inf(&b), a.sup(&b)))
             }
@@ -189,7 +194,7 @@ impl<'a> Elaborator<'a> {
                     Polygon { outline: outline?, holes: holes.into_iter().collect::<Lowered<_>>()? };
                 if polygon.outline.len() < 3 || polygon.holes.iter().any(|hole| hole.len() < 3) {
                     return self.report(Diagnostic::error(
-                        "E0401",
+                        Code::E0401,
                         *span,
                         "a polygon needs at least three corners",
                     ));
@@ -199,7 +204,7 @@ impl<'a> Elaborator<'a> {
                 });
                 if let Some((corner, _)) = twice {
                     let error = Diagnostic::error(
-                        "E0401",
+                        Code::E0401,
                         *span,
                         format!("the corner ({}, {}) is there twice in a row", corner.x, corner.y),
                     )
@@ -207,15 +212,19 @@ impl<'a> Elaborator<'a> {
                     return self.report(error);
                 }
                 if !polygon.is_simple() {
-                    return self.report(Diagnostic::error("E0401", *span, "the edges of this polygon cross"));
+                    return self.report(Diagnostic::error(
+                        Code::E0401,
+                        *span,
+                        "the edges of this polygon cross",
+                    ));
                 }
                 if let Some(fault) = polygon.hole_fault() {
-                    let error = Diagnostic::error("E0401", *span, fault.to_string())
+                    let error = Diagnostic::error(Code::E0401, *span, fault.to_string())
                         .hint("holes lie inside the outline and apart from each other");
                     return self.report(error);
                 }
                 if polygon.area() <= 0.0 {
-                    return self.report(Diagnostic::error("E0401", *span, "this polygon has no area"));
+                    return self.report(Diagnostic::error(Code::E0401, *span, "this polygon has no area"));
                 }
                 Ok(Shape::Polygon(polygon))
             }
@@ -243,7 +252,7 @@ impl<'a> Elaborator<'a> {
         match coordinate_fault(p) {
             None => Ok(p),
             Some(fault) => {
-                let error = Diagnostic::error("E0710", span, fault);
+                let error = Diagnostic::error(Code::E0710, span, fault);
                 self.report(error.hint("subtract a common origin from all coordinates"))
             }
         }
@@ -255,7 +264,7 @@ impl<'a> Elaborator<'a> {
             Some((_, Meaning::Doubtful)) => Err(Reported),
             Some((_, meaning)) => {
                 let error = Diagnostic::error(
-                    "E0206",
+                    Code::E0206,
                     name.span,
                     format!("expected a region, `{}` is {}", name.name, meaning.noun()),
                 );
@@ -264,7 +273,7 @@ impl<'a> Elaborator<'a> {
             None => {
                 let regions: Vec<String> = self.scene.regions.iter().map(|r| r.name.clone()).collect();
                 let known = regions.iter().map(String::as_str);
-                let error = super::symbols::unknown("region", &name.name, name.span, "E0201", known);
+                let error = super::symbols::unknown("region", &name.name, name.span, Code::E0201, known);
                 self.report(error)
             }
         }
@@ -277,20 +286,20 @@ impl<'a> Elaborator<'a> {
             let (name, at) = (&field.name, value_span(&field.value));
             snap = if name.name != "snap" {
                 let known = std::iter::once("snap");
-                self.report(super::symbols::unknown("field", &name.name, name.span, "E0207", known))
+                self.report(super::symbols::unknown("field", &name.name, name.span, Code::E0207, known))
             } else if k > 0 {
-                self.report(Diagnostic::error("E0202", name.span, "`snap` is set twice"))
+                self.report(Diagnostic::error(Code::E0202, name.span, "`snap` is set twice"))
             } else if let Value::Plain(expr) = &field.value {
                 match self.number_of(expr, Dimension::LENGTH, &Locals::default()).map(|number| number.value) {
                     Ok(value) if !(0.0 < value && value <= WIDEST_SNAP) => {
                         let text =
                             format!("`snap` must be positive and at most {WIDEST_SNAP} m (got {value} m)");
-                        self.report(Diagnostic::error("E0405", at, text))
+                        self.report(Diagnostic::error(Code::E0405, at, text))
                     }
                     value => value,
                 }
             } else {
-                self.report(Diagnostic::error("E0305", at, "expected a length such as `5 cm`"))
+                self.report(Diagnostic::error(Code::E0305, at, "expected a length such as `5 cm`"))
             };
         }
         snap
@@ -336,7 +345,7 @@ impl<'a> Elaborator<'a> {
             let twice = counted(slips.doubled, "wall drawn twice", "walls drawn twice");
             let what: Vec<String> = ends.into_iter().chain(twice).collect();
             let warning =
-                Diagnostic::warning("W0702", path.span, format!("this file has {}", what.join(" and ")))
+                Diagnostic::warning(Code::W0702, path.span, format!("this file has {}", what.join(" and ")))
                     .label(format!("for example at ({:.3}, {:.3})", slips.place.x, slips.place.y));
             let text = self.text(path.span);
             self.note(
@@ -374,7 +383,7 @@ impl<'a> Elaborator<'a> {
         let all_known = unknown.is_empty() || known.is_empty();
         for (name, span) in unknown.into_iter().filter(|_| !all_known) {
             let known = known.iter().map(String::as_str).chain(["name"]);
-            self.note(super::symbols::unknown("property", name, span, "E0201", known));
+            self.note(super::symbols::unknown("property", name, span, Code::E0201, known));
         }
         let before = self.scene.barriers.len();
         let points = features.iter().filter(|f| matches!(f.shape, Geometry::Point(_))).count();
@@ -395,7 +404,7 @@ impl<'a> Elaborator<'a> {
         if taken == 0 && all_known {
             let have = if total == 1 { "1 feature".to_owned() } else { format!("{total} features") };
             let warning = Diagnostic::warning(
-                "W0401",
+                Code::W0401,
                 path.span,
                 format!("nothing of this file was taken: it has {have}"),
             );
@@ -422,10 +431,10 @@ impl<'a> Elaborator<'a> {
             Err(reason) => return self.report(missing(path.span, &reason)),
         };
         let Ok(text) = std::str::from_utf8(bytes) else {
-            return self.report(Diagnostic::error("E0704", path.span, "this file is not text in UTF-8"));
+            return self.report(Diagnostic::error(Code::E0704, path.span, "this file is not text in UTF-8"));
         };
         if text.trim().is_empty() {
-            return self.report(Diagnostic::error("E0704", path.span, "this file is empty"));
+            return self.report(Diagnostic::error(Code::E0704, path.span, "this file is empty"));
         }
         let wkt = path.value.to_ascii_lowercase().ends_with(".wkt");
         // Well-known text has no properties, so that a filter takes all of it or nothing.
@@ -440,8 +449,9 @@ impl<'a> Elaborator<'a> {
             Ok(features) => Ok(features),
             Err(errors) => {
                 let shown: Vec<String> = errors.iter().take(5).map(ToString::to_string).collect();
-                let error = Diagnostic::error("E0704", path.span, "the geometry of this file cannot be read")
-                    .label(shown.join("; "));
+                let error =
+                    Diagnostic::error(Code::E0704, path.span, "the geometry of this file cannot be read")
+                        .label(shown.join("; "));
                 self.report(error)
             }
         }
@@ -450,6 +460,6 @@ impl<'a> Elaborator<'a> {
 
 /// A file that could not be opened.
 pub(super) fn missing(span: Span, reason: &str) -> Diagnostic {
-    Diagnostic::error("E0701", span, reason.to_owned())
+    Diagnostic::error(Code::E0701, span, reason.to_owned())
         .hint("files are looked for beside the scenario, then under each `--data DIR`")
 }

@@ -6,6 +6,7 @@ use super::number::Number;
 use super::symbols::{Meaning, unknown};
 use crate::base::decimal::Decimal;
 use crate::syntax::ast::{Expr, ExprKind, UnitExpr};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
@@ -62,7 +63,7 @@ impl<'a> Elaborator<'a> {
             Some(Meaning::Param { value, range }) => Ok((value, range)),
             Some(meaning) => {
                 let error = Diagnostic::error(
-                    "E0210",
+                    Code::E0210,
                     span,
                     format!("`{name}` is {} and cannot be set", meaning.noun()),
                 )
@@ -75,7 +76,8 @@ impl<'a> Elaborator<'a> {
                     .filter(|(_, e)| matches!(e.meaning, Meaning::Param { .. }))
                     .map(|(n, _)| n.to_owned())
                     .collect();
-                let mut error = unknown("parameter", name, span, "E0210", params.iter().map(String::as_str));
+                let mut error =
+                    unknown("parameter", name, span, Code::E0210, params.iter().map(String::as_str));
                 if error.hint.is_none() {
                     error = error.hint(match params.as_slice() {
                         [] => "the scenario declares no `param`".to_owned(),
@@ -106,7 +108,7 @@ impl<'a> Elaborator<'a> {
             return self.wrong_dimension(value.span, declared.dimension, number.dimension);
         }
         if !number.value.is_finite() {
-            return self.report(Diagnostic::error("E0405", value.span, "this is not a finite number"));
+            return self.report(Diagnostic::error(Code::E0405, value.span, "this is not a finite number"));
         }
         // A range that hangs on other parameters is that of the world in which the value is set.
         if let Some((low, high)) = range
@@ -134,7 +136,7 @@ impl<'a> Elaborator<'a> {
             let at = if number.value < low.value { at.0 } else { at.1 };
             let [low, high] = [low, high].map(|n| self.shown(default, n));
             let said = format!("`{name}` lies between {low} and {high}");
-            return self.report(Diagnostic::error("E0405", at, said).hanging_on(place));
+            return self.report(Diagnostic::error(Code::E0405, at, said).hanging_on(place));
         }
         Ok(())
     }
@@ -166,7 +168,7 @@ impl<'a> Elaborator<'a> {
                 };
                 if step.value <= 0.0 || last.value < first.value {
                     let error = Diagnostic::error(
-                        "E0405",
+                        Code::E0405,
                         if step.value <= 0.0 { by.span } else { to.span },
                         "a sweep goes up from its first to its last value by a positive step",
                     );
@@ -175,7 +177,7 @@ impl<'a> Elaborator<'a> {
                 let count = ((last.value - first.value) / step.value + 1e-9).floor();
                 if count >= MOST_POINTS as f64 {
                     return self.report(Diagnostic::error(
-                        "E0405",
+                        Code::E0405,
                         setting.span,
                         format!("a sweep has at most {MOST_POINTS} points"),
                     ));

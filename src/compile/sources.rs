@@ -15,6 +15,7 @@ use crate::base::math;
 use crate::model::{Family, Law, Route, Source};
 use crate::syntax::ast::process::SourceDecl;
 use crate::syntax::ast::{Field, Value};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use std::sync::Arc;
 
@@ -78,7 +79,7 @@ impl<'a> Elaborator<'a> {
     fn way_out(&mut self, decl: &'a SourceDecl, fields: &[&'a Field]) -> Lowered<Route> {
         let Some(field) = fields.iter().find(|field| field.name.name == "route") else {
             let error = Diagnostic::error(
-                "E0209",
+                Code::E0209,
                 decl.name.span,
                 format!("source `{}` has no `route`", decl.name.name),
             )
@@ -95,7 +96,7 @@ impl<'a> Elaborator<'a> {
     fn interval(&mut self, decl: &'a SourceDecl, fields: &[&'a Field]) -> Lowered<Law> {
         let Some(field) = fields.iter().find(|field| field.name.name == "every") else {
             let error = Diagnostic::error(
-                "E0209",
+                Code::E0209,
                 decl.name.span,
                 format!("how often does somebody come by `{}`?", decl.name.name),
             )
@@ -105,14 +106,14 @@ impl<'a> Elaborator<'a> {
         let law = self.law(&field.value, Dimension::TIME, &Locals::default())?;
         let span = value_span(&field.value);
         if law.bounds().0 < 0.0 {
-            let error = Diagnostic::error("E0405", span, "a time between arrivals cannot be negative");
+            let error = Diagnostic::error(Code::E0405, span, "a time between arrivals cannot be negative");
             let text = self.text(span);
             return self.report(truncate(error, &law, &text));
         }
         if law.mean() > 0.0 {
             Ok(law)
         } else {
-            self.report(Diagnostic::error("E0405", span, "infinitely many would come at once"))
+            self.report(Diagnostic::error(Code::E0405, span, "infinitely many would come at once"))
         }
     }
 
@@ -121,7 +122,7 @@ impl<'a> Elaborator<'a> {
         match &field.value {
             Value::Plain(expr) => self.count(expr).map(Some),
             other => self.report(Diagnostic::error(
-                "E0305",
+                Code::E0305,
                 value_span(other),
                 "expected how many may come at most",
             )),
@@ -156,7 +157,7 @@ impl<'a> Elaborator<'a> {
             (None, Some(places)) if places <= MOST_PLACES => Ok((places, range(places))),
             (limit, _) => {
                 let text = format!("about {expected:.0} people would come by `{}`", decl.name.name);
-                let error = Diagnostic::error("E0913", span.unwrap_or(decl.name.span), text);
+                let error = Diagnostic::error(Code::E0913, span.unwrap_or(decl.name.span), text);
                 self.report(error.hint(if limit.is_none() {
                     "say how many may be there at once with `limit`, or shorten the horizon"
                 } else {

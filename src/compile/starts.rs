@@ -7,6 +7,7 @@ use super::queries::Compiler;
 use super::study::Ask;
 use crate::model::{AgentId, Behaviours, Processes, Scenario, Source};
 use crate::syntax::ast::{PropertyFile, PropertyItem, Query, QueryKind};
+use crate::syntax::codes::Code;
 use crate::syntax::parse::{continues_name, starts_name};
 use crate::syntax::source::{SourceId, Span};
 use std::collections::BTreeSet;
@@ -15,7 +16,7 @@ use std::sync::Arc;
 /// Words that start a query of the world of the call, unless it sets values of its own.
 const ASKING: [&str; 3] = ["check", "estimate", "rank"];
 /// Code of what is declared or set twice: nobody knows which is meant.
-const TWICE: &str = "E0202";
+const TWICE: Code = Code::E0202;
 
 /// The people of a world and where they start.
 #[derive(Clone, Debug)]

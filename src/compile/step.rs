@@ -12,6 +12,7 @@ use crate::base::math::{at_least, at_most};
 use crate::base::tick::Clock;
 use crate::model::{Agent, AgentId, Law};
 use crate::syntax::ast::{Item, ScenarioFile};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use std::collections::BTreeMap;
 
@@ -89,7 +90,7 @@ impl Elaborator<'_> {
         };
         let names: Vec<String> = kinds.iter().map(named).collect();
         let text = format!("a step of {step} s is too long for {}", names.join(" and "));
-        let mut warning = Diagnostic::warning("W0801", span, text);
+        let mut warning = Diagnostic::warning(Code::W0801, span, text);
         let reason = if strictest.force < strictest.relaxation {
             format!("2 / sqrt(n A / (m B)) with n = {neighbours} is the longest step for bodies that touch")
         } else {

@@ -3,6 +3,7 @@
 use super::number::Number;
 use super::queries::Compiler;
 use super::settings::{MOST_POINTS, Setting};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use std::collections::BTreeMap;
 
@@ -14,7 +15,7 @@ impl Compiler<'_> {
         for setting in self.input.settings {
             if seen.iter().any(|s| s.name == setting.name) {
                 let error =
-                    Diagnostic::error("E0210", setting.span, format!("`{}` is set twice", setting.name));
+                    Diagnostic::error(Code::E0210, setting.span, format!("`{}` is set twice", setting.name));
                 self.sites[plain].elaborator.note(error);
                 let _ = self.sites[plain].elaborator.points(setting);
                 continue;
@@ -24,7 +25,7 @@ impl Compiler<'_> {
             let combinations = points.len().saturating_mul(values.len());
             if combinations > MOST_POINTS {
                 let error = Diagnostic::error(
-                    "E0405",
+                    Code::E0405,
                     setting.span,
                     format!(
                         "with this there are {combinations} combinations of values, more than {MOST_POINTS}"

@@ -3,6 +3,7 @@
 use super::nearest::nearest;
 use crate::model::{AgentId, BarrierId, BehaviourId, RegionId};
 use crate::syntax::ast::{Expr, Ident, KindDecl, LetDecl, ShapeExpr};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::collections::BTreeMap;
@@ -113,7 +114,7 @@ impl<'a> Scope<'a> {
     /// Declares a name; a second declaration is an error that shows both places.
     pub(super) fn declare(&mut self, name: &str, span: Span, meaning: Meaning<'a>) -> Result<(), Diagnostic> {
         if let Some(first) = self.entries.get(name) {
-            return Err(Diagnostic::error("E0202", span, format!("`{name}` is declared twice"))
+            return Err(Diagnostic::error(Code::E0202, span, format!("`{name}` is declared twice"))
                 .related(first.span, "first declared here")
                 .hint("rename one of them"));
         }
@@ -151,7 +152,7 @@ pub(super) fn unknown<'n>(
     what: &str,
     name: &str,
     span: Span,
-    code: &'static str,
+    code: Code,
     known: impl Iterator<Item = &'n str>,
 ) -> Diagnostic {
     let error = Diagnostic::error(code, span, format!("unknown {what} `{name}`"));

@@ -1,6 +1,7 @@
 //! What is known of the clock of a scenario that has errors: an error of a time is told as far as it is sure.
 
 use crate::syntax::ast::{Item, ScenarioFile};
+use crate::syntax::codes::Code;
 
 /// What is known of a clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -17,11 +18,11 @@ pub(super) enum Told {
 
 impl Told {
     /// What has to be known before an error with this code says anything.
-    pub(super) fn needed(code: &str) -> Self {
+    pub(super) fn needed(code: Code) -> Self {
         match code {
-            "E0502" => Self::Whole,
-            "E0501" => Self::Step,
-            "E0503" | "E0507" | "E0508" => Self::Stepped,
+            Code::E0502 => Self::Whole,
+            Code::E0501 => Self::Step,
+            Code::E0503 | Code::E0507 | Code::E0508 => Self::Stepped,
             _ => Self::Nothing,
         }
     }

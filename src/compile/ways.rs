@@ -9,6 +9,7 @@ use super::typed::Typed;
 use crate::base::tick::Tick;
 use crate::model::{Goal, Leg, Move, Moves, Route, Who};
 use crate::syntax::ast::{self, Expr, MoveOption, MovesDecl, Value};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
@@ -35,7 +36,11 @@ impl<'a> Elaborator<'a> {
                                     let at = value_span(value);
                                     let said = "a time to wait cannot be negative";
                                     let text = self.text(at);
-                                    self.report(truncate(Diagnostic::error("E0405", at, said), &law, &text))
+                                    self.report(truncate(
+                                        Diagnostic::error(Code::E0405, at, said),
+                                        &law,
+                                        &text,
+                                    ))
                                 }
                                 law => law.map(Leg::Wait),
                             }
@@ -46,12 +51,16 @@ impl<'a> Elaborator<'a> {
                 if let Some(span) = route.then_leave
                     && !legs.iter().any(|leg| matches!(leg, Leg::To(_)))
                 {
-                    return self.report(Diagnostic::error("E0408", span, "who leaves needs a goal first"));
+                    return self.report(Diagnostic::error(
+                        Code::E0408,
+                        span,
+                        "who leaves needs a goal first",
+                    ));
                 }
                 Ok(Route::Legs { legs, then_leave: route.then_leave.is_some() })
             }
             other => {
-                let error = Diagnostic::error("E0305", value_span(other), "expected a route")
+                let error = Diagnostic::error(Code::E0305, value_span(other), "expected a route")
                     .hint("goals joined by arrows: `(9, 3) -> exit`");
                 self.report(error)
             }
@@ -66,7 +75,7 @@ impl<'a> Elaborator<'a> {
             && locals.names.iter().all(|(bound, _)| bound != name)
         {
             let said = format!("expected a region or a point to go to, found {}", meaning.noun());
-            return self.report(Diagnostic::error("E0305", expr.span, said));
+            return self.report(Diagnostic::error(Code::E0305, expr.span, said));
         }
         match self.lower(expr, locals)? {
             Typed::Region(id) => Ok(Goal::Region(id)),
@@ -87,7 +96,7 @@ impl<'a> Elaborator<'a> {
         }
         let typed = typed?;
         if matches!(typed, Typed::Agents { .. }) {
-            let error = Diagnostic::error("E0406", decl.agent.span, "moves are those of one agent")
+            let error = Diagnostic::error(Code::E0406, decl.agent.span, "moves are those of one agent")
                 .hint("declare that one by itself, as in `agent user: …`");
             return self.report(error);
         }
@@ -96,14 +105,14 @@ impl<'a> Elaborator<'a> {
         };
         let Some(duration) = duration? else {
             return self.report(Diagnostic::error(
-                "E0406",
+                Code::E0406,
                 decl.duration.span,
                 "a move holds for a finite time",
             ));
         };
         if duration == Tick(0) {
             let error =
-                Diagnostic::error("E0406", decl.duration.span, "a move that holds for no time is none");
+                Diagnostic::error(Code::E0406, decl.duration.span, "a move that holds for no time is none");
             return self.report(error);
         }
         if failed {
@@ -111,7 +120,7 @@ impl<'a> Elaborator<'a> {
         }
         if options.is_empty() {
             return self.report(
-                Diagnostic::error("E0406", decl.span, "there is no option to choose from")
+                Diagnostic::error(Code::E0406, decl.span, "there is no option to choose from")
                     .hint("for example `heading from -60 deg to 60 deg by 15 deg` and `stop`"),
             );
         }
@@ -125,7 +134,7 @@ impl<'a> Elaborator<'a> {
         match option {
             MoveOption::Stop(span) => {
                 if options.iter().any(|(_, m)| *m == Move::Stop) {
-                    return self.report(Diagnostic::error("E0406", *span, "`stop` is there already"));
+                    return self.report(Diagnostic::error(Code::E0406, *span, "`stop` is there already"));
                 }
                 options.push(("stop".to_owned(), Move::Stop));
                 Ok(())
@@ -143,7 +152,7 @@ impl<'a> Elaborator<'a> {
                 let (from, to, by) = (ends.0?.value, ends.1?.value, ends.2?.value);
                 if by <= 0.0 || to < from {
                     let error = Diagnostic::error(
-                        "E0406",
+                        Code::E0406,
                         *span,
                         "headings go up from the first to the last by a positive angle",
                     );
@@ -153,7 +162,7 @@ impl<'a> Elaborator<'a> {
                 let steps = ((to - from) / by + 1e-9).floor();
                 if steps >= MOST_OPTIONS.saturating_sub(options.len()) as f64 {
                     return self.report(Diagnostic::error(
-                        "E0406",
+                        Code::E0406,
                         *span,
                         format!("these are more than {MOST_OPTIONS} options"),
                     ));
@@ -185,7 +194,7 @@ impl<'a> Elaborator<'a> {
             } else {
                 format!("`{label}` is there already, as `{known}`")
             };
-            return self.report(Diagnostic::error("E0406", span, text));
+            return self.report(Diagnostic::error(Code::E0406, span, text));
         }
         options.push((label, Move::Heading(angle)));
         Ok(())

@@ -14,6 +14,7 @@ use crate::base::decimal::Decimal;
 use crate::base::tick::{Clock, Tick};
 use crate::model::{BehaviourId, Moves, Scenario};
 use crate::syntax::ast::{Expr, ExprKind, Ident, Item, PropertyFile, PropertyItem, ScenarioFile};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
 use std::collections::BTreeMap;
@@ -73,7 +74,7 @@ impl<'a> Elaborator<'a> {
                 _ => None,
             };
             if let Some(text) = reserved {
-                self.note(Diagnostic::error("E0202", name.span, text).hint("choose another name"));
+                self.note(Diagnostic::error(Code::E0202, name.span, text).hint("choose another name"));
             }
             self.enter(name, meaning);
         }
@@ -91,7 +92,7 @@ impl<'a> Elaborator<'a> {
                 };
                 if let Some(first) = self.scopes[0].get(&name.name) {
                     let error = Diagnostic::error(
-                        "E0202",
+                        Code::E0202,
                         name.span,
                         format!("`{}` is already a name of the scenario", name.name),
                     )
@@ -124,7 +125,7 @@ impl<'a> Elaborator<'a> {
                     continue;
                 };
                 let text = format!("the name `{name}` means something else, too");
-                found.push(Diagnostic::warning("W0201", entry.span, text).hint(hint));
+                found.push(Diagnostic::warning(Code::W0201, entry.span, text).hint(hint));
             }
         }
         for warning in found {
@@ -205,7 +206,7 @@ impl<'a> Elaborator<'a> {
                 }
                 if let Some(first) = moves.iter().position(|m| m.agent == one.agent) {
                     let error = Diagnostic::error(
-                        "E0406",
+                        Code::E0406,
                         decl.agent.span,
                         format!("the moves of `{}` are declared twice", decl.agent.name),
                     )
@@ -253,7 +254,7 @@ impl<'a> Elaborator<'a> {
         let titles: Vec<Span> = titles.collect();
         if let [first, others @ ..] = titles.as_slice() {
             for other in others {
-                let error = Diagnostic::error("E0202", *other, "a scenario has one title");
+                let error = Diagnostic::error(Code::E0202, *other, "a scenario has one title");
                 self.note(error.related(*first, "first said here").hint("leave one of them out"));
             }
         }
@@ -323,11 +324,11 @@ impl<'a> Elaborator<'a> {
         let (Ok(low), Ok(high)) = ends else { return };
         if low.value > high.value {
             self.any_start = true;
-            self.note(Diagnostic::error("E0405", place, "this range is empty"));
+            self.note(Diagnostic::error(Code::E0405, place, "this range is empty"));
         } else if !is_replaced && (number.value < low.value || number.value > high.value) {
             let text = format!("the default of `{}` lies outside its range", name.name);
             self.any_start = true;
-            self.note(Diagnostic::error("E0405", value.span, text).hanging_on(place));
+            self.note(Diagnostic::error(Code::E0405, value.span, text).hanging_on(place));
         }
     }
 
@@ -358,7 +359,7 @@ impl<'a> Elaborator<'a> {
                         "setting",
                         &name.name,
                         name.span,
-                        "E0207",
+                        Code::E0207,
                         ["horizon", "step"].into_iter(),
                     );
                     let near = super::nearest::nearest(&name.name, ["horizon", "step"].into_iter());
@@ -374,8 +375,9 @@ impl<'a> Elaborator<'a> {
                 }
             };
             if let Some((_, first)) = found[slot] {
-                let error = Diagnostic::error("E0202", name.span, format!("`{}` is set twice", name.name))
-                    .related(first, "first set here");
+                let error =
+                    Diagnostic::error(Code::E0202, name.span, format!("`{}` is set twice", name.name))
+                        .related(first, "first set here");
                 self.note(error);
                 failed = true;
             }
@@ -410,8 +412,11 @@ impl<'a> Elaborator<'a> {
             let names: Vec<&str> = missing.iter().map(|(name, _)| *name).collect();
             let lines: Vec<String> =
                 missing.iter().map(|(name, value)| format!("`{name} = {value}`")).collect();
-            let error =
-                Diagnostic::error("E0505", place, format!("the scenario has no {}", names.join(" and no ")));
+            let error = Diagnostic::error(
+                Code::E0505,
+                place,
+                format!("the scenario has no {}", names.join(" and no ")),
+            );
             self.note(error.hint(format!("write {}", lines.join(" and "))));
             failed = true;
         }
@@ -439,7 +444,7 @@ impl<'a> Elaborator<'a> {
         }
         let Some(exact) = length?.exact.filter(|e| !e.is_zero() && !e.is_negative()) else {
             return self.report(Diagnostic::error(
-                "E0505",
+                Code::E0505,
                 step.span,
                 "the step must be a positive, exact time",
             ));
@@ -463,14 +468,14 @@ impl<'a> Elaborator<'a> {
         let end = self.number_of(horizon, Dimension::TIME, &Locals::of(0))?;
         if end.value <= 0.0 {
             return self.report(Diagnostic::error(
-                "E0505",
+                Code::E0505,
                 horizon.span,
                 "the horizon must be later than the start",
             ));
         }
         let tick = moments::tick(end.exact, end.value, &self.measured);
         let Some((tick, last)) = tick.and_then(|(tick, end)| Some((tick, end.div(tick)?.as_whole()?))) else {
-            return self.report(Diagnostic::error("E0501", horizon.span, "this time is out of range"));
+            return self.report(Diagnostic::error(Code::E0501, horizon.span, "this time is out of range"));
         };
         self.clock = Clock::Jumps(tick);
         self.horizon = Tick(last as u64);
@@ -481,7 +486,7 @@ impl<'a> Elaborator<'a> {
         let end = self.time(horizon, &Locals::of(0))?;
         match end {
             Some(Tick(0)) => self.report(Diagnostic::error(
-                "E0505",
+                Code::E0505,
                 horizon.span,
                 "the horizon must be later than the start",
             )),
@@ -490,7 +495,7 @@ impl<'a> Elaborator<'a> {
                 if failed { Err(Reported) } else { Ok(()) }
             }
             _ => self.report(Diagnostic::error(
-                "E0505",
+                Code::E0505,
                 horizon.span,
                 format!("a trial has at most {MOST_TICKS} steps"),
             )),

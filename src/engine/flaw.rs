@@ -3,6 +3,7 @@
 use crate::compile::study::Origins;
 use crate::kernel::process;
 use crate::model::Scenario;
+use crate::syntax::codes::Code;
 use crate::syntax::source::Span;
 use std::fmt;
 
@@ -10,7 +11,7 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Flaw {
     /// Stable code; the page of the same error at compile time.
-    pub code: &'static str,
+    pub code: Code,
     /// Where the command, variable or behaviour at fault is written.
     pub place: Option<Span>,
     /// In which trial, and when: `trial 3 at 2 s`.
@@ -41,29 +42,31 @@ impl Flaw {
         };
         let (code, place, hint) = match fault {
             process::Fault::Ambiguous { process, commands } => (
-                "E0901",
+                Code::E0901,
                 command(process, commands.1),
                 "make their guards exclude each other, or add `choose`",
             ),
             process::Fault::Weights { process, command: one } => {
-                ("E0902", command(process, one), "they must be at least 0 and sum to 1 in every state")
+                (Code::E0902, command(process, one), "they must be at least 0 and sum to 1 in every state")
             }
             process::Fault::Branches { attached } => {
-                ("E0902", behaviour(attached), "they must be at least 0 and sum to 1 in every state")
+                (Code::E0902, behaviour(attached), "they must be at least 0 and sum to 1 in every state")
             }
             process::Fault::Range { variable, .. } => (
-                "E0903",
+                Code::E0903,
                 origins.variables.get(variable as usize).copied(),
                 "a guard can keep it inside, or give it a wider range",
             ),
-            process::Fault::Rate { process, command: one, .. } => {
-                ("E0904", command(process, one), "`max(0 /s, …)` or a guard can keep it from falling below 0")
-            }
+            process::Fault::Rate { process, command: one, .. } => (
+                Code::E0904,
+                command(process, one),
+                "`max(0 /s, …)` or a guard can keep it from falling below 0",
+            ),
             process::Fault::Stuck { process } => {
-                ("E0907", command(process, 0), "let the command change its own guard, or take some time")
+                (Code::E0907, command(process, 0), "let the command change its own guard, or take some time")
             }
             process::Fault::Change { attached, .. } => {
-                ("E0914", behaviour(attached), "keep the value in a range: `max(0.1 m/s, …)`")
+                (Code::E0914, behaviour(attached), "keep the value in a range: `max(0.1 m/s, …)`")
             }
         };
         let state = process::Fault::state(&scenario.processes, value);

@@ -1,49 +1,79 @@
-//! The registry of diagnostic codes: a page for each, for `smc explain`.
+//! The codes of errors and warnings. Each has a page in `docs/errors/`, which `smc explain` prints.
 //!
 //! `E01xx` syntax, `E02xx` names, `E03xx` units, `E04xx` scenes, `E05xx` time, `E06xx` queries, `E07xx` input,
-//! `E08xx` while running, `E09xx` processes; `W01xx` lints of the surface. A code never changes its meaning.
+//! `E08xx` while running, `E09xx` processes; `W` instead of `E` is a warning. A code never changes its meaning.
 
-mod input;
-mod names;
-mod process;
-mod query;
-mod running;
-mod scene;
-pub(super) mod syntax;
-mod temporal;
-mod units;
+use std::fmt;
+use std::str::FromStr;
 
-/// What there is to say about one code.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Page {
-    /// Such as `E0101`.
-    pub code: &'static str,
-    /// One line.
-    pub title: &'static str,
-    /// A few sentences with a wrong and a right example.
-    pub text: &'static str,
+macro_rules! codes {
+    ($($code:ident)*) => {
+        /// The code of an error or a warning.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[allow(missing_docs, reason = "each code has its page")]
+        pub enum Code { $($code),* }
+
+        impl Code {
+            /// All codes, in the order in which `smc explain` lists them.
+            pub const ALL: &[Self] = &[$(Self::$code),*];
+
+            /// The code as it is written, such as `E0101`.
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$code => stringify!($code)),* }
+            }
+
+            /// The page of the code, in Markdown: a line `# E0101: title`, a few sentences, a wrong and a right
+            /// example.
+            pub const fn page(self) -> &'static str {
+                match self {
+                    $(Self::$code => {
+                        include_str!(concat!("../../docs/errors/", stringify!($code), ".md"))
+                    })*
+                }
+            }
+        }
+    };
 }
 
-const ALL: [&[Page]; 9] = [
-    syntax::PAGES,
-    names::PAGES,
-    units::PAGES,
-    scene::PAGES,
-    temporal::PAGES,
-    query::PAGES,
-    input::PAGES,
-    process::PAGES,
-    running::PAGES,
-];
-
-/// All pages, in the order of their codes within each range.
-pub fn pages() -> impl Iterator<Item = &'static Page> {
-    ALL.iter().flat_map(|pages| pages.iter())
+codes! {
+    E0101 E0102 E0103 E0104 E0105 E0106 E0107 E0108 E0109 E0110 E0111 E0112 E0113 E0114 E0115 E0116
+    E0117 E0118 E0119 E0120 E0121 E0122 E0124 E0130 W0101 W0102 W0103
+    E0201 E0202 E0203 E0204 E0205 E0206 E0207 E0208 E0209 E0210 E0211 E0212 W0201
+    E0302 E0303 E0304 E0305
+    E0401 E0402 E0403 E0404 E0405 E0406 E0408 E0409 W0401
+    E0501 E0502 E0503 E0504 E0505 E0507 E0508 E0509 W0501 W0502 W0503
+    E0601 E0602 E0603 E0604 E0605 E0606 E0607 E0610 E0611 W0601 W0602
+    E0701 E0702 E0703 E0704 E0705 E0706 E0707 E0710 W0701 W0702
+    E0801 E0802 W0801
+    E0901 E0902 E0903 E0904 E0905 E0906 E0907 E0911 E0912 E0913 E0914 E0920 E0921 E0922 E0923
 }
 
-/// The page of a code; upper and lower case are the same.
-pub fn page(code: &str) -> Option<&'static Page> {
-    pages().find(|page| page.code.eq_ignore_ascii_case(code.trim()))
+impl Code {
+    /// Whether the code begins with these letters, such as `E03` for errors of units.
+    pub fn is_of(self, range: &str) -> bool {
+        self.name().starts_with(range)
+    }
+
+    /// What is wrong, in one line: the title of the page.
+    pub fn title(self) -> &'static str {
+        let head = self.page().lines().next().unwrap_or_default();
+        head.split_once(": ").map_or(head, |(_, title)| title)
+    }
+}
+
+impl fmt::Display for Code {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for Code {
+    type Err = ();
+
+    /// Reads a code in upper or lower case.
+    fn from_str(text: &str) -> Result<Self, ()> {
+        Self::ALL.iter().copied().find(|code| code.name().eq_ignore_ascii_case(text.trim())).ok_or(())
+    }
 }
 
 #[cfg(test)]
@@ -51,19 +81,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn codes_are_unique_and_pages_are_not_empty() {
-        let mut codes: Vec<_> = pages().map(|page| page.code).collect();
-        let count = codes.len();
-        codes.sort_unstable();
-        codes.dedup();
-        assert_eq!(codes.len(), count);
-        assert!(pages().all(|page| !page.title.is_empty() && page.text.len() > 80));
-        assert!(pages().all(|page| page.code.len() == 5));
-    }
-
-    #[test]
-    fn a_page_is_found_by_its_code() {
-        assert_eq!(page("e0101").map(|page| page.code), Some("E0101"));
-        assert_eq!(page("E9999"), None);
+    fn a_code_is_read_as_it_is_written() {
+        assert_eq!("e0101".parse(), Ok(Code::E0101));
+        assert_eq!("E9999".parse::<Code>(), Err(()));
+        assert!(Code::ALL.iter().all(|code| code.to_string().parse() == Ok(*code)));
     }
 }

@@ -1,5 +1,6 @@
 //! What the front end says about a source: code, place, message, hint.
 
+use super::codes::Code;
 use super::source::Span;
 
 /// How bad it is.
@@ -26,7 +27,7 @@ pub struct Diagnostic {
     /// Error or warning.
     pub severity: Severity,
     /// Stable code, such as `E0201`; every code has a page (`smc explain`).
-    pub code: &'static str,
+    pub code: Code,
     /// What is wrong.
     pub title: String,
     /// The place. `None` only for what has none (a missing file).
@@ -45,7 +46,7 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     /// An error at a place.
-    pub fn error(code: &'static str, span: Span, title: impl Into<String>) -> Self {
+    pub fn error(code: Code, span: Span, title: impl Into<String>) -> Self {
         Self {
             severity: Severity::Error,
             code,
@@ -60,12 +61,12 @@ impl Diagnostic {
     }
 
     /// A warning at a place.
-    pub fn warning(code: &'static str, span: Span, title: impl Into<String>) -> Self {
+    pub fn warning(code: Code, span: Span, title: impl Into<String>) -> Self {
         Self { severity: Severity::Warning, ..Self::error(code, span, title) }
     }
 
     /// An error that has no place in a source.
-    pub fn placeless(code: &'static str, title: impl Into<String>) -> Self {
+    pub fn placeless(code: Code, title: impl Into<String>) -> Self {
         Self {
             severity: Severity::Error,
             code,

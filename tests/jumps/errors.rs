@@ -81,7 +81,7 @@ fn errors_that_show_while_running_name_trial_time_and_state() {
             let reason = flaw.to_string();
             let place = flaw.place.unwrap();
             let written = &scenario[place.start as usize..place.end as usize];
-            assert_eq!((flaw.code, written), (code, if code == "E0903" { "x" } else { process }));
+            assert_eq!((flaw.code.name(), written), (code, if code == "E0903" { "x" } else { process }));
             assert!(reason.contains(what) && reason.contains("p.x = "), "{reason}");
             assert!(reason.starts_with("trial 0 at ") && reason.contains(" s: "), "{reason}");
             assert_eq!(smc::report::exit_code(run).code(), 2);

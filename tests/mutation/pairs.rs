@@ -72,9 +72,9 @@ fn slips(pair: &Pair) -> Vec<Slip> {
             if let [one] = found.as_slice()
                 && exact(one)
                 && told(&found, &places[0])
-                && !one.code.starts_with("E01")
+                && !one.code.is_of("E01")
             {
-                slip.code = one.code;
+                slip.code = one.code.name();
                 slips.push(slip);
             }
         }

@@ -78,7 +78,7 @@ fn errors_that_show_while_running_name_trial_time_and_state() {
         let Some(Failure::Model(flaw)) = &run.failure else { panic!("{:?}", run.failure) };
         let reason = flaw.to_string();
         let written = &scenario[flaw.place.unwrap().start as usize..flaw.place.unwrap().end as usize];
-        assert_eq!((flaw.code, written), ("E0903", "n"));
+        assert_eq!((flaw.code.name(), written), ("E0903", "n"));
         assert!(reason.contains("`p.n` would become 10") && reason.contains("p.n = 9"), "{reason}");
         assert!(reason.starts_with("trial ") && reason.contains(" at step "), "{reason}");
         assert_eq!(smc::report::exit_code(run).code(), 2);

@@ -11,6 +11,7 @@ use crate::model::process::wrong_weights;
 use crate::model::{Amount, Bool, Conduct, Law, Mode, Num, Parameter, Transition, Trigger, VariableId};
 use crate::syntax::ast::process::{BehaviourDecl, BehaviourItem, Choice, StateDecl};
 use crate::syntax::ast::{Field, LetDecl, Value};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::collections::{BTreeMap, BTreeSet};
@@ -157,7 +158,7 @@ impl<'a> Elaborator<'a> {
             other => {
                 let law = self.law(other, dimension, locals)?;
                 return match kinds::out_of_range(name, &law) {
-                    Some(reason) => self.report(Diagnostic::error("E0405", span, reason)),
+                    Some(reason) => self.report(Diagnostic::error(Code::E0405, span, reason)),
                     None => Ok(Amount::Drawn(law)),
                 };
             }
@@ -169,7 +170,7 @@ impl<'a> Elaborator<'a> {
         }
         match value {
             Num::Constant(value) if !parameter.allows(value) => self.report(Diagnostic::error(
-                "E0405",
+                Code::E0405,
                 span,
                 kinds::out_of_range(name, &Law::Constant(value))
                     .unwrap_or_else(|| format!("`{name}` cannot be {value}")),
@@ -177,7 +178,7 @@ impl<'a> Elaborator<'a> {
             value if value.reads(&mut BTreeSet::new()) => Ok(Amount::Computed(value)),
             _ => {
                 let error = Diagnostic::error(
-                    "E0304",
+                    Code::E0304,
                     span,
                     "what a state sets cannot depend on where people are",
                 )
@@ -202,7 +203,7 @@ impl<'a> Elaborator<'a> {
         let known: Option<Vec<f64>> =
             out.iter().map(|(w, _)| if let Num::Constant(w) = w { Some(*w) } else { None }).collect();
         if let Some(wrong) = known.and_then(|known| wrong_weights(&known)) {
-            let error = Diagnostic::error("E0902", span, wrong);
+            let error = Diagnostic::error(Code::E0902, span, wrong);
             return self.report(match self.attached_at {
                 Some(with) => error.related(with, "with these arguments"),
                 None => error,
@@ -235,7 +236,7 @@ impl Elaborator<'_> {
         }
         if !num.reads(&mut BTreeSet::new()) {
             let said = "these probabilities cannot depend on where people are";
-            let error = Diagnostic::error("E0304", weight.span, said)
+            let error = Diagnostic::error(Code::E0304, weight.span, said)
                 .hint("use `when` conditions, or several states");
             return self.report(error);
         }

@@ -15,6 +15,7 @@ use super::typed::Typed;
 use crate::model::{AgentId, Attached, Behaviour, BehaviourId, Behaviours, Mode, Parameter, Route, Who};
 use crate::syntax::ast::process::{BehaviourDecl, BehaviourItem, StateDecl};
 use crate::syntax::ast::{Expr, ExprKind, Field, Ident, LetDecl};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Label, Severity};
 use crate::syntax::source::{Source, Span};
 use std::collections::{BTreeMap, BTreeSet};
@@ -25,7 +26,7 @@ const EVENTS: [&str; 1] = ["advice"];
 /// What can be done about advice.
 const OUTCOMES: [&str; 2] = ["follow", "ignore"];
 /// Codes of errors of behaviours that hang on nobody who could be missing: weights, delays, fields of a state.
-const OF_NOBODY: [&str; 3] = ["E0902", "E0906", "E0911"];
+const OF_NOBODY: [Code; 3] = [Code::E0902, Code::E0906, Code::E0911];
 
 /// `with` of one declaration, and those who have it.
 pub(super) struct With<'a> {
@@ -92,7 +93,7 @@ impl<'a> Elaborator<'a> {
                 BehaviourItem::On(on) => {
                     if !EVENTS.contains(&on.event.name.as_str()) {
                         let known = EVENTS.into_iter();
-                        let error = unknown("event", &on.event.name, on.event.span, "E0201", known)
+                        let error = unknown("event", &on.event.name, on.event.span, Code::E0201, known)
                             .hint("the only event is `advice`: a move is suggested to the agent; what happens around it is a condition of a state, as in `when self in exit -> …`, `when contact(self) -> …`");
                         self.note(error);
                     }
@@ -106,7 +107,7 @@ impl<'a> Elaborator<'a> {
             };
             if let Some(first) = seen.insert(&name.name, name) {
                 let error =
-                    Diagnostic::error("E0202", name.span, format!("`{}` is declared twice", name.name))
+                    Diagnostic::error(Code::E0202, name.span, format!("`{}` is declared twice", name.name))
                         .related(first.span, "first declared here");
                 self.note(error);
             }
@@ -119,12 +120,12 @@ impl<'a> Elaborator<'a> {
             let name = field.name.name.as_str();
             let first = *set.entry(name).or_insert(field);
             if !std::ptr::eq(first, field) {
-                let error = Diagnostic::error("E0202", field.name.span, format!("`{name}` is set twice"))
+                let error = Diagnostic::error(Code::E0202, field.name.span, format!("`{name}` is set twice"))
                     .related(first.name.span, "first set here");
                 self.note(error);
             } else if super::kinds::parameter(name).is_some() && Parameter::of(name).is_none() {
                 let error = Diagnostic::error(
-                    "E0911",
+                    Code::E0911,
                     field.name.span,
                     format!("`{name}` belongs to the body and is the same in all states"),
                 )
@@ -132,7 +133,7 @@ impl<'a> Elaborator<'a> {
                 self.note(error);
             } else if name != "route" && Parameter::of(name).is_none() {
                 let known = all_parameters().into_iter().chain(["route"]);
-                let error = unknown("parameter", name, field.name.span, "E0207", known);
+                let error = unknown("parameter", name, field.name.span, Code::E0207, known);
                 self.note(error);
             }
         }
@@ -146,7 +147,7 @@ impl<'a> Elaborator<'a> {
             if !known.sorted.contains(target.name.as_str()) {
                 let looked_at = if self.looks_for_names() { usize::MAX } else { 0 };
                 let names = known.written.iter().copied().take(looked_at);
-                let error = unknown(what, &target.name, target.span, "E0201", names);
+                let error = unknown(what, &target.name, target.span, Code::E0201, names);
                 let error = match &error.hint {
                     Some(_) => error,
                     None => error.hint(format!("known are {}", known.listed())),
@@ -165,7 +166,7 @@ impl<'a> Elaborator<'a> {
                 ExprKind::Name(called) => (called, &[]),
                 ExprKind::Call { function, arguments } => (&function.name, arguments),
                 _ => {
-                    let error = Diagnostic::error("E0305", expr.span, "expected a behaviour")
+                    let error = Diagnostic::error(Code::E0305, expr.span, "expected a behaviour")
                         .hint("for example `with phone, heedful(0.8)`");
                     self.note(error);
                     strays = true;
@@ -177,7 +178,7 @@ impl<'a> Elaborator<'a> {
                 Some((_, other)) => {
                     if !matches!(other, Meaning::Doubtful) {
                         let text = format!("expected a behaviour, `{called}` is {}", other.noun());
-                        self.note(Diagnostic::error("E0206", expr.span, text));
+                        self.note(Diagnostic::error(Code::E0206, expr.span, text));
                     }
                     self.stray.push(arguments);
                     strays = true;
@@ -186,7 +187,7 @@ impl<'a> Elaborator<'a> {
                 None => {
                     let known: Vec<&str> =
                         self.behaviours.iter().map(|decl| decl.name.name.as_str()).collect();
-                    let error = unknown("behaviour", called, expr.span, "E0201", known.into_iter());
+                    let error = unknown("behaviour", called, expr.span, Code::E0201, known.into_iter());
                     self.note(error);
                     self.stray.push(arguments);
                     strays = true;
@@ -195,7 +196,7 @@ impl<'a> Elaborator<'a> {
             };
             if let Some((.., first)) = behaviours.iter().find(|(known, ..)| *known == id) {
                 let error = Diagnostic::error(
-                    "E0912",
+                    Code::E0912,
                     expr.span,
                     format!("`{}` has the behaviour `{called}` already", name.name),
                 )
@@ -259,7 +260,7 @@ impl<'a> Elaborator<'a> {
                     Err(Reported) if self.failed() || !self.torn.is_empty() => {}
                     Err(Reported) => {
                         let text = "what is wrong with this behaviour shows nowhere else";
-                        self.note(Diagnostic::error("E0305", written.span, text));
+                        self.note(Diagnostic::error(Code::E0305, written.span, text));
                     }
                 }
             }
@@ -318,7 +319,7 @@ impl<'a> Elaborator<'a> {
                 && decl.span.start <= place.start
                 && place.end <= decl.span.end;
             let is_marked = one.related.iter().any(|label| label.span == at);
-            let of_value = one.code.starts_with("E03") || one.code == "E0405";
+            let of_value = one.code.is_of("E03") || one.code == Code::E0405;
             if inside && of_value && !is_marked && hangs(self.sources, place) == Some(true) {
                 one.related.push(Label { span: at, text: "with these arguments".to_owned() });
             }

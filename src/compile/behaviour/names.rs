@@ -8,6 +8,7 @@ use crate::compile::typed::Typed;
 use crate::model::{BehaviourId, Bool, Comparison, Field, Num, Who};
 use crate::syntax::ast::process::BehaviourDecl;
 use crate::syntax::ast::{Expr, ExprKind, Ident, LetDecl};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
@@ -46,7 +47,7 @@ impl<'a> Elaborator<'a> {
         let (decl, inner, path) = self.inside_behaviour(name, locals)?;
         if !decl.arguments.is_empty() {
             let text = format!("`{name}` is a function of {}", counted_arguments(decl.arguments.len()));
-            let error = Diagnostic::error("E0204", span, text).hint(format!("call it: `{name}(…)`"));
+            let error = Diagnostic::error(Code::E0204, span, text).hint(format!("call it: `{name}(…)`"));
             return Some(self.report(error));
         }
         Some(self.expand(0, &path, span, |this| this.lower(&decl.body, &inner)))
@@ -69,7 +70,7 @@ impl<'a> Elaborator<'a> {
     pub(in crate::compile) fn lower_mode(&mut self, who: Who, base: Span, member: &Ident) -> Lowered<Typed> {
         let Some(at) = self.behaviours.iter().position(|decl| decl.name.name == member.name) else {
             let known: Vec<&str> = self.behaviours.iter().map(|decl| decl.name.name.as_str()).collect();
-            let error = unknown("behaviour", &member.name, member.span, "E0201", known.into_iter());
+            let error = unknown("behaviour", &member.name, member.span, Code::E0201, known.into_iter());
             let error = match &error.hint {
                 Some(_) => error,
                 None => {
@@ -92,7 +93,7 @@ impl<'a> Elaborator<'a> {
                 return Err(Reported);
             }
             let text = format!("`{}` has no behaviour `{}`", self.text(base), member.name);
-            let error = Diagnostic::error("E0201", member.span, text)
+            let error = Diagnostic::error(Code::E0201, member.span, text)
                 .hint(format!("give it one: `agent … : … with {}`", member.name));
             return self.report(error);
         }
@@ -133,7 +134,7 @@ impl<'a> Elaborator<'a> {
         let (behaviour, states) = (&decl.name.name, states(decl).map(|state| state.name.name.as_str()));
         let names: Vec<&str> = states.collect();
         let ExprKind::Name(wanted) = &named.kind else {
-            let error = Diagnostic::error("E0305", named.span, "expected the name of a state")
+            let error = Diagnostic::error(Code::E0305, named.span, "expected the name of a state")
                 .hint(format!("the states of `{behaviour}` are {}", names.join(", ")));
             return self.report(error);
         };
@@ -141,7 +142,7 @@ impl<'a> Elaborator<'a> {
             return Ok(at);
         }
         let what = format!("state of `{behaviour}`");
-        let error = unknown(&what, wanted, named.span, "E0201", names.iter().copied());
+        let error = unknown(&what, wanted, named.span, Code::E0201, names.iter().copied());
         self.report(match &error.hint {
             Some(_) => error,
             None => error.hint(format!("its states are {}", names.join(", "))),

@@ -8,6 +8,7 @@ use crate::compile::dimension;
 use crate::compile::queries::Input;
 use crate::compile::told::is_stepped;
 use crate::syntax::ast::Item;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::parse::starts_name;
 use crate::syntax::source::{Source, SourceId, Span};
@@ -15,34 +16,35 @@ use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Codes of names that are not there, or of what needs one.
-const NAMES: [&str; 8] = ["E0201", "E0203", "E0205", "E0208", "E0209", "E0210", "E0505", "E0606"];
+const NAMES: [Code; 8] =
+    [Code::E0201, Code::E0203, Code::E0205, Code::E0208, Code::E0209, Code::E0210, Code::E0505, Code::E0606];
 /// Those among them whose place is the name itself.
-const PLACED_AT_NAME: [&str; 5] = ["E0201", "E0203", "E0208", "E0210", "E0606"];
+const PLACED_AT_NAME: [Code; 5] = [Code::E0201, Code::E0203, Code::E0208, Code::E0210, Code::E0606];
 /// Codes of a clock that has or lacks steps: a process that was not read may have had rates.
-const CLOCKS: [&str; 3] = ["E0503", "E0507", "E0508"];
+const CLOCKS: [Code; 3] = [Code::E0503, Code::E0507, Code::E0508];
 /// Codes of brackets that do not pair up.
-const BRACKETS: [&str; 6] = ["E0102", "E0103", "E0104", "E0105", "E0106", "E0107"];
+const BRACKETS: [Code; 6] = [Code::E0102, Code::E0103, Code::E0104, Code::E0105, Code::E0106, Code::E0107];
 /// Codes of a file that was not read at all, or not from here on.
-const TOO_DEEP: &str = "E0106";
-const COMMENT: &str = "E0104";
+const TOO_DEEP: Code = Code::E0106;
+const COMMENT: Code = Code::E0104;
 /// Code of a bracket that closes nothing.
-const STRAY: &str = "E0103";
+const STRAY: Code = Code::E0103;
 /// Code of a scenario without a horizon or a step, or with one that is none.
-const SETTING: &str = "E0505";
+const SETTING: Code = Code::E0505;
 /// Code of moves without an option.
-const NO_OPTIONS: &str = "E0406";
+const NO_OPTIONS: Code = Code::E0406;
 /// Code of an agent that nothing advises.
-const NO_MOVES: &str = "E0606";
+const NO_MOVES: Code = Code::E0606;
 /// Codes of people who start inside an obstacle, or where there is no room.
-const INSIDE: [&str; 2] = ["E0409", "E0801"];
+const INSIDE: [Code; 2] = [Code::E0409, Code::E0801];
 /// How it is told that many people start where few find room.
 const CROWDED: &str = " cannot be placed: ";
 /// Codes after which the rest of a line is anybody's guess, besides those of brackets.
-const DERAILS: [&str; 2] = ["E0101", "E0112"];
+const DERAILS: [Code; 2] = [Code::E0101, Code::E0112];
 /// Marks that follow the name of a declaration.
 const AFTER_NAME: [char; 4] = ['=', ':', '{', '['];
 /// Code of one sign of equality for another.
-const EQUALS: &str = "E0112";
+const EQUALS: Code = Code::E0112;
 /// Words that start a declaration with a name.
 const DECLARES: [&str; 20] = [
     "agent",
@@ -407,12 +409,11 @@ impl<'i> Broken<'i> {
             && !name.is_empty()
             && self.suspects.range(name..).next().is_some_and(|suspect| suspect.starts_with(name));
         // What is at a name, not what stands beside it.
-        let of_suspect =
-            (one.code.starts_with("E03") || one.code.starts_with("E09") || UNKNOWN.contains(&one.code))
-                && (words(text).any(|name| self.suspects.contains(name))
-                    || self.set_by(place).is_some_and(|name| self.suspects.contains(name)));
+        let of_suspect = (one.code.is_of("E03") || one.code.is_of("E09") || UNKNOWN.contains(&one.code))
+            && (words(text).any(|name| self.suspects.contains(name))
+                || self.set_by(place).is_some_and(|name| self.suspects.contains(name)));
         // A command of several lines is judged as a whole.
-        let of_part = one.code.starts_with("E09") && self.covers_an_error(place);
+        let of_part = one.code.is_of("E09") && self.covers_an_error(place);
         !(of_clock
             || of_options
             || of_moves

@@ -9,6 +9,7 @@ mod broken;
 use super::dimension;
 use super::queries::Input;
 use crate::syntax::ast::{Expr, ExprKind, Ident, Item, PropertyItem};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Label, Severity};
 use crate::syntax::parse::{continues_name, starts_name};
 use crate::syntax::source::{Source, SourceId, Span};
@@ -18,19 +19,19 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 
 /// Code of what a declaration lacks.
-const LACKING: &str = "E0209";
+const LACKING: Code = Code::E0209;
 /// Code of a field that nobody knows.
-const UNKNOWN_FIELD: &str = "E0207";
+const UNKNOWN_FIELD: Code = Code::E0207;
 /// Code of a unit that nobody knows.
-const UNKNOWN_UNIT: &str = "E0113";
+const UNKNOWN_UNIT: Code = Code::E0113;
 /// Code of a wrong dimension.
-const DIMENSION: &str = "E0303";
+const DIMENSION: Code = Code::E0303;
 /// Code of a name that is used before it can be known.
-const EARLY: &str = "E0205";
+const EARLY: Code = Code::E0205;
 /// How that ends of a name that leads back to itself.
 pub(super) const BY_ITSELF: &str = "by itself";
 /// Codes of unknown names, told once.
-pub(super) const UNKNOWN: [&str; 4] = ["E0201", "E0203", "E0208", "E0210"];
+pub(super) const UNKNOWN: [Code; 4] = [Code::E0201, Code::E0203, Code::E0208, Code::E0210];
 /// Most further places that are marked.
 const MOST_MARKS: usize = 3;
 
@@ -58,7 +59,7 @@ fn less_what_follows(mut found: Vec<Diagnostic>, sources: &[Source]) -> Vec<Diag
         })
         .collect();
     let mut ends: BTreeSet<(SourceId, u32)> = BTreeSet::new();
-    let mut starts: BTreeMap<(SourceId, u32), &'static str> = BTreeMap::new();
+    let mut starts: BTreeMap<(SourceId, u32), Code> = BTreeMap::new();
     for one in &found {
         let Some(span) = place(one) else { continue };
         ends.insert((span.source, span.end));
@@ -314,7 +315,7 @@ mod tests {
         let found = names.iter().map(|name| {
             let span = Span::new(SourceId(0), at, at + name.len());
             at += name.len() + 3;
-            Diagnostic::error("E0201", span, format!("unknown name `{name}`"))
+            Diagnostic::error(Code::E0201, span, format!("unknown name `{name}`"))
         });
         let told = once_a_name(less_what_follows(found.collect(), &sources), &sources);
         assert_eq!(told.len(), 15_000);

@@ -9,6 +9,7 @@ use crate::base::math;
 use crate::logic::{Operation, Term};
 use crate::model::{Arithmetic, Function, Num};
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
@@ -100,7 +101,7 @@ impl Elaborator<'_> {
         };
         match joined {
             Some(dimension) => Ok(dimension),
-            None => self.report(Diagnostic::error("E0302", span, "the unit of this is out of range")),
+            None => self.report(Diagnostic::error(Code::E0302, span, "the unit of this is out of range")),
         }
     }
 
@@ -108,7 +109,7 @@ impl Elaborator<'_> {
     fn fold(&mut self, span: Span, op: BinaryOp, a: Number, (b, right): (Number, Span)) -> Lowered<Number> {
         self.joined(span, op, a.dimension, b.dimension, right)?;
         if op == BinaryOp::Over && b.value == 0.0 {
-            return self.report(Diagnostic::error("E0405", right, "division by zero"));
+            return self.report(Diagnostic::error(Code::E0405, right, "division by zero"));
         }
         let value = match op {
             BinaryOp::Plus => Some(a.plus(b)),
@@ -117,7 +118,7 @@ impl Elaborator<'_> {
             _ => a.over(b),
         };
         value.map_or_else(
-            || self.report(Diagnostic::error("E0302", span, "the unit of this is out of range")),
+            || self.report(Diagnostic::error(Code::E0302, span, "the unit of this is out of range")),
             Ok,
         )
     }
@@ -133,7 +134,7 @@ impl Elaborator<'_> {
         let x = self.fold(span, op, ax, (bx, right))?;
         let y = self.fold(span, op, ay, (by, right))?;
         if !(x.value.is_finite() && y.value.is_finite()) {
-            return self.report(Diagnostic::error("E0405", span, "this is not a finite point"));
+            return self.report(Diagnostic::error(Code::E0405, span, "this is not a finite point"));
         }
         Ok(Typed::Point(x, y))
     }
@@ -171,7 +172,7 @@ impl Elaborator<'_> {
             BinaryOp::Times if !is_vector(&a.0) => self.lower_vector(op, b, a),
             _ => {
                 let error = Diagnostic::error(
-                    "E0305",
+                    Code::E0305,
                     a.1.to(b.1),
                     "vectors are added, subtracted, and multiplied by numbers",
                 )
@@ -193,10 +194,12 @@ impl Elaborator<'_> {
             match whole {
                 Some(n) => match dimension.power(n) {
                     Some(d) => Ok(d),
-                    None => this.report(Diagnostic::error("E0302", span, "the unit of this is out of range")),
+                    None => {
+                        this.report(Diagnostic::error(Code::E0302, span, "the unit of this is out of range"))
+                    }
                 },
                 None => this.report(Diagnostic::error(
-                    "E0303",
+                    Code::E0303,
                     right.span,
                     format!("{} can only be raised to a whole power", describe(dimension)),
                 )),
@@ -207,7 +210,7 @@ impl Elaborator<'_> {
                 let dimension = power(self, base.dimension)?;
                 if base.value == 0.0 && exponent.value < 0.0 {
                     return self.report(
-                        Diagnostic::error("E0405", left.span, "division by zero")
+                        Diagnostic::error(Code::E0405, left.span, "division by zero")
                             .hint("zero has no negative powers"),
                     );
                 }
@@ -221,7 +224,7 @@ impl Elaborator<'_> {
                 }
                 let value = math::pow(base.value, exponent.value);
                 if !value.is_finite() {
-                    return self.report(Diagnostic::error("E0405", span, "this is not a finite number"));
+                    return self.report(Diagnostic::error(Code::E0405, span, "this is not a finite number"));
                 }
                 Ok(Typed::Number(Number::rounded(value, dimension)))
             }

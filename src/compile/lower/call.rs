@@ -12,6 +12,7 @@ use crate::base::math;
 use crate::logic::Term;
 use crate::model::{Arithmetic, Axis, Bool, Field, Function, Num, Place, Set, Who};
 use crate::syntax::ast::{Expr, Ident};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::parse::foreign_word;
 use crate::syntax::source::Span;
@@ -63,7 +64,7 @@ impl Elaborator<'_> {
                 };
                 if !self.temporal || locals.running > 0 {
                     let error = Diagnostic::error(
-                        "E0504",
+                        Code::E0504,
                         expr.span,
                         "`time_until` looks ahead over the trace, and here one state is read",
                     )
@@ -77,7 +78,7 @@ impl Elaborator<'_> {
             }
             "robustness" => {
                 let error = Diagnostic::error(
-                    "E0504",
+                    Code::E0504,
                     expr.span,
                     "`robustness` looks at a whole trace and stands only directly inside `E(…)`, `Q(…)` and `P(…)`",
                 )
@@ -86,7 +87,7 @@ impl Elaborator<'_> {
             }
             name if DISTRIBUTIONS.contains(&name) => {
                 let error = Diagnostic::error(
-                    "E0404",
+                    Code::E0404,
                     expr.span,
                     format!("`{name}` is a distribution, and is no part of an expression"),
                 )
@@ -101,11 +102,11 @@ impl Elaborator<'_> {
             }
             name => {
                 self.unknowns += 1;
-                if self.is_said("E0203", function.span) {
+                if self.is_said(Code::E0203, function.span) {
                     return Err(Reported);
                 }
                 // A unit that is misspelt reads as a call, and what follows it is what it is.
-                if self.is_said("E0113", function.span) {
+                if self.is_said(Code::E0113, function.span) {
                     return self.lower_all(arguments, locals).and(Err(Reported));
                 }
                 if let Some((_, meaning)) = self.find(name, locals.scope) {
@@ -114,7 +115,7 @@ impl Elaborator<'_> {
                     // may be just that it lacks its arguments.
                     if !hidden && self.lower_name(name, function.span, locals).is_ok() {
                         let text = format!("`{name}` is {}, which takes no arguments", meaning.noun());
-                        self.note(Diagnostic::error("E0204", expr.span, text));
+                        self.note(Diagnostic::error(Code::E0204, expr.span, text));
                     }
                     return self.lower_all(arguments, locals).and(Err(Reported));
                 }
@@ -128,7 +129,7 @@ impl Elaborator<'_> {
                     .map(|(n, _)| n.to_owned())
                     .collect();
                 known.extend(declared.iter().map(String::as_str));
-                let error = unknown("function", name, function.span, "E0203", known.into_iter());
+                let error = unknown("function", name, function.span, Code::E0203, known.into_iter());
                 let within = arguments.iter().map(|argument| self.text(argument.span)).collect::<Vec<_>>();
                 self.note(match foreign_word(name, &within.join(", ")) {
                     Some(hint) => error.hint(hint),
@@ -256,7 +257,7 @@ impl Elaborator<'_> {
             }
             name => {
                 let error = Diagnostic::error(
-                    "E0305",
+                    Code::E0305,
                     function.span,
                     format!("`{name}` joins values over a set or over time"),
                 )
@@ -309,7 +310,7 @@ impl Elaborator<'_> {
                 Some(root) => root,
                 None => {
                     let error = Diagnostic::error(
-                        "E0303",
+                        Code::E0303,
                         argument.span,
                         format!("the square root of `{given}` has no unit"),
                     );
@@ -340,7 +341,7 @@ impl Elaborator<'_> {
     fn computed(&mut self, value: f64, dimension: Dimension, function: &str, span: Span) -> Lowered<Typed> {
         if !value.is_finite() {
             let text = format!("`{function}` of this is not a finite number");
-            return self.report(Diagnostic::error("E0405", span, text));
+            return self.report(Diagnostic::error(Code::E0405, span, text));
         }
         let whole = value.fract() == 0.0 && value.abs() < 9e15;
         let exact = whole.then(|| crate::base::decimal::Decimal::whole(value as i64));
@@ -374,7 +375,7 @@ impl Elaborator<'_> {
                 let extended = |p: &Place| matches!(p, Place::Region(_) | Place::Barrier(_));
                 if extended(&a) && extended(&b) {
                     let error = Diagnostic::error(
-                        "E0305",
+                        Code::E0305,
                         expr.span,
                         "one side of a distance must be an agent or a point",
                     );
@@ -400,7 +401,7 @@ impl Elaborator<'_> {
                 };
                 if let (true, Num::Constant(a), Num::Constant(b)) = (known, &a, &b) {
                     if op == Arithmetic::Modulo && *b == 0.0 {
-                        return self.report(Diagnostic::error("E0405", right.span, "division by zero"));
+                        return self.report(Diagnostic::error(Code::E0405, right.span, "division by zero"));
                     }
                     return self.computed(op.of(*a, *b), dimension, &function.name, expr.span);
                 }

@@ -9,6 +9,7 @@ use crate::base::tick::Clock;
 use crate::logic::{Aggregation, Node, NodeId, Relation, Term, TermId};
 use crate::model::{Bool, Comparison, Num, Place};
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::sync::Arc;
@@ -159,7 +160,7 @@ impl Elaborator<'_> {
         match (&a, &b) {
             (Typed::Agent(_), Typed::Agent(_)) => {
                 let error = Diagnostic::error(
-                    "E0305",
+                    Code::E0305,
                     whole,
                     format!("`{}` compares agents, which are no numbers", self.text(whole)),
                 );
@@ -206,7 +207,7 @@ impl Elaborator<'_> {
             return Ok(Typed::Formula(self.comparison((relation, a, b), text, da)));
         }
         if [&a, &b].iter().all(|side| matches!(side, Typed::Vector(..) | Typed::Point(..))) {
-            let error = Diagnostic::error("E0305", whole, "vectors are not compared")
+            let error = Diagnostic::error(Code::E0305, whole, "vectors are not compared")
                 .hint("compare their `distance`, or their components: `x(position(a))`");
             return self.report(error);
         }
@@ -225,7 +226,7 @@ impl Elaborator<'_> {
         }
         if !margin && let Some(name) = self.real_in(&a).or_else(|| self.real_in(&b)) {
             let said = format!("`{name}` is a real number, which is rounded, and is compared for equality");
-            let warning = Diagnostic::warning("W0503", whole, said)
+            let warning = Diagnostic::warning(Code::W0503, whole, said)
                 .hint("compare with `<` or `>`, or within a tolerance, as in `abs(x - 0.3) < 1e-9`; for whole numbers declare a range, as in `var x: 0 .. 10 = 0`");
             self.note(warning);
         }
@@ -280,7 +281,7 @@ impl Elaborator<'_> {
         }
         let unit = if self.clock == Clock::Steps { "steps" } else { "s" };
         let error = Diagnostic::error(
-            "E0502",
+            Code::E0502,
             span,
             format!("this looks {limit} {unit} ahead, but the horizon is {}", self.duration(self.horizon.0)),
         );

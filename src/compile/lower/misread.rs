@@ -7,6 +7,7 @@ use super::super::told::Told;
 use super::{BUILT_IN, DISTRIBUTIONS, FUNCTIONS};
 use crate::base::tick::Clock;
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Moment, Value};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::parse::{foreign_word, time_meant, unit_meant};
 use crate::syntax::source::Span;
@@ -31,7 +32,7 @@ impl Elaborator<'_> {
             Clock::Steps => format!("steps have no length here: write `#{number}` or `{number} steps`"),
             _ => format!("did you mean `{number} {unit}`?"),
         };
-        self.note(Diagnostic::error("E0113", span, format!("unknown unit `{name}`")).hint(hint));
+        self.note(Diagnostic::error(Code::E0113, span, format!("unknown unit `{name}`")).hint(hint));
         true
     }
 
@@ -62,7 +63,7 @@ impl Elaborator<'_> {
         {
             let title = format!("`{}` stands only in queries, not in formulas", function.name);
             let query = self.text(left.span.to(right.span));
-            let error = Diagnostic::error("E0504", function.span, title);
+            let error = Diagnostic::error(Code::E0504, function.span, title);
             return Some(self.report(error.hint(format!("write a query of its own: `check {query}`"))));
         }
         let (span, inner, moment) = [left, right].into_iter().find_map(|side| match &side.kind {
@@ -94,7 +95,7 @@ impl Elaborator<'_> {
         let at = behind.find("at").unwrap_or(0);
         let start = inner.end + at as u32;
         let end = start + behind[at..].trim_end_matches([')', ' ']).len() as u32;
-        let error = Diagnostic::error("E0504", Span { start, end, ..span }, title);
+        let error = Diagnostic::error(Code::E0504, Span { start, end, ..span }, title);
         self.report(match read {
             Some(read) => error.hint(format!("of a condition write `F[{time}, {time}] ({read})`")),
             None => error.hint(format!("write it last: `E(… {written})`")),
@@ -126,7 +127,7 @@ impl Elaborator<'_> {
         if nearest(name, std::iter::once(PLACES)).is_none() || self.is_known(name, &locals) {
             return false;
         }
-        let error = Diagnostic::error("E0201", word.span, format!("unknown name `{name}`"));
+        let error = Diagnostic::error(Code::E0201, word.span, format!("unknown name `{name}`"));
         self.note(error.hint(format!("did you mean `{PLACES}`?")));
         match (&shape.kind, value) {
             (ExprKind::Call { arguments, .. }, Value::Truncated { high, .. }) => {
@@ -160,7 +161,7 @@ impl Elaborator<'_> {
             return false;
         }
         for (name, span, unit, _) in misspelt {
-            let error = Diagnostic::error("E0113", span, format!("unknown unit `{name}`"));
+            let error = Diagnostic::error(Code::E0113, span, format!("unknown unit `{name}`"));
             self.note(error.hint(format!("did you mean `{unit}`?")));
         }
         true
@@ -193,7 +194,7 @@ impl Elaborator<'_> {
             "1 ".clone_into(&mut written);
         }
         let unknown = self.diagnostics.iter_mut().rev().find(|one| {
-            one.code == "E0201" && one.place.as_ref().is_some_and(|place| place.span == factor.span)
+            one.code == Code::E0201 && one.place.as_ref().is_some_and(|place| place.span == factor.span)
         });
         if let Some(unknown) = unknown.filter(|one| is_sure || one.hint.is_none()) {
             unknown.hint = Some(format!("did you mean `{written}{unit}{power}`?"));

@@ -25,6 +25,7 @@ use super::weight::Weight;
 use crate::logic::{Node, NodeId, TermId};
 use crate::model::{Axis, Bool, Num, Place, Set, Who};
 use crate::syntax::ast::{Expr, ExprKind, Ident, UnaryOp};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::sync::Arc;
@@ -164,7 +165,7 @@ impl Elaborator<'_> {
                 }
                 (Some(_), false) => this.report(
                     Diagnostic::error(
-                        "E0303",
+                        Code::E0303,
                         span,
                         "this coordinate has a unit of its own beside that of the point",
                     )
@@ -207,7 +208,7 @@ impl Elaborator<'_> {
             Typed::Num(num, dimension) => Ok((num, dimension)),
             Typed::Tally(_) => {
                 let error = Diagnostic::error(
-                    "E0504",
+                    Code::E0504,
                     span,
                     "a count of formulas over time is only compared with a number",
                 )
@@ -216,7 +217,7 @@ impl Elaborator<'_> {
             }
             Typed::Term(..) => {
                 let error = Diagnostic::error(
-                    "E0504",
+                    Code::E0504,
                     span,
                     "a number of one state is needed here, not one of a stretch of time",
                 );
@@ -286,7 +287,7 @@ impl Elaborator<'_> {
                     return Ok(truth);
                 }
                 let error = Diagnostic::error(
-                    "E0504",
+                    Code::E0504,
                     span,
                     "a condition on one state is needed here, not a formula over time",
                 );
@@ -302,9 +303,12 @@ impl Elaborator<'_> {
             Typed::Agent(who) => Ok(who),
             Typed::Agents { set, particle: true } if set.members.len() == 1 => Ok(Who::Agent(set.members[0])),
             found @ Typed::Agents { .. } => {
-                let error =
-                    Diagnostic::error("E0305", span, format!("expected an agent, found {}", found.noun()))
-                        .hint("choose a member, as in `crowd[1]`, or quantify: `forall a in crowd: …`");
+                let error = Diagnostic::error(
+                    Code::E0305,
+                    span,
+                    format!("expected an agent, found {}", found.noun()),
+                )
+                .hint("choose a member, as in `crowd[1]`, or quantify: `forall a in crowd: …`");
                 self.report(error)
             }
             found => self.mismatch(span, "an agent", &found),
@@ -349,7 +353,7 @@ impl Elaborator<'_> {
             }
             found @ Typed::Agents { .. } => {
                 let error =
-                    Diagnostic::error("E0305", span, format!("expected a place, found {}", found.noun()))
+                    Diagnostic::error(Code::E0305, span, format!("expected a place, found {}", found.noun()))
                         .hint("use its middle, `centroid(…)`, or a member");
                 self.report(error)
             }
@@ -369,7 +373,8 @@ impl Elaborator<'_> {
                 }
                 Place::Point(x, y) => Ok((*x, *y, Dimension::LENGTH)),
                 Place::Region(_) | Place::Barrier(_) => {
-                    let error = Diagnostic::error("E0305", span, "this has an extent and no single position");
+                    let error =
+                        Diagnostic::error(Code::E0305, span, "this has an extent and no single position");
                     self.report(error)
                 }
             },
@@ -386,7 +391,7 @@ impl Elaborator<'_> {
     ) -> Lowered<T> {
         let found = arguments.len();
         let error = Diagnostic::error(
-            "E0204",
+            Code::E0204,
             span,
             format!(
                 "`{}` takes {wanted}, but {found} {} given",

@@ -10,6 +10,7 @@ use super::super::wording::{Frame, Given, Use};
 use super::{BUILT_IN, counted_arguments};
 use crate::model::{Set, Who};
 use crate::syntax::ast::{Expr, ExprKind, Ident, LetDecl};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Label};
 use crate::syntax::source::Span;
 use std::sync::Arc;
@@ -56,9 +57,12 @@ impl<'a> Elaborator<'a> {
         let Some((scope, meaning)) = self.find(name, locals.scope) else {
             return match name {
                 "time" if self.clock.is_jumps() => {
-                    let error =
-                        Diagnostic::error("E0508", span, "in continuous time a state has no time of its own")
-                            .hint("use a bound, as in `F[4 s, 5 s]`, or `time_until(…)`");
+                    let error = Diagnostic::error(
+                        Code::E0508,
+                        span,
+                        "in continuous time a state has no time of its own",
+                    )
+                    .hint("use a bound, as in `F[4 s, 5 s]`, or `time_until(…)`");
                     self.report(error)
                 }
                 "time" => Ok(Typed::Num(crate::model::Num::Time, self.time_dimension())),
@@ -95,7 +99,7 @@ impl<'a> Elaborator<'a> {
             Meaning::Let(decl) => {
                 if !decl.arguments.is_empty() {
                     let error = Diagnostic::error(
-                        "E0204",
+                        Code::E0204,
                         span,
                         format!("`{name}` is a function of {}", counted_arguments(decl.arguments.len())),
                     )
@@ -107,7 +111,7 @@ impl<'a> Elaborator<'a> {
             }
             Meaning::Property(_) if !self.temporal => {
                 let text = format!("`{name}` is a property, and a number is needed here");
-                self.report(Diagnostic::error("E0305", span, text))
+                self.report(Diagnostic::error(Code::E0305, span, text))
             }
             Meaning::Property(formula) => {
                 let inner = Locals { running: locals.running, ..Locals::of(scope) };
@@ -133,13 +137,13 @@ impl<'a> Elaborator<'a> {
                 Err(Reported)
             }
             Meaning::Declared => {
-                let error = Diagnostic::error("E0205", span, format!("`{name}` is not known yet here"))
+                let error = Diagnostic::error(Code::E0205, span, format!("`{name}` is not known yet here"))
                     .hint("numbers of agents and parameters cannot depend on agents");
                 self.report(error)
             }
             Meaning::Kind(_) | Meaning::Tracks(_) | Meaning::Behaviour(_) => {
                 let error = Diagnostic::error(
-                    "E0206",
+                    Code::E0206,
                     span,
                     format!("`{name}` is {}, which has no value", meaning.noun()),
                 );
@@ -150,7 +154,7 @@ impl<'a> Elaborator<'a> {
 
     fn unknown_name(&mut self, name: &str, span: Span, locals: &Locals) -> Lowered<Typed> {
         self.unknowns += 1;
-        if self.is_said("E0201", span) || self.is_said("E0113", span) {
+        if self.is_said(Code::E0201, span) || self.is_said(Code::E0113, span) {
             return Err(Reported);
         }
         let mut known: Vec<String> = Vec::new();
@@ -162,7 +166,7 @@ impl<'a> Elaborator<'a> {
             }
             known.extend(BUILT_IN.map(str::to_owned));
         }
-        let error = unknown("name", name, span, "E0201", known.iter().map(String::as_str));
+        let error = unknown("name", name, span, Code::E0201, known.iter().map(String::as_str));
         self.report(match self.misread_name(name) {
             Some(hint) => error.hint(hint),
             None => error,
@@ -231,7 +235,7 @@ impl<'a> Elaborator<'a> {
             Typed::Truth(..) => "a condition, which may change during a trial".to_owned(),
             _ => format!("{} that changes during a trial", found.noun()),
         };
-        let error = Diagnostic::error("E0304", value.span, "this must be known before a trial starts");
+        let error = Diagnostic::error(Code::E0304, value.span, "this must be known before a trial starts");
         self.report(error.label(label).hint(if is_drawn {
             "`let` names what each trial draws"
         } else {
@@ -263,7 +267,7 @@ impl<'a> Elaborator<'a> {
                 .chain([name])
                 .collect();
             self.circles.extend(way.iter().map(|n| (*n).to_owned()));
-            let error = Diagnostic::error("E0205", span, format!("`{name}` is defined by itself"))
+            let error = Diagnostic::error(Code::E0205, span, format!("`{name}` is defined by itself"))
                 .label(way.join(" → "));
             return self.report(error);
         }
@@ -383,7 +387,7 @@ impl<'a> Elaborator<'a> {
         for (k, argument) in arguments.iter().enumerate() {
             if let Some(first) = arguments[..k].iter().find(|first| first.name == argument.name) {
                 let text = format!("`{}` is an argument twice", argument.name);
-                let error = Diagnostic::error("E0202", argument.span, text);
+                let error = Diagnostic::error(Code::E0202, argument.span, text);
                 self.note(error.related(first.span, "first here").hint("rename one of them"));
             }
         }
@@ -402,7 +406,7 @@ impl<'a> Elaborator<'a> {
             |place: Span| place.source == body.source && place.start >= body.start && place.end <= body.end;
         for diagnostic in &mut self.diagnostics[before..] {
             // Names that are unknown, or lead in circles, are so with any arguments.
-            if diagnostic.code.starts_with("E02") {
+            if diagnostic.code.is_of("E02") {
                 continue;
             }
             let from = diagnostic.related.last().or(diagnostic.place.as_ref());
@@ -423,7 +427,7 @@ impl<'a> Elaborator<'a> {
             Typed::Processes(process) => return self.lower_copy(process, base, index, locals),
             Typed::Agents { particle: true, .. } => {
                 let error = Diagnostic::error(
-                    "E0206",
+                    Code::E0206,
                     base.span,
                     "this group is simulated as one body and has no members",
                 )
@@ -444,7 +448,7 @@ impl<'a> Elaborator<'a> {
             Some(Who::Agent(id)) => Some(id),
             Some(Who::Running(_)) => {
                 let error = Diagnostic::error(
-                    "E0304",
+                    Code::E0304,
                     base.span,
                     "who the members of this are depends on whom the quantifier is at",
                 )
@@ -476,7 +480,7 @@ impl<'a> Elaborator<'a> {
             Some(n) if (1..=count).contains(&n) => Ok(n - 1),
             _ => {
                 let error = Diagnostic::error(
-                    "E0212",
+                    Code::E0212,
                     index.span,
                     format!("there is no member {} of `{}`", number.value, self.text(base.span)),
                 )

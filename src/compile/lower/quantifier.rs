@@ -10,6 +10,7 @@ use super::super::wording::Given;
 use crate::logic::{Node, NodeId, Operation, Term, TermId};
 use crate::model::{AgentId, Arithmetic, Bool, Fold, Num, Set, Who};
 use crate::syntax::ast::{Aggregate, BinaryOp, Expr, ExprKind, Ident, Quantifier};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
@@ -226,7 +227,7 @@ impl Elaborator<'_> {
             Some(Who::Agent(id)) => Some(id),
             Some(Who::Running(_)) => {
                 let error = Diagnostic::error(
-                    "E0504",
+                    Code::E0504,
                     span,
                     "a formula over time cannot be quantified inside a fold over states",
                 );
@@ -275,7 +276,7 @@ impl Elaborator<'_> {
             }
             Quantifier::Fold(_) if members.iter().any(|id| self.passing.contains(id)) => {
                 let error = Diagnostic::error(
-                    "E0504",
+                    Code::E0504,
                     span,
                     "numbers over time cannot be joined over people who come or leave",
                 )

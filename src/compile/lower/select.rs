@@ -6,6 +6,7 @@ use super::super::typed::Typed;
 use crate::logic::{Operation, Term};
 use crate::model::{Arithmetic, Bool, Num};
 use crate::syntax::ast::{Expr, Ident};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 
 impl Elaborator<'_> {
@@ -18,7 +19,7 @@ impl Elaborator<'_> {
     ) -> Lowered<Typed> {
         if arguments.len() < 2 {
             let error = Diagnostic::error(
-                "E0204",
+                Code::E0204,
                 expr.span,
                 format!("`{}` joins at least two values", function.name),
             )

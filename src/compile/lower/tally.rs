@@ -6,6 +6,7 @@
 
 use super::super::elaborator::{Elaborator, Lowered};
 use crate::logic::{Node, NodeId, Relation};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
@@ -62,7 +63,7 @@ impl Elaborator<'_> {
         }
         if n.saturating_mul(k.min(n - k + 1)) > LARGEST {
             let error =
-                Diagnostic::error("E0504", span, format!("{n} formulas over time are too many to count"))
+                Diagnostic::error(Code::E0504, span, format!("{n} formulas over time are too many to count"))
                     .hint("count states, as in `F<=10 s (count(a in crowd: a in exit) >= 3)`");
             return self.report(error);
         }

@@ -10,6 +10,7 @@ use crate::base::tick::{Clock, Tick};
 use crate::logic::{Aggregation, Node, Term, Window};
 use crate::syntax::ast::expression::{Temporal, TemporalPair};
 use crate::syntax::ast::{Aggregate, Bound, Expr};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
@@ -19,14 +20,14 @@ impl Elaborator<'_> {
     fn expect_temporal(&mut self, span: Span, locals: &Locals) -> Lowered<()> {
         if locals.running > 0 {
             let error = Diagnostic::error(
-                "E0504",
+                Code::E0504,
                 span,
                 "a formula over time cannot stand inside a fold over states",
             );
             return self.report(error);
         }
         if !self.temporal {
-            let error = Diagnostic::error("E0504", span, "operators over time belong in property files");
+            let error = Diagnostic::error(Code::E0504, span, "operators over time belong in property files");
             return self.report(error);
         }
         Ok(())
@@ -54,8 +55,9 @@ impl Elaborator<'_> {
             Temporal::Globally => Node::Globally(window, body),
             Temporal::Next => {
                 if self.clock.is_jumps() {
-                    let error = Diagnostic::error("E0507", span, "in continuous time there is no next state")
-                        .hint("use `F[a, b]`, or give the scenario a step");
+                    let error =
+                        Diagnostic::error(Code::E0507, span, "in continuous time there is no next state")
+                            .hint("use `F[a, b]`, or give the scenario a step");
                     return self.report(error);
                 }
                 // X<=k p: p at exactly the k-th state, as in the paper; X p is X<=1.
@@ -63,13 +65,13 @@ impl Elaborator<'_> {
                     (None, _) => Tick(1),
                     (Some(Bound::Interval(start, end)), _) => {
                         let place = start.span.to(end.span);
-                        let error = Diagnostic::error("E0503", place, "`X` asks one state, not an interval")
+                        let error = Diagnostic::error(Code::E0503, place, "`X` asks one state, not an interval")
                             .hint("`X<=0.5 s p` is p at exactly 0.5 s; for some or all states of an interval write `F[a, b]` or `G[a, b]`");
                         return self.report(error.formal());
                     }
                     (Some(_), Some(to)) => to,
                     (Some(_), None) => {
-                        return self.report(Diagnostic::error("E0503", span, "`X` needs a finite time"));
+                        return self.report(Diagnostic::error(Code::E0503, span, "`X` needs a finite time"));
                     }
                 };
                 Node::Finally(Window { from: at, to: Some(at) }, body)
@@ -109,8 +111,9 @@ impl Elaborator<'_> {
     ) -> Lowered<Typed> {
         self.expect_temporal(span, locals)?;
         if aggregate == Aggregate::Sum && self.clock.is_jumps() {
-            let error = Diagnostic::error("E0508", span, "in continuous time there are no states to add up")
-                .hint("use `mean`, the time average");
+            let error =
+                Diagnostic::error(Code::E0508, span, "in continuous time there are no states to add up")
+                    .hint("use `mean`, the time average");
             return self.report(error);
         }
         let window = self.window(Some(bound), body, locals);
@@ -135,7 +138,7 @@ impl Elaborator<'_> {
                 let ends = (self.time(start, locals), self.time(end, locals));
                 let Some(from) = ends.0? else {
                     return self.report(Diagnostic::error(
-                        "E0503",
+                        Code::E0503,
                         start.span,
                         "an interval starts at a finite time",
                     ));
@@ -143,7 +146,7 @@ impl Elaborator<'_> {
                 let to = ends.1?;
                 if to.is_some_and(|to| to < from) {
                     let error = Diagnostic::error(
-                        "E0503",
+                        Code::E0503,
                         start.span.to(end.span),
                         "this interval ends before it starts",
                     );
@@ -167,7 +170,7 @@ impl Elaborator<'_> {
     /// A time known now, as ticks.
     pub(in crate::compile) fn ticks(&mut self, number: Number, span: Span) -> Lowered<Tick> {
         if number.value < 0.0 {
-            return self.report(Diagnostic::error("E0503", span, "a time bound cannot be negative"));
+            return self.report(Diagnostic::error(Code::E0503, span, "a time bound cannot be negative"));
         }
         let steps = number.dimension == Dimension::STEPS
             || (number.dimension.is_none() && self.clock == Clock::Steps);
@@ -175,13 +178,13 @@ impl Elaborator<'_> {
             return match number.as_whole().and_then(|n| u64::try_from(n).ok()) {
                 Some(n) if !self.clock.is_jumps() => Ok(Tick(n)),
                 Some(_) => self.report(
-                    Diagnostic::error("E0503", span, "a scenario in continuous time has no steps")
+                    Diagnostic::error(Code::E0503, span, "a scenario in continuous time has no steps")
                         .formal()
                         .hint("write a time, as in `5 s`"),
                 ),
                 None => {
                     let below = number.value.floor();
-                    let error = Diagnostic::error("E0501", span, "a number of steps must be whole");
+                    let error = Diagnostic::error(Code::E0501, span, "a number of steps must be whole");
                     self.report(error.hint(format!("the nearest bounds are #{below} and #{}", below + 1.0)))
                 }
             };
@@ -204,7 +207,7 @@ impl Elaborator<'_> {
                     "write a time, as in `10 s`, or a number of steps, as in `#10` (`10 steps`)".to_owned()
                 }
             };
-            let error = Diagnostic::error("E0503", span, "this bound needs a unit").formal();
+            let error = Diagnostic::error(Code::E0503, span, "this bound needs a unit").formal();
             return self.report(error.hint(hint));
         }
         if number.dimension != Dimension::TIME {
@@ -214,7 +217,7 @@ impl Elaborator<'_> {
             Clock::Stepped(step) => step,
             Clock::Jumps(tick) => return self.moment(number, tick, span),
             Clock::Steps => {
-                let error = Diagnostic::error("E0503", span, "this scenario has steps without a length")
+                let error = Diagnostic::error(Code::E0503, span, "this scenario has steps without a length")
                     .formal()
                     .hint("write the bound in steps, as in `#10` or `10 steps`");
                 return self.report(error);
@@ -239,7 +242,7 @@ impl Elaborator<'_> {
                     if same == Some(Ok(tick)) { format!("{time} s") } else { format!("#{}", tick.0) }
                 };
                 let error = Diagnostic::error(
-                    "E0501",
+                    Code::E0501,
                     span,
                     format!("`{}` is no multiple of the step of {step} s", self.text(span)),
                 )
@@ -250,28 +253,28 @@ impl Elaborator<'_> {
                 ));
                 self.report(error)
             }
-            _ => self.report(Diagnostic::error("E0501", span, "this time is out of range")),
+            _ => self.report(Diagnostic::error(Code::E0501, span, "this time is out of range")),
         }
     }
 
     /// A time in continuous time, as ticks. One between two ticks is noted: all will be compiled again.
     fn moment(&mut self, number: Number, tick: Decimal, span: Span) -> Lowered<Tick> {
         let Some(time) = number.exact.or_else(|| moments::nearest(number.value, tick)) else {
-            return self.report(Diagnostic::error("E0501", span, "this time is out of range"));
+            return self.report(Diagnostic::error(Code::E0501, span, "this time is out of range"));
         };
         match self.clock.tick_at(time) {
             Ok(found) => Ok(found),
             Err((below, above)) if above.0 < u64::MAX => {
                 let horizon = Decimal::whole(self.horizon.0 as i64).mul(tick);
                 if horizon.and_then(|horizon| moments::finer(tick, horizon, time)).is_none() {
-                    let error = Diagnostic::error("E0501", span, "this time is too fine for the horizon")
+                    let error = Diagnostic::error(Code::E0501, span, "this time is too fine for the horizon")
                         .hint("about twelve digits lie between the shortest time and the horizon");
                     return self.report(error);
                 }
                 self.between.push(time);
                 Ok(below)
             }
-            Err(_) => self.report(Diagnostic::error("E0501", span, "this time is out of range")),
+            Err(_) => self.report(Diagnostic::error(Code::E0501, span, "this time is out of range")),
         }
     }
 }

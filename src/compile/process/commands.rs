@@ -8,6 +8,7 @@ use crate::model::process::wrong_weights;
 use crate::model::{Bool, Branch, Command, Domain, Num, Timing, VariableId};
 use crate::syntax::ast::Expr;
 use crate::syntax::ast::process::{self as ast, ProcessDecl, ProcessItem};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 
 impl Elaborator<'_> {
@@ -16,7 +17,7 @@ impl Elaborator<'_> {
         let timed = |command: &Command| command.timing != Timing::Step;
         if commands.iter().any(timed) && !commands.iter().all(timed) {
             let error = Diagnostic::error(
-                "E0905",
+                Code::E0905,
                 decl.name.span,
                 format!("some commands of `{}` have a rate or delay and some have none", decl.name.name),
             )
@@ -30,7 +31,7 @@ impl Elaborator<'_> {
             })
         {
             let error =
-                Diagnostic::error("E0905", span, "commands with times race; there is nothing to choose")
+                Diagnostic::error(Code::E0905, span, "commands with times race; there is nothing to choose")
                     .hint("leave `choose` out: the earliest command fires");
             self.note(error);
             false
@@ -61,7 +62,7 @@ impl Elaborator<'_> {
         // Of several branches each has a weight; one that lacks it was reported.
         let weighed = command.branches.len() == 1 || command.branches.iter().all(|b| b.weight.is_some());
         if let Some(wrong) = known.filter(|_| weighed).and_then(|known| wrong_weights(&known)) {
-            self.note(Diagnostic::error("E0902", command.span, wrong));
+            self.note(Diagnostic::error(Code::E0902, command.span, wrong));
             return Err(guard);
         }
         guard.map(|guard| Command { guard, timing, branches }).map_err(Err)
@@ -76,7 +77,7 @@ impl Elaborator<'_> {
             let value = self.update(at, copy, update, locals);
             if branch.updates[..k].iter().any(|other| other.target.name == update.target.name) {
                 self.note(Diagnostic::error(
-                    "E0202",
+                    Code::E0202,
                     update.target.span,
                     format!("`{}` is set twice in one branch", update.target.name),
                 ));
@@ -117,7 +118,7 @@ impl Elaborator<'_> {
             let known = process.names.iter().filter(|(_, i)| matches!(i, Inside::Variable(_)));
             let known: Vec<&str> = known.map(|(n, _)| *n).collect();
             let error =
-                unknown("variable", &update.target.name, update.target.span, "E0201", known.into_iter());
+                unknown("variable", &update.target.name, update.target.span, Code::E0201, known.into_iter());
             let error = match &error.hint {
                 Some(_) => error,
                 None => error.hint("a process sets its own variables only"),
@@ -140,7 +141,7 @@ impl Elaborator<'_> {
             && !domain.contains(value)
         {
             return self.report(Diagnostic::error(
-                "E0903",
+                Code::E0903,
                 span,
                 format!("`{}` cannot become {value}", update.target.name),
             ));

@@ -18,6 +18,7 @@ use super::typed::Typed;
 use crate::model::{Bool, Command, Domain, Num, Process, Processes, Timing, Variable, VariableId};
 use crate::syntax::ast::process::{self as ast, Domain as Written, ProcessDecl, ProcessItem};
 use crate::syntax::ast::{Expr, Ident, Item, LetDecl, ScenarioFile};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use parts::Writing;
@@ -153,7 +154,7 @@ impl Elaborator<'_> {
                 Err(Reported) => 1,
                 Ok(_) => {
                     self.note(Diagnostic::error(
-                        "E0402",
+                        Code::E0402,
                         count.span,
                         format!("the number of copies must be whole, from 1 to {MOST_COPIES}"),
                     ));
@@ -168,7 +169,7 @@ impl Elaborator<'_> {
             let Some((name, inside)) = declared else { continue };
             if let Some(first) = spans.insert(&name.name, name.span) {
                 let error =
-                    Diagnostic::error("E0202", name.span, format!("`{}` is declared twice", name.name))
+                    Diagnostic::error(Code::E0202, name.span, format!("`{}` is declared twice", name.name))
                         .related(first, "first declared here")
                         .hint("rename one of them");
                 self.note(error);
@@ -225,7 +226,7 @@ impl Elaborator<'_> {
         let number = |this: &mut Self, typed: Typed| match typed {
             Typed::Number(number) if number.value.is_finite() => Ok(number),
             Typed::Num(..) => this.report(Diagnostic::error(
-                "E0304",
+                Code::E0304,
                 span,
                 "the value at the start must be known before a trial starts",
             )),
@@ -234,7 +235,7 @@ impl Elaborator<'_> {
         let truth = |this: &mut Self, typed: Typed| match typed {
             Typed::Truth(Bool::Constant(value), _) => Ok(f64::from(value)),
             Typed::Truth(..) => this.report(Diagnostic::error(
-                "E0304",
+                Code::E0304,
                 span,
                 "the value at the start must be known before a trial starts",
             )),
@@ -247,7 +248,7 @@ impl Elaborator<'_> {
                 let (low_end, high_end) = (low_end?, high_end?);
                 if low_end > high_end {
                     return self.report(Diagnostic::error(
-                        "E0405",
+                        Code::E0405,
                         low.span.to(high.span),
                         "this range is empty",
                     ));
@@ -269,13 +270,13 @@ impl Elaborator<'_> {
                     Ok((number.dimension, Domain::Real, Ok(number.value)))
                 }
                 "int" => {
-                    let error = Diagnostic::error("E0405", name.span, "a whole number needs its range")
+                    let error = Diagnostic::error(Code::E0405, name.span, "a whole number needs its range")
                         .hint(format!("write `var {}: 0 .. 10 = …`", var.name.name));
                     self.report(error)
                 }
                 _ => {
                     let known = ["bool", "real"].into_iter();
-                    let error = unknown("type of variable", &name.name, name.span, "E0207", known);
+                    let error = unknown("type of variable", &name.name, name.span, Code::E0207, known);
                     self.report(error.hint("a variable is `lo .. hi`, `bool` or `real`"))
                 }
             },
@@ -297,7 +298,7 @@ impl Elaborator<'_> {
         }
         match domain {
             Domain::Whole { low, high } if !domain.contains(number.value) => self.report(Diagnostic::error(
-                "E0903",
+                Code::E0903,
                 span,
                 format!("`{}` holds whole numbers from {low} to {high}", var.name.name),
             )),
@@ -311,12 +312,12 @@ impl Elaborator<'_> {
             Some(whole) if whole.abs() < LARGEST => Ok(whole),
             _ if number.value.fract() == 0.0 => {
                 let said = format!("`{}` is too large for the end of a range", self.text(expr.span));
-                let error = Diagnostic::error("E0405", expr.span, said)
+                let error = Diagnostic::error(Code::E0405, expr.span, said)
                     .label(format!("the limit is {}, in either direction", LARGEST - 1))
                     .hint("write `real` instead of a range for a number of any size");
                 self.report(error)
             }
-            _ => self.report(Diagnostic::error("E0405", expr.span, "the ends of a range must be whole")),
+            _ => self.report(Diagnostic::error(Code::E0405, expr.span, "the ends of a range must be whole")),
         }
     }
 

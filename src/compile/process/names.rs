@@ -7,6 +7,7 @@ use crate::compile::typed::Typed;
 use crate::compile::wording::{Frame, Use};
 use crate::model::{Bool, Comparison, Domain, Function, Num};
 use crate::syntax::ast::{Expr, ExprKind, Ident, LetDecl};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::sync::Arc;
@@ -38,7 +39,7 @@ impl<'a> Elaborator<'a> {
             }
             Inside::Let(decl) if !decl.arguments.is_empty() => {
                 let error = Diagnostic::error(
-                    "E0204",
+                    Code::E0204,
                     span,
                     format!("`{name}` is a function of {} arguments", decl.arguments.len()),
                 )
@@ -84,7 +85,7 @@ impl<'a> Elaborator<'a> {
             Inside::Let(_) | Inside::Label(_) => "a name inside",
         };
         let label = format!("{what} `{}`, known only when all of its variables are", process.decl.name.name);
-        let error = Diagnostic::error("E0201", span, format!("unknown name `{name}`")).label(label);
+        let error = Diagnostic::error(Code::E0201, span, format!("unknown name `{name}`")).label(label);
         Some(self.report(error.hint("what variables start with is known before a trial starts")))
     }
 
@@ -105,7 +106,9 @@ impl<'a> Elaborator<'a> {
     fn too_early<T>(&mut self, (at, what): (u32, &str), span: Span) -> Lowered<T> {
         let name = self.processes.get(at as usize).map_or("", |process| process.decl.name.name.as_str());
         let label = format!("{what} `{name}`, which may change during a trial");
-        self.report(Diagnostic::error("E0304", span, "this must be known before a trial starts").label(label))
+        self.report(
+            Diagnostic::error(Code::E0304, span, "this must be known before a trial starts").label(label),
+        )
     }
 
     /// An error where the copies of an array of processes are not counted yet.
@@ -116,7 +119,7 @@ impl<'a> Elaborator<'a> {
         }
         let text = format!("`{}` is not known yet here", self.text(span));
         self.report(
-            Diagnostic::error("E0205", span, text)
+            Diagnostic::error(Code::E0205, span, text)
                 .hint("how many copies there are, and what variables start with, cannot depend on processes"),
         )
     }
@@ -172,7 +175,7 @@ impl<'a> Elaborator<'a> {
             Typed::Process { process, copy } => (process, copy),
             Typed::Agent(who) => return self.lower_mode(who, base.span, member),
             Typed::Processes(_) => {
-                let error = Diagnostic::error("E0305", base.span, "this is an array of processes")
+                let error = Diagnostic::error(Code::E0305, base.span, "this is an array of processes")
                     .hint(format!("choose one, as in `{}[1].{}`", self.text(base.span), member.name));
                 return self.report(error);
             }
@@ -193,7 +196,7 @@ impl<'a> Elaborator<'a> {
                     }
                     _ => "numbers of agents are functions: `speed(user)`".to_owned(),
                 };
-                return self.report(Diagnostic::error("E0305", base.span, said).hint(hint));
+                return self.report(Diagnostic::error(Code::E0305, base.span, said).hint(hint));
             }
         };
         match self.lower_inside((at, copy), &member.name, member.span) {
@@ -201,7 +204,7 @@ impl<'a> Elaborator<'a> {
             None => {
                 let known: Vec<&str> = self.processes[at as usize].names.keys().copied().collect();
                 let what = format!("name of `{}`", self.processes[at as usize].decl.name.name);
-                let error = unknown(&what, &member.name, member.span, "E0201", known.into_iter());
+                let error = unknown(&what, &member.name, member.span, Code::E0201, known.into_iter());
                 self.report(error)
             }
         }
@@ -220,7 +223,7 @@ impl<'a> Elaborator<'a> {
         if known.contains(&member.name.as_str()) {
             return Err(Reported);
         }
-        let error = unknown("name", &member.name, member.span, "E0201", known.into_iter());
+        let error = unknown("name", &member.name, member.span, Code::E0201, known.into_iter());
         self.report(match &error.hint {
             Some(_) => error,
             None => error.hint("numbers of agents are functions: `speed(user)`"),

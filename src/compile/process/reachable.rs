@@ -14,6 +14,7 @@ use crate::base::tick::Clock;
 use crate::model::process::wrong_weights;
 use crate::model::{Command, Domain, Process, Processes, Timing, Variable, VariableId};
 use crate::syntax::ast::process as ast;
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::collections::BTreeSet;
@@ -62,7 +63,7 @@ type Which = (usize, usize);
 
 /// What is wrong, and where it is written.
 struct Wrong {
-    code: &'static str,
+    code: Code,
     which: Which,
     span: Span,
     what: String,
@@ -76,7 +77,7 @@ struct Unknown;
 struct Findings<'p> {
     variables: &'p [Variable],
     /// Code and place of what was found: the copies of a process share them.
-    known: BTreeSet<(&'static str, u32, u32)>,
+    known: BTreeSet<(Code, u32, u32)>,
     list: Vec<Diagnostic>,
 }
 
@@ -262,7 +263,7 @@ impl Walk<'_, '_> {
                 let rate = rate.evaluate(values).ok_or(Unknown)?;
                 if !(rate >= 0.0 && rate.is_finite()) {
                     wrong.push(Wrong {
-                        code: "E0904",
+                        code: Code::E0904,
                         which: (member, k),
                         span: lines.command,
                         what: format!("the rate of this command would be {rate} /s"),
@@ -350,7 +351,7 @@ fn changes(
         && !process.choose
     {
         wrong.push(Wrong {
-            code: "E0901",
+            code: Code::E0901,
             which: *which,
             span: second.command,
             what: format!("another command of `{}` is enabled together with this one", process.name),
@@ -382,7 +383,7 @@ fn branches(
     let weights: Option<Vec<f64>> = command.branches.iter().map(|b| b.weight.evaluate(values)).collect();
     let weights = weights.ok_or(Unknown)?;
     if let Some(what) = wrong_weights(&weights) {
-        wrong.push(Wrong { code: "E0902", which, span: lines.command, what, hint: None });
+        wrong.push(Wrong { code: Code::E0902, which, span: lines.command, what, hint: None });
         return Ok(());
     }
     for ((branch, updates), weight) in command.branches.iter().zip(&lines.updates).zip(weights) {
@@ -396,7 +397,7 @@ fn branches(
             let variable = &variables[id.0 as usize];
             if !variable.domain.contains(value) {
                 wrong.push(Wrong {
-                    code: "E0903",
+                    code: Code::E0903,
                     which,
                     span: *span,
                     what: format!("`{}` would become {value}, outside its range", variable.name),

@@ -6,6 +6,7 @@ use crate::compile::laws;
 use crate::model::{Law, Num, Timing};
 use crate::syntax::ast::process as ast;
 use crate::syntax::ast::{Expr, Value};
+use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 
 /// 1/s
@@ -16,7 +17,7 @@ impl Elaborator<'_> {
         match &command.timing {
             None if self.clock.is_jumps() => {
                 let error = Diagnostic::error(
-                    "E0905",
+                    Code::E0905,
                     command.span,
                     "this command has no rate, and other commands of this scenario have",
                 )
@@ -41,7 +42,7 @@ impl Elaborator<'_> {
         }
         match num {
             Num::Constant(value) if !(value >= 0.0 && value.is_finite()) => {
-                self.report(Diagnostic::error("E0904", rate.span, format!("a rate cannot be {value} /s")))
+                self.report(Diagnostic::error(Code::E0904, rate.span, format!("a rate cannot be {value} /s")))
             }
             num => Ok(num),
         }
@@ -54,9 +55,9 @@ impl Elaborator<'_> {
         if least < 0.0 {
             let span = laws::value_span(delay);
             if law.constant().is_some() {
-                return self.report(Diagnostic::error("E0906", span, "a delay cannot be negative"));
+                return self.report(Diagnostic::error(Code::E0906, span, "a delay cannot be negative"));
             }
-            let error = Diagnostic::error("E0906", span, "this delay can be negative");
+            let error = Diagnostic::error(Code::E0906, span, "this delay can be negative");
             let error = laws::truncate(error, &law, &self.text(span));
             return self.report(error);
         }

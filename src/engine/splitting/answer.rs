@@ -14,9 +14,10 @@ use crate::engine::watch::Watch;
 use crate::engine::witness;
 use crate::engine::words;
 use crate::stats::splitting::Spread;
+use crate::syntax::codes::Code;
 
 /// Code of a disagreement, for `smc explain`.
-const DISAGREES: &str = "E0802";
+const DISAGREES: Code = Code::E0802;
 
 impl Answers<'_> {
     /// Estimates a probability by splitting.

@@ -1,10 +1,10 @@
 //! Slips around operators that look ahead in time, and their bounds.
 
 use super::builder::Builder;
+use super::code;
 use super::fault::{Fault, quote};
 use super::grammar::{Grammar, Rule};
 use super::{lexeme, quantity};
-use crate::syntax::codes::syntax as code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use pest::Parser;

@@ -6,9 +6,9 @@
 //! a brace, a brace a blank), and parsed again; the one missing brace is the error. Only texts in which braces do
 //! not pair up are looked at: nothing depends on layout in those in which they do.
 
+use super::code;
 use super::fault::quote;
 use super::lexeme;
-use crate::syntax::codes::syntax as code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::source::{Source, Span};
 use std::ops::Range;

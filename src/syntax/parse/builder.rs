@@ -4,10 +4,10 @@
 //! (`None`) on one that is not there; nothing panics.
 
 use super::anchor::Anchor;
+use super::code;
 use super::grammar::Rule;
 use super::nesting::Braces;
 use crate::syntax::ast::{Ident, Text};
-use crate::syntax::codes::syntax as code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
 use std::cell::OnceCell;

@@ -5,11 +5,11 @@
 //! does recurse, its height is limited too.
 
 use super::builder::{Builder, Pair, Parts};
+use super::code;
 use super::grammar::Rule;
 use crate::syntax::ast::{
     Aggregate, BinaryOp, Bound, Expr, ExprKind, Ident, Quantifier, Temporal, TemporalPair, UnaryOp,
 };
-use crate::syntax::codes::syntax as code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 

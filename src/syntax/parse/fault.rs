@@ -5,10 +5,10 @@
 //! ended early); the farthest failure is the error.
 
 use super::builder::{Builder, Pair};
+use super::code;
 use super::grammar::{Grammar, Rule};
 use super::nesting::Braces;
 use super::{lexeme, nesting, nouns};
-use crate::syntax::codes::syntax as code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use pest::Parser;

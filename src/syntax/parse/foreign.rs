@@ -4,10 +4,10 @@
 //! names. A spelling is reported only if the text reads on once it is replaced.
 
 use super::builder::Builder;
+use super::code;
 use super::fault::{Fault, failure};
 use super::grammar::Rule;
 use super::{lexeme, quantity};
-use crate::syntax::codes::syntax as code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::fmt::Write as _;

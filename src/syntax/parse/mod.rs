@@ -8,6 +8,7 @@ mod anchor;
 mod bounds;
 mod braces;
 mod builder;
+mod code;
 pub(super) mod comments;
 mod expression;
 mod fault;
@@ -34,7 +35,7 @@ pub(crate) use quantity::{time_meant, unit_meant};
 pub(super) use builder::Pair;
 
 use super::ast::{Expr, PropertyFile, ScenarioFile};
-use super::codes::syntax as code;
+
 use super::diagnostic::{Diagnostic, Severity};
 use super::source::{Source, SourceId, Span};
 use builder::Builder;

@@ -1,9 +1,9 @@
 //! A scan of the brackets before the grammar sees the text: how deep they nest, and comments that never
 //! end. It reads the text once and recurses nowhere.
 
+use super::code;
 use super::expression::NESTING;
 use super::lexeme;
-use crate::syntax::codes::syntax as code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
 

@@ -1,13 +1,13 @@
 //! Processes and behaviours.
 
 use super::builder::{Builder, Pair, Parts};
+use super::code;
 use super::grammar::Rule;
 use super::quantity;
 use crate::syntax::ast::{
     BehaviourDecl, BehaviourItem, BinaryOp, Branch, Choice, Command, Domain, ExprKind, OnDecl, ProcessDecl,
     ProcessItem, StateDecl, Timing, Transition, Update, Value, VarDecl,
 };
-use crate::syntax::codes::syntax as code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 

@@ -1,12 +1,12 @@
 //! Property files: properties and queries.
 
 use super::builder::{Builder, Pair, Parts};
+use super::code;
 use super::grammar::Rule;
 use crate::syntax::ast::{
     BinaryOp, Binding, Clauses, Expr, ExprKind, Measure, MeasureKind, Method, Moment, PropertyFile,
     PropertyItem, Query, QueryKind,
 };
-use crate::syntax::codes::syntax as code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 

@@ -1,10 +1,10 @@
 //! Numbers and units.
 
 use super::builder::{Builder, Pair};
+use super::code;
 use super::grammar::Rule;
 use crate::base::decimal::Decimal;
 use crate::syntax::ast::{Ident, Quantity, UnitExpr, UnitFactor};
-use crate::syntax::codes::syntax as code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 

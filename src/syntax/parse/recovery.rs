@@ -3,10 +3,10 @@
 use super::anchor::{self, Way};
 use super::braces;
 use super::builder::{Builder, Pair, end_of};
+use super::code;
 use super::fault::{failure, quote};
 use super::grammar::Rule;
 use super::{lexeme, nesting, slips};
-use crate::syntax::codes::syntax as code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 

@@ -2,10 +2,10 @@
 //! could not be read before can be.
 
 use super::builder::Builder;
+use super::code;
 use super::fault::{Fault, failure, starts_declaration};
 use super::grammar::Rule;
 use super::{lexeme, nesting, nouns, quantity};
-use crate::syntax::codes::syntax as code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::ops::Range;

@@ -1,10 +1,10 @@
 //! Common slips, each with its own words.
 
 use super::builder::{Builder, Pair};
+use super::code;
 use super::fault::{Fault, quote};
 use super::grammar::Rule;
 use super::{lexeme, nouns, quantity};
-use crate::syntax::codes::syntax as code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 

@@ -2,10 +2,10 @@
 
 use super::bounds::OPERATORS;
 use super::builder::Builder;
+use super::code;
 use super::fault::Fault;
 use super::grammar::Rule;
 use super::{lexeme, nesting, nouns, quantity};
-use crate::syntax::codes::syntax as code;
 use crate::syntax::diagnostic::Diagnostic;
 use std::ops::Range;
 
