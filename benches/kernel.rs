@@ -130,6 +130,16 @@ fn among_walls(mut scene: Scene, far: f64) -> Scene {
     scene
 }
 
+/// Beside eight people far away, who must not make the crowd slower.
+fn far_from_some(mut scene: Scene) -> Scene {
+    for k in 1..=8 {
+        let at = Vec2::new(1e5 * f64::from(k), 9e5);
+        scene.walkers.push(Walker { at, speed: 1.3, goal: at.x + 60.0 });
+    }
+    scene.name.insert_str(0, "far-");
+    scene
+}
+
 fn uniform(low: f64, high: f64) -> Law {
     Law::Random { family: Family::Uniform { low, high }, low, high }
 }
@@ -314,6 +324,7 @@ fn main() {
         open(100_000),
         among_walls(corridor20(), 25.0),
         among_walls(open(2_000), 80.0),
+        far_from_some(open(2_000)),
     ];
     let mut out = std::io::stdout().lock();
     for scene in scenes {
