@@ -354,7 +354,7 @@ fn eight_different_trials_side_by_side_each_have_their_own_forces() {
     }
     for (lane, scene) in scenes.iter().enumerate() {
         for i in 0..30 {
-            let found = p(state.fx[i].0[lane], state.fy[i].0[lane]);
+            let found = p(state.motion.fx[i].0[lane], state.motion.fy[i].0[lane]);
             let wanted = plain(scene, i);
             assert!((found - wanted).norm() <= 1e-7 * wanted.norm() + 1e-9, "lane {lane}, agent {i}");
         }

@@ -15,7 +15,7 @@ use crate::data::table::{
 };
 use crate::engine::{no_start, placeable, smaller};
 use crate::kernel::{Program, Scratch, Slot, State, dynamics, start};
-use crate::model::{AgentId, Domain, Scenario};
+use crate::model::{AgentId, Domain, Parameter, Scenario};
 use crate::report::ExitCode as Exit;
 use std::io::{BufWriter, Write};
 use std::sync::Arc;
@@ -214,12 +214,16 @@ impl<'p> Iterator for Walk<'p> {
             trial: self.trial,
             agent: self.agent,
             arrival: self.state.queues.arrival(&self.program.scenario.sources, AgentId(self.agent as u32), 0),
-            position: Vec2::new(at(&self.state.x), at(&self.state.y)),
-            velocity: Vec2::new(at(&self.state.vx), at(&self.state.vy)),
+            position: Vec2::new(at(&self.state.motion.x), at(&self.state.motion.y)),
+            velocity: Vec2::new(at(&self.state.motion.vx), at(&self.state.motion.vy)),
             present,
-            signals: std::iter::once(if present { at(&self.state.radius) } else { f64::NAN })
-                .chain(self.state.variables.iter().map(|lanes| lanes.0[0]))
-                .collect(),
+            signals: std::iter::once(if present {
+                at(&self.state.bodies[Parameter::Radius])
+            } else {
+                f64::NAN
+            })
+            .chain(self.state.variables.iter().map(|lanes| lanes.0[0]))
+            .collect(),
             modes: modes(self.program, &self.state, present.then_some(slot)),
         };
         self.agent = (self.agent + 1) % agents;
