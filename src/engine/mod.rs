@@ -7,6 +7,7 @@ pub mod budget;
 mod call;
 mod cause;
 pub mod cell;
+mod certificate;
 mod checkpoints;
 mod columns;
 mod contrast;
@@ -44,7 +45,7 @@ mod witness;
 mod words;
 
 pub use budget::Budget;
-pub use call::Call;
+pub use call::{Call, CommandLine};
 pub use cause::{divergence, no_start, smaller};
 pub use executor::{Executor, Threads};
 pub use fault::Fault;
