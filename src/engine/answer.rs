@@ -35,8 +35,8 @@ fn unit(measure: &Measure) -> String {
 }
 
 /// The interval of a result as what it certifies.
-fn between(result: &QueryResult, error: f64) -> Option<Certificate> {
-    Some(Certificate { claim: Certified::Between { low: result.low, high: result.high }, error })
+fn between(result: &QueryResult, error: f64) -> Certificate {
+    Certificate { claim: Certified::Between { low: result.low, high: result.high }, error }
 }
 
 /// The first of the unresolved trials of a result.
@@ -147,7 +147,7 @@ impl Answers<'_> {
                 if says_something(&query.ask, interval.low, interval.high) {
                     result.certifies =
                         format!("{subject_words} {claim}, error at most {}", words::error(error));
-                    result.certificate = between(&result, error);
+                    result.certificate = Some(between(&result, error));
                 }
                 let fixed = coverage == Coverage::FixedSize;
                 if fixed && result.estimate.is_some() && matches!(stop, Stop::Deadline | Stop::Interrupt) {
@@ -173,7 +173,7 @@ impl Answers<'_> {
                     Some(Certificate { claim: Certified::Decided(claim), error })
                 }
                 None if !says_something(&query.ask, result.low, result.high) => None,
-                None => between(&result, beside),
+                None => Some(between(&result, beside)),
             };
             result.certifies = match inquiry.procedure.statement() {
                 Some(statement) => words::quantile(&query.said, *threshold, &statement)
@@ -366,7 +366,7 @@ impl Answers<'_> {
                 words::ends(result.low, result.high, &unit),
                 words::error(*delta)
             );
-            result.certificate = between(&result, *delta);
+            result.certificate = Some(between(&result, *delta));
         }
         result.unit = unit;
         result.compare = Some(standing::sides(&gap, &labels, *delta));

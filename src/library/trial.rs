@@ -65,11 +65,11 @@ impl Iterator for Trial {
         if self.end.is_some() {
             return None;
         }
-        if std::mem::replace(&mut self.begun, true) {
-            if let Err(end) = self.run.next() {
-                self.end = Some(end);
-                return None;
-            }
+        if std::mem::replace(&mut self.begun, true)
+            && let Err(end) = self.run.next()
+        {
+            self.end = Some(end);
+            return None;
         }
         Some(self.snapshot())
     }
