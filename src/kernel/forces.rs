@@ -75,7 +75,8 @@ impl Forces {
             let modes = scenario.behaviours.attached.iter().flat_map(|one| &one.conduct.states);
             modes.flat_map(|mode| &mode.changes).any(|(changed, _)| *changed == parameter)
         };
-        let second = changed(Parameter::A2) || agents.iter().any(|agent| !is_zero(&agent.body.a2));
+        let second =
+            changed(Parameter::A2) || agents.iter().any(|agent| !is_zero(&agent.body[Parameter::A2]));
         let ties: Vec<_> = agents
             .iter()
             .map(|agent| {
@@ -85,8 +86,9 @@ impl Forces {
             .collect();
         let ties = if ties.iter().flatten().count() < 2 { Vec::new() } else { ties };
         let same = !changed(Parameter::B) && !changed(Parameter::B2);
-        let first_range = shared_constant(scenario, |body| &body.b).filter(|_| same);
-        let second_range = if second { shared_constant(scenario, |body| &body.b2) } else { Some(1.0) };
+        let first_range = shared_constant(scenario, |body| &body[Parameter::B]).filter(|_| same);
+        let second_range =
+            if second { shared_constant(scenario, |body| &body[Parameter::B2]) } else { Some(1.0) };
         let shared = first_range.zip(second_range).filter(|_| ties.is_empty());
         Self {
             surfaces: Surfaces::new(&scenario.scene.barriers),
@@ -102,7 +104,8 @@ impl Forces {
             ties,
             shared,
             second,
-            noisy: changed(Parameter::Noise) || agents.iter().any(|agent| !is_zero(&agent.body.noise)),
+            noisy: changed(Parameter::Noise)
+                || agents.iter().any(|agent| !is_zero(&agent.body[Parameter::Noise])),
             noise_words: agents.iter().map(|agent| noise::word_of(agent.entity)).collect(),
             margin: at_least(APPROACH, 2.0 * fastest(scenario)) * dt,
         }
