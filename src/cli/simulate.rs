@@ -15,7 +15,7 @@ use crate::data::table::{
 };
 use crate::engine::{divergence, no_start, placeable, smaller};
 use crate::kernel::{Address, End, Program, Run, Slot, State};
-use crate::model::{AgentId, Domain, Scenario};
+use crate::model::{AgentId, Domain, Parameter, Scenario};
 use crate::report::ExitCode as Exit;
 use std::io::{BufWriter, Write};
 use std::sync::Arc;
@@ -187,10 +187,10 @@ impl<'p> Iterator for Walk<'p> {
             trial: self.trial,
             agent: self.agent,
             arrival: state.queues.arrival(&scenario.sources, AgentId(self.agent as u32), 0),
-            position: Vec2::new(at(&state.x), at(&state.y)),
-            velocity: Vec2::new(at(&state.vx), at(&state.vy)),
+            position: Vec2::new(at(&state.motion.x), at(&state.motion.y)),
+            velocity: Vec2::new(at(&state.motion.vx), at(&state.motion.vy)),
             present,
-            signals: std::iter::once(if present { at(&state.radius) } else { f64::NAN })
+            signals: std::iter::once(if present { at(&state.bodies[Parameter::Radius]) } else { f64::NAN })
                 .chain(state.variables.iter().map(|lanes| lanes.0[0]))
                 .collect(),
             modes: modes(self.program, state, present.then_some(slot)),

@@ -91,7 +91,7 @@ pub fn divergence(program: &Program, state: &State) -> String {
 fn runaway(scenario: &Scenario, state: &State) -> String {
     let speed = |agent: usize| {
         let slot = state.slot(agent, 0);
-        let (vx, vy) = (state.vx[slot.block].0[slot.lane], state.vy[slot.block].0[slot.lane]);
+        let (vx, vy) = (state.motion.vx[slot.block].0[slot.lane], state.motion.vy[slot.block].0[slot.lane]);
         state.present[slot.block].has(slot.lane).then(|| (vx * vx + vy * vy).sqrt())
     };
     let beyond = |speed: f64| speed.is_nan() || speed > TOP_SPEED;

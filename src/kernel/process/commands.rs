@@ -5,7 +5,7 @@
 
 use super::super::code::Readings;
 use super::draws::Draws;
-use super::fault::{Fault, Faults};
+use crate::kernel::fault::{Fault, Faults};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::model::{Bool, Domain, Num, Process, Timing, process::are_weights};
 use std::collections::BTreeSet;

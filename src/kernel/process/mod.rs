@@ -6,12 +6,10 @@
 //! is a table made by that same code.
 
 mod chain;
-mod clocks;
 mod commands;
 pub(super) mod delay;
 mod draws;
 mod embedded;
-mod fault;
 mod joint;
 mod keys;
 mod space;
@@ -21,15 +19,14 @@ mod timed;
 mod view;
 
 pub use chain::Chain;
-pub use clocks::Clocks;
 pub use embedded::{Embedded, JumpBatch, Stay};
-pub use fault::Fault;
-use fault::Faults;
 pub use space::Space;
 pub use step_batch::StepBatch;
 pub use view::{Sight, View};
 
 use super::code::{Code, Readings};
+pub use super::fault::Fault;
+use super::fault::Faults;
 use super::state::{Layout, State};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::random::{Purpose, Stream, TrialKey};

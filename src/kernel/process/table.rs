@@ -7,7 +7,7 @@ use super::super::code::{Code, Readings};
 use super::super::state::State;
 use super::commands::{Commands, Event, Way};
 use super::draws::Draws;
-use super::fault::{Fault, Faults};
+use crate::kernel::fault::{Fault, Faults};
 use super::keys::Keys;
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::model::{Domain, Scenario};

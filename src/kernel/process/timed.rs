@@ -14,7 +14,7 @@ use super::Form;
 use super::commands::Event;
 use super::delay::{after, delay};
 use super::draws::exponentials;
-use super::fault::Fault;
+use crate::kernel::fault::Fault;
 use super::table::Table;
 use crate::base::decimal::Decimal;
 use crate::base::instant::Instant;
