@@ -2,7 +2,7 @@
 
 use super::arguments::Model;
 use super::complaint;
-use super::shelf::Shelf;
+use super::file_cache::FileCache;
 use crate::base::fingerprint::Fingerprint;
 use crate::compile::{Files, Input, Setting, SettingValue, Starts, Study, examine, own_errors, requests};
 use crate::engine::outcome::{Finding, Spot};
@@ -42,7 +42,7 @@ pub(super) struct Inputs {
     /// What compilation yields, if nothing is wrong.
     pub(super) study: Option<Study>,
     /// What was opened, for others who are to compile the same.
-    pub(super) shelf: Shelf,
+    pub(super) cache: FileCache,
     /// The files that were opened, where they were found.
     pub(super) paths: Vec<PathBuf>,
 }
@@ -122,7 +122,7 @@ pub(super) fn shown(name: &str) -> &str {
 }
 
 struct Reader {
-    shelf: Shelf,
+    cache: FileCache,
     sources: Vec<Source>,
     prints: Vec<(String, Fingerprint)>,
     diagnostics: Vec<Diagnostic>,
@@ -133,7 +133,7 @@ impl Reader {
     fn source(&mut self, name: &str) -> Option<Source> {
         self.paths.push(PathBuf::from(if name == "-" { STDIN } else { name }));
         let id = SourceId(self.sources.len() as u16);
-        let bytes = match self.shelf.open(name, || read(name)) {
+        let bytes = match self.cache.open(name, || read(name)) {
             Ok(bytes) => bytes,
             Err(reason) => {
                 self.diagnostics.push(Diagnostic::placeless(Code::E0701, reason));
@@ -328,13 +328,13 @@ fn is_of_properties(source: &Source) -> bool {
 
 /// Reads, parses and compiles what a call names.
 pub(super) fn load(model: &Model, properties: &[String]) -> Inputs {
-    load_from(Shelf::Files, model, properties)
+    load_from(FileCache::Files, model, properties)
 }
 
-/// The same, with files from a shelf.
-pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> Inputs {
+/// The same, with files from a cache.
+pub(super) fn load_from(cache: FileCache, model: &Model, properties: &[String]) -> Inputs {
     let mut reader =
-        Reader { shelf, sources: Vec::new(), prints: Vec::new(), diagnostics: Vec::new(), paths: Vec::new() };
+        Reader { cache, sources: Vec::new(), prints: Vec::new(), diagnostics: Vec::new(), paths: Vec::new() };
     let twice = std::iter::once(&model.scenario).chain(properties).filter(|name| *name == "-").count() > 1;
     if twice {
         reader.diagnostics.push(Diagnostic::placeless(Code::E0701, "standard input can be read once only"));
@@ -378,7 +378,7 @@ pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> I
     let settings: Vec<Setting> = model.set.iter().filter_map(|text| reader.setting(text)).collect();
     let mut files = Files::default();
     for request in requests(&scenario) {
-        let contents = reader.shelf.open(&request.path, || {
+        let contents = reader.cache.open(&request.path, || {
             find(&request.path, &model.scenario, &model.data).and_then(|path| {
                 let bytes = read_file(&path).map_err(|error| format!("`{}` {error}", request.path));
                 reader.paths.push(path);
@@ -390,7 +390,7 @@ pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> I
         }
         files.insert(request.path, contents);
     }
-    let Reader { shelf, sources, prints, mut diagnostics, paths } = reader;
+    let Reader { cache, sources, prints, mut diagnostics, paths } = reader;
     let mut study = None;
     if complete {
         let input = Input {
@@ -428,5 +428,5 @@ pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> I
     }
     let errors = diagnostics.iter().filter(|one| is_error(one)).count();
     let diagnostics = first_of_each_kind(diagnostics);
-    Inputs { sources, diagnostics, errors, prints, study, shelf, paths }
+    Inputs { sources, diagnostics, errors, prints, study, cache, paths }
 }

@@ -12,7 +12,7 @@ mod manual;
 mod output;
 mod progress;
 mod ranks;
-mod shelf;
+mod file_cache;
 mod show;
 mod simulate;
 mod terminal;
