@@ -420,7 +420,7 @@ fn silent_after(last: u64, number: u64) {
 #[test]
 fn a_rank_that_falls_silent_blocks_nobody() {
     let (study, _sources) = study(SMALL, QUERIES);
-    // Its connection stays open. The first messages answer rehearsals, which wait for nobody.
+    // Its connection stays open. The first messages answer pilots, which wait for nobody.
     let silent = relayed(&study, |number, _| silent_after(40, number));
     let ranks = head(&study, vec![silent, rank(&study, 1, u64::MAX)]).unwrap();
     let plain = results(&study, &Threads::new(Some(1)).unwrap());

@@ -27,7 +27,7 @@ mod procedure;
 mod race;
 pub mod ranks;
 mod recall;
-mod rehearsal;
+mod pilot;
 mod room;
 mod runner;
 mod session;
