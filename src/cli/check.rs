@@ -2,9 +2,9 @@
 
 use super::arguments::{Check, OutputFormat};
 use super::deadline::{Deadline, Ended, Phase};
+use super::file_cache::{FileCache, pack};
 use super::progress::Progress;
-use super::ranks::Crew;
-use super::shelf::{Shelf, pack};
+use super::ranks::ProcessPool;
 use super::terminal::{Colors, print, say};
 use super::{complaint, inputs, output, ranks};
 use crate::base::fingerprint::Fingerprint;
@@ -27,15 +27,15 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     budget.max_total = arguments.total_trials;
     let budget = Arc::new(budget);
     let deadline = Deadline::watch(&budget, ender(arguments, colors));
-    let shelf = if arguments.ranks.is_some() { Shelf::Kept(Vec::new()) } else { Shelf::Files };
-    let inputs::Loaded { inputs, paths, shelf } =
-        inputs::load_from(shelf, &arguments.model, &arguments.properties);
+    let cache = if arguments.ranks.is_some() { FileCache::Kept(Vec::new()) } else { FileCache::Files };
+    let inputs::Loaded { inputs, paths, cache } =
+        inputs::load_from(cache, &arguments.model, &arguments.properties);
     if inputs.study.is_none() {
         deadline.enter(Phase::Printing);
     }
     super::diagnose(&inputs, colors);
     let overwritten = output::guard(arguments.report.as_deref(), &paths).err();
-    let desk = Desk {
+    let reporter = Reporter {
         arguments,
         colors,
         deadline: deadline.clone(),
@@ -46,15 +46,16 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
         page: arguments.report.as_deref().filter(|_| overwritten.is_none()),
     };
     if let Some(error) = overwritten {
-        return desk.refuse(error);
+        return reporter.refuse(error);
     }
-    let Some(study) = &inputs.study else { return desk.refused() };
+    let Some(study) = &inputs.study else { return reporter.refused() };
     let only = match library::chosen(study, &arguments.only) {
         Ok(only) => only,
-        Err(error) => return desk.refuse(error),
+        Err(error) => return reporter.refuse(error),
     };
     if arguments.threads == Some(0) {
-        return desk.refuse(complaint::argument("`--threads 0` runs nothing", "it takes a number from 1"));
+        return reporter
+            .refuse(complaint::argument("`--threads 0` runs nothing", "it takes a number from 1"));
     }
     let most = most_threads();
     if arguments.threads.is_some_and(|threads| threads > most) {
@@ -63,52 +64,52 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
         ));
     }
     let threads = arguments.threads.unwrap_or_else(cores).min(most);
-    let crew = match crew(arguments, study, &shelf, threads, &budget) {
-        Ok(crew) => crew,
-        Err(error) => return desk.refuse(error),
+    let pool = match pool(arguments, study, &cache, threads, &budget) {
+        Ok(pool) => pool,
+        Err(error) => return reporter.refuse(error),
     };
-    drop(shelf);
+    drop(cache);
     let place = |span: Span| locate(&inputs.sources, span);
     let call = Call { seed: arguments.seed, line: line(arguments), only, place: &place };
     if arguments.forecast {
         deadline.enter(Phase::Sampling);
-        return match forecast(study, &call, crew.executor(), &budget) {
-            Ok(outlook) => desk.tell(&outlook),
-            Err(fault) => desk.fault(&fault),
+        return match forecast(study, &call, pool.executor(), &budget) {
+            Ok(outlook) => reporter.tell(&outlook),
+            Err(fault) => reporter.fault(&fault),
         };
     }
     let progress = Progress::new(arguments.quiet, deadline);
-    match run_study(study, &call, crew.executor(), &budget, &progress) {
+    match run_study(study, &call, pool.executor(), &budget, &progress) {
         Ok(mut run) => {
             // An interruption ends ranks too.
             if !run.interrupted {
-                run.warnings.extend(crew.warnings());
+                run.warnings.extend(pool.warnings());
             }
-            drop(crew);
-            desk.finish(run)
+            drop(pool);
+            reporter.finish(run)
         }
-        Err(fault) => desk.fault(&fault),
+        Err(fault) => reporter.fault(&fault),
     }
 }
 
 /// Those who run the trials of a call.
-fn crew(
+fn pool(
     arguments: &Check,
     study: &Study,
-    shelf: &Shelf,
+    cache: &FileCache,
     threads: usize,
     budget: &Budget,
-) -> Result<Crew, Diagnostic> {
+) -> Result<ProcessPool, Diagnostic> {
     let own =
         Threads::new(Some(threads)).map_err(|error| library::refusal(&Fault::Threads(error.to_string())))?;
-    let Some(count) = arguments.ranks.map(usize::from) else { return Ok(Crew::Alone(own)) };
+    let Some(count) = arguments.ranks.map(usize::from) else { return Ok(ProcessPool::Alone(own)) };
     let each = (threads / count).max(1);
-    let packed = pack(&arguments.model, &arguments.properties, shelf);
+    let packed = pack(&arguments.model, &arguments.properties, cache);
     let (children, lines) = ranks::start(count)
         .map_err(|reason| complaint::argument(reason, "leave `--ranks` out: threads do the same"))?;
     let ranks =
         Ranks::new(lines, study, packed, each, own, budget).map_err(|fault| library::refusal(&fault))?;
-    Ok(Crew::Led { ranks: Box::new(ranks), _children: children })
+    Ok(ProcessPool::Led { ranks: Box::new(ranks), _children: children })
 }
 
 fn cores() -> usize {
@@ -121,7 +122,7 @@ fn most_threads() -> usize {
 }
 
 /// Where what a call has to say is handed out, in the format that was asked for.
-struct Desk<'a> {
+struct Reporter<'a> {
     arguments: &'a Check,
     colors: Colors,
     deadline: Deadline,
@@ -134,7 +135,7 @@ struct Desk<'a> {
     page: Option<&'a Path>,
 }
 
-impl Desk<'_> {
+impl Reporter<'_> {
     /// Prints a forecast.
     fn tell(self, outlook: &Outlook) -> Exit {
         self.deadline.enter(Phase::Printing);

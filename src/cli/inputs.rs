@@ -1,7 +1,7 @@
 //! Files of a call: where they are looked for, and their bytes.
 
 use super::arguments::Model;
-use super::shelf::Shelf;
+use super::file_cache::FileCache;
 use crate::engine::outcome::{Finding, Spot};
 use crate::library::{Folder, Inputs, Names, load as compile};
 use crate::syntax::codes::Code;
@@ -117,7 +117,7 @@ fn find(path: &str, scenario: &str, data: &[PathBuf]) -> Result<PathBuf, String>
 
 /// The files of a call on the disk.
 struct Disk<'m> {
-    shelf: Shelf,
+    cache: FileCache,
     model: &'m Model,
     /// The files that were opened, where they were found.
     paths: Vec<PathBuf>,
@@ -126,12 +126,12 @@ struct Disk<'m> {
 impl Folder for Disk<'_> {
     fn text(&mut self, name: &str) -> Result<Vec<u8>, String> {
         self.paths.push(PathBuf::from(if name == "-" { STDIN } else { name }));
-        self.shelf.open(name, || read(name))
+        self.cache.open(name, || read(name))
     }
 
     fn file(&mut self, path: &str) -> Result<Vec<u8>, String> {
-        let Self { shelf, model, paths } = self;
-        shelf.open(path, || {
+        let Self { cache, model, paths } = self;
+        cache.open(path, || {
             let found = find(path, &model.scenario, &model.data)?;
             let bytes = read_file(&found).map_err(|error| format!("`{path}` {error}"));
             paths.push(found);
@@ -151,17 +151,17 @@ pub(super) struct Loaded {
     /// The files that were opened, where they were found.
     pub(super) paths: Vec<PathBuf>,
     /// What was opened, for others who are to compile the same.
-    pub(super) shelf: Shelf,
+    pub(super) cache: FileCache,
 }
 
 /// Reads, parses and compiles what a call names.
 pub(super) fn load(model: &Model, properties: &[String]) -> Loaded {
-    load_from(Shelf::Files, model, properties)
+    load_from(FileCache::Files, model, properties)
 }
 
-/// The same, with files from a shelf.
-pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> Loaded {
-    let mut disk = Disk { shelf, model, paths: Vec::new() };
+/// The same, with files from a cache.
+pub(super) fn load_from(cache: FileCache, model: &Model, properties: &[String]) -> Loaded {
+    let mut disk = Disk { cache, model, paths: Vec::new() };
     let twice = std::iter::once(&model.scenario).chain(properties).filter(|name| *name == "-").count() > 1;
     let mut inputs = if twice {
         Inputs::default()
@@ -182,5 +182,5 @@ pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> L
         inputs.errors += errors.len();
         inputs.diagnostics.extend(errors);
     }
-    Loaded { inputs, paths: disk.paths, shelf: disk.shelf }
+    Loaded { inputs, paths: disk.paths, cache: disk.cache }
 }

@@ -177,7 +177,7 @@ fn subjects(study: &Study, asked: &[&Query]) -> Result<Vec<Option<Subject>>, Fau
     Ok(subjects)
 }
 
-/// Rehearses each group. With a deadline there is nothing to forecast, and no time to spend on it.
+/// Runs the pilot of each group. With a deadline there is nothing to forecast, and no time to spend on it.
 fn outlook(
     groups: &mut [Group<'_>],
     executor: &dyn Executor,
@@ -192,10 +192,10 @@ fn outlook(
             return Ok(None);
         }
         let forecasts = match &mut group.sampling {
-            Sampling::Survey(survey) => survey.rehearse(executor, budget)?,
-            Sampling::Contrast(contrast) => vec![contrast.rehearse(executor, budget)?],
-            Sampling::Race(contest) => vec![contest.rehearse(executor, budget)?],
-            Sampling::Split(question) => vec![question.rehearse(executor, budget)?],
+            Sampling::Survey(survey) => survey.run_pilot(executor, budget)?,
+            Sampling::Contrast(contrast) => vec![contrast.run_pilot(executor, budget)?],
+            Sampling::Race(contest) => vec![contest.run_pilot(executor, budget)?],
+            Sampling::Split(question) => vec![question.run_pilot(executor, budget)?],
         };
         // Checks and estimates of one scenario share their trials.
         let longest = |of: &dyn Fn(&Forecast) -> f64| forecasts.iter().map(of).fold(0.0, f64::max);
