@@ -8,7 +8,7 @@ use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Lanes};
 use crate::kernel::program::Program;
 use crate::kernel::surfaces;
-use crate::kernel::vector::{exp, parts};
+use crate::kernel::vector::{exp, first_part, parts};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
@@ -72,7 +72,7 @@ pub(super) struct Touches {
     overlaps: Vec<u32>,
     found: usize,
     /// Room to work.
-    room: Vec<surfaces::Touch>,
+    room: surfaces::Room,
 }
 
 impl Touches {
@@ -133,15 +133,16 @@ impl Touches {
         while first < self.count {
             let a = body(&self.blocks, first);
             let same = (first..self.count).take_while(|&k| body(&self.blocks, k) == a).count();
-            let (blocks, touches) = (&self.blocks, &mut self.room);
+            let blocks = &self.blocks;
             let faces = (first..first + same).map(|k| blocks[k / LANES].b[k % LANES]);
             let radius = blocks[first / LANES].distance.0[first % LANES];
-            program.forces.surfaces.touch(faces, x[a as usize], radius, touches);
-            for (k, touch) in (first..).zip(&self.room) {
+            let surfaces = &program.forces.surfaces;
+            let pushes = surfaces.touch(first_part(simd), faces, x[a as usize], radius, &mut self.room);
+            for (k, push) in (first..).zip(pushes) {
                 let (eight, lane) = (&mut self.blocks[k / LANES], k % LANES);
-                eight.nx.0[lane] = touch.normal.x;
-                eight.ny.0[lane] = touch.normal.y;
-                eight.gap.0[lane] = touch.depth;
+                eight.nx.0[lane] = push.nx.0[0];
+                eight.ny.0[lane] = push.ny.0[0];
+                eight.gap.0[lane] = push.shared.0[0];
             }
             first += same;
         }

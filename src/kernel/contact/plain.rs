@@ -8,6 +8,8 @@ use crate::base::math;
 use crate::base::tick::{Clock, Tick};
 use crate::kernel::program::Program;
 use crate::kernel::state::{Layout, State};
+use crate::kernel::surfaces;
+use crate::kernel::vector::first_part;
 use crate::model::{Barrier, Behaviours, Obstacle, Processes, Scenario, Scene};
 use fearless_simd::{Level, dispatch};
 use std::sync::Arc;
@@ -156,11 +158,15 @@ fn plainly(contacts: &Contacts, program: &Program, state: &mut State, moved: &mu
             for k in 0..walls.len() {
                 let (i, face) = walls[k];
                 let faces: Vec<u32> = walls.iter().filter(|wall| wall.0 == i).map(|wall| wall.1).collect();
-                let mut touches = Vec::new();
-                program.forces.surfaces.touch(faces.iter().copied(), x[i as usize], radius(i), &mut touches);
+                let mut room = surfaces::Room::default();
+                let (place, all) = (x[i as usize], &program.forces.surfaces);
+                let touches = dispatch!(Level::baseline(), simd => {
+                    all.touch(first_part(simd), faces.iter().copied(), place, radius(i), &mut room)
+                });
                 let touch = touches[faces.iter().position(|other| *other == face).unwrap()];
+                let normal = Vec2::new(touch.nx.0[0], touch.ny.0[0]);
                 let k = (of(&state.k1, i), of(&state.k2, i));
-                overlaps.push(((i, None, inverse(i)), touch.normal, touch.depth, k));
+                overlaps.push(((i, None, inverse(i)), normal, touch.shared.0[0], k));
             }
             overlaps.retain(|&(_, _, gap, _)| gap > 0.0);
             let exchange = |v: &mut [Vec2], i: u32, j: Option<u32>, impulse: Vec2| {
