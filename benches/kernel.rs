@@ -15,7 +15,8 @@ use smc::base::random::TrialKey;
 use smc::base::tick::{Clock, Tick};
 use smc::kernel::{Layout, Program, Scratch, State, refresh, step};
 use smc::model::{
-    Agent, Barrier, Body, Family, Law, Obstacle, Position, Route, Scenario, Scene as Surroundings, Start,
+    Agent, Barrier, Body, Family, Law, Obstacle, Parameter, Position, Route, Scenario, Scene as Surroundings,
+    Start,
 };
 use std::io::Write;
 use std::sync::Arc;
@@ -130,6 +131,16 @@ fn among_walls(mut scene: Scene, far: f64) -> Scene {
     scene
 }
 
+/// Beside eight people far away, who must not make the crowd slower.
+fn far_from_some(mut scene: Scene) -> Scene {
+    for k in 1..=8 {
+        let at = Vec2::new(1e5 * f64::from(k), 9e5);
+        scene.walkers.push(Walker { at, speed: 1.3, goal: at.x + 60.0 });
+    }
+    scene.name.insert_str(0, "far-");
+    scene
+}
+
 fn uniform(low: f64, high: f64) -> Law {
     Law::Random { family: Family::Uniform { low, high }, low, high }
 }
@@ -196,22 +207,22 @@ fn loaded(scene: &Scene, layout: Layout, own_b: bool) -> State {
             let ahead = if walker.goal > walker.at.x { 1.0 } else { -1.0 };
             let mut between = |low: f64, high: f64| low + (high - low) * rng.uniform();
             state.present[b] |= Mask::lane(l);
-            state.x[b].0[l] = walker.at.x;
-            state.y[b].0[l] = walker.at.y;
-            state.vx[b].0[l] = ahead * walker.speed;
-            state.ex[b].0[l] = ahead;
-            state.ey[b].0[l] = 0.0;
-            state.drive[b].0[l] = walker.speed;
-            state.speed[b].0[l] = walker.speed;
-            state.mass[b].0[l] = between(60.0, 90.0);
-            state.radius[b].0[l] = between(0.2, 0.28);
-            state.tau[b].0[l] = between(0.4, 0.6);
-            state.a[b].0[l] = between(1800.0, 2200.0);
-            state.b[b].0[l] = if own_b { between(0.07, 0.09) } else { 0.08 };
-            state.lambda[b].0[l] = between(0.2, 0.4);
-            state.k1[b].0[l] = 1.2e5;
-            state.k2[b].0[l] = 2.4e5;
-            state.noise[b].0[l] = 0.08;
+            state.motion.x[b].0[l] = walker.at.x;
+            state.motion.y[b].0[l] = walker.at.y;
+            state.motion.vx[b].0[l] = ahead * walker.speed;
+            state.driving.ex[b].0[l] = ahead;
+            state.driving.ey[b].0[l] = 0.0;
+            state.driving.speed[b].0[l] = walker.speed;
+            state.bodies[Parameter::Speed][b].0[l] = walker.speed;
+            state.bodies[Parameter::Mass][b].0[l] = between(60.0, 90.0);
+            state.bodies[Parameter::Radius][b].0[l] = between(0.2, 0.28);
+            state.bodies[Parameter::Tau][b].0[l] = between(0.4, 0.6);
+            state.bodies[Parameter::A][b].0[l] = between(1800.0, 2200.0);
+            state.bodies[Parameter::B][b].0[l] = if own_b { between(0.07, 0.09) } else { 0.08 };
+            state.bodies[Parameter::Lambda][b].0[l] = between(0.2, 0.4);
+            state.bodies[Parameter::K1][b].0[l] = 1.2e5;
+            state.bodies[Parameter::K2][b].0[l] = 2.4e5;
+            state.bodies[Parameter::Noise][b].0[l] = 0.08;
         }
     }
     state
@@ -222,8 +233,11 @@ fn arrive(scene: &Scene, state: &mut State) {
     for lane in 0..state.width() {
         for (k, walker) in scene.walkers.iter().enumerate() {
             let slot = state.slot(k, lane);
-            if (state.x[slot.block].0[slot.lane] - walker.goal) * state.ex[slot.block].0[slot.lane] > -0.5 {
-                state.drive[slot.block].0[slot.lane] = 0.0;
+            if (state.motion.x[slot.block].0[slot.lane] - walker.goal)
+                * state.driving.ex[slot.block].0[slot.lane]
+                > -0.5
+            {
+                state.driving.speed[slot.block].0[slot.lane] = 0.0;
             }
         }
     }
@@ -314,6 +328,7 @@ fn main() {
         open(100_000),
         among_walls(corridor20(), 25.0),
         among_walls(open(2_000), 80.0),
+        far_from_some(open(2_000)),
     ];
     let mut out = std::io::stdout().lock();
     for scene in scenes {
@@ -327,7 +342,7 @@ fn main() {
                 }
                 for &level in &levels {
                     let (rate, state) = measure(&scene, layout, own_b, level);
-                    let checksum: f64 = state.x.iter().flat_map(|lanes| lanes.0).sum();
+                    let checksum: f64 = state.motion.x.iter().flat_map(|lanes| lanes.0).sum();
                     let name = format!("{level:?}");
                     let name = name.split('(').next().unwrap_or_default();
                     let _ = writeln!(

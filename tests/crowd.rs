@@ -7,7 +7,7 @@ use smc::base::random::TrialKey;
 use smc::base::tick::{Clock, Tick};
 use smc::kernel::{Layout, Program, Scratch, State, refresh};
 use smc::model::{
-    Agent, Barrier, Body, Group, Law, Obstacle, Particle, Position, Route, Scenario, Scene, Start,
+    Agent, Barrier, Body, Group, Law, Obstacle, Parameter, Particle, Position, Route, Scenario, Scene, Start,
 };
 use std::sync::Arc;
 
@@ -148,29 +148,29 @@ impl Crowd {
             } else {
                 state.present[b] &= !Mask::lane(l);
             }
-            state.x[b].0[l] = person.at.x;
-            state.y[b].0[l] = person.at.y;
-            state.vx[b].0[l] = person.velocity.x;
-            state.vy[b].0[l] = person.velocity.y;
-            state.ex[b].0[l] = person.towards.x;
-            state.ey[b].0[l] = person.towards.y;
-            state.drive[b].0[l] = person.drive;
-            state.speed[b].0[l] = person.drive;
-            state.travelled[b].0[l] = 0.0;
-            state.mass[b].0[l] = person.mass;
-            state.radius[b].0[l] = person.radius;
-            state.tau[b].0[l] = person.tau;
-            state.a[b].0[l] = person.a;
-            state.b[b].0[l] = person.b;
-            state.lambda[b].0[l] = person.lambda;
-            state.a2[b].0[l] = person.a2;
-            state.b2[b].0[l] = person.b2;
-            state.lambda2[b].0[l] = person.lambda2;
-            state.k1[b].0[l] = person.k1;
-            state.k2[b].0[l] = person.k2;
-            state.noise[b].0[l] = person.noise;
-            state.fx[b].0[l] = 0.0;
-            state.fy[b].0[l] = 0.0;
+            state.motion.x[b].0[l] = person.at.x;
+            state.motion.y[b].0[l] = person.at.y;
+            state.motion.vx[b].0[l] = person.velocity.x;
+            state.motion.vy[b].0[l] = person.velocity.y;
+            state.driving.ex[b].0[l] = person.towards.x;
+            state.driving.ey[b].0[l] = person.towards.y;
+            state.driving.speed[b].0[l] = person.drive;
+            state.bodies[Parameter::Speed][b].0[l] = person.drive;
+            state.motion.travelled[b].0[l] = 0.0;
+            state.bodies[Parameter::Mass][b].0[l] = person.mass;
+            state.bodies[Parameter::Radius][b].0[l] = person.radius;
+            state.bodies[Parameter::Tau][b].0[l] = person.tau;
+            state.bodies[Parameter::A][b].0[l] = person.a;
+            state.bodies[Parameter::B][b].0[l] = person.b;
+            state.bodies[Parameter::Lambda][b].0[l] = person.lambda;
+            state.bodies[Parameter::A2][b].0[l] = person.a2;
+            state.bodies[Parameter::B2][b].0[l] = person.b2;
+            state.bodies[Parameter::Lambda2][b].0[l] = person.lambda2;
+            state.bodies[Parameter::K1][b].0[l] = person.k1;
+            state.bodies[Parameter::K2][b].0[l] = person.k2;
+            state.bodies[Parameter::Noise][b].0[l] = person.noise;
+            state.motion.fx[b].0[l] = 0.0;
+            state.motion.fy[b].0[l] = 0.0;
         }
     }
 
@@ -205,15 +205,15 @@ impl Run {
     }
 
     pub(crate) fn at(&self, agent: usize) -> Vec2 {
-        self.pair(&self.state.x, &self.state.y, agent)
+        self.pair(&self.state.motion.x, &self.state.motion.y, agent)
     }
 
     pub(crate) fn velocity(&self, agent: usize) -> Vec2 {
-        self.pair(&self.state.vx, &self.state.vy, agent)
+        self.pair(&self.state.motion.vx, &self.state.motion.vy, agent)
     }
 
     pub(crate) fn force(&self, agent: usize) -> Vec2 {
-        self.pair(&self.state.fx, &self.state.fy, agent)
+        self.pair(&self.state.motion.fx, &self.state.motion.fy, agent)
     }
 
     pub(crate) fn fastest(&self) -> f64 {
@@ -224,32 +224,32 @@ impl Run {
 /// All bits of one lane.
 pub(crate) fn bits_of(state: &State, lane: usize) -> Vec<u64> {
     let fields = [
-        &state.x,
-        &state.y,
-        &state.vx,
-        &state.vy,
-        &state.ex,
-        &state.ey,
-        &state.drive,
-        &state.travelled,
-        &state.fx,
-        &state.fy,
-        &state.decay,
-        &state.kick,
-        &state.push,
-        &state.speed,
-        &state.radius,
-        &state.mass,
-        &state.tau,
-        &state.a,
-        &state.b,
-        &state.lambda,
-        &state.a2,
-        &state.b2,
-        &state.lambda2,
-        &state.k1,
-        &state.k2,
-        &state.noise,
+        &state.motion.x,
+        &state.motion.y,
+        &state.motion.vx,
+        &state.motion.vy,
+        &state.driving.ex,
+        &state.driving.ey,
+        &state.driving.speed,
+        &state.motion.travelled,
+        &state.motion.fx,
+        &state.motion.fy,
+        &state.bodies.decay,
+        &state.bodies.kick,
+        &state.bodies.push,
+        &state.bodies[Parameter::Speed],
+        &state.bodies[Parameter::Radius],
+        &state.bodies[Parameter::Mass],
+        &state.bodies[Parameter::Tau],
+        &state.bodies[Parameter::A],
+        &state.bodies[Parameter::B],
+        &state.bodies[Parameter::Lambda],
+        &state.bodies[Parameter::A2],
+        &state.bodies[Parameter::B2],
+        &state.bodies[Parameter::Lambda2],
+        &state.bodies[Parameter::K1],
+        &state.bodies[Parameter::K2],
+        &state.bodies[Parameter::Noise],
     ];
     let mut bits = vec![state.ticks[lane], u64::from(state.diverged.has(lane))];
     for agent in 0..state.agents {

@@ -5,7 +5,6 @@ use smc::syntax::diagnostic::Diagnostic;
 use smc::syntax::parse::{decode, parse_properties, parse_scenario, parse_value};
 use smc::syntax::render::render;
 use smc::syntax::source::{Source, SourceId};
-use std::time::{Duration, Instant};
 
 fn diagnostics(source: &Source) -> Vec<Diagnostic> {
     if source.name.ends_with(".scn") { parse_scenario(source).1 } else { parse_properties(source).1 }
@@ -49,11 +48,10 @@ fn values() {
     }
 }
 
-/// All that is said of two texts, one of them a scenario, with the time it took.
-fn told(scenario: &str, properties: &str) -> (usize, Duration) {
+/// The number of errors in two texts, one of them a scenario.
+fn told(scenario: &str, properties: &str) -> usize {
     let sources =
         [Source::new(SourceId(0), "many.scn", scenario), Source::new(SourceId(1), "many.bltl", properties)];
-    let start = Instant::now();
     let (tree, mut said) = parse_scenario(&sources[0]);
     let (asked, more) = parse_properties(&sources[1]);
     said.extend(more);
@@ -63,11 +61,11 @@ fn told(scenario: &str, properties: &str) -> (usize, Duration) {
     let own = own_errors(compile(&input).1, &said, &input);
     said.extend(own);
     render(&said, &sources, false);
-    (said.len(), start.elapsed())
+    said.len()
 }
 
 #[test]
-fn thousands_of_errors_are_told_in_seconds() {
+fn thousands_of_errors_are_all_reported() {
     const CLOCK: &str = "horizon = 10 s\nprocess p { var n: 0 .. 5 = 0 when n < 5 at 1 /s -> n = n + 1 }\n";
     type Write = Box<dyn Fn(usize) -> String>;
     type Case = (Write, fn(usize) -> usize);
@@ -122,16 +120,10 @@ fn thousands_of_errors_are_told_in_seconds() {
     ];
     let both = scenarios.into_iter().map(|case| (true, case)).chain(properties.map(|case| (false, case)));
     for (of_scenario, (write, errors)) in both {
-        let tell = |count: usize| {
+        for count in [1, 4_000] {
             let text = write(count);
-            let (said, took) = if of_scenario { told(&text, "let fine = 1\n") } else { told(CLOCK, &text) };
+            let said = if of_scenario { told(&text, "let fine = 1\n") } else { told(CLOCK, &text) };
             assert_eq!(said, errors(count), "{}", &text[..40]);
-            took
-        };
-        // Four times as much takes four times as long, and sixteen times with work in proportion to the square; another
-        // may have taken the processor for a while.
-        let ratio = || tell(8_000).as_secs_f64() / tell(2_000).as_secs_f64();
-        let least = (0..3).map(|_| ratio()).find(|ratio| *ratio < 9.0);
-        assert!(least.is_some(), "{}: {:?} {:?}", write(1), tell(2_000), tell(8_000));
+        }
     }
 }

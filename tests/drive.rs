@@ -10,8 +10,8 @@ use smc::kernel::drive::steer;
 use smc::kernel::start::load;
 use smc::kernel::{Layout, Program, Scratch, State, refresh};
 use smc::model::{
-    Agent, AgentId, Body, Family, Goal, Law, Leg, Move, Moves, Position, Region, RegionId, Route, Scenario,
-    Scene, Start,
+    Agent, AgentId, Body, Family, Goal, Law, Leg, Move, Moves, Parameter, Position, Region, RegionId, Route,
+    Scenario, Scene, Start,
 };
 use std::sync::Arc;
 
@@ -103,11 +103,11 @@ fn begin(program: &Program, advice: Option<(usize, usize)>) -> State {
 
 /// Everyone walks exactly as driven, one step.
 fn walk(program: &Program, state: &mut State) {
-    for block in 0..state.x.len() {
+    for block in 0..state.motion.x.len() {
         for lane in 0..LANES {
-            let speed = state.drive[block].0[lane];
-            state.x[block].0[lane] += DT * speed * state.ex[block].0[lane];
-            state.y[block].0[lane] += DT * speed * state.ey[block].0[lane];
+            let speed = state.driving.speed[block].0[lane];
+            state.motion.x[block].0[lane] += DT * speed * state.driving.ex[block].0[lane];
+            state.motion.y[block].0[lane] += DT * speed * state.driving.ey[block].0[lane];
         }
     }
     for lane in state.occupied.iter() {
@@ -117,15 +117,15 @@ fn walk(program: &Program, state: &mut State) {
 }
 
 fn at(state: &State) -> Vec2 {
-    p(state.x[0].0[0], state.y[0].0[0])
+    p(state.motion.x[0].0[0], state.motion.y[0].0[0])
 }
 
 fn heading(state: &State) -> Vec2 {
-    p(state.ex[0].0[0], state.ey[0].0[0])
+    p(state.driving.ex[0].0[0], state.driving.ey[0].0[0])
 }
 
 fn drive(state: &State) -> f64 {
-    state.drive[0].0[0]
+    state.driving.speed[0].0[0]
 }
 
 #[test]
@@ -147,7 +147,7 @@ fn the_goal_is_aimed_at_a_radius_inside_and_kept() {
     walk(&program, &mut state);
     assert_eq!((drive(&state), heading(&state)), (0.0, last));
     // Pushed out, one walks back.
-    state.x[0].0[0] = 9.0;
+    state.motion.x[0].0[0] = 9.0;
     walk(&program, &mut state);
     assert_eq!(drive(&state), 1.25);
 }
@@ -184,8 +184,8 @@ fn a_point_passed_by_within_two_metres_counts_and_farther_away_does_not() {
         let mut state = begin(&program, None);
         // Swept aside by others, beyond the line through the point.
         for x in [3.9, 4.1] {
-            state.x[0].0[0] = x;
-            state.y[0].0[0] = offset;
+            state.motion.x[0].0[0] = x;
+            state.motion.y[0].0[0] = offset;
             steer(&program, &mut state);
             let to_via = (p(4.0, 0.0) - at(&state)).normalize();
             let still = (heading(&state) - to_via).norm() < 1e-9;
@@ -199,7 +199,7 @@ fn a_point_as_last_goal_is_not_passed_by() {
     let program = program(vec![agent(p(0.0, 0.0), p(0.0, 0.0), legs(vec![via(4.0, 0.0)]))]);
     let mut state = begin(&program, None);
     for (x, speed) in [(3.4, 1.25), (3.6, 0.0), (4.4, 0.0), (4.6, 1.25)] {
-        state.x[0].0[0] = x;
+        state.motion.x[0].0[0] = x;
         steer(&program, &mut state);
         assert_eq!(drive(&state), speed, "{x}");
     }
@@ -248,7 +248,7 @@ fn only_who_leaves_is_gone() {
     let mut state = begin(&program, None);
     for _ in 0..200 {
         walk(&program, &mut state);
-        let inside = state.x[0].0[0] >= 10.0;
+        let inside = state.motion.x[0].0[0] >= 10.0;
         assert_eq!(state.present[0].has(0), !inside);
     }
     assert_eq!((state.present[0], state.present[1]), (Mask::NONE, Mask::lane(0)));
@@ -262,7 +262,7 @@ fn without_a_route_one_goes_on_and_who_stands_keeps_standing() {
         walk(&walker, &mut state);
     }
     assert!((at(&state) - p(1.2, 1.6)).norm() < 1e-9);
-    assert_eq!(state.speed[0].0[0], 1.0, "the recorded speed is the driving speed");
+    assert_eq!(state.bodies[Parameter::Speed][0].0[0], 1.0, "the recorded speed is the driving speed");
     walker = program(vec![agent(p(0.0, 0.0), p(0.0, 0.0), Route::Onward)]);
     let mut state = begin(&walker, None);
     walk(&walker, &mut state);
@@ -368,7 +368,8 @@ fn lanes_do_not_see_one_another() {
             for agent in 0..4 {
                 let of = |s: &State, k: usize| {
                     let bits = |f: &[Lanes]| f[agent].0[k].to_bits();
-                    let fields = [&s.x, &s.y, &s.ex, &s.ey, &s.drive].map(|f| bits(f));
+                    let fields = [&s.motion.x, &s.motion.y, &s.driving.ex, &s.driving.ey, &s.driving.speed]
+                        .map(|f| bits(f));
                     (fields, s.present[agent].has(k), s.route.way(agent, k))
                 };
                 assert_eq!(of(single, 2), of(&together, lane), "agent {agent} lane {lane} step {step}");
@@ -402,7 +403,13 @@ fn both_layouts_steer_alike() {
     }
     for agent in 0..20 {
         let slot = b.slot(agent, 0);
-        for (f, g) in [(&a.x, &b.x), (&a.y, &b.y), (&a.ex, &b.ex), (&a.ey, &b.ey), (&a.drive, &b.drive)] {
+        for (f, g) in [
+            (&a.motion.x, &b.motion.x),
+            (&a.motion.y, &b.motion.y),
+            (&a.driving.ex, &b.driving.ex),
+            (&a.driving.ey, &b.driving.ey),
+            (&a.driving.speed, &b.driving.speed),
+        ] {
             assert_eq!(f[agent].0[0].to_bits(), g[slot.block].0[slot.lane].to_bits());
         }
         assert_eq!(a.present[agent].has(0), b.present[slot.block].has(slot.lane));

@@ -23,7 +23,7 @@ fn a_free_walk_relaxes_exactly() {
             let h: f64 = dt.parse().unwrap();
             close(run.at(0).x, 1.34 * (1.7 - 0.5 * (1.0 - left)), 0.5 * h * h);
             assert_eq!(run.at(0).y, 0.0);
-            close(run.state.travelled[0].0[0], run.at(0).x, 1e-14);
+            close(run.state.motion.travelled[0].0[0], run.at(0).x, 1e-14);
             assert_eq!(run.state.ticks[0], steps as u64);
         }
     }

@@ -186,9 +186,9 @@ fn a_place_far_from_the_others_in_a_lane_counts_once_it_is_taken() {
     let mut run = scene.start(Layout::Trials);
     run.steps(5);
     run.state.present[2] |= Mask::lane(0);
-    let (x, y) = (run.state.x[3].0[0] + 0.5, run.state.y[3].0[0]);
-    run.state.x[2].0[0] = x;
-    run.state.y[2].0[0] = y;
+    let (x, y) = (run.state.motion.x[3].0[0] + 0.5, run.state.motion.y[3].0[0]);
+    run.state.motion.x[2].0[0] = x;
+    run.state.motion.y[2].0[0] = y;
     refresh(&run.program, &mut run.state, &mut run.scratch, Mask::lane(0));
     assert!(run.force(2).norm() > 100.0);
     run.steps(5);

@@ -36,6 +36,7 @@ mod refusals;
 mod replay;
 mod reports;
 mod robustness;
+mod runs;
 mod semantics;
 mod shapes;
 mod signal_semantics;

@@ -8,8 +8,8 @@ use smc::base::tick::{Clock, Tick};
 use smc::kernel::start::{Fault, Overlapped, check_area, load};
 use smc::kernel::{Layout, Program, State};
 use smc::model::{
-    Agent, AgentId, Barrier, BarrierId, Body, Family, Goal, Law, Leg, Move, Moves, Obstacle, Particle,
-    Position, Region, RegionId, Route, Scenario, Scene, Start,
+    Agent, AgentId, Barrier, BarrierId, Body, Family, Goal, Law, Leg, Move, Moves, Obstacle, Parameter,
+    Particle, Position, Region, RegionId, Route, Scenario, Scene, Start,
 };
 use std::sync::Arc;
 
@@ -106,29 +106,29 @@ fn bytes(state: &State, agent: usize, lane: usize) -> Vec<u64> {
 
 fn fields(s: &State) -> Vec<&Vec<Lanes>> {
     vec![
-        &s.x,
-        &s.y,
-        &s.vx,
-        &s.vy,
-        &s.ex,
-        &s.ey,
-        &s.drive,
-        &s.travelled,
-        &s.speed,
-        &s.mass,
-        &s.radius,
-        &s.tau,
-        &s.a,
-        &s.b,
-        &s.lambda,
-        &s.a2,
-        &s.b2,
-        &s.lambda2,
-        &s.k1,
-        &s.k2,
-        &s.noise,
-        &s.fx,
-        &s.fy,
+        &s.motion.x,
+        &s.motion.y,
+        &s.motion.vx,
+        &s.motion.vy,
+        &s.driving.ex,
+        &s.driving.ey,
+        &s.driving.speed,
+        &s.motion.travelled,
+        &s.bodies[Parameter::Speed],
+        &s.bodies[Parameter::Mass],
+        &s.bodies[Parameter::Radius],
+        &s.bodies[Parameter::Tau],
+        &s.bodies[Parameter::A],
+        &s.bodies[Parameter::B],
+        &s.bodies[Parameter::Lambda],
+        &s.bodies[Parameter::A2],
+        &s.bodies[Parameter::B2],
+        &s.bodies[Parameter::Lambda2],
+        &s.bodies[Parameter::K1],
+        &s.bodies[Parameter::K2],
+        &s.bodies[Parameter::Noise],
+        &s.motion.fx,
+        &s.motion.fy,
     ]
 }
 
@@ -136,7 +136,7 @@ fn overlaps(state: &State, lane: usize) -> usize {
     let at = |k: usize| {
         let slot = state.slot(k, lane);
         let of = |f: &Vec<Lanes>| f[slot.block].0[slot.lane];
-        (p(of(&state.x), of(&state.y)), of(&state.radius))
+        (p(of(&state.motion.x), of(&state.motion.y)), of(&state.bodies[Parameter::Radius]))
     };
     let all: Vec<_> = (0..state.agents).map(at).collect();
     let mut count = 0;
@@ -154,9 +154,9 @@ fn every_number_is_drawn_from_its_address() {
     for (k, agent) in program.scenario.agents.iter().enumerate() {
         let stream = Stream::of(key(7), agent.entity, Purpose::Parameter);
         let of = |name: &str, law: &Law| law.draw(stream.uniform(name_hash(name) as u32));
-        assert_eq!(state.mass[k].0[3], of("mass", &agent.body.mass));
-        assert_eq!(state.speed[k].0[3], of("speed", &agent.body.speed));
-        assert_eq!(state.radius[k].0[3], of("radius", &agent.body.radius));
+        assert_eq!(state.bodies[Parameter::Mass][k].0[3], of("mass", &agent.body.mass));
+        assert_eq!(state.bodies[Parameter::Speed][k].0[3], of("speed", &agent.body.speed));
+        assert_eq!(state.bodies[Parameter::Radius][k].0[3], of("radius", &agent.body.radius));
     }
 }
 
@@ -208,9 +208,12 @@ fn an_agent_more_and_a_move_change_nobody_elses_start() {
                 assert_eq!(bytes(&b, shifted, 0), bytes(&c, shifted, 0));
             }
         }
-        assert_eq!(b.drive[0].0[0], 0.0, "the user starts in the region it goes to");
-        assert!((b.ex[0].0[0] + 1.0).abs() < 1e-15);
-        assert!(c.drive[0].0[0] > 0.9 && (c.ex[0].0[0] + smc::base::math::sin_cos(0.5).1).abs() < 1e-12);
+        assert_eq!(b.driving.speed[0].0[0], 0.0, "the user starts in the region it goes to");
+        assert!((b.driving.ex[0].0[0] + 1.0).abs() < 1e-15);
+        assert!(
+            c.driving.speed[0].0[0] > 0.9
+                && (c.driving.ex[0].0[0] + smc::base::math::sin_cos(0.5).1).abs() < 1e-12
+        );
     }
 }
 
@@ -225,10 +228,10 @@ fn bodies_are_apart_in_their_shape_and_off_the_barriers() {
         assert_eq!(loaded.shrunk, []);
         assert_eq!(overlaps(&state, lane), 0);
         for k in 1..41 {
-            let at = p(state.x[k].0[lane], state.y[k].0[lane]);
+            let at = p(state.motion.x[k].0[lane], state.motion.y[k].0[lane]);
             assert!(hall().distance(at) < 1e-9);
             for barrier in &program.scenario.scene.barriers {
-                assert!(barrier.obstacle.distance(at) >= state.radius[k].0[lane]);
+                assert!(barrier.obstacle.distance(at) >= state.bodies[Parameter::Radius][k].0[lane]);
             }
             means += at / (200.0 * 40.0);
         }
@@ -249,7 +252,7 @@ fn a_crowded_shape_is_relaxed() {
         assert_eq!(loaded.shrunk, [], "trial {index}");
         assert_eq!(overlaps(&state, 0), 0);
         for k in 0..26 {
-            assert!(shape.distance(p(state.x[k].0[0], state.y[k].0[0])) < 1e-9);
+            assert!(shape.distance(p(state.motion.x[k].0[0], state.motion.y[k].0[0])) < 1e-9);
         }
     }
 }
@@ -276,8 +279,10 @@ fn overlapping_points_shrink_to_touch() {
         (3, Overlapped::Barrier(BarrierId(0)), 0.25),
     ];
     assert_eq!((at.as_slice(), loaded.pushed), (&wanted[..], 0));
-    assert!(loaded.shrunk.iter().all(|one| one.to == state.radius[one.agent.0 as usize].0[0]));
-    let radius = |k: usize| state.radius[k].0[0];
+    assert!(
+        loaded.shrunk.iter().all(|one| one.to == state.bodies[Parameter::Radius][one.agent.0 as usize].0[0])
+    );
+    let radius = |k: usize| state.bodies[Parameter::Radius][k].0[0];
     assert!((radius(0) - 0.15).abs() < 1e-12 && (radius(1) - 0.15).abs() < 1e-12);
     assert!(radius(0) + radius(1) <= 0.3);
     assert_eq!(radius(2), 0.25);
@@ -292,7 +297,7 @@ fn near_is_near_and_needs_its_anchor() {
     let mut state = empty(&program);
     for index in 0..50 {
         load(&program, &mut state, 0, key(index), None).unwrap();
-        let at = |k: usize| p(state.x[k].0[0], state.y[k].0[0]);
+        let at = |k: usize| p(state.motion.x[k].0[0], state.motion.y[k].0[0]);
         assert!((at(9) - at(2)).norm() <= 1.5 + 1e-9);
         assert_eq!(overlaps(&state, 0), 0);
     }
@@ -313,9 +318,9 @@ fn a_particle_is_the_sum_of_its_persons() {
     let stream = Stream::of(key(0), 9, Purpose::Parameter);
     let base = name_hash("mass") as u32;
     let mass: f64 = (0..4).map(|k| four.body.mass.draw(stream.uniform(base.wrapping_add(k)))).sum();
-    assert_eq!(state.mass[0].0[0], mass);
-    assert_eq!((state.a[0].0[0], state.noise[0].0[0]), (8000.0, 0.04));
-    assert_eq!((state.k1[0].0[0], state.k2[0].0[0]), (1.2e5, 2.4e5));
+    assert_eq!(state.bodies[Parameter::Mass][0].0[0], mass);
+    assert_eq!((state.bodies[Parameter::A][0].0[0], state.bodies[Parameter::Noise][0].0[0]), (8000.0, 0.04));
+    assert_eq!((state.bodies[Parameter::K1][0].0[0], state.bodies[Parameter::K2][0].0[0]), (1.2e5, 2.4e5));
 }
 
 #[test]

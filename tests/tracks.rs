@@ -9,7 +9,6 @@ use smc::data::geometry::{Geometry, PropertyValue, read_geojson, read_wkt};
 use smc::data::tracks::{Recording, read_eth_biwi, read_groups};
 use std::io::Write as _;
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
 
 /// The text of a file of the ETH/BIWI set.
 fn text(path: &str) -> Option<String> {
@@ -111,22 +110,6 @@ fn obstacles_keep_their_properties() {
     assert!(matches!(&hotel[6].shape, Geometry::Line(points) if points.len() == 2));
     let Some(eth) = text("eth-obstacles.geojson") else { return };
     assert_eq!(read_geojson(&eth).unwrap().len(), 8);
-}
-
-#[test]
-fn the_hotel_is_read_in_ten_milliseconds() {
-    let Some(text) = text("seq_hotel/obsmat.txt") else { return };
-    let best = (0..20)
-        .map(|_| {
-            let start = Instant::now();
-            let recording = read_eth_biwi(&text).unwrap();
-            let took = start.elapsed();
-            assert_eq!(recording.people().len(), 390);
-            took
-        })
-        .min()
-        .unwrap();
-    assert!(best < Duration::from_millis(10), "it took {best:?}");
 }
 
 /// Lines that look like those of a table, with all kinds of fields.

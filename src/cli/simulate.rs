@@ -13,9 +13,9 @@ use crate::data::table::{
     Held, Row, StateRow, write_csv, write_json, write_json_lines, write_states_csv, write_states_json,
     write_states_json_lines,
 };
-use crate::engine::{no_start, placeable, smaller};
-use crate::kernel::{Program, Scratch, Slot, State, dynamics, start};
-use crate::model::{AgentId, Domain, Scenario};
+use crate::engine::{divergence, no_start, placeable, smaller};
+use crate::kernel::{Address, End, Program, Run, Slot, State};
+use crate::model::{AgentId, Domain, Parameter, Scenario};
 use crate::report::ExitCode as Exit;
 use std::io::{BufWriter, Write};
 use std::sync::Arc;
@@ -43,14 +43,11 @@ struct Walk<'p> {
     program: &'p Program,
     arguments: &'p Simulate,
     advice: Option<(usize, usize)>,
-    last: u64,
-    state: State,
-    scratch: Scratch,
+    /// The trial that is under way, if one is, or that comes next; its state and the one of its agents that comes next.
+    run: Run<'p>,
+    running: bool,
     trial: u64,
     agent: usize,
-    running: bool,
-    /// Jumps since the start of the trial, in continuous time.
-    jumps: u64,
     /// Trials in which bodies were made smaller at the start, and the first of them.
     shrunk: (u64, Option<TrialKey>),
     /// Trials that ended before their time.
@@ -62,18 +59,20 @@ struct Walk<'p> {
 }
 
 impl<'p> Walk<'p> {
-    fn new(program: &'p Program, arguments: &'p Simulate, advice: Option<(usize, usize)>, last: u64) -> Self {
+    fn new(
+        program: &'p Program,
+        arguments: &'p Simulate,
+        advice: Option<(usize, usize)>,
+        last: Tick,
+    ) -> Self {
         Self {
             program,
             arguments,
             advice,
-            last,
-            state: State::new(program.layout, program.scenario.agents.len()),
-            scratch: Scratch::new(),
+            run: Run::new(program).until(last),
+            running: false,
             trial: arguments.trial,
             agent: 0,
-            running: false,
-            jumps: 0,
             shrunk: (0, None),
             notes: Vec::new(),
             is_wrong: false,
@@ -83,91 +82,62 @@ impl<'p> Walk<'p> {
 
     /// Goes to the next state that is written; false when all trials are done.
     fn advance(&mut self) -> bool {
-        loop {
-            if self.interrupted.load(Ordering::Relaxed) {
-                return false;
-            }
+        let mut since = 0;
+        while !self.interrupted.load(Ordering::Relaxed) {
             if !self.running {
                 if self.trial >= self.arguments.trial.saturating_add(self.arguments.trials) {
                     return false;
                 }
                 let key = TrialKey { seed: self.arguments.seed, index: self.trial, branch: 0 };
-                match start::load(self.program, &mut self.state, 0, key, self.advice) {
+                match self.run.start(Address { advice: self.advice, ..key.into() }) {
                     Ok(loaded) => {
                         if !loaded.shrunk.is_empty() {
                             self.shrunk = (self.shrunk.0 + 1, self.shrunk.1.or(Some(key)));
                         }
-                        let lanes = crate::base::lanes::Mask::lane(0);
-                        dynamics::refresh(self.program, &mut self.state, &mut self.scratch, lanes);
                         self.running = true;
-                        self.jumps = 0;
                         return true;
                     }
                     Err(fault) => {
                         let why = no_start(&self.program.scenario, fault);
                         self.notes.push(format!("trial {} cannot start: {why}", self.trial));
                         self.trial += 1;
-                        continue;
                     }
                 }
+                continue;
             }
-            let tick = self.state.ticks[0];
-            let clock = self.program.scenario.clock;
-            if clock.is_jumps() && self.state.faulty.is_empty() {
-                let jumped = dynamics::jump(self.program, &mut self.state, &mut self.scratch);
-                let end = clock.seconds(Tick(self.last));
-                if !jumped.is_empty() && self.state.faulty.is_empty() && self.state.clocks.now[0] <= end {
-                    self.jumps += 1;
-                    if self.jumps.is_multiple_of(self.arguments.every) {
-                        return true;
-                    }
-                } else if self.state.faulty.is_empty() {
-                    self.running = false;
+            match self.run.next() {
+                Ok(_) => since += 1,
+                Err(end) => {
+                    self.note(end);
+                    (self.running, since) = (false, 0);
                     self.trial += 1;
                 }
-                continue;
             }
-            let later = clock.is_jumps() && self.state.clocks.now[0] > clock.seconds(Tick(self.last));
-            if later && !self.state.faulty.is_empty() {
-                // Wrong after what is asked for.
-                self.running = false;
-                self.trial += 1;
-                continue;
-            }
-            if let Some(fault) = self.state.faults[0].filter(|_| !self.state.faulty.is_empty()) {
-                let what = fault.describe(&self.program.scenario);
-                self.is_wrong = true;
-                self.notes.push(format!("trial {} ends in an error of the model: {what}", self.trial));
-                self.running = false;
-                self.trial += 1;
-                continue;
-            }
-            if let Some(reason) = self.state.queues.overrun(&self.program.scenario.sources, 0) {
-                let time = self.program.scenario.clock.seconds(crate::base::tick::Tick(tick));
-                self.notes.push(format!("trial {} is unresolved at {time} s: {reason}", self.trial));
-                self.running = false;
-                self.trial += 1;
-                continue;
-            }
-            if tick >= self.last || !self.state.diverged.is_empty() {
-                if !self.state.diverged.is_empty() {
-                    let time = self.program.scenario.clock.seconds(Tick(tick));
-                    self.notes.push(format!(
-                        "trial {} diverged at {time} s: {}",
-                        self.trial,
-                        crate::engine::divergence(self.program, &self.state)
-                    ));
-                }
-                self.running = false;
-                self.trial += 1;
-                continue;
-            }
-            dynamics::step(self.program, &mut self.state, &mut self.scratch);
-            // A step in which the model is wrong leads to no state.
-            if self.state.faulty.is_empty() && self.state.ticks[0].is_multiple_of(self.arguments.every) {
+            if since == self.arguments.every {
                 return true;
             }
         }
+        false
+    }
+
+    /// Notes why a trial ended, if that was before its time.
+    fn note(&mut self, end: End) {
+        let (trial, scenario, state) = (self.trial, &self.program.scenario, self.run.state());
+        let time = scenario.clock.seconds(Tick(state.ticks[0]));
+        self.notes.push(match end {
+            End::Horizon => return,
+            End::Faulty(fault) => {
+                self.is_wrong = true;
+                format!("trial {trial} ends in an error of the model: {}", fault.describe(scenario))
+            }
+            End::Full => {
+                let reason = state.queues.overrun(&scenario.sources, 0).unwrap_or_default();
+                format!("trial {trial} is unresolved at {time} s: {reason}")
+            }
+            End::Diverged => {
+                format!("trial {trial} diverged at {time} s: {}", divergence(self.program, state))
+            }
+        });
     }
 }
 
@@ -175,14 +145,14 @@ impl Walk<'_> {
     /// Seconds since the start of the trial (steps where steps have no length).
     fn time(&self) -> f64 {
         match self.program.scenario.clock {
-            Clock::Jumps(_) => self.state.clocks.now[0],
-            clock => clock.seconds(Tick(self.state.ticks[0])),
+            Clock::Jumps(_) => self.run.state().clocks.now[0],
+            clock => clock.seconds(Tick(self.run.state().ticks[0])),
         }
     }
 
     /// The present state, where there are no people.
     fn state_row(&self) -> StateRow {
-        let variables = self.program.scenario.processes.variables.iter().zip(&self.state.variables);
+        let variables = self.program.scenario.processes.variables.iter().zip(&self.run.state().variables);
         let values = variables.map(|(variable, lanes)| match variable.domain {
             Domain::Truth => Held::Truth(lanes.0[0] != 0.0),
             _ => Held::Number(lanes.0[0]),
@@ -195,32 +165,35 @@ impl<'p> Iterator for Walk<'p> {
     type Item = Record<'p>;
 
     fn next(&mut self) -> Option<Record<'p>> {
-        let agents = self.program.scenario.agents.len();
+        let scenario = &self.program.scenario;
+        let agents = scenario.agents.len();
         // An agent of a source, which keeps many more places than are taken, has rows while it is in the scene.
         let (slot, present) = loop {
             if self.agent == 0 && !self.advance() || agents == 0 {
                 return None;
             }
-            let slot = self.state.slot(self.agent, 0);
-            let present = self.state.present[slot.block].has(slot.lane);
+            let state = self.run.state();
+            let slot = state.slot(self.agent, 0);
+            let present = state.present[slot.block].has(slot.lane);
             if present || !self.program.arrivals.comes(self.agent) {
                 break (slot, present);
             }
             self.agent = (self.agent + 1) % agents;
         };
+        let state = self.run.state();
         let at = |field: &[crate::base::lanes::Lanes]| field[slot.block].0[slot.lane];
         let record = Record {
             time: self.time(),
             trial: self.trial,
             agent: self.agent,
-            arrival: self.state.queues.arrival(&self.program.scenario.sources, AgentId(self.agent as u32), 0),
-            position: Vec2::new(at(&self.state.x), at(&self.state.y)),
-            velocity: Vec2::new(at(&self.state.vx), at(&self.state.vy)),
+            arrival: state.queues.arrival(&scenario.sources, AgentId(self.agent as u32), 0),
+            position: Vec2::new(at(&state.motion.x), at(&state.motion.y)),
+            velocity: Vec2::new(at(&state.motion.vx), at(&state.motion.vy)),
             present,
-            signals: std::iter::once(if present { at(&self.state.radius) } else { f64::NAN })
-                .chain(self.state.variables.iter().map(|lanes| lanes.0[0]))
+            signals: std::iter::once(if present { at(&state.bodies[Parameter::Radius]) } else { f64::NAN })
+                .chain(state.variables.iter().map(|lanes| lanes.0[0]))
                 .collect(),
-            modes: modes(self.program, &self.state, present.then_some(slot)),
+            modes: modes(self.program, state, present.then_some(slot)),
         };
         self.agent = (self.agent + 1) % agents;
         Some(record)
@@ -318,7 +291,7 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
         complaint::tell(&complaint::refusal(&fault), &inputs.sources, colors);
         return Exit::Wrong;
     }
-    let mut last = scenario.horizon.0;
+    let mut last = scenario.horizon;
     if let Some(until) = arguments.until {
         if until.is_nan() || until < 0.0 {
             return refuse(format!("`--until {until}` is no time"), "it takes a number of seconds", colors);
@@ -330,11 +303,11 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
             return refuse(format!("`--until {until}` lies beyond the horizon"), hint, colors);
         }
         // The longest time that is a whole number of ticks, in continuous time of very short ones.
-        last = last.min(match scenario.clock {
+        last = last.min(Tick(match scenario.clock {
             Clock::Jumps(tick) => (until / tick.to_f64()).floor() as u64,
             // In spite of rounding, and never beyond what was asked for.
             clock => (until / clock.step_seconds() * (1.0 + 1e-12)).floor() as u64,
-        });
+        }));
     }
     let program = Program::new(scenario.clone());
     let mut walk = Walk::new(&program, arguments, advice, last);

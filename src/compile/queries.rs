@@ -421,11 +421,10 @@ impl<'a> Compiler<'a> {
         site: usize,
     ) {
         let elaborator = &self.sites[site].elaborator;
-        let within =
-            unbounded.then(|| format!("the horizon of {}", elaborator.duration(elaborator.horizon.0)));
+        let horizon = unbounded.then(|| elaborator.duration(elaborator.horizon.0));
         let index = self.next_index;
         self.next_index += 1;
-        self.queries.push(Query { index, name, text, said, span, settings, point: Vec::new(), ask, within });
+        self.queries.push(Query { index, name, text, said, span, settings, point: Vec::new(), ask, horizon });
     }
 
     fn finish(self) -> (Option<Study>, Vec<Diagnostic>) {

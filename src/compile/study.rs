@@ -206,8 +206,8 @@ pub struct Query {
     pub point: Vec<(String, String)>,
     /// What is asked.
     pub ask: Ask,
-    /// Set where a formula or metric ranges up to the horizon: the horizon in words.
-    pub within: Option<String>,
+    /// The horizon with its unit, where a formula or metric ranges up to it.
+    pub horizon: Option<String>,
 }
 
 /// A measure as one would say it.

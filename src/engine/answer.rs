@@ -66,7 +66,7 @@ impl Answers<'_> {
             file,
             line,
             settings: query.settings.clone(),
-            within: query.within.clone(),
+            horizon: query.horizon.clone(),
             ..QueryResult::new(query.index, kind, query.text.clone())
         }
     }

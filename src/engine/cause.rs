@@ -2,16 +2,15 @@
 
 use super::budget::Budget;
 use super::cell::{Item, Reading};
-use super::onlooker::Onlooker;
-use super::subject::{Subject, lost};
+use super::observer::SignalObserver;
+use super::subject::Subject;
 use super::words;
 use crate::base::lanes::Mask;
 use crate::base::random::TrialKey;
 use crate::base::tick::Tick;
 use crate::kernel::process::{self, Sight};
 use crate::kernel::start::Overlapped;
-use crate::kernel::{Code, Program, Readings, Scratch, State, dynamics, start};
-use crate::logic::Needs;
+use crate::kernel::{Code, End, Program, Readings, Run, State, start};
 use crate::model::{AgentId, Scenario, TOP_SPEED};
 
 /// Most bodies that are named of those that were made smaller.
@@ -29,50 +28,39 @@ pub(super) fn unresolved(
 ) -> String {
     let program = &subject.program;
     let scenario = &program.scenario;
-    let (mut state, mut scratch) = (State::new(program.layout, scenario.agents.len()), Scratch::new());
-    let key = TrialKey { seed, index: item.index, branch: 0 };
-    if let Err(fault) = start::load(program, &mut state, 0, key, item.advice) {
-        return format!("it cannot start: {}", no_start(scenario, fault));
-    }
-    if scenario.clock.is_jumps() {
-        return in_continuous_time(subject, column, (&mut state, &mut scratch), budget);
-    }
-    let lane = Mask::lane(0);
-    dynamics::refresh(program, &mut state, &mut scratch, lane);
-    let code = subject.code(&[column]);
-    let (Ok(mut observer), Ok(needs)) = (subject.observer(column), subject.needs(&[column])) else {
-        return String::new();
+    let mut run = match Run::of(program, item.address(seed)) {
+        Ok((run, _)) => run,
+        Err(fault) => return format!("it cannot start: {}", no_start(scenario, fault)),
     };
-    let mut readings = Readings::default();
-    observer.start(0);
+    if scenario.clock.is_jumps() {
+        return in_continuous_time(subject, column, &mut run, budget);
+    }
+    let Ok(mut sheet) = subject.sheet(&[column]) else { return String::new() };
+    sheet.start(0);
     let mut missing = None;
     loop {
+        let state = run.state();
         let time = moment(scenario, state.ticks[0]);
-        if let Some(reason) = state.queues.overrun(&scenario.sources, 0) {
+        let queues = &state.queues;
+        let lost_sight = || queues.lost_sight(&scenario.sources, 0).filter(|_| sheet.follows[0]);
+        if let Some(reason) = queues.overrun(&scenario.sources, 0).or_else(lost_sight) {
             return format!("{reason} (at {time})");
         }
-        if subject.follows(column)
-            && let Some(reason) = state.queues.lost_sight(&scenario.sources, 0)
-        {
-            return format!("{reason} (at {time})");
+        if run.end(0) == Some(End::Diverged) {
+            return format!("it diverged at {time}: {}", divergence(program, state));
         }
-        if !state.diverged.is_empty() {
-            return format!("it diverged at {time}: {}", divergence(program, &state));
-        }
-        code.run(program, &state, &mut readings);
-        missing =
-            missing.or_else(|| absent(subject, column, &state, &readings).map(|name| (name, time.clone())));
         // As for a worker: only where something is looked at in this state that has no value.
-        if lost(&needs, &readings, &state.ticks).has(0) {
-            return nobody(subject, (column, &needs), &state, &time);
+        let lost = sheet.read(&run).has(0);
+        let absent = absent(subject, column, state, &sheet.readings).map(|name| (name, time.clone()));
+        missing = missing.or_else(|| absent.clone());
+        if lost {
+            return nobody(subject, column, state, &time);
         }
-        observer.observe(lane, &readings);
+        let observer = &mut sheet.observers[0];
+        observer.observe(Mask::lane(0), &sheet.readings);
         if observer.decided().has(0) {
             return match observer.reading(0) {
-                Reading::Unresolved => match absent(subject, column, &state, &readings)
-                    .map(|name| (name, time.clone()))
-                    .or(missing)
-                {
+                Reading::Unresolved => match absent.or(missing) {
                     Some((name, time)) => format!(
                         "`{name}` has not come at {time}, and what is asked of it is no number; ask only while `present({name})`"
                     ),
@@ -81,10 +69,9 @@ pub(super) fn unresolved(
                 _ => String::new(),
             };
         }
-        if state.ticks[0] >= subject.horizon.0 || budget.is_late() {
+        if budget.is_late() || run.next().is_err() {
             return String::new();
         }
-        dynamics::step(program, &mut state, &mut scratch);
     }
 }
 
@@ -104,7 +91,7 @@ pub fn divergence(program: &Program, state: &State) -> String {
 fn runaway(scenario: &Scenario, state: &State) -> String {
     let speed = |agent: usize| {
         let slot = state.slot(agent, 0);
-        let (vx, vy) = (state.vx[slot.block].0[slot.lane], state.vy[slot.block].0[slot.lane]);
+        let (vx, vy) = (state.motion.vx[slot.block].0[slot.lane], state.motion.vy[slot.block].0[slot.lane]);
         state.present[slot.block].has(slot.lane).then(|| (vx * vx + vy * vy).sqrt())
     };
     let beyond = |speed: f64| speed.is_nan() || speed > TOP_SPEED;
@@ -133,9 +120,7 @@ fn moment(scenario: &Scenario, tick: u64) -> String {
 
 /// Which bodies overlap at the start of a trial and are made smaller, where that happens in some number of trials.
 pub fn smaller(program: &Program, key: TrialKey, trials: u64) -> String {
-    let mut state = State::new(program.layout, program.scenario.agents.len());
-    let shrunk =
-        start::load(program, &mut state, 0, key, None).map(|loaded| loaded.shrunk).unwrap_or_default();
+    let shrunk = Run::of(program, key.into()).map(|(_, loaded)| loaded.shrunk).unwrap_or_default();
     let scenario = &program.scenario;
     let agent = |id: AgentId| format!("`{}`", scenario.agents[id.0 as usize].name);
     let mut said: Vec<String> = shrunk
@@ -216,7 +201,8 @@ fn absent(subject: &Subject, column: usize, state: &State, readings: &Readings) 
 }
 
 /// A mean or a middle of nobody: in which condition or number of those that a column looks at now.
-fn nobody(subject: &Subject, (column, needs): (usize, &Needs), state: &State, time: &str) -> String {
+fn nobody(subject: &Subject, column: usize, state: &State, time: &str) -> String {
+    let Ok(needs) = subject.needs(&[column]) else { return String::new() };
     let tick = state.ticks[0];
     let scenario = &subject.program.scenario;
     let lost = |code: &Code| {
@@ -241,17 +227,13 @@ fn nobody(subject: &Subject, (column, needs): (usize, &Needs), state: &State, ti
 }
 
 /// In continuous time only what has to be remembered, and the number of jumps, can leave a trial unresolved.
-fn in_continuous_time(
-    subject: &Subject,
-    column: usize,
-    (state, scratch): (&mut State, &mut Scratch),
-    budget: &Budget,
-) -> String {
+fn in_continuous_time(subject: &Subject, column: usize, run: &mut Run<'_>, budget: &Budget) -> String {
     let view = subject.view(&[column]);
-    let Ok(mut monitor) = Onlooker::of(subject, column) else { return String::new() };
+    let Ok(mut monitor) = SignalObserver::of(subject, column) else { return String::new() };
     let mut sight = Sight::default();
     let enough = subject.most_jumps.min(subject.jumps_again);
-    while state.clocks.jumps[0] < enough {
+    while run.state().clocks.jumps[0] < enough {
+        let state = run.state();
         if state.clocks.jumps[0].is_multiple_of(JUMPS_BETWEEN_LOOKS) && budget.is_late() {
             return String::new();
         }
@@ -261,7 +243,7 @@ fn in_continuous_time(
         let time = words::quantity(now.seconds, "s");
         let reading = match monitor.jump(now, atoms, signals) {
             Some(reading) => reading,
-            None if !dynamics::jump(&subject.program, state, scratch).is_empty() => continue,
+            None if run.next().is_ok() => continue,
             None => monitor.finish(),
         };
         return match reading {
@@ -274,6 +256,7 @@ fn in_continuous_time(
             _ => String::new(),
         };
     }
+    let state = run.state();
     let time = words::quantity(state.clocks.now[0], "s");
     let busiest = busiest(&subject.program, state);
     let said = if enough < subject.most_jumps {

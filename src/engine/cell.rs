@@ -1,5 +1,8 @@
 //! What one trial yields for one column.
 
+use crate::base::random::TrialKey;
+use crate::kernel::Address;
+
 /// What a column came to in one trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reading {
@@ -50,6 +53,12 @@ pub struct Item {
 }
 
 impl Item {
+    /// Its address under a seed.
+    pub(super) fn address(self, seed: u64) -> Address<'static> {
+        let key = TrialKey { seed, index: self.index, branch: 0 };
+        Address { key, advice: self.advice, changes: &[] }
+    }
+
     /// Trials in a row, nobody advised.
     pub(super) fn run(from: u64, count: u64) -> Vec<Self> {
         Self::row(from, count).collect()

@@ -5,9 +5,9 @@
 
 use super::budget::Budget;
 use super::cell::{Block, Cell, Item};
+use super::columns::Finished;
 use super::runner::Runner;
 use super::subject::Subject;
-use super::worker::Finished;
 use crate::base::lanes::LANES;
 use crate::logic::Invalid;
 use std::sync::Mutex;
@@ -124,7 +124,7 @@ pub struct Job<'s> {
     pub columns: Vec<usize>,
     /// Seed of all random numbers.
     pub seed: u64,
-    workers: Mutex<Vec<Runner>>,
+    workers: Mutex<Vec<Runner<'s>>>,
     /// Room of rounds that were read.
     room: Mutex<Vec<Cells>>,
     /// Steps made so far, of all trials, consumed or not.
@@ -168,7 +168,7 @@ impl<'s> Job<'s> {
         }
     }
 
-    fn worker(&self) -> Result<Runner, Invalid> {
+    fn worker(&self) -> Result<Runner<'s>, Invalid> {
         let warm = self.workers.lock().ok().and_then(|mut list| list.pop());
         match warm {
             Some(worker) if worker.serves(&self.columns) => Ok(worker),
@@ -176,7 +176,7 @@ impl<'s> Job<'s> {
         }
     }
 
-    fn keep(&self, mut worker: Runner) {
+    fn keep(&self, mut worker: Runner<'s>) {
         self.steps.fetch_add(worker.take_steps(), Ordering::Relaxed);
         if let Ok(mut list) = self.workers.lock() {
             list.push(worker);
@@ -223,13 +223,13 @@ impl Executor for Threads {
             let mut worker = job.worker()?;
             while worker.takes_blocks() {
                 let Some(mut block) = blocks.lock().ok().and_then(|mut blocks| blocks.next()) else { break };
-                worker.run_block(job.subject, job.seed, &mut block, budget);
+                worker.run_block(job.seed, &mut block, budget);
             }
             let mut take = || {
                 let place = next.fetch_add(1, Ordering::Relaxed);
                 items.get(place).map(|item| (place, *item))
             };
-            let finished = worker.run(job.subject, job.seed, &mut take, budget);
+            let finished = worker.run(job.seed, &mut take, budget);
             job.keep(worker);
             Ok(finished)
         };

@@ -19,7 +19,6 @@ const MOST_COLUMNS: usize = 64;
 
 /// Trials of one process.
 pub(super) struct Leaper {
-    columns: Vec<usize>,
     glances: Vec<Glance>,
     /// What each state is for the columns, state by state.
     sorts: Vec<Sort>,
@@ -62,21 +61,7 @@ impl Leaper {
                 stirs[place as usize] |= u64::from(sort.goal || !sort.hold) << k;
             }
         }
-        Some(Self {
-            columns: columns.to_vec(),
-            glances,
-            sorts,
-            stirs,
-            leaps: None,
-            open: Vec::new(),
-            rounds: 0,
-            steps: 0,
-        })
-    }
-
-    /// Whether it observes just these columns.
-    pub(super) fn serves(&self, columns: &[usize]) -> bool {
-        self.columns == columns
+        Some(Self { glances, sorts, stirs, leaps: None, open: Vec::new(), rounds: 0, steps: 0 })
     }
 
     /// Runs the trials of a block; the budget may say stop, then unfinished ones are dropped.
@@ -88,7 +73,7 @@ impl Leaper {
         };
         let (_, leaps) = self.leaps.insert((seed, leaps));
         chain.begin(leaps, block.items.iter().map(|item| item.index));
-        let width = self.columns.len();
+        let width = self.glances.len();
         let all = u64::MAX >> (MOST_COLUMNS - width);
         self.open.clear();
         self.open.extend((0..block.items.len() as u32).map(|slot| (slot, all)));

@@ -1,11 +1,14 @@
 //! Floor 5: trials, executors, and the outcomes of queries.
 
 mod answer;
+mod batch;
 mod blame;
 pub mod budget;
 mod call;
 mod cause;
 pub mod cell;
+mod checkpoints;
+mod columns;
 mod contrast;
 mod culprits;
 mod decider;
@@ -16,11 +19,9 @@ mod flaw;
 mod forecast;
 mod grounds;
 mod instance;
-mod jumper;
 mod leaper;
 mod method;
 mod observer;
-mod onlooker;
 pub mod outcome;
 mod procedure;
 mod race;
@@ -41,7 +42,6 @@ mod walker;
 mod watch;
 mod witness;
 mod words;
-mod worker;
 
 pub use budget::Budget;
 pub use call::Call;

@@ -86,8 +86,8 @@ pub struct QueryResult {
     pub verdict: Option<Verdict>,
     /// The certified statement in words.
     pub certifies: String,
-    /// `the horizon of 30 s` where a formula has no bound of its own.
-    pub within: Option<String>,
+    /// The horizon with its unit, `30 s`, where a formula has no bound of its own.
+    pub horizon: Option<String>,
     /// The estimate; `None` where there is none (nothing was sampled), infinite where it lies beyond the horizon. Of a `compare`
     /// the difference, of a `rank` the score of the choice.
     pub estimate: Option<f64>,
@@ -149,7 +149,7 @@ impl QueryResult {
             settings: Vec::new(),
             verdict: None,
             certifies: String::new(),
-            within: None,
+            horizon: None,
             estimate: None,
             low: f64::NEG_INFINITY,
             high: f64::INFINITY,

@@ -1,18 +1,16 @@
-//! What decided a trial in continuous time: it is run again, first to see when it was decided, then to see what
-//! changed there, or how long it had been as it was.
-//!
-//! A monitor knows only later that an earlier moment decided, so one run would have to keep all that happened in between.
+//! What decided a trial in continuous time: it is run again to see when it was decided, and what changed there, or how long it
+//! had been as it was.
 
 use super::answer::waits;
 use super::budget::Budget;
+use super::checkpoints::Checkpoints;
 use super::grounds::{Asked, copies, each, grounds};
 use super::subject::Subject;
 use super::words;
-use crate::base::instant::Instant;
 use crate::base::random::TrialKey;
 use crate::compile::study::{Part, Root};
-use crate::kernel::process::{Sight, View};
-use crate::kernel::{Scratch, State, dynamics, start};
+use crate::kernel::process::Sight;
+use crate::kernel::{End, Run, State};
 use crate::logic::{Reading, open_atoms};
 use crate::model::{AgentId, Bool, Set};
 use std::sync::Arc;
@@ -22,26 +20,19 @@ const NAMED: usize = 3;
 /// Most conditions that are told apart of those that the atoms are made of.
 const MOST_PARTS: usize = 1_000;
 /// Jumps between two looks at the clock.
-const CLOCK_EVERY: u32 = 1 << 12;
+const CLOCK_EVERY: u64 = 1 << 12;
+/// Most moments that are kept of a trial.
+const MOST_KEPT: usize = 64;
 
 /// When a trial was decided, s, the value of a metric, SI, and what decided it; in words, empty where it was time
 /// alone. `unit` is that of a metric. None where the time is over.
 pub(super) fn decision(
     subject: &Subject,
     column: usize,
-    trial: (u64, u64),
+    (index, seed): (u64, u64),
     unit: &str,
     budget: &Budget,
 ) -> Option<(f64, Option<f64>, String)> {
-    let mut monitor = subject.signal_monitor(column).ok()?;
-    let more = |now: Instant, atoms: &[bool], signals: &[f64]| monitor.jump(now, atoms, signals).is_none();
-    if run(subject, &subject.view(&[column]), trial, budget, more)? {
-        monitor.finish();
-    }
-    let at = monitor.decided_at();
-    let horizon = subject.program.scenario.clock.seconds(subject.horizon);
-    // Monitors round times of jumps by less than this, some units in the last place.
-    let slack = 1e-15 * horizon;
     let (tree, clock) = (&subject.tree, subject.program.scenario.clock);
     let used = match subject.columns[column] {
         Root::Formula(root) => match open_atoms(tree, root, subject.horizon, clock).ok()? {
@@ -52,8 +43,47 @@ pub(super) fn decision(
     };
     let parts = parts(subject, &used);
     let view = subject.view_beside(column, &parts);
-    let mut past = Past { at: at + slack, parts, ..Past::default() };
-    run(subject, &view, trial, budget, |now, atoms, signals| past.see(now.seconds, atoms, signals))?;
+    let mut past = Past { at: f64::INFINITY, parts, ..Past::default() };
+    // A monitor knows only later that an earlier moment decided: from what is kept, that moment is made again.
+    let mut kept: Checkpoints<(State, Past)> = Checkpoints::new(MOST_KEPT);
+    let mut monitor = subject.signal_monitor(column).ok()?;
+    let (mut run, _) = Run::of(&subject.program, TrialKey { seed, index, branch: 0 }.into()).ok()?;
+    let mut sight = Sight::default();
+    for jumps in 0.. {
+        if jumps % CLOCK_EVERY == CLOCK_EVERY - 1 && budget.is_late() {
+            return None;
+        }
+        let state = run.state();
+        view.look(state, &mut sight);
+        let (atoms, signals) = view.of(state, &mut sight, 0);
+        let now = state.clocks.instant(0);
+        if monitor.jump(now, atoms, signals).is_some() {
+            break;
+        }
+        past.see(now.seconds, atoms, signals);
+        kept.offer(jumps, || (state.clone(), past.clone()));
+        match run.next() {
+            Ok(_) => {}
+            Err(End::Horizon) => {
+                monitor.finish();
+                break;
+            }
+            Err(_) => break,
+        }
+    }
+    let at = monitor.decided_at();
+    let horizon = clock.seconds(subject.horizon);
+    // Monitors round times of jumps by less than this, some units in the last place.
+    let slack = 1e-15 * horizon;
+    let (_, (state, past)) = kept.last(|_, (_, past)| past.last <= at + slack)?;
+    let (mut run, mut past) = (Run::from_state(&subject.program, state), Past { at: at + slack, ..past });
+    while let Ok(state) = run.next() {
+        view.look(state, &mut sight);
+        let (atoms, signals) = view.of(state, &mut sight, 0);
+        if !past.see(state.clocks.instant(0).seconds, atoms, signals) {
+            break;
+        }
+    }
     // The time of the row that shows it.
     let at = if (at - past.last).abs() <= slack { past.last } else { at };
     // Only a time that does not come lies beyond the horizon, and that is known only there.
@@ -88,36 +118,6 @@ pub(super) fn decision(
     }
 }
 
-/// Runs a trial of this number and seed and shows each state, while `more` of it is wanted; whether it has come to its
-/// end. None where it cannot start, or where the time is over.
-fn run(
-    subject: &Subject,
-    view: &View,
-    (index, seed): (u64, u64),
-    budget: &Budget,
-    mut more: impl FnMut(Instant, &[bool], &[f64]) -> bool,
-) -> Option<bool> {
-    let program = &subject.program;
-    let (mut state, mut scratch) = (State::new(program.layout, 0), Scratch::new());
-    let mut sight = Sight::default();
-    start::load(program, &mut state, 0, TrialKey { seed, index, branch: 0 }, None).ok()?;
-    let mut jumps = 0u32;
-    loop {
-        view.look(&state, &mut sight);
-        let (atoms, signals) = view.of(&state, &mut sight, 0);
-        if !more(state.clocks.instant(0), atoms, signals) || !state.faulty.is_empty() {
-            return Some(false);
-        }
-        jumps = jumps.wrapping_add(1);
-        if jumps.is_multiple_of(CLOCK_EVERY) && budget.is_late() {
-            return None;
-        }
-        if dynamics::jump(program, &mut state, &mut scratch).is_empty() {
-            return Some(true);
-        }
-    }
-}
-
 /// How a condition is told: as it is, or how long it has been so, from a time on if it was ever another.
 #[derive(Clone, Copy)]
 enum Told {
@@ -126,7 +126,7 @@ enum Told {
 }
 
 /// What was known at a moment.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Past {
     /// The moment, s.
     at: f64,

@@ -5,7 +5,7 @@ use crate::base::lanes::{LANES, Mask};
 use crate::base::tick::{Clock, Tick};
 use crate::compile::study::{Origins, Root, Study, Texts, World};
 use crate::kernel::process::View;
-use crate::kernel::{Code, Program, Readings};
+use crate::kernel::{Code, Program, Readings, Run};
 use crate::logic::{
     AtomId, Invalid, Monitor, Needs, Node, NodeId, Part, Robustness, SignalId, SignalMonitor,
     SignalRobustness, Tree, leaves,
@@ -44,8 +44,9 @@ pub struct Subject {
 /// Code and monitors for some columns of a subject. Columns whose atoms can lack a value stand alone, so
 /// that the outcome of one never depends on which others are observed.
 pub(super) struct Sheet {
-    /// Code that reads the atoms and signals of these columns.
-    pub(super) code: Code,
+    /// Code that reads the atoms and signals of these columns, and what it read last.
+    code: Code,
+    pub(super) readings: Readings,
     /// Places of the columns in the request.
     pub(super) places: Vec<usize>,
     /// One a column.
@@ -57,14 +58,23 @@ pub(super) struct Sheet {
 }
 
 impl Sheet {
-    /// The lanes in which something is looked at in the present state that has no value there.
-    pub(super) fn lost(&self, readings: &Readings, ticks: &[u64; LANES]) -> Mask {
-        lost(&self.needs, readings, ticks)
+    /// A trial begins in a lane.
+    pub(super) fn start(&mut self, lane: usize) {
+        for observer in &mut self.observers {
+            observer.start(lane);
+        }
+    }
+
+    /// Reads the present states. The lanes in which something that is looked at has no value: there nothing more can be said.
+    pub(super) fn read(&mut self, run: &Run<'_>) -> Mask {
+        let close = if self.code.asks_who_is_near() { run.close() } else { None };
+        run.read(&self.code, close, &mut self.readings);
+        lost(&self.needs, &self.readings, &run.state().ticks)
     }
 }
 
 /// The lanes in which something is needed at their ticks that has no value.
-pub(super) fn lost(needs: &Needs, readings: &Readings, ticks: &[u64; LANES]) -> Mask {
+fn lost(needs: &Needs, readings: &Readings, ticks: &[u64; LANES]) -> Mask {
     let mut lost = Mask::NONE;
     let (atoms, signals) = &readings.missing;
     for (place, lanes) in atoms.iter().enumerate() {
@@ -276,16 +286,23 @@ impl Subject {
         } else {
             vec![(0..columns.len()).collect()]
         };
-        groups
-            .into_iter()
-            .map(|places| {
-                let chosen: Vec<usize> = places.iter().map(|&p| columns[p]).collect();
-                let observers = chosen.iter().map(|&c| self.observer(c)).collect::<Result<Vec<_>, _>>()?;
-                let follows = chosen.iter().map(|&column| self.follows(column)).collect();
-                let (code, needs) = (self.code(&chosen), self.needs(&chosen)?);
-                Ok(Sheet { code, places, observers, follows, needs })
-            })
-            .collect()
+        let of = |places: Vec<usize>| {
+            let chosen: Vec<usize> = places.iter().map(|&p| columns[p]).collect();
+            Ok(Sheet { places, ..self.sheet(&chosen)? })
+        };
+        groups.into_iter().map(of).collect()
+    }
+
+    /// One sheet for all of some columns.
+    pub(super) fn sheet(&self, columns: &[usize]) -> Result<Sheet, Invalid> {
+        Ok(Sheet {
+            code: self.code(columns),
+            readings: Readings::default(),
+            places: (0..columns.len()).collect(),
+            observers: columns.iter().map(|&column| self.observer(column)).collect::<Result<_, _>>()?,
+            follows: columns.iter().map(|&column| self.follows(column)).collect(),
+            needs: self.needs(columns)?,
+        })
     }
 }
 

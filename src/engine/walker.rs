@@ -40,7 +40,6 @@ const ANY: u8 = 4;
 
 /// Trials on a chain.
 pub(super) struct Walker {
-    columns: Vec<usize>,
     flats: Vec<Flat>,
     /// By state.
     sorts: Vec<Sorts>,
@@ -122,7 +121,6 @@ impl Walker {
         let class = |sorts: &Sorts| ANY | some(sorts.goal, GOAL) | some(sorts.stop, STOP);
         let classes = sorts.iter().map(class).collect();
         flats.iter().enumerate().all(waits).then(|| Self {
-            columns: columns.to_vec(),
             flats,
             sorts,
             classes,
@@ -131,11 +129,6 @@ impl Walker {
             rounds: 0,
             steps: 0,
         })
-    }
-
-    /// Whether it observes just these columns.
-    pub(super) fn serves(&self, columns: &[usize]) -> bool {
-        self.columns == columns
     }
 
     /// Runs the trials of a block; the budget may say stop, then unfinished ones are dropped.
@@ -147,7 +140,7 @@ impl Walker {
         };
         let (_, walk) = self.walk.insert((seed, walk));
         chain.begin(walk, block.items.iter().map(|item| item.index));
-        let all = STILL | (STILL - 1) >> (MOST_COLUMNS - self.columns.len());
+        let all = STILL | (STILL - 1) >> (MOST_COLUMNS - self.flats.len());
         self.open.clear();
         self.open.resize(block.items.len(), all);
         let columns = |is: &dyn Fn(&Flat) -> bool| {

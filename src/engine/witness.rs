@@ -5,16 +5,17 @@ use super::blame;
 use super::budget::Budget;
 use super::call::Call;
 use super::cell::Reading;
+use super::checkpoints::Checkpoints;
 use super::observer::Observer;
 use super::outcome::{Shows, Witness};
 use super::recall;
-use super::subject::{Subject, lost};
+use super::subject::Subject;
 use super::tally::Tally;
 use crate::base::lanes::Mask;
 use crate::base::random::TrialKey;
 use crate::base::tick::{Clock, Tick};
 use crate::compile::study::{Root, Sought};
-use crate::kernel::{Readings, Scratch, State, dynamics, start};
+use crate::kernel::{Address, Run};
 
 /// The trials that show why a measure of truth values came out as it did.
 pub(super) fn sides(tally: &Tally) -> Vec<(Shows, u64)> {
@@ -68,73 +69,65 @@ fn witness(
         let (time, value, what) = recall::decision(subject, column, (trial, call.seed), dimension, budget)?;
         return Some(Witness { shows, trial, value, time, unit, what, decider: None, command });
     }
-    let code = subject.code(&[column]);
-    let mut observer = subject.observer(column).ok()?;
+    let mut sheet = subject.sheet(&[column]).ok()?;
     // Where a robustness leaves its range a trial ends; here it is shown what it is, if the trial goes on so long.
     let mut clipped = None;
-    if let Observer::Robustness(_, Sought::Clipped(..)) = &observer {
-        clipped = subject.observer(column).ok();
-    }
-    if let (Some(_), Observer::Robustness(_, sought)) = (&clipped, &mut observer) {
+    if let Observer::Robustness(_, sought @ Sought::Clipped(..)) = &mut sheet.observers[0] {
         *sought = Sought::Value;
+        clipped = subject.observer(column).ok();
     }
     // When it left its range.
     let mut left = None;
-    let follows = subject.follows(column);
-    let needs = subject.needs(&[column]).ok()?;
-    let mut state = State::new(program.layout, program.scenario.agents.len());
-    let mut scratch = Scratch::new();
-    let mut readings = Readings::default();
     let key = TrialKey { seed: call.seed, index: trial, branch: 0 };
-    start::load(program, &mut state, 0, key, advice).ok()?;
+    let (mut run, _) = Run::of(program, Address { advice, ..key.into() }).ok()?;
     let lane = Mask::lane(0);
-    dynamics::refresh(program, &mut state, &mut scratch, lane);
-    observer.start(0);
+    sheet.start(0);
     if let Some(clipped) = &mut clipped {
         clipped.start(0);
     }
     let mut record = blame::Record::default();
-    let mut states: Vec<State> = Vec::new();
-    let kept = if program.scenario.agents.len() <= LARGEST_KEPT { KEPT } else { 0 };
+    let most = MOST_KEPT.min(MOST_AGENTS_KEPT / program.scenario.agents.len().max(1));
+    let mut kept = Checkpoints::new(most);
     loop {
-        code.run(program, &state, &mut readings);
-        let queues = &state.queues;
-        let is_over = || {
-            let gone = follows && queues.reused.has(0);
-            let over = state.faulty | state.diverged | queues.full | lost(&needs, &readings, &state.ticks);
-            gone || over.has(0)
-        };
-        if clipped.is_some() && is_over() {
+        let state = run.state();
+        let lost = sheet.read(&run).has(0) || (sheet.follows[0] && state.queues.reused.has(0));
+        if clipped.is_some() && (lost || run.ended().has(0)) {
             let seconds = |tick: u64| program.scenario.clock.seconds(Tick(tick));
             let end = seconds(state.ticks[0]);
             let what = format!("outside of its range, nobody knows how far: the trial ends at {end} {unit}");
             let time = left.map_or(end, seconds);
             return Some(Witness { shows, trial, value: None, time, unit, what, decider: None, command });
         }
-        observer.observe(lane, &readings);
+        let readings = &sheet.readings;
+        sheet.observers[0].observe(lane, readings);
         if let Some(clipped) = clipped.as_mut().filter(|_| left.is_none()) {
-            clipped.observe(lane, &readings);
+            clipped.observe(lane, readings);
             left = clipped.decided().has(0).then(|| state.ticks[0]);
         }
-        record.push(&readings);
-        if states.len() < kept {
-            states.push(state.clone());
-        }
-        if observer.decided().has(0) || state.ticks[0] >= subject.horizon.0 || !state.diverged.is_empty() {
+        record.push(readings);
+        kept.offer(state.ticks[0], || state.clone());
+        if sheet.observers[0].decided().has(0) {
             break;
         }
         if budget.is_late() {
             return None;
         }
-        dynamics::step(program, &mut state, &mut scratch);
+        if run.next().is_err() {
+            break;
+        }
     }
+    let observer = &sheet.observers[0];
     let state_at = |tick: Tick| {
-        // States beyond those kept are made again.
-        states.get(tick.0 as usize).cloned().or_else(|| replay(subject, key, advice, tick.0))
+        let (_, state) = kept.last(|number, _| number <= tick.0)?;
+        let mut run = Run::from_state(program, state);
+        while run.state().ticks[0] < tick.0 {
+            run.next().ok()?;
+        }
+        Some(run.state().clone())
     };
-    let now = Tick(state.ticks[0]);
+    let now = Tick(run.state().ticks[0]);
     let mut decider = None;
-    let (value, at, what) = match (subject.columns[column], &observer) {
+    let (value, at, what) = match (subject.columns[column], observer) {
         (Root::Formula(_), Observer::Formula(monitor)) if record.is_full() => {
             (None, Tick(monitor.decided_at()[0]), String::new())
         }
@@ -171,20 +164,6 @@ fn witness(
     Some(Witness { shows, trial, value, time, unit, what, decider, command })
 }
 
-/// States kept while a witness is run; those of large crowds are made again instead.
-const KEPT: usize = 64;
-/// Agents above which no states are kept.
-const LARGEST_KEPT: usize = 256;
-
-/// The state of a trial at a tick.
-fn replay(subject: &Subject, key: TrialKey, advice: Option<(usize, usize)>, tick: u64) -> Option<State> {
-    let program = &subject.program;
-    let mut state = State::new(program.layout, program.scenario.agents.len());
-    let mut scratch = Scratch::new();
-    start::load(program, &mut state, 0, key, advice).ok()?;
-    dynamics::refresh(program, &mut state, &mut scratch, Mask::lane(0));
-    for _ in 0..tick {
-        dynamics::step(program, &mut state, &mut scratch);
-    }
-    Some(state)
-}
+/// Most states that are kept of a trial, and that number times that of agents.
+const MOST_KEPT: usize = 64;
+const MOST_AGENTS_KEPT: usize = 1 << 17;

@@ -38,7 +38,7 @@ use crate::base::random::TrialKey;
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
 
-use crate::model::TOP_SPEED;
+use crate::model::{Parameter, TOP_SPEED};
 
 /// Room to work, and what can be kept from one step to the next of one batch. It holds no part of the state, and a fresh
 /// one after `refresh` changes no bit.
@@ -97,8 +97,8 @@ impl Scratch {
     pub fn close(&self, state: &State) -> Option<Close<'_>> {
         let same = state.layout == Layout::Agents
             && self.seen == Some((state.keys[0], state.ticks[0]))
-            && same_bits(&self.seen_x, &state.x)
-            && same_bits(&self.seen_y, &state.y);
+            && same_bits(&self.seen_x, &state.motion.x)
+            && same_bits(&self.seen_y, &state.motion.y);
         let edge = self.cells.edge();
         (same && edge > f64::NEG_INFINITY).then(|| Close { pairs: self.contacts.pairs(), edge })
     }
@@ -112,24 +112,25 @@ pub fn refresh(program: &Program, state: &mut State, scratch: &mut Scratch, lane
         return;
     }
     let dt = program.dt;
-    for block in 0..state.x.len() {
-        for lane in slots(state.layout, lanes).iter() {
+    for block in 0..state.motion.x.len() {
+        for lane in state.layout.slots_of(lanes).iter() {
             prepare(state, dt, Slot { block, lane });
         }
     }
     scratch.lanewise.forget();
     dispatch!(scratch.level, simd => {
         find_forces(simd, program, state, scratch);
-        keep_forces(simd, state, scratch, slots(state.layout, lanes));
+        keep_forces(simd, state, scratch, state.layout.slots_of(lanes));
     });
 }
 
 /// Works out what follows from the parameters of a slot.
 pub(super) fn prepare(state: &mut State, dt: f64, Slot { block, lane }: Slot) {
-    let decay = math::exp(-dt / state.tau[block].0[lane]);
-    state.decay[block].0[lane] = decay;
-    state.kick[block].0[lane] = state.noise[block].0[lane] * (1.0 - decay * decay).sqrt();
-    state.push[block].0[lane] = 0.5 * dt / state.mass[block].0[lane];
+    let decay = math::exp(-dt / state.bodies[Parameter::Tau][block].0[lane]);
+    state.bodies.decay[block].0[lane] = decay;
+    state.bodies.kick[block].0[lane] =
+        state.bodies[Parameter::Noise][block].0[lane] * (1.0 - decay * decay).sqrt();
+    state.bodies.push[block].0[lane] = 0.5 * dt / state.bodies[Parameter::Mass][block].0[lane];
 }
 
 /// One step of all occupied lanes.
@@ -186,15 +187,6 @@ pub fn renew(
     program.processes.renew(program.layout, state, &mut scratch.processes, lane, from);
 }
 
-/// The slots of a block that belong to some lanes.
-fn slots(layout: Layout, lanes: Mask) -> Mask {
-    match layout {
-        Layout::Trials => lanes,
-        Layout::Agents if lanes.has(0) => Mask::ALL,
-        Layout::Agents => Mask::NONE,
-    }
-}
-
 #[inline(always)]
 fn find_forces<S: Simd>(simd: S, program: &Program, state: &State, scratch: &mut Scratch) {
     let Scratch { lanewise, cells, contacts, sums, seen_x, seen_y, seen, .. } = scratch;
@@ -202,8 +194,8 @@ fn find_forces<S: Simd>(simd: S, program: &Program, state: &State, scratch: &mut
         Layout::Trials => lanewise.forces(simd, program, state, sums, contacts),
         Layout::Agents => cells.forces(simd, program, state, sums, contacts),
     }
-    seen_x.clone_from(&state.x);
-    seen_y.clone_from(&state.y);
+    seen_x.clone_from(&state.motion.x);
+    seen_y.clone_from(&state.motion.y);
     *seen = Some((state.keys[0], state.ticks[0]));
 }
 
@@ -212,8 +204,8 @@ fn keep_forces<S: Simd>(simd: S, state: &mut State, scratch: &Scratch, lanes: Ma
     for (block, sum) in scratch.sums.iter().enumerate() {
         for part in parts(simd) {
             let here = part.mask(state.present[block] & lanes);
-            part.store_in(here, part.load(&sum.x), &mut state.fx[block]);
-            part.store_in(here, part.load(&sum.y), &mut state.fy[block]);
+            part.store_in(here, part.load(&sum.x), &mut state.motion.fx[block]);
+            part.store_in(here, part.load(&sum.y), &mut state.motion.fy[block]);
         }
     }
 }
@@ -226,11 +218,11 @@ fn same_bits(a: &[Lanes], b: &[Lanes]) -> bool {
 /// Kick, drift, driving and noise, drift.
 #[inline(always)]
 fn move_on<S: Simd>(simd: S, program: &Program, state: &mut State, scratch: &mut Scratch) {
-    if !(same_bits(&scratch.seen_x, &state.x) && same_bits(&scratch.seen_y, &state.y)) {
+    if !(same_bits(&scratch.seen_x, &state.motion.x) && same_bits(&scratch.seen_y, &state.motion.y)) {
         // This scratch last saw another batch.
         find_forces(simd, program, state, scratch);
     }
-    let occupied = slots(state.layout, state.occupied);
+    let occupied = state.layout.slots_of(state.occupied);
     scratch.moving.clear();
     scratch.moving.extend(state.present.iter().map(|&here| here & occupied));
     let mover = Mover { program, draws: Draws::at(state), half: 0.5 * program.dt };
@@ -319,14 +311,15 @@ impl Mover<'_> {
         words: Words<S>,
         (vx, vy): (Doubles<S>, Doubles<S>),
     ) -> (Doubles<S>, Doubles<S>) {
-        let (decay, drive) = (part.load(&state.decay[block]), part.load(&state.drive[block]));
-        let (wish_x, wish_y) = (drive * part.load(&state.ex[block]), drive * part.load(&state.ey[block]));
+        let (decay, drive) = (part.load(&state.bodies.decay[block]), part.load(&state.driving.speed[block]));
+        let (wish_x, wish_y) =
+            (drive * part.load(&state.driving.ex[block]), drive * part.load(&state.driving.ey[block]));
         let (vx, vy) = (wish_x + (vx - wish_x) * decay, wish_y + (vy - wish_y) * decay);
         if !self.program.forces.noisy {
             return (vx, vy);
         }
         let (nx, ny) = self.draws.normals(part, words);
-        let kick = part.load(&state.kick[block]);
+        let kick = part.load(&state.bodies.kick[block]);
         (vx + kick * nx, vy + kick * ny)
     }
 
@@ -343,22 +336,22 @@ impl Mover<'_> {
         let here = part.mask(moving);
         let half = part.c(self.half);
         let (vx, vy) = kicked(part, state, block);
-        let (x0, y0) = (part.load(&state.x[block]), part.load(&state.y[block]));
+        let (x0, y0) = (part.load(&state.motion.x[block]), part.load(&state.motion.y[block]));
         let (x, y) = (x0 + vx * half, y0 + vy * half);
         let (vx, vy) = self.driven(part, state, block, part.words(words), (vx, vy));
         let (x, y) = (x + vx * half, y + vy * half);
         travel(part, state, block, moving, (x - x0, y - y0));
-        part.store_in(here, x, &mut state.x[block]);
-        part.store_in(here, y, &mut state.y[block]);
-        part.store_in(here, vx, &mut state.vx[block]);
-        part.store_in(here, vy, &mut state.vy[block]);
+        part.store_in(here, x, &mut state.motion.x[block]);
+        part.store_in(here, y, &mut state.motion.y[block]);
+        part.store_in(here, vx, &mut state.motion.vx[block]);
+        part.store_in(here, vy, &mut state.motion.vy[block]);
     }
 
     #[inline(always)]
     fn contact<S: Simd>(&self, simd: S, state: &mut State, scratch: &mut Scratch) {
         let Scratch { contacts, moved, .. } = scratch;
         moved.clear();
-        moved.resize(state.x.len(), Mask::NONE);
+        moved.resize(state.motion.x.len(), Mask::NONE);
         simd.vectorize(
             #[inline(always)]
             || contacts.advance(simd, self.program, state, moved, self.half),
@@ -368,10 +361,10 @@ impl Mover<'_> {
     #[inline(always)]
     fn drift<S: Simd>(&self, part: Part<S>, state: &mut State, block: usize, free: Mask) {
         let (free, half) = (part.mask(free), part.c(self.half));
-        let x = part.load(&state.x[block]) + part.load(&state.vx[block]) * half;
-        let y = part.load(&state.y[block]) + part.load(&state.vy[block]) * half;
-        part.store_in(free, x, &mut state.x[block]);
-        part.store_in(free, y, &mut state.y[block]);
+        let x = part.load(&state.motion.x[block]) + part.load(&state.motion.vx[block]) * half;
+        let y = part.load(&state.motion.y[block]) + part.load(&state.motion.vy[block]) * half;
+        part.store_in(free, x, &mut state.motion.x[block]);
+        part.store_in(free, y, &mut state.motion.y[block]);
     }
 
     #[inline(always)]
@@ -384,10 +377,10 @@ impl Mover<'_> {
         words: &[u64; LANES],
     ) {
         self.drift(part, state, block, moving & !moved);
-        let v = (part.load(&state.vx[block]), part.load(&state.vy[block]));
+        let v = (part.load(&state.motion.vx[block]), part.load(&state.motion.vy[block]));
         let (vx, vy) = self.driven(part, state, block, part.words(words), v);
-        part.store_in(part.mask(moving), vx, &mut state.vx[block]);
-        part.store_in(part.mask(moving), vy, &mut state.vy[block]);
+        part.store_in(part.mask(moving), vx, &mut state.motion.vx[block]);
+        part.store_in(part.mask(moving), vy, &mut state.motion.vy[block]);
     }
 
     #[inline(always)]
@@ -400,8 +393,8 @@ impl Mover<'_> {
         (x0, y0): (&Lanes, &Lanes),
     ) {
         self.drift(part, state, block, moving & !moved);
-        let dx = part.load(&state.x[block]) - part.load(x0);
-        let dy = part.load(&state.y[block]) - part.load(y0);
+        let dx = part.load(&state.motion.x[block]) - part.load(x0);
+        let dy = part.load(&state.motion.y[block]) - part.load(y0);
         travel(part, state, block, moving, (dx, dy));
     }
 }
@@ -409,10 +402,10 @@ impl Mover<'_> {
 /// Velocities after half a kick.
 #[inline(always)]
 fn kicked<S: Simd>(part: Part<S>, state: &State, block: usize) -> (Doubles<S>, Doubles<S>) {
-    let push = part.load(&state.push[block]);
+    let push = part.load(&state.bodies.push[block]);
     (
-        part.load(&state.vx[block]) + part.load(&state.fx[block]) * push,
-        part.load(&state.vy[block]) + part.load(&state.fy[block]) * push,
+        part.load(&state.motion.vx[block]) + part.load(&state.motion.fx[block]) * push,
+        part.load(&state.motion.vy[block]) + part.load(&state.motion.fy[block]) * push,
     )
 }
 
@@ -420,8 +413,8 @@ fn kicked<S: Simd>(part: Part<S>, state: &State, block: usize) -> (Doubles<S>, D
 #[inline(always)]
 fn kick<S: Simd>(part: Part<S>, state: &mut State, block: usize, moving: Mask) {
     let (vx, vy) = kicked(part, state, block);
-    part.store_in(part.mask(moving), vx, &mut state.vx[block]);
-    part.store_in(part.mask(moving), vy, &mut state.vy[block]);
+    part.store_in(part.mask(moving), vx, &mut state.motion.vx[block]);
+    part.store_in(part.mask(moving), vy, &mut state.motion.vy[block]);
 }
 
 /// Adds to the ways gone.
@@ -433,27 +426,27 @@ fn travel<S: Simd>(
     moving: Mask,
     (dx, dy): (Doubles<S>, Doubles<S>),
 ) {
-    let way = part.load(&state.travelled[block]) + (dx * dx + dy * dy).sqrt();
-    part.store_in(part.mask(moving), way, &mut state.travelled[block]);
+    let way = part.load(&state.motion.travelled[block]) + (dx * dx + dy * dy).sqrt();
+    part.store_in(part.mask(moving), way, &mut state.motion.travelled[block]);
 }
 
 /// The slow force at the new positions, half a kick by it, and a look at what came out.
 #[inline(always)]
 fn finish<S: Simd>(simd: S, program: &Program, state: &mut State, scratch: &mut Scratch) {
     find_forces(simd, program, state, scratch);
-    let occupied = slots(state.layout, state.occupied);
+    let occupied = state.layout.slots_of(state.occupied);
     keep_forces(simd, state, scratch, occupied);
     let mut diverged = Mask::NONE;
-    for block in 0..state.x.len() {
+    for block in 0..state.motion.x.len() {
         // Someone who has just entered has not made this step.
         let moving = state.present[block] & scratch.moving[block];
         for part in parts(simd) {
             let here = part.mask(moving);
             let (vx, vy) = kicked(part, state, block);
-            part.store_in(here, vx, &mut state.vx[block]);
-            part.store_in(here, vy, &mut state.vy[block]);
+            part.store_in(here, vx, &mut state.motion.vx[block]);
+            part.store_in(here, vy, &mut state.motion.vy[block]);
             // Zero times a position is no number where the position is none or infinite.
-            let (x, y) = (part.load(&state.x[block]), part.load(&state.y[block]));
+            let (x, y) = (part.load(&state.motion.x[block]), part.load(&state.motion.y[block]));
             let square = vx * vx + vy * vy + (x + y) * part.c(0.0);
             let sound = square.simd_le(part.c(TOP_SPEED * TOP_SPEED));
             diverged |= part.bits(here & !sound);

@@ -17,6 +17,7 @@ use crate::base::geometry::{Bounds, Vec2};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::math::at_least;
 use crate::base::random::TrialKey;
+use crate::model::Parameter;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use std::f64::consts::LOG2_E;
@@ -170,21 +171,37 @@ impl Lanewise {
         for (i, drive) in self.drives.iter_mut().enumerate() {
             for part in parts(simd) {
                 let of = |field: &[Lanes]| part.load(&field[i]);
-                part.store((of(&state.mass) * of(&state.speed) / of(&state.tau)).abs(), drive);
+                part.store(
+                    (of(&state.bodies[Parameter::Mass]) * of(&state.bodies[Parameter::Speed])
+                        / of(&state.bodies[Parameter::Tau]))
+                    .abs(),
+                    drive,
+                );
             }
         }
         for (i, walker) in self.walkers.iter_mut().enumerate() {
-            walker.x = state.x[i];
-            walker.y = state.y[i];
+            walker.x = state.motion.x[i];
+            walker.y = state.motion.y[i];
             for part in parts(simd) {
                 let here = part.mask(state.present[i] & state.occupied);
-                let radius = here.select(part.load(&state.radius[i]), part.c(f64::NEG_INFINITY));
+                let radius =
+                    here.select(part.load(&state.bodies[Parameter::Radius][i]), part.c(f64::NEG_INFINITY));
                 part.store(radius, &mut walker.r);
-                let e = (&state.ex[i], &state.ey[i]);
+                let e = (&state.driving.ex[i], &state.driving.ey[i]);
                 let own = forces.shared.is_none();
-                walker.term.fill(part, (&state.a[i], &state.lambda[i]), own.then_some(&state.b[i]), e);
+                walker.term.fill(
+                    part,
+                    (&state.bodies[Parameter::A][i], &state.bodies[Parameter::Lambda][i]),
+                    own.then_some(&state.bodies[Parameter::B][i]),
+                    e,
+                );
                 if let Some(second) = self.seconds.get_mut(i) {
-                    second.fill(part, (&state.a2[i], &state.lambda2[i]), own.then_some(&state.b2[i]), e);
+                    second.fill(
+                        part,
+                        (&state.bodies[Parameter::A2][i], &state.bodies[Parameter::Lambda2][i]),
+                        own.then_some(&state.bodies[Parameter::B2][i]),
+                        e,
+                    );
                 }
             }
         }
@@ -206,8 +223,8 @@ impl Lanewise {
         for part in parts(simd) {
             let mut farthest = part.c(0.0);
             for i in 0..state.agents {
-                let dx = part.load(&state.x[i]) - part.load(&old.x[i]);
-                let dy = part.load(&state.y[i]) - part.load(&old.y[i]);
+                let dx = part.load(&state.motion.x[i]) - part.load(&old.x[i]);
+                let dy = part.load(&state.motion.y[i]) - part.load(&old.y[i]);
                 farthest = larger::<S>(dx * dx + dy * dy, farthest);
             }
             if farthest.simd_gt(part.c(SLACK * SLACK)).any_true() {
@@ -222,8 +239,8 @@ impl Lanewise {
         let list = &mut self.neighbours;
         self.stale = false;
         list.keys = state.keys;
-        list.x.clone_from(&state.x);
-        list.y.clone_from(&state.y);
+        list.x.clone_from(&state.motion.x);
+        list.y.clone_from(&state.motion.y);
         list.present.clear();
         list.present.extend(state.present.iter().map(|&here| here & state.occupied));
         list.first.clear();
@@ -234,9 +251,9 @@ impl Lanewise {
         reaches.resize(state.agents, Lanes::ZERO);
         for (i, reach) in reaches.iter_mut().enumerate() {
             for part in parts(simd) {
-                let mut range = part.load(&state.b[i]);
+                let mut range = part.load(&state.bodies[Parameter::B][i]);
                 if forces.second {
-                    range = larger::<S>(range, part.load(&state.b2[i]));
+                    range = larger::<S>(range, part.load(&state.bodies[Parameter::B2][i]));
                 }
                 let far = larger::<S>(part.c(REACH) * range, part.c(forces.margin));
                 part.store(far + part.c(2.0 * SLACK), reach);
@@ -356,7 +373,7 @@ impl Lanewise {
             }
             for part in parts(simd) {
                 let (x, y, r) = (part.load(&walker.x), part.load(&walker.y), part.load(&walker.r));
-                let a = part.load(&state.a[i]);
+                let a = part.load(&state.bodies[Parameter::A][i]);
                 let rate = match forces.shared {
                     Some((b, _)) => part.c(LOG2_E / b),
                     None => part.load(&walker.term.rate),

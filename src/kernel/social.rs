@@ -115,7 +115,13 @@ pub(super) fn cohesion(forces: &Forces, state: &State, sums: &mut [Sum]) {
                 let slot = state.slot(member as usize, lane);
                 let here = state.present[slot.block].has(slot.lane);
                 here.then(|| {
-                    (slot, Vec2::new(state.x[slot.block].0[slot.lane], state.y[slot.block].0[slot.lane]))
+                    (
+                        slot,
+                        Vec2::new(
+                            state.motion.x[slot.block].0[slot.lane],
+                            state.motion.y[slot.block].0[slot.lane],
+                        ),
+                    )
                 })
             };
             let (mut n, mut sum) = (0.0, Vec2::zeros());

@@ -7,6 +7,7 @@
 use super::agent::{AgentId, Route};
 use super::expression::{Bool, Num};
 use super::law::Law;
+use super::parameter::Parameter;
 use std::sync::Arc;
 
 /// Index of a declared behaviour.
@@ -94,78 +95,6 @@ pub enum Trigger {
     After(Law),
     /// When this one of the attached conditions holds.
     When(u32),
-}
-
-/// A parameter that a state of a behaviour may change.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Parameter {
-    /// Driving speed, m/s.
-    Speed,
-    /// Relaxation time, s.
-    Tau,
-    /// Social force at touch, N.
-    A,
-    /// Its range, m.
-    B,
-    /// Weight of what is behind.
-    Lambda,
-    /// Second exponential term: force at touch, N.
-    A2,
-    /// Second exponential term: range, m.
-    B2,
-    /// Second exponential term: weight of what is behind.
-    Lambda2,
-    /// Standard deviation of each velocity component, m/s.
-    Noise,
-    /// Share of the social force that is felt, 0 to 1.
-    Attention,
-}
-
-impl Parameter {
-    /// All of them.
-    pub const ALL: [Self; 10] = [
-        Self::Speed,
-        Self::Tau,
-        Self::A,
-        Self::B,
-        Self::Lambda,
-        Self::A2,
-        Self::B2,
-        Self::Lambda2,
-        Self::Noise,
-        Self::Attention,
-    ];
-
-    /// Its name in a scenario.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Speed => "speed",
-            Self::Tau => "tau",
-            Self::A => "A",
-            Self::B => "B",
-            Self::Lambda => "lambda",
-            Self::A2 => "A2",
-            Self::B2 => "B2",
-            Self::Lambda2 => "lambda2",
-            Self::Noise => "noise",
-            Self::Attention => "attention",
-        }
-    }
-
-    /// The parameter of a name.
-    pub fn of(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|parameter| parameter.name() == name)
-    }
-
-    /// Whether someone can move with this value, SI units.
-    pub fn allows(self, value: f64) -> bool {
-        value.is_finite()
-            && match self {
-                Self::Tau | Self::B | Self::B2 => value > 0.0,
-                Self::Lambda | Self::Lambda2 | Self::Attention => (0.0..=1.0).contains(&value),
-                Self::Speed | Self::A | Self::A2 | Self::Noise => value >= 0.0,
-            }
-    }
 }
 
 impl Behaviours {

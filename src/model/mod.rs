@@ -9,6 +9,7 @@ mod lacking;
 pub mod law;
 pub mod mention;
 pub mod moves;
+pub mod parameter;
 pub mod process;
 pub mod scenario;
 pub mod scene;
@@ -16,11 +17,12 @@ pub mod source;
 
 pub use agent::{Agent, AgentId, Body, Goal, Group, Leg, Particle, Position, Route, Start, TOP_SPEED};
 pub use behaviour::{
-    Amount, Attached, Behaviour, BehaviourId, Behaviours, Conduct, Mode, Parameter, Transition, Trigger,
+    Amount, Attached, Behaviour, BehaviourId, Behaviours, Conduct, Mode, Transition, Trigger,
 };
 pub use expression::{Arithmetic, Axis, Bool, Comparison, Field, Fold, Function, Num, Place, Set, Who};
 pub use law::{Family, Law};
 pub use moves::{Move, Moves};
+pub use parameter::Parameter;
 pub use process::{Branch, Command, Domain, Process, Processes, Timing, Variable, VariableId};
 pub use scenario::Scenario;
 pub use scene::{Barrier, BarrierId, Obstacle, Region, RegionId, Scene};

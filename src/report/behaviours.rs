@@ -120,7 +120,10 @@ fn unit(parameter: Parameter) -> &'static str {
         Parameter::Speed | Parameter::Noise => "m/s",
         Parameter::Tau => "s",
         Parameter::A | Parameter::A2 => "N",
-        Parameter::B | Parameter::B2 => "m",
+        Parameter::Radius | Parameter::B | Parameter::B2 => "m",
+        Parameter::Mass => "kg",
+        Parameter::K1 => "kg/s^2",
+        Parameter::K2 => "kg/(m s)",
         Parameter::Lambda | Parameter::Lambda2 | Parameter::Attention => "",
     }
 }

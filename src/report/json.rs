@@ -24,7 +24,7 @@ pub fn object(run: &Run) -> Value {
     let inputs: Vec<Value> =
         run.inputs.iter().map(|(file, print)| json!({ "file": file, "hash": print.to_string() })).collect();
     let mut object = json!({
-        "schema": 1,
+        "schema": 2,
         "scenario": run.scenario,
         "seed": run.seed,
         "version": run.version,
@@ -82,7 +82,7 @@ fn result(result: &QueryResult) -> Value {
     put("kind", json!(result.kind.name()));
     put("verdict", json!(result.verdict.map(crate::engine::outcome::Verdict::name)));
     put("certifies", json!(result.certifies));
-    put("within", json!(result.within));
+    put("horizon", json!(result.horizon));
     put("estimate", maybe(result.estimate));
     put("low", number(result.low));
     put("high", number(result.high));

@@ -88,8 +88,10 @@ fn endless(result: &QueryResult) -> &'static str {
 
 /// The certified statement with the horizon it is conditional on; empty where nothing is certified.
 fn certified(result: &QueryResult) -> String {
-    match &result.within {
-        Some(within) if !result.certifies.is_empty() => format!("{}, within {within}", result.certifies),
+    match &result.horizon {
+        Some(horizon) if !result.certifies.is_empty() => {
+            format!("{}, within the horizon of {horizon}", result.certifies)
+        }
         _ => result.certifies.clone(),
     }
 }

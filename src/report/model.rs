@@ -29,8 +29,8 @@ pub fn describe(study: &Study) -> String {
             let _ = writeln!(out, "     {name} = {value}");
         }
         let _ = writeln!(out, "     {}", procedure(&query.ask));
-        if let Some(within) = &query.within {
-            let _ = writeln!(out, "     within {within}");
+        if let Some(horizon) = &query.horizon {
+            let _ = writeln!(out, "     within the horizon of {horizon}");
         }
     }
     out

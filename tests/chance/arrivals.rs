@@ -3,6 +3,7 @@
 use super::{Batch, HEAD, agent, answered, compiled, near, scenario};
 use smc::base::lanes::LANES;
 use smc::kernel::Layout;
+use smc::model::Parameter;
 
 /// Numbers of those who have come by 10 s.
 fn counts(every: &str, layout: Layout, trials: u64) -> Vec<f64> {
@@ -70,7 +71,7 @@ fn nobody_comes_in_on_top_of_somebody_and_those_without_room_wait() {
             let body = |k: usize| {
                 let slot = s.slot(k, 0);
                 let of = |field: &[smc::base::lanes::Lanes]| field[slot.block].0[slot.lane];
-                (of(&s.x), of(&s.y), of(&s.radius))
+                (of(&s.motion.x), of(&s.motion.y), of(&s.bodies[Parameter::Radius]))
             };
             for k in 0..scenario.agents.len() {
                 if batch.present(k, 0) && !before[k] {

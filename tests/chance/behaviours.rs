@@ -3,7 +3,7 @@
 use super::{Batch, HEAD, agent, answered, compiled, near, scenario};
 use smc::base::lanes::{LANES, Mask};
 use smc::kernel::Layout;
-use smc::model::Move;
+use smc::model::{Move, Parameter};
 
 const PHONE: &str = "behaviour phone {\n\
     state attentive { after exponential(8 s) -> looking }\n\
@@ -45,7 +45,8 @@ fn what_a_state_sets_never_compounds() {
         let lanes = batch.state.width();
         let read = |batch: &Batch, k: usize, lane: usize| {
             let (s, slot) = (&batch.state, batch.state.slot(k, lane));
-            [&s.speed, &s.a, &s.tau].map(|field| field[slot.block].0[slot.lane])
+            [&s.bodies[Parameter::Speed], &s.bodies[Parameter::A], &s.bodies[Parameter::Tau]]
+                .map(|field| field[slot.block].0[slot.lane])
         };
         let own: Vec<_> = (0..6 * lanes).map(|at| read(&batch, at % 6, at / 6)).collect();
         let mut turns = 0;
@@ -80,7 +81,7 @@ fn attention_scales_the_social_force() {
              agent b: adult {{ at = (0.8, 0.1)  radius = 0.3 m }}"
         );
         let batch = Batch::new(&scenario(&text), Layout::Trials, 0);
-        [batch.state.fx[0].0[0], batch.state.fx[1].0[0]]
+        [batch.state.motion.fx[0].0[0], batch.state.motion.fx[1].0[0]]
     };
     let (full, less, none) = (force("1"), force("0.25"), force("0"));
     assert!(full[0] < -50.0 && full[1] > 50.0, "{full:?}");
@@ -98,8 +99,8 @@ fn attention_scales_the_social_force() {
          agent b: adult {{ at = (0.8, 0.1)  radius = 0.3 m }}"
     );
     let batch = Batch::new(&scenario(&text), Layout::Trials, 0);
-    assert_eq!(batch.state.fx[0].0[0], 0.0);
-    assert_eq!(batch.state.fx[1].0[0].to_bits(), full[1].to_bits());
+    assert_eq!(batch.state.motion.fx[0].0[0], 0.0);
+    assert_eq!(batch.state.motion.fx[1].0[0].to_bits(), full[1].to_bits());
 }
 
 /// A user among others, with moves.
@@ -144,11 +145,11 @@ fn advice_is_heeded_as_often_as_it_says_and_alike_for_all_moves() {
             let mut batch = Batch::of(&scenario, Layout::Trials, trials, Some((0, option)));
             batch.step();
             stops.extend(
-                batch.state.ey[0]
+                batch.state.driving.ey[0]
                     .0
                     .map(|ey| ey.abs() > 0.3)
                     .iter()
-                    .zip(batch.state.drive[0].0)
+                    .zip(batch.state.driving.speed[0].0)
                     .map(|(turned, drive)| if option == 2 { drive == 0.0 } else { *turned }),
             );
         }
@@ -179,7 +180,7 @@ fn conditions_read_agents_processes_and_behaviours() {
         batch.step();
         let mode = batch.mode(0, 0, 3);
         modes.push(mode);
-        let (n, way) = (before.variables[0].0[3], before.travelled[0].0[3]);
+        let (n, way) = (before.variables[0].0[3], before.motion.travelled[0].0[3]);
         if n == 100.0 {
             assert_eq!(mode, 1.0, "what holds before a step shows after it");
         }
@@ -247,7 +248,7 @@ fn a_state_can_send_elsewhere_and_back() {
     for _ in 0..1_500 {
         batch.step();
         let (s, mode) = (&batch.state, batch.mode(0, 0, 0));
-        seen.push((mode, s.ex[0].0[0], s.ey[0].0[0], s.x[0].0[0], s.y[0].0[0]));
+        seen.push((mode, s.driving.ex[0].0[0], s.driving.ey[0].0[0], s.motion.x[0].0[0], s.motion.y[0].0[0]));
     }
     assert!(seen[..199].iter().all(|s| s.0 == 0.0 && s.1 < -0.99), "west first");
     assert!(seen.iter().any(|s| s.0 == 1.0 && s.2 > 0.9), "then north");
@@ -268,7 +269,7 @@ fn several_behaviours_of_one_agent_and_the_order_of_with() {
     };
     let read = |with: &str| {
         let batch = Batch::new(&scenario(&text(with)), Layout::Trials, 0);
-        (batch.state.speed[0].0, batch.state.tau[0].0[0])
+        (batch.state.bodies[Parameter::Speed][0].0, batch.state.bodies[Parameter::Tau][0].0[0])
     };
     let (speeds, tau) = read("tired, brisk");
     assert!(speeds.iter().all(|speed| (1.6..=1.8).contains(speed)) && speeds[0] != speeds[1]);
@@ -375,7 +376,7 @@ fn names_and_functions_of_a_behaviour_see_one_another_and_the_own_parameters() {
         a.step();
         b.step();
         waiting += (0..4 * LANES).filter(|&at| a.mode(0, 1 + at % 4, at / 4) == 1.0).count();
-        assert_eq!(a.state.x, b.state.x);
+        assert_eq!(a.state.motion.x, b.state.motion.x);
     }
     assert!((800..15_200).contains(&waiting), "{waiting}");
 }

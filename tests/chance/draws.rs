@@ -3,6 +3,7 @@
 use super::{Batch, HEAD, agent, scenario};
 use smc::base::lanes::LANES;
 use smc::kernel::Layout;
+use smc::model::Parameter;
 
 const CROWD: &str = "agents crowd[4]: adult { at = uniform in near  route = west }\n";
 
@@ -81,8 +82,12 @@ fn who_comes_is_the_same_whoever_else_is_there_and_however_long_it_lasts() {
             batch.step();
             for (k, seen) in seen.iter_mut().enumerate() {
                 if seen.is_none() && batch.present(first + k, 2) {
-                    let speed = batch.state.speed[first + k].0[2];
-                    *seen = Some((step, speed.to_bits(), batch.state.noise[first + k].0[2].to_bits()));
+                    let speed = batch.state.bodies[Parameter::Speed][first + k].0[2];
+                    *seen = Some((
+                        step,
+                        speed.to_bits(),
+                        batch.state.bodies[Parameter::Noise][first + k].0[2].to_bits(),
+                    ));
                 }
             }
         }

@@ -27,7 +27,7 @@ fn times(preset: &str, n: usize, offset: Option<f64>, layout: Layout) -> Vec<f64
         batch.step();
         for ((k, from), time) in walkers.iter().zip(&mut times) {
             let slot = batch.state.slot(*k, 0);
-            if (batch.state.x[slot.block].0[slot.lane] - from).abs() >= 20.0 {
+            if (batch.state.motion.x[slot.block].0[slot.lane] - from).abs() >= 20.0 {
                 *time = time.min(0.02 * f64::from(step));
             }
         }

@@ -13,6 +13,7 @@ use smc::base::lanes::{LANES, Mask};
 use smc::base::random::TrialKey;
 use smc::compile::Study;
 use smc::kernel::{Layout, Program, Scratch, State, dynamics, start};
+use smc::model::Parameter;
 use smc::model::Scenario;
 use std::sync::Arc;
 
@@ -70,7 +71,18 @@ impl Batch {
     pub(crate) fn bits(&self, agent: usize, lane: usize) -> Vec<u64> {
         let s = &self.state;
         let slot = s.slot(agent, lane);
-        let fields = [&s.x, &s.y, &s.vx, &s.vy, &s.ex, &s.ey, &s.drive, &s.speed, &s.radius, &s.travelled];
+        let fields = [
+            &s.motion.x,
+            &s.motion.y,
+            &s.motion.vx,
+            &s.motion.vy,
+            &s.driving.ex,
+            &s.driving.ey,
+            &s.driving.speed,
+            &s.bodies[Parameter::Speed],
+            &s.bodies[Parameter::Radius],
+            &s.motion.travelled,
+        ];
         fields.iter().map(|field| field[slot.block].0[slot.lane].to_bits()).collect()
     }
 

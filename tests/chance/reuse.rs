@@ -3,6 +3,7 @@
 
 use super::{Batch, HEAD, answered, compiled, scenario};
 use smc::kernel::Layout;
+use smc::model::Parameter;
 
 /// Somebody comes each `every` at 6 m, with own parameters, waits a drawn time on the way, and leaves at 2 m.
 fn doors(every: &str, limit: &str) -> String {
@@ -74,7 +75,14 @@ fn the_numbers_of_a_person_do_not_depend_on_the_place() {
                     if here && (!before[k] || all.iter().all(|(n, ..)| *n != k as u32 + later)) {
                         let slot = s.slot(k, 0);
                         let of = |field: &[smc::base::lanes::Lanes]| field[slot.block].0[slot.lane].to_bits();
-                        let fields = [&s.mass, &s.radius, &s.x, &s.y, &s.vx, &s.vy];
+                        let fields = [
+                            &s.bodies[Parameter::Mass],
+                            &s.bodies[Parameter::Radius],
+                            &s.motion.x,
+                            &s.motion.y,
+                            &s.motion.vx,
+                            &s.motion.vy,
+                        ];
                         all.push((k as u32 + later, step, fields.map(|field| of(field))));
                     }
                     before[k] = here;
@@ -115,7 +123,7 @@ fn noise_that_a_behaviour_sets_takes_nobody_through_a_wall() {
         for k in 0..scenario.agents.len() {
             for lane in 0..8 {
                 let slot = s.slot(k, lane);
-                let (x, y) = (s.x[slot.block].0[slot.lane], s.y[slot.block].0[slot.lane]);
+                let (x, y) = (s.motion.x[slot.block].0[slot.lane], s.motion.y[slot.block].0[slot.lane]);
                 let inside = (0.0..=10.0).contains(&x) && (0.0..=10.0).contains(&y);
                 assert!(inside || s.diverged.has(lane), "trial {}: ({x}, {y})", first + lane as u64);
             }
@@ -142,7 +150,11 @@ fn who_comes_to_a_place_that_is_left_in_the_same_step_has_not_made_it() {
                 let number = k as u32 + s.queues.later(k, 0);
                 if batch.present(k, 0) && known.is_none_or(|known| number > known) {
                     let slot = s.slot(k, 0);
-                    entries.push((number, s.vx[slot.block].0[slot.lane], s.vy[slot.block].0[slot.lane]));
+                    entries.push((
+                        number,
+                        s.motion.vx[slot.block].0[slot.lane],
+                        s.motion.vy[slot.block].0[slot.lane],
+                    ));
                     known = Some(number);
                 }
             }

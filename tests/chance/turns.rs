@@ -3,6 +3,7 @@
 use super::{Batch, scenario};
 use smc::base::lanes::LANES;
 use smc::kernel::Layout;
+use smc::model::Parameter;
 
 #[test]
 fn what_a_state_sets_is_computed_on_entering_it_and_kept() {
@@ -19,7 +20,7 @@ fn what_a_state_sets_is_computed_on_entering_it_and_kept() {
     let scenario = scenario(text);
     for layout in [Layout::Trials, Layout::Agents] {
         let mut batch = Batch::new(&scenario, layout, 0);
-        let noise = batch.state.noise[0];
+        let noise = batch.state.bodies[Parameter::Noise][0];
         for tick in 1..=90 {
             if tick == 15 {
                 // A replica goes on with other random numbers; what was drawn stays.
@@ -37,7 +38,12 @@ fn what_a_state_sets_is_computed_on_entering_it_and_kept() {
             };
             let tau = if (20..30).contains(&tick) { 0.25 } else { 0.5 };
             for lane in 0..batch.state.width() {
-                let found = [&batch.state.speed, &batch.state.tau, &batch.state.noise].map(|f| f[0].0[lane]);
+                let found = [
+                    &batch.state.bodies[Parameter::Speed],
+                    &batch.state.bodies[Parameter::Tau],
+                    &batch.state.bodies[Parameter::Noise],
+                ]
+                .map(|f| f[0].0[lane]);
                 assert_eq!(found, [speed, tau, noise.0[lane]], "{layout:?}, state {tick}, lane {lane}");
             }
         }
@@ -79,7 +85,7 @@ fn of_behaviours_that_turn_in_one_step_nothing_in_between_shows() {
                 assert_eq!(two.bits(agent, lane), one.bits(agent, lane), "{layout:?}, state {tick}");
             }
         }
-        assert!((0..2).all(|agent| two.state.lanes_of(&two.state.x, agent).0[0] < 0.0), "towards b");
+        assert!((0..2).all(|agent| two.state.lanes_of(&two.state.motion.x, agent).0[0] < 0.0), "towards b");
     }
 }
 
@@ -100,7 +106,7 @@ fn a_wait_that_is_interrupted_goes_on_with_what_is_left_of_it() {
         for tick in 1..=120 {
             batch.step();
             for (lane, found) in found.iter_mut().enumerate() {
-                if found.is_none() && batch.state.drive[0].0[lane] > 0.0 {
+                if found.is_none() && batch.state.driving.speed[0].0[lane] > 0.0 {
                     *found = Some(tick);
                 }
             }

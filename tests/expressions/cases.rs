@@ -5,8 +5,8 @@ use proptest::prelude::*;
 use smc::base::lanes::{LANES, Mask};
 use smc::kernel::{Layout, State};
 use smc::model::{
-    AgentId, Arithmetic, Axis, BarrierId, Bool, Comparison, Field, Fold, Function, Num, Place, RegionId, Set,
-    Who,
+    AgentId, Arithmetic, Axis, BarrierId, Bool, Comparison, Field, Fold, Function, Num, Parameter, Place,
+    RegionId, Set, Who,
 };
 
 pub(crate) fn who(depth: u32) -> BoxedStrategy<Who> {
@@ -194,7 +194,7 @@ pub(crate) struct Hidden(pub(crate) State);
 
 impl std::fmt::Debug for Hidden {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "x {:?} y {:?} present {:?}", self.0.x, self.0.y, self.0.present)
+        write!(f, "x {:?} y {:?} present {:?}", self.0.motion.x, self.0.motion.y, self.0.present)
     }
 }
 
@@ -210,20 +210,20 @@ pub(crate) fn state(layout: Layout) -> BoxedStrategy<Hidden> {
     (slots, masks, prop_oneof![2 => Just(255u8), 1 => any::<u8>()], any::<[u16; LANES]>())
         .prop_map(move |(slots, masks, occupied, ticks)| {
             let mut state = State::new(layout, AGENTS);
-            let (blocks, width) = (state.x.len(), slots.len());
+            let (blocks, width) = (state.motion.x.len(), slots.len());
             for block in 0..blocks {
                 for lane in 0..LANES {
                     let (x, y, vx, vy, radius, z) = slots[(block * LANES + lane) % width];
-                    state.x[block].0[lane] = x;
-                    state.y[block].0[lane] = y;
-                    state.vx[block].0[lane] = vx;
-                    state.vy[block].0[lane] = vy;
-                    state.radius[block].0[lane] = radius;
-                    state.ex[block].0[lane] = 1.0 - z;
-                    state.ey[block].0[lane] = z;
-                    state.mass[block].0[lane] = 80.0 * z;
-                    state.speed[block].0[lane] = 1.0 + z;
-                    state.travelled[block].0[lane] = 10.0 * z;
+                    state.motion.x[block].0[lane] = x;
+                    state.motion.y[block].0[lane] = y;
+                    state.motion.vx[block].0[lane] = vx;
+                    state.motion.vy[block].0[lane] = vy;
+                    state.bodies[Parameter::Radius][block].0[lane] = radius;
+                    state.driving.ex[block].0[lane] = 1.0 - z;
+                    state.driving.ey[block].0[lane] = z;
+                    state.bodies[Parameter::Mass][block].0[lane] = 80.0 * z;
+                    state.bodies[Parameter::Speed][block].0[lane] = 1.0 + z;
+                    state.motion.travelled[block].0[lane] = 10.0 * z;
                 }
                 state.present[block] = Mask(masks[block]);
             }

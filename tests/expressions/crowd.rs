@@ -7,7 +7,8 @@ use smc::base::geometry::Segment;
 use smc::base::lanes::{LANES, Mask};
 use smc::kernel::{Code, Layout, Program, Readings, Scratch, State, dynamics};
 use smc::model::{
-    AgentId, Arithmetic, Barrier, Bool, Comparison, Field, Fold, Num, Obstacle, Place, Scene, Set, Who,
+    AgentId, Arithmetic, Barrier, Bool, Comparison, Field, Fold, Num, Obstacle, Parameter, Place, Scene, Set,
+    Who,
 };
 use std::sync::Arc;
 
@@ -67,12 +68,12 @@ fn state(agents: usize, shape: Shape, bodies: Bodies, (seed, step): (u64, usize)
     for k in 0..agents {
         let (block, lane) = (k / LANES, k % LANES);
         let (x, y) = place(shape, seed, k, step);
-        state.x[block].0[lane] = x;
-        state.y[block].0[lane] = y;
-        for field in [&mut state.mass, &mut state.tau, &mut state.a, &mut state.b, &mut state.b2] {
-            field[block].0[lane] = 1.0;
+        state.motion.x[block].0[lane] = x;
+        state.motion.y[block].0[lane] = y;
+        for parameter in [Parameter::Mass, Parameter::Tau, Parameter::A, Parameter::B, Parameter::B2] {
+            state.bodies[parameter][block].0[lane] = 1.0;
         }
-        state.radius[block].0[lane] = match bodies {
+        state.bodies[Parameter::Radius][block].0[lane] = match bodies {
             Bodies::Equal => 0.25,
             Bodies::Drawn => 0.2 + 0.1 * drawn(seed, k, 6),
             Bodies::Two if k.is_multiple_of(67) => 3.0,
@@ -86,10 +87,10 @@ fn state(agents: usize, shape: Shape, bodies: Bodies, (seed, step): (u64, usize)
     let k = (seed as usize * 31 + step) % agents;
     let (block, lane) = (k / LANES, k % LANES);
     match odd {
-        1 => state.x[block].0[lane] = f64::NAN,
-        2 => state.y[block].0[lane] = f64::INFINITY,
-        3 => state.radius[block].0[lane] = f64::NAN,
-        4 => state.x[block].0[lane] = -1e200,
+        1 => state.motion.x[block].0[lane] = f64::NAN,
+        2 => state.motion.y[block].0[lane] = f64::INFINITY,
+        3 => state.bodies[Parameter::Radius][block].0[lane] = f64::NAN,
+        4 => state.motion.x[block].0[lane] = -1e200,
         5 => state.present.fill(Mask::NONE),
         6 => {
             state.present.fill(Mask::NONE);

@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// A state of a trial that goes on: every coordinate is a number.
 fn mended(mut state: State) -> State {
-    for block in state.x.iter_mut().chain(&mut state.y) {
+    for block in state.motion.x.iter_mut().chain(&mut state.motion.y) {
         *block = Lanes(block.0.map(|x| if x.is_nan() { 2.25 } else { x }));
     }
     state

@@ -14,8 +14,8 @@ use smc::base::lanes::{LANES, Lanes, Mask};
 use smc::base::tick::{Clock, Tick};
 use smc::kernel::{Code, Layout, Program, Readings, State};
 use smc::model::{
-    Agent, AgentId, Arithmetic, Barrier, Body, Bool, Comparison, Field, Fold, Law, Num, Obstacle, Position,
-    Region, Route, Scenario, Scene, Set, Start, Who,
+    Agent, AgentId, Arithmetic, Barrier, Body, Bool, Comparison, Field, Fold, Law, Num, Obstacle, Parameter,
+    Position, Region, Route, Scenario, Scene, Set, Start, Who,
 };
 use std::sync::Arc;
 
@@ -167,9 +167,9 @@ fn bounds_at_the_last_bit_are_decided_exactly() {
     state.present.fill(Mask::ALL);
     for agent in 0..AGENTS {
         for lane in 0..LANES {
-            state.x[agent].0[lane] = agent as f64 * 1.37 + lane as f64 * 0.011;
-            state.y[agent].0[lane] = 0.31 * (agent * lane) as f64;
-            state.radius[agent].0[lane] = 0.2 + 0.013 * lane as f64;
+            state.motion.x[agent].0[lane] = agent as f64 * 1.37 + lane as f64 * 0.011;
+            state.motion.y[agent].0[lane] = 0.31 * (agent * lane) as f64;
+            state.bodies[Parameter::Radius][agent].0[lane] = 0.2 + 0.013 * lane as f64;
         }
     }
     let user = Who::Agent(AgentId(0));

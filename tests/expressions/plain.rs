@@ -8,7 +8,8 @@ use smc::base::math;
 use smc::base::tick::{Clock, Tick};
 use smc::kernel::State;
 use smc::model::{
-    Arithmetic, Axis, Bool, Comparison, Field, Fold, Function, Num, Place, RegionId, Scene, Set, Who,
+    Arithmetic, Axis, Bool, Comparison, Field, Fold, Function, Num, Parameter, Place, RegionId, Scene, Set,
+    Who,
 };
 
 /// What an expression means, word by word. `None`: unresolved.
@@ -34,7 +35,7 @@ impl Plain<'_> {
     }
 
     fn at(&self, agent: usize) -> Vec2 {
-        p(self.of(&self.state.x, agent), self.of(&self.state.y, agent))
+        p(self.of(&self.state.motion.x, agent), self.of(&self.state.motion.y, agent))
     }
 
     fn who(&self, who: Who) -> usize {
@@ -52,19 +53,19 @@ impl Plain<'_> {
 
     fn field(&self, field: Field, agent: usize) -> f64 {
         let s = self.state;
-        let (vx, vy) = (self.of(&s.vx, agent), self.of(&s.vy, agent));
+        let (vx, vy) = (self.of(&s.motion.vx, agent), self.of(&s.motion.vy, agent));
         match field {
             Field::VelocityX => vx,
             Field::VelocityY => vy,
             Field::Speed => (vx * vx + vy * vy).sqrt(),
             Field::Heading if vx == 0.0 && vy == 0.0 => {
-                math::atan2(self.of(&s.ey, agent), self.of(&s.ex, agent))
+                math::atan2(self.of(&s.driving.ey, agent), self.of(&s.driving.ex, agent))
             }
             Field::Heading => math::atan2(vy, vx),
-            Field::Radius => self.of(&s.radius, agent),
-            Field::Mass => self.of(&s.mass, agent),
-            Field::DrivingSpeed => self.of(&s.speed, agent),
-            Field::Travelled => self.of(&s.travelled, agent),
+            Field::Radius => self.of(&s.bodies[Parameter::Radius], agent),
+            Field::Mass => self.of(&s.bodies[Parameter::Mass], agent),
+            Field::DrivingSpeed => self.of(&s.bodies[Parameter::Speed], agent),
+            Field::Travelled => self.of(&s.motion.travelled, agent),
             Field::Mode(_) => -1.0,
         }
     }
@@ -90,7 +91,9 @@ impl Plain<'_> {
 
     fn gap(&self, a: usize, b: usize) -> f64 {
         let d = self.at(a) - self.at(b);
-        (d.x * d.x + d.y * d.y).sqrt() - self.of(&self.state.radius, a) - self.of(&self.state.radius, b)
+        (d.x * d.x + d.y * d.y).sqrt()
+            - self.of(&self.state.bodies[Parameter::Radius], a)
+            - self.of(&self.state.bodies[Parameter::Radius], b)
     }
 
     fn clearance(&self, who: usize) -> f64 {
@@ -98,7 +101,7 @@ impl Plain<'_> {
             return f64::INFINITY;
         }
         let others = (0..self.state.agents).filter(|&a| a != who && self.here(a)).map(|a| self.gap(who, a));
-        let radius = self.of(&self.state.radius, who);
+        let radius = self.of(&self.state.bodies[Parameter::Radius], who);
         let walls = self.walls(self.at(who)).map(|d| d - radius);
         others.chain(walls).fold(f64::INFINITY, least)
     }
@@ -160,7 +163,7 @@ impl Plain<'_> {
             }
             Num::MeanVelocity(axis, set) => {
                 let s = self.state;
-                let v = self.mean(set, |a| p(self.of(&s.vx, a), self.of(&s.vy, a)))?;
+                let v = self.mean(set, |a| p(self.of(&s.motion.vx, a), self.of(&s.motion.vy, a)))?;
                 if *axis == Axis::X { v.x } else { v.y }
             }
             Num::Distance(a, b) => match (a, b) {
@@ -276,8 +279,14 @@ impl Plain<'_> {
             return 0.0;
         }
         let s = self.state;
-        let (d, reach) = (self.at(a) - self.at(b), self.of(&s.radius, a) + self.of(&s.radius, b));
-        let v = p(self.of(&s.vx, a) - self.of(&s.vx, b), self.of(&s.vy, a) - self.of(&s.vy, b));
+        let (d, reach) = (
+            self.at(a) - self.at(b),
+            self.of(&s.bodies[Parameter::Radius], a) + self.of(&s.bodies[Parameter::Radius], b),
+        );
+        let v = p(
+            self.of(&s.motion.vx, a) - self.of(&s.motion.vx, b),
+            self.of(&s.motion.vy, a) - self.of(&s.motion.vy, b),
+        );
         let (vv, dv, beyond) =
             (v.x * v.x + v.y * v.y, d.x * v.x + d.y * v.y, d.x * d.x + d.y * d.y - reach * reach);
         let root = dv * dv - vv * beyond;
@@ -345,7 +354,7 @@ impl Plain<'_> {
                 let others = (0..self.state.agents)
                     .filter(|&a| a != who && self.here(a))
                     .any(|a| self.gap(who, a) <= 0.0);
-                let radius = self.of(&self.state.radius, who);
+                let radius = self.of(&self.state.bodies[Parameter::Radius], who);
                 let walls = self.walls(self.at(who)).any(|d| d - radius <= 0.0);
                 self.here(who) && (others || walls)
             }

@@ -118,7 +118,7 @@ fn without_a_bound_the_horizon_is_the_end_and_deadlocks_stutter() {
                 when s == 1 after 0.0000001 s -> s = 2 }";
     exactly(late, &[("F (p.s == 1)", true), ("F (p.s == 2)", true), ("F[2 s, 2 s] (p.s == 2)", true)]);
     let study = compiled(idle, "estimate P(G p.up) by fixed(trials = 10)").unwrap();
-    assert_eq!(study.queries[0].within.as_deref(), Some("the horizon of 5 s"));
+    assert_eq!(study.queries[0].horizon.as_deref(), Some("5 s"));
 }
 
 #[test]

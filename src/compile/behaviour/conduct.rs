@@ -112,7 +112,7 @@ impl<'a> Elaborator<'a> {
         let mut mode = Mode::default();
         let mut failed = None;
         for field in &state.fields {
-            let lowered = match Parameter::of(&field.name.name) {
+            let lowered = match Parameter::changeable_of(&field.name.name) {
                 None if field.name.name != "route" => {
                     self.look_at(&field.value, &self.with_own(locals, variables));
                     Err(Reported)
@@ -216,8 +216,8 @@ impl<'a> Elaborator<'a> {
 impl Elaborator<'_> {
     /// The agent's own parameters, which the arguments and names of the behaviour hide, and names that see them.
     fn with_own(&self, locals: &Locals, variables: usize) -> Locals {
-        let own = Parameter::ALL.into_iter().enumerate().map(|(k, own)| {
-            let value = Num::Variable(VariableId((variables + k) as u32));
+        let own = Parameter::changeable().map(|own| {
+            let value = Num::Variable(VariableId((variables + own as usize) as u32));
             (own.name().to_owned(), Some(Arc::new(Typed::Num(value, dimension_of(own)))))
         });
         let own = own.filter(|(name, _)| !self.is_inside(name, locals));

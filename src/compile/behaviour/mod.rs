@@ -123,7 +123,7 @@ impl<'a> Elaborator<'a> {
                 let error = Diagnostic::error(Code::E0202, field.name.span, format!("`{name}` is set twice"))
                     .related(first.name.span, "first set here");
                 self.note(error);
-            } else if super::kinds::parameter(name).is_some() && Parameter::of(name).is_none() {
+            } else if super::kinds::parameter(name).is_some() && Parameter::changeable_of(name).is_none() {
                 let error = Diagnostic::error(
                     Code::E0911,
                     field.name.span,
@@ -131,7 +131,7 @@ impl<'a> Elaborator<'a> {
                 )
                 .hint(format!("a state can change {} and route", all_parameters().join(", ")));
                 self.note(error);
-            } else if name != "route" && Parameter::of(name).is_none() {
+            } else if name != "route" && Parameter::changeable_of(name).is_none() {
                 let known = all_parameters().into_iter().chain(["route"]);
                 let error = unknown("parameter", name, field.name.span, Code::E0207, known);
                 self.note(error);
@@ -437,5 +437,5 @@ fn of(locals: &Locals, agent: AgentId) -> Locals {
 }
 
 fn all_parameters() -> Vec<&'static str> {
-    Parameter::ALL.map(Parameter::name).to_vec()
+    Parameter::changeable().map(Parameter::name).collect()
 }

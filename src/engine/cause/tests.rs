@@ -4,7 +4,7 @@ use super::*;
 use crate::compile::{Files, Input, compile};
 use crate::engine::budget::Budget;
 use crate::engine::cell::Reading;
-use crate::engine::jumper::Jumper;
+use crate::engine::runner::Runner;
 use crate::syntax::parse::{parse_properties, parse_scenario};
 use crate::syntax::source::{Source, SourceId};
 
@@ -37,9 +37,9 @@ fn a_trial_of_too_many_jumps_is_unresolved_and_the_process_is_named() {
     let mut subject = subject("estimate P(F (calm.n == 9)) within 0.1\n");
     assert_eq!(subject.most_jumps, 1 << 26);
     subject.most_jumps = 500;
-    let mut jumper = Jumper::new(&subject, &[0]).unwrap();
+    let mut runner = Runner::general(&subject, &[0]).unwrap();
     let mut items = Item::run(0, 3).into_iter().enumerate();
-    let finished = jumper.run(&subject, 7, &mut || items.next(), &Budget::new(u64::MAX, None));
+    let finished = runner.run(7, &mut || items.next(), &Budget::new(u64::MAX, None));
     assert_eq!(finished.cells.len(), 3);
     for cell in &finished.cells {
         assert_eq!((cell.reading, cell.steps), (Reading::Unresolved, 500));

@@ -1,7 +1,7 @@
 //! Random small processes with rates and formulas: the cells are those of the jumper.
 
 use super::super::cell::{Item, Reading};
-use super::super::jumper::Jumper;
+use super::super::runner::Runner;
 use super::super::walker::tests::subject;
 use super::*;
 use proptest::prelude::*;
@@ -28,12 +28,12 @@ fn cells(
         return (out, leaper.steps);
     }
     let mut list = items.iter().copied().enumerate();
-    let mut jumper = Jumper::new(subject, columns).unwrap();
-    let finished = jumper.run(subject, seed, &mut || list.next(), &budget);
+    let mut runner = Runner::general(subject, columns).unwrap();
+    let finished = runner.run(seed, &mut || list.next(), &budget);
     for (k, place) in finished.places.iter().enumerate() {
         out[place * width..][..width].copy_from_slice(&finished.cells[k * width..][..width]);
     }
-    (out, jumper.steps)
+    (out, runner.take_steps())
 }
 
 /// A command of a random process: from which state, its rate, how a coin of sevenths moves the state, and whether

@@ -2,9 +2,9 @@
 //! whether the two agree.
 
 mod answer;
-mod flock;
-mod hopper;
+mod batches;
 mod path;
+mod paths;
 
 use super::budget::Budget;
 use super::cell::{Item, Reading};
@@ -19,7 +19,7 @@ use crate::base::random::TrialKey;
 use crate::compile::study::{Query, Splitting as Rule};
 use crate::stats::splitting::{Adaptive, AnyScheme, Effort, Scheme, Spread, Start};
 use crate::stats::{self, Counts, clopper_pearson, sequence};
-use flock::Flock;
+use batches::Batches;
 use path::Path;
 
 /// Error of the interval of plain trials that an estimate must lie in: small, for the comparison is made once
@@ -162,10 +162,10 @@ fn run(
     if stop.is_some() {
         return Ok(found);
     }
-    let flock = Flock::new(question.subject, [question.column, rule.level]);
+    let batches = Batches::new(question.subject, [question.column, rule.level]);
     let reading = |lost_reaches: bool, found: &mut Found| -> Result<Option<Spread>, Fault> {
         runs(question, found, &mut |runs, found| {
-            fly(&flock, runs, lost_reaches, question, found, executor, budget, watch)
+            advance(&batches, runs, lost_reaches, question, found, executor, budget, watch)
         })
     };
     if let Some(low) = reading(false, &mut found)? {
@@ -176,11 +176,11 @@ fn run(
     Ok(found)
 }
 
-/// Flies the paths of some runs; whether all of them came to an end.
-type Fly<'f> = &'f mut dyn FnMut(&mut [Running], &mut Found) -> Result<bool, Fault>;
+/// Runs the paths of some runs; whether all of them came to an end.
+type Advance<'f> = &'f mut dyn FnMut(&mut [Running], &mut Found) -> Result<bool, Fault>;
 
-/// All runs under one reading of lost paths; `None` where they did not come to an end. `fly` finishes some of them.
-fn runs(question: &Question<'_>, found: &mut Found, fly: Fly<'_>) -> Result<Option<Spread>, Fault> {
+/// All runs under one reading of lost paths; `None` where they did not come to an end. `advance` finishes some of them.
+fn runs(question: &Question<'_>, found: &mut Found, advance: Advance<'_>) -> Result<Option<Spread>, Fault> {
     let rule = question.rule;
     let (replicas, seed) = (rule.replicas as usize, question.seed);
     let mut levels = Vec::new();
@@ -189,7 +189,7 @@ fn runs(question: &Question<'_>, found: &mut Found, fly: Fly<'_>) -> Result<Opti
         let branch = 1 + rule.runs as u16;
         let pilot = Adaptive::new(replicas, (3 * replicas / 4).max(1), seed, branch)?;
         let mut runs = [Running::new(AnyScheme::Adaptive(pilot), branch)];
-        if !fly(&mut runs, found)? {
+        if !advance(&mut runs, found)? {
             return Ok(None);
         }
         levels.extend(runs[0].scheme.levels().iter().copied().filter(|level| level.is_finite()));
@@ -204,7 +204,7 @@ fn runs(question: &Question<'_>, found: &mut Found, fly: Fly<'_>) -> Result<Opti
         };
         runs.push(Running::new(scheme, branch));
     }
-    if !fly(&mut runs, found)? {
+    if !advance(&mut runs, found)? {
         return Ok(None);
     }
     let estimates: Vec<f64> = runs.iter().map(|run| run.scheme.estimate()).collect();
@@ -249,8 +249,8 @@ fn halted(budget: &Budget) -> Option<Stop> {
 }
 
 /// Runs go on side by side until all are finished; false if they are not.
-fn fly(
-    flock: &Flock<'_>,
+fn advance(
+    batches: &Batches<'_>,
     runs: &mut [Running],
     lost_reaches: bool,
     question: &Question<'_>,
@@ -274,20 +274,20 @@ fn fly(
             found.stop = Stop::Cap;
             return Ok(false);
         }
-        let Some(flown) = flock.fly(&together, executor, budget)? else {
+        let Some(ended) = batches.run(&together, executor, budget)? else {
             found.stop = halted(budget).unwrap_or(Stop::Deadline);
             return Ok(false);
         };
-        found.paths += flown.len() as u64;
-        found.steps += flown.iter().map(|one| one.steps).sum::<u64>();
+        found.paths += ended.len() as u64;
+        found.steps += ended.iter().map(|one| one.steps).sum::<u64>();
         if !lost_reaches {
-            found.lost += flown.iter().filter(|one| one.lost).count() as u64;
+            found.lost += ended.iter().filter(|one| one.lost).count() as u64;
         }
-        let mut flown = flown.into_iter();
+        let mut ended = ended.into_iter();
         for (run, wanted) in runs.iter_mut().zip(&paths) {
             if !wanted.is_empty() {
                 run.scheme
-                    .feed(flown.by_ref().take(wanted.len()).map(|one| one.read(lost_reaches)).collect());
+                    .feed(ended.by_ref().take(wanted.len()).map(|one| one.read(lost_reaches)).collect());
             }
         }
         watch.consumed(&question.query.text, found.plain.counts.trials + found.paths, None);

@@ -1,7 +1,7 @@
 //! Random small chains and formulas: the cells are those of the general worker.
 
 use super::super::cell::Item;
-use super::super::worker::Worker;
+use super::super::runner::Runner;
 use super::*;
 use crate::compile::{Files, Input, compile};
 use crate::syntax::parse::{parse_properties, parse_scenario};
@@ -49,12 +49,12 @@ fn cells(
         return (out, walker.steps);
     }
     let mut list = items.iter().copied().enumerate();
-    let mut worker = Worker::new(subject, columns).unwrap();
-    let finished = worker.run(subject, 7, &mut || list.next(), &budget);
+    let mut worker = Runner::general(subject, columns).unwrap();
+    let finished = worker.run(7, &mut || list.next(), &budget);
     for (k, place) in finished.places.iter().enumerate() {
         out[place * width..][..width].copy_from_slice(&finished.cells[k * width..][..width]);
     }
-    (out, worker.steps)
+    (out, worker.take_steps())
 }
 
 /// A process `name` of three states whose commands may look at the other one's state.

@@ -11,20 +11,18 @@
 mod conduct;
 
 use super::code::{Code, Readings};
-use super::drive::{self, Halt};
+use super::drive;
 use super::dynamics;
-use super::process::Fault;
+use super::fault::Fault;
 use super::program::Program;
 use super::start;
-use super::state::{Layout, Slot, State};
+use super::state::route::Halt;
+use super::state::{ActiveModes, Layout, OWN_ROUTE, Slot, State};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::random::{Purpose, Stream, TrialKey, name_hash};
 use crate::base::tick::steps_over;
 use crate::model::{AgentId, Parameter, Scenario};
 use conduct::{Amount, Conduct, Trigger, pick};
-
-/// No detour.
-const OWN_ROUTE: u32 = u32::MAX;
 
 /// One behaviour of one agent.
 #[derive(Clone, Debug)]
@@ -52,26 +50,6 @@ pub struct Behaviours {
     code: Option<Code>,
 }
 
-/// Where the behaviours of a batch stand, by declared behaviour and block.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Standing {
-    /// Number of the present state; -1 in someone who has no such behaviour.
-    pub modes: Vec<Vec<Lanes>>,
-    /// Tick at which the present state ends by itself; infinite if it does not.
-    due: Vec<Vec<Lanes>>,
-    /// The transition that is taken then.
-    exit: Vec<Vec<[u32; LANES]>>,
-    /// How many states have been entered.
-    entered: Vec<Vec<[u32; LANES]>>,
-    /// What the present state set on entering it, SI units: so many values for each block as a state of the behaviour
-    /// sets at most, in order of writing.
-    set: Vec<Vec<Lanes>>,
-    /// Under which key the parameters of an agent were drawn, by block.
-    own_keys: Vec<[TrialKey; LANES]>,
-    /// First stage of a route that a state demands, and where the own route was left.
-    detours: Vec<[(u32, Halt); LANES]>,
-}
-
 /// A state that is entered with the present step.
 #[derive(Clone, Copy, Debug)]
 struct Turn {
@@ -89,14 +67,6 @@ pub(super) struct Scratch {
     turning: Vec<Mask>,
     /// Those among them in which the state before or the one after changes something of the agent.
     changing: Vec<Mask>,
-}
-
-/// The lane of keys and ticks of a slot.
-fn trial_of(layout: Layout, lane: usize) -> usize {
-    match layout {
-        Layout::Trials => lane,
-        Layout::Agents => 0,
-    }
 }
 
 impl Machine {
@@ -175,11 +145,11 @@ impl Behaviours {
         if self.is_empty() {
             return;
         }
-        let blocks = state.x.len();
+        let blocks = state.motion.x.len();
         let standing = &mut state.behaviours;
         let declared = self.most.len();
         if standing.modes.len() != declared || standing.detours.len() != blocks {
-            *standing = Standing {
+            *standing = ActiveModes {
                 modes: vec![vec![Lanes::splat(-1.0); blocks]; declared],
                 due: vec![vec![Lanes::splat(f64::INFINITY); blocks]; declared],
                 exit: vec![vec![[0; LANES]; blocks]; declared],
@@ -191,7 +161,7 @@ impl Behaviours {
         }
         let slot = state.slot(agent, lane);
         state.behaviours.detours[slot.block][slot.lane] = (OWN_ROUTE, Halt::default());
-        state.behaviours.own_keys[slot.block][slot.lane] = state.keys[trial_of(state.layout, slot.lane)];
+        state.behaviours.own_keys[slot.block][slot.lane] = state.keys[state.layout.trial_of(slot.lane)];
         for at in self.machines_of(agent) {
             let machine = &self.machines[at];
             state.behaviours.entered[machine.behaviour as usize][slot.block][slot.lane] = 0;
@@ -227,7 +197,7 @@ impl Behaviours {
         }
         let mut now = Lanes::ZERO;
         for lane in 0..LANES {
-            now.0[lane] = state.ticks[trial_of(layout, lane)] as f64 + 1.0;
+            now.0[lane] = state.ticks[layout.trial_of(lane)] as f64 + 1.0;
         }
         let occupied = match layout {
             Layout::Trials => state.occupied & !state.faulty,
@@ -235,7 +205,7 @@ impl Behaviours {
             Layout::Agents => Mask::NONE,
         };
         for behaviour in 0..state.behaviours.due.len() {
-            for block in 0..state.x.len() {
+            for block in 0..state.motion.x.len() {
                 let ripe = state.behaviours.due[behaviour][block].compare(now, |due, now| due <= now);
                 for lane in (ripe & occupied & state.present[block]).iter() {
                     let agent = match layout {
@@ -284,7 +254,7 @@ impl Behaviours {
     /// Draws the state that follows by a transition.
     fn decide(&self, at: usize, state: &mut State, lane: usize, exit: u32, scratch: &mut Scratch) {
         let machine = &self.machines[at];
-        let trial = trial_of(state.layout, lane);
+        let trial = state.layout.trial_of(lane);
         let slot = state.slot(machine.agent as usize, trial);
         let old = state.behaviours.modes[machine.behaviour as usize][slot.block].0[slot.lane] as usize;
         let modes = &self.conducts[machine.conduct as usize].modes;
@@ -309,7 +279,7 @@ impl Behaviours {
     pub(super) fn turn(&self, program: &Program, state: &mut State, scratch: &Scratch) -> bool {
         for &Turn { machine: at, lane, mode } in &scratch.turns {
             let machine = &self.machines[at as usize];
-            let trial = trial_of(state.layout, lane);
+            let trial = state.layout.trial_of(lane);
             if !state.faulty.has(trial) {
                 let slot = state.slot(machine.agent as usize, trial);
                 self.enter(program, state, at as usize, slot, mode);
@@ -318,7 +288,7 @@ impl Behaviours {
         let mut ranges = false;
         for &Turn { machine: at, lane, .. } in &scratch.turns {
             let agent = self.machines[at as usize].agent as usize;
-            let trial = trial_of(state.layout, lane);
+            let trial = state.layout.trial_of(lane);
             // Where several behaviours of an agent turn, the first of them stands for all.
             let changing = |at: usize| scratch.changing[at].has(lane);
             let first = self.machines_of(agent).find(|&at| changing(at));
@@ -333,7 +303,7 @@ impl Behaviours {
     fn enter(&self, program: &Program, state: &mut State, at: usize, slot: Slot, mode: u32) {
         let machine = &self.machines[at];
         let conduct = &self.conducts[machine.conduct as usize];
-        let trial = trial_of(state.layout, slot.lane);
+        let trial = state.layout.trial_of(slot.lane);
         let stream = Stream::of(state.keys[trial], machine.number(state, trial), Purpose::Delay);
         let now = state.ticks[trial] as f64;
         let (behaviour, block, lane) = (machine.behaviour as usize, slot.block, slot.lane);
@@ -428,14 +398,15 @@ fn write(state: &mut State, slot: Slot, values: &[f64; Parameter::ALL.len()]) ->
         let old = std::mem::replace(&mut field[slot.block].0[slot.lane], value);
         old.to_bits() != value.to_bits()
     };
-    put(&mut state.speed, of(Parameter::Speed));
-    put(&mut state.tau, of(Parameter::Tau));
-    put(&mut state.a, of(Parameter::A) * of(Parameter::Attention));
-    put(&mut state.lambda, of(Parameter::Lambda));
-    put(&mut state.a2, of(Parameter::A2) * of(Parameter::Attention));
-    put(&mut state.lambda2, of(Parameter::Lambda2));
-    put(&mut state.noise, of(Parameter::Noise));
-    put(&mut state.b, of(Parameter::B)) | put(&mut state.b2, of(Parameter::B2))
+    put(&mut state.bodies[Parameter::Speed], of(Parameter::Speed));
+    put(&mut state.bodies[Parameter::Tau], of(Parameter::Tau));
+    put(&mut state.bodies[Parameter::A], of(Parameter::A) * of(Parameter::Attention));
+    put(&mut state.bodies[Parameter::Lambda], of(Parameter::Lambda));
+    put(&mut state.bodies[Parameter::A2], of(Parameter::A2) * of(Parameter::Attention));
+    put(&mut state.bodies[Parameter::Lambda2], of(Parameter::Lambda2));
+    put(&mut state.bodies[Parameter::Noise], of(Parameter::Noise));
+    put(&mut state.bodies[Parameter::B], of(Parameter::B))
+        | put(&mut state.bodies[Parameter::B2], of(Parameter::B2))
 }
 
 fn fail(state: &mut State, trial: usize, fault: Fault) {

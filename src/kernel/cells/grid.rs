@@ -5,6 +5,7 @@ use crate::base::lanes::{Lanes, Mask};
 use crate::kernel::forces::{Forces, REACH};
 use crate::kernel::state::State;
 use crate::kernel::vector::{Doubles, Part, larger, parts, smaller};
+use crate::model::Parameter;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
@@ -96,20 +97,20 @@ pub(super) fn survey<S: Simd>(simd: S, forces: &Forces, state: &State) -> Grid {
         let (mut low_x, mut low_y) = (part.load(&low.0), part.load(&low.1));
         let (mut high_x, mut high_y) = (part.load(&high.0), part.load(&high.1));
         let (mut wide, mut far) = (part.load(&widest), part.load(&farthest));
-        for block in 0..state.x.len() {
+        for block in 0..state.motion.x.len() {
             let here = part.mask(state.present[block]);
-            let (x, y) = (part.load(&state.x[block]), part.load(&state.y[block]));
+            let (x, y) = (part.load(&state.motion.x[block]), part.load(&state.motion.y[block]));
             low_x = smaller::<S>(here.select(x, low_x), low_x);
             low_y = smaller::<S>(here.select(y, low_y), low_y);
             high_x = larger::<S>(here.select(x, high_x), high_x);
             high_y = larger::<S>(here.select(y, high_y), high_y);
-            let radius = part.load(&state.radius[block]);
+            let radius = part.load(&state.bodies[Parameter::Radius][block]);
             wide = larger::<S>(here.select(radius, wide), wide);
             // Zero times what is none or infinite is no number.
             odd |= part.bits(here & !((x + y + radius) * part.c(0.0)).simd_eq(part.c(0.0)));
-            let mut range = part.load(&state.b[block]);
+            let mut range = part.load(&state.bodies[Parameter::B][block]);
             if forces.second {
-                range = larger::<S>(range, part.load(&state.b2[block]));
+                range = larger::<S>(range, part.load(&state.bodies[Parameter::B2][block]));
             }
             far = larger::<S>(here.select(part.c(REACH) * range, far), far);
         }
@@ -155,7 +156,8 @@ pub(super) fn survey<S: Simd>(simd: S, forces: &Forces, state: &State) -> Grid {
     let most_cells = 16.0 * state.agents as f64 + 64.0;
     let (mut wide, mut high) = (wide, high);
     if (wide / width + 1.0) * (high / height + 1.0) > most_cells
-        && let (Some((left, right)), Some((bottom, top))) = (middle(state, &state.x), middle(state, &state.y))
+        && let (Some((left, right)), Some((bottom, top))) =
+            (middle(state, &state.motion.x), middle(state, &state.motion.y))
     {
         (grid.x, grid.y, wide, high) = (left, bottom, right - left, top - bottom);
     }

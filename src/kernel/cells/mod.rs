@@ -88,7 +88,7 @@ impl Cells {
     ) {
         let forces = &program.forces;
         sums.clear();
-        sums.resize(state.x.len(), Sum::default());
+        sums.resize(state.motion.x.len(), Sum::default());
         contacts.clear();
         self.edge = f64::NEG_INFINITY;
         if !state.occupied.has(0) {

@@ -7,6 +7,7 @@ use crate::kernel::forces::Forces;
 use crate::kernel::social::Term;
 use crate::kernel::state::State;
 use crate::kernel::vector::{Part, parts};
+use crate::model::Parameter;
 use fearless_simd::Simd;
 use std::ops::Range;
 
@@ -69,15 +70,20 @@ impl Cells {
                 let agent = self.agent[at] as usize;
                 let (block, lane) = (agent / LANES, agent % LANES);
                 let of = |field: &[Lanes]| field[block].0[lane];
-                self.x[at] = of(&state.x);
-                self.y[at] = of(&state.y);
-                self.r[at] = of(&state.radius);
-                self.a[at] = of(&state.a);
-                let e = (of(&state.ex), of(&state.ey));
-                self.term.put(at, of(&state.lambda), of(&state.b), e);
+                self.x[at] = of(&state.motion.x);
+                self.y[at] = of(&state.motion.y);
+                self.r[at] = of(&state.bodies[Parameter::Radius]);
+                self.a[at] = of(&state.bodies[Parameter::A]);
+                let e = (of(&state.driving.ex), of(&state.driving.ey));
+                self.term.put(at, of(&state.bodies[Parameter::Lambda]), of(&state.bodies[Parameter::B]), e);
                 if forces.second {
-                    self.a2[at] = of(&state.a2);
-                    self.second.put(at, of(&state.lambda2), of(&state.b2), e);
+                    self.a2[at] = of(&state.bodies[Parameter::A2]);
+                    self.second.put(
+                        at,
+                        of(&state.bodies[Parameter::Lambda2]),
+                        of(&state.bodies[Parameter::B2]),
+                        e,
+                    );
                 }
             }
         }
@@ -97,7 +103,11 @@ impl Cells {
             for agent in self.agent.iter().map(|&agent| agent as usize) {
                 let tie = forces.ties.get(agent).copied().flatten();
                 let of = |field: &[Lanes]| field[agent / LANES].0[agent % LANES];
-                let drive = || (of(&state.mass) * of(&state.speed) / of(&state.tau)).abs();
+                let drive = || {
+                    (of(&state.bodies[Parameter::Mass]) * of(&state.bodies[Parameter::Speed])
+                        / of(&state.bodies[Parameter::Tau]))
+                    .abs()
+                };
                 self.tie.push(tie.map_or(f64::NAN, |tie| tie.repulsion));
                 self.drive.push(tie.map_or(0.0, |_| drive()));
             }
@@ -110,12 +120,12 @@ impl Cells {
         let row = grid.row();
         self.start.clear();
         self.start.resize(grid.strips * row, 0);
-        self.cell.resize(state.x.len() * LANES, 0);
+        self.cell.resize(state.motion.x.len() * LANES, 0);
         for (block, cells) in self.cell.chunks_exact_mut(LANES).enumerate() {
             let (mut strips, mut columns) = (Lanes::ZERO, Lanes::ZERO);
             for part in parts(simd) {
-                part.store(grid.strip(part, part.load(&state.y[block])), &mut strips);
-                part.store(grid.column(part, part.load(&state.x[block])), &mut columns);
+                part.store(grid.strip(part, part.load(&state.motion.y[block])), &mut strips);
+                part.store(grid.column(part, part.load(&state.motion.x[block])), &mut columns);
             }
             for (cell, (strip, column)) in cells.iter_mut().zip(strips.0.into_iter().zip(columns.0)) {
                 *cell = low_bits(strip) * row as u32 + low_bits(column);

@@ -5,7 +5,7 @@ use super::machine::compare_all;
 use super::node::{Measure, Reading};
 use crate::base::lanes::{Lanes, Mask};
 use crate::base::math;
-use crate::model::{Comparison, Field};
+use crate::model::{Comparison, Field, Parameter};
 use fearless_simd::{Simd, prelude::*};
 
 /// Relative margin within which a comparison without square root is not trusted: a million times what
@@ -48,17 +48,17 @@ impl<S: Simd> Probe<S> {
         let state = view.state;
         let centres = measure == Measure::Centres;
         Self {
-            x: view.load(&state.x, who),
-            y: view.load(&state.y, who),
-            radius: if centres { view.splat(0.0) } else { view.load(&state.radius, who) },
+            x: view.load(&state.motion.x, who),
+            y: view.load(&state.motion.y, who),
+            radius: if centres { view.splat(0.0) } else { view.load(&state.bodies[Parameter::Radius], who) },
             measure,
         }
     }
 
     #[inline(always)]
     fn squared<const ONE: bool>(&self, view: &View<'_, S, ONE>, member: usize) -> Vector<S> {
-        let dx = self.x - view.load(&view.state.x, member);
-        let dy = self.y - view.load(&view.state.y, member);
+        let dx = self.x - view.load(&view.state.motion.x, member);
+        let dy = self.y - view.load(&view.state.motion.y, member);
         dx * dx + dy * dy
     }
 
@@ -68,8 +68,12 @@ impl<S: Simd> Probe<S> {
         let distance = self.squared(view, member).sqrt();
         match self.measure {
             Measure::Centres => distance,
-            Measure::GapFixedFirst => distance - self.radius - view.load(&view.state.radius, member),
-            Measure::GapRunningFirst => distance - view.load(&view.state.radius, member) - self.radius,
+            Measure::GapFixedFirst => {
+                distance - self.radius - view.load(&view.state.bodies[Parameter::Radius], member)
+            }
+            Measure::GapRunningFirst => {
+                distance - view.load(&view.state.bodies[Parameter::Radius], member) - self.radius
+            }
         }
     }
 
@@ -100,7 +104,7 @@ impl<S: Simd> Probe<S> {
             |member, here| {
                 // No square root for a member that is surely farther in every lane. A NaN is never passed over.
                 let squared = self.squared(view, member);
-                let both = self.radius + view.load(&view.state.radius, member);
+                let both = self.radius + view.load(&view.state.bodies[Parameter::Radius], member);
                 let reach = (best + both) + (best.abs() + both) * MARGIN + 1e-30;
                 let farther = reach.simd_gt(zero) & squared.simd_gt(reach * reach);
                 if narrow(farther) == Mask::ALL {
@@ -131,8 +135,11 @@ impl<S: Simd> Probe<S> {
             #[inline(always)]
             |member, here| {
                 let squared = self.squared(view, member);
-                let reach =
-                    if centres { base } else { base + view.load(&view.state.radius, member) * factor };
+                let reach = if centres {
+                    base
+                } else {
+                    base + view.load(&view.state.bodies[Parameter::Radius], member) * factor
+                };
                 let holds = f(squared, reach);
                 // Kept as a number: truth values that live across a loop are slow where they are not vectors.
                 let holds = if here == Mask::ALL { holds } else { holds & widen(view.simd, here) };
@@ -205,25 +212,28 @@ pub(super) fn reading<S: Simd, const ONE: bool>(
 ) -> Vector<S> {
     let state = view.state;
     match reading {
-        Reading::X => view.read(&state.x, body),
-        Reading::Y => view.read(&state.y, body),
-        Reading::Field(Field::VelocityX) => view.read(&state.vx, body),
-        Reading::Field(Field::VelocityY) => view.read(&state.vy, body),
+        Reading::X => view.read(&state.motion.x, body),
+        Reading::Y => view.read(&state.motion.y, body),
+        Reading::Field(Field::VelocityX) => view.read(&state.motion.vx, body),
+        Reading::Field(Field::VelocityY) => view.read(&state.motion.vy, body),
         Reading::Field(Field::Speed) => {
-            let (x, y) = (view.read(&state.vx, body), view.read(&state.vy, body));
+            let (x, y) = (view.read(&state.motion.vx, body), view.read(&state.motion.vy, body));
             (x * x + y * y).sqrt()
         }
         Reading::Field(Field::Heading) => {
-            let (x, y, zero) = (view.read(&state.vx, body), view.read(&state.vy, body), view.splat(0.0));
+            let (x, y, zero) =
+                (view.read(&state.motion.vx, body), view.read(&state.motion.vy, body), view.splat(0.0));
             let stands = x.simd_eq(zero) & y.simd_eq(zero);
-            let (x, y) =
-                (stands.select(view.read(&state.ex, body), x), stands.select(view.read(&state.ey, body), y));
+            let (x, y) = (
+                stands.select(view.read(&state.driving.ex, body), x),
+                stands.select(view.read(&state.driving.ey, body), y),
+            );
             by_lane_of_two(y, x, math::atan2)
         }
-        Reading::Field(Field::Radius) => view.read(&state.radius, body),
-        Reading::Field(Field::Mass) => view.read(&state.mass, body),
-        Reading::Field(Field::DrivingSpeed) => view.read(&state.speed, body),
-        Reading::Field(Field::Travelled) => view.read(&state.travelled, body),
+        Reading::Field(Field::Radius) => view.read(&state.bodies[Parameter::Radius], body),
+        Reading::Field(Field::Mass) => view.read(&state.bodies[Parameter::Mass], body),
+        Reading::Field(Field::DrivingSpeed) => view.read(&state.bodies[Parameter::Speed], body),
+        Reading::Field(Field::Travelled) => view.read(&state.motion.travelled, body),
         Reading::Field(Field::Mode(behaviour)) => match state.behaviours.modes.get(behaviour.0 as usize) {
             Some(modes) => view.read(modes, body),
             None => view.splat(-1.0),
@@ -313,12 +323,13 @@ pub(super) fn time_to_collision<S: Simd, const ONE: bool>(
     let state = view.state;
     let (zero, never) = (view.splat(0.0), view.splat(f64::INFINITY));
     let (px, py, vx, vy) = (
-        apart(view, &state.x, a, b),
-        apart(view, &state.y, a, b),
-        apart(view, &state.vx, a, b),
-        apart(view, &state.vy, a, b),
+        apart(view, &state.motion.x, a, b),
+        apart(view, &state.motion.y, a, b),
+        apart(view, &state.motion.vx, a, b),
+        apart(view, &state.motion.vy, a, b),
     );
-    let (ra, rb) = (view.read(&state.radius, a), view.read(&state.radius, b));
+    let (ra, rb) =
+        (view.read(&state.bodies[Parameter::Radius], a), view.read(&state.bodies[Parameter::Radius], b));
     let (squared, reach) = (px * px + py * py, ra + rb);
     let (speed, along, beyond) = (vx * vx + vy * vy, px * vx + py * vy, squared - reach * reach);
     let root = along * along - speed * beyond;

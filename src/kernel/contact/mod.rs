@@ -23,6 +23,7 @@ use super::program::Program;
 use super::state::{Slot, State};
 use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Lanes, Mask};
+use crate::model::Parameter;
 use fearless_simd::Simd;
 use flow::flow;
 use throng::Throng;
@@ -125,8 +126,9 @@ impl Contacts {
 impl Candidates {
     /// Whether anything in the lane can touch within `h` seconds.
     fn can_touch(&self, program: &Program, state: &State, lane: usize, h: f64) -> bool {
-        let place = |slot| (at(&state.x, &state.y, slot), at(&state.vx, &state.vy, slot));
-        let radius = |slot: Slot| state.radius[slot.block].0[slot.lane];
+        let place =
+            |slot| (at(&state.motion.x, &state.motion.y, slot), at(&state.motion.vx, &state.motion.vy, slot));
+        let radius = |slot: Slot| state.bodies[Parameter::Radius][slot.block].0[slot.lane];
         let here = |slot: Slot| state.present[slot.block].has(slot.lane);
         let pair = |&(i, j): &(u32, u32)| {
             let (a, b) = (state.slot(i as usize, lane), state.slot(j as usize, lane));

@@ -10,7 +10,7 @@ use crate::kernel::program::Program;
 use crate::kernel::state::{Layout, State};
 use crate::kernel::surfaces;
 use crate::kernel::vector::first_part;
-use crate::model::{Barrier, Behaviours, Obstacle, Processes, Scenario, Scene};
+use crate::model::{Barrier, Behaviours, Obstacle, Parameter, Processes, Scenario, Scene};
 use fearless_simd::{Level, dispatch};
 use std::sync::Arc;
 
@@ -64,14 +64,14 @@ fn state(numbers: &mut Numbers) -> State {
             if k % 13 != lane {
                 state.present[k] |= Mask::lane(lane);
             }
-            state.x[k].0[lane] = numbers.between(0.0, wide);
-            state.y[k].0[lane] = numbers.between(0.0, wide);
-            state.vx[k].0[lane] = numbers.between(-1.5, 1.5);
-            state.vy[k].0[lane] = numbers.between(-1.5, 1.5);
-            state.mass[k].0[lane] = numbers.between(50.0, 100.0);
-            state.radius[k].0[lane] = numbers.between(0.15, 0.3);
-            state.k1[k].0[lane] = numbers.between(0.5e5, 3e5);
-            state.k2[k].0[lane] = numbers.between(1e5, 3e5);
+            state.motion.x[k].0[lane] = numbers.between(0.0, wide);
+            state.motion.y[k].0[lane] = numbers.between(0.0, wide);
+            state.motion.vx[k].0[lane] = numbers.between(-1.5, 1.5);
+            state.motion.vy[k].0[lane] = numbers.between(-1.5, 1.5);
+            state.bodies[Parameter::Mass][k].0[lane] = numbers.between(50.0, 100.0);
+            state.bodies[Parameter::Radius][k].0[lane] = numbers.between(0.15, 0.3);
+            state.bodies[Parameter::K1][k].0[lane] = numbers.between(0.5e5, 3e5);
+            state.bodies[Parameter::K2][k].0[lane] = numbers.between(1e5, 3e5);
         }
     }
     state
@@ -82,17 +82,22 @@ fn candidates(program: &Program, state: &State) -> Contacts {
     let mut contacts = Contacts::default();
     contacts.clear();
     for lane in 0..LANES {
-        let place = |k: usize| Vec2::new(state.x[k].0[lane], state.y[k].0[lane]);
+        let place = |k: usize| Vec2::new(state.motion.x[k].0[lane], state.motion.y[k].0[lane]);
         let here = |k: usize| state.present[k].has(lane);
         for i in (0..PEOPLE).filter(|&i| here(i)) {
             for j in (i + 1..PEOPLE).filter(|&j| here(j)) {
-                let gap = state.radius[i].0[lane] + state.radius[j].0[lane] - (place(i) - place(j)).norm();
+                let gap = state.bodies[Parameter::Radius][i].0[lane]
+                    + state.bodies[Parameter::Radius][j].0[lane]
+                    - (place(i) - place(j)).norm();
                 if gap > -0.05 {
                     contacts.push_pair(i as u32, j as u32, Mask::lane(lane));
                 }
             }
             for k in 0..program.forces.surfaces.len() as u32 {
-                if state.radius[i].0[lane] - program.forces.surfaces.nearest_to(k, place(i)).near > -0.05 {
+                if state.bodies[Parameter::Radius][i].0[lane]
+                    - program.forces.surfaces.nearest_to(k, place(i)).near
+                    > -0.05
+                {
                     contacts.push_wall(i as u32, k, Mask::lane(lane));
                 }
             }
@@ -110,11 +115,13 @@ fn plainly(contacts: &Contacts, program: &Program, state: &mut State, moved: &mu
     for lane in state.occupied.iter() {
         let (pairs, walls) = (&contacts.candidates[lane].pairs, &contacts.candidates[lane].walls);
         let slot = |i: u32| state.slot(i as usize, lane);
-        let mut x: Vec<Vec2> = (0..PEOPLE as u32).map(|i| at(&state.x, &state.y, slot(i))).collect();
-        let mut v: Vec<Vec2> = (0..PEOPLE as u32).map(|i| at(&state.vx, &state.vy, slot(i))).collect();
+        let mut x: Vec<Vec2> =
+            (0..PEOPLE as u32).map(|i| at(&state.motion.x, &state.motion.y, slot(i))).collect();
+        let mut v: Vec<Vec2> =
+            (0..PEOPLE as u32).map(|i| at(&state.motion.vx, &state.motion.vy, slot(i))).collect();
         let of = |field: &[crate::base::lanes::Lanes], i: u32| field[i as usize].0[lane];
-        let radius = |i| of(&state.radius, i);
-        let inverse = |i| 1.0 / of(&state.mass, i);
+        let radius = |i| of(&state.bodies[Parameter::Radius], i);
+        let inverse = |i| 1.0 / of(&state.bodies[Parameter::Mass], i);
         let mean = |field: &[crate::base::lanes::Lanes], i, j| 0.5 * (of(field, i) + of(field, j));
         let moving = |i: u32| (x[i as usize], v[i as usize]);
         let mut hot = [false; PEOPLE];
@@ -134,8 +141,9 @@ fn plainly(contacts: &Contacts, program: &Program, state: &mut State, moved: &mu
         let pairs: Vec<(u32, u32)> = pairs.iter().copied().filter(|&(i, _)| is_hot(i)).collect();
         cold += contacts.candidates[lane].pairs.len() - pairs.len();
         let walls: Vec<(u32, u32)> = walls.iter().copied().filter(|&(i, _)| is_hot(i)).collect();
-        let of_pairs = pairs.iter().map(|&(i, j)| mean(&state.k1, i, j) * (inverse(i) + inverse(j)));
-        let of_walls = walls.iter().map(|&(i, _)| of(&state.k1, i) * inverse(i));
+        let of_pairs =
+            pairs.iter().map(|&(i, j)| mean(&state.bodies[Parameter::K1], i, j) * (inverse(i) + inverse(j)));
+        let of_walls = walls.iter().map(|&(i, _)| of(&state.bodies[Parameter::K1], i) * inverse(i));
         let stiffest = of_pairs.chain(of_walls).fold(0.0, f64::max);
         let count = (H * (4.0 * stiffest).sqrt() / 0.35).ceil().clamp(1.0, 1000.0) as usize;
         let t = H / count as f64;
@@ -152,7 +160,7 @@ fn plainly(contacts: &Contacts, program: &Program, state: &mut State, moved: &mu
                     (i, Some(j), both),
                     d / distance,
                     radius(i) + radius(j) - distance,
-                    (mean(&state.k1, i, j), mean(&state.k2, i, j)),
+                    (mean(&state.bodies[Parameter::K1], i, j), mean(&state.bodies[Parameter::K2], i, j)),
                 ));
             }
             for k in 0..walls.len() {
@@ -165,7 +173,7 @@ fn plainly(contacts: &Contacts, program: &Program, state: &mut State, moved: &mu
                 });
                 let touch = touches[faces.iter().position(|other| *other == face).unwrap()];
                 let normal = Vec2::new(touch.nx.0[0], touch.ny.0[0]);
-                let k = (of(&state.k1, i), of(&state.k2, i));
+                let k = (of(&state.bodies[Parameter::K1], i), of(&state.bodies[Parameter::K2], i));
                 overlaps.push(((i, None, inverse(i)), normal, touch.shared.0[0], k));
             }
             overlaps.retain(|&(_, _, gap, _)| gap > 0.0);
@@ -199,8 +207,8 @@ fn plainly(contacts: &Contacts, program: &Program, state: &mut State, moved: &mu
         for i in bodies.filter(|&i| is_hot(i)).map(|i| i as usize) {
             many += usize::from(!moved[i].has(lane));
             moved[i] |= Mask::lane(lane);
-            (state.x[i].0[lane], state.y[i].0[lane]) = (x[i].x, x[i].y);
-            (state.vx[i].0[lane], state.vy[i].0[lane]) = (v[i].x, v[i].y);
+            (state.motion.x[i].0[lane], state.motion.y[i].0[lane]) = (x[i].x, x[i].y);
+            (state.motion.vx[i].0[lane], state.motion.vy[i].0[lane]) = (v[i].x, v[i].y);
         }
     }
     (many, cold)

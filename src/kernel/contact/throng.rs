@@ -12,6 +12,7 @@ use crate::base::lanes::Mask;
 use crate::base::math;
 use crate::kernel::program::Program;
 use crate::kernel::state::{Slot, State};
+use crate::model::Parameter;
 
 const NOBODY: u32 = u32::MAX;
 
@@ -128,10 +129,10 @@ impl Throng {
         self.index[agent as usize] = index;
         self.bodies.push(Body {
             slot,
-            radius: state.radius[slot.block].0[slot.lane],
-            k1: state.k1[slot.block].0[slot.lane],
-            k2: state.k2[slot.block].0[slot.lane],
-            inverse: 1.0 / state.mass[slot.block].0[slot.lane],
+            radius: state.bodies[Parameter::Radius][slot.block].0[slot.lane],
+            k1: state.bodies[Parameter::K1][slot.block].0[slot.lane],
+            k2: state.bodies[Parameter::K2][slot.block].0[slot.lane],
+            inverse: 1.0 / state.bodies[Parameter::Mass][slot.block].0[slot.lane],
             parent: index,
             cluster: 0,
             turn: 0,
@@ -186,8 +187,9 @@ impl Throng {
         self.x.clear();
         self.motions.clear();
         for body in &self.bodies {
-            self.x.push(at(&state.x, &state.y, body.slot));
-            self.motions.push(Motion { v: at(&state.vx, &state.vy, body.slot), inverse: body.inverse });
+            self.x.push(at(&state.motion.x, &state.motion.y, body.slot));
+            self.motions
+                .push(Motion { v: at(&state.motion.vx, &state.motion.vy, body.slot), inverse: body.inverse });
         }
         for cluster in &mut self.clusters {
             cluster.hot = false;
@@ -258,10 +260,10 @@ impl Throng {
         for ((body, x), motion) in self.bodies.iter().zip(&self.x).zip(&self.motions) {
             if self.clusters[body.cluster as usize].hot {
                 let Slot { block, lane } = body.slot;
-                state.x[block].0[lane] = x.x;
-                state.y[block].0[lane] = x.y;
-                state.vx[block].0[lane] = motion.v.x;
-                state.vy[block].0[lane] = motion.v.y;
+                state.motion.x[block].0[lane] = x.x;
+                state.motion.y[block].0[lane] = x.y;
+                state.motion.vx[block].0[lane] = motion.v.x;
+                state.motion.vy[block].0[lane] = motion.v.y;
                 moved[block] |= Mask::lane(lane);
             }
         }

@@ -2,11 +2,12 @@
 //! point.
 
 use super::person::PASSING;
-use super::route::Party;
 use super::stage::{Stage, Target};
 use crate::base::lanes::{Lanes, Mask};
 use crate::kernel::code::lanes::{Truth, Vector};
 use crate::kernel::state::State;
+use crate::kernel::state::route::Party;
+use crate::model::Parameter;
 use fearless_simd::{Simd, prelude::*};
 
 /// Steers the slots of one party; the slots that the plain code must look at.
@@ -23,8 +24,12 @@ pub(super) fn steer<S: Simd>(
     if slots.is_empty() {
         return Mask::NONE;
     }
-    let (x, y, radius) =
-        (load(simd, block, &state.x), load(simd, block, &state.y), load(simd, block, &state.radius));
+    let now = (state.layout, &state.ticks);
+    let (x, y, radius) = (
+        load(simd, block, &state.motion.x),
+        load(simd, block, &state.motion.y),
+        load(simd, block, &state.bodies[Parameter::Radius]),
+    );
     let (dx, dy, reached): (Vector<S>, Vector<S>, Truth<S>) = match &stage.target {
         Target::Rectangle(bounds) => {
             let (low, high) = (bounds.low, bounds.high);
@@ -57,10 +62,9 @@ pub(super) fn steer<S: Simd>(
             (dx, dy, ground.contains(x, y))
         }
         // Nothing that a step changes: who goes on, rests or waits has been told once.
-        Target::Onward | Target::Rest => return state.route.advice_over(block, slots, state),
+        Target::Onward | Target::Rest => return state.route.advice_over(block, slots, now),
         Target::Pause(_) => {
-            return state.route.advice_over(block, slots, state)
-                | state.route.pause_over(block, slots, state);
+            return state.route.advice_over(block, slots, now) | state.route.pause_over(block, slots, now);
         }
     };
     let square = dx * dx + dy * dy;
@@ -71,27 +75,28 @@ pub(super) fn steer<S: Simd>(
         & square.simd_lt(Vector::splat(simd, f64::INFINITY));
     let advised = state.route.advised[block];
     let walking = Truth::<S>::from_bitmask(simd, u64::from((slots & !advised).0));
-    let (ex, ey) = (load(simd, block, &state.ex), load(simd, block, &state.ey));
-    let drive = load(simd, block, &state.drive);
-    let speed = load(simd, block, &state.speed);
+    let (ex, ey) = (load(simd, block, &state.driving.ex), load(simd, block, &state.driving.ey));
+    let drive = load(simd, block, &state.driving.speed);
+    let speed = load(simd, block, &state.bodies[Parameter::Speed]);
     let turning = walking & turns & !reached;
     let (new_x, new_y) = (turning.select(dx * inverse, ex), turning.select(dy * inverse, ey));
-    new_x.store_slice(&mut state.ex[block].0);
-    new_y.store_slice(&mut state.ey[block].0);
+    new_x.store_slice(&mut state.driving.ex[block].0);
+    new_y.store_slice(&mut state.driving.ey[block].0);
     // The step just made was driven along the direction at its beginning: half of what the driving force would have
     // been more along the present one. Nothing where a step leads past the aim. The difference is +0 where a leg, a
     // rest or advice ended, and changes no bit.
     let (zero, one) = (Vector::splat(simd, 0.0), Vector::splat(simd, 1.0));
-    let rest = Vector::splat(simd, 0.5) * (one - load(simd, block, &state.decay)) * drive;
+    let rest = Vector::splat(simd, 0.5) * (one - load(simd, block, &state.bodies.decay)) * drive;
     let rest = (ex * new_x + ey * new_y).simd_gt(zero).select(rest, zero);
-    let (vx, vy) = (load(simd, block, &state.vx), load(simd, block, &state.vy));
-    (vx - rest * (ex - new_x)).store_slice(&mut state.vx[block].0);
-    (vy - rest * (ey - new_y)).store_slice(&mut state.vy[block].0);
+    let (vx, vy) = (load(simd, block, &state.motion.vx), load(simd, block, &state.motion.vy));
+    (vx - rest * (ex - new_x)).store_slice(&mut state.motion.vx[block].0);
+    (vy - rest * (ey - new_y)).store_slice(&mut state.motion.vy[block].0);
     let wanted = reached.select(Vector::splat(simd, 0.0), speed);
-    walking.select(wanted, drive).store_slice(&mut state.drive[block].0);
+    walking.select(wanted, drive).store_slice(&mut state.driving.speed[block].0);
     let done = Mask(reached.to_bitmask() as u8);
     let stays = stage.last && !stage.leaves;
-    state.route.advice_over(block, slots, state) | slots & if stays { Mask::NONE } else { done }
+    state.route.advice_over(block, slots, (state.layout, &state.ticks))
+        | slots & if stays { Mask::NONE } else { done }
 }
 
 /// A field of a block.

@@ -10,15 +10,13 @@
 
 mod lanes;
 mod person;
-mod route;
 mod stage;
 
-pub(super) use route::Halt;
-pub use route::{Routes, Way};
 pub use stage::Drive;
 
 use super::program::Program;
-use super::state::{Layout, Slot, State};
+use super::state::route::Halt;
+use super::state::{Slot, State};
 use crate::base::lanes::Mask;
 use crate::model::Move;
 use fearless_simd::{Level, Simd, dispatch};
@@ -39,7 +37,7 @@ pub(super) fn halt(program: &Program, state: &State, slot: Slot) -> Halt {
     let way = state.route.way(slot.block, slot.lane);
     let stage = program.drive.stages.get(way.stage as usize);
     let pausing = stage.is_some_and(|stage| matches!(stage.target, Target::Pause(_)));
-    let tick = state.ticks[person::trial_of(state.layout, slot.lane)];
+    let tick = state.ticks[state.layout.trial_of(slot.lane)];
     Halt { stage: way.stage, left: pausing.then(|| way.until.saturating_sub(tick)) }
 }
 
@@ -72,11 +70,7 @@ pub(super) fn steer_at(level: Level, program: &Program, state: &mut State) {
 
 #[inline(always)]
 fn steer_all<S: Simd>(simd: S, program: &Program, state: &mut State) {
-    let occupied = match state.layout {
-        Layout::Trials => state.occupied,
-        Layout::Agents if state.occupied.has(0) => Mask::ALL,
-        Layout::Agents => Mask::NONE,
-    };
+    let occupied = state.layout.slots_of(state.occupied);
     for block in 0..state.route.blocks() {
         let active = state.present[block] & occupied;
         let mut events = Mask::NONE;

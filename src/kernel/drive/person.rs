@@ -1,7 +1,6 @@
 //! One agent of one trial on its way: begin, next leg, advice, pauses. The plain counterpart of the vector
 //! code in `lanes`, which hands over to it whenever something happens.
 
-use super::route::{Halt, Way};
 use super::stage::{Stage, Target};
 use crate::base::geometry::{Vec2, rotated};
 use crate::base::random::{Purpose, Stream, TrialKey};
@@ -9,8 +8,9 @@ use crate::base::tick::steps_over;
 use crate::kernel::code::ground::Ground;
 use crate::kernel::code::lanes::Vector;
 use crate::kernel::program::Program;
-use crate::kernel::state::{Layout, State};
-use crate::model::{Move, Start};
+use crate::kernel::state::route::Halt;
+use crate::kernel::state::{Slot, State, Way};
+use crate::model::{Move, Parameter, Start};
 use fearless_simd::{Level, dispatch, prelude::*};
 
 /// How far from a point the line across it may be passed so that it counts as reached, m.
@@ -29,14 +29,6 @@ const ROUND: u32 = 0x9E37_79B9;
 pub(super) fn unit(v: Vec2) -> Option<Vec2> {
     let square = v.x * v.x + v.y * v.y;
     (square > NO_LENGTH && square.is_finite()).then(|| v * (1.0 / square.sqrt()))
-}
-
-/// The trial that a slot belongs to, as lane of keys and ticks.
-pub(super) fn trial_of(layout: Layout, lane: usize) -> usize {
-    match layout {
-        Layout::Trials => lane,
-        Layout::Agents => 0,
-    }
 }
 
 /// The way to where a body heads for: the nearest point of the target at least its radius inside, if there is room.
@@ -108,44 +100,44 @@ pub(super) struct Person<'a> {
 
 impl<'a> Person<'a> {
     pub(super) fn new(program: &'a Program, state: &'a mut State, block: usize, lane: usize) -> Self {
-        let agent = match state.layout {
-            Layout::Trials => block,
-            Layout::Agents => block * crate::base::lanes::LANES + lane,
-        };
+        let agent = state.layout.agent_of(Slot { block, lane });
         let way = state.route.way(block, lane);
         Self { program, state, agent, block, lane, way }
     }
 
     fn at(&self) -> Vec2 {
-        Vec2::new(self.state.x[self.block].0[self.lane], self.state.y[self.block].0[self.lane])
+        Vec2::new(self.state.motion.x[self.block].0[self.lane], self.state.motion.y[self.block].0[self.lane])
     }
 
     fn radius(&self) -> f64 {
-        self.state.radius[self.block].0[self.lane]
+        self.state.bodies[Parameter::Radius][self.block].0[self.lane]
     }
 
     fn speed(&self) -> f64 {
-        self.state.speed[self.block].0[self.lane]
+        self.state.bodies[Parameter::Speed][self.block].0[self.lane]
     }
 
     fn direction(&self) -> Vec2 {
-        Vec2::new(self.state.ex[self.block].0[self.lane], self.state.ey[self.block].0[self.lane])
+        Vec2::new(
+            self.state.driving.ex[self.block].0[self.lane],
+            self.state.driving.ey[self.block].0[self.lane],
+        )
     }
 
     fn key(&self) -> TrialKey {
-        self.state.keys[trial_of(self.state.layout, self.lane)]
+        self.state.keys[self.state.layout.trial_of(self.lane)]
     }
 
     fn tick(&self) -> u64 {
-        self.state.ticks[trial_of(self.state.layout, self.lane)]
+        self.state.ticks[self.state.layout.trial_of(self.lane)]
     }
 
     fn drive(&mut self, direction: Option<Vec2>, speed: f64) {
         if let Some(e) = direction {
-            self.state.ex[self.block].0[self.lane] = e.x;
-            self.state.ey[self.block].0[self.lane] = e.y;
+            self.state.driving.ex[self.block].0[self.lane] = e.x;
+            self.state.driving.ey[self.block].0[self.lane] = e.y;
         }
-        self.state.drive[self.block].0[self.lane] = speed;
+        self.state.driving.speed[self.block].0[self.lane] = speed;
     }
 
     fn keep(self) {
@@ -158,7 +150,7 @@ impl<'a> Person<'a> {
         self.way.origin = self.at();
         let stage = &self.program.drive.stages[stage as usize];
         if let Target::Pause(law) = &stage.target {
-            let later = self.state.queues.later(self.agent, trial_of(self.state.layout, self.lane));
+            let later = self.state.queues.later(self.agent, self.state.layout.trial_of(self.lane));
             let entity = self.program.scenario.agents[self.agent].entity + later;
             let stream = Stream::of(self.key(), entity, Purpose::Pause);
             let uniform = stream.uniform(stage.leg.wrapping_add(self.way.round.wrapping_mul(ROUND)));
@@ -237,7 +229,7 @@ impl<'a> Person<'a> {
         let onward = matches!(self.program.drive.stages[first as usize].target, Target::Onward);
         if onward && moving.is_some() {
             // Who goes on as recorded has the recorded speed as driving speed.
-            self.state.speed[self.block].0[self.lane] = speed;
+            self.state.bodies[Parameter::Speed][self.block].0[self.lane] = speed;
         }
         // Who wants to go nowhere, and never did, looks nowhere, though they may be pushed or come to rest: the social force is
         // felt alike all around.

@@ -2,8 +2,8 @@
 
 use super::super::code::Readings;
 use super::draws::Draws;
-use super::fault::{Fault, Faults};
 use crate::base::lanes::{LANES, Lanes, Mask};
+use crate::kernel::fault::{Fault, Faults};
 use crate::model::{Bool, Domain, Num, Process, process::are_weights};
 
 /// A new value: the variable, what it may hold, and the signal that holds the value.

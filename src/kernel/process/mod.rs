@@ -6,12 +6,10 @@
 //! is a table made by that same code.
 
 mod chain;
-mod clocks;
 mod commands;
 pub(super) mod delay;
 mod draws;
 mod embedded;
-mod fault;
 mod joint;
 mod keys;
 mod race;
@@ -22,14 +20,13 @@ mod view;
 mod walk;
 
 pub use chain::Chain;
-pub use clocks::Clocks;
 pub use embedded::{Embedded, Leaps, Stay};
-pub use fault::Fault;
-use fault::Faults;
 pub use view::{Sight, View};
 pub use walk::Walk;
 
 use super::code::{Code, Readings};
+pub use super::fault::Fault;
+use super::fault::Faults;
 use super::state::{Layout, State};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::random::{Purpose, Stream, TrialKey};

@@ -4,8 +4,8 @@
 //! in (0, 1) tells which command has won, and with which of its branches.
 
 use super::super::code::Readings;
-use super::fault::Fault;
 use crate::base::lanes::Lanes;
+use crate::kernel::fault::Fault;
 use crate::model::process::are_weights;
 use crate::model::{Bool, Domain, Num, Process, Timing};
 use std::collections::BTreeSet;

@@ -3,10 +3,10 @@
 
 use super::super::code::{Code, Readings};
 use super::super::state::{Layout, State};
-use super::fault::Fault;
 use super::keys::Keys;
 use super::race::{Race, Way};
 use crate::base::lanes::{LANES, Lanes, Mask};
+use crate::kernel::fault::Fault;
 use crate::model::{Domain, Scenario};
 use std::collections::BTreeSet;
 

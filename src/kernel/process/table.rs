@@ -7,8 +7,8 @@ use super::super::code::{Code, Readings};
 use super::super::state::{Layout, State};
 use super::commands::{Choice, Commands};
 use super::draws::Draws;
-use super::fault::{Fault, Faults};
 use crate::base::lanes::{LANES, Lanes, Mask};
+use crate::kernel::fault::{Fault, Faults};
 use crate::model::{Domain, Scenario, Timing};
 use std::collections::BTreeSet;
 

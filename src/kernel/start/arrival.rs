@@ -18,7 +18,7 @@ use crate::kernel::process::delay::after;
 use crate::kernel::program::Program;
 use crate::kernel::state::{Layout, State};
 use crate::model::law::Ready;
-use crate::model::{AgentId, Bool, Num, Position, Scenario, Source, Timing};
+use crate::model::{AgentId, Bool, Num, Parameter, Position, Scenario, Timing};
 
 /// The share of a step within which a time after a state still counts as at it: rounding of sums.
 const SLACK: f64 = 1e-6;
@@ -41,70 +41,6 @@ pub struct Arrivals {
     comes: Vec<bool>,
     /// Whether places are used once, because the scenario speaks of single ones.
     once: bool,
-}
-
-/// How far the sources of a batch are; lanes are trials in both layouts.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Queues {
-    /// Time of the next arrival of each source, s.
-    next: Vec<Lanes>,
-    /// How many have arrived.
-    arrived: Vec<[u32; LANES]>,
-    /// How many have come in.
-    pub entered: Vec<[u32; LANES]>,
-    /// How often the next one has tried to come in.
-    tries: Vec<[u32; LANES]>,
-    /// Per agent: how many numbers its person is behind the first one on its place. Empty without sources.
-    later: Vec<[u32; LANES]>,
-    /// Lanes in which a place was given to a second person.
-    pub reused: Mask,
-    /// Lanes in which more have arrived than there is room for: the trial is unresolved.
-    pub full: Mask,
-    /// Which source that was.
-    which: [u32; LANES],
-}
-
-impl Queues {
-    /// The lanes in which member `number` of a source, counted from 0, has come in.
-    pub fn has_entered(&self, source: usize, number: u32) -> Mask {
-        let Some(entered) = self.entered.get(source) else { return Mask::NONE };
-        let here = entered.iter().enumerate().filter(|(_, entered)| **entered > number);
-        here.fold(Mask::NONE, |mask, (lane, _)| mask | Mask::lane(lane))
-    }
-}
-
-impl Queues {
-    /// Why the trial in a lane is unresolved, if a source is the reason.
-    pub fn overrun(&self, sources: &[Source], lane: usize) -> Option<String> {
-        let source = sources.get(self.which[lane] as usize).filter(|_| self.full.has(lane))?;
-        let (count, name) = (source.members.len(), &source.name);
-        let words = if self.reused.has(lane) { "are there at once from" } else { "came by" };
-        Some(format!("more than {count} people {words} `{name}`; a larger `limit` in it keeps room for them"))
-    }
-
-    /// Why a question that follows single people has no answer in the trial of a lane, if that is the reason.
-    pub fn lost_sight(&self, sources: &[Source], lane: usize) -> Option<String> {
-        let source = sources.get(self.which[lane] as usize).filter(|_| self.reused.has(lane))?;
-        let (count, name) = (source.members.len(), &source.name);
-        Some(format!(
-            "more than {} came by `{name}`, and this follows single ones of them; a larger `limit` keeps a place for each",
-            if count == 1 { "1 person".to_owned() } else { format!("{count} people") }
-        ))
-    }
-
-    /// The name of the person on a place of a source, if it is not the first one there: `doors[57]`.
-    pub fn arrival(&self, sources: &[Source], agent: AgentId, lane: usize) -> Option<String> {
-        let later = self.later(agent.0 as usize, lane);
-        let source = sources.iter().find(|source| later > 0 && source.members.contains(&agent))?;
-        let place = source.members.iter().position(|member| *member == agent)?;
-        Some(format!("{}[{}]", source.name, place as u32 + later + 1))
-    }
-
-    /// How many numbers the person on an agent's place is behind the first one there; 0 but for places of sources.
-    #[inline]
-    pub fn later(&self, agent: usize, lane: usize) -> u32 {
-        self.later.get(agent).map_or(0, |later| later[lane])
-    }
 }
 
 impl Arrivals {
@@ -303,28 +239,9 @@ impl Door {
 /// Harmless numbers in the place of someone who has not come yet.
 fn leave_empty(state: &mut State, agent: usize, lane: usize) {
     let slot = state.slot(agent, lane);
-    let zero = [
-        &mut state.x,
-        &mut state.y,
-        &mut state.vx,
-        &mut state.vy,
-        &mut state.ey,
-        &mut state.drive,
-        &mut state.travelled,
-        &mut state.speed,
-        &mut state.radius,
-        &mut state.a,
-        &mut state.a2,
-        &mut state.noise,
-        &mut state.fx,
-        &mut state.fy,
-    ];
-    for field in zero {
-        field[slot.block].0[slot.lane] = 0.0;
-    }
-    for field in [&mut state.ex, &mut state.mass, &mut state.tau] {
-        field[slot.block].0[slot.lane] = 1.0;
-    }
+    state.motion.clear(slot);
+    state.driving.clear(slot);
+    state.bodies.clear(slot);
     state.present[slot.block] &= !Mask::lane(slot.lane);
 }
 
@@ -351,7 +268,8 @@ fn free_place(
             if !state.present[slot.block].has(slot.lane) {
                 return None;
             }
-            let centre = Vec2::new(state.x[slot.block].0[slot.lane], state.y[slot.block].0[slot.lane]);
+            let centre =
+                Vec2::new(state.motion.x[slot.block].0[slot.lane], state.motion.y[slot.block].0[slot.lane]);
             around = Sampler::Disc { centre, radius: *within };
             &around
         }
@@ -371,13 +289,17 @@ fn free_place(
 /// Places and radii of all who are present.
 fn all_present(state: &State, lane: usize) -> Vec<(f64, f64, f64)> {
     let mut out = Vec::new();
-    for block in 0..state.x.len() {
+    for block in 0..state.motion.x.len() {
         let slots = match state.layout {
             Layout::Trials => Mask::lane(lane),
             Layout::Agents => Mask::ALL,
         };
         for slot in (state.present[block] & slots).iter() {
-            out.push((state.x[block].0[slot], state.y[block].0[slot], state.radius[block].0[slot]));
+            out.push((
+                state.motion.x[block].0[slot],
+                state.motion.y[block].0[slot],
+                state.bodies[Parameter::Radius][block].0[slot],
+            ));
         }
     }
     out

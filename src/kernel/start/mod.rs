@@ -13,7 +13,7 @@ mod relaxation;
 mod sampler;
 
 pub use area::{Crowding, JAMMED, check_area};
-pub use arrival::{Arrivals, Queues};
+pub use arrival::Arrivals;
 pub use placement::Starts;
 
 use super::drive;
@@ -168,11 +168,11 @@ fn enter(
     let slot = state.slot(agent, lane);
     let velocity = program.scenario.agents[agent].start.velocity;
     let put = |field: &mut [Lanes], value| field[slot.block].0[slot.lane] = value;
-    put(&mut state.x, at.x);
-    put(&mut state.y, at.y);
-    put(&mut state.vx, velocity.x);
-    put(&mut state.vy, velocity.y);
-    for field in [&mut state.travelled, &mut state.fx, &mut state.fy] {
+    put(&mut state.motion.x, at.x);
+    put(&mut state.motion.y, at.y);
+    put(&mut state.motion.vx, velocity.x);
+    put(&mut state.motion.vy, velocity.y);
+    for field in [&mut state.motion.travelled, &mut state.motion.fx, &mut state.motion.fy] {
         put(field, 0.0);
     }
     state.present[slot.block] |= Mask::lane(slot.lane);
@@ -203,6 +203,10 @@ pub(super) fn own_parameters(
     let recorded = agent.start.velocity.norm();
     let speed = if agent.route == Route::Onward && recorded > 0.0 { recorded } else { body.speed };
     Some(Parameter::ALL.map(|parameter| match parameter {
+        Parameter::Mass => body.mass,
+        Parameter::Radius => body.radius,
+        Parameter::K1 => body.k1,
+        Parameter::K2 => body.k2,
         Parameter::Speed => speed,
         Parameter::Tau => body.tau,
         Parameter::A => body.a,
@@ -219,21 +223,21 @@ pub(super) fn own_parameters(
 /// Writes the parameters of an agent.
 fn write(state: &mut State, agent: usize, lane: usize, body: &Parameters) {
     let slot = state.slot(agent, lane);
-    for (field, value) in [
-        (&mut state.mass, body.mass),
-        (&mut state.radius, body.radius),
-        (&mut state.speed, body.speed),
-        (&mut state.tau, body.tau),
-        (&mut state.a, body.a * body.attention),
-        (&mut state.b, body.b),
-        (&mut state.lambda, body.lambda),
-        (&mut state.a2, body.a2 * body.attention),
-        (&mut state.b2, body.b2),
-        (&mut state.lambda2, body.lambda2),
-        (&mut state.k1, body.k1),
-        (&mut state.k2, body.k2),
-        (&mut state.noise, body.noise),
+    for (parameter, value) in [
+        (Parameter::Mass, body.mass),
+        (Parameter::Radius, body.radius),
+        (Parameter::Speed, body.speed),
+        (Parameter::Tau, body.tau),
+        (Parameter::A, body.a * body.attention),
+        (Parameter::B, body.b),
+        (Parameter::Lambda, body.lambda),
+        (Parameter::A2, body.a2 * body.attention),
+        (Parameter::B2, body.b2),
+        (Parameter::Lambda2, body.lambda2),
+        (Parameter::K1, body.k1),
+        (Parameter::K2, body.k2),
+        (Parameter::Noise, body.noise),
     ] {
-        field[slot.block].0[slot.lane] = value;
+        state.bodies[parameter][slot.block].0[slot.lane] = value;
     }
 }

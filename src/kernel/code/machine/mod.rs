@@ -235,8 +235,8 @@ impl<'a, S: Simd, const ONE: bool> Machine<'a, S, ONE> {
             Node::Of(reading, who) => crowd::reading(&view, reading, self.body(who)),
             Node::Distance(a, b) => {
                 let (a, b) = (self.body(a), self.body(b));
-                let (ax, bx) = (view.read(&state.x, a), view.read(&state.x, b));
-                let (ay, by) = (view.read(&state.y, a), view.read(&state.y, b));
+                let (ax, bx) = (view.read(&state.motion.x, a), view.read(&state.motion.x, b));
+                let (ay, by) = (view.read(&state.motion.y, a), view.read(&state.motion.y, b));
                 distance(ax - bx, ay - by)
             }
             Node::Between([ax, ay, bx, by]) => {
@@ -341,7 +341,7 @@ impl<'a, S: Simd, const ONE: bool> Machine<'a, S, ONE> {
             Node::Or(ref all) => all.iter().fold(Mask::NONE, |mask, &id| mask | self.truth(id)),
             Node::Inside(who, region) => {
                 let who = self.body(who);
-                let (x, y) = (view.read(&view.state.x, who), view.read(&view.state.y, who));
+                let (x, y) = (view.read(&view.state.motion.x, who), view.read(&view.state.motion.y, who));
                 narrow(self.code.regions[region as usize].contains(x, y))
             }
             Node::Present(who) => view.shows(self.body(who)),

@@ -23,7 +23,7 @@ use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::kernel::close::Close;
 use crate::kernel::nearby::amply_around;
 use crate::kernel::state::State;
-use crate::model::Comparison;
+use crate::model::{Comparison, Parameter};
 use answers::Answers;
 use neighbours::Neighbours;
 use std::ops::Range;
@@ -56,8 +56,9 @@ impl Asker {
     /// An agent of the only trial of a state.
     #[inline(always)]
     pub(super) fn new(state: &State, agent: usize, measure: Measure) -> Self {
-        let radius = if measure == Measure::Centres { 0.0 } else { of(&state.radius, agent) };
-        Self { agent, at: Vec2::new(of(&state.x, agent), of(&state.y, agent)), radius, measure }
+        let radius =
+            if measure == Measure::Centres { 0.0 } else { of(&state.bodies[Parameter::Radius], agent) };
+        Self { agent, at: Vec2::new(of(&state.motion.x, agent), of(&state.motion.y, agent)), radius, measure }
     }
 
     /// Whether the squares can answer.
@@ -178,7 +179,11 @@ impl Vicinity {
             if !state.present[agent / LANES].has(agent % LANES) {
                 continue;
             }
-            let (x, y, radius) = (of(&state.x, agent), of(&state.y, agent), of(&state.radius, agent));
+            let (x, y, radius) = (
+                of(&state.motion.x, agent),
+                of(&state.motion.y, agent),
+                of(&state.bodies[Parameter::Radius], agent),
+            );
             // False of what is no number, too.
             reasonable &= x.abs() <= FARTHEST && y.abs() <= FARTHEST && radius.abs() <= FARTHEST;
             widest = if radius > widest { radius } else { widest };
@@ -213,8 +218,8 @@ impl Vicinity {
             let (first, last) = (first - more, last + more);
             (if first > low { first } else { low }, if last < high { last } else { high })
         };
-        let (left, right) = most(&state.x, around.low.x, around.high.x);
-        let (low, high) = most(&state.y, around.low.y, around.high.y);
+        let (left, right) = most(&state.motion.x, around.low.x, around.high.x);
+        let (low, high) = most(&state.motion.y, around.low.y, around.high.y);
         let (width, height) = (right - left, high - low);
         let number = count as f64;
         let (even, least) = ((width * height / number).sqrt(), (width + height) / (2.0 * number));
@@ -236,8 +241,8 @@ impl Vicinity {
         self.square.clear();
         for &member in &self.here {
             let agent = member as usize;
-            let square =
-                squares.row(of(&state.y, agent)) * squares.columns + squares.column(of(&state.x, agent));
+            let square = squares.row(of(&state.motion.y, agent)) * squares.columns
+                + squares.column(of(&state.motion.x, agent));
             self.square.push(square as u32);
             self.first[square] += 1;
         }
@@ -256,9 +261,9 @@ impl Vicinity {
             *next -= 1;
             let at = *next as usize;
             self.agent[at] = member;
-            self.x[at] = of(&state.x, agent);
-            self.y[at] = of(&state.y, agent);
-            self.radius[at] = of(&state.radius, agent);
+            self.x[at] = of(&state.motion.x, agent);
+            self.y[at] = of(&state.motion.y, agent);
+            self.radius[at] = of(&state.bodies[Parameter::Radius], agent);
         }
     }
 

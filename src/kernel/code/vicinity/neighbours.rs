@@ -12,6 +12,7 @@ use crate::base::lanes::{Lanes, Mask};
 use crate::kernel::close::Close;
 use crate::kernel::code::node::{Cut, Measure};
 use crate::kernel::state::State;
+use crate::model::Parameter;
 
 /// How much farther than what is asked for a list goes, m.
 const SKIN: f64 = 0.4;
@@ -76,12 +77,13 @@ impl Neighbours {
             return None;
         }
         if !self.present.iter().enumerate().all(|(block, &here)| {
-            let same = state.radius[block].compare(self.radius[block], |now, then| now == then);
+            let same =
+                state.bodies[Parameter::Radius][block].compare(self.radius[block], |now, then| now == then);
             (same | !here) == Mask::ALL
         }) {
             return None;
         }
-        let (wide, high) = (self.spread(&state.x, &self.x)?, self.spread(&state.y, &self.y)?);
+        let (wide, high) = (self.spread(&state.motion.x, &self.x)?, self.spread(&state.motion.y, &self.y)?);
         Some((wide * wide + high * high).sqrt())
     }
 
@@ -169,9 +171,9 @@ impl Vicinity {
         let state = around.state;
         neighbours.present.clone_from(&state.present);
         for (to, from) in [
-            (&mut neighbours.x, &state.x),
-            (&mut neighbours.y, &state.y),
-            (&mut neighbours.radius, &state.radius),
+            (&mut neighbours.x, &state.motion.x),
+            (&mut neighbours.y, &state.motion.y),
+            (&mut neighbours.radius, &state.bodies[Parameter::Radius]),
         ] {
             to.clone_from(from);
         }

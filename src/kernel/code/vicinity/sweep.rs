@@ -27,7 +27,7 @@ impl Vicinity {
         {
             return false;
         }
-        let blocks = around.state.x.len();
+        let blocks = around.state.motion.x.len();
         match question {
             Question::Nearest { measure, .. } => {
                 let found = self.nearest_of_each(measure);

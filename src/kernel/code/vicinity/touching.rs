@@ -51,7 +51,7 @@ impl Vicinity {
         if let Some(known) = self.sets.iter().position(|(known, _)| *known == list) {
             return known;
         }
-        let mut set = vec![Mask::NONE; around.state.x.len()];
+        let mut set = vec![Mask::NONE; around.state.motion.x.len()];
         for &agent in &around.lists[list as usize] {
             set[agent as usize / LANES] |= Mask::lane(agent as usize % LANES);
         }

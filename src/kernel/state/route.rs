@@ -1,27 +1,26 @@
 //! Where everyone is on the way: kept in the state, one entry a slot.
 
-use super::person::trial_of;
 use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Lanes, Mask};
-use crate::kernel::state::State;
+use crate::kernel::layout::Layout;
 
 /// Where one agent of one trial is on its route.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Way {
     /// Index into the scenario's stages.
-    pub(super) stage: u32,
+    pub(in crate::kernel) stage: u32,
     /// Tick at which a pause ends.
-    pub(super) until: u64,
+    pub(in crate::kernel) until: u64,
     /// Tick at which advice ends; 0 without any.
-    pub(super) advised_until: u64,
+    pub(in crate::kernel) advised_until: u64,
     /// Driving direction under advice; zero for a stop.
-    pub(super) advice: Vec2,
+    pub(in crate::kernel) advice: Vec2,
     /// Where the present leg began, m.
-    pub(super) origin: Vec2,
+    pub(in crate::kernel) origin: Vec2,
     /// Direction of someone without a goal, and whether they move.
-    pub(super) onward: (Vec2, bool),
+    pub(in crate::kernel) onward: (Vec2, bool),
     /// Which time a detour is taken; 0 on the own route. Addresses its pauses.
-    pub(super) round: u32,
+    pub(in crate::kernel) round: u32,
 }
 
 impl Default for Way {
@@ -43,9 +42,9 @@ impl Default for Way {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(in crate::kernel) struct Halt {
     /// Index into the scenario's stages.
-    pub(super) stage: u32,
+    pub(in crate::kernel) stage: u32,
     /// Ticks that are left of a pause which had begun.
-    pub(super) left: Option<u64>,
+    pub(in crate::kernel) left: Option<u64>,
 }
 
 impl Halt {
@@ -57,9 +56,9 @@ impl Halt {
 
 /// The slots of a block that are on the same stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Party {
-    pub(super) stage: u32,
-    pub(super) slots: Mask,
+pub(in crate::kernel) struct Party {
+    pub(in crate::kernel) stage: u32,
+    pub(in crate::kernel) slots: Mask,
 }
 
 /// The ways of a batch of trials.
@@ -69,11 +68,11 @@ pub struct Routes {
     /// Parties of each block, those in use first.
     parties: Vec<([Party; LANES], usize)>,
     /// Slots under advice.
-    pub(super) advised: Vec<Mask>,
+    pub(in crate::kernel) advised: Vec<Mask>,
     /// Where the present leg began, in lanes, m.
-    pub(super) from_x: Vec<Lanes>,
+    pub(in crate::kernel) from_x: Vec<Lanes>,
     /// Where the present leg began, second coordinate, m.
-    pub(super) from_y: Vec<Lanes>,
+    pub(in crate::kernel) from_y: Vec<Lanes>,
 }
 
 impl Routes {
@@ -126,39 +125,51 @@ impl Routes {
 
     /// How many parties a block has.
     #[inline(always)]
-    pub(super) fn count(&self, block: usize) -> usize {
+    pub(in crate::kernel) fn count(&self, block: usize) -> usize {
         self.parties[block].1
     }
 
     /// One party of a block.
     #[inline(always)]
-    pub(super) fn party(&self, block: usize, number: usize) -> Party {
+    pub(in crate::kernel) fn party(&self, block: usize, number: usize) -> Party {
         self.parties[block].0[number]
     }
 
     /// Number of blocks.
-    pub(super) fn blocks(&self) -> usize {
+    pub(in crate::kernel) fn blocks(&self) -> usize {
         self.ways.len()
     }
 
     /// The slots among these whose advice ends with the present tick.
     #[inline(always)]
-    pub(super) fn advice_over(&self, block: usize, slots: Mask, state: &State) -> Mask {
+    pub(in crate::kernel) fn advice_over(
+        &self,
+        block: usize,
+        slots: Mask,
+        now: (Layout, &[u64; LANES]),
+    ) -> Mask {
         let advised = slots & self.advised[block];
-        if advised.is_empty() {
-            Mask::NONE
-        } else {
-            self.over(block, advised, state, |way| way.advised_until)
-        }
+        if advised.is_empty() { Mask::NONE } else { self.over(block, advised, now, |way| way.advised_until) }
     }
 
     /// The slots among these whose pause ends with the present tick.
-    pub(super) fn pause_over(&self, block: usize, slots: Mask, state: &State) -> Mask {
-        self.over(block, slots, state, |way| way.until)
+    pub(in crate::kernel) fn pause_over(
+        &self,
+        block: usize,
+        slots: Mask,
+        now: (Layout, &[u64; LANES]),
+    ) -> Mask {
+        self.over(block, slots, now, |way| way.until)
     }
 
-    fn over(&self, block: usize, slots: Mask, state: &State, end: impl Fn(&Way) -> u64) -> Mask {
-        let ended = |&lane: &usize| state.ticks[trial_of(state.layout, lane)] >= end(&self.ways[block][lane]);
+    fn over(
+        &self,
+        block: usize,
+        slots: Mask,
+        (layout, ticks): (Layout, &[u64; LANES]),
+        end: impl Fn(&Way) -> u64,
+    ) -> Mask {
+        let ended = |&lane: &usize| ticks[layout.trial_of(lane)] >= end(&self.ways[block][lane]);
         slots.iter().filter(ended).fold(Mask::NONE, |mask, lane| mask | Mask::lane(lane))
     }
 }

@@ -9,23 +9,23 @@ use crate::base::lanes::{LANES, Lanes, Mask};
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Clocks {
     /// When each clock rings, s; infinite where it does not run.
-    pub(super) due: Vec<Lanes>,
+    pub(in crate::kernel) due: Vec<Lanes>,
     /// What each is later than that, s: what rounding took off; 0 where `is_exact` is not.
-    pub(super) rests: Vec<Lanes>,
+    pub(in crate::kernel) rests: Vec<Lanes>,
     /// Of a race: its rate, 1/s.
-    pub(super) rate: Vec<Lanes>,
+    pub(in crate::kernel) rate: Vec<Lanes>,
     /// Of a race: what was left of its exponential number when the rate last changed.
-    pub(super) fuel: Vec<Lanes>,
+    pub(in crate::kernel) fuel: Vec<Lanes>,
     /// The number in (0, 1) that decides what happens.
-    pub(super) pick: Vec<Lanes>,
+    pub(in crate::kernel) pick: Vec<Lanes>,
     /// Of each process: races begun so far.
-    pub(super) races: Vec<[u32; LANES]>,
+    pub(in crate::kernel) races: Vec<[u32; LANES]>,
     /// Of each process: delays drawn so far.
-    pub(super) delays: Vec<[u32; LANES]>,
+    pub(in crate::kernel) delays: Vec<[u32; LANES]>,
     /// Of each process: jumps so far, modulo 2^32.
-    pub(super) fired: Vec<[u32; LANES]>,
+    pub(in crate::kernel) fired: Vec<[u32; LANES]>,
     /// Of each process that is a table: its present row.
-    pub(super) rows: Vec<[u32; LANES]>,
+    pub(in crate::kernel) rows: Vec<[u32; LANES]>,
     /// Time of the last jump, s.
     pub now: [f64; LANES],
     /// What it is later than that, s.
@@ -35,18 +35,18 @@ pub struct Clocks {
     /// Jumps since the start of the trial.
     pub jumps: [u64; LANES],
     /// How many of the last jumps were at the present time.
-    pub(super) crowd: [u32; LANES],
+    pub(in crate::kernel) crowd: [u32; LANES],
     /// Lanes in which more happened between two steps than is followed.
     pub jammed: Mask,
     /// Of these the process that jumped most often in that step.
-    pub(super) jammer: [usize; LANES],
+    pub(in crate::kernel) jammer: [usize; LANES],
     /// Lanes whose clocks have not been set yet.
-    pub(super) fresh: Mask,
+    pub(in crate::kernel) fresh: Mask,
 }
 
 impl Clocks {
     /// A trial begins in a lane.
-    pub(super) fn load(&mut self, clocks: usize, processes: usize, is_exact: bool, lane: usize) {
+    pub(in crate::kernel) fn load(&mut self, clocks: usize, processes: usize, is_exact: bool, lane: usize) {
         self.is_exact = is_exact;
         for (list, value) in [
             (&mut self.due, f64::INFINITY),
@@ -74,7 +74,7 @@ impl Clocks {
     }
 
     /// Remembers for some lanes which process has jumped most often since.
-    pub(super) fn blame(&mut self, since: &[[u32; LANES]], lanes: Mask) {
+    pub(in crate::kernel) fn blame(&mut self, since: &[[u32; LANES]], lanes: Mask) {
         for lane in lanes.iter() {
             let jumps =
                 |k: usize| self.fired[k][lane].wrapping_sub(since.get(k).map_or(0, |fired| fired[lane]));
@@ -91,14 +91,14 @@ impl Clocks {
 
     /// A clock rings: it is as late as it says.
     #[inline]
-    pub(super) fn reach(&mut self, clock: usize, lane: usize) {
+    pub(in crate::kernel) fn reach(&mut self, clock: usize, lane: usize) {
         self.now[lane] = self.due[clock].0[lane];
         self.rest[lane] = self.rests[clock].0[lane];
     }
 
     /// Sets a clock to a time that came by chance, not before the present.
     #[inline]
-    pub(super) fn set(&mut self, clock: usize, lane: usize, due: f64) {
+    pub(in crate::kernel) fn set(&mut self, clock: usize, lane: usize, due: f64) {
         self.due[clock].0[lane] = due;
         if self.is_exact {
             self.rests[clock].0[lane] = if due == self.now[lane] { self.rest[lane] } else { 0.0 };
@@ -107,7 +107,7 @@ impl Clocks {
 
     /// Sets a clock to a time after the present, exactly.
     #[inline]
-    pub(super) fn set_after(&mut self, clock: usize, lane: usize, wait: Instant) {
+    pub(in crate::kernel) fn set_after(&mut self, clock: usize, lane: usize, wait: Instant) {
         let now = Instant { seconds: self.now[lane], rest: self.rest[lane] };
         let due = now.after(wait);
         (self.due[clock].0[lane], self.rests[clock].0[lane]) = (due.seconds, due.rest);
@@ -115,7 +115,7 @@ impl Clocks {
 
     /// The clock that rings first in each lane, and when.
     #[inline(always)]
-    pub(super) fn first(&self) -> ([usize; LANES], [f64; LANES]) {
+    pub(in crate::kernel) fn first(&self) -> ([usize; LANES], [f64; LANES]) {
         let (mut which, mut when) = ([0; LANES], [f64::INFINITY; LANES]);
         for (k, due) in self.due.iter().enumerate() {
             for lane in 0..LANES {

@@ -59,19 +59,19 @@ pub enum Fault {
 
 /// The first error of each lane in one step.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Faults {
+pub(in crate::kernel) struct Faults {
     lanes: Mask,
     first: [Option<Fault>; LANES],
 }
 
 impl Faults {
     /// None so far.
-    pub(super) fn clear(&mut self) {
+    pub(in crate::kernel) fn clear(&mut self) {
         self.lanes = Mask::NONE;
     }
 
     /// Another error; only the first of a lane is kept.
-    pub(super) fn add(&mut self, lane: usize, fault: Fault) {
+    pub(in crate::kernel) fn add(&mut self, lane: usize, fault: Fault) {
         if !self.lanes.has(lane) {
             self.lanes |= Mask::lane(lane);
             self.first[lane] = Some(fault);
@@ -79,12 +79,12 @@ impl Faults {
     }
 
     /// Lanes with an error.
-    pub(super) fn lanes(&self) -> Mask {
+    pub(in crate::kernel) fn lanes(&self) -> Mask {
         self.lanes
     }
 
     /// The error of a lane that has one.
-    pub(super) fn of(&self, lane: usize) -> Option<Fault> {
+    pub(in crate::kernel) fn of(&self, lane: usize) -> Option<Fault> {
         self.first[lane].filter(|_| self.lanes.has(lane))
     }
 }

@@ -1,0 +1,130 @@
+//! The moving state of a batch of trials.
+//!
+//! Every field is a list of blocks of eight slots. A slot is one agent of one trial. Which eight share a
+//! block depends on the layout: in `Layout::Trials` a block is one agent in eight trials (lane k is
+//! trial k); in `Layout::Agents` it is eight agents of the only trial. All code that treats slots one by
+//! one (noise, integration) is the same for both.
+
+mod behaviours;
+mod bodies;
+mod clocks;
+mod driving;
+mod motion;
+mod queues;
+pub(super) mod route;
+
+pub use super::layout::{Layout, Slot};
+pub(super) use behaviours::{ActiveModes, OWN_ROUTE};
+pub use bodies::Bodies;
+pub use clocks::Clocks;
+pub use driving::Driving;
+pub use motion::Motion;
+pub use queues::Queues;
+pub use route::{Routes, Way};
+
+use super::fault::Fault;
+use crate::base::lanes::{LANES, Lanes, Mask};
+use crate::base::random::TrialKey;
+
+/// The moving state of a batch.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// What the slots of a block are.
+    pub layout: Layout,
+    /// Number of agents of a trial.
+    pub agents: usize,
+    /// The trials in the lanes (lane 0 alone in `Layout::Agents`).
+    pub keys: [TrialKey; LANES],
+    /// Ticks since the start of each lane's trial.
+    pub ticks: [u64; LANES],
+    /// Lanes that hold a trial that goes on.
+    pub occupied: Mask,
+    /// Lanes whose trial diverged: a number that is none, or a speed no human reaches.
+    pub diverged: Mask,
+
+    /// Slots whose agent is in the scene.
+    pub present: Vec<Mask>,
+    /// Where all agents are and how they move.
+    pub motion: Motion,
+    /// Their parameters.
+    pub bodies: Bodies,
+    /// Their driving velocities.
+    pub driving: Driving,
+    /// Where they are on their routes.
+    pub route: Routes,
+    /// States of their behaviours.
+    pub behaviours: ActiveModes,
+    /// Arrivals of the sources.
+    pub queues: Queues,
+
+    /// Values of the variables of processes, whose lanes are trials in both layouts.
+    pub variables: Vec<Lanes>,
+    /// Clocks of processes with rates and delays.
+    pub clocks: Clocks,
+    /// Lanes whose trial a process has ended by an error of the model; the variables are those before it.
+    pub faulty: Mask,
+    /// What the error is.
+    pub faults: [Option<Fault>; LANES],
+}
+
+impl State {
+    /// An empty batch: nobody is present, no lane occupied. Values in unused slots are harmless numbers.
+    pub fn new(layout: Layout, agents: usize) -> Self {
+        let blocks = layout.blocks(agents);
+        Self {
+            layout,
+            agents,
+            keys: [TrialKey::default(); LANES],
+            ticks: [0; LANES],
+            occupied: Mask::NONE,
+            diverged: Mask::NONE,
+            present: vec![Mask::NONE; blocks],
+            motion: Motion::new(blocks),
+            bodies: Bodies::new(blocks),
+            driving: Driving::new(blocks),
+            route: Routes::new(blocks),
+            behaviours: ActiveModes::default(),
+            queues: Queues::default(),
+            variables: Vec::new(),
+            clocks: Clocks::default(),
+            faulty: Mask::NONE,
+            faults: [None; LANES],
+        }
+    }
+
+    /// Where agent `agent` of the trial in lane `lane` is kept.
+    #[inline(always)]
+    pub fn slot(&self, agent: usize, lane: usize) -> Slot {
+        match self.layout {
+            Layout::Trials => Slot { block: agent, lane },
+            Layout::Agents => Slot { block: agent / LANES, lane: agent % LANES },
+        }
+    }
+
+    /// Number of trials that it can hold.
+    pub fn width(&self) -> usize {
+        match self.layout {
+            Layout::Trials => LANES,
+            Layout::Agents => 1,
+        }
+    }
+
+    /// A field of one agent as lanes are trials: in `Layout::Agents` its only value in every lane.
+    #[inline(always)]
+    pub fn lanes_of(&self, field: &[Lanes], agent: usize) -> Lanes {
+        match self.layout {
+            Layout::Trials => field[agent],
+            Layout::Agents => Lanes::splat(field[agent / LANES].0[agent % LANES]),
+        }
+    }
+
+    /// The lanes in which agent `agent` is present.
+    #[inline(always)]
+    pub fn present_in(&self, agent: usize) -> Mask {
+        match self.layout {
+            Layout::Trials => self.present[agent],
+            Layout::Agents if self.present[agent / LANES].has(agent % LANES) => Mask::ALL,
+            Layout::Agents => Mask::NONE,
+        }
+    }
+}
