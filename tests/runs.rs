@@ -33,11 +33,13 @@ fn end(text: &str, trial: u64) -> (usize, End) {
 
 #[test]
 fn a_trial_ends_for_one_reason() {
-    let steps = "scenario \"t\"\nhorizon = 9 steps\nprocess p { var n: 0 .. 4 = 0\n when true -> n = n + 1 }\n";
+    let steps =
+        "scenario \"t\"\nhorizon = 9 steps\nprocess p { var n: 0 .. 4 = 0\n when true -> n = n + 1 }\n";
     // The step in which a variable leaves its range leads to no state.
     assert_eq!(end(steps, 0), (4, End::Faulty(Fault::Range { variable: 0, value: 5.0 })));
     assert_eq!(end(&steps.replace("when true", "when n < 4"), 0), (9, End::Horizon));
-    let jumps = "scenario \"t\"\nhorizon = 9 s\nprocess p { var n: 0 .. 4 = 0\n when true after 1 s -> n = n + 1 }\n";
+    let jumps =
+        "scenario \"t\"\nhorizon = 9 s\nprocess p { var n: 0 .. 4 = 0\n when true after 1 s -> n = n + 1 }\n";
     assert_eq!(end(jumps, 0), (4, End::Faulty(Fault::Range { variable: 0, value: 5.0 })));
     assert_eq!(end(&jumps.replace("when true", "when n < 4"), 0), (4, End::Horizon));
     let door = "scenario \"t\"\nhorizon = 9 s\nstep = 0.1 s\nkind person: sfm preset helbing2000 { noise = 0 m/s }\n\
@@ -91,7 +93,8 @@ fn a_path_is_its_trial_up_to_where_the_key_changes() {
         let path = states(Address { changes: &[(from, key(1))], ..key(0).into() });
         let same = plain.iter().zip(&path).take_while(|(a, b)| a == b).last().unwrap();
         assert!(same.0.0 <= 24.0, "the key has changed: {same:?}");
-        let before = |seen: &[(f64, f64)]| seen.iter().copied().filter(|(time, _)| *time <= 20.0).collect::<Vec<_>>();
+        let before =
+            |seen: &[(f64, f64)]| seen.iter().copied().filter(|(time, _)| *time <= 20.0).collect::<Vec<_>>();
         assert!(before(&plain) == before(&path) && plain != path);
         // Changes at the horizon or later never come.
         let last = if text == queue { 60f64.to_bits() } else { 60 };

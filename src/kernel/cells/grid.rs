@@ -2,7 +2,7 @@
 
 use crate::base::geometry::{Bounds, Vec2};
 use crate::base::lanes::{Lanes, Mask};
-use crate::kernel::forces::{Forces, REACH};
+use crate::kernel::force::pair::{Block, PairTerm};
 use crate::kernel::state::State;
 use crate::kernel::vector::{Doubles, Part, larger, parts, smaller};
 use crate::model::Parameter;
@@ -86,12 +86,12 @@ impl Grid {
     }
 }
 
-/// Extent of the crowd and its farthest reach.
+/// Extent of the crowd and its farthest reach. Bodies nearer than `margin` to touching may touch within a step.
 #[inline(always)]
-pub(super) fn survey<S: Simd>(simd: S, forces: &Forces, state: &State) -> Grid {
+pub(super) fn survey<S: Simd, T: PairTerm>(simd: S, term: T, margin: f64, state: &State) -> Grid {
     let mut low = (Lanes::splat(f64::INFINITY), Lanes::splat(f64::INFINITY));
     let mut high = (Lanes::splat(f64::NEG_INFINITY), Lanes::splat(f64::NEG_INFINITY));
-    let (mut widest, mut farthest) = (Lanes::ZERO, Lanes::splat(forces.margin));
+    let (mut widest, mut farthest) = (Lanes::ZERO, Lanes::splat(margin));
     let mut odd = Mask::NONE;
     for part in parts(simd) {
         let (mut low_x, mut low_y) = (part.load(&low.0), part.load(&low.1));
@@ -108,11 +108,7 @@ pub(super) fn survey<S: Simd>(simd: S, forces: &Forces, state: &State) -> Grid {
             wide = larger::<S>(here.select(radius, wide), wide);
             // Zero times what is none or infinite is no number.
             odd |= part.bits(here & !((x + y + radius) * part.c(0.0)).simd_eq(part.c(0.0)));
-            let mut range = part.load(&state.bodies[Parameter::B][block]);
-            if forces.second {
-                range = larger::<S>(range, part.load(&state.bodies[Parameter::B2][block]));
-            }
-            far = larger::<S>(here.select(part.c(REACH) * range, far), far);
+            far = larger::<S>(here.select(term.reach(part, state, Block { part, index: block }), far), far);
         }
         part.store(low_x, &mut low.0);
         part.store(low_y, &mut low.1);
@@ -130,7 +126,7 @@ pub(super) fn survey<S: Simd>(simd: S, forces: &Forces, state: &State) -> Grid {
     let (x, y) = (least(low.0), least(low.1));
     let (wide, high) = (most(high.0) - x, most(high.1) - y);
     let slack = 1e-9 * (reach + wide + high);
-    let edge = forces.margin - 1e-9 * (2.0 * widest + forces.margin);
+    let edge = margin - 1e-9 * (2.0 * widest + margin);
     let edge = if odd.is_empty() { edge } else { f64::NEG_INFINITY };
     let mut grid = Grid {
         x,

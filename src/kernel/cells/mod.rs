@@ -15,24 +15,14 @@ mod sort;
 mod walls;
 
 use super::contact::Contacts;
-use super::program::Program;
-use super::social::{Sum, cohesion};
+use super::force::pair::Sum;
+use super::force::{Forces, walls as faces, with_pair_terms};
 use super::state::State;
-use super::surfaces;
 use crate::base::lanes::LANES;
 use fearless_simd::Simd;
 use grid::{Grid, survey};
 use pairs::{Task, Touch};
 use std::ops::Range;
-
-/// One exponential term of the sorted agents, as in `social::Term`.
-#[derive(Clone, Debug, Default)]
-struct Terms {
-    even: Vec<f64>,
-    ex: Vec<f64>,
-    ey: Vec<f64>,
-    rate: Vec<f64>,
-}
 
 /// Room for the forces of one large crowd.
 #[derive(Clone, Debug, Default)]
@@ -48,14 +38,8 @@ pub(super) struct Cells {
     y: Vec<f64>,
     /// Radius; minus infinity in padding, which is so beyond everybody's reach.
     r: Vec<f64>,
-    a: Vec<f64>,
-    a2: Vec<f64>,
-    term: Terms,
-    second: Terms,
-    /// Factor of the bounded social force towards bodies of several persons; NaN in a single person.
-    tie: Vec<f64>,
-    /// What drives each body, m v0/tau, N. Empty without two bodies of several persons, as `tie` is.
-    drive: Vec<f64>,
+    /// What the terms between two bodies keep of each agent: a column for each number.
+    columns: Vec<Vec<f64>>,
     /// The forces.
     fx: Vec<f64>,
     fy: Vec<f64>,
@@ -65,7 +49,7 @@ pub(super) struct Cells {
     own: Vec<Sum>,
     room: Vec<u32>,
     near: Vec<u32>,
-    faces: surfaces::Room,
+    faces: faces::Room,
     /// As in `Close`.
     edge: f64,
 }
@@ -81,12 +65,11 @@ impl Cells {
     pub(super) fn forces<S: Simd>(
         &mut self,
         simd: S,
-        program: &Program,
+        forces: &Forces,
         state: &State,
         sums: &mut Vec<Sum>,
         contacts: &mut Contacts,
     ) {
-        let forces = &program.forces;
         sums.clear();
         sums.resize(state.motion.x.len(), Sum::default());
         contacts.clear();
@@ -94,46 +77,36 @@ impl Cells {
         if !state.occupied.has(0) {
             return;
         }
-        let grid = survey(simd, forces, state);
+        let grid = with_pair_terms!(forces, term, survey(simd, term, forces.margin, state));
         self.edge = grid.edge;
         simd.vectorize(
             #[inline(always)]
-            || self.sort(simd, &grid, forces, state),
+            || self.sort(simd, &grid, state),
         );
-        // A function each, as in `lanewise`.
-        match (forces.shared.is_some(), forces.second, !forces.ties.is_empty()) {
-            (true, false, _) => simd.vectorize(
+        with_pair_terms!(
+            forces,
+            term,
+            simd.vectorize(
                 #[inline(always)]
-                || self.pairs::<S, true, false, false>(simd, &grid, forces, contacts),
-            ),
-            (true, true, _) => simd.vectorize(
+                || self.keep(simd, term, state),
+            )
+        );
+        // A function for each combination of terms, as in `lanewise`.
+        with_pair_terms!(
+            forces,
+            term,
+            simd.vectorize(
                 #[inline(always)]
-                || self.pairs::<S, true, true, false>(simd, &grid, forces, contacts),
-            ),
-            (false, false, false) => simd.vectorize(
-                #[inline(always)]
-                || self.pairs::<S, false, false, false>(simd, &grid, forces, contacts),
-            ),
-            (false, true, false) => simd.vectorize(
-                #[inline(always)]
-                || self.pairs::<S, false, true, false>(simd, &grid, forces, contacts),
-            ),
-            (false, false, true) => simd.vectorize(
-                #[inline(always)]
-                || self.pairs::<S, false, false, true>(simd, &grid, forces, contacts),
-            ),
-            (false, true, true) => simd.vectorize(
-                #[inline(always)]
-                || self.pairs::<S, false, true, true>(simd, &grid, forces, contacts),
-            ),
-        }
+                || self.pairs(simd, &grid, term, forces.margin, contacts),
+            )
+        );
         simd.vectorize(
             #[inline(always)]
-            || self.walls(simd, &grid, forces, contacts),
+            || self.walls(simd, &grid, forces, state, contacts),
         );
         self.scatter(&grid, sums);
         contacts.arrange();
-        cohesion(forces, state, sums);
+        forces.add_cohesion(state, sums);
     }
 
     /// Hands the forces to the agents.

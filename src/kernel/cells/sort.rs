@@ -1,62 +1,48 @@
 //! The order of one large crowd: by strip and cell.
 
+use super::Cells;
 use super::grid::Grid;
-use super::{Cells, Terms};
 use crate::base::lanes::{LANES, Lanes};
-use crate::kernel::forces::Forces;
-use crate::kernel::social::Term;
+use crate::kernel::force::pair::{AgentsInLanes, PairTerm};
 use crate::kernel::state::State;
-use crate::kernel::vector::{Part, parts};
+use crate::kernel::vector::{Doubles, Part, parts};
 use crate::model::Parameter;
 use fearless_simd::Simd;
-use std::ops::Range;
 
-impl Terms {
-    fn resize(&mut self, total: usize) {
-        for field in [&mut self.even, &mut self.ex, &mut self.ey, &mut self.rate] {
-            field.resize(total, 0.0);
-        }
-    }
+/// Eight of the sorted agents.
+#[derive(Clone, Copy)]
+pub(super) struct Sorted<'a, S: Simd> {
+    pub(super) part: Part<S>,
+    pub(super) agents: &'a [u32],
+}
 
-    fn clear(&mut self, padding: Range<usize>) {
-        self.even[padding.clone()].fill(0.0);
-        self.ex[padding.clone()].fill(0.0);
-        self.ey[padding.clone()].fill(0.0);
-        self.rate[padding].fill(1.0);
-    }
-
-    /// Takes over what an agent has: lambda, B, and the desired direction, for `finish`.
+impl<S: Simd> AgentsInLanes<S> for Sorted<'_, S> {
     #[inline(always)]
-    fn put(&mut self, at: usize, lambda: f64, b: f64, e: (f64, f64)) {
-        self.even[at] = lambda;
-        self.ex[at] = e.0;
-        self.ey[at] = e.1;
-        self.rate[at] = b;
+    fn field(self, field: &[Lanes]) -> Doubles<S> {
+        self.part.gather(
+            #[inline(always)]
+            |lane| {
+                let agent = self.agents[lane] as usize;
+                field[agent / LANES].0[agent % LANES]
+            },
+        )
     }
 
-    /// Makes the terms of eight agents of what `put` took over.
     #[inline(always)]
-    fn finish<S: Simd>(&mut self, part: Part<S>, k: usize, a: &[f64], with_rate: bool) {
-        let eight = k..k + LANES;
-        let force = (part.slice(&a[eight.clone()]), part.slice(&self.even[eight.clone()]));
-        let e = (part.slice(&self.ex[eight.clone()]), part.slice(&self.ey[eight.clone()]));
-        let b = with_rate.then(|| part.slice(&self.rate[eight.clone()]));
-        let term = Term::new(part, force, b, e);
-        part.put(term.even, &mut self.even[eight.clone()]);
-        part.put(term.ex, &mut self.ex[eight.clone()]);
-        part.put(term.ey, &mut self.ey[eight.clone()]);
-        if with_rate {
-            part.put(term.rate, &mut self.rate[eight]);
-        }
+    fn of_agents(self, numbers: &[f64]) -> Doubles<S> {
+        self.part.gather(
+            #[inline(always)]
+            |lane| numbers[self.agents[lane] as usize],
+        )
     }
 }
 
 impl Cells {
     /// Sorts the agents who are present by strip and cell.
     #[inline(always)]
-    pub(super) fn sort<S: Simd>(&mut self, simd: S, grid: &Grid, forces: &Forces, state: &State) {
+    pub(super) fn sort<S: Simd>(&mut self, simd: S, grid: &Grid, state: &State) {
         self.count(simd, grid, state);
-        let total = self.reserve(grid, forces);
+        self.reserve(grid);
         // Within a cell by index.
         for (block, &here) in state.present.iter().enumerate() {
             for lane in here.iter() {
@@ -73,43 +59,28 @@ impl Cells {
                 self.x[at] = of(&state.motion.x);
                 self.y[at] = of(&state.motion.y);
                 self.r[at] = of(&state.bodies[Parameter::Radius]);
-                self.a[at] = of(&state.bodies[Parameter::A]);
-                let e = (of(&state.driving.ex), of(&state.driving.ey));
-                self.term.put(at, of(&state.bodies[Parameter::Lambda]), of(&state.bodies[Parameter::B]), e);
-                if forces.second {
-                    self.a2[at] = of(&state.bodies[Parameter::A2]);
-                    self.second.put(
-                        at,
-                        of(&state.bodies[Parameter::Lambda2]),
-                        of(&state.bodies[Parameter::B2]),
-                        e,
-                    );
-                }
             }
         }
-        // Walls need the rates even where all agents share B.
-        let rates = forces.shared.is_none() || !forces.surfaces.is_empty();
-        for k in (0..total).step_by(LANES) {
+    }
+
+    /// Takes over what a term keeps of each agent.
+    #[inline(always)]
+    pub(super) fn keep<S: Simd, T: PairTerm>(&mut self, simd: S, term: T, state: &State) {
+        let total = self.agent.len();
+        self.columns.resize_with(T::COUNT, Vec::new);
+        for column in &mut self.columns {
+            column.resize(total, 0.0);
+        }
+        let Self { agent, columns, .. } = self;
+        for (k, agents) in agent.chunks_exact(LANES).enumerate() {
             for part in parts(simd) {
-                self.term.finish(part, k, &self.a, rates);
-                if forces.second {
-                    self.second.finish(part, k, &self.a2, forces.shared.is_none());
-                }
-            }
-        }
-        if !forces.ties.is_empty() {
-            self.tie.clear();
-            self.drive.clear();
-            for agent in self.agent.iter().map(|&agent| agent as usize) {
-                let tie = forces.ties.get(agent).copied().flatten();
-                let of = |field: &[Lanes]| field[agent / LANES].0[agent % LANES];
-                let drive = || {
-                    (of(&state.bodies[Parameter::Mass]) * of(&state.bodies[Parameter::Speed])
-                        / of(&state.bodies[Parameter::Tau]))
-                    .abs()
-                };
-                self.tie.push(tie.map_or(f64::NAN, |tie| tie.repulsion));
-                self.drive.push(tie.map_or(0.0, |_| drive()));
+                term.keep(
+                    part,
+                    state,
+                    Sorted { part, agents },
+                    #[inline(always)]
+                    |column, numbers| part.put(numbers, &mut columns[column][k * LANES..]),
+                );
             }
         }
     }
@@ -146,19 +117,15 @@ impl Cells {
         self.next.clone_from(&self.start);
     }
 
-    /// Makes room for all agents and the padding, and clears both. Gives the size, in whole blocks.
+    /// Makes room for all agents and the padding, in whole blocks, and clears both. Padding has the numbers of the first
+    /// agent, but is beyond everybody's reach.
     #[inline(always)]
-    fn reserve(&mut self, grid: &Grid, forces: &Forces) -> usize {
+    fn reserve(&mut self, grid: &Grid) {
         let row = grid.row();
         let total = (self.start[grid.strips * row - 1] as usize + LANES).next_multiple_of(LANES);
-        self.agent.resize(total, u32::MAX);
-        for field in [&mut self.x, &mut self.y, &mut self.r, &mut self.a] {
+        self.agent.resize(total, 0);
+        for field in [&mut self.x, &mut self.y, &mut self.r] {
             field.resize(total, 0.0);
-        }
-        self.term.resize(total);
-        if forces.second {
-            self.a2.resize(total, 0.0);
-            self.second.resize(total);
         }
         for field in [&mut self.fx, &mut self.fy] {
             field.clear();
@@ -167,18 +134,11 @@ impl Cells {
         for strip in 0..grid.strips {
             let end = self.strip(grid, strip).end;
             let padding = end..if strip + 1 < grid.strips { end + LANES } else { total };
-            self.agent[padding.clone()].fill(u32::MAX);
+            self.agent[padding.clone()].fill(0);
             self.x[padding.clone()].fill(grid.x);
             self.y[padding.clone()].fill(grid.y);
-            self.r[padding.clone()].fill(f64::NEG_INFINITY);
-            self.a[padding.clone()].fill(0.0);
-            self.term.clear(padding.clone());
-            if forces.second {
-                self.a2[padding.clone()].fill(0.0);
-                self.second.clear(padding);
-            }
+            self.r[padding].fill(f64::NEG_INFINITY);
         }
-        total
     }
 }
 

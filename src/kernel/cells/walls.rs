@@ -2,17 +2,26 @@
 
 use super::Cells;
 use super::grid::Grid;
+use super::sort::Sorted;
 use crate::base::lanes::{LANES, Mask};
 use crate::kernel::contact::Contacts;
-use crate::kernel::forces::Forces;
-use crate::kernel::surfaces::Bodies;
+use crate::kernel::force::Forces;
+use crate::kernel::force::walls::AtWalls;
+use crate::kernel::state::State;
 use crate::kernel::vector::{Part, parts};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
 impl Cells {
     #[inline(always)]
-    pub(super) fn walls<S: Simd>(&mut self, simd: S, grid: &Grid, forces: &Forces, contacts: &mut Contacts) {
+    pub(super) fn walls<S: Simd>(
+        &mut self,
+        simd: S,
+        grid: &Grid,
+        forces: &Forces,
+        state: &State,
+        contacts: &mut Contacts,
+    ) {
         if forces.surfaces.is_empty() {
             return;
         }
@@ -24,7 +33,7 @@ impl Cells {
                 let around = grid.around(&self.x[group.clone()], &self.y[group]);
                 let near = forces.surfaces.nearby.find(&around, &mut room);
                 for part in parts(simd) {
-                    self.walls_at(part, grid, forces, near, k, contacts);
+                    self.walls_at(part, grid, (forces, state), near, k, contacts);
                 }
             }
         }
@@ -37,7 +46,7 @@ impl Cells {
         &mut self,
         part: Part<S>,
         grid: &Grid,
-        forces: &Forces,
+        (forces, state): (&Forces, &State),
         near: &[u32],
         k: usize,
         contacts: &mut Contacts,
@@ -55,18 +64,14 @@ impl Cells {
         if self.near.is_empty() {
             return;
         }
-        let bodies = Bodies {
-            place: (x, y),
-            r: part.slice(&self.r[eight.clone()]),
-            a: part.slice(&self.a[eight.clone()]),
-            rate: part.slice(&self.term.rate[eight.clone()]),
-        };
+        let agents = Sorted { part, agents: &self.agent[eight.clone()] };
+        let at = AtWalls::new(part, (x, y), part.slice(&self.r[eight.clone()]), forces.shared, state, agents);
         let touching = |face, lanes| {
             for lane in part.bits(lanes).iter() {
                 contacts.push_wall(self.agent[k + lane], face, Mask::lane(0));
             }
         };
-        let (fx, fy) = surfaces.push(part, &self.near, &bodies, forces.margin, &mut self.faces, touching);
+        let (fx, fy) = surfaces.push(part, &self.near, &at, forces.margin, &mut self.faces, touching);
         part.take(-fx, &mut self.fx[eight.clone()]);
         part.take(-fy, &mut self.fy[eight]);
     }

@@ -25,18 +25,21 @@ mod sharing;
 #[cfg(test)]
 mod tests;
 
-use super::barrier::Surface;
-use super::edges::squared_distance;
-use super::nearby::Nearby;
+use super::pair::AgentsInLanes;
 use super::social::{decay, is_in_reach};
-use super::vector::{Doubles, Part, Truths, larger, smaller};
 use crate::base::geometry::{Bounds, Shape, Vec2};
 use crate::base::lanes::{Lanes, Mask};
-use crate::model::{Barrier, Obstacle};
+use crate::kernel::barrier::Surface;
+use crate::kernel::edges::squared_distance;
+use crate::kernel::nearby::Nearby;
+use crate::kernel::state::State;
+use crate::kernel::vector::{Doubles, Part, Truths, larger, smaller};
+use crate::model::{Barrier, Obstacle, Parameter};
 use face::{Form, Nearest, NearestTo, Side, nearest_of_whole, nearest_of_whole_to, sides_of};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use sharing::{Push, share};
+use std::f64::consts::LOG2_E;
 
 /// A point this close to a barrier lies on it, m: nobody slips through, whatever is drawn so.
 const ON: f64 = 1e-3;
@@ -67,34 +70,53 @@ struct Face {
 
 /// The faces of the barriers of a scene, in their order; those without a piece have none.
 #[derive(Clone, Debug)]
-pub(super) struct Surfaces {
+pub(in crate::kernel) struct Surfaces {
     wholes: Vec<Surface>,
     faces: Vec<Face>,
     /// Which faces may be near.
-    pub(super) nearby: Nearby,
+    pub(in crate::kernel) nearby: Nearby,
 }
 
-/// Eight bodies as a face meets them.
+/// Bodies as walls push them.
 #[derive(Clone, Copy)]
-pub(super) struct Bodies<S: Simd> {
+pub(in crate::kernel) struct AtWalls<S: Simd> {
     /// Places, m.
-    pub(super) place: (Doubles<S>, Doubles<S>),
+    place: (Doubles<S>, Doubles<S>),
     /// Radius, m.
-    pub(super) r: Doubles<S>,
+    r: Doubles<S>,
     /// Strength A, N, and log2(e)/B, 1/m, of the social force.
-    pub(super) a: Doubles<S>,
-    pub(super) rate: Doubles<S>,
+    a: Doubles<S>,
+    rate: Doubles<S>,
+}
+
+impl<S: Simd> AtWalls<S> {
+    /// Of agents at a place with a radius; with `shared` all have this B (and B of the second term).
+    #[inline(always)]
+    pub(in crate::kernel) fn new(
+        part: Part<S>,
+        place: (Doubles<S>, Doubles<S>),
+        r: Doubles<S>,
+        shared: Option<(f64, f64)>,
+        state: &State,
+        agents: impl AgentsInLanes<S>,
+    ) -> Self {
+        let rate = match shared {
+            Some((b, _)) => part.c(LOG2_E / b),
+            None => part.c(LOG2_E) / agents.field(&state.bodies[Parameter::B]),
+        };
+        Self { place, r, a: agents.field(&state.bodies[Parameter::A]), rate }
+    }
 }
 
 /// Room to work.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Room {
+pub(in crate::kernel) struct Room {
     pushes: Vec<Push>,
 }
 
 impl Surfaces {
     /// Of a scene.
-    pub(super) fn new(barriers: &[Barrier]) -> Self {
+    pub(in crate::kernel) fn new(barriers: &[Barrier]) -> Self {
         let there: Vec<(&Barrier, Surface)> =
             barriers.iter().filter_map(|barrier| Some((barrier, Surface::new(barrier)?))).collect();
         let (barriers, wholes): (Vec<&Barrier>, Vec<Surface>) = there.into_iter().unzip();
@@ -129,19 +151,19 @@ impl Surfaces {
     }
 
     /// Whether there is none.
-    pub(super) const fn is_empty(&self) -> bool {
+    pub(in crate::kernel) const fn is_empty(&self) -> bool {
         self.faces.is_empty()
     }
 
     /// How many faces there are.
     #[cfg(test)]
-    pub(super) const fn len(&self) -> usize {
+    pub(in crate::kernel) const fn len(&self) -> usize {
         self.faces.len()
     }
 
     /// Squared distance from eight places to the rectangle around a face.
     #[inline(always)]
-    pub(super) fn squared_distance_to_bounds<S: Simd>(
+    pub(in crate::kernel) fn squared_distance_to_bounds<S: Simd>(
         &self,
         face: u32,
         part: Part<S>,
@@ -153,7 +175,7 @@ impl Surfaces {
 
     /// The nearest points of a face to eight places.
     #[inline(always)]
-    pub(super) fn nearest<S: Simd>(
+    pub(in crate::kernel) fn nearest<S: Simd>(
         &self,
         face: u32,
         part: Part<S>,
@@ -167,7 +189,7 @@ impl Surfaces {
     }
 
     /// The nearest point of a face to one place.
-    pub(super) fn nearest_to(&self, face: u32, p: Vec2) -> NearestTo {
+    pub(in crate::kernel) fn nearest_to(&self, face: u32, p: Vec2) -> NearestTo {
         let Face { form, barrier, .. } = &self.faces[face as usize];
         match form {
             Form::Side(side) => side.nearest_to(p),
@@ -178,11 +200,11 @@ impl Surfaces {
     /// The social force of faces on eight bodies, N. Those that touch or may do so within a step are told to `may_touch`,
     /// if they are nearer than `margin`.
     #[inline(always)]
-    pub(super) fn push<S: Simd>(
+    pub(in crate::kernel) fn push<S: Simd>(
         &self,
         part: Part<S>,
         near: &[u32],
-        bodies: &Bodies<S>,
+        bodies: &AtWalls<S>,
         margin: f64,
         room: &mut Room,
         mut may_touch: impl FnMut(u32, Truths<S>),
@@ -303,7 +325,7 @@ impl Surfaces {
 
     /// How one body overlaps some faces, by the rules above: what they give is a depth, in lane 0. In their order.
     #[inline(always)]
-    pub(super) fn touch<'a, S: Simd>(
+    pub(in crate::kernel) fn touch<'a, S: Simd>(
         &self,
         part: Part<S>,
         faces: impl Iterator<Item = u32>,

@@ -4,9 +4,9 @@
 //! piece is the foot of the perpendicular, or an end. Where that end lies on another one, as on the hollow side of a
 //! corner, a piece fades out over the first centimetres behind it, so that nothing jumps as the foot leaves it.
 
-use super::Surface;
 use crate::base::geometry::{Bounds, Polygon, Segment, Vec2, cross};
 use crate::base::lanes::Mask;
+use crate::kernel::barrier::Surface;
 use crate::kernel::vector::{Doubles, Part, Truths, larger, smaller};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;

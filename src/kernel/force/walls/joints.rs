@@ -1,9 +1,9 @@
 //! Where faces meet, and which hang together: worked out once for a scene.
 
-use super::super::nearby::Nearby;
 use super::face::Form;
 use super::{Face, Joint, ON, Surface};
 use crate::base::geometry::{Bounds, Segment, Vec2, cross};
+use crate::kernel::nearby::Nearby;
 
 /// What two rectangles share, a little larger; `None` where they are apart.
 fn overlap(a: &Bounds, b: &Bounds) -> Option<Bounds> {
