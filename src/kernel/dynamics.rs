@@ -22,11 +22,11 @@
 
 use super::behaviour;
 use super::cells::Cells;
-use super::close::Close;
 use super::contact::Contacts;
 use super::drive;
 use super::force::pair::Sum;
 use super::lanewise::Lanewise;
+use super::near::Close;
 use super::noise::{Draws, word_of};
 use super::process;
 use super::program::Program;
@@ -99,8 +99,7 @@ impl Scratch {
             && self.seen == Some((state.keys[0], state.ticks[0]))
             && same_bits(&self.seen_x, &state.motion.x)
             && same_bits(&self.seen_y, &state.motion.y);
-        let edge = self.cells.edge();
-        (same && edge > f64::NEG_INFINITY).then(|| Close { pairs: self.contacts.pairs(), edge })
+        if same { self.cells.close(self.contacts.pairs()) } else { None }
     }
 }
 

@@ -6,7 +6,6 @@
 mod barrier;
 pub mod behaviour;
 mod cells;
-mod close;
 pub mod code;
 mod contact;
 pub mod drive;
@@ -16,6 +15,7 @@ pub mod fault;
 pub mod force;
 mod lanewise;
 pub mod layout;
+mod near;
 mod nearby;
 pub mod noise;
 mod pace;
@@ -26,9 +26,9 @@ pub mod start;
 pub mod state;
 mod vector;
 
-pub use close::Close;
 pub use code::{Code, Readings};
 pub use dynamics::{Scratch, jump, refresh, step};
+pub use near::Close;
 pub use program::Program;
 pub use run::{Address, End, Run};
 pub use state::{Layout, Slot, State};

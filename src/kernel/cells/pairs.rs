@@ -5,11 +5,11 @@
 //! without a branch that hangs on a distance. A vector that catches nobody in reach adds zero.
 
 use super::Cells;
-use super::grid::Grid;
-use super::sort::low_bits;
+use super::reach::Reach;
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::kernel::contact::Contacts;
 use crate::kernel::force::pair::{Pair, PairTerm, Sum};
+use crate::kernel::near::low_bits;
 use crate::kernel::vector::{first_part, parts, width};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -39,18 +39,19 @@ impl Cells {
     pub(super) fn pairs<S: Simd, T: PairTerm>(
         &mut self,
         simd: S,
-        grid: &Grid,
+        reach: &Reach,
         term: T,
         margin: f64,
         contacts: &mut Contacts,
     ) {
-        for strip in 0..grid.strips {
-            self.list(simd, grid, strip);
-            let from = self.strip(grid, strip).start;
+        for strip in 0..self.index.grid.strips {
+            self.list(simd, reach, strip);
+            let from = self.index.strip(strip).start;
             let found = self.work_off(simd, term, margin, from);
+            let agent = &self.index.agent;
             for touch in &self.touches[..found] {
                 for lane in touch.lanes.iter() {
-                    let (a, b) = (self.agent[touch.one as usize], self.agent[touch.others as usize + lane]);
+                    let (a, b) = (agent[touch.one as usize], agent[touch.others as usize + lane]);
                     contacts.push_pair(a.min(b), a.max(b), Mask::lane(0));
                 }
             }
@@ -63,11 +64,12 @@ impl Cells {
 
     /// Lists the work of a strip.
     #[inline(always)]
-    fn list<S: Simd>(&mut self, simd: S, grid: &Grid, strip: usize) {
+    fn list<S: Simd>(&mut self, simd: S, all: &Reach, strip: usize) {
+        let grid = self.index.grid;
         let row = grid.row();
-        let here = self.strip(grid, strip);
-        let own = &self.start[strip * row..(strip + 1) * row];
-        let above = self.start.get((strip + 1) * row..(strip + 2) * row);
+        let here = self.index.strip(strip);
+        let own = &self.index.start[strip * row..(strip + 1) * row];
+        let above = self.index.start.get((strip + 1) * row..(strip + 2) * row);
         self.own.clear();
         self.own.resize(here.len(), Sum::default());
         self.tasks.clear();
@@ -88,10 +90,11 @@ impl Cells {
             let (mut end, mut left, mut right) = (Lanes::ZERO, Lanes::ZERO, Lanes::ZERO);
             for part in parts(simd) {
                 let eight = k..k + LANES;
-                let (x, y) = (part.slice(&self.x[eight.clone()]), part.slice(&self.y[eight.clone()]));
-                let reach = grid.reach_of(part, part.slice(&self.r[eight]));
+                let (x, y) =
+                    (part.slice(&self.index.x[eight.clone()]), part.slice(&self.index.y[eight.clone()]));
+                let reach = all.of_radius(part, part.slice(&self.index.r[eight]));
                 part.store(grid.column(part, x + reach), &mut end);
-                let reach = grid.reach_above(part, strip, y, reach);
+                let reach = all.above(part, &grid, strip, y, reach);
                 part.store(grid.column(part, x - reach), &mut left);
                 part.store(grid.column(part, x + reach), &mut right);
             }
@@ -113,9 +116,9 @@ impl Cells {
     #[inline(always)]
     fn work_off<S: Simd, T: PairTerm>(&mut self, simd: S, term: T, margin: f64, from: usize) -> usize {
         let part = first_part(simd);
-        let length = self.agent.len();
+        let length = self.index.agent.len();
         // Of one length, so that one comparison shows that all are long enough.
-        let (xs, ys, rs) = (&self.x[..length], &self.y[..length], &self.r[..length]);
+        let (xs, ys, rs) = (&self.index.x[..length], &self.index.y[..length], &self.index.r[..length]);
         let (fx, fy) = (&mut self.fx[..length], &mut self.fy[..length]);
         let columns = T::load(
             #[inline(always)]
