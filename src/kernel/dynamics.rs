@@ -22,14 +22,14 @@
 
 use super::behaviour;
 use super::cells::Cells;
-use super::close::Close;
 use super::contact::Contacts;
 use super::drive;
+use super::force::pair::Sum;
 use super::lanewise::Lanewise;
+use super::near::Close;
 use super::noise::{Draws, word_of};
 use super::process;
 use super::program::Program;
-use super::social::Sum;
 use super::state::{Layout, Slot, State};
 use super::vector::{Doubles, Part, Words, parts};
 use crate::base::lanes::{LANES, Lanes, Mask};
@@ -99,8 +99,7 @@ impl Scratch {
             && self.seen == Some((state.keys[0], state.ticks[0]))
             && same_bits(&self.seen_x, &state.motion.x)
             && same_bits(&self.seen_y, &state.motion.y);
-        let edge = self.cells.edge();
-        (same && edge > f64::NEG_INFINITY).then(|| Close { pairs: self.contacts.pairs(), edge })
+        if same { self.cells.close(self.contacts.pairs()) } else { None }
     }
 }
 
@@ -191,8 +190,8 @@ pub fn renew(
 fn find_forces<S: Simd>(simd: S, program: &Program, state: &State, scratch: &mut Scratch) {
     let Scratch { lanewise, cells, contacts, sums, seen_x, seen_y, seen, .. } = scratch;
     match state.layout {
-        Layout::Trials => lanewise.forces(simd, program, state, sums, contacts),
-        Layout::Agents => cells.forces(simd, program, state, sums, contacts),
+        Layout::Trials => lanewise.forces(simd, &program.forces, state, sums, contacts),
+        Layout::Agents => cells.forces(simd, &program.forces, state, sums, contacts),
     }
     seen_x.clone_from(&state.motion.x);
     seen_y.clone_from(&state.motion.y);
@@ -270,7 +269,7 @@ impl Mover<'_> {
     /// Counter words of the agents of a block.
     #[inline(always)]
     fn words(&self, state: &State, block: usize) -> [u64; LANES] {
-        let words = &self.program.forces.noise_words;
+        let words = &self.program.noise.words;
         if !state.queues.reused.is_empty() {
             return self.words_of_later(state, block);
         }
@@ -315,7 +314,7 @@ impl Mover<'_> {
         let (wish_x, wish_y) =
             (drive * part.load(&state.driving.ex[block]), drive * part.load(&state.driving.ey[block]));
         let (vx, vy) = (wish_x + (vx - wish_x) * decay, wish_y + (vy - wish_y) * decay);
-        if !self.program.forces.noisy {
+        if !self.program.noise.present {
             return (vx, vy);
         }
         let (nx, ny) = self.draws.normals(part, words);
@@ -354,7 +353,7 @@ impl Mover<'_> {
         moved.resize(state.motion.x.len(), Mask::NONE);
         simd.vectorize(
             #[inline(always)]
-            || contacts.advance(simd, self.program, state, moved, self.half),
+            || contacts.advance(simd, &self.program.forces, state, moved, self.half),
         );
     }
 

@@ -6,12 +6,11 @@
 //! exactly zero, so the list changes no bit, and nothing of one lane is felt in another.
 
 use super::contact::Contacts;
-use super::forces::{Forces, REACH};
+use super::force::pair::{Block, Pair, PairTerm, Sum};
+use super::force::walls::{self, AtWalls};
+use super::force::{Forces, with_pair_terms};
 use super::nearby::amply_around;
-use super::program::Program;
-use super::social::{Sum, Term, bounded, cohesion, repel};
 use super::state::State;
-use super::surfaces::{self, Bodies};
 use super::vector::{Doubles, Part, larger, parts};
 use crate::base::geometry::{Bounds, Vec2};
 use crate::base::lanes::{LANES, Lanes, Mask};
@@ -20,62 +19,17 @@ use crate::base::random::TrialKey;
 use crate::model::Parameter;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
-use std::f64::consts::LOG2_E;
 
 /// Way that an agent may go before the list is made anew, m; twice that is added to the reach.
 const SLACK: f64 = 0.12;
 
 /// An agent as the forces see it.
 #[derive(Clone, Copy, Debug, Default)]
-struct Walker {
+struct Agent {
     x: Lanes,
     y: Lanes,
     /// Radius; minus infinity where the agent is absent, so that it is beyond the reach of everybody.
     r: Lanes,
-    term: Kept,
-}
-
-/// A `Term` of an agent.
-#[derive(Clone, Copy, Debug, Default)]
-struct Kept {
-    even: Lanes,
-    ex: Lanes,
-    ey: Lanes,
-    /// Means nothing where all share B.
-    rate: Lanes,
-}
-
-impl Kept {
-    /// From A and lambda, B where it is needed, and the desired direction.
-    #[inline(always)]
-    fn fill<S: Simd>(
-        &mut self,
-        part: Part<S>,
-        (a, lambda): (&Lanes, &Lanes),
-        b: Option<&Lanes>,
-        (ex, ey): (&Lanes, &Lanes),
-    ) {
-        let b = b.map(|b| part.load(b));
-        let e = (part.load(ex), part.load(ey));
-        let term = Term::new(part, (part.load(a), part.load(lambda)), b, e);
-        part.store(term.even, &mut self.even);
-        part.store(term.ex, &mut self.ex);
-        part.store(term.ey, &mut self.ey);
-        if b.is_some() {
-            part.store(term.rate, &mut self.rate);
-        }
-    }
-
-    /// Into registers; `rate` is that of all where they share one.
-    #[inline(always)]
-    fn load<S: Simd>(&self, part: Part<S>, rate: Option<Doubles<S>>) -> Term<S> {
-        Term {
-            even: part.load(&self.even),
-            ex: part.load(&self.ex),
-            ey: part.load(&self.ey),
-            rate: rate.unwrap_or_else(|| part.load(&self.rate)),
-        }
-    }
 }
 
 /// Who can reach whom, at the positions where it was made.
@@ -95,15 +49,14 @@ struct Neighbours {
 /// Room for the forces of a batch of trials.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Lanewise {
-    walkers: Vec<Walker>,
-    seconds: Vec<Kept>,
-    /// What drives each body, m v0/tau, N. Empty without two bodies of several persons.
-    drives: Vec<Lanes>,
+    agents: Vec<Agent>,
+    /// What the terms between two bodies keep of each agent, one after the other.
+    kept: Vec<Lanes>,
     neighbours: Neighbours,
     /// How far beyond touching each body is felt or may be touched, with the skin, m.
     reaches: Vec<Lanes>,
     room: Vec<u32>,
-    faces: surfaces::Room,
+    faces: walls::Room,
     stale: bool,
 }
 
@@ -118,13 +71,12 @@ impl Lanewise {
     pub(super) fn forces<S: Simd>(
         &mut self,
         simd: S,
-        program: &Program,
+        forces: &Forces,
         state: &State,
         sums: &mut Vec<Sum>,
         contacts: &mut Contacts,
     ) {
-        let forces = &program.forces;
-        self.prepare(simd, forces, state);
+        with_pair_terms!(forces, term, self.prepare(simd, term, forces.margin, state));
         if self.is_outdated(simd, state) {
             simd.vectorize(
                 #[inline(always)]
@@ -134,75 +86,46 @@ impl Lanewise {
         sums.clear();
         sums.resize(state.agents, Sum::default());
         contacts.clear();
-        let all = forces.shared.unwrap_or((1.0, 1.0));
-        // A function each: four loops in one would share its registers badly.
-        match (forces.shared.is_some(), forces.second) {
-            (true, false) => simd.vectorize(
+        // A function for each combination of terms: several loops in one would share its registers badly.
+        with_pair_terms!(
+            forces,
+            term,
+            simd.vectorize(
                 #[inline(always)]
-                || self.pairs::<S, true, false>(simd, forces, all, sums, contacts),
-            ),
-            (true, true) => simd.vectorize(
-                #[inline(always)]
-                || self.pairs::<S, true, true>(simd, forces, all, sums, contacts),
-            ),
-            (false, false) => simd.vectorize(
-                #[inline(always)]
-                || self.pairs::<S, false, false>(simd, forces, all, sums, contacts),
-            ),
-            (false, true) => simd.vectorize(
-                #[inline(always)]
-                || self.pairs::<S, false, true>(simd, forces, all, sums, contacts),
-            ),
-        }
+                || self.pairs(simd, term, forces.margin, sums, contacts),
+            )
+        );
         simd.vectorize(
             #[inline(always)]
             || self.walls(simd, forces, state, sums, contacts),
         );
-        cohesion(forces, state, sums);
+        forces.add_cohesion(state, sums);
     }
 
     #[inline(always)]
-    fn prepare<S: Simd>(&mut self, simd: S, forces: &Forces, state: &State) {
-        self.walkers.resize(state.agents, Walker::default());
-        if forces.second {
-            self.seconds.resize(state.agents, Kept::default());
-        }
-        self.drives.resize(forces.ties.len(), Lanes::ZERO);
-        for (i, drive) in self.drives.iter_mut().enumerate() {
+    fn prepare<S: Simd, T: PairTerm>(&mut self, simd: S, term: T, margin: f64, state: &State) {
+        self.agents.resize(state.agents, Agent::default());
+        self.reaches.resize(state.agents, Lanes::ZERO);
+        self.kept.resize(state.agents * T::COUNT, Lanes::ZERO);
+        for (index, agent) in self.agents.iter_mut().enumerate() {
+            agent.x = state.motion.x[index];
+            agent.y = state.motion.y[index];
+            let kept = &mut self.kept[index * T::COUNT..][..T::COUNT];
             for part in parts(simd) {
-                let of = |field: &[Lanes]| part.load(&field[i]);
-                part.store(
-                    (of(&state.bodies[Parameter::Mass]) * of(&state.bodies[Parameter::Speed])
-                        / of(&state.bodies[Parameter::Tau]))
-                    .abs(),
-                    drive,
-                );
-            }
-        }
-        for (i, walker) in self.walkers.iter_mut().enumerate() {
-            walker.x = state.motion.x[i];
-            walker.y = state.motion.y[i];
-            for part in parts(simd) {
-                let here = part.mask(state.present[i] & state.occupied);
-                let radius =
-                    here.select(part.load(&state.bodies[Parameter::Radius][i]), part.c(f64::NEG_INFINITY));
-                part.store(radius, &mut walker.r);
-                let e = (&state.driving.ex[i], &state.driving.ey[i]);
-                let own = forces.shared.is_none();
-                walker.term.fill(
+                let here = part.mask(state.present[index] & state.occupied);
+                let radius = here
+                    .select(part.load(&state.bodies[Parameter::Radius][index]), part.c(f64::NEG_INFINITY));
+                part.store(radius, &mut agent.r);
+                let block = Block { part, index };
+                let far = larger::<S>(term.reach(part, state, block), part.c(margin));
+                part.store(far + part.c(2.0 * SLACK), &mut self.reaches[index]);
+                term.keep(
                     part,
-                    (&state.bodies[Parameter::A][i], &state.bodies[Parameter::Lambda][i]),
-                    own.then_some(&state.bodies[Parameter::B][i]),
-                    e,
+                    state,
+                    block,
+                    #[inline(always)]
+                    |k, numbers| part.store(numbers, &mut kept[k]),
                 );
-                if let Some(second) = self.seconds.get_mut(i) {
-                    second.fill(
-                        part,
-                        (&state.bodies[Parameter::A2][i], &state.bodies[Parameter::Lambda2][i]),
-                        own.then_some(&state.bodies[Parameter::B2][i]),
-                        e,
-                    );
-                }
             }
         }
     }
@@ -247,21 +170,10 @@ impl Lanewise {
         list.others.clear();
         list.first_surface.clear();
         list.surfaces.clear();
-        let reaches = &mut self.reaches;
-        reaches.resize(state.agents, Lanes::ZERO);
-        for (i, reach) in reaches.iter_mut().enumerate() {
-            for part in parts(simd) {
-                let mut range = part.load(&state.bodies[Parameter::B][i]);
-                if forces.second {
-                    range = larger::<S>(range, part.load(&state.bodies[Parameter::B2][i]));
-                }
-                let far = larger::<S>(part.c(REACH) * range, part.c(forces.margin));
-                part.store(far + part.c(2.0 * SLACK), reach);
-            }
-        }
-        for (i, one) in self.walkers.iter().enumerate() {
+        let reaches = &self.reaches;
+        for (i, one) in self.agents.iter().enumerate() {
             list.first.push(list.others.len() as u32);
-            for (j, other) in self.walkers.iter().enumerate().skip(i + 1) {
+            for (j, other) in self.agents.iter().enumerate().skip(i + 1) {
                 let mut near = false;
                 for part in parts(simd) {
                     let dx = part.load(&one.x) - part.load(&other.x);
@@ -294,61 +206,42 @@ impl Lanewise {
         list.first_surface.push(list.surfaces.len() as u32);
     }
 
-    /// Social forces between agents. With `SHARED` one B for all; with `SECOND` the second term too.
+    /// Forces between agents.
     #[inline(always)]
-    fn pairs<S: Simd, const SHARED: bool, const SECOND: bool>(
+    fn pairs<S: Simd, T: PairTerm>(
         &self,
         simd: S,
-        forces: &Forces,
-        shared: (f64, f64),
+        term: T,
+        margin: f64,
         sums: &mut [Sum],
         contacts: &mut Contacts,
     ) {
-        let n = self.walkers.len();
-        let walkers = &self.walkers[..n];
-        let seconds = if SECOND { &self.seconds[..n] } else { &[] };
+        let n = self.agents.len();
+        let agents = &self.agents[..n];
+        let kept = &self.kept[..n * T::COUNT];
         let sums = &mut sums[..n];
         let first = &self.neighbours.first[..=n];
         for part in parts(simd) {
-            let rate = SHARED.then(|| part.c(LOG2_E / shared.0));
-            let rate2 = SHARED.then(|| part.c(LOG2_E / shared.1));
-            let minus_margin = part.c(-forces.margin);
+            let minus_margin = part.c(-margin);
             for i in 0..n {
-                let w = &walkers[i];
-                let (x, y, r) = (part.load(&w.x), part.load(&w.y), part.load(&w.r));
-                let own = w.term.load(part, rate);
-                let own2 = if SECOND { seconds[i].load(part, rate2) } else { own };
+                let agent = &agents[i];
+                let (x, y, r) = (part.load(&agent.x), part.load(&agent.y), part.load(&agent.r));
+                let own = load::<S, T>(part, kept, i);
                 let (mut fx, mut fy) = (part.load(&sums[i].x), part.load(&sums[i].y));
                 for &j in &self.neighbours.others[first[i] as usize..first[i + 1] as usize] {
-                    let o = &walkers[j as usize];
-                    let dx = x - part.load(&o.x);
-                    let dy = y - part.load(&o.y);
-                    let d = (dx * dx + dy * dy + part.c(1e-300)).sqrt();
-                    let q = part.c(1.0) / d;
-                    let gap = r + part.load(&o.r) - d;
-                    let touching = gap.simd_gt(minus_margin);
+                    let other = &agents[j as usize];
+                    let way = (x - part.load(&other.x), y - part.load(&other.y));
+                    let pair = Pair::new(part, way, r + part.load(&other.r));
+                    let touching = pair.gap.simd_gt(minus_margin);
                     if touching.any_true() {
                         contacts.push_pair(i as u32, j, part.bits(touching));
                     }
-                    let theirs = o.term.load(part, rate);
-                    let (mut on_i, mut on_j) = repel::<S, SHARED>(part, gap, (dx, dy), q, (&own, &theirs));
-                    if SECOND {
-                        let theirs = seconds[j as usize].load(part, rate2);
-                        let more = repel::<S, SHARED>(part, gap, (dx, dy), q, (&own2, &theirs));
-                        on_i += more.0;
-                        on_j += more.1;
-                    }
-                    // Without a shared B: bodies of several persons may be among them.
-                    if !SHARED && let Some(repulsion) = forces.repulsion(i, j as usize) {
-                        let drive = |k: usize| part.load(&self.drives[k]);
-                        on_i = bounded(part, on_i, d, drive(i)) * part.c(repulsion);
-                        on_j = bounded(part, on_j, d, drive(j as usize)) * part.c(repulsion);
-                    }
-                    fx += on_i * dx;
-                    fy += on_i * dy;
+                    let (on_i, on_j) = term.force(part, &pair, &own, &load::<S, T>(part, kept, j as usize));
+                    fx += on_i * pair.dx;
+                    fy += on_i * pair.dy;
                     let sum = &mut sums[j as usize];
-                    part.store(part.load(&sum.x) - on_j * dx, &mut sum.x);
-                    part.store(part.load(&sum.y) - on_j * dy, &mut sum.y);
+                    part.store(part.load(&sum.x) - on_j * pair.dx, &mut sum.x);
+                    part.store(part.load(&sum.y) - on_j * pair.dy, &mut sum.y);
                 }
                 part.store(fx, &mut sums[i].x);
                 part.store(fy, &mut sums[i].y);
@@ -366,33 +259,42 @@ impl Lanewise {
         contacts: &mut Contacts,
     ) {
         let (list, surfaces) = (&self.neighbours, &forces.surfaces);
-        for (i, walker) in self.walkers.iter().enumerate() {
+        for (i, agent) in self.agents.iter().enumerate() {
             let near = &list.surfaces[list.first_surface[i] as usize..list.first_surface[i + 1] as usize];
             if near.is_empty() {
                 continue;
             }
             for part in parts(simd) {
-                let (x, y, r) = (part.load(&walker.x), part.load(&walker.y), part.load(&walker.r));
-                let a = part.load(&state.bodies[Parameter::A][i]);
-                let rate = match forces.shared {
-                    Some((b, _)) => part.c(LOG2_E / b),
-                    None => part.load(&walker.term.rate),
-                };
-                let (mut fx, mut fy) = (part.load(&sums[i].x), part.load(&sums[i].y));
-                let bodies = Bodies { place: (x, y), r, a, rate };
+                let place = (part.load(&agent.x), part.load(&agent.y));
+                let at = AtWalls::new(
+                    part,
+                    place,
+                    part.load(&agent.r),
+                    forces.shared,
+                    state,
+                    Block { part, index: i },
+                );
                 let touching = |k, lanes| contacts.push_wall(i as u32, k, part.bits(lanes));
-                let (wx, wy) = surfaces.push(part, near, &bodies, forces.margin, &mut self.faces, touching);
-                fx += wx;
-                fy += wy;
-                part.store(fx, &mut sums[i].x);
-                part.store(fy, &mut sums[i].y);
+                let (fx, fy) = surfaces.push(part, near, &at, forces.margin, &mut self.faces, touching);
+                part.store(part.load(&sums[i].x) + fx, &mut sums[i].x);
+                part.store(part.load(&sums[i].y) + fy, &mut sums[i].y);
             }
         }
     }
 }
 
+/// What a term keeps of an agent.
+#[inline(always)]
+fn load<S: Simd, T: PairTerm>(part: Part<S>, kept: &[Lanes], agent: usize) -> T::Of<Doubles<S>> {
+    let kept = &kept[agent * T::COUNT..][..T::COUNT];
+    T::load(
+        #[inline(always)]
+        |k| part.load(&kept[k]),
+    )
+}
+
 /// A rectangle around all that an agent can reach in any lane, amply.
-fn around(one: &Walker, reach: &Lanes) -> Bounds {
+fn around(one: &Agent, reach: &Lanes) -> Bounds {
     let mut low = Vec2::repeat(f64::INFINITY);
     let mut high = Vec2::repeat(f64::NEG_INFINITY);
     for lane in 0..LANES {

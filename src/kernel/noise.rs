@@ -8,6 +8,7 @@ use super::state::{Layout, State};
 use super::vector::{Doubles, Part, Words, ln, sin_cos_turn};
 use crate::base::lanes::LANES;
 use crate::base::random::{Purpose, Stream, TrialKey};
+use crate::model::{Parameter, Scenario};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
@@ -15,6 +16,27 @@ const MULTIPLIER: [u64; 2] = [0xD251_1F53, 0xCD9E_8D57];
 const WEYL: [u32; 2] = [0x9E37_79B9, 0xBB67_AE85];
 const ROUNDS: usize = 10;
 const LOW: u64 = 0xffff_ffff;
+
+/// The noise of a scenario.
+#[derive(Clone, Debug)]
+pub struct Noise {
+    /// Whether any velocity fluctuates.
+    pub(super) present: bool,
+    /// Per agent: its word in the counters.
+    pub(super) words: Vec<u32>,
+}
+
+impl Noise {
+    /// Prepares it.
+    pub fn new(scenario: &Scenario) -> Self {
+        let agents = scenario.agents.iter();
+        let present = agents.clone().any(|agent| agent.body[Parameter::Noise].constant() != Some(0.0));
+        Self {
+            present: present || scenario.behaviours.change(Parameter::Noise),
+            words: agents.map(|agent| word_of(agent.entity)).collect(),
+        }
+    }
+}
 
 /// The part of the counter that names an agent.
 pub(super) fn word_of(entity: u32) -> u32 {

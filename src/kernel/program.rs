@@ -2,7 +2,8 @@
 
 use super::behaviour::Behaviours;
 use super::drive::Drive;
-use super::forces::Forces;
+use super::force::Forces;
+use super::noise::Noise;
 use super::process::Processes;
 use super::start::{Arrivals, Starts};
 use super::state::Layout;
@@ -25,6 +26,8 @@ pub struct Program {
     pub dt: f64,
     /// What the forces need.
     pub forces: Forces,
+    /// The noise of velocities.
+    pub noise: Noise,
     /// The routes.
     pub drive: Drive,
     /// The placements.
@@ -43,11 +46,12 @@ impl Program {
         let layout = if scenario.agents.len() <= LARGEST_IN_LANES { Layout::Trials } else { Layout::Agents };
         let dt = scenario.clock.step_seconds();
         let forces = Forces::new(&scenario, dt);
+        let noise = Noise::new(&scenario);
         let mut drive = Drive::new(&scenario);
         let starts = Starts::new(&scenario);
         let processes = Processes::new(&scenario);
         let arrivals = Arrivals::new(&scenario);
         let behaviours = Behaviours::new(&scenario, &mut drive);
-        Self { scenario, layout, dt, forces, drive, starts, processes, arrivals, behaviours }
+        Self { scenario, layout, dt, forces, noise, drive, starts, processes, arrivals, behaviours }
     }
 }

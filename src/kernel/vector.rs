@@ -73,6 +73,16 @@ impl<S: Simd> Part<S> {
         Doubles::<S>::from_slice(self.simd, &eight[self.at..self.at + Doubles::<S>::LEN])
     }
 
+    /// Its lanes, where `of` has the number of each lane of the block.
+    #[inline(always)]
+    pub(super) fn gather(self, of: impl Fn(usize) -> f64) -> Doubles<S> {
+        let mut eight = [0.0; LANES];
+        for lane in self.at..self.at + Doubles::<S>::LEN {
+            eight[lane] = of(lane);
+        }
+        self.slice(&eight)
+    }
+
     /// Its lanes of eight words.
     #[inline(always)]
     pub(super) fn words(self, eight: &[u64; LANES]) -> Words<S> {

@@ -23,6 +23,14 @@ pub struct Behaviours {
     pub attached: Vec<Attached>,
 }
 
+impl Behaviours {
+    /// Whether a state of one that an agent has changes a parameter.
+    pub fn change(&self, parameter: Parameter) -> bool {
+        let modes = self.attached.iter().flat_map(|one| &one.conduct.states);
+        modes.flat_map(|mode| &mode.changes).any(|(changed, _)| *changed == parameter)
+    }
+}
+
 /// A declared behaviour.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Behaviour {

@@ -9,53 +9,28 @@
 //! reach and add zero. An agent's own vectors are summed over eight logical lanes whatever the width of the
 //! machine; what others add to it comes in their order.
 
-mod grid;
 mod pairs;
-mod sort;
+mod reach;
 mod walls;
 
 use super::contact::Contacts;
-use super::program::Program;
-use super::social::{Sum, cohesion};
+use super::force::pair::{PairTerm, Sum};
+use super::force::{Forces, walls as faces, with_pair_terms};
+use super::near::{Close, Grid, Index};
 use super::state::State;
-use super::surfaces;
+use super::vector::parts;
 use crate::base::lanes::LANES;
 use fearless_simd::Simd;
-use grid::{Grid, survey};
 use pairs::{Task, Touch};
-use std::ops::Range;
-
-/// One exponential term of the sorted agents, as in `social::Term`.
-#[derive(Clone, Debug, Default)]
-struct Terms {
-    even: Vec<f64>,
-    ex: Vec<f64>,
-    ey: Vec<f64>,
-    rate: Vec<f64>,
-}
+use reach::{Reach, Sorted};
 
 /// Room for the forces of one large crowd.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Cells {
-    /// Cell of each slot; that of an absent agent means nothing.
-    cell: Vec<u32>,
-    /// Where each cell starts among the sorted agents; each strip has one more for its end.
-    start: Vec<u32>,
-    next: Vec<u32>,
-    /// All that follows is in sorted order, with padding between the strips.
-    agent: Vec<u32>,
-    x: Vec<f64>,
-    y: Vec<f64>,
-    /// Radius; minus infinity in padding, which is so beyond everybody's reach.
-    r: Vec<f64>,
-    a: Vec<f64>,
-    a2: Vec<f64>,
-    term: Terms,
-    second: Terms,
-    /// Factor of the bounded social force towards bodies of several persons; NaN in a single person.
-    tie: Vec<f64>,
-    /// What drives each body, m v0/tau, N. Empty without two bodies of several persons, as `tie` is.
-    drive: Vec<f64>,
+    /// The order of the agents, which that of the columns and of the forces follows.
+    index: Index,
+    /// What the terms between two bodies keep of each agent: a column for each number.
+    columns: Vec<Vec<f64>>,
     /// The forces.
     fx: Vec<f64>,
     fy: Vec<f64>,
@@ -65,15 +40,16 @@ pub(super) struct Cells {
     own: Vec<Sum>,
     room: Vec<u32>,
     near: Vec<u32>,
-    faces: surfaces::Room,
+    faces: faces::Room,
     /// As in `Close`.
     edge: f64,
 }
 
 impl Cells {
-    /// Between two who were not found near enough to touch is a gap of more than this, m.
-    pub(super) const fn edge(&self) -> f64 {
-        self.edge
+    /// What was found out about the state that was last seen, with the pairs that may touch; `None` where some place is no
+    /// number or beyond reason.
+    pub(super) fn close<'a>(&'a self, pairs: &'a [(u32, u32)]) -> Option<Close<'a>> {
+        (self.edge > f64::NEG_INFINITY).then(|| Close { pairs, edge: self.edge, index: Some(&self.index) })
     }
 
     /// Forces at the present positions into `sums`, and who may touch whom into `contacts`.
@@ -81,12 +57,11 @@ impl Cells {
     pub(super) fn forces<S: Simd>(
         &mut self,
         simd: S,
-        program: &Program,
+        forces: &Forces,
         state: &State,
         sums: &mut Vec<Sum>,
         contacts: &mut Contacts,
     ) {
-        let forces = &program.forces;
         sums.clear();
         sums.resize(state.motion.x.len(), Sum::default());
         contacts.clear();
@@ -94,53 +69,43 @@ impl Cells {
         if !state.occupied.has(0) {
             return;
         }
-        let grid = survey(simd, forces, state);
-        self.edge = grid.edge;
+        let reach = with_pair_terms!(forces, term, Reach::of(simd, term, forces.margin, state));
+        self.edge = reach.edge;
         simd.vectorize(
             #[inline(always)]
-            || self.sort(simd, &grid, forces, state),
+            || self.index.sort(simd, &reach.extent, Grid::new(&reach.extent, reach.cell(), state), state),
         );
-        // A function each, as in `lanewise`.
-        match (forces.shared.is_some(), forces.second, !forces.ties.is_empty()) {
-            (true, false, _) => simd.vectorize(
+        with_pair_terms!(
+            forces,
+            term,
+            simd.vectorize(
                 #[inline(always)]
-                || self.pairs::<S, true, false, false>(simd, &grid, forces, contacts),
-            ),
-            (true, true, _) => simd.vectorize(
+                || self.keep(simd, term, state),
+            )
+        );
+        // A function for each combination of terms, as in `lanewise`.
+        with_pair_terms!(
+            forces,
+            term,
+            simd.vectorize(
                 #[inline(always)]
-                || self.pairs::<S, true, true, false>(simd, &grid, forces, contacts),
-            ),
-            (false, false, false) => simd.vectorize(
-                #[inline(always)]
-                || self.pairs::<S, false, false, false>(simd, &grid, forces, contacts),
-            ),
-            (false, true, false) => simd.vectorize(
-                #[inline(always)]
-                || self.pairs::<S, false, true, false>(simd, &grid, forces, contacts),
-            ),
-            (false, false, true) => simd.vectorize(
-                #[inline(always)]
-                || self.pairs::<S, false, false, true>(simd, &grid, forces, contacts),
-            ),
-            (false, true, true) => simd.vectorize(
-                #[inline(always)]
-                || self.pairs::<S, false, true, true>(simd, &grid, forces, contacts),
-            ),
-        }
+                || self.pairs(simd, &reach, term, forces.margin, contacts),
+            )
+        );
         simd.vectorize(
             #[inline(always)]
-            || self.walls(simd, &grid, forces, contacts),
+            || self.walls(simd, &reach, forces, state, contacts),
         );
-        self.scatter(&grid, sums);
+        self.scatter(sums);
         contacts.arrange();
-        cohesion(forces, state, sums);
+        forces.add_cohesion(state, sums);
     }
 
     /// Hands the forces to the agents.
-    fn scatter(&self, grid: &Grid, sums: &mut [Sum]) {
-        for strip in 0..grid.strips {
-            for at in self.strip(grid, strip) {
-                let agent = self.agent[at] as usize;
+    fn scatter(&self, sums: &mut [Sum]) {
+        for strip in 0..self.index.grid.strips {
+            for at in self.index.strip(strip) {
+                let agent = self.index.agent[at] as usize;
                 let sum = &mut sums[agent / LANES];
                 sum.x.0[agent % LANES] = self.fx[at];
                 sum.y.0[agent % LANES] = self.fy[at];
@@ -148,10 +113,29 @@ impl Cells {
         }
     }
 
-    /// The sorted agents of a strip.
+    /// Takes over what a term keeps of each agent, and makes room for the forces.
     #[inline(always)]
-    fn strip(&self, grid: &Grid, strip: usize) -> Range<usize> {
-        let first = strip * grid.row();
-        self.start[first] as usize..self.start[first + grid.columns] as usize
+    fn keep<S: Simd, T: PairTerm>(&mut self, simd: S, term: T, state: &State) {
+        let total = self.index.agent.len();
+        for field in [&mut self.fx, &mut self.fy] {
+            field.clear();
+            field.resize(total, 0.0);
+        }
+        self.columns.resize_with(T::COUNT, Vec::new);
+        for column in &mut self.columns {
+            column.resize(total, 0.0);
+        }
+        let Self { index, columns, .. } = self;
+        for (k, agents) in index.agent.chunks_exact(LANES).enumerate() {
+            for part in parts(simd) {
+                term.keep(
+                    part,
+                    state,
+                    Sorted { part, agents },
+                    #[inline(always)]
+                    |column, numbers| part.put(numbers, &mut columns[column][k * LANES..]),
+                );
+            }
+        }
     }
 }

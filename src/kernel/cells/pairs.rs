@@ -4,17 +4,15 @@
 //! in the strip and of those in reach in the next strip. Then the list is worked off, in one loop
 //! without a branch that hangs on a distance. A vector that catches nobody in reach adds zero.
 
-use super::grid::Grid;
-use super::sort::low_bits;
-use super::{Cells, Terms};
+use super::Cells;
+use super::reach::Reach;
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::kernel::contact::Contacts;
-use crate::kernel::forces::Forces;
-use crate::kernel::social::{Sum, Term, bounded, repel};
-use crate::kernel::vector::{Part, first_part, parts, width};
+use crate::kernel::force::pair::{Pair, PairTerm, Sum};
+use crate::kernel::near::low_bits;
+use crate::kernel::vector::{first_part, parts, width};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
-use std::f64::consts::LOG2_E;
 
 /// A vector of others that one agent looks at.
 #[derive(Clone, Copy, Debug)]
@@ -36,23 +34,24 @@ pub(super) struct Touch {
 }
 
 impl Cells {
-    /// All social forces between agents. With `SHARED` one B for all; with `SECOND` the second term too; with
-    /// `TIES` a bound for pairs of bodies of several persons.
+    /// All forces between agents.
     #[inline(always)]
-    pub(super) fn pairs<S: Simd, const SHARED: bool, const SECOND: bool, const TIES: bool>(
+    pub(super) fn pairs<S: Simd, T: PairTerm>(
         &mut self,
         simd: S,
-        grid: &Grid,
-        forces: &Forces,
+        reach: &Reach,
+        term: T,
+        margin: f64,
         contacts: &mut Contacts,
     ) {
-        for strip in 0..grid.strips {
-            self.list(simd, grid, strip);
-            let from = self.strip(grid, strip).start;
-            let found = self.work_off::<S, SHARED, SECOND, TIES>(simd, forces, from);
+        for strip in 0..self.index.grid.strips {
+            self.list(simd, reach, strip);
+            let from = self.index.strip(strip).start;
+            let found = self.work_off(simd, term, margin, from);
+            let agent = &self.index.agent;
             for touch in &self.touches[..found] {
                 for lane in touch.lanes.iter() {
-                    let (a, b) = (self.agent[touch.one as usize], self.agent[touch.others as usize + lane]);
+                    let (a, b) = (agent[touch.one as usize], agent[touch.others as usize + lane]);
                     contacts.push_pair(a.min(b), a.max(b), Mask::lane(0));
                 }
             }
@@ -65,11 +64,12 @@ impl Cells {
 
     /// Lists the work of a strip.
     #[inline(always)]
-    fn list<S: Simd>(&mut self, simd: S, grid: &Grid, strip: usize) {
+    fn list<S: Simd>(&mut self, simd: S, all: &Reach, strip: usize) {
+        let grid = self.index.grid;
         let row = grid.row();
-        let here = self.strip(grid, strip);
-        let own = &self.start[strip * row..(strip + 1) * row];
-        let above = self.start.get((strip + 1) * row..(strip + 2) * row);
+        let here = self.index.strip(strip);
+        let own = &self.index.start[strip * row..(strip + 1) * row];
+        let above = self.index.start.get((strip + 1) * row..(strip + 2) * row);
         self.own.clear();
         self.own.resize(here.len(), Sum::default());
         self.tasks.clear();
@@ -90,10 +90,11 @@ impl Cells {
             let (mut end, mut left, mut right) = (Lanes::ZERO, Lanes::ZERO, Lanes::ZERO);
             for part in parts(simd) {
                 let eight = k..k + LANES;
-                let (x, y) = (part.slice(&self.x[eight.clone()]), part.slice(&self.y[eight.clone()]));
-                let reach = grid.reach_of(part, part.slice(&self.r[eight]));
+                let (x, y) =
+                    (part.slice(&self.index.x[eight.clone()]), part.slice(&self.index.y[eight.clone()]));
+                let reach = all.of_radius(part, part.slice(&self.index.r[eight]));
                 part.store(grid.column(part, x + reach), &mut end);
-                let reach = grid.reach_above(part, strip, y, reach);
+                let reach = all.above(part, &grid, strip, y, reach);
                 part.store(grid.column(part, x - reach), &mut left);
                 part.store(grid.column(part, x + reach), &mut right);
             }
@@ -113,49 +114,37 @@ impl Cells {
 
     /// Works the list off. Gives how many touches were found.
     #[inline(always)]
-    fn work_off<S: Simd, const SHARED: bool, const SECOND: bool, const TIES: bool>(
-        &mut self,
-        simd: S,
-        forces: &Forces,
-        from: usize,
-    ) -> usize {
+    fn work_off<S: Simd, T: PairTerm>(&mut self, simd: S, term: T, margin: f64, from: usize) -> usize {
         let part = first_part(simd);
-        let length = self.agent.len();
+        let length = self.index.agent.len();
         // Of one length, so that one comparison shows that all are long enough.
-        let (xs, ys, rs) = (&self.x[..length], &self.y[..length], &self.r[..length]);
+        let (xs, ys, rs) = (&self.index.x[..length], &self.index.y[..length], &self.index.r[..length]);
         let (fx, fy) = (&mut self.fx[..length], &mut self.fy[..length]);
-        let term = Slices::of(&self.term, length);
-        let second = if SECOND { Slices::of(&self.second, length) } else { term };
-        let margin = part.c(-forces.margin);
-        let rate = |b: f64| SHARED.then_some(LOG2_E / b);
-        let rates = forces.shared.map_or((None, None), |(b, b2)| (rate(b), rate(b2)));
+        let columns = T::load(
+            #[inline(always)]
+            |k| &self.columns[k][..length],
+        );
+        let minus_margin = part.c(-margin);
         let mut found = 0;
         for task in &self.tasks {
             let (i, j) = (from + task.one as usize, task.others as usize);
             let dx = part.c(xs[i]) - part.slice(&xs[j..j + LANES]);
             let dy = part.c(ys[i]) - part.slice(&ys[j..j + LANES]);
-            let d = (dx * dx + dy * dy + part.c(1e-300)).sqrt();
-            let q = part.c(1.0) / d;
-            let gap = part.c(rs[i]) + part.slice(&rs[j..j + LANES]) - d;
-            let lanes = part.bits(gap.simd_gt(margin));
+            let pair = Pair::new(part, (dx, dy), part.c(rs[i]) + part.slice(&rs[j..j + LANES]));
+            let lanes = part.bits(pair.gap.simd_gt(minus_margin));
             self.touches[found] = Touch { one: i as u32, others: j as u32, lanes };
             found += usize::from(!lanes.is_empty());
-            let both = (&term.one(part, i, rates.0), &term.eight(part, j, rates.0));
-            let (mut on_i, mut on_j) = repel::<S, SHARED>(part, gap, (dx, dy), q, both);
-            if SECOND {
-                let both = (&second.one(part, i, rates.1), &second.eight(part, j, rates.1));
-                let more = repel::<S, SHARED>(part, gap, (dx, dy), q, both);
-                on_i += more.0;
-                on_j += more.1;
-            }
-            if TIES {
-                let both = part.c(self.tie[i]) + part.slice(&self.tie[j..j + LANES]);
-                let mean = part.c(0.5) * both;
-                let tied = mean.simd_eq(mean);
-                let (of_i, of_j) = (part.c(self.drive[i]), part.slice(&self.drive[j..j + LANES]));
-                on_i = tied.select(bounded(part, on_i, d, of_i) * mean, on_i);
-                on_j = tied.select(bounded(part, on_j, d, of_j) * mean, on_j);
-            }
+            let one = T::map(
+                &columns,
+                #[inline(always)]
+                |column| part.c(column[i]),
+            );
+            let others = T::map(
+                &columns,
+                #[inline(always)]
+                |column| part.slice(&column[j..j + LANES]),
+            );
+            let (on_i, on_j) = term.force(part, &pair, &one, &others);
             part.take(on_j * dx, &mut fx[j..j + LANES]);
             part.take(on_j * dy, &mut fy[j..j + LANES]);
             let (sum, lane) = (&mut self.own[task.one as usize], task.lane as usize);
@@ -164,49 +153,6 @@ impl Cells {
             part.put(part.slice(sum_y) + on_i * dy, sum_y);
         }
         found
-    }
-}
-
-/// A term of all agents.
-#[derive(Clone, Copy)]
-struct Slices<'a> {
-    even: &'a [f64],
-    ex: &'a [f64],
-    ey: &'a [f64],
-    rate: &'a [f64],
-}
-
-impl<'a> Slices<'a> {
-    fn of(terms: &'a Terms, length: usize) -> Self {
-        Self {
-            even: &terms.even[..length],
-            ex: &terms.ex[..length],
-            ey: &terms.ey[..length],
-            rate: &terms.rate[..length],
-        }
-    }
-
-    /// Of one agent, in every lane.
-    #[inline(always)]
-    fn one<S: Simd>(&self, part: Part<S>, i: usize, rate: Option<f64>) -> Term<S> {
-        Term {
-            even: part.c(self.even[i]),
-            ex: part.c(self.ex[i]),
-            ey: part.c(self.ey[i]),
-            rate: part.c(rate.unwrap_or_else(|| self.rate[i])),
-        }
-    }
-
-    /// Of eight agents.
-    #[inline(always)]
-    fn eight<S: Simd>(&self, part: Part<S>, j: usize, rate: Option<f64>) -> Term<S> {
-        let eight = j..j + LANES;
-        Term {
-            even: part.slice(&self.even[eight.clone()]),
-            ex: part.slice(&self.ex[eight.clone()]),
-            ey: part.slice(&self.ey[eight.clone()]),
-            rate: rate.map_or_else(|| part.slice(&self.rate[eight]), |rate| part.c(rate)),
-        }
     }
 }
 

@@ -17,11 +17,11 @@ mod lists;
 mod lower;
 mod machine;
 mod node;
+mod proximity;
 mod schedule;
 mod span;
-mod vicinity;
 
-use super::close::Close;
+use super::near::Close;
 use super::program::Program;
 use super::state::{Layout, State};
 use crate::base::lanes::{Lanes, Mask};
@@ -32,9 +32,9 @@ use fearless_simd::{Level, dispatch};
 use ground::Ground;
 use machine::Frame;
 use node::{Id, Node};
+use proximity::Proximity;
 use schedule::Schedule;
 use std::sync::Arc;
-use vicinity::Vicinity;
 
 /// Compiled expressions.
 #[derive(Clone, Debug)]
@@ -74,7 +74,7 @@ pub struct Readings {
     truths: Vec<Mask>,
     frames: Vec<Frame>,
     /// Who is near, for each list of members, in one large crowd.
-    vicinities: Vec<Vicinity>,
+    proximities: Vec<Proximity>,
     /// Number of the state.
     number: u64,
 }
@@ -158,7 +158,7 @@ impl Code {
             readings.numbers.clone_from(&self.registers);
             readings.truths = vec![Mask::NONE; self.schedule.truths as usize];
             readings.frames = vec![Frame::default(); self.schedule.running as usize];
-            readings.vicinities.clear();
+            readings.proximities.clear();
             readings.loaded = Some(Arc::clone(&self.registers));
         }
         match layout {
@@ -167,7 +167,7 @@ impl Code {
             }
             Layout::Agents => {
                 readings.number += 1;
-                readings.vicinities.resize_with(self.lists.len(), Vicinity::default);
+                readings.proximities.resize_with(self.lists.len(), Proximity::default);
                 dispatch!(self.level, simd => machine::execute::<_, true>(simd, self, (state, close), readings));
             }
         }

@@ -1,14 +1,13 @@
 //! The flow of contact alone, in sub-steps of position Verlet.
 //!
-//! Half a drift, friction, compression, friction, half a drift. Friction is solved exactly pair by pair:
-//! over a time t the relative tangential speed of a pair decays by `exp(-k2 g (1/m_i + 1/m_j) t)`, at a
-//! wall by exp(-k2 g t/m). It can therefore never reverse a slip, and never adds energy. Pairs are visited
-//! in order and then in reverse order, which keeps it symmetric.
+//! Half a drift, friction, compression, friction, half a drift. Friction is solved exactly pair by pair (`force::contact`).
+//! It can therefore never reverse a slip, and never adds energy. Pairs are visited in order and then in reverse order,
+//! which keeps it symmetric.
 
 use super::overlap::exchange;
 use super::throng::Throng;
 use crate::base::math;
-use crate::kernel::program::Program;
+use crate::kernel::force::Forces;
 use fearless_simd::Simd;
 
 /// Frequency of the stiffest contact times the sub-step: an eighteenth of its period at most (2 pi / 0.35).
@@ -20,7 +19,7 @@ const MOST_SUBSTEPS: f64 = 1000.0;
 
 /// Moves the bodies of the hot clusters of a throng over `h` seconds. (Others may drift along, idly.)
 #[inline(always)]
-pub(super) fn flow<S: Simd>(simd: S, program: &Program, throng: &mut Throng, h: f64) {
+pub(super) fn flow<S: Simd>(simd: S, forces: &Forces, throng: &mut Throng, h: f64) {
     let wanted = (h * (PACKING * throng.stiffest()).sqrt() / PHASE).ceil();
     let count = math::at_most(math::at_least(wanted, 1.0), MOST_SUBSTEPS) as u32;
     let t = h / f64::from(count);
@@ -32,7 +31,7 @@ pub(super) fn flow<S: Simd>(simd: S, program: &Program, throng: &mut Throng, h: 
         }
         if k < count {
             pairs.find(simd, x, t);
-            walls.find_at_walls(simd, program, x, t);
+            walls.find_at_walls(simd, forces, x, t);
             exchange(pairs, walls, motions);
             drift = if k + 1 < count { t } else { 0.5 * t };
         }

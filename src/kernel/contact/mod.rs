@@ -19,7 +19,7 @@ mod overlap;
 mod plain;
 mod throng;
 
-use super::program::Program;
+use super::force::Forces;
 use super::state::{Slot, State};
 use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Lanes, Mask};
@@ -100,7 +100,7 @@ impl Contacts {
     pub(super) fn advance<S: Simd>(
         &mut self,
         simd: S,
-        program: &Program,
+        forces: &Forces,
         state: &mut State,
         moved: &mut [Mask],
         h: f64,
@@ -109,14 +109,14 @@ impl Contacts {
             let candidates = &self.candidates[lane];
             let throng = &mut self.throngs[lane];
             if !self.gathered.has(lane) {
-                if !candidates.can_touch(program, state, lane, h) {
+                if !candidates.can_touch(forces, state, lane, h) {
                     continue;
                 }
-                throng.gather(program, state, candidates, lane);
+                throng.gather(forces, state, candidates, lane);
                 self.gathered |= Mask::lane(lane);
             }
-            if throng.heat(program, state, h) {
-                flow(simd, program, throng, h);
+            if throng.heat(forces, state, h) {
+                flow(simd, forces, throng, h);
                 throng.hand_back(state, moved);
             }
         }
@@ -125,7 +125,7 @@ impl Contacts {
 
 impl Candidates {
     /// Whether anything in the lane can touch within `h` seconds.
-    fn can_touch(&self, program: &Program, state: &State, lane: usize, h: f64) -> bool {
+    fn can_touch(&self, forces: &Forces, state: &State, lane: usize, h: f64) -> bool {
         let place =
             |slot| (at(&state.motion.x, &state.motion.y, slot), at(&state.motion.vx, &state.motion.vy, slot));
         let radius = |slot: Slot| state.bodies[Parameter::Radius][slot.block].0[slot.lane];
@@ -136,7 +136,7 @@ impl Candidates {
         };
         let wall = |&(i, face): &(u32, u32)| {
             let a = state.slot(i as usize, lane);
-            here(a) && within_reach_of_face(program, face, radius(a), place(a), h)
+            here(a) && within_reach_of_face(forces, face, radius(a), place(a), h)
         };
         self.pairs.iter().any(pair) || self.walls.iter().any(wall)
     }
@@ -152,8 +152,8 @@ fn within_reach(touch: f64, (x, v): (Vec2, Vec2), (other_x, other_v): (Vec2, Vec
 }
 
 /// Whether a body of some radius can touch a face within `h` seconds.
-fn within_reach_of_face(program: &Program, face: u32, radius: f64, (x, v): (Vec2, Vec2), h: f64) -> bool {
-    program.forces.surfaces.nearest_to(face, x).near < radius + length(v) * h
+fn within_reach_of_face(forces: &Forces, face: u32, radius: f64, (x, v): (Vec2, Vec2), h: f64) -> bool {
+    forces.surfaces.nearest_to(face, x).near < radius + length(v) * h
 }
 
 fn at(x: &[Lanes], y: &[Lanes], slot: Slot) -> Vec2 {

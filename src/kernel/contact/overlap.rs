@@ -6,9 +6,9 @@
 use super::throng::Motion;
 use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Lanes};
-use crate::kernel::program::Program;
-use crate::kernel::surfaces;
-use crate::kernel::vector::{exp, parts};
+use crate::kernel::force::contact::{compression, friction};
+use crate::kernel::force::{Forces, walls};
+use crate::kernel::vector::{first_part, parts};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
@@ -72,7 +72,7 @@ pub(super) struct Touches {
     overlaps: Vec<u32>,
     found: usize,
     /// Room to work.
-    room: Vec<surfaces::Touch>,
+    room: walls::Room,
 }
 
 impl Touches {
@@ -126,22 +126,23 @@ impl Touches {
 
     /// Finds the bodies that overlap a face, and what it does in a sub-step of `t` seconds.
     #[inline(always)]
-    pub(super) fn find_at_walls<S: Simd>(&mut self, simd: S, program: &Program, x: &[Vec2], t: f64) {
+    pub(super) fn find_at_walls<S: Simd>(&mut self, simd: S, forces: &Forces, x: &[Vec2], t: f64) {
         // The faces of one body stand one after the other.
         let body = |blocks: &[Eight], k: usize| blocks[k / LANES].a[k % LANES];
         let mut first = 0;
         while first < self.count {
             let a = body(&self.blocks, first);
             let same = (first..self.count).take_while(|&k| body(&self.blocks, k) == a).count();
-            let (blocks, touches) = (&self.blocks, &mut self.room);
+            let blocks = &self.blocks;
             let faces = (first..first + same).map(|k| blocks[k / LANES].b[k % LANES]);
             let radius = blocks[first / LANES].distance.0[first % LANES];
-            program.forces.surfaces.touch(faces, x[a as usize], radius, touches);
-            for (k, touch) in (first..).zip(&self.room) {
+            let surfaces = &forces.surfaces;
+            let pushes = surfaces.touch(first_part(simd), faces, x[a as usize], radius, &mut self.room);
+            for (k, push) in (first..).zip(pushes) {
                 let (eight, lane) = (&mut self.blocks[k / LANES], k % LANES);
-                eight.nx.0[lane] = touch.normal.x;
-                eight.ny.0[lane] = touch.normal.y;
-                eight.gap.0[lane] = touch.depth;
+                eight.nx.0[lane] = push.nx.0[0];
+                eight.ny.0[lane] = push.ny.0[0];
+                eight.gap.0[lane] = push.shared.0[0];
             }
             first += same;
         }
@@ -158,9 +159,9 @@ impl Touches {
                 let (gap, inverse) = (part.load(&eight.gap), part.load(&eight.inverse));
                 if gap.simd_gt(part.c(0.0)).any_true() {
                     any = true;
-                    let exponent = -part.load(&eight.k2) * gap * inverse * part.c(0.5 * t);
-                    part.store(part.c(1.0) - exp(part, exponent), &mut eight.share);
-                    part.store(part.load(&eight.k1) * gap * part.c(t), &mut eight.push);
+                    let share = friction(part, part.load(&eight.k2), gap, inverse, 0.5 * t);
+                    part.store(share, &mut eight.share);
+                    part.store(compression(part, part.load(&eight.k1), gap, t), &mut eight.push);
                 }
             }
             if any {

@@ -6,8 +6,10 @@ use crate::base::geometry::{Segment, Vec2};
 use crate::base::lanes::{LANES, Mask};
 use crate::base::math;
 use crate::base::tick::{Clock, Tick};
+use crate::kernel::force::walls;
 use crate::kernel::program::Program;
 use crate::kernel::state::{Layout, State};
+use crate::kernel::vector::first_part;
 use crate::model::{Barrier, Behaviours, Obstacle, Parameter, Processes, Scenario, Scene};
 use fearless_simd::{Level, dispatch};
 use std::sync::Arc;
@@ -127,7 +129,7 @@ fn plainly(contacts: &Contacts, program: &Program, state: &mut State, moved: &mu
             hot[i as usize] |= within_reach(radius(i) + radius(j), moving(i), moving(j), H);
         }
         for &(i, face) in walls {
-            hot[i as usize] |= within_reach_of_face(program, face, radius(i), moving(i), H);
+            hot[i as usize] |= within_reach_of_face(&program.forces, face, radius(i), moving(i), H);
         }
         for _ in 0..PEOPLE {
             for &(i, j) in pairs {
@@ -164,11 +166,15 @@ fn plainly(contacts: &Contacts, program: &Program, state: &mut State, moved: &mu
             for k in 0..walls.len() {
                 let (i, face) = walls[k];
                 let faces: Vec<u32> = walls.iter().filter(|wall| wall.0 == i).map(|wall| wall.1).collect();
-                let mut touches = Vec::new();
-                program.forces.surfaces.touch(faces.iter().copied(), x[i as usize], radius(i), &mut touches);
+                let mut room = walls::Room::default();
+                let (place, all) = (x[i as usize], &program.forces.surfaces);
+                let touches = dispatch!(Level::baseline(), simd => {
+                    all.touch(first_part(simd), faces.iter().copied(), place, radius(i), &mut room)
+                });
                 let touch = touches[faces.iter().position(|other| *other == face).unwrap()];
+                let normal = Vec2::new(touch.nx.0[0], touch.ny.0[0]);
                 let k = (of(&state.bodies[Parameter::K1], i), of(&state.bodies[Parameter::K2], i));
-                overlaps.push(((i, None, inverse(i)), touch.normal, touch.depth, k));
+                overlaps.push(((i, None, inverse(i)), normal, touch.shared.0[0], k));
             }
             overlaps.retain(|&(_, _, gap, _)| gap > 0.0);
             let exchange = |v: &mut [Vec2], i: u32, j: Option<u32>, impulse: Vec2| {
@@ -222,7 +228,7 @@ fn in_turns_and_eight_at_a_time_contact_has_the_bits_of_pair_after_pair() {
                 let (mut moved, mut wanted) = (vec![Mask::NONE; PEOPLE], vec![Mask::NONE; PEOPLE]);
                 let (many, cold) = plainly(&contacts, &program, &mut other, &mut wanted);
                 assert!(many > 100 && cold > 0, "{many} {cold}");
-                dispatch!(level, simd => contacts.advance(simd, &program, &mut one, &mut moved, H));
+                dispatch!(level, simd => contacts.advance(simd, &program.forces, &mut one, &mut moved, H));
                 assert_eq!(moved, wanted);
                 assert!(one == other, "another state");
             }

@@ -10,7 +10,7 @@ use super::{Candidates, at, within_reach, within_reach_of_face};
 use crate::base::geometry::Vec2;
 use crate::base::lanes::Mask;
 use crate::base::math;
-use crate::kernel::program::Program;
+use crate::kernel::force::{Forces, contact};
 use crate::kernel::state::{Slot, State};
 use crate::model::Parameter;
 
@@ -73,7 +73,7 @@ pub(super) struct Throng {
 
 impl Throng {
     /// Gathers the candidates of a lane.
-    pub(super) fn gather(&mut self, program: &Program, state: &State, candidates: &Candidates, lane: usize) {
+    pub(super) fn gather(&mut self, forces: &Forces, state: &State, candidates: &Candidates, lane: usize) {
         self.bodies.clear();
         self.pairs.clear();
         self.walls.clear();
@@ -89,12 +89,9 @@ impl Throng {
             let (Some(a), Some(b)) = (self.body(state, i, lane), self.body(state, j, lane)) else { continue };
             self.unite(a, b);
             let (one, other) = (&self.bodies[a as usize], &self.bodies[b as usize]);
-            // The constants of a pair are the means of the two bodies'. Two bodies of several persons do
-            // not compress each other and have their own friction constant.
-            let (k1, k2) = match program.forces.friction(i as usize, j as usize) {
-                Some(friction) => (0.0, friction),
-                None => (0.5 * (one.k1 + other.k1), 0.5 * (one.k2 + other.k2)),
-            };
+            let friction = &forces.particles.friction;
+            let (k1, k2) =
+                contact::of_pair(friction, (i as usize, j as usize), (one.k1, one.k2), (other.k1, other.k2));
             let (distance, inverse) = (one.radius + other.radius, one.inverse + other.inverse);
             let turn = one.turn.max(other.turn);
             self.bodies[a as usize].turn = turn + 1;
@@ -183,7 +180,7 @@ impl Throng {
 
     /// Takes over the present places and velocities, and finds the clusters in which something can touch
     /// within `h` seconds. False if there is none.
-    pub(super) fn heat(&mut self, program: &Program, state: &State, h: f64) -> bool {
+    pub(super) fn heat(&mut self, forces: &Forces, state: &State, h: f64) -> bool {
         self.x.clear();
         self.motions.clear();
         for body in &self.bodies {
@@ -209,7 +206,7 @@ impl Throng {
         }
         for touch in &self.walls {
             let hot = &mut self.clusters[touch.cluster as usize].hot;
-            if !*hot && within_reach_of_face(program, touch.b, touch.distance, moving(touch.a), h) {
+            if !*hot && within_reach_of_face(forces, touch.b, touch.distance, moving(touch.a), h) {
                 *hot = true;
                 cold -= 1;
             }

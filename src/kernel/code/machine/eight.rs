@@ -6,8 +6,8 @@
 use super::super::crowd::Members;
 use super::super::lanes::{Body, Vector, greater, lesser, narrow};
 use super::super::node::{Crowd, Cut, Id, Join, Measure};
+use super::super::proximity::Question;
 use super::super::schedule::Loop;
-use super::super::vicinity::Question;
 use super::Machine;
 use crate::base::lanes::{LANES, Mask};
 use crate::model::{Comparison, Fold, Who};
@@ -134,13 +134,14 @@ impl<S: Simd, const ONE: bool> Machine<'_, S, ONE> {
     ) -> Option<Vector<S>> {
         let block = self.asking_block(who, crowd)?;
         let around = self.around(crowd);
-        let vicinity = self.vicinities.get_mut(crowd.list as usize)?;
-        if !vicinity.is_asked_much(&around, LANES as u32) {
+        let proximity = self.proximities.get_mut(crowd.list as usize)?;
+        if !proximity.is_asked_much(&around, LANES as u32) {
             return None;
         }
         for cut in [self.cut.filter(|(cut, _)| *cut == into).map(|(_, cut)| cut), Some(Cut::Nowhere)] {
             let Some(cut) = cut else { continue };
-            if let Some(found) = vicinity.nearest_of_block(&around, Question::Nearest { measure, cut }, block)
+            if let Some(found) =
+                proximity.nearest_of_block(&around, Question::Nearest { measure, cut }, block)
             {
                 let found = self.view.register(found);
                 if narrow(found.simd_eq(found)) == Mask::ALL {
@@ -167,12 +168,12 @@ impl<S: Simd, const ONE: bool> Machine<'_, S, ONE> {
             return None;
         }
         let around = self.around(crowd);
-        let vicinity = self.vicinities.get_mut(crowd.list as usize)?;
-        if !vicinity.is_asked_much(&around, LANES as u32) {
+        let proximity = self.proximities.get_mut(crowd.list as usize)?;
+        if !proximity.is_asked_much(&around, LANES as u32) {
             return None;
         }
         let question = Question::AllFar { measure, test, wanted, bound: first.to_bits() };
-        vicinity.far_of_block(&around, question, block)
+        proximity.far_of_block(&around, question, block)
     }
 
     /// What `f` says of whoever is read, one after the other.

@@ -6,11 +6,11 @@ use super::arithmetic::{apply, combine};
 use super::crowd::{self, Members, Probe};
 use super::lanes::{Body, Vector, View, by_lane, by_lane_of_two, greater, lesser, narrow, widen};
 use super::node::{Crowd, Cut, Id, Join, Measure, Node};
+use super::proximity::{Around, Asker, Proximity};
 use super::schedule::{Instruction, Loop};
-use super::vicinity::{Around, Asker, Vicinity};
 use super::{Code, Readings};
 use crate::base::lanes::{LANES, Lanes, Mask};
-use crate::kernel::close::Close;
+use crate::kernel::near::Close;
 use crate::kernel::state::State;
 use crate::model::{Arithmetic, Comparison, Fold, Function, Who};
 use fearless_simd::{Simd, prelude::*};
@@ -35,7 +35,7 @@ struct Machine<'a, S: Simd, const ONE: bool> {
     /// loop hold what each of them has, all others the same in every lane.
     eight: Option<(u32, Body)>,
     /// One for each list, where the lanes are those of one large crowd.
-    vicinities: &'a mut [Vicinity],
+    proximities: &'a mut [Proximity],
     /// Number of the state.
     number: u64,
     /// Who may touch whom in it, where that is known.
@@ -59,7 +59,7 @@ pub(super) fn execute<S: Simd, const ONE: bool>(
         truths: &mut readings.truths,
         frames: &mut readings.frames,
         eight: None,
-        vicinities: &mut readings.vicinities,
+        proximities: &mut readings.proximities,
         number: readings.number,
         close,
         cut: None,
@@ -293,10 +293,10 @@ impl<'a, S: Simd, const ONE: bool> Machine<'a, S, ONE> {
     fn nearest(&mut self, who: usize, crowd: Crowd, measure: Measure) -> Vector<S> {
         let (members, around) = (self.members(crowd), self.around(crowd));
         if ONE
-            && let Some(vicinity) = self.vicinities.get_mut(crowd.list as usize)
-            && vicinity.is_asked_much(&around, 1)
+            && let Some(proximity) = self.proximities.get_mut(crowd.list as usize)
+            && proximity.is_asked_much(&around, 1)
             && let Some(found) =
-                vicinity.nearest(&around, &Asker::new(self.view.state, who, measure), members.except)
+                proximity.nearest(&around, &Asker::new(self.view.state, who, measure), members.except)
         {
             return self.view.splat(found);
         }
@@ -315,12 +315,12 @@ impl<'a, S: Simd, const ONE: bool> Machine<'a, S, ONE> {
     ) -> Mask {
         let (members, around) = (self.members(crowd), self.around(crowd));
         if ONE
-            && let Some(vicinity) = self.vicinities.get_mut(crowd.list as usize)
-            && vicinity.is_asked_much(&around, 1)
+            && let Some(proximity) = self.proximities.get_mut(crowd.list as usize)
+            && proximity.is_asked_much(&around, 1)
         {
             let asker = Asker::new(self.view.state, who, measure);
             // The lanes are all the same.
-            match vicinity.all_far(&around, &asker, members.except, bound[0], (test, wanted)) {
+            match proximity.all_far(&around, &asker, members.except, bound[0], (test, wanted)) {
                 Some(true) => return Mask::ALL,
                 Some(false) => return Mask::NONE,
                 None => {}

@@ -5,12 +5,11 @@
 //! list serves for many states, until the ways are as long as the skin.
 
 use super::answers::All;
-use super::sweep::ROUNDING;
 use super::touching::read_off;
-use super::{Around, MARGIN, Question, Vicinity, square};
+use super::{Around, Asker, MARGIN, Proximity, Question, has, square, squared};
 use crate::base::lanes::{Lanes, Mask};
-use crate::kernel::close::Close;
 use crate::kernel::code::node::{Cut, Measure};
+use crate::kernel::near::Close;
 use crate::kernel::state::State;
 use crate::model::Parameter;
 
@@ -20,8 +19,8 @@ const SKIN: f64 = 0.4;
 /// With less of a skin a list is soon made anew, m.
 const LEAST_SKIN: f64 = 0.1;
 
-/// At most so many squares from one to another whom a list may hold: beyond, it takes as long as it saves.
-const FARTHEST_SQUARE: usize = 3;
+/// A list holds pairs up to so many average distances between neighbours: beyond, it takes as long as it saves.
+const MOST_SPACINGS: f64 = 3.0;
 
 /// Pairs who were close a while ago.
 #[derive(Clone, Debug)]
@@ -67,7 +66,7 @@ impl Neighbours {
             let edge = self.gap - way - MARGIN * (self.gap.abs() + 2.0 * self.widest + way);
             self.edge = if edge.is_nan() { f64::NEG_INFINITY } else { edge };
         }
-        Close { pairs: &self.pairs, edge: self.edge }
+        Close { pairs: &self.pairs, edge: self.edge, index: None }
     }
 
     /// How far two can have moved relative to each other since then, m. `None` where others are there, or others than
@@ -114,7 +113,7 @@ impl Neighbours {
     }
 }
 
-impl Vicinity {
+impl Proximity {
     /// Answers everybody by who was close a while ago, listed anew where that is not enough; false where no list is.
     pub(super) fn listed(&mut self, around: &Around<'_>, question: Question, all: &mut All) -> bool {
         let kind = usize::from(question.measure() == Measure::Centres);
@@ -145,7 +144,9 @@ impl Vicinity {
         if !self.is_sorted(around) {
             return false;
         }
-        let widest = if kind == 1 { 0.0 } else { self.widest };
+        let places = self.sets(around, question);
+        let index = self.index(around);
+        let widest = if kind == 1 { 0.0 } else { index.widest };
         let asked = match question {
             Question::AllFar { bound, .. } | Question::Nearest { cut: Cut::Above(bound), .. } => {
                 f64::from_bits(bound)
@@ -153,21 +154,30 @@ impl Vicinity {
             Question::Nearest { cut: Cut::Least(_), .. } => self.least[kind],
             Question::Nearest { cut: Cut::Nowhere, .. } => return false,
         };
-        let most = self.side * (FARTHEST_SQUARE as f64 - 2.0 * ROUNDING) - 2.0 * widest * (1.0 + MARGIN);
+        let most = index.grid.spacing * MOST_SPACINGS - 2.0 * widest * (1.0 + MARGIN);
         let gap = if asked + SKIN < most { asked + SKIN } else { most };
         let pays = gap >= asked + LEAST_SKIN && gap.is_finite();
         if !pays {
             return false;
         }
-        let span = (self.reach(question.measure(), widest, gap) / self.side + ROUNDING) as u32 as usize + 1;
-        let mut neighbours = std::mem::take(&mut self.neighbours[kind]);
-        neighbours.pairs.clear();
-        self.each_pair(span, |a, b, squared| {
-            let both = if kind == 1 { 0.0 } else { self.radius[a] + self.radius[b] };
-            if squared <= square((both + gap) + (both + gap.abs()) * MARGIN + 1e-30) {
-                neighbours.pairs.push((self.agent[a], self.agent[b]));
+        let mut pairs = std::mem::take(&mut self.neighbours[kind].pairs);
+        pairs.clear();
+        let (members, index) = (&self.sets[places.0].1, self.index(around));
+        for &agent in around.list().iter().filter(|agent| has(&around.state.present, **agent)) {
+            let one = Asker::new(around.state, agent as usize, question.measure());
+            for k in index.places(&index.area(one.at, one.reach(index, gap))).flatten() {
+                let other = index.agent[k];
+                if other <= agent || !has(members, other) {
+                    continue;
+                }
+                let both = if kind == 1 { 0.0 } else { one.radius + index.r[k] };
+                if squared(index, one.at, k) <= square((both + gap) + (both + gap.abs()) * MARGIN + 1e-30) {
+                    pairs.push((agent, other));
+                }
             }
-        });
+        }
+        let neighbours = &mut self.neighbours[kind];
+        neighbours.pairs = pairs;
         let state = around.state;
         neighbours.present.clone_from(&state.present);
         for (to, from) in [
@@ -178,7 +188,6 @@ impl Vicinity {
             to.clone_from(from);
         }
         (neighbours.gap, neighbours.widest, neighbours.state) = (gap, widest, 0);
-        self.neighbours[kind] = neighbours;
         true
     }
 }

@@ -2,7 +2,7 @@
 #![allow(clippy::disallowed_methods, reason = "the platform's functions are the reference")]
 
 use super::*;
-use crate::kernel::surfaces::sharing::share;
+use crate::kernel::vector::first_part;
 
 /// A wall along corners of a polygon, closed.
 fn closed(points: &[Vec2]) -> Barrier {
@@ -31,7 +31,7 @@ fn forces<S: Simd>(simd: S, all: &Surfaces, at: &[Vec2; 8], range: f64) -> [Lane
     let (x, y) = (Lanes(at.map(|p| p.x)), Lanes(at.map(|p| p.y)));
     let mut out = [Lanes::ZERO; 2];
     for part in parts(simd) {
-        let bodies = Bodies {
+        let bodies = AtWalls {
             place: (part.load(&x), part.load(&y)),
             r: part.c(0.3),
             a: part.c(1.0),
@@ -91,43 +91,48 @@ fn from_behind_an_edge_is_not_felt_and_from_inside_the_rim_is() {
 }
 
 #[test]
-fn faces_at_an_angle_push_with_the_smallest_force_that_is_enough_along_each_normal() {
+fn faces_at_an_angle_give_at_least_what_the_nearer_one_gives_and_at_most_their_sum() {
     for degrees in [5, 10, 30, 45, 60, 80, 89, 90, 91, 120, 150, 170] {
         let bend = f64::from(degrees).to_radians();
         let other = p(-(bend.cos()), bend.sin());
         let chain = wall(&[other * 9.0, Vec2::zeros(), p(9.0, 0.0)]);
         let pieces = [wall(&[other * 9.0, Vec2::zeros()]), wall(&[p(9.0, 0.0), Vec2::zeros()])];
         let normals = [p(0.0, 1.0), p(other.y, -other.x)];
-        for k in 0..60 {
-            let turn = (f64::from(k) + 0.5) / 60.0 * std::f64::consts::PI;
+        // The last is on the bisector.
+        for turn in (0..60)
+            .map(|k| (f64::from(k) + 0.5) / 60.0 * std::f64::consts::PI)
+            .chain([0.5 * (std::f64::consts::PI - bend)])
+        {
             for far in [0.35, 0.7, 1.2] {
                 let place = p(turn.cos(), turn.sin()) * far;
-                let feet = [place.x > 0.0, place.dot(&other) > 0.0];
+                let feet = [place.x, place.dot(&other)];
                 let heights = normals.map(|normal| normal.dot(&place));
                 // Inside of the corner, where both feet lie on the faces and not on the end of the other.
-                if heights[0] < 0.03 || heights[1] < 0.03 || feet.contains(&false) {
+                if heights.iter().any(|height| *height < 0.03)
+                    || feet.iter().any(|foot| foot * bend.sin() <= ON)
+                {
                     continue;
                 }
                 let found = force(std::slice::from_ref(&chain), place, 0.2);
                 assert!((force(&pieces, place, 0.2) - found).norm() < 1e-12, "{degrees} {place}");
-                let wanted = heights.map(|height| alone(height, 0.2));
-                let along = normals.map(|normal| normal.dot(&found));
-                let merged = [place.x, place.dot(&other)].iter().any(|foot| foot * bend.sin() <= ON);
-                if merged {
-                    continue;
-                }
-                if degrees > 90 {
-                    let sum = normals[0] * wanted[0] + normals[1] * wanted[1];
+                let alone = heights.map(|height| alone(height, 0.2));
+                let sum = normals[0] * alone[0] + normals[1] * alone[1];
+                if degrees >= 90 {
                     assert!((found - sum).norm() < 1e-9, "{degrees} {place}");
                     continue;
                 }
-                for (along, wanted) in along.iter().zip(wanted) {
-                    assert!(along / wanted > 1.0 - 1e-9, "{degrees} {place} {along} {wanted}");
+                let along = normals.map(|normal| normal.dot(&found));
+                let nearer = usize::from(alone[1] > alone[0]);
+                assert!(
+                    along[nearer] > 0.92 * alone[nearer] && found.norm() < sum.norm(),
+                    "{degrees} {place} {found}"
+                );
+                if (heights[0] - heights[1]).abs() < 1e-12 {
+                    assert!(
+                        (0..2).all(|k| (along[k] / alone[k] - 1.0).abs() < 1e-9),
+                        "{degrees} {place} {found}"
+                    );
                 }
-                // The smallest: one face alone, or no more than needed along both.
-                let tight = |k: usize| (along[k] / wanted[k] - 1.0).abs() < 1e-9;
-                let single = |k: usize| (found - normals[k] * wanted[k]).norm() < 1e-9;
-                assert!(tight(0) && tight(1) || single(0) || single(1), "{degrees} {place} {found}");
             }
         }
     }
@@ -135,7 +140,7 @@ fn faces_at_an_angle_push_with_the_smallest_force_that_is_enough_along_each_norm
 
 #[test]
 fn a_round_wall_of_straight_pieces_pushes_the_same_everywhere() {
-    for (count, spread) in [(12, 0.12), (24, 0.05), (64, 0.02)] {
+    for (count, spread) in [(12, 0.15), (24, 0.1), (64, 0.1)] {
         let corner = |k: i32| {
             let (sin, cos) = crate::base::math::sin_cos_turn(f64::from(k) / f64::from(count));
             p(3.0 * cos, 3.0 * sin)
@@ -169,60 +174,20 @@ fn contact_shares_as_the_social_force_does() {
     let room = wall(&[p(10.0, 3.0), p(10.0, 0.0), p(13.0, 0.0)]);
     let all = Surfaces::new(&[bend, room]);
     let touch = |faces: [u32; 2], place: Vec2| {
-        let mut touches = Vec::new();
-        all.touch(faces.into_iter(), place, 0.3, &mut touches);
-        [touches[0], touches[1]]
+        let mut room = Room::default();
+        let found = dispatch!(Level::new(), simd => {
+            all.touch(first_part(simd), faces.into_iter(), place, 0.3, &mut room)
+        });
+        [0, 1].map(|k| (p(found[k].nx.0[0], found[k].ny.0[0]), found[k].shared.0[0]))
     };
     let both = touch([0, 1], p(0.0, 0.25));
-    let sum = both[0].normal * both[0].depth + both[1].normal * both[1].depth;
+    let sum = both[0].0 * both[0].1 + both[1].0 * both[1].1;
     let depth = 0.3 - 0.25 * (0.9_f64).sqrt();
-    for touch in both {
-        assert!((sum.dot(&touch.normal) / depth - 1.0).abs() < 1e-12);
+    for (normal, _) in both {
+        assert!((sum.dot(&normal) / depth - 1.0).abs() < 1e-12);
     }
-    let both = touch([2, 3], p(10.2, 0.25));
-    assert!((both[0].depth - 0.1).abs() < 1e-12 && (both[1].depth - 0.05).abs() < 1e-12);
-}
-
-#[test]
-fn depths_are_shared_as_forces_are() {
-    let mut number = 7_u64;
-    let mut next = || {
-        number = number.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (number >> 11) as f64 / 9_007_199_254_740_992.0
-    };
-    for round in 0..400 {
-        let count = 2 + round % 5;
-        let mut touches: Vec<Touch> = (0..count)
-            .map(|_| {
-                let (sin, cos) = crate::base::math::sin_cos_turn(next());
-                let (alone, structure) = (next() - 0.2, u32::from(next() < 0.2));
-                Touch { structure, barrier: 0, normal: p(cos, sin), alone, depth: alone, next: alone }
-            })
-            .collect();
-        let mut pushes: Vec<Push> = touches
-            .iter()
-            .map(|touch| Push {
-                structure: touch.structure,
-                nx: Lanes::splat(touch.normal.x),
-                ny: Lanes::splat(touch.normal.y),
-                alone: Lanes::splat(touch.alone.max(0.0)),
-                ..Push::default()
-            })
-            .collect();
-        share_depths(&mut touches);
-        dispatch!(Level::new(), simd => share_all(simd, &mut pushes));
-        for (push, touch) in pushes.iter().zip(&touches) {
-            assert!((push.shared.0[0] - touch.depth.max(0.0)).abs() < 1e-12, "{push:?} {touch:?}");
-            assert_eq!(push.shared, Lanes::splat(push.shared.0[0]));
-        }
-    }
-}
-
-#[inline(always)]
-fn share_all<S: Simd>(simd: S, pushes: &mut [Push]) {
-    for part in parts(simd) {
-        share(part, pushes);
-    }
+    let [(_, one), (_, other)] = touch([2, 3], p(10.2, 0.25));
+    assert!((one - 0.1).abs() < 1e-12 && (other - 0.05).abs() < 1e-12);
 }
 
 #[test]
@@ -272,7 +237,7 @@ fn a_ledge_or_a_wall_drawn_as_its_outline_is_one_wall() {
         for k in -300..300 {
             let found = force(std::slice::from_ref(&ledge), p(f64::from(k) * 1e-3 + 1e-4, 0.4), 0.08);
             let bounds = [alone(0.4, 0.08), alone(0.395, 0.08)];
-            assert!((0.98 * bounds[0]..1.02 * bounds[1]).contains(&found.norm()), "{k} {found} {bounds:?}");
+            assert!((0.89 * bounds[0]..1.02 * bounds[1]).contains(&found.norm()), "{k} {found} {bounds:?}");
             if let Some(last) = last {
                 assert!((found - last).norm() < 0.08 * bounds[0], "{k} {found} {last}");
             }
@@ -282,7 +247,8 @@ fn a_ledge_or_a_wall_drawn_as_its_outline_is_one_wall() {
     for thick in [2e-3, 0.05, 0.1, 0.3] {
         let outline = closed(&[p(0.0, -thick), p(5.0, -thick), p(5.0, 0.0), p(0.0, 0.0)]);
         let found = force(&[outline], p(2.5, 0.3), 0.2);
-        assert!((found - p(0.0, alone(0.3, 0.2))).norm() < 1e-12, "{thick} {found}");
+        let ratio = found.y / alone(0.3, 0.2);
+        assert!((0.92..1.0 + 1e-12).contains(&ratio) && found.x.abs() < 1e-12, "{thick} {found}");
     }
     // A piece that comes out of a wall by a centimetre, upright or nearly so.
     for foot in [2.5, 2.501] {
@@ -293,7 +259,7 @@ fn a_ledge_or_a_wall_drawn_as_its_outline_is_one_wall() {
         for x in [2.3, 2.45, 2.499, 2.501, 2.6] {
             let found = force(std::slice::from_ref(&spur), p(x, 0.35), 0.08);
             let bounds = [alone(0.35, 0.08), alone(0.34, 0.08)];
-            assert!((0.98 * bounds[0]..1.03 * bounds[1]).contains(&found.norm()), "{x} {found} {bounds:?}");
+            assert!((0.92 * bounds[0]..1.03 * bounds[1]).contains(&found.norm()), "{x} {found} {bounds:?}");
         }
     }
 }
@@ -369,11 +335,10 @@ fn blocks_side_by_side_or_overlapping_are_one_block() {
     for (a, b) in [(-0.5, -0.5), (0.3, -1.0)] {
         let parts =
             [block(p(-2.0, 0.0), p(a, 1.0)), block(p(b, 0.0), p(0.5, 1.0)), block(p(0.5, 0.0), p(2.0, 1.0))];
-        for place in places() {
-            let wanted = nearest(&whole, place);
-            if wanted.1 > 0.08 {
-                pushes_as(&parts, place, &[wanted]);
-            }
+        for place in places().filter(|place| nearest(&whole, *place).1 > 0.08) {
+            let (found, wanted) =
+                (force(&parts, place, 0.5), force(std::slice::from_ref(&whole), place, 0.5));
+            assert!((found - wanted).norm() < 1e-12 * wanted.norm(), "{place} {found} {wanted}");
         }
     }
 }
@@ -396,8 +361,7 @@ fn what_is_drawn_twice_is_felt_once_and_what_is_apart_twice() {
     for place in free_places() {
         pushes_as(&[first.clone(), first.clone()], place, &[nearest(&first, place)]);
     }
-    let found = force(&[first.clone(), first.clone(), first], p(0.5, 0.3), 0.2);
-    assert!((found.y / alone(0.3, 0.2) - 1.0).abs() < 1e-3, "{found}");
+    pushes_as(&[first.clone(), first.clone(), first.clone()], p(0.5, 0.3), &[nearest(&first, p(0.5, 0.3))]);
 }
 
 #[test]
@@ -438,7 +402,7 @@ fn however_many_share_they_give_what_one_would() {
     for count in [1, 3, 10, 15, 20, 40] {
         let same = vec![wall(&[p(-5.0, 0.0), p(5.0, 0.0)]); count];
         let found = force(&same, p(0.0, 0.5), 0.08);
-        assert!((found.y / alone(0.5, 0.08) - 1.0).abs() < 0.01, "{count} {found}");
+        assert!((found.y / alone(0.5, 0.08) - 1.0).abs() < 1e-12, "{count} {found}");
     }
     // At the centre of a half circle, and about it.
     for count in [16, 64, 128] {
@@ -477,7 +441,7 @@ fn the_order_of_many_that_share_does_not_matter() {
 }
 
 proptest! {
-    /// Forces do not hang on who stands in the other lanes, and nobody is pulled.
+    /// Forces do not depend on the other lanes, and nobody is pulled.
     #[test]
     fn a_force_is_that_of_one_alone(
         barriers in scene(),
@@ -491,8 +455,8 @@ proptest! {
             let [one_x, one_y] = dispatch!(Level::new(), simd => forces(simd, &all, &[at[lane]; 8], 0.3));
             prop_assert_eq!((found[0].0[lane], found[1].0[lane]), (one_x.0[0], one_y.0[0]));
             prop_assert!(one_x.0[0].is_finite() && one_y.0[0].is_finite());
-            // What the nearest face gives is there along its normal, but for faces that push against it: of two at
-            // an angle in full, of three or more about.
+            // What the nearest face gives is there along its normal, but for faces that push against it: less 8 % of
+            // two, and 28 % of eleven, the worst case (0.72 is the least of (1 + 10 x^4)/(1 + 10 x^3)).
             let nearest = felt(&barriers, at[lane]);
             let (normal, distance) = *nearest.iter().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
             let against: f64 = nearest
@@ -505,7 +469,7 @@ proptest! {
             }
             let along = normal.dot(&p(one_x.0[0], one_y.0[0]));
             let wanted = alone(distance, 0.3);
-            prop_assert!(along + against > 0.9 * wanted, "{} {} {}", along, against, wanted);
+            prop_assert!(along + against > 0.72 * wanted, "{} {} {}", along, against, wanted);
         }
     }
 }

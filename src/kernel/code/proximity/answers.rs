@@ -1,6 +1,6 @@
 //! What everybody asks in each state: kept by blocks of agents, so that eight of them are told at once.
 
-use super::{Around, Vicinity};
+use super::{Around, Asker, Proximity};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::kernel::code::node::{Cut, Measure};
 use crate::model::Comparison;
@@ -59,7 +59,7 @@ impl Answers {
     }
 }
 
-impl Vicinity {
+impl Proximity {
     /// The smallest measure of one who is left out of the members, where most members ask the same in every state.
     #[inline(always)]
     pub(super) fn known_nearest(
@@ -141,16 +141,38 @@ impl Vicinity {
         let mut all = std::mem::take(&mut self.answers[place].all);
         let given = if self.touching(around, question, &mut all) {
             Some(true)
-        } else if self.here.is_empty() && !self.is_sorted(around) {
+        } else if self.count == 0 && !self.is_sorted(around) {
             Some(false)
-        } else if (asked.1 as usize) < self.here.len() / 2 {
+        } else if asked.1 < self.count / 2 {
             // Perhaps more will ask.
             None
         } else {
-            Some(self.listed(around, question, &mut all) || self.swept(around, question, &mut all))
+            Some(self.listed(around, question, &mut all) || self.searched(around, question, &mut all))
         };
         let answers = &mut self.answers[place];
         (answers.all, answers.given) = (all, given);
         given == Some(true)
+    }
+
+    /// Answers everybody's nearest, where it is not cut, by a search each; false of other questions: where the first who is
+    /// too near ends a look, one by one is as fast.
+    fn searched(&mut self, around: &Around<'_>, question: Question, all: &mut All) -> bool {
+        let Question::Nearest { measure, cut: Cut::Nowhere } = question else { return false };
+        if !self.is_sorted(around) {
+            return false;
+        }
+        all.nearest.clear();
+        all.nearest.resize(around.state.motion.x.len(), Lanes::splat(f64::NAN));
+        let mut least = f64::INFINITY;
+        for &agent in around.list() {
+            let (block, lane) = (agent as usize / LANES, agent as usize % LANES);
+            if around.state.present[block].has(lane) {
+                let found = self.search(around, &Asker::new(around.state, agent as usize, measure), agent);
+                all.nearest[block].0[lane] = found;
+                least = if found < least { found } else { least };
+            }
+        }
+        self.least[usize::from(measure == Measure::Centres)] = least;
+        true
     }
 }

@@ -5,10 +5,10 @@
 //! list anyhow, of those who may touch.
 
 use super::answers::All;
-use super::{Around, Asker, MARGIN, Question, Vicinity, square, value};
+use super::{Around, Asker, MARGIN, Proximity, Question, square, value};
 use crate::base::lanes::{LANES, Lanes, Mask};
-use crate::kernel::close::Close;
 use crate::kernel::code::node::{Cut, Measure};
+use crate::kernel::near::Close;
 use crate::kernel::state::State;
 
 /// Who is asked about whom.
@@ -21,7 +21,7 @@ pub(super) struct Asked<'a> {
     askers: &'a [Mask],
 }
 
-impl Vicinity {
+impl Proximity {
     /// Answers everybody who is there, if the pairs who may touch can. Of centres that near nobody asks.
     pub(super) fn touching(&mut self, around: &Around<'_>, question: Question, all: &mut All) -> bool {
         let Some(close) = around.close else { return false };
@@ -44,19 +44,6 @@ impl Vicinity {
 
     pub(super) fn asked<'a>(&'a self, (members, askers): (usize, usize), known: &'a [Mask]) -> Asked<'a> {
         Asked { known, members: &self.sets[members].1, askers: &self.sets[askers].1 }
-    }
-
-    /// Where a list is, as a set of each block of agents.
-    fn set(&mut self, around: &Around<'_>, list: u32) -> usize {
-        if let Some(known) = self.sets.iter().position(|(known, _)| *known == list) {
-            return known;
-        }
-        let mut set = vec![Mask::NONE; around.state.motion.x.len()];
-        for &agent in &around.lists[list as usize] {
-            set[agent as usize / LANES] |= Mask::lane(agent as usize % LANES);
-        }
-        self.sets.push((list, set));
-        self.sets.len() - 1
     }
 }
 

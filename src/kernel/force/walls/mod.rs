@@ -7,15 +7,15 @@
 //!
 //! 1. An edge of a polygon is felt on its outer side only. Whoever got into a polygon is pushed to the nearest point of
 //!    its rim instead.
-//! 2. Where the nearest point of a face is an end that lies on another face which is nearer, or as near and declared
-//!    before, the other one has the say, and the face fades out behind that end; where its nearest point lies in another
-//!    solid, or on the back of one, it gives nothing. So a corner outside counts once, and an end that another barrier
-//!    hides is not felt. The nearest of all is always felt.
-//! 3. Faces that hang together (those of one wall, or of walls and obstacles that touch) share the work where they
-//!    push the same way: together they give the smallest force that is, along each normal, what that face gives alone
-//!    (`sharing`). So in a right angle both push in full, a straight wall in pieces, a ledge or the two sides of a wall
-//!    drawn as its outline are one wall, and the side of a round room drawn of short pieces is not twice as hard where
-//!    two of them are in front.
+//! 2. Where the nearest point of a face is an end that lies on another face, which is nearer, the face fades out behind
+//!    that end; where that is the nearest point of both, the one fades out that is farther behind its end. It gives
+//!    nothing where both lie in one line and the other one is nearer (or as near and declared before), and where its
+//!    nearest point lies in another solid or on the back of one. So a straight wall in pieces is one wall, a corner outside counts once, and an end that another barrier hides
+//!    is not felt. The nearest of all is always felt.
+//! 3. Faces of one structure (those of one wall, or of walls and obstacles that touch) share where they push in similar
+//!    directions (`sharing`). So in a right angle both push in full, a ledge or the two sides of a wall drawn as its
+//!    outline push about as one wall, and a round room drawn in short pieces is not twice as hard where two of them are
+//!    in front.
 //!
 //! Barriers that do not touch push each for itself: the sum over walls of the paper.
 
@@ -25,19 +25,21 @@ mod sharing;
 #[cfg(test)]
 mod tests;
 
-use super::barrier::Surface;
-use super::edges::squared_distance;
-use super::nearby::Nearby;
+use super::pair::AgentsInLanes;
 use super::social::{decay, is_in_reach};
-use super::vector::{Doubles, Part, Truths, smaller};
 use crate::base::geometry::{Bounds, Shape, Vec2};
-use crate::base::lanes::Mask;
-use crate::model::{Barrier, Obstacle};
+use crate::base::lanes::{Lanes, Mask};
+use crate::kernel::barrier::Surface;
+use crate::kernel::edges::squared_distance;
+use crate::kernel::nearby::Nearby;
+use crate::kernel::state::State;
+use crate::kernel::vector::{Doubles, Part, Truths, larger, smaller};
+use crate::model::{Barrier, Obstacle, Parameter};
 use face::{Form, Nearest, NearestTo, Side, nearest_of_whole, nearest_of_whole_to, sides_of};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
-pub(super) use sharing::Touch;
-use sharing::{Push, share, share_depths};
+use sharing::{Push, share};
+use std::f64::consts::LOG2_E;
 
 /// A point this close to a barrier lies on it, m: nobody slips through, whatever is drawn so.
 const ON: f64 = 1e-3;
@@ -49,6 +51,8 @@ struct Joint {
     other: u32,
     /// A rectangle around all points of the face that lie on or in the other one.
     around: Bounds,
+    /// Whether both are straight and lie in one line.
+    in_line: bool,
 }
 
 /// What pushes.
@@ -66,34 +70,53 @@ struct Face {
 
 /// The faces of the barriers of a scene, in their order; those without a piece have none.
 #[derive(Clone, Debug)]
-pub(super) struct Surfaces {
+pub(in crate::kernel) struct Surfaces {
     wholes: Vec<Surface>,
     faces: Vec<Face>,
     /// Which faces may be near.
-    pub(super) nearby: Nearby,
+    pub(in crate::kernel) nearby: Nearby,
 }
 
-/// Eight bodies as a face meets them.
+/// Bodies as walls push them.
 #[derive(Clone, Copy)]
-pub(super) struct Bodies<S: Simd> {
+pub(in crate::kernel) struct AtWalls<S: Simd> {
     /// Places, m.
-    pub(super) place: (Doubles<S>, Doubles<S>),
+    place: (Doubles<S>, Doubles<S>),
     /// Radius, m.
-    pub(super) r: Doubles<S>,
+    r: Doubles<S>,
     /// Strength A, N, and log2(e)/B, 1/m, of the social force.
-    pub(super) a: Doubles<S>,
-    pub(super) rate: Doubles<S>,
+    a: Doubles<S>,
+    rate: Doubles<S>,
+}
+
+impl<S: Simd> AtWalls<S> {
+    /// Of agents at a place with a radius; with `shared` all have this B (and B of the second term).
+    #[inline(always)]
+    pub(in crate::kernel) fn new(
+        part: Part<S>,
+        place: (Doubles<S>, Doubles<S>),
+        r: Doubles<S>,
+        shared: Option<(f64, f64)>,
+        state: &State,
+        agents: impl AgentsInLanes<S>,
+    ) -> Self {
+        let rate = match shared {
+            Some((b, _)) => part.c(LOG2_E / b),
+            None => part.c(LOG2_E) / agents.field(&state.bodies[Parameter::B]),
+        };
+        Self { place, r, a: agents.field(&state.bodies[Parameter::A]), rate }
+    }
 }
 
 /// Room to work.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Room {
+pub(in crate::kernel) struct Room {
     pushes: Vec<Push>,
 }
 
 impl Surfaces {
     /// Of a scene.
-    pub(super) fn new(barriers: &[Barrier]) -> Self {
+    pub(in crate::kernel) fn new(barriers: &[Barrier]) -> Self {
         let there: Vec<(&Barrier, Surface)> =
             barriers.iter().filter_map(|barrier| Some((barrier, Surface::new(barrier)?))).collect();
         let (barriers, wholes): (Vec<&Barrier>, Vec<Surface>) = there.into_iter().unzip();
@@ -128,19 +151,19 @@ impl Surfaces {
     }
 
     /// Whether there is none.
-    pub(super) const fn is_empty(&self) -> bool {
+    pub(in crate::kernel) const fn is_empty(&self) -> bool {
         self.faces.is_empty()
     }
 
     /// How many faces there are.
     #[cfg(test)]
-    pub(super) const fn len(&self) -> usize {
+    pub(in crate::kernel) const fn len(&self) -> usize {
         self.faces.len()
     }
 
     /// Squared distance from eight places to the rectangle around a face.
     #[inline(always)]
-    pub(super) fn squared_distance_to_bounds<S: Simd>(
+    pub(in crate::kernel) fn squared_distance_to_bounds<S: Simd>(
         &self,
         face: u32,
         part: Part<S>,
@@ -152,7 +175,7 @@ impl Surfaces {
 
     /// The nearest points of a face to eight places.
     #[inline(always)]
-    pub(super) fn nearest<S: Simd>(
+    pub(in crate::kernel) fn nearest<S: Simd>(
         &self,
         face: u32,
         part: Part<S>,
@@ -166,7 +189,7 @@ impl Surfaces {
     }
 
     /// The nearest point of a face to one place.
-    pub(super) fn nearest_to(&self, face: u32, p: Vec2) -> NearestTo {
+    pub(in crate::kernel) fn nearest_to(&self, face: u32, p: Vec2) -> NearestTo {
         let Face { form, barrier, .. } = &self.faces[face as usize];
         match form {
             Form::Side(side) => side.nearest_to(p),
@@ -177,11 +200,11 @@ impl Surfaces {
     /// The social force of faces on eight bodies, N. Those that touch or may do so within a step are told to `may_touch`,
     /// if they are nearer than `margin`.
     #[inline(always)]
-    pub(super) fn push<S: Simd>(
+    pub(in crate::kernel) fn push<S: Simd>(
         &self,
         part: Part<S>,
         near: &[u32],
-        bodies: &Bodies<S>,
+        bodies: &AtWalls<S>,
         margin: f64,
         room: &mut Room,
         mut may_touch: impl FnMut(u32, Truths<S>),
@@ -238,7 +261,7 @@ impl Surfaces {
     }
 
     /// Share of its force that a face gives at eight places, from its nearest points, where it is seen: less than 1 where
-    /// another one has the say (rule 2).
+    /// its nearest point lies on another one (rule 2).
     #[inline(always)]
     fn left<S: Simd>(
         &self,
@@ -253,7 +276,8 @@ impl Surfaces {
         let unseen = nearest.distance.simd_eq(part.c(f64::INFINITY));
         // The barrier of the last other face, and where the foot lies on one of its faces that is seen.
         let (mut barrier, mut on_face) = (u32::MAX, part.mask(Mask::NONE));
-        for Joint { other, around } in &self.faces[index as usize].joints {
+        let Face { form, joints, .. } = &self.faces[index as usize];
+        for Joint { other, around, in_line } in joints {
             let here = is_in(part, around, foot);
             if !here.any_true() {
                 continue;
@@ -276,18 +300,21 @@ impl Surfaces {
             if seen.any_true() {
                 let here = seen & self.nearest(*other, part, foot).near.simd_le(on);
                 on_face |= here;
-                let has_the_say = here
-                    & if *other < index {
-                        theirs.distance.simd_le(nearest.distance)
-                    } else {
-                        theirs.distance.simd_lt(nearest.distance)
-                    };
-                // Nothing is left of what lies in a disc.
-                let rest = match other_face.form {
-                    Form::Side(_) => smaller::<S>(nearest.fading, left),
-                    Form::Disc | Form::Inside => zero,
+                let one = part.c(1.0);
+                let is_nearer = if *other < index {
+                    theirs.distance.simd_le(nearest.distance)
+                } else {
+                    theirs.distance.simd_lt(nearest.distance)
                 };
-                left = has_the_say.select(rest, left);
+                let mut rest = is_nearer.select(zero, one);
+                if fades_by(form, &other_face.form, *in_line) {
+                    let dx = foot.0 - place.0 + theirs.nx * theirs.near;
+                    let dy = foot.1 - place.1 + theirs.ny * theirs.near;
+                    let is_same = (dx * dx + dy * dy).simd_le(on * on);
+                    let by_end = one - larger::<S>(theirs.fading - nearest.fading, zero);
+                    rest = is_same.select(by_end, is_nearer.select(nearest.fading, one));
+                }
+                left = here.select(smaller::<S>(rest, left), left);
             }
             if (left.simd_le(zero) | unseen).all_true() {
                 break;
@@ -296,33 +323,47 @@ impl Surfaces {
         left
     }
 
-    /// How one body overlaps some faces as the contact between them feels it, by the rules above; in their order.
-    pub(super) fn touch(
+    /// How one body overlaps some faces, by the rules above: what they give is a depth, in lane 0. In their order.
+    #[inline(always)]
+    pub(in crate::kernel) fn touch<'a, S: Simd>(
         &self,
+        part: Part<S>,
         faces: impl Iterator<Item = u32>,
         p: Vec2,
         radius: f64,
-        touches: &mut Vec<Touch>,
-    ) {
-        touches.clear();
-        for (k, face) in faces.enumerate() {
-            let nearest = self.nearest_to(face, p);
-            // Who hangs together with nobody has a number that no face has.
-            let structure = self.faces[face as usize].structure.unwrap_or(u32::MAX - k as u32);
+        room: &'a mut Room,
+    ) -> &'a [Push] {
+        if self.overlap(faces, p, radius, room) > 1 {
+            share(part, &mut room.pushes);
+        }
+        &room.pushes
+    }
+
+    /// The same of each face alone. Gives how many the body overlaps.
+    fn overlap(&self, faces: impl Iterator<Item = u32>, p: Vec2, radius: f64, room: &mut Room) -> usize {
+        room.pushes.clear();
+        for index in faces {
+            let nearest = self.nearest_to(index, p);
             let depth = radius - nearest.distance;
-            let alone = if depth > 0.0 { depth * self.left_at(face, p, &nearest) } else { depth };
-            let Face { barrier, ref form, .. } = self.faces[face as usize];
+            let alone =
+                Lanes::splat(if depth > 0.0 { depth * self.left_at(index, p, &nearest) } else { 0.0 });
+            let Face { barrier, structure, ref form, .. } = self.faces[index as usize];
             if matches!(form, Form::Inside) && nearest.distance < f64::INFINITY {
-                for touch in touches.iter_mut().filter(|touch| touch.barrier == barrier) {
-                    (touch.alone, touch.depth) = (0.0, 0.0);
+                for push in room.pushes.iter_mut().filter(|push| push.barrier == barrier) {
+                    (push.alone, push.shared) = (Lanes::ZERO, Lanes::ZERO);
                 }
             }
-            let normal = nearest.normal;
-            touches.push(Touch { structure, barrier, normal, alone, depth: alone, next: alone });
+            room.pushes.push(Push {
+                structure: structure.unwrap_or(index),
+                barrier,
+                nx: Lanes::splat(nearest.normal.x),
+                ny: Lanes::splat(nearest.normal.y),
+                alone,
+                shared: alone,
+                ..Push::default()
+            });
         }
-        if touches.len() > 1 {
-            share_depths(touches);
-        }
+        room.pushes.iter().filter(|push| push.alone.0[0] > 0.0).count()
     }
 
     /// The same as `left` at one place.
@@ -331,7 +372,8 @@ impl Surfaces {
         let foot = p - normal * near;
         let mut left = if fades { fading } else { 1.0 };
         let (mut barrier, mut on_face) = (u32::MAX, false);
-        for Joint { other, around } in &self.faces[index as usize].joints {
+        let Face { form, joints, .. } = &self.faces[index as usize];
+        for Joint { other, around, in_line } in joints {
             if !contains(around, foot) {
                 continue;
             }
@@ -348,15 +390,29 @@ impl Surfaces {
                 }
             } else if theirs.distance < f64::INFINITY && is_on {
                 on_face = true;
-                let is_as_near = *other < index && theirs.distance == distance;
-                let rest = if matches!(other_face.form, Form::Side(_)) { fading } else { 0.0 };
-                if (theirs.distance < distance || is_as_near) && rest < left {
-                    left = rest;
-                }
+                let is_nearer = theirs.distance < distance || *other < index && theirs.distance == distance;
+                let way = foot - p + theirs.normal * theirs.near;
+                let rest = if !fades_by(form, &other_face.form, *in_line) {
+                    if is_nearer { 0.0 } else { 1.0 }
+                } else if way.dot(&way) <= ON * ON {
+                    let less = theirs.fading - fading;
+                    1.0 - if less > 0.0 { less } else { 0.0 }
+                } else if is_nearer {
+                    fading
+                } else {
+                    1.0
+                };
+                left = if rest < left { rest } else { left };
             }
         }
         left
     }
+}
+
+/// Whether a face fades out behind its end where that lies on another one, which is nearer, or where both end there and it is
+/// farther behind; else it gives nothing there if the other one is nearer.
+const fn fades_by(own: &Form, other: &Form, in_line: bool) -> bool {
+    matches!((own, other), (Form::Side(_), Form::Side(_))) && !in_line
 }
 
 /// The faces of a barrier, and a rectangle around each.

@@ -1,12 +1,12 @@
 //! A face: what one straight piece of a barrier, or a barrier as a whole, does.
 //!
 //! A piece of a wall has two faces in one, an edge of a polygon is felt from outside alone. The nearest point of a
-//! piece is the foot of the perpendicular, or an end. Where another one is nearer to that end, as on the hollow side of a
+//! piece is the foot of the perpendicular, or an end. Where that end lies on another one, as on the hollow side of a
 //! corner, a piece fades out over the first centimetres behind it, so that nothing jumps as the foot leaves it.
 
-use super::Surface;
 use crate::base::geometry::{Bounds, Polygon, Segment, Vec2, cross};
 use crate::base::lanes::Mask;
+use crate::kernel::barrier::Surface;
 use crate::kernel::vector::{Doubles, Part, Truths, larger, smaller};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -54,9 +54,9 @@ pub(in crate::kernel) struct Nearest<S: Simd> {
     pub(in crate::kernel) near: Doubles<S>,
     /// The same; infinite where the face is not seen, as from behind.
     pub(in crate::kernel) distance: Doubles<S>,
-    /// Share of its force that is left where another one has the say: 1 at the foot of a perpendicular.
+    /// Share of its force that is left behind an end that lies on another one: 1 at the foot of a perpendicular.
     pub(in crate::kernel) fading: Doubles<S>,
-    /// Whether another one has the say there anyway: behind an end where a polygon is hollow.
+    /// Whether it fades out anyway: behind an end where a polygon is hollow.
     pub(in crate::kernel) fades: Truths<S>,
 }
 

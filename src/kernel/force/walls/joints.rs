@@ -1,9 +1,9 @@
 //! Where faces meet, and which hang together: worked out once for a scene.
 
-use super::super::nearby::Nearby;
 use super::face::Form;
 use super::{Face, Joint, ON, Surface};
 use crate::base::geometry::{Bounds, Segment, Vec2, cross};
+use crate::kernel::nearby::Nearby;
 
 /// What two rectangles share, a little larger; `None` where they are apart.
 fn overlap(a: &Bounds, b: &Bounds) -> Option<Bounds> {
@@ -18,6 +18,22 @@ fn hull(a: Option<Bounds>, b: Bounds) -> Bounds {
 
 fn around(s: &Segment) -> Bounds {
     Bounds { low: s.a.inf(&s.b), high: s.a.sup(&s.b) }
+}
+
+/// Pieces in one line are this near to it at most, m. Where one hides the other, the distance jumps by no more.
+const IN_LINE: f64 = 1e-6;
+
+/// Whether two pieces that meet lie in one line.
+fn in_line(one: &Segment, other: &Segment) -> bool {
+    let near = |line: &Segment, p: Vec2| {
+        let along = line.b - line.a;
+        cross(along, p - line.a).abs() <= IN_LINE * along.norm()
+    };
+    near(one, other.a)
+        && near(one, other.b)
+        && near(other, one.a)
+        && near(other, one.b)
+        && apart(one, other) <= IN_LINE
 }
 
 /// Where a face meets others, in their order, and those of them that it hangs together with.
@@ -42,6 +58,7 @@ pub(super) fn of_face(
             continue;
         }
         let is_own = own.barrier == other.barrier;
+        let mut is_in_line = false;
         let around = match (&own.form, &other.form) {
             (Form::Side(one), Form::Side(two)) => {
                 let (one, two) = (one.piece(), two.piece());
@@ -49,6 +66,7 @@ pub(super) fn of_face(
                 rim = shared.map(|shared| hull(rim, shared)).or(rim);
                 if shared.is_some() && apart(&one, &two) <= ON {
                     meets.push(k);
+                    is_in_line = in_line(&one, &two);
                 }
                 shared
             }
@@ -78,7 +96,7 @@ pub(super) fn of_face(
             }
             (Form::Disc | Form::Inside, _) => overlap(&own.bounds, &other.bounds),
         };
-        joints.extend(around.map(|around| Joint { other: k, around }));
+        joints.extend(around.map(|around| Joint { other: k, around, in_line: is_in_line }));
     }
     (joints, meets)
 }

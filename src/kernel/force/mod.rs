@@ -1,0 +1,111 @@
+//! The forces on bodies: one file for each term, and the list of terms.
+//!
+//! `social` (with its second term) and each further term between two bodies is a `pair::PairTerm`, which both layouts sum
+//! (`lanewise`, `cells`); `walls` is the social force of barriers, `cohesion` the attraction of groups, `contact` the fast
+//! force that sub-steps advance.
+//!
+//! A new term between two bodies is a file here and a line in `with_pair_terms`.
+
+mod cohesion;
+pub(super) mod contact;
+pub(super) mod pair;
+mod social;
+pub(super) mod walls;
+
+use super::pace::fastest;
+use super::state::State;
+use crate::base::math::at_least;
+use crate::model::{Body, Law, Parameter, Scenario};
+use cohesion::Cohesion;
+pub(super) use pair::Both;
+use pair::Sum;
+use social::Particles;
+pub(super) use social::{Bounded, Social};
+use walls::Surfaces;
+
+/// The largest approach that contact candidates foresee at least, m/s.
+const APPROACH: f64 = 5.0;
+
+/// What the forces need to know of a scenario, the same in every trial.
+#[derive(Clone, Debug)]
+pub struct Forces {
+    /// Walls and obstacles.
+    pub(super) surfaces: Surfaces,
+    groups: Vec<Cohesion>,
+    pub(super) particles: Particles,
+    /// B (and B of the second term), if it is the same constant in all bodies and no two are of several
+    /// persons: then one exponential serves both bodies of a pair.
+    pub(super) shared: Option<(f64, f64)>,
+    /// Whether any body has the second term.
+    pub(super) second: bool,
+    /// Bodies (and walls) nearer than this to touching may touch within a step, m.
+    pub(super) margin: f64,
+}
+
+/// Runs a block with the terms between two bodies that a scenario has, as `$term`. It is compiled once for each combination
+/// of them, so that a term that a scenario lacks costs nothing.
+macro_rules! with_pair_terms {
+    ($forces:ident, $term:ident, $body:expr) => {
+        if let Some((b, b2)) = $forces.shared {
+            let $term = $crate::kernel::force::Social::<false, true>::with_range(b);
+            let second = $crate::kernel::force::Social::<true, true>::with_range(b2);
+            with_pair_terms!(@if $forces.second, $term = $crate::kernel::force::Both($term, second), $body)
+        } else {
+            let $term = $crate::kernel::force::Social::<false, false>::with_own_ranges();
+            let second = $crate::kernel::force::Social::<true, false>::with_own_ranges();
+            let repulsion = $forces.particles.repulsion.as_slice();
+            with_pair_terms!(
+                @if $forces.second, $term = $crate::kernel::force::Both($term, second),
+                with_pair_terms!(
+                    @if !repulsion.is_empty(),
+                    $term = $crate::kernel::force::Bounded { term: $term, repulsion },
+                    $body
+                )
+            )
+        }
+    };
+    (@if $present:expr, $term:ident = $more:expr, $body:expr) => {
+        if $present {
+            let $term = $more;
+            $body
+        } else {
+            $body
+        }
+    };
+}
+pub(super) use with_pair_terms;
+
+fn shared_constant(scenario: &Scenario, of: impl Fn(&Body) -> &Law) -> Option<f64> {
+    let first = of(&scenario.agents.first()?.body).constant()?;
+    scenario.agents.iter().all(|agent| of(&agent.body).constant() == Some(first)).then_some(first)
+}
+
+impl Forces {
+    /// Prepares the forces of a scenario with steps of `dt` seconds.
+    pub fn new(scenario: &Scenario, dt: f64) -> Self {
+        let changed = |parameter| scenario.behaviours.change(parameter);
+        let particles = Particles::new(scenario);
+        let has_second = |body: &Body| body[Parameter::A2].constant() != Some(0.0);
+        let second = changed(Parameter::A2) || scenario.agents.iter().any(|agent| has_second(&agent.body));
+        let same = !changed(Parameter::B) && !changed(Parameter::B2);
+        let first_range = shared_constant(scenario, |body| &body[Parameter::B]).filter(|_| same);
+        let second_range =
+            if second { shared_constant(scenario, |body| &body[Parameter::B2]) } else { Some(1.0) };
+        let shared = first_range.zip(second_range).filter(|_| particles.repulsion.is_empty());
+        Self {
+            surfaces: Surfaces::new(&scenario.scene.barriers),
+            groups: Cohesion::all(scenario),
+            particles,
+            shared,
+            second,
+            margin: at_least(APPROACH, 2.0 * fastest(scenario)) * dt,
+        }
+    }
+
+    /// Adds the attraction within groups.
+    pub(super) fn add_cohesion(&self, state: &State, sums: &mut [Sum]) {
+        for group in &self.groups {
+            group.add(state, sums);
+        }
+    }
+}
