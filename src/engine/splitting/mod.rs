@@ -16,8 +16,8 @@ use super::subject::Subject;
 use super::tally::Tally;
 use super::watch::{Forecast, Likely, Watch};
 use crate::base::random::TrialKey;
-use crate::compile::study::{Query, Splitting as Rule};
-use crate::stats::splitting::{Adaptive, AnyScheme, Effort, Scheme, Spread, Start};
+use crate::compile::study::Query;
+use crate::stats::splitting::{Adaptive, AnyScheme, Effort, Rule, Scheme, Spread, Start};
 use crate::stats::{self, Counts, clopper_pearson, sequence};
 use flock::Flock;
 use path::Path;
@@ -61,20 +61,22 @@ pub(super) struct Question<'s> {
     query: &'s Query,
     subject: &'s Subject,
     column: usize,
+    /// Column of the level.
+    level: usize,
     rule: Rule,
     seed: u64,
 }
 
 impl<'s> Question<'s> {
-    /// About the probability of a column of a subject.
+    /// About the probability of a column of a subject, with the column of its level.
     pub(super) const fn new(
         query: &'s Query,
         subject: &'s Subject,
-        column: usize,
+        [column, level]: [usize; 2],
         rule: Rule,
         seed: u64,
     ) -> Self {
-        Self { query, subject, column, rule, seed }
+        Self { query, subject, column, level, rule, seed }
     }
 
     /// Runs a few plain trials, and forecasts from them what all is likely to take.
@@ -162,7 +164,7 @@ fn run(
     if stop.is_some() {
         return Ok(found);
     }
-    let flock = Flock::new(question.subject, [question.column, rule.level]);
+    let flock = Flock::new(question.subject, [question.column, question.level]);
     let reading = |lost_reaches: bool, found: &mut Found| -> Result<Option<Spread>, Fault> {
         runs(question, found, &mut |runs, found| {
             fly(&flock, runs, lost_reaches, question, found, executor, budget, watch)

@@ -17,7 +17,103 @@ pub use floor::floor;
 pub use spread::{Spread, student};
 
 use super::invalid::Invalid;
+use super::spec::{Argument, Chosen, DELTA, Kind, Make, Serves, Spec};
 use crate::base::random::{Purpose, Stream, TrialKey};
+
+/// The procedure as queries name it.
+pub(super) const SPLITTING: Spec = Spec {
+    name: "splitting",
+    reported: "splitting",
+    serves: Serves::Probability,
+    arguments: &[
+        whole("replicas", 10, |_| 1_000_000, |_| 1000),
+        whole("runs", 2, |_| 1000, |_| 20),
+        whole(
+            "plain",
+            LEAST_PLAIN,
+            |_| 1_000_000_000,
+            |values| ((values[0] * values[1]) as u64 / 2).max(LEAST_PLAIN),
+        ),
+        DELTA,
+        // How many are killed is at most how many there are.
+        Argument {
+            name: "kill",
+            kind: Kind::Whole {
+                low: 1,
+                high: |values| values[0] as u64 - 1,
+                default: |values| (values[0] as u64 / 10).max(1),
+                bounded_by: Some(0),
+            },
+        },
+    ],
+    summary: "adaptive splitting, {runs} runs of {replicas} paths, after {plain} plain trials",
+    guarantee: "a lower bound of P from the runs, an upper one from plain trials",
+    make: Make::Splitting { adaptive: true },
+    forecast: None,
+};
+
+/// The same at the levels of a pilot run.
+pub(super) const FIXED_EFFORT: Spec = Spec {
+    name: "fixed_effort",
+    reported: "fixed_effort",
+    summary: "splitting with fixed effort, {runs} runs of {replicas} paths, after {plain} plain trials",
+    make: Make::Splitting { adaptive: false },
+    ..SPLITTING
+};
+
+/// Fewest plain trials beside splitting.
+const LEAST_PLAIN: u64 = 100;
+
+const fn whole(
+    name: &'static str,
+    low: u64,
+    high: fn(&[f64]) -> u64,
+    default: fn(&[f64]) -> u64,
+) -> Argument {
+    Argument { name, kind: Kind::Whole { low, high, default, bounded_by: None } }
+}
+
+/// How a rare event is split into less rare ones.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rule {
+    /// Whether levels are found on the way (else by a pilot run, with as many paths at each).
+    pub adaptive: bool,
+    /// Paths of a run.
+    pub replicas: u64,
+    /// Independent runs.
+    pub runs: u64,
+    /// Paths given up at each level, at least.
+    pub kill: u64,
+    /// Plain trials that are made first.
+    pub plain: u64,
+    /// Error of the interval and of the bound.
+    pub delta: f64,
+}
+
+impl Rule {
+    /// That of a procedure, if it is one of splitting.
+    pub fn of(chosen: &Chosen) -> Option<Self> {
+        let Make::Splitting { adaptive } = chosen.spec.make else { return None };
+        let whole = |name| chosen.value(name) as u64;
+        Some(Self {
+            adaptive,
+            replicas: whole("replicas"),
+            runs: whole("runs"),
+            kill: whole("kill"),
+            plain: whole("plain"),
+            delta: chosen.value(DELTA.name),
+        })
+    }
+
+    /// Its numbers for reports.
+    pub fn numbers(self) -> Vec<(&'static str, f64)> {
+        let kill = self.adaptive.then_some(("kill", self.kill as f64));
+        let mut numbers = vec![("replicas", self.replicas as f64), ("runs", self.runs as f64)];
+        numbers.extend(kill);
+        numbers.extend([("plain", self.plain as f64), (DELTA.name, self.delta)]);
+        numbers
+    }
+}
 
 /// What one path came to.
 #[derive(Clone, Debug, Default, PartialEq)]
