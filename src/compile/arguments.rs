@@ -117,16 +117,16 @@ impl Elaborator<'_> {
                     width.and_then(|width| self.half_width(width, kind, &arguments, setting.sketch))
                 }
                 Kind::Trials(most) => self.fixed_trials(&arguments, at, most),
-                Kind::Whole { low, high, default, bounded_by } => {
+                Kind::Number { low, high, default, bounded_by, .. } => {
                     let high = high(&values);
                     let bound = bounded_by.and_then(|of| arguments.values[of]).map(|(_, span)| span);
-                    self.whole_in(given, argument.name, (low, high), default(&values), bound)
+                    self.number_between(given, *argument, (low, high), default(&values), bound)
                 }
             };
             failed |= value.is_err();
             // Of what is wrong follows no bound for the others.
             values.push(value.unwrap_or_else(|_| match argument.kind {
-                Kind::Whole { high, .. } => high(&values) as f64,
+                Kind::Number { high, .. } => high(&values),
                 _ => f64::NAN,
             }));
         }
@@ -210,26 +210,24 @@ impl Elaborator<'_> {
         Ok(indifference)
     }
 
-    /// A whole number in a range.
-    fn whole_in(
+    /// A number in a range.
+    fn number_between(
         &mut self,
         value: Option<(f64, Span)>,
-        name: &str,
-        (low, high): (u64, u64),
-        default: u64,
+        argument: Argument,
+        (low, high): (f64, f64),
+        default: f64,
         hangs_on: Option<Span>,
     ) -> Lowered<f64> {
-        match value {
-            None => Ok(default as f64),
-            Some((value, _)) if value.fract() == 0.0 && value >= low as f64 && value <= high as f64 => {
-                Ok(value)
-            }
-            Some((value, span)) => {
-                let said = format!("`{name}` is {value}, but is a whole number from {low} to {high}");
-                let error = Diagnostic::error(Code::E0604, span, said);
-                self.report(hangs_on.into_iter().fold(error, Diagnostic::hanging_on))
-            }
+        let Some((value, span)) = value else { return Ok(default) };
+        let is_whole = value.fract() == 0.0 || matches!(argument.kind, Kind::Number { whole: false, .. });
+        if is_whole && (low..=high).contains(&value) {
+            return Ok(value);
         }
+        let (name, noun) = (argument.name, argument.kind.noun());
+        let said = format!("`{name}` is {value}, but is {noun} from {low} to {high}");
+        let error = Diagnostic::error(Code::E0604, span, said);
+        self.report(hangs_on.into_iter().fold(error, Diagnostic::hanging_on))
     }
 
     /// The error that a procedure states, as far as it is for one claim.

@@ -4,6 +4,8 @@
 //! trial index**, keeps whole numbers as state, and stops at an index that depends on the outcomes alone.
 //! Nothing here knows what a trial is, how it is run, or how a result is written.
 //!
+//! A procedure is one file: its [`Rule`] and its [`Spec`]. The lists at the end of this file name all of them.
+//!
 //! | question | type |
 //! | --- | --- |
 //! | P >= theta, with an indifference region | [`Sprt`], [`TwoSprt`], [`Plan`] |

@@ -56,14 +56,16 @@ pub enum Kind {
     Relative,
     /// A number of trials fixed in advance, at most this. Required.
     Trials(u64),
-    /// A whole number. Its largest value and its default may depend on the arguments before it.
-    Whole {
+    /// Another number. Its largest value and its default may depend on the arguments before it.
+    Number {
+        /// Whether it is whole.
+        whole: bool,
         /// Least value.
-        low: u64,
+        low: f64,
         /// Largest value.
-        high: fn(&[f64]) -> u64,
+        high: fn(&[f64]) -> f64,
         /// The value unless it is given.
-        default: fn(&[f64]) -> u64,
+        default: fn(&[f64]) -> f64,
         /// The argument that the largest value depends on.
         bounded_by: Option<usize>,
     },
@@ -91,8 +93,8 @@ impl Argument {
         matches!(self.kind, Kind::Side | Kind::Error)
     }
 
-    /// Range and default, for the page of its procedure.
-    fn range(self) -> String {
+    /// Range and default, for the page of its procedure; `before` are the defaults of the arguments before it.
+    fn range(self, before: &[f64]) -> String {
         match self.kind {
             Kind::Side | Kind::Error => "above 0, below 0.5; default: 1 - confidence".to_owned(),
             Kind::Indifference(least) => {
@@ -101,13 +103,19 @@ impl Argument {
             }
             Kind::Width => "in the unit of the measure; default: `within`".to_owned(),
             Kind::Relative => "from 0.0001 to 0.999; default: `within`".to_owned(),
-            Kind::Trials(most) => format!("a whole number from 1 to {most:e}; required", most = most as f64),
-            Kind::Whole { low, high, default, .. } => {
-                // The defaults of the arguments before it.
-                let before = [1000.0, 20.0, 10_000.0, 0.05];
-                format!("a whole number from {low} to {}; default: {}", high(&before), default(&before))
+            Kind::Trials(most) => format!("a whole number from 1 to {:e}; required", most as f64),
+            Kind::Number { low, high, default, .. } => {
+                let number = self.kind.noun();
+                format!("{number} from {low} to {}; default: {}", high(before), default(before))
             }
         }
+    }
+}
+
+impl Kind {
+    /// `a whole number`, or `a number`.
+    pub const fn noun(self) -> &'static str {
+        if matches!(self, Self::Number { whole: false, .. }) { "a number" } else { "a whole number" }
     }
 }
 
@@ -216,8 +224,14 @@ impl Spec {
     /// What `smc explain` prints of it.
     pub fn page(&self) -> String {
         let mut page = format!("{} by {}\n\n{}.\n", self.serves, self.signature(), self.guarantee);
+        let mut before = Vec::new();
         for argument in self.arguments {
-            page.push_str(&format!("\n  {:<13} {}", argument.name, argument.range()));
+            page.push_str(&format!("\n  {:<13} {}", argument.name, argument.range(&before)));
+            before.push(if let Kind::Number { default, .. } = argument.kind {
+                default(&before)
+            } else {
+                0.0
+            });
         }
         page + "\n"
     }

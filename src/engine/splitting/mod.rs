@@ -17,7 +17,7 @@ use super::tally::Tally;
 use super::watch::{Forecast, Likely, Watch};
 use crate::base::random::TrialKey;
 use crate::compile::study::Query;
-use crate::stats::splitting::{Adaptive, AnyScheme, Effort, Rule, Scheme, Spread, Start};
+use crate::stats::splitting::{Adaptive, Effort, Rule, Scheme, Spread, Start};
 use crate::stats::{self, Counts, clopper_pearson, sequence};
 use flock::Flock;
 use path::Path;
@@ -103,13 +103,13 @@ impl<'s> Question<'s> {
 
 /// One run on its way.
 struct Running {
-    scheme: AnyScheme,
+    scheme: Box<dyn Scheme>,
     branch: u16,
     paths: Vec<Path>,
 }
 
 impl Running {
-    fn new(scheme: AnyScheme, branch: u16) -> Self {
+    fn new(scheme: Box<dyn Scheme>, branch: u16) -> Self {
         Self { scheme, branch, paths: Vec::new() }
     }
 
@@ -190,7 +190,7 @@ fn runs(question: &Question<'_>, found: &mut Found, fly: Fly<'_>) -> Result<Opti
         // A pilot run finds the levels; its own estimate is not used.
         let branch = 1 + rule.runs as u16;
         let pilot = Adaptive::new(replicas, (3 * replicas / 4).max(1), seed, branch)?;
-        let mut runs = [Running::new(AnyScheme::Adaptive(pilot), branch)];
+        let mut runs = [Running::new(Box::new(pilot), branch)];
         if !fly(&mut runs, found)? {
             return Ok(None);
         }
@@ -199,10 +199,10 @@ fn runs(question: &Question<'_>, found: &mut Found, fly: Fly<'_>) -> Result<Opti
     let mut runs = Vec::with_capacity(rule.runs as usize);
     for run in 0..rule.runs as u16 {
         let branch = 1 + run;
-        let scheme = if rule.adaptive {
-            AnyScheme::Adaptive(Adaptive::new(replicas, rule.kill as usize, seed, branch)?)
+        let scheme: Box<dyn Scheme> = if rule.adaptive {
+            Box::new(Adaptive::new(replicas, rule.kill as usize, seed, branch)?)
         } else {
-            AnyScheme::Effort(Effort::new(replicas, levels.clone(), seed, branch)?)
+            Box::new(Effort::new(replicas, levels.clone(), seed, branch)?)
         };
         runs.push(Running::new(scheme, branch));
     }

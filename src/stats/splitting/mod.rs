@@ -18,6 +18,7 @@ pub use spread::{Spread, student};
 
 use super::invalid::Invalid;
 use super::spec::{Argument, Chosen, DELTA, Kind, Make, Serves, Spec};
+use crate::base::math;
 use crate::base::random::{Purpose, Stream, TrialKey};
 
 /// The procedure as queries name it.
@@ -26,25 +27,24 @@ pub(super) const SPLITTING: Spec = Spec {
     reported: "splitting",
     serves: Serves::Probability,
     arguments: &[
-        whole("replicas", 10, |_| 1_000_000, |_| 1000),
-        whole("runs", 2, |_| 1000, |_| 20),
+        whole("replicas", 10.0, |_| 1e6, |_| 1000.0, None),
+        whole("runs", 2.0, |_| 1000.0, |_| 20.0, None),
         whole(
             "plain",
-            LEAST_PLAIN,
-            |_| 1_000_000_000,
-            |values| ((values[0] * values[1]) as u64 / 2).max(LEAST_PLAIN),
+            100.0,
+            |_| 1e9,
+            |values| math::at_least((values[0] * values[1] / 2.0).floor(), 100.0),
+            None,
         ),
         DELTA,
         // How many are killed is at most how many there are.
-        Argument {
-            name: "kill",
-            kind: Kind::Whole {
-                low: 1,
-                high: |values| values[0] as u64 - 1,
-                default: |values| (values[0] as u64 / 10).max(1),
-                bounded_by: Some(0),
-            },
-        },
+        whole(
+            "kill",
+            1.0,
+            |values| values[0] - 1.0,
+            |values| math::at_least((values[0] / 10.0).floor(), 1.0),
+            Some(0),
+        ),
     ],
     summary: "adaptive splitting, {runs} runs of {replicas} paths, after {plain} plain trials",
     guarantee: "a lower bound of P from the runs, an upper one from plain trials",
@@ -61,16 +61,14 @@ pub(super) const FIXED_EFFORT: Spec = Spec {
     ..SPLITTING
 };
 
-/// Fewest plain trials beside splitting.
-const LEAST_PLAIN: u64 = 100;
-
 const fn whole(
     name: &'static str,
-    low: u64,
-    high: fn(&[f64]) -> u64,
-    default: fn(&[f64]) -> u64,
+    low: f64,
+    high: fn(&[f64]) -> f64,
+    default: fn(&[f64]) -> f64,
+    bounded_by: Option<usize>,
 ) -> Argument {
-    Argument { name, kind: Kind::Whole { low, high, default, bounded_by: None } }
+    Argument { name, kind: Kind::Number { whole: true, low, high, default, bounded_by } }
 }
 
 /// How a rare event is split into less rare ones.
@@ -202,45 +200,6 @@ impl Picks {
         self.made = self.made.wrapping_add(1);
         let at = (u * count as f64) as usize;
         if at < count { at } else { count - 1 }
-    }
-}
-
-/// Either scheme.
-#[derive(Clone, Debug)]
-pub enum AnyScheme {
-    /// Adaptive multilevel splitting.
-    Adaptive(Adaptive),
-    /// Fixed effort at fixed levels.
-    Effort(Effort),
-}
-
-impl Scheme for AnyScheme {
-    fn wanted(&self) -> &[Start] {
-        match self {
-            Self::Adaptive(scheme) => scheme.wanted(),
-            Self::Effort(scheme) => scheme.wanted(),
-        }
-    }
-
-    fn feed(&mut self, flights: Vec<Flight>) {
-        match self {
-            Self::Adaptive(scheme) => scheme.feed(flights),
-            Self::Effort(scheme) => scheme.feed(flights),
-        }
-    }
-
-    fn estimate(&self) -> f64 {
-        match self {
-            Self::Adaptive(scheme) => scheme.estimate(),
-            Self::Effort(scheme) => scheme.estimate(),
-        }
-    }
-
-    fn levels(&self) -> &[f64] {
-        match self {
-            Self::Adaptive(scheme) => scheme.levels(),
-            Self::Effort(scheme) => scheme.levels(),
-        }
     }
 }
 
