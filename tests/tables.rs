@@ -1,5 +1,7 @@
 //! The manual and `smc explain` against the tables of the program.
 
+use smc::model::BuiltIn;
+use smc::model::function::{FUNCTIONS, Rule};
 use smc::stats::PROCEDURES;
 use smc::stats::Spec;
 use smc::stats::spec::{Kind, Serves};
@@ -69,5 +71,34 @@ fn procedures_are_explained_from_the_table() {
         let page = explained(spec.name);
         assert!(page.contains(&spec.signature()) && page.contains(spec.guarantee), "{page}");
         assert!(spec.arguments.iter().all(|one| page.contains(&format!("\n  {}", one.name))), "{page}");
+    }
+}
+
+/// The names of functions in code spans of a cell: `` `radius(a)`, `mass(a)` ``.
+fn called(cell: &str) -> Vec<&str> {
+    cell.split('`').skip(1).step_by(2).filter_map(|span| span.split_once('(')).map(|(name, _)| name).collect()
+}
+
+#[test]
+fn functions_in_the_manual_are_those_of_the_table_with_their_units() {
+    let manual = text("docs/language.md");
+    let section = manual.split("\n### ").find(|section| section.starts_with("Functions\n")).unwrap();
+    let mut units = 0;
+    for line in section.lines().filter(|line| line.starts_with("| `")) {
+        let cells: Vec<&str> = line.trim_matches('|').split(" | ").map(str::trim).collect();
+        let (names, given) = (called(cells[0]), cells[1].replace('²', "^2").replace("1/", "/"));
+        for (at, name) in names.iter().enumerate() {
+            let function = BuiltIn::find(name).unwrap_or_else(|| panic!("`{name}` is in no table"));
+            let unit = given.split(", ").nth(at).or_else(|| given.split(", ").next()).unwrap();
+            if let Rule::Always(dimension) = function.dimension {
+                assert_eq!(dimension.to_string(), unit, "{name}");
+                units += 1;
+            }
+        }
+    }
+    assert!(units >= 12, "{units}");
+    for function in FUNCTIONS {
+        let page = explained(function.name);
+        assert!(page.contains(function.name) && page.len() > function.name.len() + 20, "{page}");
     }
 }

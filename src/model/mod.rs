@@ -5,6 +5,7 @@ pub mod behaviour;
 mod digest;
 mod evaluation;
 pub mod expression;
+pub mod function;
 mod lacking;
 pub mod law;
 pub mod mention;
@@ -18,7 +19,8 @@ pub use agent::{Agent, AgentId, Body, Goal, Group, Leg, Particle, Position, Rout
 pub use behaviour::{
     Amount, Attached, Behaviour, BehaviourId, Behaviours, Conduct, Mode, Parameter, Transition, Trigger,
 };
-pub use expression::{Arithmetic, Axis, Bool, Comparison, Field, Fold, Function, Num, Place, Set, Who};
+pub use expression::{Arithmetic, Axis, Bool, Comparison, Fold, Function, Num, Place, Set, Who};
+pub use function::{BuiltIn, Collective, Field, Pair, Separation};
 pub use law::{Family, Law};
 pub use moves::{Move, Moves};
 pub use process::{Branch, Command, Domain, Process, Processes, Timing, Variable, VariableId};

@@ -8,7 +8,8 @@ use smc::base::math;
 use smc::base::tick::{Clock, Tick};
 use smc::kernel::State;
 use smc::model::{
-    Arithmetic, Axis, Bool, Comparison, Field, Fold, Function, Num, Place, RegionId, Scene, Set, Who,
+    Arithmetic, Axis, Bool, Collective, Comparison, Field, Fold, Function, Num, Pair, Place, RegionId, Scene,
+    Separation, Set, Who,
 };
 
 /// What an expression means, word by word. `None`: unresolved.
@@ -65,6 +66,10 @@ impl Plain<'_> {
             Field::Mass => self.of(&s.mass, agent),
             Field::DrivingSpeed => self.of(&s.speed, agent),
             Field::Travelled => self.of(&s.travelled, agent),
+            Field::Separation(separation) => {
+                assert_eq!(separation, Separation::Clearance);
+                self.clearance(agent)
+            }
             Field::Mode(_) => -1.0,
         }
     }
@@ -158,7 +163,7 @@ impl Plain<'_> {
                 let at = self.point(place)?;
                 if *axis == Axis::X { at.x } else { at.y }
             }
-            Num::MeanVelocity(axis, set) => {
+            Num::OfSet(Collective::MeanVelocity(axis), set) => {
                 let s = self.state;
                 let v = self.mean(set, |a| p(self.of(&s.vx, a), self.of(&s.vy, a)))?;
                 if *axis == Axis::X { v.x } else { v.y }
@@ -191,9 +196,12 @@ impl Plain<'_> {
                     Shape::Polygon(polygon) => (at - polygon.nearest_on_outline(at)).norm(),
                 }
             }
-            Num::Clearance(who) => self.clearance(self.who(*who)),
-            Num::TimeToCollision(a, b) => self.collision(self.who(*a), self.who(*b)),
-            Num::Spread(set) => {
+            Num::OfTwo(pair, a, b) => {
+                assert_eq!(*pair, Pair::TimeToCollision);
+                self.collision(self.who(*a), self.who(*b))
+            }
+            Num::OfSet(collective, set) => {
+                assert_eq!(*collective, Collective::Spread);
                 let c = self.centroid(set)?;
                 let mut sum = 0.0;
                 let members = self.members(set);
