@@ -14,8 +14,8 @@ use smc::base::random::{Purpose, Stream, TrialKey};
 use smc::stats::calibration::{Boundary, Table};
 use smc::stats::ranking::{Allocation, Booleans, Each, Race};
 use smc::stats::{
-    AnyEstimator, Estimator, Evidence, Hypothesis, Massart, Okamoto, Outcome, Plan, Spending, Sprt, Test,
-    TwoSprt,
+    AnyEstimator, Estimator, Evidence, Hypothesis, Massart, Okamoto, Outcome, Plan, Sequential, Spending,
+    Sprt, Test, TwoSprt,
 };
 use std::hint::black_box;
 use std::time::Instant;
@@ -34,7 +34,7 @@ fn summary(mut trials: Vec<u64>) -> String {
     format!("{mean:.0} ({})", trials[trials.len() * 95 / 100])
 }
 
-fn test(fresh: &(impl Test + Clone), p: f64, cap: u64) -> String {
+fn test(fresh: &Sequential<impl Test + Clone>, p: f64, cap: u64) -> String {
     let all = (0..RUNS).map(|run| {
         let mut test = fresh.clone();
         (0..cap)
@@ -52,7 +52,7 @@ fn test(fresh: &(impl Test + Clone), p: f64, cap: u64) -> String {
 /// Table 1.5: theta = 0.9, alpha = beta = 0.01, indifference 0.01.
 fn tests() {
     println!("\ntests: P >= 0.9, errors 0.01, indifference 0.01; mean (p95) of {RUNS} runs");
-    let plan = Plan::new(0.9, 0.01, 0.01, 0.01).map_or((0, 0), |plan| plan.size());
+    let plan = Plan::new(0.9, 0.01, 0.01, 0.01).map_or((0, 0), |plan| plan.rule().size());
     println!("exact plan: {} trials, at least {} successes; Okamoto: 23026", plan.0, plan.1);
     println!("| p | SPRT | 2-SPRT | e-process |");
     let (Ok(sprt), Ok(sprt2), Ok(evidence)) = (
@@ -73,7 +73,7 @@ fn tests() {
     }
 }
 
-fn estimate(fresh: &(impl Estimator + Clone), p: f64, runs: u32) -> String {
+fn estimate(fresh: &Sequential<impl Estimator + Clone>, p: f64, runs: u32) -> String {
     let all = (0..runs).map(|run| {
         let mut estimator = fresh.clone();
         let mut index = 0;

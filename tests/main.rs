@@ -44,6 +44,7 @@ mod signal_semantics;
 mod splitting;
 mod start;
 mod statistics;
+mod tables;
 mod texts;
 mod tracks;
 mod verdicts;

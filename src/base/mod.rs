@@ -5,6 +5,7 @@
 
 pub mod bytes;
 pub mod decimal;
+pub mod dimension;
 pub mod fingerprint;
 pub mod geometry;
 pub mod instant;

@@ -43,7 +43,7 @@ pub(super) enum Command {
     Show(Show),
     /// Format scenarios and property files; comments are kept.
     Fmt(Format),
-    /// Explain a code of an error or warning, such as E0303.
+    /// Explain a code of an error or warning, such as E0303, a procedure or a function.
     Explain(Explain),
     /// Write completions for a shell to standard output.
     Completions {
@@ -247,8 +247,8 @@ pub(super) enum Language {
 /// `smc explain`
 #[derive(Args, Debug)]
 pub(super) struct Explain {
-    /// The code, such as `E0303`; all codes without it.
-    pub(super) code: Option<String>,
+    /// A code such as `E0303`, a procedure such as `sprt` or a function such as `clearance`; without it, a list of all.
+    pub(super) name: Option<String>,
 }
 
 /// A probability, perhaps as a percentage.

@@ -1,28 +1,62 @@
-//! `smc explain`: what a code means and what to do.
+//! `smc explain`: what a code means and what to do, what a procedure takes and guarantees, what a function gives.
 
 use super::arguments::Explain;
 use super::complaint;
 use super::terminal::{Colors, print};
 use crate::compile::nearest::nearest;
+use crate::model::BuiltIn;
 use crate::report::ExitCode as Exit;
+use crate::stats::PROCEDURES;
 use crate::syntax::codes::Code;
+
+/// The manual of the language.
+const MANUAL: &str = include_str!("../../docs/language.md");
 
 /// Runs the command.
 pub(super) fn run(arguments: &Explain, colors: Colors) -> Exit {
-    let Some(wanted) = &arguments.code else {
-        let list: String = Code::ALL.iter().map(|code| format!("{code}  {}\n", code.title())).collect();
-        return finish(&list, colors);
+    let Some(wanted) = &arguments.name else {
+        let codes = Code::ALL.iter().map(|code| format!("{code}  {}\n", code.title()));
+        let procedures = PROCEDURES.iter().map(|one| format!("{} by {}\n", one.serves, one.signature()));
+        let functions = BuiltIn::names().map(|name| format!("{name}(…)\n"));
+        return finish(&codes.chain(procedures).chain(functions).collect::<String>(), colors);
     };
     if let Ok(code) = wanted.parse::<Code>() {
         return finish(code.page().trim_start_matches("# "), colors);
     }
-    let hint = nearest(&wanted.trim().to_ascii_uppercase(), Code::ALL.iter().map(|code| code.name()));
+    let procedures = PROCEDURES.iter().filter(|one| one.name == wanted.trim()).map(|one| one.page());
+    let pages: Vec<String> = procedures.chain(BuiltIn::find(wanted.trim()).and_then(function)).collect();
+    if !pages.is_empty() {
+        return finish(&pages.join("\n"), colors);
+    }
+    let hint = nearest(&wanted.trim().to_ascii_uppercase(), Code::ALL.iter().map(|code| code.name()))
+        .or_else(|| nearest(wanted.trim(), PROCEDURES.iter().map(|one| one.name).chain(BuiltIn::names())));
     let hint = hint.map_or_else(
         || "`smc explain` lists all".to_owned(),
         |near| format!("did you mean {near}? `smc explain` lists all"),
     );
-    complaint::tell(&complaint::argument(format!("there is no code `{wanted}`"), hint), &[], colors);
+    let said = format!("there is no code, procedure or function `{wanted}`");
+    complaint::tell(&complaint::argument(said, hint), &[], colors);
     Exit::Wrong
+}
+
+/// What the manual says of a function: its row in the table of functions, or the paragraph in which it stands.
+fn function(built_in: &BuiltIn) -> Option<String> {
+    let (_, manual) = MANUAL.split_once("\n## Properties\n")?;
+    let (call, name) = (format!("`{}(", built_in.name), format!("`{}`", built_in.name));
+    let row = |place: usize| {
+        manual.lines().filter(|line| line.starts_with("| `")).find_map(|line| {
+            let cells: Vec<&str> = line.trim_matches('|').splitn(3, " | ").map(str::trim).collect();
+            let [calls, unit, value] = cells[..] else { return None };
+            let unit = if unit.is_empty() { String::new() } else { format!(" ({unit})") };
+            cells[place].contains(&call).then(|| format!("{}{unit}\n\n{value}\n", calls.replace('`', "")))
+        })
+    };
+    let paragraph = || {
+        let texts = manual.split("\n\n").filter(|text| !text.starts_with(['|', '`', '#']));
+        let found = texts.into_iter().find(|text| text.contains(&call) || text.contains(&name))?;
+        Some(format!("{}\n\n{found}\n", built_in.name))
+    };
+    row(0).or_else(|| row(2)).or_else(paragraph)
 }
 
 fn finish(text: &str, colors: Colors) -> Exit {

@@ -6,9 +6,12 @@ use super::measures::{Observed, Sketch, What};
 use super::methods::Theta;
 use super::number::Number;
 use super::queries::Compiler;
-use super::study::{Ask, Measure, MeasureKind, Ranking, Target};
+use super::study::{Ask, Measure, MeasureKind, Target};
 use super::symbols::ScopeId;
 use crate::model::{AgentId, Who};
+use crate::stats::mean::RUNNING;
+use crate::stats::ranking::Ranking;
+use crate::stats::spec::Make;
 use crate::syntax::ast::{self, BinaryOp, Binding, Clauses, Expr};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -38,9 +41,8 @@ impl<'a> Compiler<'a> {
         let confidence = elaborator.delta(clauses, &locals);
         let width = elaborator.no_width(clauses, sketch.what);
         let test = match (sketch.what, &clauses.by) {
-            (What::Expectation, None) => confidence.map(|stated| super::study::Test::Interval {
-                delta: allowance.error(stated, super::methods::DEFAULT_ALPHA),
-            }),
+            (What::Expectation, None) => confidence
+                .map(|stated| RUNNING.with([allowance.error(stated, super::methods::DEFAULT_ALPHA)])),
             (What::Expectation, Some(method)) => {
                 let said = "a check of an expectation has one procedure only";
                 elaborator.report(Diagnostic::error(Code::E0603, method.span, said))
@@ -167,16 +169,16 @@ impl<'a> Compiler<'a> {
         let known = if rankable.is_ok() { sketch } else { Sketch { dimension: None, ..sketch } };
         let allowance = Allowance { family, claims: 1 };
         let procedure = elaborator.ranking(clauses, (known, measure.span), allowance, &locals);
-        if let (Ok((.., Ranking::Okamoto)), What::Expectation, Some(method)) =
-            (&procedure, sketch.what, &clauses.by)
+        if let (Ok(Make::Ranking(Ranking::Okamoto)), What::Expectation, Some(method)) =
+            (procedure.as_ref().map(|chosen| chosen.spec.make), sketch.what, &clauses.by)
         {
             let error = Diagnostic::error(Code::E0607, method.span, "`okamoto` ranks moves by `P(…)` only")
                 .hint("the default ranks by `E(…)` too, and needs fewer trials");
             return elaborator.report(error);
         }
         rankable?;
-        let ((measure, unbounded), moves, (epsilon, delta, ranking)) = (measured?, moves?, procedure?);
-        Ok((Ask::Rank { moves, measure, epsilon, delta, ranking }, unbounded))
+        let ((measure, unbounded), moves, ranking) = (measured?, moves?, procedure?);
+        Ok((Ask::Rank { moves, measure, ranking }, unbounded))
     }
 
     /// The number of the moves that are ranked.

@@ -4,8 +4,10 @@ use super::bounds::WIDEST;
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::families::Allowance;
 use super::measures::Sketch;
-use super::methods::{DEFAULT_DELTA, DEFAULT_LOSS, Stated, both, stated};
-use super::study::Ranking;
+use super::methods::{DEFAULT_DELTA, DEFAULT_LOSS, Stated, stated};
+use crate::stats::ranking::BETTING;
+use crate::stats::spec::Serves;
+use crate::stats::{Chosen, Spec};
 use crate::syntax::ast::{Clauses, Method};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -47,18 +49,18 @@ impl Elaborator<'_> {
         (sketch, measured): (Sketch, Span),
         allowance: Allowance,
         locals: &Locals,
-    ) -> Lowered<(f64, f64, Ranking)> {
+    ) -> Lowered<Chosen> {
         let within = self.within(clauses, sketch, locals);
         let confidence = self.delta(clauses, locals);
         let delta = allowance.error(confidence.unwrap_or(None), DEFAULT_DELTA);
         let (procedure, width) = match &clauses.by {
-            None => (Ok((Ranking::Betting, delta)), stated(clauses, within)),
+            None => (Ok((&BETTING, delta)), stated(clauses, within)),
             Some(method) => self.ranking_by((clauses, method), sketch, (within, delta), allowance, locals),
         };
         let epsilon = width.and_then(|width| self.loss(width, sketch, measured));
         let (ranking, delta) = procedure?;
         confidence?;
-        Ok((epsilon?, delta, ranking))
+        Ok(ranking.with([epsilon?, delta]))
     }
 
     /// The procedure of a ranking and its error, and the width that is stated.
@@ -69,24 +71,21 @@ impl Elaborator<'_> {
         (within, delta): (Lowered<Option<f64>>, f64),
         allowance: Allowance,
         locals: &Locals,
-    ) -> (Lowered<(Ranking, f64)>, Stated) {
-        let ranking = match method.name.name.as_str() {
-            "okamoto" => Ok(Ranking::Okamoto),
-            "betting" => Ok(Ranking::Betting),
-            "one_challenger" => Ok(Ranking::OneChallenger),
-            _ => self.unknown_method(method, &["betting", "one_challenger", "okamoto"], locals),
-        };
+    ) -> (Lowered<(&'static Spec, f64)>, Stated) {
+        let ranking = self.procedure(method, Serves::Ranking, locals);
         if ranking.is_err() && !method.arguments.is_empty() {
             // What an unknown procedure takes nobody knows, the width among it.
             let width = if clauses.within.is_some() { stated(clauses, within) } else { Err(Reported) };
             return (Err(Reported), width);
         }
-        let arguments = self.arguments((clauses, method), ["epsilon", "delta"], sketch, locals);
+        let known = ranking.unwrap_or(&BETTING).arguments;
+        let arguments = self.arguments((clauses, method), known, sketch, locals);
         let delta = self.claimed(arguments.values[1], delta, allowance);
-        let (width, sound) = (self.width_of(clauses, within, &arguments), arguments.sound());
+        let (width, sound) = (self.width_of(clauses, within, arguments.values[0]), arguments.sound());
         // What lacks is perhaps what is misspelt.
         let width = width.and_then(|width| if width.is_none() { sound.map(|()| width) } else { Ok(width) });
-        (both(ranking, delta).and_then(|found| sound.map(|()| found)), width)
+        let found = ranking.and_then(|ranking| Ok((ranking, delta?)));
+        (found.and_then(|found| sound.map(|()| found)), width)
     }
 
     /// How much worse than the best a choice may be.

@@ -1,10 +1,7 @@
-//! The table of units, and what dimensions are called.
-//!
-//! Units are exact multiples of the
-//! SI unit, except the degree, which is exact in nothing but itself.
+//! The table of units. Units are exact multiples of the SI unit, except the degree, which is exact in nothing but itself.
 
 use crate::base::decimal::Decimal;
-pub use crate::model::Dimension;
+pub use crate::base::dimension::{Dimension, describe};
 use crate::syntax::ast::UnitExpr;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -14,24 +11,6 @@ pub(super) fn single_number(text: &str) -> Option<&str> {
     let (number, unit) = text.split_once(' ')?;
     let is_number = number.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.');
     (is_number && !unit.contains([' ', '('])).then_some(number)
-}
-
-/// What a dimension is called in messages: `a length (m)`, `a pure number`.
-pub fn describe(dimension: Dimension) -> String {
-    let name = match dimension {
-        Dimension::NONE => return "a pure number".to_owned(),
-        Dimension::MASS => "a mass",
-        Dimension::LENGTH => "a length",
-        Dimension::AREA => "an area",
-        Dimension::TIME => "a time",
-        Dimension::SPEED => "a speed",
-        Dimension::FORCE => "a force",
-        Dimension::ANGLE => "an angle",
-        Dimension::STEPS => "a number of steps",
-        Dimension::DENSITY => "a density",
-        _ => "a quantity",
-    };
-    format!("{name} ({dimension})")
 }
 
 /// A unit: its dimension, its size in SI units, and that size exactly where it is exact.
@@ -121,15 +100,6 @@ pub fn resolve(expression: &UnitExpr) -> Result<Unit, Diagnostic> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn dimensions_print_as_units() {
-        assert_eq!(Dimension::FRICTION.to_string(), "kg/(m s)");
-        assert_eq!(Dimension::STIFFNESS.to_string(), "kg/s^2");
-        assert_eq!(Dimension::DENSITY.to_string(), "/m^2");
-        assert_eq!(Dimension::FORCE.to_string(), "N");
-        assert_eq!(describe(Dimension::NONE), "a pure number");
-    }
 
     #[test]
     fn every_listed_unit_is_known() {

@@ -3,6 +3,8 @@
 //! A claim is what one query certifies at one point of a sweep: a verdict, an interval, a choice. Files of one call
 //! that each name a family make one family of all their claims.
 
+use crate::stats::Spec;
+use crate::stats::spec::{ERRORS, Make, Serves};
 use crate::syntax::ast::{self, Clauses, PropertyFile, PropertyItem, QueryKind};
 use crate::syntax::source::Span;
 
@@ -46,7 +48,8 @@ pub(super) fn members(files: &[PropertyFile], points: usize) -> usize {
 /// The number of claims that a list of estimates shares its error among.
 pub(super) fn claims(measures: &[ast::Measure], clauses: &Clauses) -> usize {
     // A band holds all quantiles of a metric at once.
-    if clauses.by.as_ref().is_none_or(|method| method.name.name != "dkw") {
+    let named = clauses.by.as_ref().and_then(|method| Spec::find(&method.name.name, Serves::Quantile));
+    if named.is_none_or(|spec| !matches!(spec.make, Make::Quantile { band: true })) {
         return measures.len();
     }
     let mut metrics: Vec<Span> = measures.iter().map(|measure| measure.body.span).collect();
@@ -57,7 +60,7 @@ pub(super) fn claims(measures: &[ast::Measure], clauses: &Clauses) -> usize {
 
 /// Where a query states errors of its own.
 pub(super) fn own_errors(clauses: &Clauses) -> Option<Span> {
-    let named = |name: &str| matches!(name, "alpha" | "beta" | "delta");
+    let named = |name: &str| ERRORS.contains(&name);
     let argument = clauses.by.iter().flat_map(|method| &method.arguments).find(|a| named(&a.name.name));
     clauses.confidence.as_ref().map(|c| c.span).or(argument.map(|a| a.name.span))
 }

@@ -11,7 +11,7 @@ use super::study::{Form, Part};
 use super::typed::Typed;
 use crate::base::tick::Clock;
 use crate::logic::{Invalid, Node, NodeId, Relation, Robustness, SignalRobustness, Term, TermId};
-use crate::model::{Arithmetic, Bool, Comparison, Field, Fold, Function, Num, Place, Set, Who};
+use crate::model::{Arithmetic, Bool, Comparison, Field, Fold, Function, Num, Place, Separation, Set, Who};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -339,7 +339,7 @@ pub fn margin(truth: &Bool) -> Num {
         },
         Bool::Present(_) => infinite(truth),
         Bool::In(who, region) => Num::Depth(Place::Agent(*who), *region),
-        Bool::Contact(who) => negated(Num::Clearance(*who)),
+        Bool::Contact(who) => negated(Num::Of(Field::Separation(Separation::Clearance), *who)),
         Bool::Touching(a, b) => negated(gap(*a, *b)),
         Bool::Forall(set, body) => fold(Fold::Min, set, body),
         Bool::Exists(set, body) => fold(Fold::Max, set, body),
@@ -434,10 +434,11 @@ fn nowhere(place: &Place) -> bool {
 fn may_be_none(num: &Num) -> bool {
     match num {
         Num::Constant(value) => !value.is_finite(),
-        Num::Time | Num::Of(..) | Num::MeanVelocity(..) | Num::Spread(_) | Num::Count(..) => false,
+        Num::Of(field, _) => field.may_be_infinite(),
+        Num::Time | Num::OfSet(..) | Num::Count(..) => false,
         Num::Distance(a, b) => nowhere(a) || nowhere(b),
         Num::Coordinate(_, place) | Num::Depth(place, _) => nowhere(place),
-        Num::Variable(_) | Num::Clearance(_) | Num::TimeToCollision(..) | Num::Fold(..) => true,
+        Num::Variable(_) | Num::OfTwo(..) | Num::Fold(..) => true,
         Num::Apply(function, a) => {
             !matches!(function, Function::Negate | Function::Abs | Function::Sin | Function::Cos)
                 || may_be_none(a)

@@ -1,13 +1,16 @@
 //! Procedures: from the text of a query and the documented defaults, never from the budget.
 
-use super::arguments::Arguments;
+use super::arguments::Setting;
 use super::bounds::WIDEST;
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered};
 use super::families::Allowance;
 use super::measures::{Sketch, What};
 use super::nearest::nearest;
-use super::study::{Estimator, Splitting, Test};
+use crate::stats::eprocess::EPROCESS;
+use crate::stats::estimator::DEFAULT;
+use crate::stats::spec::{Kind, Make, Serves};
+use crate::stats::{Chosen, Spec, mean, quantile, splitting};
 use crate::syntax::ast::{Clauses, Expr, Method};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -24,17 +27,9 @@ pub const DEFAULT_LOSS: f64 = 0.02;
 /// Trials of an expectation, a quantile or a comparison that names no half width.
 pub const PLANNED_TRIALS: u64 = 1000;
 
-/// Fewest plain trials beside splitting.
-const LEAST_PLAIN: u64 = 100;
-
 /// Bytes that one path of splitting takes, about, and most paths at once.
 const BYTES_OF_A_PATH: u64 = 400;
 const MOST_PATHS: u64 = 5_000_000;
-
-/// Both, where neither failed: what is wrong with each is said before this is asked.
-pub(super) fn both<A, B>(a: Lowered<A>, b: Lowered<B>) -> Lowered<(A, B)> {
-    Ok((a?, b?))
-}
 
 /// The probability that a test decides about.
 #[derive(Clone, Copy)]
@@ -92,21 +87,26 @@ impl Elaborator<'_> {
         Ok(Some(number.value))
     }
 
-    pub(super) fn unknown_method<T>(
+    /// The procedure that a method names.
+    pub(super) fn procedure(
         &mut self,
         method: &Method,
-        known: &[&str],
+        serves: Serves,
         locals: &Locals,
-    ) -> Lowered<T> {
+    ) -> Lowered<&'static Spec> {
+        let name = &method.name.name;
+        if let Some(spec) = Spec::find(name, serves) {
+            return Ok(spec);
+        }
         for argument in &method.arguments {
             let _ = self.number(&argument.value, locals);
         }
-        let name = &method.name.name;
         let error = Diagnostic::error(
             Code::E0603,
             method.name.span,
             format!("there is no procedure `{name}` for this"),
         );
+        let known: Vec<&str> = Spec::names(serves).collect();
         let hint = nearest(name, known.iter().copied())
             .map_or_else(|| format!("known here: {}", known.join(", ")), |n| format!("did you mean `{n}`?"));
         self.report(error.hint(hint))
@@ -130,110 +130,19 @@ impl Elaborator<'_> {
         theta: Theta,
         allowance: Allowance,
         locals: &Locals,
-    ) -> Lowered<Test> {
+    ) -> Lowered<Chosen> {
         let confidence = self.delta(clauses, locals);
         let error = allowance.error(confidence.unwrap_or(None), DEFAULT_ALPHA);
         let test = match &clauses.by {
-            None => Ok(Test::EProcess { alpha: error, beta: error }),
-            Some(method) => self.test_by((clauses, method), theta, error, locals),
+            None => Ok(EPROCESS.with([error, error])),
+            Some(method) => self.procedure(method, Serves::Check, locals).and_then(|spec| {
+                let (sketch, within) = (Sketch::PROBABILITY, Ok(None));
+                let setting = Setting { sketch, theta: Some(theta), error, allowance, within, locals };
+                self.chosen((clauses, method), spec, &setting)
+            }),
         };
         confidence?;
         test
-    }
-
-    fn test_by(
-        &mut self,
-        (clauses, method): (&Clauses, &Method),
-        theta: Theta,
-        error: f64,
-        locals: &Locals,
-    ) -> Lowered<Test> {
-        let name = method.name.name.as_str();
-        match name {
-            "sprt" | "sprt2" | "plan" => {
-                let arguments = self.arguments(
-                    (clauses, method),
-                    ["alpha", "beta", "indifference"],
-                    Sketch::PROBABILITY,
-                    locals,
-                );
-                let alpha = self.error_of(arguments.values[0], error, "alpha");
-                let beta = self.error_of(arguments.values[1], error, "beta");
-                let region = self.region(&arguments, 2, theta);
-                let ((alpha, beta), (indifference, span)) = both(both(alpha, beta), region)?;
-                arguments.sound()?;
-                let least = match name {
-                    "sprt2" => 1e-5,
-                    "plan" => 5e-4,
-                    _ => 0.0,
-                };
-                if indifference < least {
-                    let said =
-                        format!("`indifference` is {indifference}, but is at least {least} with `{name}`");
-                    let error = Diagnostic::error(Code::E0604, span, said);
-                    return self.report(error.hint("`sprt`, and the default test, know no such limit"));
-                }
-                Ok(match name {
-                    "sprt" => Test::Sprt { alpha, beta, indifference },
-                    "sprt2" => Test::Sprt2 { alpha, beta, indifference },
-                    _ => Test::Plan { alpha, beta, indifference },
-                })
-            }
-            "eprocess" => {
-                let arguments =
-                    self.arguments((clauses, method), ["alpha", "beta"], Sketch::PROBABILITY, locals);
-                let alpha = self.error_of(arguments.values[0], error, "alpha");
-                let beta = self.error_of(arguments.values[1], error, "beta");
-                let (alpha, beta) = both(alpha, beta)?;
-                arguments.sound()?;
-                Ok(Test::EProcess { alpha, beta })
-            }
-            "three_way" => {
-                let arguments =
-                    self.arguments((clauses, method), ["alpha", "indifference"], Sketch::PROBABILITY, locals);
-                let alpha = self.error_of(arguments.values[0], error, "alpha");
-                let region = self.region(&arguments, 1, theta);
-                let (alpha, (indifference, _)) = both(alpha, region)?;
-                arguments.sound()?;
-                Ok(Test::ThreeWay { alpha, indifference })
-            }
-            _ => self.unknown_method(method, &["sprt", "sprt2", "plan", "eprocess", "three_way"], locals),
-        }
-    }
-
-    /// The indifference around a threshold, which is an argument of a method, and where; its region must lie inside
-    /// (0, 1).
-    fn region<const N: usize>(
-        &mut self,
-        arguments: &Arguments<'_, N>,
-        argument: usize,
-        Theta { value, at, noun }: Theta,
-    ) -> Lowered<(f64, Span)> {
-        let (indifference, span) = self.required(arguments, argument, "indifference")?;
-        if indifference <= 0.0 {
-            let error = Diagnostic::error(
-                Code::E0602,
-                span,
-                format!("`indifference` is {indifference}, but is above 0"),
-            );
-            return self.report(error.hint("leave the region out: the default test needs none"));
-        }
-        // Around what is no threshold nothing is asked of it.
-        let Some(theta) = value else { return Ok((indifference, span)) };
-        let (low, high) = (theta - indifference, theta + indifference);
-        if low > 0.0 && high < 1.0 && low < theta && theta < high {
-            return Ok((indifference, span));
-        }
-        let round = |x: f64| (x * 1e12).round() / 1e12;
-        let error = Diagnostic::error(
-            Code::E0602,
-            span,
-            format!("the indifference region {} to {} must lie inside (0, 1)", round(low), round(high)),
-        )
-        .hanging_on(at)
-        .related(at, format!("around this {noun}"))
-        .hint("choose a smaller indifference, or leave the region out: the default test needs none");
-        self.report(error)
     }
 
     /// The estimator of a measure.
@@ -243,13 +152,17 @@ impl Elaborator<'_> {
         sketch: Sketch,
         allowance: Allowance,
         locals: &Locals,
-    ) -> Lowered<Estimator> {
+    ) -> Lowered<Chosen> {
         let within = self.within(clauses, sketch, locals);
         let confidence = self.delta(clauses, locals);
-        let delta = allowance.error(confidence.unwrap_or(None), DEFAULT_DELTA);
-        let quantile = sketch.what == What::Quantile;
+        let error = allowance.error(confidence.unwrap_or(None), DEFAULT_DELTA);
+        let serves = match sketch.what {
+            What::Probability => Serves::Probability,
+            What::Expectation => Serves::Expectation,
+            What::Quantile => Serves::Quantile,
+        };
         let misplaced = match &clauses.within {
-            Some(expr) if quantile => {
+            Some(expr) if serves == Serves::Quantile => {
                 let error = Diagnostic::error(
                     Code::E0607,
                     expr.span,
@@ -262,8 +175,14 @@ impl Elaborator<'_> {
             _ => Ok(()),
         };
         let estimator = match &clauses.by {
-            Some(method) => self.estimator_by((clauses, method), sketch, (within, delta), allowance, locals),
-            None => self.default_estimator(clauses, sketch, (within, delta)),
+            Some(method) => self.procedure(method, serves, locals).and_then(|spec| {
+                let misplaced = if misplaced.is_ok() { self.no_promise(clauses, spec) } else { misplaced };
+                let setting = Setting { sketch, theta: None, error, allowance, within, locals };
+                let chosen = self.chosen((clauses, method), spec, &setting)?;
+                self.few_paths(method, &chosen)?;
+                misplaced.map(|()| chosen)
+            }),
+            None => self.default_estimator(clauses, sketch, (within, error)),
         };
         confidence?;
         misplaced?;
@@ -275,222 +194,53 @@ impl Elaborator<'_> {
         clauses: &Clauses,
         sketch: Sketch,
         (within, delta): (Lowered<Option<f64>>, f64),
-    ) -> Lowered<Estimator> {
+    ) -> Lowered<Chosen> {
         let within = within?;
         if let (Some(expr), Some(epsilon)) = (&clauses.within, within) {
             self.width((epsilon, expr.span), sketch, WIDEST)?;
         }
-        Ok(match (within, sketch.what) {
-            (Some(epsilon), _) => Estimator::Default { epsilon, delta },
-            (None, What::Probability) => Estimator::Default { epsilon: DEFAULT_EPSILON, delta },
-            (None, _) => Estimator::Fixed { trials: PLANNED_TRIALS, delta },
+        let trials = PLANNED_TRIALS as f64;
+        Ok(match (sketch.what, within) {
+            (What::Probability, within) => DEFAULT.with([within.unwrap_or(DEFAULT_EPSILON), delta]),
+            (What::Expectation, Some(epsilon)) => mean::WITHIN.with([epsilon, delta]),
+            (What::Expectation, None) => mean::FIXED.with([trials, delta]),
+            (What::Quantile, _) => quantile::FIXED.with([trials, delta]),
         })
     }
 
-    fn estimator_by(
-        &mut self,
-        (clauses, method): (&Clauses, &Method),
-        sketch: Sketch,
-        (within, delta): (Lowered<Option<f64>>, f64),
-        allowance: Allowance,
-        locals: &Locals,
-    ) -> Lowered<Estimator> {
-        let (probability, quantile) = (sketch.what == What::Probability, sketch.what == What::Quantile);
-        let name = method.name.name.as_str();
-        let of_trials = match name {
-            "fixed" => true,
-            // Its interval is that of a share.
-            "clopper_pearson" => probability,
-            "dkw" => quantile,
-            _ => false,
+    /// That a procedure which promises no width has no `within`.
+    fn no_promise(&mut self, clauses: &Clauses, spec: &Spec) -> Lowered<()> {
+        let Some(within) = &clauses.within else { return Ok(()) };
+        let (said, hint) = match spec.make {
+            Make::Splitting { .. } => (
+                "splitting promises no width",
+                "choose the number of `replicas` and of `runs`; the interval follows from how they scatter",
+            ),
+            _ if spec.arguments.iter().any(|argument| matches!(argument.kind, Kind::Trials(_))) => (
+                "a number of trials that is fixed promises no width",
+                "leave out `by` and the trials follow from the width, or leave out `within`",
+            ),
+            _ => return Ok(()),
         };
-        if of_trials {
-            return self.of_trials((clauses, method), sketch, delta, allowance, locals);
-        }
-        if probability && (name == "splitting" || name == "fixed_effort") {
-            return self.splitting(clauses, method, (delta, allowance), locals);
-        }
-        let known: &[&str] = match sketch.what {
-            What::Probability => &[
-                "okamoto",
-                "massart",
-                "spending",
-                "clopper_pearson",
-                "fixed",
-                "gbas",
-                "splitting",
-                "fixed_effort",
-            ],
-            What::Quantile => &["fixed", "dkw"],
-            What::Expectation => &["okamoto", "fixed"],
-        };
-        if !known.contains(&name) {
-            return self.unknown_method(method, known, locals);
-        }
-        let arguments = self.arguments((clauses, method), ["epsilon", "delta"], sketch, locals);
-        let delta = self.claimed(arguments.values[1], delta, allowance);
-        let Some((epsilon, span)) = self.width_of(clauses, within, &arguments)? else {
-            delta?;
-            arguments.sound()?;
-            let error = Diagnostic::error(Code::E0604, method.span, format!("`{name}` needs `epsilon`"));
-            return self.report(error.formal());
-        };
-        if name == "gbas" {
-            // A relative error has no scale.
-            if !(1e-4..=0.999).contains(&epsilon) {
-                let said = format!("a relative error of {epsilon} is not between 0.0001 and 0.999");
-                return self.report(Diagnostic::error(Code::E0604, span, said));
-            }
-        } else {
-            self.width((epsilon, span), sketch, WIDEST)?;
-        }
-        let delta = delta?;
-        arguments.sound()?;
-        Ok(match name {
-            "okamoto" => Estimator::Okamoto { epsilon, delta },
-            "massart" => Estimator::Massart { epsilon, delta },
-            "spending" => Estimator::Spending { epsilon, delta },
-            _ => Estimator::Relative { epsilon, delta },
-        })
+        self.report(Diagnostic::error(Code::E0607, within.span, said).hint(hint))
     }
 
-    /// A number of trials that is fixed beforehand.
-    fn of_trials(
-        &mut self,
-        (clauses, method): (&Clauses, &Method),
-        sketch: Sketch,
-        delta: f64,
-        allowance: Allowance,
-        locals: &Locals,
-    ) -> Lowered<Estimator> {
-        let quantile = sketch.what == What::Quantile;
-        let misplaced = match &clauses.within {
-            Some(expr) if !quantile => {
-                let said = "a number of trials that is fixed promises no width";
-                let error = Diagnostic::error(Code::E0607, expr.span, said);
-                self.report(
-                    error.hint("leave out `by` and the trials follow from the width, or leave out `within`"),
-                )
-            }
-            _ => Ok(()),
-        };
-        let arguments = self.arguments((clauses, method), ["trials", "delta"], sketch, locals);
-        // The values of a quantile are kept.
-        let most = if quantile { 1e9 } else { 1e12 };
-        let trials = self.required(&arguments, 0, "trials").and_then(|(trials, span)| {
-            if trials >= 1.0 && trials.fract() == 0.0 && trials <= most {
-                return Ok(trials as u64);
-            }
-            let said = format!("`trials` must be a whole number from 1 to {most:e}");
-            self.report(Diagnostic::error(Code::E0604, span, said))
-        });
-        let delta = self.claimed(arguments.values[1], delta, allowance);
-        let (trials, delta) = both(trials, delta)?;
-        arguments.sound()?;
-        misplaced?;
-        Ok(match method.name.name.as_str() {
-            "dkw" => Estimator::Band { trials, delta },
-            _ => Estimator::Fixed { trials, delta },
-        })
-    }
-
-    /// Importance splitting; the column of its level is not known yet.
-    fn splitting(
-        &mut self,
-        clauses: &Clauses,
-        method: &Method,
-        (delta, allowance): (f64, Allowance),
-        locals: &Locals,
-    ) -> Lowered<Estimator> {
-        let misplaced = match &clauses.within {
-            Some(within) => {
-                let error = Diagnostic::error(Code::E0607, within.span, "splitting promises no width").hint(
-                    "choose the number of `replicas` and of `runs`; the interval follows from how they scatter",
-                );
-                self.report(error)
-            }
-            None => Ok(()),
-        };
-        let adaptive = method.name.name == "splitting";
-        let names = ["replicas", "runs", "plain", "delta", "kill"];
-        let arguments = self.arguments((clauses, method), names, Sketch::PROBABILITY, locals);
-        let [replicas, runs, plain, _, kill] = arguments.values;
-        // How many are killed is at most how many there are.
-        let of = replicas.map(|(_, span)| span);
-        let replicas = self.whole_in(replicas, "replicas", (10, 1_000_000), 1000, None);
-        let runs = self.whole_in(runs, "runs", (2, 1000), 20, None);
-        // Of what is wrong follows no default and no bound.
-        let (most, times) = (replicas.unwrap_or(1_000_000), runs.unwrap_or(1000));
-        let usual = (most * times / 2).max(LEAST_PLAIN);
-        let plain = self.whole_in(plain, "plain", (LEAST_PLAIN, 1_000_000_000), usual, None);
-        let delta = self.claimed(arguments.values[3], delta, allowance);
-        let kill = self.whole_in(kill, "kill", (1, most - 1), (most / 10).max(1), of);
-        let ((replicas, runs), (plain, kill)) = both(both(replicas, runs), both(plain, kill))?;
-        let delta = delta?;
-        let paths = replicas * runs;
-        if paths > MOST_PATHS {
-            let gigabytes = |paths: u64| (paths * BYTES_OF_A_PATH) as f64 / 1e9;
-            let (taken, limit) = (gigabytes(paths), gigabytes(MOST_PATHS));
-            let said = format!("{paths} paths at once take {taken:.1} GB; the limit is {limit:.1} GB");
-            let error = Diagnostic::error(Code::E0923, method.span, said);
-            let fewer = MOST_PATHS / runs;
-            let error = of.into_iter().fold(error, Diagnostic::hanging_on);
-            return self.report(error.hint(format!(
-                "there is a path for each of the replicas in each of the runs: write `replicas = {fewer}`"
-            )));
+    /// That all paths of splitting fit into memory.
+    fn few_paths(&mut self, method: &Method, chosen: &Chosen) -> Lowered<()> {
+        let Some(rule) = splitting::Rule::of(chosen) else { return Ok(()) };
+        let paths = rule.replicas * rule.runs;
+        if paths <= MOST_PATHS {
+            return Ok(());
         }
-        arguments.sound()?;
-        misplaced?;
-        Ok(Estimator::Splitting(Splitting { adaptive, replicas, runs, kill, plain, delta, level: 0 }))
-    }
-
-    /// A whole number in a range.
-    fn whole_in(
-        &mut self,
-        value: Option<(f64, Span)>,
-        name: &str,
-        (low, high): (u64, u64),
-        default: u64,
-        hangs_on: Option<Span>,
-    ) -> Lowered<u64> {
-        match value {
-            None => Ok(default),
-            Some((value, _)) if value.fract() == 0.0 && value >= low as f64 && value <= high as f64 => {
-                Ok(value as u64)
-            }
-            Some((value, span)) => {
-                let said = format!("`{name}` is {value}, but is a whole number from {low} to {high}");
-                let error = Diagnostic::error(Code::E0604, span, said);
-                self.report(hangs_on.into_iter().fold(error, Diagnostic::hanging_on))
-            }
-        }
-    }
-
-    /// The error that a procedure states, as far as it is for one claim.
-    pub(super) fn claimed(
-        &mut self,
-        value: Option<(f64, Span)>,
-        default: f64,
-        allowance: Allowance,
-    ) -> Lowered<f64> {
-        let stated = self.error_of(value, default, "delta")?;
-        Ok(if value.is_some() { allowance.of(stated) } else { stated })
-    }
-
-    /// The width that a query names, by `within` or by `epsilon` and not by both, and where.
-    pub(super) fn width_of<const N: usize>(
-        &mut self,
-        clauses: &Clauses,
-        within: Lowered<Option<f64>>,
-        arguments: &Arguments<'_, N>,
-    ) -> Stated {
-        match (arguments.values[0], &clauses.within) {
-            (Some((_, span)), Some(_)) => {
-                let said = "the width is given twice: by `within` and by `epsilon`";
-                self.report(Diagnostic::error(Code::E0604, span, said).formal())
-            }
-            (Some(found), None) => Ok(Some(found)),
-            (None, _) => stated(clauses, within),
-        }
+        let gigabytes = |paths: u64| (paths * BYTES_OF_A_PATH) as f64 / 1e9;
+        let (taken, limit) = (gigabytes(paths), gigabytes(MOST_PATHS));
+        let said = format!("{paths} paths at once take {taken:.1} GB; the limit is {limit:.1} GB");
+        let error = Diagnostic::error(Code::E0923, method.span, said);
+        let given = method.arguments.iter().find(|argument| argument.name.name == "replicas");
+        let error = given.map(|one| one.value.span).into_iter().fold(error, Diagnostic::hanging_on);
+        let fewer = MOST_PATHS / rule.runs;
+        self.report(error.hint(format!(
+            "there is a path for each of the replicas in each of the runs: write `replicas = {fewer}`"
+        )))
     }
 }

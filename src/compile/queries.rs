@@ -7,10 +7,11 @@ use super::measures::{Observed, Sketch};
 use super::number::Number;
 use super::settings::Setting;
 use super::starts::Starts;
-use super::study::{Ask, Column, Estimator, Measure, Query, Said, Study, Target, Texts, World};
+use super::study::{Ask, Column, Measure, Query, Said, Study, Target, Texts, World};
 use super::symbols::ScopeId;
 use crate::base::decimal::Decimal;
 use crate::model::Scenario;
+use crate::stats::spec::Make;
 use crate::syntax::ast::{self, Expr, PropertyFile, PropertyItem, QueryKind, ScenarioFile};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
@@ -357,17 +358,18 @@ impl<'a> Compiler<'a> {
                     let (measured, sketch) = self.measured(site, measure, scope);
                     let elaborator = &mut self.sites[site].elaborator;
                     let estimator = elaborator.estimator(clauses, sketch, allowance, &locals);
-                    let (Ok((measured, unbounded)), Ok(mut estimator)) = (measured, estimator) else {
+                    let (Ok((measured, unbounded)), Ok(estimator)) = (measured, estimator) else {
                         failed = true;
                         continue;
                     };
-                    if let Estimator::Splitting(splitting) = &mut estimator {
+                    let mut level = None;
+                    if matches!(estimator.spec.make, Make::Splitting { .. }) {
                         // How far a path has come is the robustness of its formula.
-                        let Ok(level) = elaborator.level(measure, scope) else {
+                        let Ok(found) = elaborator.level(measure, scope) else {
                             failed = true;
                             continue;
                         };
-                        splitting.level = self.column(site, level);
+                        level = Some(self.column(site, found));
                     }
                     let elaborator = &self.sites[site].elaborator;
                     let single = match &measure.kind {
@@ -379,7 +381,7 @@ impl<'a> Compiler<'a> {
                         ),
                         _ => format!("estimate {}", elaborator.text(measure.span)),
                     };
-                    let ask = Ask::Estimate { measure: measured, estimator };
+                    let ask = Ask::Estimate { measure: measured, estimator, level };
                     let said = elaborator.said(measure, None);
                     self.push(
                         query.span,

@@ -5,13 +5,13 @@ use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::files::Files;
 use super::filter;
 use super::laws::value_span;
-use super::lower::{DISTRIBUTIONS, FUNCTIONS};
+use super::lower::DISTRIBUTIONS;
 use super::number::Number;
 use super::symbols::Meaning;
 use super::typed::Typed;
 use crate::base::geometry::{Polygon, Segment, Shape, Vec2, coordinate_fault};
 use crate::data::geometry::{self, Feature, Geometry, PropertyValue, Select, read_wkt, select_geojson};
-use crate::model::{Barrier, BarrierId, Obstacle, Region, RegionId};
+use crate::model::{Barrier, BarrierId, BuiltIn, Obstacle, Region, RegionId};
 use crate::syntax::ast::{Expr, ExprKind, Field, Ident, SceneItem, ShapeExpr, Text, Value};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -144,7 +144,7 @@ impl<'a> Elaborator<'a> {
         if let ExprKind::Call { function, arguments } = &point.kind
             && arguments.len() == 2
             && self.find(&function.name, 0).is_none()
-            && !FUNCTIONS.into_iter().chain(DISTRIBUTIONS).any(|known| known == function.name)
+            && !BuiltIn::names().chain(DISTRIBUTIONS).any(|known| known == function.name)
         {
             let name = &function.name;
             let error = Diagnostic::error(Code::E0203, function.span, format!("unknown function `{name}`"));

@@ -5,6 +5,7 @@ use super::wording::{Frame, Uses};
 use super::written::Written;
 use crate::logic::{NodeId, Relation, TermId, Tree};
 use crate::model::{AgentId, Bool, Num, Scenario, Set};
+use crate::stats::Chosen;
 use crate::syntax::source::{Source, Span};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -250,7 +251,7 @@ pub enum Ask {
         /// The threshold, SI.
         threshold: f64,
         /// The procedure.
-        test: Test,
+        test: Chosen,
         /// Error of the interval beside the verdict.
         beside: f64,
     },
@@ -259,7 +260,9 @@ pub enum Ask {
         /// The measure.
         measure: Measure,
         /// The procedure.
-        estimator: Estimator,
+        estimator: Chosen,
+        /// The column of the level of splitting, if it is that.
+        level: Option<usize>,
     },
     /// How do two differ?
     Compare {
@@ -280,12 +283,8 @@ pub enum Ask {
         moves: usize,
         /// The score of an option.
         measure: Measure,
-        /// Loss that does not matter.
-        epsilon: f64,
-        /// Error probability.
-        delta: f64,
-        /// The procedure.
-        ranking: Ranking,
+        /// The procedure; `epsilon` is the loss that does not matter.
+        ranking: Chosen,
     },
 }
 
@@ -317,141 +316,4 @@ pub enum MeasureKind {
         /// Its dimension.
         dimension: Dimension,
     },
-}
-
-/// Procedures of a check.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Test {
-    /// Sequential probability ratio test with an indifference region.
-    Sprt {
-        /// Error when the truth is above.
-        alpha: f64,
-        /// Error when the truth is below.
-        beta: f64,
-        /// Half width of the indifference region.
-        indifference: f64,
-    },
-    /// 2-SPRT: closed.
-    Sprt2 {
-        /// Error when the truth is above.
-        alpha: f64,
-        /// Error when the truth is below.
-        beta: f64,
-        /// Half width of the indifference region.
-        indifference: f64,
-    },
-    /// Exact single sampling plan.
-    Plan {
-        /// Error when the truth is above.
-        alpha: f64,
-        /// Error when the truth is below.
-        beta: f64,
-        /// Half width of the indifference region.
-        indifference: f64,
-    },
-    /// One-sided mixture e-process, without indifference region.
-    EProcess {
-        /// Error when the truth is above.
-        alpha: f64,
-        /// Error when the truth is below.
-        beta: f64,
-    },
-    /// Also "within the indifference region of the threshold".
-    ThreeWay {
-        /// Error.
-        alpha: f64,
-        /// Half width of the region.
-        indifference: f64,
-    },
-    /// Decide by the interval of an expectation, which holds at all numbers of trials at once.
-    Interval {
-        /// Error.
-        delta: f64,
-    },
-}
-
-/// Procedures of an estimate.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Estimator {
-    /// The cheapest with the proven guarantee.
-    Default {
-        /// Half width.
-        epsilon: f64,
-        /// Error probability.
-        delta: f64,
-    },
-    /// Okamoto bound.
-    Okamoto {
-        /// Half width.
-        epsilon: f64,
-        /// Error probability.
-        delta: f64,
-    },
-    /// Sequential Massart bound.
-    Massart {
-        /// Half width.
-        epsilon: f64,
-        /// Error probability.
-        delta: f64,
-    },
-    /// Clopper-Pearson with alpha spending.
-    Spending {
-        /// Half width.
-        epsilon: f64,
-        /// Error probability.
-        delta: f64,
-    },
-    /// Fixed number of trials: Clopper-Pearson, or order statistics.
-    Fixed {
-        /// Number of trials.
-        trials: u64,
-        /// Error probability.
-        delta: f64,
-    },
-    /// Fixed number of trials: the band around the whole distribution function.
-    Band {
-        /// Number of trials.
-        trials: u64,
-        /// Error probability.
-        delta: f64,
-    },
-    /// Relative error (GBAS).
-    Relative {
-        /// Relative error.
-        epsilon: f64,
-        /// Error probability.
-        delta: f64,
-    },
-    /// Importance splitting.
-    Splitting(Splitting),
-}
-
-/// How a rare event is split into less rare ones.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Splitting {
-    /// Whether levels are found on the way (else by a pilot run, with as many paths at each).
-    pub adaptive: bool,
-    /// Paths of a run.
-    pub replicas: u64,
-    /// Independent runs.
-    pub runs: u64,
-    /// Paths given up at each level, at least.
-    pub kill: u64,
-    /// Plain trials that are made first.
-    pub plain: u64,
-    /// Error of the interval and of the bound.
-    pub delta: f64,
-    /// Column of the level.
-    pub level: usize,
-}
-
-/// Procedures of a ranking.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ranking {
-    /// Paired betting, all undecided challengers.
-    Betting,
-    /// Paired betting, one challenger at a time.
-    OneChallenger,
-    /// Okamoto on each option (Algorithm 1 of the paper).
-    Okamoto,
 }

@@ -43,10 +43,8 @@ impl<'p> Part<'p> {
                 | Num::Time
                 | Num::Variable(_)
                 | Num::Of(..)
-                | Num::MeanVelocity(..)
-                | Num::Clearance(_)
-                | Num::TimeToCollision(..)
-                | Num::Spread(_) => {}
+                | Num::OfTwo(..)
+                | Num::OfSet(..) => {}
             },
             Self::Bool(truth) => match truth {
                 Bool::Compare(_, a, b) => {

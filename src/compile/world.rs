@@ -3,7 +3,7 @@
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::files::Files;
-use super::lower::{BUILT_IN, FUNCTIONS, OPERATORS};
+use super::lower::{BUILT_IN, OPERATORS};
 use super::moments;
 use super::number::Number;
 use super::people::People;
@@ -12,7 +12,7 @@ use super::symbols::Meaning;
 use super::told::{self, Told};
 use crate::base::decimal::Decimal;
 use crate::base::tick::{Clock, Tick};
-use crate::model::{BehaviourId, Kind, Moves, Scenario};
+use crate::model::{BehaviourId, BuiltIn, Kind, Moves, Scenario};
 use crate::syntax::ast::{Expr, ExprKind, Ident, Item, PropertyFile, PropertyItem, ScenarioFile};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -118,7 +118,7 @@ impl<'a> Elaborator<'a> {
         for (number, scope) in self.scopes.iter().enumerate() {
             for (name, entry) in scope.entries() {
                 let calls = matches!(&entry.meaning, Meaning::Let(decl) if !decl.arguments.is_empty());
-                let hint = if BUILT_IN.contains(&name) || calls && FUNCTIONS.contains(&name) {
+                let hint = if BUILT_IN.contains(&name) || calls && BuiltIn::find(name).is_some() {
                     "what is built in by that name is hidden; choose another"
                 } else if number == 0 && OPERATORS.contains(&name) {
                     "in property files this is an operator, so that no formula there can name it; choose another"

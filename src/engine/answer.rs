@@ -383,9 +383,10 @@ impl Answers<'_> {
         watch: &dyn Watch,
     ) -> Result<Option<QueryResult>, Fault> {
         let query = contest.query();
-        let Ask::Rank { moves, measure, delta, .. } = &query.ask else {
+        let Ask::Rank { moves, measure, ranking } = &query.ask else {
             return Err(Fault::Unsuitable);
         };
+        let delta = ranking.value("delta");
         let Some(podium) = contest.run(executor, (self.budget, share), watch)? else { return Ok(None) };
         let field = contest.field();
         let subject = field.subject;
@@ -412,17 +413,17 @@ impl Answers<'_> {
                 result.certifies = format!(
                     "{score} of `{choice}` is within {} of the best, error at most {}",
                     words::quantity(words::at_most(ranked.gap), &result.unit),
-                    words::error(*delta)
+                    words::error(delta)
                 );
                 let claim = Certified::Best { choice: choice.clone(), gap: ranked.gap };
-                result.certificate = Some(Certificate { claim, error: *delta });
+                result.certificate = Some(Certificate { claim, error: delta });
             }
             let chosen = &ranked.options[0].value;
             result.estimate = Some(chosen.estimate);
             result.low = chosen.low;
             result.high = chosen.high;
             result.interval =
-                format!("{}, all options jointly", words::interval(Coverage::TimeUniform, *delta));
+                format!("{}, all options jointly", words::interval(Coverage::TimeUniform, delta));
             let arm = podium.choice.arm;
             let tally = &podium.tallies[arm];
             let picks = match measure.kind {

@@ -307,7 +307,7 @@ fn spoken_of(num: &Num, tell: &mut dyn FnMut(AgentId)) {
             spoken_of(a, tell);
             spoken_of(b, tell);
         }
-        Num::Fold(..) | Num::Count(..) | Num::MeanVelocity(..) | Num::Spread(_) => {}
+        Num::Fold(..) | Num::Count(..) | Num::OfSet(..) => {}
         other => other.mentions(tell),
     }
 }

@@ -3,7 +3,9 @@
 use super::culprits::Search;
 use super::words;
 use crate::compile::dimension::Dimension;
-use crate::model::{AgentId, Arithmetic, Axis, Domain, Field, Fold, Function, Num, Place, Scenario, Who};
+use crate::model::{
+    AgentId, Arithmetic, Axis, Domain, Field, Fold, Function, Num, Place, Scenario, Separation, Who,
+};
 
 /// The agent that decided a condition, and the number that a comparison of it compared.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,7 +87,7 @@ fn place_of(search: &Search<'_>, id: AgentId) -> Option<[f64; 2]> {
 
 /// The agent that gives another one its clearance; none where that is a wall.
 fn nearest(search: &Search<'_>, scenario: &Scenario, num: &Num) -> Option<AgentId> {
-    let Num::Clearance(Who::Agent(id)) = num else { return None };
+    let Num::Of(Field::Separation(Separation::Clearance), Who::Agent(id)) = num else { return None };
     let others = (0..scenario.agents.len() as u32).map(AgentId).filter(|other| other != id);
     let others: Vec<AgentId> = others.filter(|other| search.is_there(*other)).collect();
     let radius = |id| Box::new(Num::Of(Field::Radius, Who::Agent(id)));
@@ -107,7 +109,7 @@ fn nearest(search: &Search<'_>, scenario: &Scenario, num: &Num) -> Option<AgentI
 /// Whether a number is measured between two bodies.
 fn is_gap(num: &Num) -> bool {
     match num {
-        Num::Distance(..) | Num::TimeToCollision(..) => true,
+        Num::Distance(..) | Num::OfTwo(..) => true,
         Num::Combine(_, a, b) => is_gap(a) || is_gap(b),
         Num::Apply(_, a) | Num::Fold(_, _, a) => is_gap(a),
         _ => false,
@@ -120,22 +122,15 @@ fn dimension(scenario: &Scenario, num: &Num) -> Option<Dimension> {
     Some(match num {
         Num::Constant(_) => return None,
         Num::Time if scenario.clock == crate::base::tick::Clock::Steps => Dimension::STEPS,
-        Num::Time | Num::TimeToCollision(..) => Dimension::TIME,
+        Num::Time => Dimension::TIME,
         Num::Variable(id) => match scenario.processes.variables.get(id.0 as usize)?.domain {
             Domain::Whole { .. } | Domain::Truth => Dimension::NONE,
             Domain::Real => return None,
         },
-        Num::Of(field, _) => match field {
-            Field::VelocityX | Field::VelocityY | Field::Speed | Field::DrivingSpeed => Dimension::SPEED,
-            Field::Heading => Dimension::ANGLE,
-            Field::Radius | Field::Travelled => Dimension::LENGTH,
-            Field::Mass => Dimension::MASS,
-            Field::Mode(_) => return None,
-        },
-        Num::MeanVelocity(..) => Dimension::SPEED,
-        Num::Coordinate(..) | Num::Distance(..) | Num::Depth(..) | Num::Clearance(_) | Num::Spread(_) => {
-            Dimension::LENGTH
-        }
+        Num::Of(field, _) => field.dimension()?,
+        Num::OfTwo(pair, ..) => pair.dimension()?,
+        Num::OfSet(collective, _) => collective.dimension()?,
+        Num::Coordinate(..) | Num::Distance(..) | Num::Depth(..) => Dimension::LENGTH,
         Num::Apply(Function::Sqrt, a) => of(a)?.root()?,
         Num::Apply(Function::Exp | Function::Ln | Function::Sin | Function::Cos, _) | Num::Count(..) => {
             Dimension::NONE

@@ -1,15 +1,16 @@
 //! Forecasts: how many trials a query is likely to take, from its first ones. Nothing that a result depends on.
 //!
-//! Planned procedures know their number. Of the others: Wald's approximation of the expected number for
-//! sequential tests, the normal approximation with a factor for looking after each trial for intervals.
+//! What a procedure takes at a given truth is its own (`stats::Spec::forecast`).
 
 use super::cell::{Cell, Reading};
 use super::procedure::Procedure;
 use super::watch::Likely;
 use crate::base::math::{self, ln};
-use crate::base::special::normal_quantile;
-use crate::compile::study::{Ask, Estimator, MeasureKind, Ranking, Test};
+use crate::compile::study::{Ask, MeasureKind};
 use crate::stats;
+use crate::stats::mean::until_narrow;
+use crate::stats::ranking::Ranking;
+use crate::stats::spec::Guess;
 
 /// Error of what a few trials say of a share.
 const UNSURE: f64 = 0.08;
@@ -80,7 +81,7 @@ impl Glimpse {
 
     /// What the readings say themselves.
     fn guess(&self, least: f64) -> Guess {
-        Guess { share: self.share(), mean: self.mean(), variance: self.variance(least) }
+        guess(self.share(), self.mean(), self.variance(least))
     }
 
     /// What the truth may be as well, beside them. `least` is a distance that one more reading could have.
@@ -97,7 +98,7 @@ impl Glimpse {
             let share = (shares.low + at * (shares.high - shares.low)).clamp(1e-9, 1.0 - 1e-9);
             let mean = middle.mean + (2.0 * at - 1.0) * off;
             let other = 4.0 * spread + 4.0 * least * least / (n + 1.0);
-            guesses.extend([0.3 * spread, other].map(|variance| Guess { share, mean, variance }));
+            guesses.extend([0.3 * spread, other].map(|variance| guess(share, mean, variance)));
         }
         guesses
     }
@@ -111,106 +112,35 @@ impl Glimpse {
     }
 }
 
-/// Trials until an interval of half width `epsilon` and error `delta` of a mean in a range of length `range`,
-/// looked at after every trial.
-fn until_narrow(variance: f64, range: f64, epsilon: f64, delta: f64) -> f64 {
-    let level = ln(2.0 / delta);
-    2.6 * variance * level / (epsilon * epsilon) + 3.0 * range * level / epsilon
-}
-
-/// What the truth may be.
-#[derive(Clone, Copy)]
-struct Guess {
-    /// The share of successes.
-    share: f64,
-    mean: f64,
-    variance: f64,
-}
-
 /// Trials that a check or estimate takes: with what the first of them say, and with what the truth may be as well.
 pub(super) fn inquiry(ask: &Ask, procedure: &Procedure, glimpse: &Glimpse) -> Option<Likely> {
     let limit = procedure.limit();
-    if procedure.is_planned() {
-        return limit.map(Likely::exactly);
-    }
-    let (Ask::Check { measure, .. } | Ask::Estimate { measure, .. }) = ask else {
+    let (measure, chosen, theta) = match ask {
+        Ask::Check { measure, test, threshold, .. } => (measure, test, *threshold),
+        Ask::Estimate { measure, estimator, .. } => (measure, estimator, f64::NAN),
+        Ask::Compare { .. } | Ask::Rank { .. } => return limit.map(Likely::exactly),
+    };
+    let Some(forecast) = chosen.spec.forecast.filter(|_| !procedure.is_planned()) else {
         return limit.map(Likely::exactly);
     };
-    let scale = match measure.kind {
+    let range = match measure.kind {
         MeasureKind::Expectation { range: (low, high), .. } => high - low,
         MeasureKind::Probability | MeasureKind::Quantile { .. } => 1.0,
     };
-    let Some(likely) = trials(ask, glimpse.guess(0.1 * scale)) else { return limit.map(Likely::exactly) };
-    // Runs of one procedure at one truth scatter as well.
-    let (fewer, more) = match ask {
-        Ask::Check { .. } => (0.25, 3.0),
-        Ask::Estimate { estimator: Estimator::Massart { .. } | Estimator::Spending { .. }, .. } => (0.9, 2.2),
-        _ if matches!(measure.kind, MeasureKind::Expectation { .. }) => (0.4, 2.0),
-        _ => (0.8, 1.25),
-    };
-    let all = glimpse.guesses(0.1 * scale).into_iter().filter_map(|guess| trials(ask, guess));
+    let trials = |guess: Guess| (forecast.trials)(&chosen.values, &Guess { theta, range, ..guess });
+    let likely = trials(glimpse.guess(0.1 * range));
+    let all = glimpse.guesses(0.1 * range).into_iter().map(trials);
     let (least, most) =
         all.fold((likely, likely), |(least, most), n| (math::at_most(n, least), math::at_least(n, most)));
     let whole = |n: f64| (math::at_most(n, 1e18) as u64).clamp(1, limit.unwrap_or(u64::MAX).max(1));
+    // Runs of one procedure at one truth scatter as well.
+    let (fewer, more) = forecast.scatter;
     Some(Likely { least: whole(fewer * least), likely: whole(likely), most: whole(more * most) })
 }
 
-/// Trials that a check or estimate takes, if the truth is as guessed; `None` where they do not depend on it.
-fn trials(ask: &Ask, guess: Guess) -> Option<f64> {
-    let p = guess.share;
-    Some(match ask {
-        Ask::Check {
-            threshold,
-            test: Test::Sprt { alpha, beta, indifference } | Test::Sprt2 { alpha, beta, indifference },
-            ..
-        } => wald(p, *threshold, *indifference, *alpha, *beta),
-        Ask::Check { threshold, test: Test::EProcess { alpha, .. }, .. } => {
-            let kl = p * ln(p / threshold) + (1.0 - p) * ln((1.0 - p) / (1.0 - threshold));
-            (5.0 - ln(*alpha)) / kl.max(1e-9)
-        }
-        Ask::Check { threshold, test: Test::ThreeWay { alpha, indifference }, .. } => {
-            // Each of the two tests at the ends of the region has to decide.
-            let one = |theta: f64| wald(p, theta, 0.5 * indifference, *alpha, *alpha);
-            one(threshold - 0.5 * indifference).max(one(threshold + 0.5 * indifference))
-        }
-        Ask::Check { threshold, test: Test::Interval { delta }, measure, .. } => {
-            let MeasureKind::Expectation { range: (low, high), .. } = measure.kind else { return None };
-            let range = high - low;
-            let gap = (guess.mean - threshold).abs().max(1e-6 * range);
-            until_narrow(guess.variance, range, gap, *delta)
-        }
-        Ask::Estimate { measure, estimator } => match (*estimator, &measure.kind) {
-            (
-                Estimator::Default { epsilon, delta }
-                | Estimator::Massart { epsilon, delta }
-                | Estimator::Spending { epsilon, delta },
-                MeasureKind::Probability,
-            ) => {
-                let z = normal_quantile(1.0 - 0.5 * delta);
-                1.15 * z * z * p * (1.0 - p) / (epsilon * epsilon) + 2.0 / epsilon
-            }
-            (Estimator::Relative { epsilon, delta }, MeasureKind::Probability) => {
-                let z = normal_quantile(1.0 - 0.5 * delta);
-                z * z / (epsilon * epsilon * p)
-            }
-            (Estimator::Default { epsilon, delta }, MeasureKind::Expectation { range: (low, high), .. }) => {
-                until_narrow(guess.variance, high - low, epsilon, delta)
-            }
-            _ => return None,
-        },
-        Ask::Check { test: Test::Plan { .. }, .. } | Ask::Compare { .. } | Ask::Rank { .. } => return None,
-    })
-}
-
-/// Wald's expected number of trials of a sequential probability ratio test where the share is `p`: the mean
-/// of the exit divided by the drift, or where there is hardly any drift, by the variance of a step.
-fn wald(p: f64, theta: f64, indifference: f64, alpha: f64, beta: f64) -> f64 {
-    let (high, low) = ((theta + indifference).min(1.0 - 1e-9), (theta - indifference).max(1e-9));
-    let (success, failure) = (ln(low / high), ln((1.0 - low) / (1.0 - high)));
-    let drift = p * success + (1.0 - p) * failure;
-    let exit = if drift > 0.0 { -ln(alpha) } else { -ln(beta) };
-    let between = ln(alpha) * ln(beta) / (p * success * success + (1.0 - p) * failure * failure);
-    (exit / drift.abs().max(1e-9)).min(between)
+/// What the truth may be, of a query that is not known yet.
+const fn guess(share: f64, mean: f64, variance: f64) -> Guess {
+    Guess { share, mean, variance, theta: f64::NAN, range: 1.0 }
 }
 
 /// Pairs that a comparison is likely to take; `glimpse` is that of the differences.
@@ -251,16 +181,7 @@ pub(super) fn race(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_sequential_test_takes_what_wald_says() {
-        // Theta 0.8 with a region of 0.02 and errors 0.01, the truth 0.9: a few hundred trials.
-        let trials = wald(0.9, 0.8, 0.02, 0.01, 0.01);
-        assert!((150.0..260.0).contains(&trials), "{trials}");
-        // On the threshold itself: the product of the boundaries over the variance of a step.
-        let trials = wald(0.8, 0.8, 0.02, 0.01, 0.01);
-        assert!((1_000.0..2_500.0).contains(&trials), "{trials}");
-    }
+    use crate::stats::ranking::Allocation;
 
     #[test]
     fn a_ranking_of_equals_costs_the_most() {
@@ -269,7 +190,7 @@ mod tests {
             (0..32).for_each(|k| glimpse.add(f64::from(u8::from(f64::from(k) < 32.0 * share))));
             glimpse
         };
-        let rule = (0.02, 0.05, Ranking::Betting);
+        let rule = (0.02, 0.05, Ranking::Betting(Allocation::AllFailing));
         let level = race(&[with(0.5), with(0.5)], &[with(0.0), with(0.5)], 1.0, rule);
         let apart = race(&[with(0.9), with(0.1)], &[with(0.0), with(0.8)], 1.0, rule);
         assert!(level.likely > 5 * apart.likely, "{level:?} {apart:?}");

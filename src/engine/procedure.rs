@@ -1,20 +1,17 @@
 //! The statistical procedure of a check or an estimate, fed with cells in index order.
 
-use super::budget::DEFAULT_TRIALS;
 use super::cell::{Cell, Reading};
 use super::fault::Fault;
 use super::outcome::{Distribution, Histogram, Interval, Quantile, Step};
-use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Test};
+use crate::compile::study::{Ask, MeasureKind};
 use crate::stats::calibration::Level;
 use crate::stats::quantile::Sample;
+use crate::stats::spec::{Against, Make};
 use crate::stats::test::Verdict as TestVerdict;
 use crate::stats::{
-    self, AnyEstimator, AnyTest, Coverage, Decision, EstimatorReadings, Evidence, FixedSize, Gbas,
-    Hypothesis, Massart, Mean, Okamoto, Outcome, Plan, Spending, Sprt, Statement, TestReadings, ThreeWay,
-    TwoSprt,
+    self, AnyEstimator, AnyTest, Coverage, Decision, Estimator as _, Hypothesis, Mean, Outcome, Readings,
+    Rule as _, Statement,
 };
-use stats::Estimator as _;
-use stats::Test as _;
 
 /// Bins of the histogram of a metric.
 const BINS: usize = 40;
@@ -23,9 +20,9 @@ const STEPS: usize = 100;
 /// A procedure of one query.
 pub(super) enum Procedure {
     /// Is a probability above a threshold?
-    Test(Box<TestReadings<AnyTest>>),
+    Test(Box<Readings<AnyTest>>),
     /// What is a probability?
-    Probability(Box<EstimatorReadings<AnyEstimator>>),
+    Probability(Box<Readings<AnyEstimator>>),
     /// What is an expectation, and perhaps: is it above a threshold?
     Mean {
         /// The estimator.
@@ -67,99 +64,42 @@ pub(super) fn value(cell: &Cell) -> Option<f64> {
 impl Procedure {
     /// The procedure of a check or an estimate. `seed` addresses what a procedure draws for itself.
     pub(super) fn new(ask: &Ask, seed: u64) -> Result<Self, Fault> {
-        match ask {
+        let (measure, chosen, against) = match ask {
             Ask::Check { measure, at_least, or_equal, threshold, test, .. } => {
                 // `>=` and `<` put the threshold above, `>` and `<=` below.
                 let hypothesis = if at_least == or_equal { Hypothesis::AtLeast } else { Hypothesis::Above };
-                Self::test(measure, hypothesis, *threshold, test)
+                (measure, test, Some(Against { hypothesis, theta: *threshold }))
             }
-            Ask::Estimate { measure, estimator } => Self::estimate(measure, estimator, seed),
-            Ask::Compare { .. } | Ask::Rank { .. } => Err(Fault::Unsuitable),
-        }
-    }
-
-    fn test(measure: &Measure, hypothesis: Hypothesis, theta: f64, test: &Test) -> Result<Self, Fault> {
-        let test = match *test {
-            Test::Sprt { alpha, beta, indifference } => {
-                AnyTest::Sprt(Sprt::new(theta, indifference, alpha, beta)?)
-            }
-            Test::Sprt2 { alpha, beta, indifference } => {
-                AnyTest::TwoSprt(TwoSprt::new(theta, indifference, alpha, beta)?)
-            }
-            Test::Plan { alpha, beta, indifference } => {
-                AnyTest::Plan(Plan::new(theta, indifference, alpha, beta)?)
-            }
-            Test::EProcess { alpha, beta } => {
-                AnyTest::Evidence(Evidence::new(hypothesis, theta, alpha, beta)?)
-            }
-            Test::ThreeWay { alpha, indifference } => {
-                AnyTest::ThreeWay(ThreeWay::new(hypothesis, theta, indifference, alpha)?)
-            }
-            Test::Interval { delta } => {
-                let MeasureKind::Expectation { range: (low, high), .. } = measure.kind else {
-                    return Err(Fault::Unsuitable);
-                };
-                let mean = Box::new(Mean::running(low, high, delta)?);
-                return Ok(Self::Mean { mean, threshold: Some(theta), values: Vec::new() });
-            }
+            Ask::Estimate { measure, estimator, .. } => (measure, estimator, None),
+            Ask::Compare { .. } | Ask::Rank { .. } => return Err(Fault::Unsuitable),
         };
-        Ok(Self::Test(Box::new(TestReadings::new(test))))
-    }
-
-    fn estimate(measure: &Measure, estimator: &Estimator, seed: u64) -> Result<Self, Fault> {
-        match (&measure.kind, *estimator) {
-            (MeasureKind::Probability, estimator) => {
-                let estimator = match estimator {
-                    Estimator::Default { epsilon, delta } => AnyEstimator::within(epsilon, delta)?,
-                    Estimator::Okamoto { epsilon, delta } => {
-                        AnyEstimator::Okamoto(Okamoto::new(epsilon, delta)?)
-                    }
-                    Estimator::Massart { epsilon, delta } => {
-                        AnyEstimator::Massart(Massart::new(epsilon, delta, MASSART_SHARE * delta)?)
-                    }
-                    Estimator::Spending { epsilon, delta } => {
-                        AnyEstimator::Spending(Spending::new(epsilon, delta)?)
-                    }
-                    Estimator::Fixed { trials, delta } => {
-                        AnyEstimator::FixedSize(FixedSize::new(trials, delta)?)
-                    }
-                    Estimator::Relative { epsilon, delta } => {
-                        AnyEstimator::Gbas(Gbas::new(epsilon, delta, Some(DEFAULT_TRIALS), seed)?)
-                    }
-                    Estimator::Splitting(_) | Estimator::Band { .. } => return Err(Fault::Unsuitable),
-                };
-                Ok(Self::Probability(Box::new(EstimatorReadings::new(estimator))))
+        let values = &chosen.values;
+        Ok(match (chosen.spec.make, &measure.kind, against) {
+            (Make::Test(make), MeasureKind::Probability, Some(against)) => {
+                Self::Test(Box::new(Readings::new(make(against, values)?)))
             }
-            (MeasureKind::Expectation { range: (low, high), .. }, estimator) => {
-                let mean = match estimator {
-                    Estimator::Fixed { trials, delta } => Mean::fixed(*low, *high, trials, delta)?,
-                    Estimator::Okamoto { epsilon, delta } => Mean::planned(*low, *high, epsilon, delta)?,
-                    Estimator::Default { epsilon, delta } => Mean::within(*low, *high, epsilon, delta)?,
-                    Estimator::Massart { .. }
-                    | Estimator::Spending { .. }
-                    | Estimator::Relative { .. }
-                    | Estimator::Splitting(_)
-                    | Estimator::Band { .. } => return Err(Fault::Unsuitable),
-                };
-                Ok(Self::Mean { mean: Box::new(mean), threshold: None, values: Vec::new() })
+            (Make::Estimator(make), MeasureKind::Probability, None) => {
+                Self::Probability(Box::new(Readings::new(make(values, seed)?)))
             }
-            (
-                MeasureKind::Quantile { level, .. },
-                Estimator::Fixed { trials, delta } | Estimator::Band { trials, delta },
-            ) => Ok(Self::Quantile {
-                sample: Box::new(Sample::new(trials)?),
+            (Make::Mean(make), MeasureKind::Expectation { range, .. }, against) => Self::Mean {
+                mean: Box::new(make(*range, values)?),
+                threshold: against.map(|against| against.theta),
+                values: Vec::new(),
+            },
+            (Make::Quantile { band }, MeasureKind::Quantile { level, .. }, None) => Self::Quantile {
+                sample: Box::new(Sample::new(chosen.value("trials") as u64)?),
                 level: *level,
-                delta,
-                band: matches!(estimator, Estimator::Band { .. }),
-            }),
-            (MeasureKind::Quantile { .. }, _) => Err(Fault::Unsuitable),
-        }
+                delta: chosen.value("delta"),
+                band,
+            },
+            _ => return Err(Fault::Unsuitable),
+        })
     }
 
     /// Reads the cell of the next trial; true once finished.
     pub(super) fn observe(&mut self, cell: &Cell) -> bool {
         match self {
-            Self::Test(test) => test.observe(outcome(cell)).is_some(),
+            Self::Test(test) => test.observe(outcome(cell)),
             Self::Probability(estimator) => estimator.observe(outcome(cell)),
             Self::Mean { mean, threshold, values } => {
                 let value = value(cell);
@@ -200,10 +140,8 @@ impl Procedure {
     /// Whether the number of trials is fixed beforehand.
     pub(super) fn is_planned(&self) -> bool {
         match self {
-            Self::Test(test) => matches!(test.readings().0, AnyTest::Plan(_)),
-            Self::Probability(estimator) => {
-                matches!(estimator.readings().0, AnyEstimator::Okamoto(_) | AnyEstimator::FixedSize(_))
-            }
+            Self::Test(test) => test.readings().0.rule().is_planned(),
+            Self::Probability(estimator) => estimator.readings().0.rule().is_planned(),
             Self::Mean { mean, threshold, .. } => threshold.is_none() && mean.is_fixed(),
             Self::Quantile { .. } => true,
         }
@@ -212,10 +150,7 @@ impl Procedure {
     /// Half-width and error of the level that it has to know before it can read more.
     pub(super) fn waits_for(&self) -> Option<(f64, f64)> {
         match self {
-            Self::Probability(e) if e.waits() => match e.readings().0 {
-                AnyEstimator::Calibrated(one) => Some(one.asked()),
-                _ => None,
-            },
+            Self::Probability(readings) => readings.waits_for(),
             _ => None,
         }
     }
@@ -228,9 +163,7 @@ impl Procedure {
     /// What it has read so far, with what is now known of its level.
     pub(super) fn settled(&self, level: Level) -> Result<Option<Self>, Fault> {
         let Self::Probability(readings) = self else { return Ok(None) };
-        let mut readings = readings.clone();
-        readings.settle(level)?;
-        Ok(Some(Self::Probability(readings)))
+        Ok(Some(Self::Probability(Box::new(readings.settled(level)?))))
     }
 
     /// Whether it has stopped.
@@ -241,10 +174,10 @@ impl Procedure {
     /// Whether it is over without having come to what was asked: at its own largest number of trials.
     pub(super) fn is_capped(&self) -> bool {
         match self {
-            Self::Probability(estimator) => match estimator.readings().0 {
-                AnyEstimator::Gbas(gbas) => gbas.counts().successes < gbas.needed(),
-                _ => false,
-            },
+            Self::Probability(estimator) => {
+                let reading = estimator.readings().0;
+                reading.rule().is_capped(reading.counts())
+            }
             _ => false,
         }
     }
@@ -287,15 +220,17 @@ impl Procedure {
             Self::Mean { mean, .. } => mean.interval(),
             Self::Test(_) | Self::Quantile { .. } => return false,
         };
-        let epsilon = match *estimator {
-            Estimator::Default { epsilon, .. }
-            | Estimator::Massart { epsilon, .. }
-            | Estimator::Spending { epsilon, .. } => epsilon,
-            // Of the middle.
-            Estimator::Relative { epsilon, .. } => epsilon * 0.5 * (interval.low + interval.high),
-            _ => return false,
-        };
-        interval.half_width() > epsilon * (1.0 + 1e-9)
+        estimator.width(interval).is_some_and(|epsilon| interval.half_width() > epsilon * (1.0 + 1e-9))
+    }
+
+    /// Numbers that it works with beside those that it was given, for reports.
+    pub(super) fn numbers(&self) -> Vec<(&'static str, f64)> {
+        match self {
+            Self::Test(test) => test.readings().0.rule().numbers(),
+            Self::Probability(estimator) => estimator.readings().0.rule().numbers(),
+            Self::Mean { mean, .. } => mean.numbers().into_iter().collect(),
+            Self::Quantile { .. } => Vec::new(),
+        }
     }
 
     /// What the decision of a test certifies.
@@ -424,9 +359,6 @@ fn empirical(values: &[f64]) -> Vec<Step> {
     }
     steps
 }
-
-/// Share of the error that the sequential Massart bound spends on its auxiliary interval.
-pub(super) const MASSART_SHARE: f64 = 0.02;
 
 fn around(estimate: f64, interval: stats::Interval) -> Interval {
     Interval { estimate, low: interval.low, high: interval.high }

@@ -14,8 +14,8 @@ use super::procedure::{outcome, value};
 use super::subject::Subject;
 use super::tally::Tally;
 use super::watch::{Forecast, Watch};
-use crate::compile::study::{MeasureKind, Query, Ranking};
-use crate::stats::ranking::{Allocation, Booleans, Choice, Each, Race, Scores, Share};
+use crate::compile::study::{MeasureKind, Query};
+use crate::stats::ranking::{Booleans, Choice, Each, Race, Ranking, Scores, Share};
 use crate::stats::{self, Mean, Outcome};
 
 /// Trials an option gets in a round: traces of crowds are slow.
@@ -65,26 +65,21 @@ impl Procedure {
     fn new(field: &Field<'_>) -> Result<Self, Fault> {
         let (epsilon, delta, ranking) = field.rule;
         let arms = field.deviations.len();
-        let allocation = if ranking == Ranking::OneChallenger {
-            Allocation::OneChallenger
-        } else {
-            Allocation::AllFailing
-        };
-        match (&field.kind, ranking) {
+        Ok(match (&field.kind, ranking) {
             (MeasureKind::Probability, Ranking::Okamoto) => {
-                Ok(Self::Each(Each::new(arms, epsilon, delta, 8 * WORD)?))
+                Self::Each(Each::new(arms, epsilon, delta, 8 * WORD)?)
             }
-            (MeasureKind::Probability, _) => {
-                Ok(Self::Booleans(Race::new(arms, epsilon, delta, WORD, allocation)?))
+            (MeasureKind::Probability, Ranking::Betting(allocation)) => {
+                Self::Booleans(Race::new(arms, epsilon, delta, WORD, allocation)?)
+            }
+            (MeasureKind::Expectation { range, .. }, Ranking::Betting(allocation)) => {
+                let scaled = epsilon / (range.1 - range.0);
+                Self::Scores { race: Race::new(arms, scaled, delta, WORD, allocation)?, range: *range }
             }
             (MeasureKind::Expectation { .. }, Ranking::Okamoto) | (MeasureKind::Quantile { .. }, _) => {
-                Err(Fault::Unsuitable)
+                return Err(Fault::Unsuitable);
             }
-            (MeasureKind::Expectation { range, .. }, _) => {
-                let scaled = epsilon / (range.1 - range.0);
-                Ok(Self::Scores { race: Race::new(arms, scaled, delta, WORD, allocation)?, range: *range })
-            }
-        }
+        })
     }
 
     fn next_round(&self) -> Vec<Share> {

@@ -17,8 +17,10 @@ use super::subject::Subject;
 use super::survey::{Advance, Inquiry, Survey};
 use super::tally::Tally;
 use super::watch::{Forecast, Outlook, Watch};
-use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Query, Study};
+use crate::compile::study::{Ask, Measure, MeasureKind, Query, Study};
 use crate::stats::Levels;
+use crate::stats::spec::Make;
+use crate::stats::splitting;
 use std::collections::{BTreeMap, VecDeque};
 
 /// A query gets no larger part of the time than one of so many for its first trial.
@@ -245,7 +247,7 @@ pub(super) fn worlds(ask: &Ask) -> Vec<usize> {
 
 fn surveyed(ask: &Ask) -> Option<usize> {
     match ask {
-        Ask::Estimate { estimator: Estimator::Splitting(_), .. } => None,
+        Ask::Estimate { level: Some(_), .. } => None,
         Ask::Check { measure, .. } | Ask::Estimate { measure, .. } => Some(measure.target.world),
         Ask::Compare { .. } | Ask::Rank { .. } => None,
     }
@@ -312,10 +314,11 @@ impl<'a> Session<'a> {
                 continue;
             }
             let (places, sampling) = match &query.ask {
-                Ask::Estimate { measure, estimator: Estimator::Splitting(rule) } => {
+                Ask::Estimate { measure, estimator, level: Some(level) } => {
                     let subject = self.subject(measure.target.world)?;
-                    let question =
-                        Question::new(query, subject, measure.target.column, *rule, self.call.seed);
+                    let columns = [measure.target.column, *level];
+                    let rule = splitting::Rule::of(estimator).ok_or(Fault::Unsuitable)?;
+                    let question = Question::new(query, subject, columns, rule, self.call.seed);
                     (vec![at], Sampling::Split(question))
                 }
                 Ask::Check { measure, .. } | Ask::Estimate { measure, .. } => {
@@ -383,9 +386,10 @@ impl<'a> Session<'a> {
     where
         'a: 'q,
     {
-        let Ask::Rank { moves, measure, epsilon, delta, ranking } = &query.ask else {
+        let Ask::Rank { moves, measure, ranking } = &query.ask else {
             return Err(Fault::Unsuitable);
         };
+        let Make::Ranking(kind) = ranking.spec.make else { return Err(Fault::Unsuitable) };
         let subject = self.subject(measure.target.world)?;
         let declared = &subject.program.scenario.moves[*moves];
         let field = Field {
@@ -394,7 +398,7 @@ impl<'a> Session<'a> {
             deviations: declared.options.iter().map(|(_, m)| m.deviation()).collect(),
             column: measure.target.column,
             kind: measure.kind.clone(),
-            rule: (*epsilon, *delta, *ranking),
+            rule: (ranking.value("epsilon"), ranking.value("delta"), kind),
         };
         Contest::new(query, field, self.call.seed)
     }

@@ -3,7 +3,8 @@
 //!
 //! The kernel runs expressions as code over lanes; here they are walked, for checks before a trial.
 
-use super::expression::{Arithmetic, Bool, Comparison, Field, Function, Num, Place, Who};
+use super::expression::{Arithmetic, Bool, Comparison, Function, Num, Place, Who};
+use super::function::Field;
 use super::process::{Command, Process, Timing, VariableId};
 use crate::base::math;
 use std::collections::BTreeSet;

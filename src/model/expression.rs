@@ -3,7 +3,7 @@
 //! The kernel turns them into linear code over lane vectors.
 
 use super::agent::AgentId;
-use super::behaviour::BehaviourId;
+use super::function::{Collective, Field, Pair};
 use super::process::VariableId;
 use super::scene::{BarrierId, RegionId};
 use std::sync::Arc;
@@ -25,29 +25,6 @@ pub struct Set {
     pub members: Arc<[AgentId]>,
     /// Left out, if a member.
     pub except: Option<Who>,
-}
-
-/// Numbers of one agent.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Field {
-    /// Velocity, first component, m/s.
-    VelocityX,
-    /// Velocity, second component, m/s.
-    VelocityY,
-    /// Magnitude of the velocity, m/s.
-    Speed,
-    /// Direction of the velocity, rad in (-pi, pi]; of the driving direction where it stands.
-    Heading,
-    /// Radius, m.
-    Radius,
-    /// Mass, kg.
-    Mass,
-    /// Driving speed, as drawn or as a behaviour has changed it, m/s.
-    DrivingSpeed,
-    /// Length of the way gone since the start, m.
-    Travelled,
-    /// Number of the state of a behaviour, from 0; -1 in someone who has no such behaviour.
-    Mode(BehaviourId),
 }
 
 /// Axis of the plane.
@@ -168,19 +145,15 @@ pub enum Num {
     Of(Field, Who),
     /// A coordinate of a place (no region or barrier), m.
     Coordinate(Axis, Place),
-    /// A component of the mean velocity of a set, m/s; unresolved for nobody.
-    MeanVelocity(Axis, Set),
     /// Distance of two places, m. Of two agents: of their centres.
     Distance(Place, Place),
     /// How deep a place (no region or barrier) lies in a region, m: its distance from the rim, negative
     /// outside.
     Depth(Place, RegionId),
-    /// Smallest gap between an agent's body and any other body, wall or obstacle, m; negative in overlap.
-    Clearance(Who),
-    /// Seconds until two bodies touch if both keep their velocity: 0 in contact, infinite if never.
-    TimeToCollision(Who, Who),
-    /// Root of the mean squared distance of the members from their centroid, m; unresolved for nobody.
-    Spread(Set),
+    /// A number of two agents.
+    OfTwo(Pair, Who, Who),
+    /// A number of a set.
+    OfSet(Collective, Set),
     /// A function of a number.
     Apply(Function, Box<Num>),
     /// Arithmetic of two numbers.

@@ -14,13 +14,8 @@ impl Num {
             Place::Agent(_) | Place::Region(_) | Place::Barrier(_) => false,
         };
         match self {
-            Self::Constant(_)
-            | Self::Time
-            | Self::Variable(_)
-            | Self::Of(..)
-            | Self::Clearance(_)
-            | Self::TimeToCollision(..) => false,
-            Self::MeanVelocity(..) | Self::Spread(_) | Self::Fold(Fold::Mean, ..) => true,
+            Self::Constant(_) | Self::Time | Self::Variable(_) | Self::Of(..) | Self::OfTwo(..) => false,
+            Self::OfSet(..) | Self::Fold(Fold::Mean, ..) => true,
             Self::Coordinate(_, place) | Self::Depth(place, _) => lacks(place),
             Self::Distance(a, b) => lacks(a) || lacks(b),
             Self::Apply(_, a) | Self::Fold(_, _, a) => a.may_lack_value(),

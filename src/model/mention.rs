@@ -41,14 +41,14 @@ impl Num {
     pub fn mentions(&self, tell: Tell<'_>) {
         match self {
             Self::Constant(_) | Self::Time | Self::Variable(_) => {}
-            Self::Of(_, who) | Self::Clearance(who) => who.mentions(tell),
+            Self::Of(_, who) => who.mentions(tell),
             Self::Coordinate(_, place) | Self::Depth(place, _) => place.mentions(tell),
-            Self::MeanVelocity(_, set) | Self::Spread(set) => set.mentions(tell),
+            Self::OfSet(_, set) => set.mentions(tell),
             Self::Distance(a, b) => {
                 a.mentions(tell);
                 b.mentions(tell);
             }
-            Self::TimeToCollision(a, b) => {
+            Self::OfTwo(_, a, b) => {
                 a.mentions(tell);
                 b.mentions(tell);
             }

@@ -3,9 +3,9 @@
 pub mod agent;
 pub mod behaviour;
 mod digest;
-pub mod dimension;
 mod evaluation;
 pub mod expression;
+pub mod function;
 pub mod kind;
 mod lacking;
 pub mod law;
@@ -21,8 +21,8 @@ pub use agent::{Agent, AgentId, Body, Goal, Group, Leg, Particle, Position, Rout
 pub use behaviour::{
     Amount, Attached, Behaviour, BehaviourId, Behaviours, Conduct, Mode, Transition, Trigger,
 };
-pub use dimension::Dimension;
-pub use expression::{Arithmetic, Axis, Bool, Comparison, Field, Fold, Function, Num, Place, Set, Who};
+pub use expression::{Arithmetic, Axis, Bool, Comparison, Fold, Function, Num, Place, Set, Who};
+pub use function::{BuiltIn, Collective, Field, Pair, Separation};
 pub use kind::Kind;
 pub use law::{Family, Law};
 pub use moves::{Move, Moves};

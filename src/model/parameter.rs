@@ -3,9 +3,9 @@
 //! Parsing of fields, presets, errors of range, changes by behaviours, drawing, `smc show` and the table of the manual read
 //! the rows below. A parameter that a new force term needs is a row here and a use in that term.
 
-use super::dimension::Dimension;
 use super::kind::Kind;
 use super::law::Law;
+use crate::base::dimension::Dimension;
 use crate::base::random::name_hash;
 
 /// No human reaches this speed: a trial in which somebody does has diverged, m/s.

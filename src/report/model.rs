@@ -5,10 +5,12 @@ use super::number::counted;
 use crate::base::geometry::{Shape, Vec2};
 use crate::base::tick::Clock;
 use crate::compile::Written;
-use crate::compile::study::{Ask, Estimator, MeasureKind, Ranking, Study, Test, World};
+use crate::compile::methods::PLANNED_TRIALS;
+use crate::compile::study::{Ask, MeasureKind, Study, World};
 use crate::engine::at_most;
 use crate::model::parameter::Shown;
 use crate::model::{Agent, AgentId, Family, Goal, Law, Leg, Obstacle, Parameter, Position, Route, Scenario};
+use crate::stats::Chosen;
 use std::fmt::Write;
 
 /// Longest list of values that is shown in full.
@@ -308,94 +310,33 @@ fn family(family: &Family, unit: &str) -> String {
     }
 }
 
+/// A procedure with the values of its arguments.
+fn summary(chosen: &Chosen) -> String {
+    chosen.numbers().fold(chosen.spec.summary.to_owned(), |text, (argument, value)| {
+        let value = if argument.is_error() { at_most(value).to_string() } else { number(value) };
+        text.replace(&format!("{{{}}}", argument.name), &value)
+    })
+}
+
 fn procedure(ask: &Ask) -> String {
     match ask {
-        Ask::Check { test, threshold, .. } => {
-            let test = match test {
-                Test::Sprt { alpha, beta, indifference } => {
-                    format!("SPRT, alpha {alpha}, beta {beta}, indifference {indifference}")
-                }
-                Test::Sprt2 { alpha, beta, indifference } => {
-                    format!("2-SPRT, alpha {alpha}, beta {beta}, indifference {indifference}")
-                }
-                Test::Plan { alpha, beta, indifference } => {
-                    format!(
-                        "exact plan of fixed size, alpha {alpha}, beta {beta}, indifference {indifference}"
-                    )
-                }
-                Test::EProcess { alpha, beta } => {
-                    format!("one-sided e-process, errors {} and {}", at_most(*alpha), at_most(*beta))
-                }
-                Test::ThreeWay { alpha, indifference } => {
-                    format!("three-way e-process, error {alpha}, indifference {indifference}")
-                }
-                Test::Interval { delta } => {
-                    format!("time-uniform interval of the mean, error {}", at_most(*delta))
-                }
-            };
-            format!("against {}: {test}", number(*threshold))
-        }
-        Ask::Estimate { measure, estimator } => {
+        Ask::Check { test, threshold, .. } => format!("against {}: {}", number(*threshold), summary(test)),
+        Ask::Estimate { measure, estimator, .. } => {
             let what = match measure.kind {
                 MeasureKind::Probability => "probability",
                 MeasureKind::Expectation { .. } => "expectation",
                 MeasureKind::Quantile { .. } => "quantile",
             };
-            let how = match estimator {
-                Estimator::Default { epsilon, delta } => {
-                    format!("fewest trials for ± {}, error {}", number(*epsilon), at_most(*delta))
-                }
-                Estimator::Okamoto { epsilon, delta } => {
-                    format!("Okamoto bound for ± {}, error {}", number(*epsilon), at_most(*delta))
-                }
-                Estimator::Massart { epsilon, delta } => {
-                    format!("sequential Massart bound for ± {}, error {}", number(*epsilon), at_most(*delta))
-                }
-                Estimator::Spending { epsilon, delta } => {
-                    format!(
-                        "Clopper-Pearson with alpha spending for ± {}, error {}",
-                        number(*epsilon),
-                        at_most(*delta)
-                    )
-                }
-                Estimator::Fixed { trials, delta } => format!("{trials} trials, error {}", at_most(*delta)),
-                Estimator::Band { trials, delta } => {
-                    format!(
-                        "{trials} trials, band around the distribution function, error {}",
-                        at_most(*delta)
-                    )
-                }
-                Estimator::Relative { epsilon, delta } => {
-                    format!("relative error {}, error {}", number(*epsilon), at_most(*delta))
-                }
-                Estimator::Splitting(rule) => format!(
-                    "{}, {} runs of {} paths, after {} plain trials",
-                    if rule.adaptive { "adaptive splitting" } else { "splitting with fixed effort" },
-                    rule.runs,
-                    rule.replicas,
-                    rule.plain
-                ),
-            };
-            format!("{what}: {how}")
+            format!("{what}: {}", summary(estimator))
         }
-        Ask::Compare { within, delta, .. } => match within {
-            Some(within) => {
-                format!(
-                    "difference to ± {}, error {}, common random numbers",
-                    number(*within),
-                    at_most(*delta)
-                )
-            }
-            None => format!("difference from 1000 pairs, error {}, common random numbers", at_most(*delta)),
-        },
-        Ask::Rank { epsilon, delta, ranking, .. } => {
-            let how = match ranking {
-                Ranking::Betting => "paired betting, all challengers",
-                Ranking::OneChallenger => "paired betting, one challenger",
-                Ranking::Okamoto => "Okamoto bound on each option",
+        Ask::Compare { within, delta, .. } => {
+            let trials = match within {
+                Some(within) => format!("to ± {}", number(*within)),
+                None => format!("from {PLANNED_TRIALS} pairs"),
             };
-            format!("best within {}, error {}: {how}", number(*epsilon), at_most(*delta))
+            format!("difference {trials}, error {}, common random numbers", at_most(*delta))
         }
+        Ask::Rank { ranking, .. } => summary(ranking),
     }
 }
 

@@ -8,7 +8,7 @@
 
 use super::invalid::{Invalid, probability, range};
 use super::width::Ahead;
-use super::{Counts, Coverage, Estimator, Interval, calibration, clopper_pearson, okamoto, sequence};
+use super::{Counts, Coverage, Estimator, Interval, Rule, Sequential, calibration, clopper_pearson, okamoto};
 
 /// Estimates P within a half-width.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,20 +18,22 @@ pub struct Calibrated {
     gamma: f64,
     limit: u64,
     ahead: Ahead,
-    counts: Counts,
-    finished: bool,
     /// Whether the level still has to be found.
     open: bool,
     /// Whether nothing more is to be read before it is.
     waits: bool,
-    /// Outcomes that were read before it was.
-    before: u64,
+    /// Whether what it has read depends on the level.
+    used: bool,
 }
 
 impl Calibrated {
     /// Half-width `epsilon` at level `gamma`, of which the caller knows that it keeps the error below
     /// `delta`: from `calibration::level`.
-    pub fn at_level(epsilon: f64, delta: f64, gamma: f64) -> Result<Self, Invalid> {
+    pub fn at_level(epsilon: f64, delta: f64, gamma: f64) -> Result<Sequential<Self>, Invalid> {
+        Self::rule(epsilon, delta, gamma).map(Sequential::new)
+    }
+
+    pub(super) fn rule(epsilon: f64, delta: f64, gamma: f64) -> Result<Self, Invalid> {
         range("epsilon", epsilon, 1e-5, 0.5)?;
         probability("delta", delta)?;
         probability("gamma", gamma)?;
@@ -41,26 +43,25 @@ impl Calibrated {
             gamma,
             limit: clopper_pearson::size(epsilon, gamma),
             ahead: Ahead::new(),
-            counts: Counts::default(),
-            finished: false,
             open: false,
             waits: false,
-            before: 0,
+            used: true,
         })
     }
 
     /// The same where the level is still to be found: reads outcomes as long as no level can stop it, then waits.
-    pub fn without_level(epsilon: f64, delta: f64) -> Result<Self, Invalid> {
-        Ok(Self { open: true, ..Self::at_level(epsilon, delta, delta)? })
+    pub fn without_level(epsilon: f64, delta: f64) -> Result<Sequential<Self>, Invalid> {
+        let rule = Self::rule(epsilon, delta, delta)?;
+        Ok(Sequential::new(Self { open: true, used: false, ..rule }))
     }
 
-    /// The same at level `gamma`, after outcomes at which it cannot have stopped, but for the last.
-    pub(super) fn after(mut self, counts: Counts) -> Self {
-        self.counts = counts;
-        self.before = counts.trials();
-        self.finished = self.before >= self.limit
-            || (self.before > 0 && clopper_pearson::narrow(counts, self.gamma, 2.0 * self.epsilon));
-        self
+    /// Goes on at its level after outcomes at which it cannot have stopped, but for the last.
+    pub(super) fn resumed(mut self, counts: Counts) -> Sequential<Self> {
+        let before = counts.trials();
+        let finished = before >= self.limit
+            || (before > 0 && clopper_pearson::narrow(counts, self.gamma, 2.0 * self.epsilon));
+        self.used = finished || before == 0;
+        Sequential::resumed(self, counts, finished)
     }
 
     /// Half-width and error.
@@ -70,11 +71,10 @@ impl Calibrated {
 
     /// Whether it waits, and may turn out to have stopped with its last outcome: at few trials the largest level that
     /// can be proven may have come to its stop, too.
-    pub(super) fn may_have_stopped(&self) -> bool {
+    pub(super) fn may_have_stopped(&self, counts: Counts) -> bool {
         let largest = calibration::LARGEST_SHARE * self.delta;
         self.waits
-            && (self.counts.trials() >= self.limit
-                || clopper_pearson::narrow(self.counts, largest, 2.0 * self.epsilon))
+            && (counts.trials() >= self.limit || clopper_pearson::narrow(counts, largest, 2.0 * self.epsilon))
     }
 
     /// Whether its level still has to be found.
@@ -84,42 +84,24 @@ impl Calibrated {
 
     /// The level at which the intervals are formed, if what it has read depends on it.
     pub fn gamma(&self) -> Option<f64> {
-        let used = !self.open && (self.finished || self.before == 0 || self.counts.trials() > self.before);
-        used.then_some(self.gamma)
+        self.used.then_some(self.gamma)
     }
 }
 
-impl Estimator for Calibrated {
+impl Rule for Calibrated {
+    type Answer = bool;
+
     #[inline]
-    fn observe(&mut self, success: bool) -> bool {
-        if !self.finished {
-            self.counts.add(success);
-            let (gamma, width) = (self.gamma, 2.0 * self.epsilon);
-            let narrow = self
-                .ahead
-                .reached(self.counts, self.limit, |counts| clopper_pearson::narrow(counts, gamma, width));
-            *(if self.open { &mut self.waits } else { &mut self.finished }) = narrow;
+    fn look(&mut self, counts: Counts, _: bool) -> bool {
+        let (gamma, width) = (self.gamma, 2.0 * self.epsilon);
+        let narrow =
+            self.ahead.reached(counts, self.limit, |counts| clopper_pearson::narrow(counts, gamma, width));
+        if self.open {
+            self.waits = narrow;
+            return false;
         }
-        self.finished
-    }
-
-    fn finished(&self) -> bool {
-        self.finished
-    }
-
-    fn counts(&self) -> Counts {
-        self.counts
-    }
-
-    fn interval(&self) -> Interval {
-        if !self.finished {
-            return sequence::interval(self.counts, self.delta);
-        }
-        Interval {
-            error: self.delta,
-            coverage: Coverage::Sequential,
-            ..clopper_pearson::interval(self.counts, self.gamma)
-        }
+        self.used = true;
+        narrow
     }
 
     fn limit(&self) -> Option<u64> {
@@ -131,12 +113,31 @@ impl Estimator for Calibrated {
     fn waits(&self) -> bool {
         self.waits
     }
+
+    fn numbers(&self) -> Vec<(&'static str, f64)> {
+        self.gamma().map(|gamma| ("gamma", gamma)).into_iter().collect()
+    }
+}
+
+impl Estimator for Calibrated {
+    fn error(&self) -> f64 {
+        self.delta
+    }
+
+    fn at_stop(&self, counts: Counts) -> Interval {
+        Interval {
+            error: self.delta,
+            coverage: Coverage::Sequential,
+            ..clopper_pearson::interval(counts, self.gamma)
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::base::random::{Purpose, Stream, TrialKey};
+    use crate::stats::sequence;
 
     #[test]
     fn found_late_the_level_stops_it_where_it_would_have_stopped() {
@@ -146,19 +147,21 @@ mod tests {
                 let mut known = Calibrated::at_level(epsilon, delta, gamma).unwrap();
                 let mut late = Calibrated::without_level(epsilon, delta).unwrap();
                 let mut k = 0;
-                while !late.waits() {
+                while !late.rule().waits() {
                     assert_eq!(late.interval(), sequence::interval(late.counts(), delta));
-                    assert!(!late.observe(outcome(k)) && late.gamma().is_none() && late.is_open());
+                    assert!(
+                        !late.observe(outcome(k)) && late.rule().gamma().is_none() && late.rule().is_open()
+                    );
                     k += 1;
                 }
                 assert!(k < late.limit().unwrap());
-                let mut late = Calibrated::at_level(epsilon, delta, gamma).unwrap().after(late.counts());
-                assert!(late.finished() || late.gamma().is_none());
+                let mut late = Calibrated::rule(epsilon, delta, gamma).unwrap().resumed(late.counts());
+                assert!(late.finished() || late.rule().gamma().is_none());
                 assert!((0..k).all(|k| !known.observe(outcome(k)) || k + 1 == late.counts().trials()));
                 while !late.finished() {
                     let (outcome, before) = (outcome(k), known.finished());
                     assert!(!before && late.observe(outcome) == known.observe(outcome));
-                    assert_eq!(late.gamma(), Some(gamma));
+                    assert_eq!(late.rule().gamma(), Some(gamma));
                     k += 1;
                 }
                 assert_eq!((late.counts(), late.interval()), (known.counts(), known.interval()));

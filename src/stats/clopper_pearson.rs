@@ -2,7 +2,8 @@
 //! advance. At a number of trials that depends on the data it guarantees nothing.
 
 use super::invalid::{Invalid, probability, range};
-use super::{Counts, Coverage, Estimator, Interval, sequence};
+use super::spec::{Argument, DELTA, Make, Serves, Spec};
+use super::{Counts, Coverage, Estimator, Interval, Rule, Sequential};
 use crate::base::special::{beta_quantile, beta_tails, beta_upper_quantile};
 
 /// Lower end at one-sided level `tail`: P(at least this many successes) is `tail` there. 0 without successes.
@@ -80,48 +81,58 @@ pub fn size(epsilon: f64, delta: f64) -> u64 {
 pub struct FixedSize {
     size: u64,
     delta: f64,
-    counts: Counts,
 }
 
 impl FixedSize {
     /// `size` trials, an interval at error `delta`.
-    pub fn new(size: u64, delta: f64) -> Result<Self, Invalid> {
+    pub fn new(size: u64, delta: f64) -> Result<Sequential<Self>, Invalid> {
         range("trials", size as f64, 1.0, 1e15)?;
         probability("delta", delta)?;
-        Ok(Self { size, delta, counts: Counts::default() })
+        Ok(Sequential::new(Self { size, delta }))
     }
 }
 
-impl Estimator for FixedSize {
-    #[inline]
-    fn observe(&mut self, success: bool) -> bool {
-        if self.counts.trials() < self.size {
-            self.counts.add(success);
-        }
-        self.finished()
-    }
+impl Rule for FixedSize {
+    type Answer = bool;
 
     #[inline]
-    fn finished(&self) -> bool {
-        self.counts.trials() >= self.size
-    }
-
-    fn counts(&self) -> Counts {
-        self.counts
-    }
-
-    fn interval(&self) -> Interval {
-        if self.finished() {
-            interval(self.counts, self.delta)
-        } else {
-            sequence::interval(self.counts, self.delta)
-        }
+    fn look(&mut self, counts: Counts, _: bool) -> bool {
+        counts.trials() >= self.size
     }
 
     fn limit(&self) -> Option<u64> {
         Some(self.size)
     }
+
+    fn is_planned(&self) -> bool {
+        true
+    }
 }
+
+impl Estimator for FixedSize {
+    fn error(&self) -> f64 {
+        self.delta
+    }
+
+    fn at_stop(&self, counts: Counts) -> Interval {
+        interval(counts, self.delta)
+    }
+}
+
+/// The procedure as queries name it.
+pub(super) const CLOPPER_PEARSON: Spec = Spec {
+    name: "clopper_pearson",
+    reported: "clopper_pearson",
+    serves: Serves::Probability,
+    arguments: &[Argument::trials(1_000_000_000_000), DELTA],
+    summary: "{trials} trials, error {delta}",
+    guarantee: "an exact interval at a number of trials fixed in advance",
+    make: Make::Estimator(|values, _| Ok(FixedSize::new(values[0] as u64, values[1])?.into_any())),
+    forecast: None,
+};
+
+/// The same under the name that estimates of every kind share.
+pub(super) const FIXED: Spec = Spec { name: "fixed", ..CLOPPER_PEARSON };
 
 #[cfg(test)]
 mod tests {

@@ -5,8 +5,9 @@
 //! stopping time, and at P = theta it is right never to stop.
 
 use super::invalid::{Invalid, probability, region};
-use super::sprt::SLACK;
-use super::{Claim, Counts, Decision, Hypothesis, Statement, Test};
+use super::spec::{ALPHA, Argument, BETA, Forecast, Guess, Make, Serves, Spec, TEST_SCATTER};
+use super::sprt::{SLACK, expected};
+use super::{Claim, Counts, Decision, Hypothesis, Rule, Sequential, Statement, Test};
 use crate::base::math;
 use crate::base::special::{beta_tails, ln_beta};
 
@@ -14,7 +15,7 @@ use crate::base::special::{beta_tails, ln_beta};
 const MOST_TRIALS: u64 = 1 << 53;
 
 /// Weight of the prior around the threshold, in trials: 100, and 10 at the very ends.
-pub fn weight(theta: f64) -> f64 {
+fn weight(theta: f64) -> f64 {
     if (0.01..=0.99).contains(&theta) { 100.0 } else { 10.0 }
 }
 
@@ -113,19 +114,22 @@ pub struct Evidence {
     beta: f64,
     above: OneSided,
     below: OneSided,
-    counts: Counts,
-    decision: Option<Decision>,
 }
 
 impl Evidence {
     /// `alpha` bounds the error of deciding `Below` though P >= theta, `beta` that of deciding `Above`
     /// though P <= theta (the roles they have in the SPRT). At P = theta only that decision is wrong which the
     /// hypothesis denies.
-    pub fn new(hypothesis: Hypothesis, theta: f64, alpha: f64, beta: f64) -> Result<Self, Invalid> {
+    pub fn new(
+        hypothesis: Hypothesis,
+        theta: f64,
+        alpha: f64,
+        beta: f64,
+    ) -> Result<Sequential<Self>, Invalid> {
         probability("theta", theta)?;
         probability("alpha", alpha)?;
         probability("beta", beta)?;
-        Ok(Self {
+        Ok(Sequential::new(Self {
             hypothesis,
             theta,
             alpha,
@@ -133,43 +137,33 @@ impl Evidence {
             above: OneSided::new(theta, beta),
             // The other side is the same test of failures against 1 - theta.
             below: OneSided::new(1.0 - theta, alpha),
-            counts: Counts::default(),
-            decision: None,
-        })
+        }))
     }
 
     /// The logarithms of the evidence that P is above theta and that it is below.
-    pub fn logs(&self) -> (f64, f64) {
-        let Counts { successes, failures } = self.counts;
+    pub fn logs(&self, Counts { successes, failures }: Counts) -> (f64, f64) {
         (self.above.log(successes, failures), self.below.log(failures, successes))
     }
 }
 
-impl Test for Evidence {
+impl Rule for Evidence {
+    type Answer = Option<Decision>;
+
     #[inline]
-    fn observe(&mut self, success: bool) -> Option<Decision> {
-        if self.decision.is_none() {
-            self.counts.add(success);
-            let Counts { successes, failures } = self.counts;
-            if success {
-                if self.above.reached(successes, failures) {
-                    self.decision = Some(Decision::Above);
-                }
-            } else if self.below.reached(failures, successes) {
-                self.decision = Some(Decision::Below);
-            }
+    fn look(&mut self, Counts { successes, failures }: Counts, success: bool) -> Option<Decision> {
+        if success {
+            self.above.reached(successes, failures).then_some(Decision::Above)
+        } else {
+            self.below.reached(failures, successes).then_some(Decision::Below)
         }
-        self.decision
     }
 
-    fn decision(&self) -> Option<Decision> {
-        self.decision
+    fn numbers(&self) -> Vec<(&'static str, f64)> {
+        vec![("weight", weight(self.theta))]
     }
+}
 
-    fn counts(&self) -> Counts {
-        self.counts
-    }
-
+impl Test for Evidence {
     fn certifies(&self, decision: Decision) -> Statement {
         let (above, below) = self.hypothesis.claims(self.theta);
         match decision {
@@ -177,10 +171,6 @@ impl Test for Evidence {
             Decision::Below => Statement { claim: below, error: self.alpha },
             Decision::Within => Statement { claim: Claim::Between(self.theta, self.theta), error: 1.0 },
         }
-    }
-
-    fn limit(&self) -> Option<u64> {
-        None
     }
 }
 
@@ -197,17 +187,20 @@ pub struct ThreeWay {
     above_low: OneSided,
     below_high: OneSided,
     passed: (bool, bool),
-    counts: Counts,
-    decision: Option<Decision>,
 }
 
 impl ThreeWay {
     /// `error` bounds the probability of any wrong decision; each part is run at half of it.
-    pub fn new(hypothesis: Hypothesis, theta: f64, indifference: f64, error: f64) -> Result<Self, Invalid> {
+    pub fn new(
+        hypothesis: Hypothesis,
+        theta: f64,
+        indifference: f64,
+        error: f64,
+    ) -> Result<Sequential<Self>, Invalid> {
         let ends = region(theta, indifference)?;
         probability("error", error)?;
         let half = 0.5 * error;
-        Ok(Self {
+        Ok(Sequential::new(Self {
             hypothesis,
             theta,
             ends,
@@ -217,45 +210,28 @@ impl ThreeWay {
             above_low: OneSided::new(ends.0, half),
             below_high: OneSided::new(1.0 - ends.1, half),
             passed: (false, false),
-            counts: Counts::default(),
-            decision: None,
-        })
+        }))
+    }
+}
+
+impl Rule for ThreeWay {
+    type Answer = Option<Decision>;
+
+    #[inline]
+    fn look(&mut self, Counts { successes, failures }: Counts, success: bool) -> Option<Decision> {
+        // Ville's inequality bounds the highest evidence ever, so what was once passed stays passed.
+        let decision = if success {
+            self.passed.0 = self.passed.0 || self.above_low.reached(successes, failures);
+            self.above.reached(successes, failures).then_some(Decision::Above)
+        } else {
+            self.passed.1 = self.passed.1 || self.below_high.reached(failures, successes);
+            self.below.reached(failures, successes).then_some(Decision::Below)
+        };
+        decision.or_else(|| (self.passed == (true, true)).then_some(Decision::Within))
     }
 }
 
 impl Test for ThreeWay {
-    #[inline]
-    fn observe(&mut self, success: bool) -> Option<Decision> {
-        if self.decision.is_none() {
-            self.counts.add(success);
-            let Counts { successes, failures } = self.counts;
-            // Ville's inequality bounds the highest evidence ever, so what was once passed stays passed.
-            if success {
-                self.passed.0 = self.passed.0 || self.above_low.reached(successes, failures);
-                if self.above.reached(successes, failures) {
-                    self.decision = Some(Decision::Above);
-                }
-            } else {
-                self.passed.1 = self.passed.1 || self.below_high.reached(failures, successes);
-                if self.below.reached(failures, successes) {
-                    self.decision = Some(Decision::Below);
-                }
-            }
-            if self.decision.is_none() && self.passed == (true, true) {
-                self.decision = Some(Decision::Within);
-            }
-        }
-        self.decision
-    }
-
-    fn decision(&self) -> Option<Decision> {
-        self.decision
-    }
-
-    fn counts(&self) -> Counts {
-        self.counts
-    }
-
     fn certifies(&self, decision: Decision) -> Statement {
         let (above, below) = self.hypothesis.claims(self.theta);
         let claim = match decision {
@@ -265,11 +241,49 @@ impl Test for ThreeWay {
         };
         Statement { claim, error: self.error }
     }
-
-    fn limit(&self) -> Option<u64> {
-        None
-    }
 }
+
+/// The procedure as queries name it; the default of checks.
+pub const EPROCESS: Spec = Spec {
+    name: "eprocess",
+    reported: "eprocess",
+    serves: Serves::Check,
+    arguments: &[ALPHA, BETA],
+    summary: "one-sided e-process, errors {alpha} and {beta}",
+    guarantee: "satisfied certifies P >= theta, violated P < theta, whatever P is; the default",
+    make: Make::Test(|against, values| {
+        Ok(Evidence::new(against.hypothesis, against.theta, values[0], values[1])?.into_any())
+    }),
+    forecast: Some(Forecast {
+        trials: |values, Guess { share: p, theta, .. }| {
+            let kl = p * math::ln(p / theta) + (1.0 - p) * math::ln((1.0 - p) / (1.0 - theta));
+            (5.0 - math::ln(values[0])) / math::at_least(kl, 1e-9)
+        },
+        scatter: TEST_SCATTER,
+    }),
+};
+
+/// The procedure as queries name it.
+pub(super) const THREE_WAY: Spec = Spec {
+    name: "three_way",
+    reported: "three_way",
+    serves: Serves::Check,
+    arguments: &[ALPHA, Argument::indifference(0.0)],
+    summary: "three-way e-process, error {alpha}, indifference {indifference}",
+    guarantee: "as eprocess at alpha for all answers together, and a third answer: P within the indifference of theta",
+    make: Make::Test(|against, values| {
+        Ok(ThreeWay::new(against.hypothesis, against.theta, values[1], values[0])?.into_any())
+    }),
+    forecast: Some(Forecast {
+        trials: |values, guess| {
+            // Each of the two tests at the ends of the region has to decide.
+            let (alpha, half) = (values[0], 0.5 * values[1]);
+            let one = |theta: f64| expected(guess.share, theta, half, alpha, alpha);
+            math::at_least(one(guess.theta - half), one(guess.theta + half))
+        },
+        scatter: TEST_SCATTER,
+    }),
+};
 
 #[cfg(test)]
 mod tests {
@@ -288,7 +302,7 @@ mod tests {
             loop {
                 let decision = test.observe(outcome(n, p));
                 n += 1;
-                let (above, below) = test.logs();
+                let (above, below) = test.rule().logs(test.counts());
                 let direct = if above >= -math::ln(0.02) + SLACK {
                     Some(Decision::Above)
                 } else if below >= -math::ln(0.01) + SLACK {
@@ -333,6 +347,7 @@ mod tests {
     /// Exact probabilities, at P = theta, of having decided above and below by `trials`.
     fn decided_at_the_threshold(theta: f64, error: f64, trials: u64) -> (f64, f64) {
         let test = Evidence::new(Hypothesis::AtLeast, theta, error, error).unwrap();
+        let test = test.rule();
         // Mass of going on with so many successes.
         let mut open = vec![1.0];
         let (mut above, mut below) = (0.0, 0.0);

@@ -4,11 +4,13 @@
 //! Each trial adds an exponential number to a sum R until the k-th success; then (k - 1)/R over P has
 //! exactly the law of (k - 1)/Gamma(k), whatever P is.
 
+use super::estimator::WIDTH_SCATTER;
 use super::invalid::{Invalid, probability, range};
-use super::{Counts, Coverage, Estimator, Interval, clopper_pearson, sequence};
+use super::spec::{Argument, DELTA, Forecast, Kind, Make, Serves, Spec};
+use super::{Counts, Coverage, Estimator, Interval, Rule, Sequential, clopper_pearson};
 use crate::base::math;
 use crate::base::random::{Purpose, Stream, TrialKey};
-use crate::base::special::{gamma_quantile, gamma_reg, gamma_tails, gamma_upper_quantile};
+use crate::base::special::{gamma_quantile, gamma_reg, gamma_tails, gamma_upper_quantile, normal_quantile};
 
 /// The share of the error kept for the interval at the cap.
 const CAP_SHARE: f64 = 0.1;
@@ -43,14 +45,13 @@ pub struct Gbas {
     cap: Option<u64>,
     seed: u64,
     sum: f64,
-    counts: Counts,
 }
 
 impl Gbas {
     /// P(|estimate / P - 1| > epsilon) <= delta. Without a `cap` it never stops at P = 0; with one, a tenth
     /// of the error is kept for the Clopper-Pearson interval at the cap. `seed` addresses the exponential
     /// numbers, one per trial index.
-    pub fn new(epsilon: f64, delta: f64, cap: Option<u64>, seed: u64) -> Result<Self, Invalid> {
+    pub fn new(epsilon: f64, delta: f64, cap: Option<u64>, seed: u64) -> Result<Sequential<Self>, Invalid> {
         range("epsilon", epsilon, 1e-4, 0.999)?;
         probability("delta", delta)?;
         if let Some(cap) = cap {
@@ -58,7 +59,7 @@ impl Gbas {
         }
         let own = if cap.is_some() { (1.0 - CAP_SHARE) * delta } else { delta };
         let needed = size(epsilon, own);
-        Ok(Self { epsilon, delta, needed, cap, seed, sum: 0.0, counts: Counts::default() })
+        Ok(Sequential::new(Self { epsilon, delta, needed, cap, seed, sum: 0.0 }))
     }
 
     /// Successes at which it stops.
@@ -66,63 +67,86 @@ impl Gbas {
         self.needed
     }
 
-    fn succeeded(&self) -> bool {
-        self.counts.successes >= self.needed
+    const fn succeeded(&self, counts: Counts) -> bool {
+        counts.successes >= self.needed
     }
 }
 
-impl Estimator for Gbas {
-    #[inline]
-    fn observe(&mut self, success: bool) -> bool {
-        if !self.finished() {
-            let key = TrialKey { seed: self.seed, index: self.counts.trials(), branch: 0 };
-            self.sum -= math::ln(Stream::of(key, 0, Purpose::Procedure).uniform(0));
-            self.counts.add(success);
-        }
-        self.finished()
-    }
+impl Rule for Gbas {
+    type Answer = bool;
 
     #[inline]
-    fn finished(&self) -> bool {
-        self.succeeded() || self.cap.is_some_and(|cap| self.counts.trials() >= cap)
-    }
-
-    fn counts(&self) -> Counts {
-        self.counts
-    }
-
-    /// At its own stop the exact two-sided interval of the pivot P R, which has the law Gamma(k); at the cap
-    /// a Clopper-Pearson interval, with upper end about 3/n without successes at 5 %.
-    fn interval(&self) -> Interval {
-        if self.succeeded() {
-            let own = if self.cap.is_some() { (1.0 - CAP_SHARE) * self.delta } else { self.delta };
-            let k = self.needed as f64;
-            return Interval {
-                // No probability is above 1, whatever the scheme says of one that is near it.
-                low: math::at_most(gamma_quantile(k, 0.5 * own) / self.sum, 1.0),
-                high: math::at_most(gamma_upper_quantile(k, 0.5 * own) / self.sum, 1.0),
-                error: self.delta,
-                coverage: Coverage::Sequential,
-            };
-        }
-        if self.finished() {
-            let at_cap = clopper_pearson::interval(self.counts, CAP_SHARE * self.delta);
-            return Interval { error: self.delta, coverage: Coverage::Sequential, ..at_cap };
-        }
-        sequence::interval(self.counts, self.delta)
-    }
-
-    fn estimate(&self) -> f64 {
-        if !self.succeeded() {
-            return self.counts.share();
-        }
-        math::at_most((self.needed as f64 - 1.0) / self.sum, 1.0)
+    fn look(&mut self, counts: Counts, _: bool) -> bool {
+        let key = TrialKey { seed: self.seed, index: counts.trials() - 1, branch: 0 };
+        self.sum -= math::ln(Stream::of(key, 0, Purpose::Procedure).uniform(0));
+        self.succeeded(counts) || self.cap.is_some_and(|cap| counts.trials() >= cap)
     }
 
     fn limit(&self) -> Option<u64> {
         self.cap
     }
+
+    fn numbers(&self) -> Vec<(&'static str, f64)> {
+        let cap = self.cap.map(|cap| ("cap", cap as f64));
+        [("successes", self.needed as f64)].into_iter().chain(cap).collect()
+    }
 }
+
+impl Estimator for Gbas {
+    fn error(&self) -> f64 {
+        self.delta
+    }
+
+    /// At its own stop the exact two-sided interval of the pivot P R, which has the law Gamma(k); at the cap
+    /// a Clopper-Pearson interval, with upper end about 3/n without successes at 5 %.
+    fn at_stop(&self, counts: Counts) -> Interval {
+        if !self.succeeded(counts) {
+            let at_cap = clopper_pearson::interval(counts, CAP_SHARE * self.delta);
+            return Interval { error: self.delta, coverage: Coverage::Sequential, ..at_cap };
+        }
+        let own = if self.cap.is_some() { (1.0 - CAP_SHARE) * self.delta } else { self.delta };
+        let k = self.needed as f64;
+        Interval {
+            // No probability is above 1, whatever the scheme says of one that is near it.
+            low: math::at_most(gamma_quantile(k, 0.5 * own) / self.sum, 1.0),
+            high: math::at_most(gamma_upper_quantile(k, 0.5 * own) / self.sum, 1.0),
+            error: self.delta,
+            coverage: Coverage::Sequential,
+        }
+    }
+
+    fn estimate(&self, counts: Counts) -> f64 {
+        if !self.succeeded(counts) {
+            return counts.share();
+        }
+        math::at_most((self.needed as f64 - 1.0) / self.sum, 1.0)
+    }
+
+    fn is_capped(&self, counts: Counts) -> bool {
+        !self.succeeded(counts)
+    }
+}
+
+/// Trials after which it gives up.
+const CAP: u64 = 1_000_000;
+
+/// The procedure as queries name it.
+pub(super) const GBAS: Spec = Spec {
+    name: "gbas",
+    reported: "gbas",
+    serves: Serves::Probability,
+    arguments: &[Argument { name: "epsilon", kind: Kind::Relative }, DELTA],
+    summary: "relative error {epsilon}, error {delta}",
+    guarantee: "relative error epsilon; it stops at a million trials, with an exact interval then",
+    make: Make::Estimator(|values, seed| Ok(Gbas::new(values[0], values[1], Some(CAP), seed)?.into_any())),
+    forecast: Some(Forecast {
+        trials: |values, guess| {
+            let z = normal_quantile(1.0 - 0.5 * values[1]);
+            z * z / (values[0] * values[0] * guess.share)
+        },
+        scatter: WIDTH_SCATTER,
+    }),
+};
 
 #[cfg(test)]
 mod tests {

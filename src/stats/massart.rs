@@ -5,9 +5,11 @@
 //! interval is formed at every trial: the guarantee is argued by its authors, with much slack, rather than
 //! proven at every index.
 
+use super::estimator::until_narrow;
 use super::invalid::{Invalid, probability, range};
+use super::spec::{DELTA, EPSILON, Forecast, Make, Serves, Spec};
 use super::width::Ahead;
-use super::{Counts, Coverage, Estimator, Interval, clopper_pearson, okamoto, sequence};
+use super::{Counts, Coverage, Estimator, Interval, Rule, Sequential, clopper_pearson, okamoto};
 use crate::base::math;
 
 /// Estimates P within a half-width by the share of successes.
@@ -19,8 +21,6 @@ pub struct Massart {
     share: f64,
     limit: u64,
     ahead: Ahead,
-    counts: Counts,
-    finished: bool,
 }
 
 /// The number of trials that the bound asks for, given the running interval.
@@ -40,63 +40,62 @@ fn needed(counts: Counts, epsilon: f64, delta: f64, share: f64) -> f64 {
 impl Massart {
     /// Half-width `epsilon`, error `delta`, of which `share` (0.001 to 0.01 are good) goes into the running
     /// interval.
-    pub fn new(epsilon: f64, delta: f64, share: f64) -> Result<Self, Invalid> {
+    pub fn new(epsilon: f64, delta: f64, share: f64) -> Result<Sequential<Self>, Invalid> {
         range("epsilon", epsilon, 1e-5, 0.5)?;
         probability("delta", delta)?;
         probability("share", share)?;
         if share >= delta {
             return Err(Invalid::Order { low_name: "share", low: share, high_name: "delta", high: delta });
         }
-        Ok(Self {
-            epsilon,
-            delta,
-            share,
-            limit: okamoto::size(epsilon, delta),
-            ahead: Ahead::new(),
-            counts: Counts::default(),
-            finished: false,
-        })
+        let limit = okamoto::size(epsilon, delta);
+        Ok(Sequential::new(Self { epsilon, delta, share, limit, ahead: Ahead::new() }))
     }
 }
 
-impl Estimator for Massart {
+impl Rule for Massart {
+    type Answer = bool;
+
     #[inline]
-    fn observe(&mut self, success: bool) -> bool {
-        if !self.finished {
-            self.counts.add(success);
-            let (epsilon, delta, share) = (self.epsilon, self.delta, self.share);
-            self.finished = self.ahead.reached(self.counts, self.limit, |counts| {
-                counts.trials() as f64 >= needed(counts, epsilon, delta, share)
-            });
-        }
-        self.finished
-    }
-
-    fn finished(&self) -> bool {
-        self.finished
-    }
-
-    fn counts(&self) -> Counts {
-        self.counts
-    }
-
-    fn interval(&self) -> Interval {
-        if !self.finished {
-            return sequence::interval(self.counts, self.delta);
-        }
-        let middle = self.counts.share();
-        Interval {
-            low: math::at_least(middle - self.epsilon, 0.0),
-            high: math::at_most(middle + self.epsilon, 1.0),
-            error: self.delta,
-            coverage: Coverage::Sequential,
-        }
+    fn look(&mut self, counts: Counts, _: bool) -> bool {
+        let (epsilon, delta, share) = (self.epsilon, self.delta, self.share);
+        self.ahead.reached(counts, self.limit, |counts| {
+            counts.trials() as f64 >= needed(counts, epsilon, delta, share)
+        })
     }
 
     fn limit(&self) -> Option<u64> {
         Some(self.limit)
     }
+
+    fn numbers(&self) -> Vec<(&'static str, f64)> {
+        vec![("auxiliary", self.share)]
+    }
 }
+
+impl Estimator for Massart {
+    fn error(&self) -> f64 {
+        self.delta
+    }
+
+    fn at_stop(&self, counts: Counts) -> Interval {
+        Interval::around(counts.share(), self.epsilon, self.delta, Coverage::Sequential)
+    }
+}
+
+/// Share of the error that goes into the running interval.
+const SHARE: f64 = 0.02;
+
+/// The procedure as queries name it.
+pub(super) const MASSART: Spec = Spec {
+    name: "massart",
+    reported: "massart",
+    serves: Serves::Probability,
+    arguments: &[EPSILON, DELTA],
+    summary: "sequential Massart bound for ± {epsilon}, error {delta}",
+    guarantee: "P in the interval of half width epsilon, argued rather than proven",
+    make: Make::Estimator(|values, _| Ok(Massart::new(values[0], values[1], SHARE * values[1])?.into_any())),
+    forecast: Some(Forecast { trials: until_narrow, scatter: (0.9, 2.2) }),
+};
 
 #[cfg(test)]
 mod tests {

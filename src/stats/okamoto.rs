@@ -1,7 +1,8 @@
 //! The fixed number of trials by the bound of Okamoto (1958), Chernoff and Hoeffding (1963).
 
 use super::invalid::{Invalid, probability, range};
-use super::{Counts, Coverage, Estimator, Interval, sequence};
+use super::spec::{DELTA, EPSILON, Make, Serves, Spec};
+use super::{Counts, Coverage, Estimator, Interval, Rule, Sequential};
 use crate::base::math;
 
 /// ceil(ln(2 / delta) / (2 epsilon^2)).
@@ -15,58 +16,63 @@ pub struct Okamoto {
     epsilon: f64,
     delta: f64,
     size: u64,
-    counts: Counts,
 }
 
 impl Okamoto {
     /// P(|share - P| > epsilon) <= delta.
-    pub fn new(epsilon: f64, delta: f64) -> Result<Self, Invalid> {
-        range("epsilon", epsilon, 1e-5, 0.5)?;
-        probability("delta", delta)?;
-        Ok(Self { epsilon, delta, size: size(epsilon, delta), counts: Counts::default() })
+    pub fn new(epsilon: f64, delta: f64) -> Result<Sequential<Self>, Invalid> {
+        Self::rule(epsilon, delta).map(Sequential::new)
     }
 
-    /// The same after so many outcomes.
-    pub(super) fn after(self, counts: Counts) -> Self {
-        Self { counts, ..self }
+    pub(super) fn rule(epsilon: f64, delta: f64) -> Result<Self, Invalid> {
+        range("epsilon", epsilon, 1e-5, 0.5)?;
+        probability("delta", delta)?;
+        Ok(Self { epsilon, delta, size: size(epsilon, delta) })
     }
 }
 
-impl Estimator for Okamoto {
-    #[inline]
-    fn observe(&mut self, success: bool) -> bool {
-        if self.counts.trials() < self.size {
-            self.counts.add(success);
-        }
-        self.finished()
-    }
+impl Rule for Okamoto {
+    type Answer = bool;
 
     #[inline]
-    fn finished(&self) -> bool {
-        self.counts.trials() >= self.size
-    }
-
-    fn counts(&self) -> Counts {
-        self.counts
-    }
-
-    fn interval(&self) -> Interval {
-        if !self.finished() {
-            return sequence::interval(self.counts, self.delta);
-        }
-        let share = self.counts.share();
-        Interval {
-            low: math::at_least(share - self.epsilon, 0.0),
-            high: math::at_most(share + self.epsilon, 1.0),
-            error: self.delta,
-            coverage: Coverage::FixedSize,
-        }
+    fn look(&mut self, counts: Counts, _: bool) -> bool {
+        counts.trials() >= self.size
     }
 
     fn limit(&self) -> Option<u64> {
         Some(self.size)
     }
+
+    fn is_planned(&self) -> bool {
+        true
+    }
+
+    fn numbers(&self) -> Vec<(&'static str, f64)> {
+        vec![("trials", self.size as f64)]
+    }
 }
+
+impl Estimator for Okamoto {
+    fn error(&self) -> f64 {
+        self.delta
+    }
+
+    fn at_stop(&self, counts: Counts) -> Interval {
+        Interval::around(counts.share(), self.epsilon, self.delta, Coverage::FixedSize)
+    }
+}
+
+/// The procedure as estimates of probabilities name it.
+pub(super) const OKAMOTO: Spec = Spec {
+    name: "okamoto",
+    reported: "okamoto",
+    serves: Serves::Probability,
+    arguments: &[EPSILON, DELTA],
+    summary: "Okamoto bound for ± {epsilon}, error {delta}",
+    guarantee: "P in the interval of half width epsilon, at a fixed size",
+    make: Make::Estimator(|values, _| Ok(Okamoto::new(values[0], values[1])?.into_any())),
+    forecast: None,
+};
 
 #[cfg(test)]
 mod tests {

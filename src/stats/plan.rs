@@ -2,8 +2,9 @@
 //! bounds both errors of a test with an indifference region.
 
 use super::invalid::{Invalid, probability, range, region};
+use super::spec::{ALPHA, Argument, BETA, Make, Serves, Spec};
 use super::sprt::region_statement;
-use super::{Counts, Decision, Statement, Test};
+use super::{Counts, Decision, Rule, Sequential, Statement, Test};
 use crate::base::special::{beta_tails, normal_quantile};
 
 /// P >= theta + indifference against P <= theta - indifference by a fixed number of trials.
@@ -17,8 +18,6 @@ pub struct Plan {
     beta: f64,
     size: u64,
     needed: u64,
-    counts: Counts,
-    decision: Option<Decision>,
 }
 
 /// P(Bin(n, p) < c).
@@ -59,7 +58,7 @@ fn critical(n: u64, p: f64, alpha: f64) -> u64 {
 
 impl Plan {
     /// Parameters as those of the SPRT; the indifference must be at least 0.0005.
-    pub fn new(theta: f64, indifference: f64, alpha: f64, beta: f64) -> Result<Self, Invalid> {
+    pub fn new(theta: f64, indifference: f64, alpha: f64, beta: f64) -> Result<Sequential<Self>, Invalid> {
         let (low, high) = region(theta, indifference)?;
         range("indifference", indifference, 0.000_5, 0.5)?;
         probability("alpha", alpha)?;
@@ -96,7 +95,7 @@ impl Plan {
             size += 1;
             needed = critical(size, high, alpha);
         }
-        Ok(Self { low, high, alpha, beta, size, needed, counts: Counts::default(), decision: None })
+        Ok(Sequential::new(Self { low, high, alpha, beta, size, needed }))
     }
 
     /// The number of trials, and the least number of successes for `Above`.
@@ -105,36 +104,52 @@ impl Plan {
     }
 }
 
-impl Test for Plan {
+impl Rule for Plan {
+    type Answer = Option<Decision>;
+
     #[inline]
-    fn observe(&mut self, success: bool) -> Option<Decision> {
-        if self.decision.is_none() {
-            self.counts.add(success);
-            if self.counts.successes >= self.needed {
-                self.decision = Some(Decision::Above);
-            } else if self.counts.failures > self.size - self.needed {
-                self.decision = Some(Decision::Below);
-            }
+    fn look(&mut self, counts: Counts, _: bool) -> Option<Decision> {
+        if counts.successes >= self.needed {
+            Some(Decision::Above)
+        } else if counts.failures > self.size - self.needed {
+            Some(Decision::Below)
+        } else {
+            None
         }
-        self.decision
-    }
-
-    fn decision(&self) -> Option<Decision> {
-        self.decision
-    }
-
-    fn counts(&self) -> Counts {
-        self.counts
-    }
-
-    fn certifies(&self, decision: Decision) -> Statement {
-        region_statement(decision, (self.low, self.high), self.alpha, self.beta)
     }
 
     fn limit(&self) -> Option<u64> {
         Some(self.size)
     }
+
+    fn is_planned(&self) -> bool {
+        true
+    }
+
+    fn numbers(&self) -> Vec<(&'static str, f64)> {
+        vec![("trials", self.size as f64), ("accept", self.needed as f64)]
+    }
 }
+
+impl Test for Plan {
+    fn certifies(&self, decision: Decision) -> Statement {
+        region_statement(decision, (self.low, self.high), self.alpha, self.beta)
+    }
+}
+
+/// The procedure as queries name it.
+pub(super) const PLAN: Spec = Spec {
+    name: "plan",
+    reported: "plan",
+    serves: Serves::Check,
+    arguments: &[ALPHA, BETA, Argument::indifference(5e-4)],
+    summary: "exact plan of fixed size, alpha {alpha}, beta {beta}, indifference {indifference}",
+    guarantee: "as sprt, at a fixed size; it stops before that once the answer is forced",
+    make: Make::Test(|against, values| {
+        Ok(Plan::new(against.theta, values[2], values[0], values[1])?.into_any())
+    }),
+    forecast: None,
+};
 
 #[cfg(test)]
 mod tests {
@@ -144,13 +159,13 @@ mod tests {
     #[test]
     fn the_smallest_plan_is_found() {
         let plan = Plan::new(0.9, 0.01, 0.01, 0.01).unwrap();
-        assert_eq!(plan.size(), (4861, 4377));
+        assert_eq!(plan.rule().size(), (4861, 4377));
     }
 
     #[test]
     fn no_smaller_plan_meets_both_bounds() {
         let plan = Plan::new(0.6, 0.1, 0.05, 0.1).unwrap();
-        let (size, needed) = plan.size();
+        let (size, needed) = plan.rule().size();
         assert!(below(size, needed, 0.7) <= 0.05 && at_least(size, needed, 0.5) <= 0.1);
         for n in 1..size {
             assert!((0..=n + 1).all(|c| below(n, c, 0.7) > 0.05 || at_least(n, c, 0.5) > 0.1), "{n}");
@@ -160,7 +175,7 @@ mod tests {
     #[test]
     fn it_stops_when_the_rest_cannot_change_the_decision() {
         let mut plan = Plan::new(0.6, 0.1, 0.05, 0.1).unwrap();
-        let (size, needed) = plan.size();
+        let (size, needed) = plan.rule().size();
         for _ in 0..size - needed {
             assert_eq!(plan.observe(false), None);
         }

@@ -1,8 +1,7 @@
 //! The Beta-mixture confidence sequence with the prior of Krichevsky and Trofimov (1981): an interval that
 //! holds P at all numbers of trials at once, and so at any deadline (Robbins 1970; Ville 1939).
 
-use super::invalid::{Invalid, probability};
-use super::{Counts, Coverage, Estimator, Interval};
+use super::{Counts, Coverage, Interval};
 use crate::base::math;
 use crate::base::special::ln_beta;
 
@@ -57,61 +56,6 @@ pub fn interval(counts: Counts, delta: f64) -> Interval {
         high: if none || counts.failures == 0 { 1.0 } else { bound(1.0) },
         error: delta,
         coverage: Coverage::TimeUniform,
-    }
-}
-
-/// The confidence sequence as an estimator: until a half-width, or until somebody stops it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Sequence {
-    delta: f64,
-    epsilon: Option<f64>,
-    /// Where the width is looked at next; the interval holds at all times, so any schedule is sound.
-    next: u64,
-    counts: Counts,
-    finished: bool,
-}
-
-impl Sequence {
-    /// Runs as long as it is fed, or, with `epsilon`, until the half-width is at most that (looked at
-    /// after each percent of more trials).
-    pub fn new(delta: f64, epsilon: Option<f64>) -> Result<Self, Invalid> {
-        probability("delta", delta)?;
-        if let Some(epsilon) = epsilon {
-            super::invalid::range("epsilon", epsilon, 1e-5, 0.5)?;
-        }
-        Ok(Self { delta, epsilon, next: 1, counts: Counts::default(), finished: false })
-    }
-}
-
-impl Estimator for Sequence {
-    #[inline]
-    fn observe(&mut self, success: bool) -> bool {
-        if !self.finished {
-            self.counts.add(success);
-            if let Some(epsilon) = self.epsilon
-                && self.counts.trials() >= self.next
-            {
-                self.next += 1 + self.next / 100;
-                self.finished = self.interval().half_width() <= epsilon;
-            }
-        }
-        self.finished
-    }
-
-    fn finished(&self) -> bool {
-        self.finished
-    }
-
-    fn counts(&self) -> Counts {
-        self.counts
-    }
-
-    fn interval(&self) -> Interval {
-        interval(self.counts, self.delta)
-    }
-
-    fn limit(&self) -> Option<u64> {
-        None
     }
 }
 

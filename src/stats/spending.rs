@@ -1,8 +1,10 @@
 //! Clopper-Pearson with the error spent evenly over geometric looks: sound by the union bound for any
 //! half-width and error, without a table.
 
+use super::estimator::until_narrow;
 use super::invalid::{Invalid, probability, range};
-use super::{Counts, Coverage, Estimator, Interval, clopper_pearson, sequence};
+use super::spec::{DELTA, EPSILON, Forecast, Make, Serves, Spec};
+use super::{Counts, Coverage, Estimator, Interval, Rule, Sequential, clopper_pearson};
 use crate::base::math;
 
 /// Each look is at half as many trials again.
@@ -16,13 +18,15 @@ pub struct Spending {
     looks: Vec<u64>,
     /// Looks already taken.
     taken: usize,
-    counts: Counts,
-    finished: bool,
 }
 
 impl Spending {
     /// P(P is not in the interval) <= delta, half-width at most `epsilon`.
-    pub fn new(epsilon: f64, delta: f64) -> Result<Self, Invalid> {
+    pub fn new(epsilon: f64, delta: f64) -> Result<Sequential<Self>, Invalid> {
+        Self::rule(epsilon, delta).map(Sequential::new)
+    }
+
+    pub(super) fn rule(epsilon: f64, delta: f64) -> Result<Self, Invalid> {
         range("epsilon", epsilon, 1e-5, 0.5)?;
         probability("delta", delta)?;
         // The more looks, the longer each takes: the smallest number that reaches the end.
@@ -33,7 +37,7 @@ impl Spending {
                 break;
             }
         }
-        Ok(Self { epsilon, delta, looks, taken: 0, counts: Counts::default(), finished: false })
+        Ok(Self { epsilon, delta, looks, taken: 0 })
     }
 
     /// The numbers of trials at which it looks.
@@ -41,20 +45,11 @@ impl Spending {
         &self.looks
     }
 
-    /// The same after outcomes at which it cannot have stopped, but for the last.
-    pub(super) fn after(mut self, counts: Counts) -> Self {
-        self.counts = counts;
+    /// Goes on after outcomes at which it cannot have stopped, but for the last.
+    pub(super) fn resumed(mut self, counts: Counts) -> Sequential<Self> {
         self.taken = self.looks.partition_point(|look| *look < counts.trials());
-        self.look();
-        self
-    }
-
-    fn look(&mut self) {
-        if self.looks.get(self.taken) == Some(&self.counts.trials()) {
-            self.taken += 1;
-            self.finished = self.taken == self.looks.len()
-                || clopper_pearson::narrow(self.counts, self.level(), 2.0 * self.epsilon);
-        }
+        let finished = self.look(counts, false);
+        Sequential::resumed(self, counts, finished)
     }
 
     fn level(&self) -> f64 {
@@ -77,39 +72,52 @@ fn schedule(epsilon: f64, level: f64) -> Vec<u64> {
     looks
 }
 
-impl Estimator for Spending {
+impl Rule for Spending {
+    type Answer = bool;
+
     #[inline]
-    fn observe(&mut self, success: bool) -> bool {
-        if !self.finished {
-            self.counts.add(success);
-            self.look();
+    fn look(&mut self, counts: Counts, _: bool) -> bool {
+        if self.looks.get(self.taken) != Some(&counts.trials()) {
+            return false;
         }
-        self.finished
-    }
-
-    fn finished(&self) -> bool {
-        self.finished
-    }
-
-    fn counts(&self) -> Counts {
-        self.counts
-    }
-
-    fn interval(&self) -> Interval {
-        if !self.finished {
-            return sequence::interval(self.counts, self.delta);
-        }
-        Interval {
-            error: self.delta,
-            coverage: Coverage::Sequential,
-            ..clopper_pearson::interval(self.counts, self.level())
-        }
+        self.taken += 1;
+        self.taken == self.looks.len() || clopper_pearson::narrow(counts, self.level(), 2.0 * self.epsilon)
     }
 
     fn limit(&self) -> Option<u64> {
         self.looks.last().copied()
     }
+
+    fn numbers(&self) -> Vec<(&'static str, f64)> {
+        vec![("looks", self.looks.len() as f64)]
+    }
 }
+
+impl Estimator for Spending {
+    fn error(&self) -> f64 {
+        self.delta
+    }
+
+    fn at_stop(&self, counts: Counts) -> Interval {
+        Interval {
+            error: self.delta,
+            coverage: Coverage::Sequential,
+            ..clopper_pearson::interval(counts, self.level())
+        }
+    }
+}
+
+/// The procedure as queries name it.
+pub(super) const SPENDING: Spec = Spec {
+    name: "spending",
+    reported: "spending",
+    serves: Serves::Probability,
+    arguments: &[EPSILON, DELTA],
+    summary: "Clopper-Pearson with alpha spending for ± {epsilon}, error {delta}",
+    guarantee: "P in the interval of half width epsilon, by a union bound over looks",
+    make: Make::Estimator(|values, _| Ok(Spending::new(values[0], values[1])?.into_any())),
+    forecast: Some(Forecast { trials: until_narrow, scatter: (0.9, 2.2) }),
+};
 
 #[cfg(test)]
 mod tests {
@@ -118,9 +126,9 @@ mod tests {
     #[test]
     fn looks_of_the_reference() {
         let spending = Spending::new(0.01, 0.05).unwrap();
-        assert_eq!(spending.looks().len(), 12);
+        assert_eq!(spending.rule().looks().len(), 12);
         for look in [689, 1550, 5229, 11_764, 17_646] {
-            assert!(spending.looks().contains(&look), "{look} not in {:?}", spending.looks());
+            assert!(spending.rule().looks().contains(&look), "{look} not in {:?}", spending.rule().looks());
         }
         assert!((20_500..20_800).contains(&spending.limit().unwrap()), "{:?}", spending.limit());
     }
@@ -128,12 +136,12 @@ mod tests {
     #[test]
     fn begun_in_the_middle_it_goes_on_as_from_the_start() {
         let mut whole = Spending::new(0.05, 0.05).unwrap();
-        let looks = whole.looks().to_vec();
+        let looks = whole.rule().looks().to_vec();
         let mut n = 0u64;
         while !whole.finished() {
             for from in [looks[0] - 1, looks[1], looks[1] + 1] {
                 if from == n {
-                    let part = Spending::new(0.05, 0.05).unwrap().after(whole.counts());
+                    let part = Spending::rule(0.05, 0.05).unwrap().resumed(whole.counts());
                     assert_eq!(part, whole);
                 }
             }

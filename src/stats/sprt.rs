@@ -4,7 +4,8 @@
 //! (1 - beta)/alpha, beta/(1 - alpha) only bounds their sum.
 
 use super::invalid::{Invalid, probability, region};
-use super::{Claim, Counts, Decision, Statement, Test};
+use super::spec::{ALPHA, Argument, BETA, Forecast, Make, Serves, Spec, TEST_SCATTER};
+use super::{Claim, Counts, Decision, Rule, Sequential, Statement, Test};
 use crate::base::math;
 
 /// Thresholds are widened by this much, against rounding.
@@ -23,18 +24,16 @@ pub struct Sprt {
     /// ln(1 / alpha) and ln(beta), widened.
     say_below: f64,
     say_above: f64,
-    counts: Counts,
-    decision: Option<Decision>,
 }
 
 impl Sprt {
     /// `alpha` bounds the error of deciding `Below` though P >= theta + indifference, `beta` that of
     /// deciding `Above` though P <= theta - indifference. Refuses a region that leaves (0, 1).
-    pub fn new(theta: f64, indifference: f64, alpha: f64, beta: f64) -> Result<Self, Invalid> {
+    pub fn new(theta: f64, indifference: f64, alpha: f64, beta: f64) -> Result<Sequential<Self>, Invalid> {
         let (low, high) = region(theta, indifference)?;
         probability("alpha", alpha)?;
         probability("beta", beta)?;
-        Ok(Self {
+        Ok(Sequential::new(Self {
             low,
             high,
             alpha,
@@ -43,48 +42,31 @@ impl Sprt {
             per_failure: math::ln((1.0 - low) / (1.0 - high)),
             say_below: -math::ln(alpha) + SLACK,
             say_above: math::ln(beta) - SLACK,
-            counts: Counts::default(),
-            decision: None,
-        })
+        }))
     }
+}
 
-    /// The log likelihood ratio of theta - indifference over theta + indifference so far.
+impl Rule for Sprt {
+    type Answer = Option<Decision>;
+
     #[inline]
-    pub fn log_ratio(&self) -> f64 {
-        // From whole numbers each time: no drift, and the same whatever the order.
-        self.counts.successes as f64 * self.per_success + self.counts.failures as f64 * self.per_failure
+    fn look(&mut self, counts: Counts, _: bool) -> Option<Decision> {
+        // The log likelihood ratio of theta - indifference over theta + indifference, from whole numbers each time: no
+        // drift, and the same whatever the order.
+        let ratio = counts.successes as f64 * self.per_success + counts.failures as f64 * self.per_failure;
+        if ratio >= self.say_below {
+            Some(Decision::Below)
+        } else if ratio <= self.say_above {
+            Some(Decision::Above)
+        } else {
+            None
+        }
     }
 }
 
 impl Test for Sprt {
-    #[inline]
-    fn observe(&mut self, success: bool) -> Option<Decision> {
-        if self.decision.is_none() {
-            self.counts.add(success);
-            let ratio = self.log_ratio();
-            if ratio >= self.say_below {
-                self.decision = Some(Decision::Below);
-            } else if ratio <= self.say_above {
-                self.decision = Some(Decision::Above);
-            }
-        }
-        self.decision
-    }
-
-    fn decision(&self) -> Option<Decision> {
-        self.decision
-    }
-
-    fn counts(&self) -> Counts {
-        self.counts
-    }
-
     fn certifies(&self, decision: Decision) -> Statement {
         region_statement(decision, (self.low, self.high), self.alpha, self.beta)
-    }
-
-    fn limit(&self) -> Option<u64> {
-        None
     }
 }
 
@@ -101,6 +83,38 @@ pub(super) fn region_statement(
         Decision::Below => Statement { claim: Claim::Below(high), error: alpha },
         Decision::Within => Statement { claim: Claim::Between(low, high), error: alpha + beta },
     }
+}
+
+/// The procedure as queries name it.
+pub(super) const SPRT: Spec = Spec {
+    name: "sprt",
+    reported: "sprt",
+    serves: Serves::Check,
+    arguments: &[ALPHA, BETA, Argument::indifference(0.0)],
+    summary: "SPRT, alpha {alpha}, beta {beta}, indifference {indifference}",
+    guarantee: "satisfied certifies P > theta - indifference, violated P < theta + indifference",
+    make: Make::Test(|against, values| {
+        Ok(Sprt::new(against.theta, values[2], values[0], values[1])?.into_any())
+    }),
+    forecast: Some(WALD),
+};
+
+/// Wald's expected number of trials for the arguments alpha, beta, indifference.
+pub(super) const WALD: Forecast = Forecast {
+    trials: |values, guess| expected(guess.share, guess.theta, values[2], values[0], values[1]),
+    scatter: TEST_SCATTER,
+};
+
+/// Wald's expected number of trials of a sequential probability ratio test where the share is `p`: the mean
+/// of the exit divided by the drift, or where there is hardly any drift, by the variance of a step.
+pub(super) fn expected(p: f64, theta: f64, indifference: f64, alpha: f64, beta: f64) -> f64 {
+    let (high, low) =
+        (math::at_most(theta + indifference, 1.0 - 1e-9), math::at_least(theta - indifference, 1e-9));
+    let (success, failure) = (math::ln(low / high), math::ln((1.0 - low) / (1.0 - high)));
+    let drift = p * success + (1.0 - p) * failure;
+    let exit = if drift > 0.0 { -math::ln(alpha) } else { -math::ln(beta) };
+    let between = math::ln(alpha) * math::ln(beta) / (p * success * success + (1.0 - p) * failure * failure);
+    math::at_most(exit / math::at_least(drift.abs(), 1e-9), between)
 }
 
 #[cfg(test)]
@@ -135,5 +149,15 @@ mod tests {
         assert!(message.contains("alpha = 1.5"), "{message}");
         let message = Sprt::new(0.95, 0.2, 0.01, 0.01).unwrap_err().to_string();
         assert!(message.contains("0.2") && message.contains("0.95"), "{message}");
+    }
+
+    #[test]
+    fn it_takes_what_wald_says() {
+        // Theta 0.8 with a region of 0.02 and errors 0.01, the truth 0.9: a few hundred trials.
+        let trials = expected(0.9, 0.8, 0.02, 0.01, 0.01);
+        assert!((150.0..260.0).contains(&trials), "{trials}");
+        // On the threshold itself: the product of the boundaries over the variance of a step.
+        let trials = expected(0.8, 0.8, 0.02, 0.01, 0.01);
+        assert!((1_000.0..2_500.0).contains(&trials), "{trials}");
     }
 }

@@ -1,6 +1,6 @@
 //! What tests of P >= theta have in common, and unresolved trials.
 
-use super::{Counts, Evidence, Outcome, Plan, Sprt, ThreeWay, TwoSprt};
+use super::{AnyTest, Readings, Rule, Sequential};
 
 /// What a test decided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -58,77 +58,27 @@ pub struct Statement {
     pub error: f64,
 }
 
-/// A test of P >= theta that reads outcomes in index order.
-pub trait Test {
-    /// Reads the next outcome. `Some` once decided; outcomes after that are ignored.
-    fn observe(&mut self, success: bool) -> Option<Decision>;
-
-    /// The decision, if there is one.
-    fn decision(&self) -> Option<Decision>;
-
-    /// The outcomes read.
-    fn counts(&self) -> Counts;
-
+/// The rule of a test of P >= theta.
+pub trait Test: Rule<Answer = Option<Decision>> {
     /// What `decision` certifies, whatever P is: no caveat about the indifference region is left.
     fn certifies(&self, decision: Decision) -> Statement;
-
-    /// The number of trials after which it has surely decided, if it has one.
-    fn limit(&self) -> Option<u64>;
 }
 
-/// Any of the tests.
-#[derive(Clone, Debug)]
-pub enum AnyTest {
-    /// Wald's sequential probability ratio test.
-    Sprt(Sprt),
-    /// Lorden's 2-SPRT.
-    TwoSprt(TwoSprt),
-    /// The exact plan of fixed size.
-    Plan(Plan),
-    /// One-sided Beta-mixture e-processes.
-    Evidence(Evidence),
-    /// The three-way variant.
-    ThreeWay(ThreeWay),
-}
+impl<R: Test> Sequential<R> {
+    /// The decision, if there is one.
+    pub const fn decision(&self) -> Option<Decision> {
+        self.answer()
+    }
 
-impl AnyTest {
-    fn inner(&self) -> &dyn Test {
-        match self {
-            Self::Sprt(test) => test,
-            Self::TwoSprt(test) => test,
-            Self::Plan(test) => test,
-            Self::Evidence(test) => test,
-            Self::ThreeWay(test) => test,
-        }
+    /// What `decision` certifies.
+    pub fn certifies(&self, decision: Decision) -> Statement {
+        self.rule().certifies(decision)
     }
 }
 
 impl Test for AnyTest {
-    #[inline]
-    fn observe(&mut self, success: bool) -> Option<Decision> {
-        match self {
-            Self::Sprt(test) => test.observe(success),
-            Self::TwoSprt(test) => test.observe(success),
-            Self::Plan(test) => test.observe(success),
-            Self::Evidence(test) => test.observe(success),
-            Self::ThreeWay(test) => test.observe(success),
-        }
-    }
-
-    fn decision(&self) -> Option<Decision> {
-        self.inner().decision()
-    }
-
-    fn counts(&self) -> Counts {
-        self.inner().counts()
-    }
-
     fn certifies(&self, decision: Decision) -> Statement {
         self.inner().certifies(decision)
-    }
-
-    fn limit(&self) -> Option<u64> {
-        self.inner().limit()
     }
 }
 
@@ -141,72 +91,23 @@ pub enum Verdict {
     Split(Decision, Decision),
 }
 
-/// A test over outcomes of which some are unresolved: it runs with all of them as failures and with all of
-/// them as successes, each to its own stop, and decides where both agree.
-///
-/// The error bound of the test holds for the agreed decision, however the trials would have ended.
-#[derive(Clone, Debug)]
-pub struct TestReadings<T> {
-    pessimistic: T,
-    /// The reading with successes; apart from the other only from the first unresolved trial on.
-    optimistic: Option<T>,
-    unresolved: u64,
-    read: u64,
-    verdict: Option<Verdict>,
-}
-
-impl<T: Test + Clone> TestReadings<T> {
-    /// Around a fresh test.
-    pub const fn new(test: T) -> Self {
-        Self { pessimistic: test, optimistic: None, unresolved: 0, read: 0, verdict: None }
-    }
-
-    /// Reads the next outcome. `Some` once both readings have decided.
-    #[inline]
-    pub fn observe(&mut self, outcome: Outcome) -> Option<Verdict> {
-        if self.verdict.is_some() {
-            return self.verdict;
-        }
-        self.read += 1;
-        if outcome == Outcome::Unresolved {
-            self.unresolved += 1;
-            if self.optimistic.is_none() {
-                self.optimistic = Some(self.pessimistic.clone());
-            }
-        }
-        let low = self.pessimistic.observe(outcome == Outcome::True);
-        let high = match &mut self.optimistic {
-            None => low,
-            Some(test) => test.observe(outcome != Outcome::False),
-        };
-        if let (Some(low), Some(high)) = (low, high) {
-            self.verdict = Some(if low == high { Verdict::Agreed(low) } else { Verdict::Split(low, high) });
-        }
-        self.verdict
-    }
-
-    /// The verdict, if there is one.
-    pub const fn verdict(&self) -> Option<Verdict> {
-        self.verdict
-    }
-
-    /// Outcomes read, and how many of them were unresolved.
-    pub const fn read(&self) -> (u64, u64) {
-        (self.read, self.unresolved)
-    }
-
-    /// The two readings: unresolved trials as failures, as successes.
-    pub fn readings(&self) -> (&T, &T) {
-        (&self.pessimistic, self.optimistic.as_ref().unwrap_or(&self.pessimistic))
+impl<R: Test + Clone> Readings<R> {
+    /// How both readings came out, once both have decided. The error bound of the test holds for an agreed decision,
+    /// however the unresolved trials would have ended.
+    pub fn verdict(&self) -> Option<Verdict> {
+        let (low, high) = self.readings();
+        let (low, high) = (low.decision()?, high.decision()?);
+        Some(if low == high { Verdict::Agreed(low) } else { Verdict::Split(low, high) })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stats::{Outcome, Sprt};
 
-    fn readings() -> TestReadings<Sprt> {
-        TestReadings::new(Sprt::new(0.5, 0.1, 0.05, 0.05).unwrap())
+    fn readings() -> Readings<Sprt> {
+        Readings::new(Sprt::new(0.5, 0.1, 0.05, 0.05).unwrap())
     }
 
     #[test]
@@ -214,7 +115,8 @@ mod tests {
         let (mut wrapped, mut bare) = (readings(), Sprt::new(0.5, 0.1, 0.05, 0.05).unwrap());
         for _ in 0..8 {
             let decision = bare.observe(true);
-            assert_eq!(wrapped.observe(Outcome::True), decision.map(Verdict::Agreed));
+            assert_eq!(wrapped.observe(Outcome::True), decision.is_some());
+            assert_eq!(wrapped.verdict(), decision.map(Verdict::Agreed));
         }
         assert_eq!(wrapped.verdict(), Some(Verdict::Agreed(Decision::Above)));
     }
@@ -223,10 +125,12 @@ mod tests {
     fn readings_that_disagree_are_a_split() {
         let mut test = readings();
         for _ in 0..7 {
-            assert_eq!(test.observe(Outcome::Unresolved), None);
+            assert!(!test.observe(Outcome::Unresolved));
         }
-        assert_eq!(test.observe(Outcome::Unresolved), Some(Verdict::Split(Decision::Below, Decision::Above)));
-        assert_eq!(test.read(), (8, 8));
+        assert!(test.observe(Outcome::Unresolved) && test.observe(Outcome::True));
+        assert_eq!(test.verdict(), Some(Verdict::Split(Decision::Below, Decision::Above)));
+        let (low, high) = test.readings();
+        assert_eq!((low.counts().failures, high.counts().successes), (8, 8));
     }
 
     #[test]

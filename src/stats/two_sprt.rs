@@ -4,8 +4,9 @@
 //! Errors are bounded as with the SPRT, and the number of trials has a bound: the test for hard deadlines.
 
 use super::invalid::{Invalid, probability, range, region};
-use super::sprt::{SLACK, region_statement};
-use super::{Counts, Decision, Statement, Test};
+use super::spec::{ALPHA, Argument, BETA, Make, Serves, Spec};
+use super::sprt::{SLACK, WALD, region_statement};
+use super::{Counts, Decision, Rule, Sequential, Statement, Test};
 use crate::base::math;
 
 /// P >= theta + indifference against P <= theta - indifference, with a closed region.
@@ -22,13 +23,11 @@ pub struct TwoSprt {
     /// ln(1 / alpha) and ln(1 / beta), widened.
     thresholds: (f64, f64),
     limit: u64,
-    counts: Counts,
-    decision: Option<Decision>,
 }
 
 impl TwoSprt {
     /// Parameters as those of the SPRT; the indifference must be at least 0.00001.
-    pub fn new(theta: f64, indifference: f64, alpha: f64, beta: f64) -> Result<Self, Invalid> {
+    pub fn new(theta: f64, indifference: f64, alpha: f64, beta: f64) -> Result<Sequential<Self>, Invalid> {
         let (low, high) = region(theta, indifference)?;
         range("indifference", indifference, 1e-5, 0.5)?;
         probability("alpha", alpha)?;
@@ -36,20 +35,9 @@ impl TwoSprt {
         let over = |end: f64| (math::ln(theta / end), math::ln((1.0 - theta) / (1.0 - end)));
         let (over_high, over_low) = (over(high), over(low));
         let thresholds = (-math::ln(alpha) + SLACK, -math::ln(beta) + SLACK);
-        let mut test = Self {
-            low,
-            high,
-            alpha,
-            beta,
-            over_high,
-            over_low,
-            thresholds,
-            limit: 0,
-            counts: Counts::default(),
-            decision: None,
-        };
+        let mut test = Self { low, high, alpha, beta, over_high, over_low, thresholds, limit: 0 };
         test.limit = test.closed_at();
-        Ok(test)
+        Ok(Sequential::new(test))
     }
 
     /// The first number of trials at which no count of successes is undecided.
@@ -76,37 +64,45 @@ impl TwoSprt {
     }
 }
 
-impl Test for TwoSprt {
+impl Rule for TwoSprt {
+    type Answer = Option<Decision>;
+
     #[inline]
-    fn observe(&mut self, success: bool) -> Option<Decision> {
-        if self.decision.is_none() {
-            self.counts.add(success);
-            let (s, f) = (self.counts.successes as f64, self.counts.failures as f64);
-            if s * self.over_high.0 + f * self.over_high.1 >= self.thresholds.0 {
-                self.decision = Some(Decision::Below);
-            } else if s * self.over_low.0 + f * self.over_low.1 >= self.thresholds.1 {
-                self.decision = Some(Decision::Above);
-            }
+    fn look(&mut self, counts: Counts, _: bool) -> Option<Decision> {
+        let (s, f) = (counts.successes as f64, counts.failures as f64);
+        if s * self.over_high.0 + f * self.over_high.1 >= self.thresholds.0 {
+            Some(Decision::Below)
+        } else if s * self.over_low.0 + f * self.over_low.1 >= self.thresholds.1 {
+            Some(Decision::Above)
+        } else {
+            None
         }
-        self.decision
-    }
-
-    fn decision(&self) -> Option<Decision> {
-        self.decision
-    }
-
-    fn counts(&self) -> Counts {
-        self.counts
-    }
-
-    fn certifies(&self, decision: Decision) -> Statement {
-        region_statement(decision, (self.low, self.high), self.alpha, self.beta)
     }
 
     fn limit(&self) -> Option<u64> {
         Some(self.limit)
     }
 }
+
+impl Test for TwoSprt {
+    fn certifies(&self, decision: Decision) -> Statement {
+        region_statement(decision, (self.low, self.high), self.alpha, self.beta)
+    }
+}
+
+/// The procedure as queries name it.
+pub(super) const SPRT2: Spec = Spec {
+    name: "sprt2",
+    reported: "sprt2",
+    serves: Serves::Check,
+    arguments: &[ALPHA, BETA, Argument::indifference(1e-5)],
+    summary: "2-SPRT, alpha {alpha}, beta {beta}, indifference {indifference}",
+    guarantee: "as sprt, and the number of trials is bounded",
+    make: Make::Test(|against, values| {
+        Ok(TwoSprt::new(against.theta, values[2], values[0], values[1])?.into_any())
+    }),
+    forecast: Some(WALD),
+};
 
 #[cfg(test)]
 mod tests {
@@ -115,7 +111,7 @@ mod tests {
     #[test]
     fn the_region_is_closed_at_the_limit_and_open_before_it() {
         let test = TwoSprt::new(0.9, 0.01, 0.01, 0.01).unwrap();
-        let limit = test.limit().unwrap();
+        let (limit, test) = (test.limit().unwrap(), test.rule());
         assert_eq!(limit, 8189);
         let outside = |s: u64, f: u64| {
             let (s, f) = (s as f64, f as f64);

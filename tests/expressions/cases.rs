@@ -5,8 +5,8 @@ use proptest::prelude::*;
 use smc::base::lanes::{LANES, Mask};
 use smc::kernel::{Layout, State};
 use smc::model::{
-    AgentId, Arithmetic, Axis, BarrierId, Bool, Comparison, Field, Fold, Function, Num, Parameter, Place,
-    RegionId, Set, Who,
+    AgentId, Arithmetic, Axis, BarrierId, Bool, Collective, Comparison, Field, Fold, Function, Num, Pair,
+    Parameter, Place, RegionId, Separation, Set, Who,
 };
 
 pub(crate) fn who(depth: u32) -> BoxedStrategy<Who> {
@@ -77,10 +77,10 @@ pub(crate) fn number(depth: u32, size: u32) -> BoxedStrategy<Num> {
         2 => constant(),
         1 => Just(Num::Time),
         2 => (field(), who(depth)).prop_map(|(f, w)| Num::Of(f, w)),
-        1 => who(depth).prop_map(Num::Clearance),
-        1 => (who(depth), who(depth)).prop_map(|(a, b)| Num::TimeToCollision(a, b)),
-        1 => set(depth).prop_map(Num::Spread),
-        1 => set(depth).prop_map(|s| Num::MeanVelocity(Axis::Y, s)),
+        1 => who(depth).prop_map(|w| Num::Of(Field::Separation(Separation::Clearance), w)),
+        1 => (who(depth), who(depth)).prop_map(|(a, b)| Num::OfTwo(Pair::TimeToCollision, a, b)),
+        1 => set(depth).prop_map(|s| Num::OfSet(Collective::Spread, s)),
+        1 => set(depth).prop_map(|s| Num::OfSet(Collective::MeanVelocity(Axis::Y), s)),
         2 => (who(depth), who(depth), 0..3u8).prop_map(|(a, b, k)| measure(a, b, k)),
     ];
     if size == 0 {

@@ -7,8 +7,8 @@ use smc::base::geometry::Segment;
 use smc::base::lanes::{LANES, Mask};
 use smc::kernel::{Code, Layout, Program, Readings, Scratch, State, dynamics};
 use smc::model::{
-    AgentId, Arithmetic, Barrier, Bool, Comparison, Field, Fold, Num, Obstacle, Parameter, Place, Scene, Set,
-    Who,
+    AgentId, Arithmetic, Barrier, Bool, Comparison, Field, Fold, Num, Obstacle, Parameter, Place, Scene,
+    Separation, Set, Who,
 };
 use std::sync::Arc;
 
@@ -128,7 +128,8 @@ fn questions(agents: usize) -> (Vec<Bool>, Vec<Num>) {
         let least = Num::Fold(Fold::Min, set, Box::new(measure));
         Num::Fold(Fold::Sum, all(None), Box::new(least))
     };
-    let clearances = |fold| Num::Fold(fold, all(None), Box::new(Num::Clearance(me)));
+    let clearances =
+        |fold| Num::Fold(fold, all(None), Box::new(Num::Of(Field::Separation(Separation::Clearance), me)));
     let alone = |k: usize| Who::Agent(AgentId((k % agents) as u32));
     let mut atoms = vec![
         Bool::Exists(all(None), Box::new(Bool::Contact(me))),
@@ -140,15 +141,22 @@ fn questions(agents: usize) -> (Vec<Bool>, Vec<Num>) {
     ];
     // Of clearances that are only compared with a number, in some way or other, no more need be known.
     let clear = |comparison, bound| {
-        Bool::Compare(comparison, Box::new(Num::Clearance(me)), Box::new(Num::Constant(bound)))
+        Bool::Compare(
+            comparison,
+            Box::new(Num::Of(Field::Separation(Separation::Clearance), me)),
+            Box::new(Num::Constant(bound)),
+        )
     };
     let fast = Bool::Compare(
         Comparison::Less,
         Box::new(Num::Constant(0.3)),
         Box::new(Num::Coordinate(smc::model::Axis::X, Place::Agent(me))),
     );
-    let turned_round =
-        Bool::Compare(Comparison::AtMost, Box::new(Num::Constant(0.4)), Box::new(Num::Clearance(me)));
+    let turned_round = Bool::Compare(
+        Comparison::AtMost,
+        Box::new(Num::Constant(0.4)),
+        Box::new(Num::Of(Field::Separation(Separation::Clearance), me)),
+    );
     atoms.extend([
         Bool::Exists(all(None), Box::new(clear(Comparison::Less, 0.3))),
         Bool::Forall(some.clone(), Box::new(clear(Comparison::AtLeast, 0.05))),
@@ -175,15 +183,19 @@ fn questions(agents: usize) -> (Vec<Bool>, Vec<Num>) {
         near(some.clone(), distance()),
         near(all(Some(me)), distance()),
         near(all(Some(me)), running_first.clone()),
-        Num::Fold(Fold::Min, some.clone(), Box::new(Num::Clearance(me))),
-        Num::Fold(Fold::Min, all(Some(alone(7))), Box::new(Num::Clearance(me))),
+        Num::Fold(Fold::Min, some.clone(), Box::new(Num::Of(Field::Separation(Separation::Clearance), me))),
+        Num::Fold(
+            Fold::Min,
+            all(Some(alone(7))),
+            Box::new(Num::Of(Field::Separation(Separation::Clearance), me)),
+        ),
         Num::Fold(Fold::Min, all(None), Box::new(nearest())),
         Num::Fold(Fold::Min, all(None), Box::new(Num::Fold(Fold::Min, some, Box::new(running_first)))),
         Num::Fold(Fold::Min, all(None), Box::new(turned)),
     ];
     for k in [0, 50, 67, agents - 1] {
         atoms.push(Bool::Contact(alone(k)));
-        signals.push(Num::Clearance(alone(k)));
+        signals.push(Num::Of(Field::Separation(Separation::Clearance), alone(k)));
     }
     (atoms, signals)
 }

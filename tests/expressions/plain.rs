@@ -8,8 +8,8 @@ use smc::base::math;
 use smc::base::tick::{Clock, Tick};
 use smc::kernel::State;
 use smc::model::{
-    Arithmetic, Axis, Bool, Comparison, Field, Fold, Function, Num, Parameter, Place, RegionId, Scene, Set,
-    Who,
+    Arithmetic, Axis, Bool, Collective, Comparison, Field, Fold, Function, Num, Pair, Parameter, Place,
+    RegionId, Scene, Separation, Set, Who,
 };
 
 /// What an expression means, word by word. `None`: unresolved.
@@ -66,6 +66,10 @@ impl Plain<'_> {
             Field::Mass => self.of(&s.bodies[Parameter::Mass], agent),
             Field::DrivingSpeed => self.of(&s.bodies[Parameter::Speed], agent),
             Field::Travelled => self.of(&s.motion.travelled, agent),
+            Field::Separation(separation) => {
+                assert_eq!(separation, Separation::Clearance);
+                self.clearance(agent)
+            }
             Field::Mode(_) => -1.0,
         }
     }
@@ -161,7 +165,7 @@ impl Plain<'_> {
                 let at = self.point(place)?;
                 if *axis == Axis::X { at.x } else { at.y }
             }
-            Num::MeanVelocity(axis, set) => {
+            Num::OfSet(Collective::MeanVelocity(axis), set) => {
                 let s = self.state;
                 let v = self.mean(set, |a| p(self.of(&s.motion.vx, a), self.of(&s.motion.vy, a)))?;
                 if *axis == Axis::X { v.x } else { v.y }
@@ -194,9 +198,12 @@ impl Plain<'_> {
                     Shape::Polygon(polygon) => (at - polygon.nearest_on_outline(at)).norm(),
                 }
             }
-            Num::Clearance(who) => self.clearance(self.who(*who)),
-            Num::TimeToCollision(a, b) => self.collision(self.who(*a), self.who(*b)),
-            Num::Spread(set) => {
+            Num::OfTwo(pair, a, b) => {
+                assert_eq!(*pair, Pair::TimeToCollision);
+                self.collision(self.who(*a), self.who(*b))
+            }
+            Num::OfSet(collective, set) => {
+                assert_eq!(*collective, Collective::Spread);
                 let c = self.centroid(set)?;
                 let mut sum = 0.0;
                 let members = self.members(set);

@@ -2,7 +2,7 @@
 //! as they come; with simulated workers, and with threads and the clock.
 
 use super::tally::{Tally, uniform};
-use smc::stats::{Counts, Decision, Sprt, Test, sequence};
+use smc::stats::{Counts, Decision, Sequential, Sprt, sequence};
 use std::collections::BinaryHeap;
 
 /// Trials on some workers; failures take 20 times as long.
@@ -43,7 +43,7 @@ impl Workers {
     }
 }
 
-fn sprt() -> Sprt {
+fn sprt() -> Sequential<Sprt> {
     Sprt::new(0.9, 0.01, 0.01, 0.01).unwrap()
 }
 

@@ -4,9 +4,9 @@ use super::tally::{Tally, uniform};
 use smc::stats::calibration::{Boundary, Table};
 use smc::stats::clopper_pearson;
 use smc::stats::difference::{self, Pairs};
-use smc::stats::{Calibrated, Counts, Estimator, Gbas, Massart, Outcome, Spending, sequence};
+use smc::stats::{Calibrated, Counts, Estimator, Gbas, Massart, Outcome, Sequential, Spending, sequence};
 
-fn tally(fresh: &(impl Estimator + Clone), seed: u64, p: f64, runs: u32) -> Tally {
+fn tally(fresh: &Sequential<impl Estimator + Clone>, seed: u64, p: f64, runs: u32) -> Tally {
     Tally::over(runs, |k| {
         let mut estimator = fresh.clone();
         let mut index = 0;
@@ -160,7 +160,7 @@ fn gbas(runs: u32) {
     let share = |p: f64| {
         Tally::over(runs, |k| {
             let mut gbas = Gbas::new(0.1, 0.05, None, 1000 + u64::from(k)).unwrap();
-            assert_eq!(gbas.needed(), 385);
+            assert_eq!(gbas.rule().needed(), 385);
             let mut index = 0;
             while !gbas.observe(uniform(25, k, 0, index) < p) {
                 index += 1;

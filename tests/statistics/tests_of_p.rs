@@ -1,10 +1,10 @@
 //! T1 to T6 and T20: tests of a probability.
 
 use super::tally::{Tally, uniform};
-use smc::stats::{Decision, Evidence, Hypothesis, Sprt, Test, ThreeWay, TwoSprt};
+use smc::stats::{Decision, Evidence, Hypothesis, Sequential, Sprt, Test, ThreeWay, TwoSprt};
 
 /// Runs a fresh test at `p` up to `cap` trials.
-fn run(mut test: impl Test, seed: u64, run: u32, p: f64, cap: u64) -> (Option<Decision>, f64) {
+fn run(mut test: Sequential<impl Test>, seed: u64, run: u32, p: f64, cap: u64) -> (Option<Decision>, f64) {
     for index in 0..cap {
         if let Some(decision) = test.observe(uniform(seed, run, 0, index) < p) {
             return (Some(decision), (index + 1) as f64);
@@ -13,7 +13,7 @@ fn run(mut test: impl Test, seed: u64, run: u32, p: f64, cap: u64) -> (Option<De
     (None, cap as f64)
 }
 
-fn tally(test: &(impl Test + Clone), seed: u64, p: f64, wrong: Decision, runs: u32) -> Tally {
+fn tally(test: &Sequential<impl Test + Clone>, seed: u64, p: f64, wrong: Decision, runs: u32) -> Tally {
     Tally::over(runs, |k| {
         let (decision, n) = run(test.clone(), seed, k, p, u64::MAX);
         (decision == Some(wrong), n)

@@ -2,10 +2,10 @@
 
 use super::{lets, states};
 use crate::compile::elaborator::{Elaborator, Locals, Lowered, Reported};
-use crate::compile::lower::{FUNCTIONS, counted_arguments};
+use crate::compile::lower::counted_arguments;
 use crate::compile::symbols::unknown;
 use crate::compile::typed::Typed;
-use crate::model::{BehaviourId, Bool, Comparison, Field, Num, Who};
+use crate::model::{BehaviourId, Bool, BuiltIn, Comparison, Field, Num, Who};
 use crate::syntax::ast::process::BehaviourDecl;
 use crate::syntax::ast::{Expr, ExprKind, Ident, LetDecl};
 use crate::syntax::codes::Code;
@@ -77,7 +77,7 @@ impl<'a> Elaborator<'a> {
                     let who = self.text(base);
                     error.hint(match member.name.as_str() {
                         name @ ("x" | "y") => format!("write `{name}(position({who}))`"),
-                        name if FUNCTIONS.contains(&name) => format!("write `{name}({who})`"),
+                        name if BuiltIn::find(name).is_some() => format!("write `{name}({who})`"),
                         _ => "numbers of agents are functions: `speed(user)`".to_owned(),
                     })
                 }

@@ -6,11 +6,11 @@ use super::super::number::Number;
 use super::super::symbols::{Meaning, unknown};
 use super::super::typed::Typed;
 use super::super::weight::Weight;
-use super::builtin::{DISTRIBUTIONS, FUNCTIONS};
-use super::coordinates;
-use crate::base::math;
+use super::builtin::DISTRIBUTIONS;
+use super::{coordinates, counted_arguments};
 use crate::logic::Term;
-use crate::model::{Arithmetic, Axis, Bool, Field, Function, Num, Place, Set, Who};
+use crate::model::function::{Rule, Signature, Special};
+use crate::model::{Arithmetic, Axis, Bool, BuiltIn, Collective, Field, Function, Num, Place, Set, Who};
 use crate::syntax::ast::{Expr, Ident};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -46,100 +46,145 @@ impl Elaborator<'_> {
         {
             return self.lower_let((scope, decl), expr.span, arguments, locals);
         }
-        match function.name.as_str() {
-            "min" | "max" => self.extremum(expr, function, arguments, locals),
-            "abs" | "sqrt" | "floor" | "ceil" | "round" | "exp" | "ln" | "sin" | "cos" => {
-                self.of_number(expr, function, arguments, locals)
+        if let Some(built_in) = BuiltIn::find(&function.name) {
+            return self.built_in(built_in, (expr, function), arguments, locals);
+        }
+        if DISTRIBUTIONS.contains(&function.name.as_str()) {
+            let error = Diagnostic::error(
+                Code::E0404,
+                expr.span,
+                format!("`{}` is a distribution, and is no part of an expression", function.name),
+            )
+            .hint("give it to a field of a kind or an agent, or to `after`; it may be multiplied: `poisson(4) * (1 s / 3)`");
+            return self.report(error);
+        }
+        self.unknown_function(function, expr.span, arguments, locals)
+    }
+
+    fn unknown_function(
+        &mut self,
+        function: &Ident,
+        span: Span,
+        arguments: &[Expr],
+        locals: &Locals,
+    ) -> Lowered<Typed> {
+        let name = function.name.as_str();
+        self.unknowns += 1;
+        if self.is_said(Code::E0203, function.span) {
+            return Err(Reported);
+        }
+        // A unit that is misspelt reads as a call, and what follows it is what it is.
+        if self.is_said(Code::E0113, function.span) {
+            return self.lower_all(arguments, locals).and(Err(Reported));
+        }
+        if let Some((_, meaning)) = self.find(name, locals.scope) {
+            let hidden = self.scopes[0].get(name).is_some_and(|e| takes_arguments(&e.meaning));
+            // That a name of the scenario was taken was said where that was done; and what is wrong with it
+            // may be just that it lacks its arguments.
+            if !hidden && self.lower_name(name, function.span, locals).is_ok() {
+                let text = format!("`{name}` is {}, which takes no arguments", meaning.noun());
+                self.note(Diagnostic::error(Code::E0204, span, text));
             }
-            "distance" | "time_to_collision" | "atan2" | "modulo" => {
-                self.of_two(expr, function, arguments, locals)
+            return self.lower_all(arguments, locals).and(Err(Reported));
+        }
+        let mut known: Vec<&str> = BuiltIn::names().chain(DISTRIBUTIONS).collect();
+        let declared: Vec<String> = [locals.scope, 0]
+            .iter()
+            .filter(|_| self.looks_for_names())
+            .filter_map(|s| self.scopes.get(*s))
+            .flat_map(super::super::symbols::Scope::entries)
+            .filter(|(_, e)| takes_arguments(&e.meaning))
+            .map(|(n, _)| n.to_owned())
+            .collect();
+        known.extend(declared.iter().map(String::as_str));
+        let error = unknown("function", name, function.span, Code::E0203, known.into_iter());
+        let within = arguments.iter().map(|argument| self.text(argument.span)).collect::<Vec<_>>();
+        self.note(match foreign_word(name, &within.join(", ")) {
+            Some(hint) => error.hint(hint),
+            None => error,
+        });
+        // Whatever it is, its arguments are what they are.
+        let _ = self.lower_all(arguments, locals);
+        Err(Reported)
+    }
+
+    /// A built-in function, by what the table says that it takes.
+    fn built_in(
+        &mut self,
+        built_in: &'static BuiltIn,
+        (expr, function): (&Expr, &Ident),
+        arguments: &[Expr],
+        locals: &Locals,
+    ) -> Lowered<Typed> {
+        match built_in.signature {
+            Signature::Special(Special::Extremum(operator)) => {
+                return self.extremum(expr, (function, operator), arguments, locals);
             }
-            "if" => self.choice(expr, function, arguments, locals),
-            "contact" => self.contact(expr, function, arguments, locals),
-            "time_until" => {
-                let [formula] = arguments else {
-                    let given = (arguments, locals);
-                    return self
-                        .inside_a_formula(|this| this.arity(function, expr.span, "1 argument", given));
-                };
-                if !self.temporal || locals.running > 0 {
-                    let error = Diagnostic::error(
-                        Code::E0504,
-                        expr.span,
-                        "`time_until` looks ahead over the trace, and here one state is read",
-                    )
-                    .hint("it stands in metrics and comparisons of property files, outside of folds over agents at one state");
-                    return self.report(error);
-                }
-                let typed = self.inside_a_formula(|this| this.lower(formula, locals));
-                let node = self.as_formula(typed?, formula.span)?;
-                let dimension = self.time_dimension();
-                Ok(Typed::Term(self.term(Term::TimeUntil(node)), dimension))
+            Signature::Special(Special::Contact) => return self.contact(expr, function, arguments, locals),
+            Signature::Special(Special::TimeUntil) => {
+                return self.time_until(expr, function, arguments, locals);
             }
-            "robustness" => {
+            Signature::Special(Special::Robustness) => {
                 let error = Diagnostic::error(
                     Code::E0504,
                     expr.span,
                     "`robustness` looks at a whole trace and stands only directly inside `E(…)`, `Q(…)` and `P(…)`",
                 )
                 .hint("for example `E(robustness(safe)) in -1 m .. 1 m`, `P(robustness(safe) >= 0.2 m)`");
-                self.report(error)
+                return self.report(error);
             }
-            name if DISTRIBUTIONS.contains(&name) => {
-                let error = Diagnostic::error(
-                    Code::E0404,
-                    expr.span,
-                    format!("`{name}` is a distribution, and is no part of an expression"),
-                )
-                .hint("give it to a field of a kind or an agent, or to `after`; it may be multiplied: `poisson(4) * (1 s / 3)`");
-                self.report(error)
+            _ if !built_in.takes(arguments.len()) => {
+                let wanted = counted_arguments(built_in.arguments.0);
+                return self.arity(function, expr.span, &wanted, (arguments, locals));
             }
-            name if FUNCTIONS.contains(&name) => {
-                let [argument] = arguments else {
-                    return self.arity(function, expr.span, "1 argument", (arguments, locals));
-                };
-                self.of_one(function, argument, locals)
-            }
-            name => {
-                self.unknowns += 1;
-                if self.is_said(Code::E0203, function.span) {
-                    return Err(Reported);
-                }
-                // A unit that is misspelt reads as a call, and what follows it is what it is.
-                if self.is_said(Code::E0113, function.span) {
-                    return self.lower_all(arguments, locals).and(Err(Reported));
-                }
-                if let Some((_, meaning)) = self.find(name, locals.scope) {
-                    let hidden = self.scopes[0].get(name).is_some_and(|e| takes_arguments(&e.meaning));
-                    // That a name of the scenario was taken was said where that was done; and what is wrong with it
-                    // may be just that it lacks its arguments.
-                    if !hidden && self.lower_name(name, function.span, locals).is_ok() {
-                        let text = format!("`{name}` is {}, which takes no arguments", meaning.noun());
-                        self.note(Diagnostic::error(Code::E0204, expr.span, text));
-                    }
-                    return self.lower_all(arguments, locals).and(Err(Reported));
-                }
-                let mut known: Vec<&str> = FUNCTIONS.into_iter().chain(DISTRIBUTIONS).collect();
-                let declared: Vec<String> = [locals.scope, 0]
-                    .iter()
-                    .filter(|_| self.looks_for_names())
-                    .filter_map(|s| self.scopes.get(*s))
-                    .flat_map(super::super::symbols::Scope::entries)
-                    .filter(|(_, e)| takes_arguments(&e.meaning))
-                    .map(|(n, _)| n.to_owned())
-                    .collect();
-                known.extend(declared.iter().map(String::as_str));
-                let error = unknown("function", name, function.span, Code::E0203, known.into_iter());
-                let within = arguments.iter().map(|argument| self.text(argument.span)).collect::<Vec<_>>();
-                self.note(match foreign_word(name, &within.join(", ")) {
-                    Some(hint) => error.hint(hint),
-                    None => error,
-                });
-                // Whatever it is, its arguments are what they are.
-                let _ = self.lower_all(arguments, locals);
-                Err(Reported)
-            }
+            _ => {}
         }
+        match arguments {
+            [argument] => match built_in.signature {
+                Signature::Number(apply, takes) => self.of_number((built_in, apply, takes), argument, locals),
+                _ => self.of_one(built_in, function, argument, locals),
+            },
+            [left, right] => {
+                let sides = (self.lower(left, locals), self.lower(right, locals));
+                let (a, b) = (sides.0?, sides.1?);
+                let sides = [(a, left.span), (b, right.span)];
+                match built_in.signature {
+                    Signature::Numbers(operator) => self.of_two(built_in, operator, sides, expr.span),
+                    Signature::Agents(pair) => {
+                        let [a, b] = sides.map(|(typed, span)| self.as_agent(typed, span));
+                        Ok(Typed::Num(Num::OfTwo(pair, a?, b?), built_in.gives()))
+                    }
+                    _ => self.distance(sides, expr.span),
+                }
+            }
+            _ => self.choice(expr, function, arguments, locals),
+        }
+    }
+
+    fn time_until(
+        &mut self,
+        expr: &Expr,
+        function: &Ident,
+        arguments: &[Expr],
+        locals: &Locals,
+    ) -> Lowered<Typed> {
+        let [formula] = arguments else {
+            let given = (arguments, locals);
+            return self.inside_a_formula(|this| this.arity(function, expr.span, "1 argument", given));
+        };
+        if !self.temporal || locals.running > 0 {
+            let error = Diagnostic::error(
+                Code::E0504,
+                expr.span,
+                "`time_until` looks ahead over the trace, and here one state is read",
+            )
+            .hint("it stands in metrics and comparisons of property files, outside of folds over agents at one state");
+            return self.report(error);
+        }
+        let typed = self.inside_a_formula(|this| this.lower(formula, locals));
+        let node = self.as_formula(typed?, formula.span)?;
+        let dimension = self.time_dimension();
+        Ok(Typed::Term(self.term(Term::TimeUntil(node)), dimension))
     }
 
     /// Whether a name stands for an expression without arguments.
@@ -152,110 +197,96 @@ impl Elaborator<'_> {
     }
 
     /// Functions of one agent, set, region or point.
-    fn of_one(&mut self, function: &Ident, argument: &Expr, locals: &Locals) -> Lowered<Typed> {
+    fn of_one(
+        &mut self,
+        built_in: &BuiltIn,
+        function: &Ident,
+        argument: &Expr,
+        locals: &Locals,
+    ) -> Lowered<Typed> {
         let typed = self.lower(argument, locals)?;
         let span = argument.span;
-        let field = |field, dimension| (field, dimension);
-        let (field, dimension) = match function.name.as_str() {
-            "speed" => match typed {
-                Typed::Agents { set, particle: false } => {
-                    let (x, y) = mean_velocity(&set);
-                    return Ok(Typed::Num(norm(x, y), Dimension::SPEED));
-                }
-                _ => field(Field::Speed, Dimension::SPEED),
-            },
-            "heading" => match typed {
-                Typed::Agents { set, particle: false } => {
-                    let (x, y) = mean_velocity(&set);
-                    let angle = Num::Combine(Arithmetic::Atan2, Box::new(y), Box::new(x));
-                    return Ok(Typed::Num(angle, Dimension::ANGLE));
-                }
-                _ => field(Field::Heading, Dimension::ANGLE),
-            },
-            "radius" => field(Field::Radius, Dimension::LENGTH),
-            "mass" => field(Field::Mass, Dimension::MASS),
-            "driving_speed" => field(Field::DrivingSpeed, Dimension::SPEED),
-            "travelled" => field(Field::Travelled, Dimension::LENGTH),
-            "present" => return Ok(Typed::truth(Bool::Present(self.as_agent(typed, span)?))),
-            "clearance" => {
-                return Ok(Typed::Num(Num::Clearance(self.as_agent(typed, span)?), Dimension::LENGTH));
+        let special = match (built_in.signature, typed) {
+            // Of a set, those of its mean velocity.
+            (Signature::Agent(Field::Speed), Typed::Agents { set, particle: false }) => {
+                let (x, y) = mean_velocity(&set);
+                return Ok(Typed::Num(norm(x, y), built_in.gives()));
             }
-            "position" => {
-                let (x, y, dimension) = match typed {
-                    Typed::Agents { set, particle: false } => {
-                        let (x, y) = coordinates(Place::Centroid(set));
-                        (x, y, Dimension::LENGTH)
-                    }
-                    other => self.as_vector(other, span)?,
-                };
-                return Ok(Typed::Vector(x, y, dimension));
+            (Signature::Agent(Field::Heading), Typed::Agents { set, particle: false }) => {
+                let (x, y) = mean_velocity(&set);
+                let angle = Num::Combine(Arithmetic::Atan2, Box::new(y), Box::new(x));
+                return Ok(Typed::Num(angle, built_in.gives()));
             }
-            "velocity" => {
-                let (x, y) = match typed {
-                    Typed::Agents { set, particle: false } => mean_velocity(&set),
-                    other => {
-                        let who = self.as_agent(other, span)?;
-                        (Num::Of(Field::VelocityX, who), Num::Of(Field::VelocityY, who))
-                    }
-                };
-                return Ok(Typed::Vector(x, y, Dimension::SPEED));
+            (Signature::Agent(field), typed) => {
+                return Ok(Typed::Num(Num::Of(field, self.as_agent(typed, span)?), built_in.gives()));
             }
-            "x" | "y" | "norm" => {
-                if let Typed::Point(x, y) = typed {
-                    return match function.name.as_str() {
-                        "x" => Ok(Typed::Number(x)),
-                        "y" => Ok(Typed::Number(y)),
-                        name => {
-                            let length = (x.value * x.value + y.value * y.value).sqrt();
-                            self.computed(length, x.dimension, name, span)
-                        }
-                    };
-                }
+            (Signature::Set(collective), typed) => {
+                return Ok(Typed::Num(Num::OfSet(collective, self.as_set(typed, span)?), built_in.gives()));
+            }
+            (Signature::Special(special), typed) => (special, typed),
+            // The others take numbers, or two agents.
+            _ => return Err(Reported),
+        };
+        Ok(match special {
+            (Special::Present, typed) => Typed::truth(Bool::Present(self.as_agent(typed, span)?)),
+            (Special::Position, Typed::Agents { set, particle: false }) => centroid(set),
+            (Special::Position, typed) => {
                 let (x, y, dimension) = self.as_vector(typed, span)?;
-                let value = match function.name.as_str() {
-                    "x" => x,
-                    "y" => y,
-                    _ => {
-                        // Each is squared, and so written twice.
-                        self.count_copy(Weight::of_num(&x), span)?;
-                        self.count_copy(Weight::of_num(&y), span)?;
-                        norm(x, y)
-                    }
-                };
-                return Ok(Typed::Num(value, dimension));
+                Typed::Vector(x, y, dimension)
             }
-            "centroid" => {
-                let set = self.as_set(typed, span)?;
-                let (x, y) = coordinates(Place::Centroid(set));
-                return Ok(Typed::Vector(x, y, Dimension::LENGTH));
+            (Special::Velocity, Typed::Agents { set, particle: false }) => {
+                let (x, y) = mean_velocity(&set);
+                Typed::Vector(x, y, Dimension::SPEED)
             }
-            "spread" => return Ok(Typed::Num(Num::Spread(self.as_set(typed, span)?), Dimension::LENGTH)),
-            "members" => {
-                let set = self.as_set(typed, span)?;
-                return Ok(Typed::Agents { set, particle: false });
-            }
-            "count" => {
-                let set = self.as_set(typed, span)?;
-                return Ok(Typed::Num(Num::Count(set, Box::new(Bool::Constant(true))), Dimension::NONE));
-            }
-            "others" => {
+            (Special::Velocity, typed) => {
                 let who = self.as_agent(typed, span)?;
-                return Ok(Typed::Agents {
-                    set: Set { members: self.everyone(), except: Some(who) },
-                    particle: false,
-                });
+                Typed::Vector(
+                    Num::Of(Field::VelocityX, who),
+                    Num::Of(Field::VelocityY, who),
+                    Dimension::SPEED,
+                )
             }
-            "area" => return self.area(typed, span).map(Typed::Number),
-            "density" => {
-                let Typed::Region(region) = typed else { return self.mismatch(span, "a region", &typed) };
+            (Special::Component(axis), Typed::Point(x, y)) => {
+                Typed::Number(if axis == Axis::X { x } else { y })
+            }
+            (Special::Component(axis), typed) => {
+                let (x, y, dimension) = self.as_vector(typed, span)?;
+                Typed::Num(if axis == Axis::X { x } else { y }, dimension)
+            }
+            (Special::Norm, Typed::Point(x, y)) => {
+                let length = (x.value * x.value + y.value * y.value).sqrt();
+                return self.computed(length, x.dimension, built_in.name, span);
+            }
+            (Special::Norm, typed) => {
+                let (x, y, dimension) = self.as_vector(typed, span)?;
+                // Each is squared, and so written twice.
+                self.count_copy(Weight::of_num(&x), span)?;
+                self.count_copy(Weight::of_num(&y), span)?;
+                Typed::Num(norm(x, y), dimension)
+            }
+            (Special::Centroid, typed) => centroid(self.as_set(typed, span)?),
+            (Special::Members, typed) => Typed::Agents { set: self.as_set(typed, span)?, particle: false },
+            (Special::Count, typed) => {
+                let set = self.as_set(typed, span)?;
+                Typed::Num(Num::Count(set, Box::new(Bool::Constant(true))), built_in.gives())
+            }
+            (Special::Others, typed) => {
+                let who = self.as_agent(typed, span)?;
+                let set = Set { members: self.everyone(), except: Some(who) };
+                Typed::Agents { set, particle: false }
+            }
+            (Special::Area, typed) => return self.area(typed, span).map(Typed::Number),
+            (Special::Density, Typed::Region(region)) => {
                 let area = self.area(Typed::Region(region), span)?;
                 let everyone = Set { members: self.everyone(), except: None };
                 let inside = Num::Count(everyone, Box::new(Bool::In(Who::Running(locals.running), region)));
                 let density =
                     Num::Combine(Arithmetic::Divide, Box::new(inside), Box::new(Num::Constant(area.value)));
-                return Ok(Typed::Num(density, Dimension::DENSITY));
+                Typed::Num(density, built_in.gives())
             }
-            name => {
+            (Special::Density, typed) => return self.mismatch(span, "a region", &typed),
+            _ => {
+                let name = built_in.name;
                 let error = Diagnostic::error(
                     Code::E0305,
                     function.span,
@@ -264,8 +295,7 @@ impl Elaborator<'_> {
                 .hint(format!("write `{name}(… for a in crowd)` or `{name}<=10 s (…)`"));
                 return self.report(error);
             }
-        };
-        Ok(Typed::Num(Num::Of(field, self.as_agent(typed, span)?), dimension))
+        })
     }
 
     fn area(&mut self, typed: Typed, span: Span) -> Lowered<Number> {
@@ -280,33 +310,23 @@ impl Elaborator<'_> {
 
     fn of_number(
         &mut self,
-        expr: &Expr,
-        function: &Ident,
-        arguments: &[Expr],
+        (built_in, apply, takes): (&BuiltIn, Function, Option<Dimension>),
+        argument: &Expr,
         locals: &Locals,
     ) -> Lowered<Typed> {
-        let [argument] = arguments else {
-            return self.arity(function, expr.span, "1 argument", (arguments, locals));
-        };
         let typed = self.lower(argument, locals)?;
-        if let (Typed::Term(term, dimension), "abs") = (&typed, function.name.as_str()) {
+        if let (Typed::Term(term, dimension), Function::Abs) = (&typed, apply) {
             let term = self.term(Term::Abs(*term));
             return Ok(Typed::Term(term, *dimension));
         }
         let known = if let Typed::Number(number) = &typed { Some(*number) } else { None };
         let (num, given) = self.as_num(typed, argument.span)?;
-        let expected = match function.name.as_str() {
-            "sin" | "cos" => Some(Dimension::ANGLE),
-            "exp" | "ln" | "floor" | "ceil" | "round" => Some(Dimension::NONE),
-            _ => None,
-        };
-        if let Some(expected) = expected
-            && expected != given
-        {
+        if let Some(expected) = takes.filter(|expected| *expected != given) {
             return self.wrong_dimension(argument.span, expected, given);
         }
-        let dimension = match function.name.as_str() {
-            "sqrt" => match given.root() {
+        let dimension = match built_in.dimension {
+            Rule::Always(dimension) => dimension,
+            Rule::Root => match given.root() {
                 Some(root) => root,
                 None => {
                     let error = Diagnostic::error(
@@ -317,22 +337,10 @@ impl Elaborator<'_> {
                     return self.report(error);
                 }
             },
-            "sin" | "cos" => Dimension::NONE,
             _ => given,
         };
-        let (apply, compute): (Function, fn(f64) -> f64) = match function.name.as_str() {
-            "abs" => (Function::Abs, f64::abs),
-            "sqrt" => (Function::Sqrt, f64::sqrt),
-            "floor" => (Function::Floor, f64::floor),
-            "ceil" => (Function::Ceil, f64::ceil),
-            "round" => (Function::Round, f64::round),
-            "exp" => (Function::Exp, math::exp),
-            "ln" => (Function::Ln, math::ln),
-            "sin" => (Function::Sin, |x| math::sin_cos(x).0),
-            _ => (Function::Cos, |x| math::sin_cos(x).1),
-        };
         match known {
-            Some(number) => self.computed(compute(number.value), dimension, &function.name, argument.span),
+            Some(number) => self.computed(apply.of(number.value), dimension, built_in.name, argument.span),
             None => Ok(Typed::Num(Num::Apply(apply, Box::new(num)), dimension)),
         }
     }
@@ -350,64 +358,44 @@ impl Elaborator<'_> {
 
     fn of_two(
         &mut self,
-        expr: &Expr,
-        function: &Ident,
-        arguments: &[Expr],
-        locals: &Locals,
+        built_in: &BuiltIn,
+        operator: Arithmetic,
+        [(a, left), (b, right)]: [(Typed, Span); 2],
+        span: Span,
     ) -> Lowered<Typed> {
-        let [left, right] = arguments else {
-            return self.arity(function, expr.span, "2 arguments", (arguments, locals));
-        };
-        let sides = (self.lower(left, locals), self.lower(right, locals));
-        let (a, b) = (sides.0?, sides.1?);
-        match function.name.as_str() {
-            "distance" => {
-                if let (Typed::Point(ax, ay), Typed::Point(bx, by)) = (&a, &b)
-                    && ax.dimension == Dimension::LENGTH
-                    && bx.dimension == Dimension::LENGTH
-                {
-                    let (dx, dy) = (ax.value - bx.value, ay.value - by.value);
-                    let length = (dx * dx + dy * dy).sqrt();
-                    return self.computed(length, Dimension::LENGTH, &function.name, expr.span);
-                }
-                let places = (self.as_place(a, left.span), self.as_place(b, right.span));
-                let (a, b) = (places.0?, places.1?);
-                let extended = |p: &Place| matches!(p, Place::Region(_) | Place::Barrier(_));
-                if extended(&a) && extended(&b) {
-                    let error = Diagnostic::error(
-                        Code::E0305,
-                        expr.span,
-                        "one side of a distance must be an agent or a point",
-                    );
-                    return self.report(error);
-                }
-                Ok(Typed::Num(Num::Distance(a, b), Dimension::LENGTH))
-            }
-            "time_to_collision" => {
-                let agents = (self.as_agent(a, left.span), self.as_agent(b, right.span));
-                Ok(Typed::Num(Num::TimeToCollision(agents.0?, agents.1?), Dimension::TIME))
-            }
-            _ => {
-                let known = matches!((&a, &b), (Typed::Number(_), Typed::Number(_)));
-                let sides = (self.as_num(a, left.span), self.as_num(b, right.span));
-                let ((a, da), (b, db)) = (sides.0?, sides.1?);
-                if da != db {
-                    return self.wrong_dimension(right.span, da, db);
-                }
-                let (op, dimension) = if function.name == "atan2" {
-                    (Arithmetic::Atan2, Dimension::ANGLE)
-                } else {
-                    (Arithmetic::Modulo, da)
-                };
-                if let (true, Num::Constant(a), Num::Constant(b)) = (known, &a, &b) {
-                    if op == Arithmetic::Modulo && *b == 0.0 {
-                        return self.report(Diagnostic::error(Code::E0405, right.span, "division by zero"));
-                    }
-                    return self.computed(op.of(*a, *b), dimension, &function.name, expr.span);
-                }
-                Ok(Typed::Num(Num::Combine(op, Box::new(a), Box::new(b)), dimension))
-            }
+        let known = matches!((&a, &b), (Typed::Number(_), Typed::Number(_)));
+        let sides = (self.as_num(a, left), self.as_num(b, right));
+        let ((a, da), (b, db)) = (sides.0?, sides.1?);
+        if da != db {
+            return self.wrong_dimension(right, da, db);
         }
+        let dimension = if let Rule::Always(dimension) = built_in.dimension { dimension } else { da };
+        if let (true, Num::Constant(a), Num::Constant(b)) = (known, &a, &b) {
+            if operator == Arithmetic::Modulo && *b == 0.0 {
+                return self.report(Diagnostic::error(Code::E0405, right, "division by zero"));
+            }
+            return self.computed(operator.of(*a, *b), dimension, built_in.name, span);
+        }
+        Ok(Typed::Num(Num::Combine(operator, Box::new(a), Box::new(b)), dimension))
+    }
+
+    fn distance(&mut self, [(a, left), (b, right)]: [(Typed, Span); 2], span: Span) -> Lowered<Typed> {
+        if let (Typed::Point(ax, ay), Typed::Point(bx, by)) = (&a, &b)
+            && ax.dimension == Dimension::LENGTH
+            && bx.dimension == Dimension::LENGTH
+        {
+            let (dx, dy) = (ax.value - bx.value, ay.value - by.value);
+            let length = (dx * dx + dy * dy).sqrt();
+            return self.computed(length, Dimension::LENGTH, "distance", span);
+        }
+        let places = (self.as_place(a, left), self.as_place(b, right));
+        let (a, b) = (places.0?, places.1?);
+        let extended = |p: &Place| matches!(p, Place::Region(_) | Place::Barrier(_));
+        if extended(&a) && extended(&b) {
+            let said = "one side of a distance must be an agent or a point";
+            return self.report(Diagnostic::error(Code::E0305, span, said));
+        }
+        Ok(Typed::Num(Num::Distance(a, b), Dimension::LENGTH))
     }
 
     fn contact(
@@ -440,7 +428,13 @@ fn takes_arguments(meaning: &Meaning<'_>) -> bool {
 }
 
 fn mean_velocity(set: &Set) -> (Num, Num) {
-    (Num::MeanVelocity(Axis::X, set.clone()), Num::MeanVelocity(Axis::Y, set.clone()))
+    let along = |axis| Num::OfSet(Collective::MeanVelocity(axis), set.clone());
+    (along(Axis::X), along(Axis::Y))
+}
+
+fn centroid(set: Set) -> Typed {
+    let (x, y) = coordinates(Place::Centroid(set));
+    Typed::Vector(x, y, Dimension::LENGTH)
 }
 
 /// Length of a vector.

@@ -5,7 +5,8 @@ use super::super::dimension::{self, Dimension};
 use super::super::elaborator::{Elaborator, Locals};
 use super::super::symbols::Meaning;
 use super::super::typed::Typed;
-use crate::model::Num;
+use crate::model::function::Rule;
+use crate::model::{BuiltIn, Num};
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Quantifier, UnaryOp};
 
 /// How deep is looked, and at how many parts: names that name others several times could go on and on.
@@ -127,19 +128,13 @@ impl Gist<'_, '_> {
             }
             return self.of_declared(&decl.body, &inner);
         }
-        match (name, arguments.len()) {
-            ("radius" | "travelled" | "clearance" | "spread", 1) | ("distance", 2) => Some(Dimension::LENGTH),
-            ("speed" | "driving_speed", 1) => Some(Dimension::SPEED),
-            ("heading", 1) | ("atan2", 2) => Some(Dimension::ANGLE),
-            ("mass", 1) => Some(Dimension::MASS),
-            ("area", 1) => Some(Dimension::AREA),
-            ("density", 1) => Some(Dimension::DENSITY),
-            ("time_to_collision", 2) => Some(Dimension::TIME),
-            ("time_until", 1) => Some(self.elaborator.time_dimension()),
-            ("count" | "sin" | "cos" | "exp" | "ln" | "floor" | "ceil" | "round", 1) => Some(Dimension::NONE),
-            ("abs", 1) | ("min" | "max", 2..) => self.joined(arguments, locals),
-            ("if", 3) => self.joined(&arguments[1..], locals),
-            _ => None,
+        let built_in = BuiltIn::find(name).filter(|function| function.takes(arguments.len()))?;
+        match built_in.dimension {
+            Rule::Always(dimension) => Some(dimension),
+            Rule::Clock => Some(self.elaborator.time_dimension()),
+            Rule::Same(from) => self.joined(&arguments[from..], locals),
+            Rule::Root => self.joined(arguments, locals)?.root(),
+            Rule::Open => None,
         }
     }
 }

@@ -4,8 +4,9 @@ use super::super::dimension;
 use super::super::elaborator::{Elaborator, Locals, Lowered};
 use super::super::nearest::nearest;
 use super::super::told::Told;
-use super::{BUILT_IN, DISTRIBUTIONS, FUNCTIONS};
+use super::{BUILT_IN, DISTRIBUTIONS};
 use crate::base::tick::Clock;
+use crate::model::BuiltIn;
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Moment, Value};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -107,7 +108,7 @@ impl Elaborator<'_> {
         locals.names.iter().any(|(bound, _)| bound == name)
             || self.is_inside(name, locals)
             || self.find(name, locals.scope).is_some()
-            || FUNCTIONS.contains(&name)
+            || BuiltIn::find(name).is_some()
             || DISTRIBUTIONS.contains(&name)
             || BUILT_IN.contains(&name)
     }

@@ -13,7 +13,7 @@ mod select;
 mod tally;
 mod temporal;
 
-pub(super) use builtin::{BUILT_IN, DISTRIBUTIONS, FUNCTIONS, OPERATORS};
+pub(super) use builtin::{BUILT_IN, DISTRIBUTIONS, OPERATORS};
 pub(super) use logic::relation;
 
 use super::dimension::{self, Dimension};

@@ -13,7 +13,7 @@ impl Elaborator<'_> {
     pub(super) fn extremum(
         &mut self,
         expr: &Expr,
-        function: &Ident,
+        (function, operator): (&Ident, Arithmetic),
         arguments: &[Expr],
         locals: &Locals,
     ) -> Lowered<Typed> {
@@ -29,7 +29,7 @@ impl Elaborator<'_> {
             ));
             return self.report(error);
         }
-        let smallest = function.name == "min";
+        let smallest = operator == Arithmetic::Min;
         let places = arguments.iter().map(|argument| argument.span);
         let values: Vec<_> = self.lower_all(arguments, locals)?.into_iter().zip(places).collect();
         let over_time = values.iter().any(|(typed, _)| matches!(typed, Typed::Term(..)));
@@ -61,8 +61,7 @@ impl Elaborator<'_> {
                 }
                 (a, b) => {
                     let (a, b) = (self.as_num(a, span)?.0, self.as_num(b, span)?.0);
-                    let op = if smallest { Arithmetic::Min } else { Arithmetic::Max };
-                    Typed::Num(Num::Combine(op, Box::new(a), Box::new(b)), dimension)
+                    Typed::Num(Num::Combine(operator, Box::new(a), Box::new(b)), dimension)
                 }
             };
             joined = Some((both, dimension));

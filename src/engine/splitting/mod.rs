@@ -16,8 +16,8 @@ use super::subject::Subject;
 use super::tally::Tally;
 use super::watch::{Forecast, Likely, Watch};
 use crate::base::random::TrialKey;
-use crate::compile::study::{Query, Splitting as Rule};
-use crate::stats::splitting::{Adaptive, AnyScheme, Effort, Scheme, Spread, Start};
+use crate::compile::study::Query;
+use crate::stats::splitting::{Adaptive, Effort, Rule, Scheme, Spread, Start};
 use crate::stats::{self, Counts, clopper_pearson, sequence};
 use batches::Batches;
 use path::Path;
@@ -61,20 +61,22 @@ pub(super) struct Question<'s> {
     query: &'s Query,
     subject: &'s Subject,
     column: usize,
+    /// Column of the level.
+    level: usize,
     rule: Rule,
     seed: u64,
 }
 
 impl<'s> Question<'s> {
-    /// About the probability of a column of a subject.
+    /// About the probability of a column of a subject, with the column of its level.
     pub(super) const fn new(
         query: &'s Query,
         subject: &'s Subject,
-        column: usize,
+        [column, level]: [usize; 2],
         rule: Rule,
         seed: u64,
     ) -> Self {
-        Self { query, subject, column, rule, seed }
+        Self { query, subject, column, level, rule, seed }
     }
 
     /// Runs a few plain trials, and forecasts from them what all is likely to take.
@@ -101,13 +103,13 @@ impl<'s> Question<'s> {
 
 /// One run on its way.
 struct Running {
-    scheme: AnyScheme,
+    scheme: Box<dyn Scheme>,
     branch: u16,
     paths: Vec<Path>,
 }
 
 impl Running {
-    fn new(scheme: AnyScheme, branch: u16) -> Self {
+    fn new(scheme: Box<dyn Scheme>, branch: u16) -> Self {
         Self { scheme, branch, paths: Vec::new() }
     }
 
@@ -162,7 +164,7 @@ fn run(
     if stop.is_some() {
         return Ok(found);
     }
-    let batches = Batches::new(question.subject, [question.column, rule.level]);
+    let batches = Batches::new(question.subject, [question.column, question.level]);
     let reading = |lost_reaches: bool, found: &mut Found| -> Result<Option<Spread>, Fault> {
         runs(question, found, &mut |runs, found| {
             advance(&batches, runs, lost_reaches, question, found, executor, budget, watch)
@@ -188,7 +190,7 @@ fn runs(question: &Question<'_>, found: &mut Found, advance: Advance<'_>) -> Res
         // A pilot run finds the levels; its own estimate is not used.
         let branch = 1 + rule.runs as u16;
         let pilot = Adaptive::new(replicas, (3 * replicas / 4).max(1), seed, branch)?;
-        let mut runs = [Running::new(AnyScheme::Adaptive(pilot), branch)];
+        let mut runs = [Running::new(Box::new(pilot), branch)];
         if !advance(&mut runs, found)? {
             return Ok(None);
         }
@@ -197,10 +199,10 @@ fn runs(question: &Question<'_>, found: &mut Found, advance: Advance<'_>) -> Res
     let mut runs = Vec::with_capacity(rule.runs as usize);
     for run in 0..rule.runs as u16 {
         let branch = 1 + run;
-        let scheme = if rule.adaptive {
-            AnyScheme::Adaptive(Adaptive::new(replicas, rule.kill as usize, seed, branch)?)
+        let scheme: Box<dyn Scheme> = if rule.adaptive {
+            Box::new(Adaptive::new(replicas, rule.kill as usize, seed, branch)?)
         } else {
-            AnyScheme::Effort(Effort::new(replicas, levels.clone(), seed, branch)?)
+            Box::new(Effort::new(replicas, levels.clone(), seed, branch)?)
         };
         runs.push(Running::new(scheme, branch));
     }

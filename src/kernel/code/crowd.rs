@@ -5,7 +5,7 @@ use super::machine::compare_all;
 use super::node::{Measure, Reading};
 use crate::base::lanes::{Lanes, Mask};
 use crate::base::math;
-use crate::model::{Comparison, Field, Parameter};
+use crate::model::{Comparison, Field, Pair, Parameter};
 use fearless_simd::{Simd, prelude::*};
 
 /// Relative margin within which a comparison without square root is not trusted: a million times what
@@ -234,6 +234,8 @@ pub(super) fn reading<S: Simd, const ONE: bool>(
         Reading::Field(Field::Mass) => view.read(&state.bodies[Parameter::Mass], body),
         Reading::Field(Field::DrivingSpeed) => view.read(&state.bodies[Parameter::Speed], body),
         Reading::Field(Field::Travelled) => view.read(&state.motion.travelled, body),
+        // It is composed of others (`lower`).
+        Reading::Field(Field::Separation(_)) => view.splat(f64::NAN),
         Reading::Field(Field::Mode(behaviour)) => match state.behaviours.modes.get(behaviour.0 as usize) {
             Some(modes) => view.read(modes, body),
             None => view.splat(-1.0),
@@ -312,14 +314,23 @@ fn apart<S: Simd, const ONE: bool>(view: &View<'_, S, ONE>, field: &[Lanes], a: 
     view.read(field, a) - view.read(field, b)
 }
 
-/// Seconds until two bodies touch if both keep their velocity. Touching discs: 0. Else the first root of
-/// |p + v t| = R with p and v of one relative to the other, in the form without cancellation.
+/// A number of two agents.
 #[inline(always)]
-pub(super) fn time_to_collision<S: Simd, const ONE: bool>(
+pub(super) fn of_two<S: Simd, const ONE: bool>(
     view: &View<'_, S, ONE>,
+    pair: Pair,
     a: Body,
     b: Body,
 ) -> Vector<S> {
+    match pair {
+        Pair::TimeToCollision => time_to_collision(view, a, b),
+    }
+}
+
+/// Seconds until two bodies touch if both keep their velocity. Touching discs: 0. Else the first root of
+/// |p + v t| = R with p and v of one relative to the other, in the form without cancellation.
+#[inline(always)]
+fn time_to_collision<S: Simd, const ONE: bool>(view: &View<'_, S, ONE>, a: Body, b: Body) -> Vector<S> {
     let state = view.state;
     let (zero, never) = (view.splat(0.0), view.splat(f64::INFINITY));
     let (px, py, vx, vy) = (

@@ -8,7 +8,8 @@ use super::lists::Lists;
 use super::node::{Crowd, Graph, Id, Join, Measure, Node, Reading};
 use super::span;
 use crate::model::{
-    AgentId, Arithmetic, Axis, Bool, Comparison, Field, Fold, Num, Place, Scenario, Set, Who,
+    AgentId, Arithmetic, Axis, Bool, Collective, Comparison, Field, Fold, Num, Place, Scenario, Separation,
+    Set, Who,
 };
 use std::sync::Arc;
 
@@ -144,6 +145,7 @@ impl<'a> Lowering<'a> {
             Num::Constant(value) => resolved(self.graph.constant(*value)),
             Num::Time => resolved(self.graph.enter(Node::Time)),
             Num::Variable(id) => resolved(self.graph.enter(Node::Variable(id.0))),
+            Num::Of(Field::Separation(separation), who) => resolved(self.separation(*separation, *who)),
             Num::Of(field, who) => resolved(self.of(Reading::Field(*field), *who)),
             Num::Coordinate(axis, place) => {
                 let (x, y) = self.point(place);
@@ -152,26 +154,14 @@ impl<'a> Lowering<'a> {
                     Axis::Y => y,
                 }
             }
-            Num::MeanVelocity(axis, set) => {
-                let field = match axis {
-                    Axis::X => Field::VelocityX,
-                    Axis::Y => Field::VelocityY,
-                };
-                self.mean(Reading::Field(field), set)
-            }
             Num::Distance(a, b) => self.between(a, b),
             Num::Depth(place, region) => {
                 let (x, y) = self.point(place);
                 let id = self.graph.enter(Node::Depth(x.id, y.id, region.0));
                 Value { id, open: self.either([x.open, y.open]) }
             }
-            Num::Clearance(who) => resolved(self.clearance(*who)),
-            Num::TimeToCollision(a, b) => resolved(self.graph.enter(Node::TimeToCollision(*a, *b))),
-            Num::Spread(set) => {
-                let (x, y) = self.point(&Place::Centroid(set.clone()));
-                let crowd = self.crowd(set);
-                Value { id: self.graph.enter(Node::Spread(crowd, x.id, y.id)), open: x.open }
-            }
+            Num::OfTwo(pair, a, b) => resolved(self.graph.enter(Node::OfTwo(*pair, *a, *b))),
+            Num::OfSet(collective, set) => self.of_set(*collective, set),
             Num::Apply(function, a) => {
                 let a = self.number(a);
                 Value { id: self.graph.enter(Node::Apply(*function, a.id)), open: a.open }
@@ -192,6 +182,19 @@ impl<'a> Lowering<'a> {
                     self.both(not, open)
                 });
                 Value { id, open: self.either([c.open, on_a, on_b]) }
+            }
+        }
+    }
+
+    /// A number of a set.
+    fn of_set(&mut self, collective: Collective, set: &Set) -> Value {
+        match collective {
+            Collective::MeanVelocity(Axis::X) => self.mean(Reading::Field(Field::VelocityX), set),
+            Collective::MeanVelocity(Axis::Y) => self.mean(Reading::Field(Field::VelocityY), set),
+            Collective::Spread => {
+                let (x, y) = self.point(&Place::Centroid(set.clone()));
+                let crowd = self.crowd(set);
+                Value { id: self.graph.enter(Node::Spread(crowd, x.id, y.id)), open: x.open }
             }
         }
     }
@@ -317,6 +320,13 @@ impl<'a> Lowering<'a> {
                 let id = self.graph.enter(Node::Between([ax.id, ay.id, bx.id, by.id]));
                 Value { id, open: self.either([ax.open, ay.open, bx.open, by.open]) }
             }
+        }
+    }
+
+    /// How far others are from an agent.
+    fn separation(&mut self, separation: Separation, who: Who) -> Id {
+        match separation {
+            Separation::Clearance => self.clearance(who),
         }
     }
 

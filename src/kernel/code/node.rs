@@ -4,7 +4,7 @@
 //! entered once (hash-consing), so that atoms share what they have in common, and operands always come
 //! before their users.
 
-use crate::model::{Arithmetic, Comparison, Field, Fold, Function, Who};
+use crate::model::{Arithmetic, Comparison, Field, Fold, Function, Pair, Who};
 use std::collections::HashMap;
 
 /// Number of a node; later that of a register.
@@ -88,8 +88,8 @@ pub(super) enum Node {
     ToBarrier(Id, Id, u32),
     /// Distance of a point from the nearest barrier.
     ToScene(Id, Id),
-    /// Time to collision.
-    TimeToCollision(Who, Who),
+    /// A number of two agents.
+    OfTwo(Pair, Who, Who),
     /// Mean of a reading over a crowd.
     Mean(Reading, Crowd),
     /// Root of the mean squared distance from a point.
@@ -180,7 +180,7 @@ impl Node {
             | Self::Variable(_)
             | Self::Of(..)
             | Self::Distance(..)
-            | Self::TimeToCollision(..)
+            | Self::OfTwo(..)
             | Self::Mean(..)
             | Self::Nearest(..)
             | Self::Truth(_)
@@ -212,7 +212,7 @@ impl Node {
     fn agents(&self) -> Vec<Who> {
         let (first, second) = match *self {
             Self::Of(_, who) | Self::Inside(who, _) | Self::Present(who) => (Some(who), None),
-            Self::Distance(a, b) | Self::TimeToCollision(a, b) => (Some(a), Some(b)),
+            Self::Distance(a, b) | Self::OfTwo(_, a, b) => (Some(a), Some(b)),
             Self::Mean(_, crowd)
             | Self::Spread(crowd, ..)
             | Self::Somebody(crowd)

@@ -17,7 +17,101 @@ pub use floor::floor;
 pub use spread::{Spread, student};
 
 use super::invalid::Invalid;
+use super::spec::{Argument, Chosen, DELTA, Kind, Make, Serves, Spec};
+use crate::base::math;
 use crate::base::random::{Purpose, Stream, TrialKey};
+
+/// The procedure as queries name it.
+pub(super) const SPLITTING: Spec = Spec {
+    name: "splitting",
+    reported: "splitting",
+    serves: Serves::Probability,
+    arguments: &[
+        whole("replicas", 10.0, |_| 1e6, |_| 1000.0, None),
+        whole("runs", 2.0, |_| 1000.0, |_| 20.0, None),
+        whole(
+            "plain",
+            100.0,
+            |_| 1e9,
+            |values| math::at_least((values[0] * values[1] / 2.0).floor(), 100.0),
+            None,
+        ),
+        DELTA,
+        // How many are killed is at most how many there are.
+        whole(
+            "kill",
+            1.0,
+            |values| values[0] - 1.0,
+            |values| math::at_least((values[0] / 10.0).floor(), 1.0),
+            Some(0),
+        ),
+    ],
+    summary: "adaptive splitting, {runs} runs of {replicas} paths, after {plain} plain trials",
+    guarantee: "a lower bound of P from the runs, an upper one from plain trials",
+    make: Make::Splitting { adaptive: true },
+    forecast: None,
+};
+
+/// The same at the levels of a pilot run.
+pub(super) const FIXED_EFFORT: Spec = Spec {
+    name: "fixed_effort",
+    reported: "fixed_effort",
+    summary: "splitting with fixed effort, {runs} runs of {replicas} paths, after {plain} plain trials",
+    make: Make::Splitting { adaptive: false },
+    ..SPLITTING
+};
+
+const fn whole(
+    name: &'static str,
+    low: f64,
+    high: fn(&[f64]) -> f64,
+    default: fn(&[f64]) -> f64,
+    bounded_by: Option<usize>,
+) -> Argument {
+    Argument { name, kind: Kind::Number { whole: true, low, high, default, bounded_by } }
+}
+
+/// How a rare event is split into less rare ones.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rule {
+    /// Whether levels are found on the way (else by a pilot run, with as many paths at each).
+    pub adaptive: bool,
+    /// Paths of a run.
+    pub replicas: u64,
+    /// Independent runs.
+    pub runs: u64,
+    /// Paths given up at each level, at least.
+    pub kill: u64,
+    /// Plain trials that are made first.
+    pub plain: u64,
+    /// Error of the interval and of the bound.
+    pub delta: f64,
+}
+
+impl Rule {
+    /// That of a procedure, if it is one of splitting.
+    pub fn of(chosen: &Chosen) -> Option<Self> {
+        let Make::Splitting { adaptive } = chosen.spec.make else { return None };
+        let whole = |name| chosen.value(name) as u64;
+        Some(Self {
+            adaptive,
+            replicas: whole("replicas"),
+            runs: whole("runs"),
+            kill: whole("kill"),
+            plain: whole("plain"),
+            delta: chosen.value(DELTA.name),
+        })
+    }
+
+    /// Its numbers for reports.
+    pub fn numbers(self) -> Vec<(&'static str, f64)> {
+        let kill = self.adaptive.then_some(("kill", self.kill as f64));
+        let mut numbers = vec![("replicas", self.replicas as f64), ("runs", self.runs as f64)];
+        numbers.extend(kill);
+        numbers.extend([("plain", self.plain as f64), (DELTA.name, self.delta)]);
+        numbers
+    }
+}
 
 /// What one path came to.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -106,45 +200,6 @@ impl Picks {
         self.made = self.made.wrapping_add(1);
         let at = (u * count as f64) as usize;
         if at < count { at } else { count - 1 }
-    }
-}
-
-/// Either scheme.
-#[derive(Clone, Debug)]
-pub enum AnyScheme {
-    /// Adaptive multilevel splitting.
-    Adaptive(Adaptive),
-    /// Fixed effort at fixed levels.
-    Effort(Effort),
-}
-
-impl Scheme for AnyScheme {
-    fn wanted(&self) -> &[Start] {
-        match self {
-            Self::Adaptive(scheme) => scheme.wanted(),
-            Self::Effort(scheme) => scheme.wanted(),
-        }
-    }
-
-    fn feed(&mut self, flights: Vec<Flight>) {
-        match self {
-            Self::Adaptive(scheme) => scheme.feed(flights),
-            Self::Effort(scheme) => scheme.feed(flights),
-        }
-    }
-
-    fn estimate(&self) -> f64 {
-        match self {
-            Self::Adaptive(scheme) => scheme.estimate(),
-            Self::Effort(scheme) => scheme.estimate(),
-        }
-    }
-
-    fn levels(&self) -> &[f64] {
-        match self {
-            Self::Adaptive(scheme) => scheme.levels(),
-            Self::Effort(scheme) => scheme.levels(),
-        }
     }
 }
 

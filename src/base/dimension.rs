@@ -1,4 +1,4 @@
-//! Dimensions: exponents of kilogram, metre, second, angle and step.
+//! Dimensions: the exponents of kilogram, metre, second, angle and step.
 
 use std::fmt;
 
@@ -89,5 +89,37 @@ impl fmt::Display for Dimension {
             [one] => write!(f, "/{one}"),
             many => write!(f, "/({})", many.join(" ")),
         }
+    }
+}
+
+/// What a dimension is called in messages: `a length (m)`, `a pure number`.
+pub fn describe(dimension: Dimension) -> String {
+    let name = match dimension {
+        Dimension::NONE => return "a pure number".to_owned(),
+        Dimension::MASS => "a mass",
+        Dimension::LENGTH => "a length",
+        Dimension::AREA => "an area",
+        Dimension::TIME => "a time",
+        Dimension::SPEED => "a speed",
+        Dimension::FORCE => "a force",
+        Dimension::ANGLE => "an angle",
+        Dimension::STEPS => "a number of steps",
+        Dimension::DENSITY => "a density",
+        _ => "a quantity",
+    };
+    format!("{name} ({dimension})")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dimensions_print_as_units() {
+        assert_eq!(Dimension::FRICTION.to_string(), "kg/(m s)");
+        assert_eq!(Dimension::STIFFNESS.to_string(), "kg/s^2");
+        assert_eq!(Dimension::DENSITY.to_string(), "/m^2");
+        assert_eq!(Dimension::FORCE.to_string(), "N");
+        assert_eq!(describe(Dimension::NONE), "a pure number");
     }
 }
