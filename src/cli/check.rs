@@ -33,7 +33,7 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     if inputs.study.is_none() {
         deadline.enter(Phase::Printing);
     }
-    super::diagnose(&inputs, colors);
+    complaint::diagnose(&inputs, colors);
     let overwritten = output::guard(arguments.report.as_deref(), &paths).err();
     let reporter = Reporter {
         arguments,

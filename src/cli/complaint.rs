@@ -1,6 +1,7 @@
 //! What is reported of a call that is wrong in a way that no file shows: each with a code and with what to do.
 
 use super::terminal::{Colors, say};
+use crate::library::Inputs;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::render::render;
@@ -42,4 +43,11 @@ pub(super) fn tell(error: &Diagnostic, sources: &[Source], colors: Colors) {
 /// Says them on standard error.
 pub(super) fn tell_all(errors: &[Diagnostic], sources: &[Source], colors: Colors) {
     say(&render(errors, sources, colors.err));
+}
+
+/// Writes errors and warnings about the inputs to standard error.
+pub(super) fn diagnose(inputs: &Inputs, colors: Colors) {
+    if !inputs.diagnostics.is_empty() {
+        tell_all(&inputs.diagnostics, &inputs.sources, colors);
+    }
 }

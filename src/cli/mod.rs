@@ -20,7 +20,6 @@ mod terminal;
 use crate::base::visible::visible;
 use crate::engine::outcome::Failure;
 use crate::report::ExitCode as Exit;
-use crate::syntax::render::render;
 use arguments::{Arguments, Command, OutputFormat};
 use clap::{Parser, ValueEnum};
 use std::borrow::Cow;
@@ -122,12 +121,5 @@ fn dispatch(arguments: &Arguments) -> Exit {
         Command::Explain(command) => explain::run(command, colors),
         Command::Completions { shell } => manual::completions(*shell, colors),
         Command::Man { directory } => manual::pages(directory, colors),
-    }
-}
-
-/// Writes errors and warnings to standard error.
-fn diagnose(inputs: &crate::library::Inputs, colors: Colors) {
-    if !inputs.diagnostics.is_empty() {
-        say(&render(&inputs.diagnostics, &inputs.sources, colors.err));
     }
 }

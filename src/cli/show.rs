@@ -11,7 +11,7 @@ use crate::report::model;
 /// Runs the command.
 pub(super) fn run(arguments: &Show, colors: Colors) -> Exit {
     let inputs = inputs::load(&arguments.model, &arguments.properties).inputs;
-    super::diagnose(&inputs, colors);
+    complaint::diagnose(&inputs, colors);
     let Some(study) = &inputs.study else { return Exit::Wrong };
     match print(&visible(&model::describe(study))) {
         Ok(()) => Exit::Success,

@@ -268,7 +268,7 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
         return refuse("a seed has no such trials", hint, colors);
     }
     let inputs::Loaded { inputs, paths, .. } = inputs::load(&arguments.model, &[]);
-    super::diagnose(&inputs, colors);
+    complaint::diagnose(&inputs, colors);
     let Some(study) = &inputs.study else { return Exit::Wrong };
     if let Err(error) = output::guard(arguments.output.as_deref(), &paths) {
         complaint::tell(&error, &[], colors);

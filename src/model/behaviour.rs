@@ -6,13 +6,10 @@
 
 use super::agent::{AgentId, Route};
 use super::expression::{Bool, Num};
+use super::index::BehaviourId;
 use super::law::Law;
 use super::parameter::Parameter;
 use std::sync::Arc;
-
-/// Index of a declared behaviour.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct BehaviourId(pub u32);
 
 /// All behaviours of a scenario.
 #[derive(Clone, Debug, Default, PartialEq)]

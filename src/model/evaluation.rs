@@ -5,7 +5,8 @@
 
 use super::expression::{Arithmetic, Bool, Comparison, Function, Num, Place, Who};
 use super::function::Field;
-use super::process::{Command, Process, Timing, VariableId};
+use super::index::VariableId;
+use super::process::{Command, Process, Timing};
 use crate::base::math;
 use std::collections::BTreeSet;
 

@@ -4,7 +4,7 @@
 
 use super::agent::AgentId;
 use super::function::{Collective, Field, Pair};
-use super::process::VariableId;
+use super::index::VariableId;
 use super::scene::{BarrierId, RegionId};
 use std::sync::Arc;
 

@@ -1,8 +1,8 @@
 //! The built-in functions of the language, in one table: names, arguments, and the dimensions of what they give. What they
 //! give is computed by the kernel (`kernel/code`), and described in `docs/language.md`.
 
-use super::behaviour::BehaviourId;
 use super::expression::{Arithmetic, Axis, Function};
+use super::index::BehaviourId;
 use crate::base::dimension::Dimension;
 
 /// A number of one agent.

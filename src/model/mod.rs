@@ -6,6 +6,7 @@ mod digest;
 mod evaluation;
 pub mod expression;
 pub mod function;
+mod index;
 pub mod kind;
 mod lacking;
 pub mod law;
@@ -18,16 +19,15 @@ pub mod scene;
 pub mod source;
 
 pub use agent::{Agent, AgentId, Body, Goal, Group, Leg, Particle, Position, Route, Start};
-pub use behaviour::{
-    Amount, Attached, Behaviour, BehaviourId, Behaviours, Conduct, Mode, Transition, Trigger,
-};
+pub use behaviour::{Amount, Attached, Behaviour, Behaviours, Conduct, Mode, Transition, Trigger};
 pub use expression::{Arithmetic, Axis, Bool, Comparison, Fold, Function, Num, Place, Set, Who};
 pub use function::{BuiltIn, Collective, Field, Pair, Separation};
+pub use index::{BehaviourId, VariableId};
 pub use kind::Kind;
 pub use law::{Family, Law};
 pub use moves::{Move, Moves};
 pub use parameter::{PARAMETERS, Parameter, TOP_SPEED};
-pub use process::{Branch, Command, Domain, Process, Processes, Timing, Variable, VariableId};
+pub use process::{Branch, Command, Domain, Process, Processes, Timing, Variable};
 pub use scenario::Scenario;
 pub use scene::{Barrier, BarrierId, Obstacle, Region, RegionId, Scene};
 pub use source::Source;

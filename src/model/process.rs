@@ -4,12 +4,9 @@
 //! A process without an enabled command stutters. Commands with a rate or a delay fire at their own times.
 
 use super::expression::{Bool, Num};
+use super::index::VariableId;
 use super::law::Law;
 use crate::base::decimal::Decimal;
-
-/// Index of a variable of the scenario.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct VariableId(pub u32);
 
 /// What a variable may hold. Truth values are kept as 0 and 1.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,8 @@
 //! A violated `check` is an error, an undecided one and every warning is a warning; a notice sums up.
 //! Values are escaped as the runner unescapes them: `%`, line ends, and in properties `:` and `,` too.
 
-use super::{certified, exit_code, one_line, settings, text};
+use super::phrase::{certified, one_line, settings};
+use super::{exit_code, text};
 use crate::engine::outcome::{Failure, Finding, QueryResult, Run, Verdict};
 use std::fmt::Write as _;
 

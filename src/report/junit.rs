@@ -4,7 +4,8 @@
 //! Other queries pass with their numbers as output.
 
 use super::palette::Palette;
-use super::{certified, one_line, settings, text};
+use super::phrase::{certified, one_line, settings};
+use super::text;
 use crate::engine::outcome::{Finding, QueryResult, Run, Verdict};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use std::time::Duration;

@@ -14,13 +14,14 @@ pub mod model;
 pub mod number;
 pub mod outlook;
 pub mod palette;
+mod phrase;
 pub mod text;
 
 pub use exit::{ExitCode, exit_code};
 pub use palette::Palette;
 
 use crate::base::visible::{self, visible};
-use crate::engine::outcome::{QueryResult, Run};
+use crate::engine::outcome::Run;
 
 /// Formats of a report.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -66,34 +67,6 @@ fn painted(plain: &str, painted: &str) -> String {
         }
     }
     text
-}
-
-/// A query on one line, as written.
-fn one_line(query: &str) -> String {
-    query.split_whitespace().collect::<Vec<_>>().join(" ")
-}
-
-/// `density = 0.2 /m^2, step = 0.02 s`
-fn settings(result: &QueryResult) -> String {
-    result.settings.iter().map(|(name, value)| format!("{name} = {value}")).collect::<Vec<_>>().join(", ")
-}
-
-/// What values above all numbers are called: a time that does not come lies beyond the horizon, a distance to
-/// nobody is infinite. Where the query names a metric that is declared
-/// elsewhere it cannot be told which, and "infinite" is true of both.
-fn endless(result: &QueryResult) -> &'static str {
-    let time = result.censored.is_some() || result.query.contains("time_until");
-    if time { "beyond the horizon" } else { "infinite" }
-}
-
-/// The certified statement with the horizon it is conditional on; empty where nothing is certified.
-fn certified(result: &QueryResult) -> String {
-    match &result.horizon {
-        Some(horizon) if !result.certifies.is_empty() => {
-            format!("{}, within the horizon of {horizon}", result.certifies)
-        }
-        _ => result.certifies.clone(),
-    }
 }
 
 #[cfg(test)]

@@ -15,7 +15,7 @@ pub fn text(outlook: &Outlook) -> String {
         } else {
             format!("{} to {}", count(least), counted(most, "trial"))
         };
-        let query = super::one_line(query);
+        let query = super::phrase::one_line(query);
         let under: Vec<String> = settings.iter().map(|(name, value)| format!("{name} = {value}")).collect();
         let under = if under.is_empty() { String::new() } else { format!("   {}", under.join(", ")) };
         text.push_str(&format!(

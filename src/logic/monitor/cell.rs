@@ -5,7 +5,6 @@
 //! positions and settle them as the states come in; they keep a track.
 
 use super::track::{Numbers, Track, select};
-use super::{boolean, numbers, until, window};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::tick::{Clock, Tick};
 use crate::logic::formula::{Aggregation, Operation, Relation};
@@ -210,6 +209,15 @@ pub(super) fn events(before: &[Cell], child: Ref, now: u64) -> impl Iterator<Ite
     })
 }
 
+/// What an aggregate starts from. Adding to minus zero changes nothing, not even the sign of a zero.
+pub(super) fn identity(aggregation: Aggregation) -> f64 {
+    match aggregation {
+        Aggregation::Min => f64::INFINITY,
+        Aggregation::Max => f64::NEG_INFINITY,
+        Aggregation::Sum | Aggregation::Mean => -0.0,
+    }
+}
+
 impl Cell {
     pub(super) fn new(machine: Machine) -> Self {
         Self {
@@ -247,83 +255,15 @@ impl Cell {
             }
             Machine::Fold { aggregation, extent, .. } => {
                 **extent = Extent::EMPTY.within(lanes, **extent);
-                let identity = numbers::identity(*aggregation);
+                let identity = identity(*aggregation);
                 self.value = select(lanes, Lanes::splat(identity), self.value);
             }
             _ => {}
         }
     }
 
-    /// One step: the children have taken theirs.
     #[inline(always)]
-    pub(super) fn step(&mut self, before: &[Cell], cx: &Context) {
-        if self.live & cx.work == 0 {
-            self.track.changes.clear();
-            return;
-        }
-        match &mut self.machine {
-            Machine::Atom(k) => {
-                let t = cx.atoms.get(*k).map_or(0, |mask| mask.0);
-                self.present(t, cx.now);
-            }
-            Machine::CompareNow(relation, x, y) => {
-                let t = numbers::compare(*relation, before[*x].value, before[*y].value);
-                self.present(t, cx.now);
-            }
-            Machine::AnyNow(children) => {
-                let t = children.iter().fold(0, |t, child| t | truth(before, *child).0);
-                self.present(t, cx.now);
-            }
-            Machine::Signal(k) => {
-                let value = cx.signals.get(*k).copied().unwrap_or(Lanes::splat(f64::NAN));
-                self.present_number(value, cx.now);
-            }
-            Machine::CombineNow(arithmetic, x, y) => {
-                let value = numbers::combine(*arithmetic, before[*x].value, before[*y].value);
-                self.present_number(value, cx.now);
-            }
-            Machine::Fixed => {}
-            Machine::Scan { first, second } => {
-                let open = self.need & cx.work & !(self.t | self.f);
-                let rest = open & !truth(before, *second).0;
-                let missed = first.map_or(0, |first| truth(before, first).1);
-                self.t |= open & !rest;
-                // At the last state of the window it is too late.
-                self.f |= rest & (missed | self.last);
-            }
-            Machine::AnyHeld(children) => {
-                let (mut t, mut f) = (0, 0xff);
-                for child in children {
-                    let (child_t, child_f) = truth(before, *child);
-                    t |= child_t;
-                    f &= child_f;
-                }
-                (self.t, self.f) = (t, f);
-            }
-            _ => self.late_step(before, cx),
-        }
-    }
-
-    /// The cells that take longer, out of the way of those that do not.
-    #[inline(never)]
-    fn late_step(&mut self, before: &[Cell], cx: &Context) {
-        match &self.machine {
-            Machine::Count { .. } | Machine::Slide { .. } => window::step(self, before, cx),
-            Machine::Capture(_)
-            | Machine::AnyLate { .. }
-            | Machine::CompareHeld(..)
-            | Machine::CompareLate(..)
-            | Machine::Watch { .. } => boolean::step(self, before, cx),
-            Machine::Chain { .. } => until::step(self, before, cx),
-            _ => numbers::step(self, before, cx),
-        }
-        if self.single {
-            self.keep_answer(cx.now);
-        }
-    }
-
-    #[inline(always)]
-    fn present(&mut self, t: u8, now: u64) {
+    pub(super) fn present(&mut self, t: u8, now: u64) {
         self.t = t;
         self.f = !t;
         if self.track.is_kept() {
@@ -332,7 +272,7 @@ impl Cell {
     }
 
     #[inline(always)]
-    fn present_number(&mut self, value: Lanes, now: u64) {
+    pub(super) fn present_number(&mut self, value: Lanes, now: u64) {
         self.value = value;
         if self.track.is_kept() {
             self.track.store(now, 0xff);
@@ -341,7 +281,7 @@ impl Cell {
     }
 
     /// Keeps the answer of a late cell that is needed at one position.
-    fn keep_answer(&mut self, now: u64) {
+    pub(super) fn keep_answer(&mut self, now: u64) {
         for change in &self.track.changes {
             self.t |= change.t;
             self.f |= change.f;

@@ -13,6 +13,7 @@ mod margins;
 mod numbers;
 mod plan;
 pub mod robustness;
+mod step;
 mod track;
 mod until;
 mod window;

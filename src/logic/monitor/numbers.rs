@@ -4,7 +4,7 @@
 //! larger of it none. Sums run over the states in ascending order; a mean lies between the least and the greatest number that
 //! it averages.
 
-use super::cell::{Arithmetic, Cell, Context, Extent, Machine, Place, Ref, events, planes, truth};
+use super::cell::{Arithmetic, Cell, Context, Extent, Machine, Place, Ref, events, identity, planes, truth};
 use super::track::{Numbers, Track, select};
 use crate::base::lanes::{Lanes, Mask};
 use crate::logic::formula::{Aggregation, Operation, Relation, bracket};
@@ -34,15 +34,6 @@ pub(super) fn combine(arithmetic: Arithmetic, x: Lanes, y: Lanes) -> Lanes {
         Arithmetic::Of(Operation::Min) => x.zip(y, |x, y| Operation::Min.apply(x, y)),
         Arithmetic::Of(Operation::Max) => x.zip(y, |x, y| Operation::Max.apply(x, y)),
         Arithmetic::Abs => x.map(f64::abs),
-    }
-}
-
-/// What an aggregate starts from. Adding to minus zero changes nothing, not even the sign of a zero.
-pub(super) fn identity(aggregation: Aggregation) -> f64 {
-    match aggregation {
-        Aggregation::Min => f64::INFINITY,
-        Aggregation::Max => f64::NEG_INFINITY,
-        Aggregation::Sum | Aggregation::Mean => -0.0,
     }
 }
 

@@ -14,6 +14,8 @@ mod moment;
 mod number;
 mod plan;
 mod present;
+mod question;
+mod reading;
 pub mod robustness;
 mod stream;
 mod track;
@@ -26,41 +28,13 @@ use super::reach::Part;
 use crate::base::decimal::Decimal;
 use crate::base::instant::Instant;
 use crate::base::tick::Tick;
-use cells::Cells;
-use direct::{Direct, Stay};
+use direct::Stay;
 pub use glance::Glance;
 use moment::{Moment, Scale};
 use plan::plan;
 use present::Present;
-
-/// What a monitor found.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Reading {
-    /// The formula's truth.
-    Truth(bool),
-    /// The metric; times are in seconds.
-    Value(f64),
-    /// The trial needs more stored pieces than are possible.
-    Unresolved,
-}
-
-/// How the question is answered.
-#[derive(Clone, Debug)]
-enum Way {
-    Direct(Direct),
-    Cells(Box<Cells>),
-}
-
-/// An implication `a => b` whose left side is one of the present state.
-#[derive(Clone, Copy, Debug)]
-struct Watched {
-    /// Where the left side is in the code of the present state.
-    slot: usize,
-    /// The first time at which it is asked about.
-    first: Instant,
-    /// The last one.
-    last: Instant,
-}
+use question::{Watched, Way};
+pub use reading::Reading;
 
 /// The monitor of one formula or metric, one trial at a time.
 ///

@@ -1,12 +1,15 @@
 //! A report as one HTML page: no script, no font, no file beside it.
 
 mod chart;
+mod escape;
 mod histogram;
 
 use super::number::{count, counted, duration};
-use super::{certified, endless, one_line, settings, text};
+use super::phrase::{certified, endless, one_line, settings};
+use super::text;
 use crate::engine::outcome::{Interval, QueryResult, Run, Shortfall, Status, Verdict, Witness};
 use chart::{Mark, Tone};
+use escape::escape;
 use std::fmt::Write as _;
 
 const STYLE: &str = include_str!("style.css");
@@ -195,24 +198,6 @@ fn labelled(result: &QueryResult, label: &str, value: Interval, tone: Tone, note
     let (estimate, interval) = text::printed(result, &value);
     let note = if note.is_empty() { String::new() } else { format!(" ({note})") };
     Mark { label: label.to_owned(), value, tone, said: format!("{estimate}  {interval}{note}") }
-}
-
-/// A text inside HTML or SVG. Control characters, which neither may hold, become blanks.
-fn escape(text: &str) -> String {
-    let mut safe = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => safe.push_str("&amp;"),
-            '<' => safe.push_str("&lt;"),
-            '>' => safe.push_str("&gt;"),
-            '"' => safe.push_str("&quot;"),
-            '\'' => safe.push_str("&#39;"),
-            '\n' | '\t' => safe.push(c),
-            c if c.is_control() => safe.push(' '),
-            c => safe.push(c),
-        }
-    }
-    safe
 }
 
 #[cfg(test)]

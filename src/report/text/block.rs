@@ -1,16 +1,13 @@
 //! The block of one result.
 
-use super::columns::{Cell, lines};
+use super::rows::{MARGIN, line, printed};
 use super::{compare, distribution, rank};
 use crate::engine::at_most;
 use crate::engine::outcome::{Interval, Kind, QueryResult, Rare, Shortfall, Shows, Stop, Verdict, Witness};
 use crate::report::number::{count, counted, duration, interval, plain};
 use crate::report::palette::{Paint, Palette};
-use crate::report::{certified, one_line, settings};
+use crate::report::phrase::{certified, one_line, settings};
 use std::fmt::Write as _;
-
-/// Width of the verdict's column, blanks after it included.
-const MARGIN: usize = 11;
 
 /// Writes the block of one result.
 pub(super) fn write(text: &mut String, result: &QueryResult, palette: Palette) {
@@ -67,29 +64,6 @@ pub(super) fn word(result: &QueryResult) -> (&'static str, Paint) {
         Some(verdict @ Verdict::Undecided) => (verdict.name(), Paint::Caution),
         None => (result.kind.name(), Paint::Neutral),
     }
-}
-
-/// A line under the head.
-pub(super) fn line(text: &mut String, content: &str) {
-    let _ = writeln!(text, "{:MARGIN$}{content}", "");
-}
-
-/// Aligned lines under the head.
-pub(super) fn table(text: &mut String, rows: &[Vec<Cell>], palette: Palette) {
-    for row in lines(rows, palette) {
-        line(text, &row);
-    }
-}
-
-/// The estimate and its interval, each with its unit.
-pub(in crate::report) fn printed(result: &QueryResult, value: &Interval) -> (String, String) {
-    let printed = interval(value, result.censored);
-    let unit = if result.unit.is_empty() { String::new() } else { format!(" {}", result.unit) };
-    let mut estimate = format!("{}{unit}", printed.estimate);
-    if value.estimate == f64::INFINITY && result.censored.is_some() {
-        estimate += " (within the horizon)";
-    }
-    (estimate, format!("{}{unit}", printed.interval))
 }
 
 fn value(text: &mut String, result: &QueryResult, palette: Palette) {

@@ -1,7 +1,7 @@
 //! The block of a comparison: both sides and the difference.
 
-use super::block;
 use super::columns::Cell;
+use super::rows;
 use crate::engine::outcome::{Comparison, QueryResult, Side};
 use crate::report::number::{count, counted};
 use crate::report::palette::{Paint, Palette};
@@ -10,11 +10,11 @@ use crate::report::palette::{Paint, Palette};
 pub(super) fn write(text: &mut String, result: &QueryResult, comparison: &Comparison, palette: Palette) {
     let Comparison { first, second, difference } = comparison;
     if difference.counts.trials == 0 {
-        block::line(text, "nothing was sampled");
+        rows::line(text, "nothing was sampled");
         return;
     }
     let row = |side: &Side, paint: Option<Paint>, noun: &str, remark: String| {
-        let (estimate, interval) = block::printed(result, &side.value);
+        let (estimate, interval) = rows::printed(result, &side.value);
         let estimate = Cell::left(estimate);
         vec![
             Cell::left(side.label.clone()),
@@ -42,8 +42,8 @@ pub(super) fn write(text: &mut String, result: &QueryResult, comparison: &Compar
         row(second, None, "trial", unresolved(second.counts.unresolved)),
         row(difference, Some(Paint::Strong), "pair", pairs),
     ];
-    block::table(text, &rows, palette);
+    rows::table(text, &rows, palette);
     if !result.interval.is_empty() {
-        block::line(text, &palette.paint(Paint::Faint, &format!("intervals: {}", result.interval)));
+        rows::line(text, &palette.paint(Paint::Faint, &format!("intervals: {}", result.interval)));
     }
 }

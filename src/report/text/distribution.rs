@@ -1,10 +1,10 @@
 //! How the values of a metric are distributed: quantiles, and a histogram in one line.
 
-use super::block;
+use super::rows;
 use crate::engine::outcome::{Distribution, Histogram, QueryResult};
-use crate::report::endless;
 use crate::report::number::{brief, count, interval, plain};
 use crate::report::palette::{Paint, Palette};
+use crate::report::phrase::endless;
 
 const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
@@ -24,7 +24,7 @@ pub(super) fn write(text: &mut String, result: &QueryResult, found: &Distributio
                 )
             })
             .collect();
-        block::line(text, &format!("quantiles {}", parts.join(", ")));
+        rows::line(text, &format!("quantiles {}", parts.join(", ")));
     }
     if let Some(histogram) = &found.histogram {
         let bars = palette.paint(Paint::Neutral, &bars(histogram));
@@ -38,7 +38,7 @@ pub(super) fn write(text: &mut String, result: &QueryResult, found: &Distributio
         if let Some(band) = found.band {
             said = format!("{said}, distribution function to ± {}", plain((band * 1000.0).ceil() / 1000.0));
         }
-        block::line(text, &said);
+        rows::line(text, &said);
     }
 }
 

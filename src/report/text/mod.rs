@@ -5,9 +5,11 @@ mod columns;
 mod compare;
 mod distribution;
 mod rank;
+mod rows;
 mod sweep;
 
-pub(super) use block::{counts, moment, printed, shown, trials};
+pub(super) use block::{counts, moment, shown, trials};
+pub(super) use rows::printed;
 
 use super::number::{count, counted, duration};
 use super::palette::{Paint, Palette};

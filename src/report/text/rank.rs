@@ -1,7 +1,7 @@
 //! The block of a ranking: the choice, what is certified of it, and all options, best first.
 
-use super::block;
 use super::columns::Cell;
+use super::rows;
 use crate::engine::outcome::{QueryResult, Ranking, Status};
 use crate::report::number::counted;
 use crate::report::palette::{Paint, Palette};
@@ -11,7 +11,7 @@ pub(super) fn write(text: &mut String, result: &QueryResult, ranking: &Ranking, 
     let Some(choice) = &ranking.choice else {
         let sampled = result.counts.trials > 0;
         let why = if sampled { "no trial is resolved" } else { "nothing was sampled" };
-        block::line(text, &format!("no choice: {why}"));
+        rows::line(text, &format!("no choice: {why}"));
         return;
     };
     let choice = palette.paint(Paint::Good, choice);
@@ -23,12 +23,12 @@ pub(super) fn write(text: &mut String, result: &QueryResult, ranking: &Ranking, 
     if ranking.tied {
         said += "; those marked tied carry the same certificate";
     }
-    block::line(text, &said);
+    rows::line(text, &said);
     let rows: Vec<Vec<Cell>> = ranking
         .options
         .iter()
         .map(|option| {
-            let (estimate, interval) = block::printed(result, &option.value);
+            let (estimate, interval) = rows::printed(result, &option.value);
             let paint = match option.status {
                 Status::Chosen => Paint::Good,
                 Status::Tied => Paint::Neutral,
@@ -49,8 +49,8 @@ pub(super) fn write(text: &mut String, result: &QueryResult, ranking: &Ranking, 
             ]
         })
         .collect();
-    block::table(text, &rows, palette);
+    rows::table(text, &rows, palette);
     if !result.interval.is_empty() {
-        block::line(text, &palette.paint(Paint::Faint, &format!("intervals: {}", result.interval)));
+        rows::line(text, &palette.paint(Paint::Faint, &format!("intervals: {}", result.interval)));
     }
 }

@@ -1,11 +1,11 @@
 //! The block of a query swept over values of parameters: one row per setting.
 
-use super::block;
 use super::columns::Cell;
+use super::{block, rows};
 use crate::engine::outcome::{Interval, QueryResult, Verdict};
 use crate::report::number::{count, counted};
 use crate::report::palette::{Paint, Palette};
-use crate::report::{certified, settings};
+use crate::report::phrase::{certified, settings};
 
 /// Writes all results of one query.
 pub(super) fn write(text: &mut String, results: &[&QueryResult], palette: Palette) {
@@ -19,22 +19,22 @@ pub(super) fn write(text: &mut String, results: &[&QueryResult], palette: Palett
     block::head(text, first, palette);
     let same_cause = results.iter().all(|r| block::cause(r) == block::cause(first));
     let rows: Vec<Vec<Cell>> = results.iter().map(|result| row(result, same_cause)).collect();
-    block::table(text, &rows, palette);
+    rows::table(text, &rows, palette);
     if same_cause {
-        block::line(text, &format!("each {}", block::cause(first)));
+        rows::line(text, &format!("each {}", block::cause(first)));
     }
     if !first.interval.is_empty() && results.iter().all(|r| r.interval == first.interval) {
-        block::line(text, &palette.paint(Paint::Faint, &format!("intervals: {}", first.interval)));
+        rows::line(text, &palette.paint(Paint::Faint, &format!("intervals: {}", first.interval)));
     }
     block::method(text, &common(first, results), palette);
     let statement = certified(first);
     if results.iter().all(|r| certified(r) == statement) {
         if !statement.is_empty() {
-            block::line(text, &format!("certified, each: {statement}"));
+            rows::line(text, &format!("certified, each: {statement}"));
         }
     } else {
         for result in results.iter().filter(|r| !r.certifies.is_empty()) {
-            block::line(text, &format!("certified for {}: {}", settings(result), certified(result)));
+            rows::line(text, &format!("certified for {}: {}", settings(result), certified(result)));
         }
     }
     for result in results {
@@ -59,7 +59,7 @@ fn row(result: &QueryResult, same_cause: bool) -> Vec<Cell> {
         None => block::word(result),
     };
     let (estimate, interval) = result.estimate.map_or_else(Default::default, |estimate| {
-        block::printed(result, &Interval { estimate, low: result.low, high: result.high })
+        rows::printed(result, &Interval { estimate, low: result.low, high: result.high })
     });
     let unresolved = match result.counts.unresolved {
         0 => String::new(),

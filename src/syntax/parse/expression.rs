@@ -7,14 +7,13 @@
 use super::builder::{Builder, Pair, Parts};
 use super::code;
 use super::grammar::Rule;
+use super::nesting::NESTING;
 use crate::syntax::ast::{
     Aggregate, BinaryOp, Bound, Expr, ExprKind, Ident, Quantifier, Temporal, TemporalPair, UnaryOp,
 };
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
-/// How deep prefixes and brackets may nest.
-pub(super) const NESTING: u16 = 256;
 /// How high a tree may be, chains of operators included.
 const HEIGHT: u16 = 2 * NESTING;
 

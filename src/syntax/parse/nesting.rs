@@ -2,10 +2,12 @@
 //! end. It reads the text once and recurses nowhere.
 
 use super::code;
-use super::expression::NESTING;
 use super::lexeme;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
+
+/// How deep prefixes and brackets may nest.
+pub(super) const NESTING: u16 = 256;
 
 /// What the scan says about a text.
 pub(super) enum Scan {
