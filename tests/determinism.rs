@@ -6,7 +6,7 @@ use smc::engine::cell::Item;
 use smc::engine::executor::{Cells, Job};
 use smc::engine::outcome::{Failure, QueryResult, Run};
 use smc::engine::ranks::{Connection, serve};
-use smc::engine::{Budget, Call, Executor, Fault, Nobody, Ranks, Threads, run};
+use smc::engine::{Budget, Call, CommandLine, Executor, Fault, Nobody, Ranks, Threads, run};
 use smc::logic::Invalid;
 use smc::syntax::parse::{parse_properties, parse_scenario};
 use smc::syntax::source::{Source, SourceId};
@@ -121,12 +121,13 @@ impl Executor for Restless {
 fn call() -> Call<'static> {
     Call {
         seed: 11,
-        command: "smc check a.scn a.bltl".to_owned(),
-        point: String::new(),
-        simulate: "smc simulate a.scn".to_owned(),
+        line: CommandLine {
+            scenario: "a.scn".to_owned(),
+            properties: vec!["a.bltl".to_owned()],
+            ..CommandLine::default()
+        },
         only: Vec::new(),
         place: &|_| (String::new(), 0),
-        file: String::new(),
     }
 }
 

@@ -2,8 +2,9 @@
 //! that has opened them, so that both compile the same even where a file changes in between.
 
 use super::arguments::Model;
-use super::inputs::{Inputs, load_from};
+use super::inputs::load_from;
 use crate::base::bytes::{Decoder, Encoder, Malformed};
+use crate::library::Inputs;
 use std::collections::VecDeque;
 
 /// A file that was opened, by the name under which it was asked for: its bytes, or why there are none.
@@ -87,7 +88,7 @@ pub(super) fn unpack(bytes: &[u8]) -> Result<Inputs, Malformed> {
         opened.push_back((name, contents));
     }
     let model = Model { scenario, set, data: Vec::new() };
-    Ok(load_from(FileCache::Handed(opened), &model, &properties))
+    Ok(load_from(FileCache::Handed(opened), &model, &properties).inputs)
 }
 
 #[cfg(test)]

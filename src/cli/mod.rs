@@ -126,7 +126,7 @@ fn dispatch(arguments: &Arguments) -> Exit {
 }
 
 /// Writes errors and warnings to standard error.
-fn diagnose(inputs: &inputs::Inputs, colors: Colors) {
+fn diagnose(inputs: &crate::library::Inputs, colors: Colors) {
     if !inputs.diagnostics.is_empty() {
         say(&render(&inputs.diagnostics, &inputs.sources, colors.err));
     }

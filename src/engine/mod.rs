@@ -7,6 +7,7 @@ pub mod budget;
 mod call;
 mod cause;
 pub mod cell;
+mod certificate;
 mod chain;
 mod checkpoints;
 mod columns;
@@ -43,7 +44,7 @@ mod witness;
 mod words;
 
 pub use budget::Budget;
-pub use call::Call;
+pub use call::{Call, CommandLine};
 pub use cause::{divergence, no_start, smaller};
 pub use executor::{Executor, Threads};
 pub use fault::Fault;

@@ -94,7 +94,7 @@ pub fn run(
     let trials = consumed(&asked, &results);
     let results: Vec<QueryResult> = results.into_iter().flatten().collect();
     Ok(Run {
-        scenario: if study.title.is_empty() { call.file.clone() } else { study.title.clone() },
+        scenario: if study.title.is_empty() { call.line.scenario.clone() } else { study.title.clone() },
         seed: call.seed,
         version: env!("CARGO_PKG_VERSION").to_owned(),
         inputs: Vec::new(),
@@ -132,7 +132,7 @@ fn again(call: &Call<'_>, budget: &Budget, results: &[QueryResult]) -> String {
         let each: Vec<&str> = results.iter().map(|r| r.replay.as_str()).collect();
         return each.join("\n");
     }
-    let mut words = call.command.clone();
+    let mut words = call.line.check();
     for index in &call.only {
         words.push_str(&format!(" --only {index}"));
     }
