@@ -2,9 +2,9 @@
 
 use super::arguments::{Check, OutputFormat};
 use super::deadline::{Deadline, Ended, Phase};
+use super::file_cache::{FileCache, pack};
 use super::progress::Progress;
 use super::ranks::ProcessPool;
-use super::file_cache::{FileCache, pack};
 use super::terminal::{Colors, print, say};
 use super::{complaint, inputs, output, ranks};
 use crate::base::fingerprint::Fingerprint;
@@ -54,7 +54,8 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
         Err(error) => return reporter.refuse(error),
     };
     if arguments.threads == Some(0) {
-        return reporter.refuse(complaint::argument("`--threads 0` runs nothing", "it takes a number from 1"));
+        return reporter
+            .refuse(complaint::argument("`--threads 0` runs nothing", "it takes a number from 1"));
     }
     let most = most_threads();
     if arguments.threads.is_some_and(|threads| threads > most) {

@@ -151,7 +151,7 @@ pub(super) fn of(ask: &Ask, procedure: Option<&Procedure>) -> Method {
                 Ranking::OneChallenger => "one_challenger",
                 Ranking::Okamoto => "okamoto",
             };
-            let word = ("word", super::race::WORD as f64);
+            let word = ("word", super::rank::WORD as f64);
             named(name, &[&[("epsilon", *epsilon), ("delta", *delta), word], &ends(measure)[..]].concat())
         }
     }

@@ -3,18 +3,18 @@
 use super::answer::Answers;
 use super::budget::{Budget, DEFAULT_TRIALS};
 use super::call::Call;
-use super::contrast::{Contrast, Sides};
+use super::compare::{CompareSampling, Sides};
+use super::estimate::{Advance, EstimateEntry, EstimateSampling};
 use super::executor::Executor;
 use super::fault::Fault;
 use super::flaw::Flaw;
 use super::forecast::Glimpse;
 use super::outcome::{Failure, QueryResult, Run, Stop};
+use super::placement::all_placeable;
 use super::procedure::Procedure;
-use super::race::{Contest, Field};
-use super::room::all_placeable;
+use super::rank::{RankSampling, RankSetup};
 use super::splitting::Question;
 use super::subject::Subject;
-use super::survey::{Advance, Inquiry, Survey};
 use super::tally::Tally;
 use super::watch::{Forecast, Outlook, Watch};
 use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Query, Study};
@@ -192,9 +192,9 @@ fn outlook(
             return Ok(None);
         }
         let forecasts = match &mut group.sampling {
-            Sampling::Survey(survey) => survey.run_pilot(executor, budget)?,
-            Sampling::Contrast(contrast) => vec![contrast.run_pilot(executor, budget)?],
-            Sampling::Race(contest) => vec![contest.run_pilot(executor, budget)?],
+            Sampling::Estimate(estimate) => estimate.run_pilot(executor, budget)?,
+            Sampling::Compare(compare) => vec![compare.run_pilot(executor, budget)?],
+            Sampling::Rank(rank) => vec![rank.run_pilot(executor, budget)?],
             Sampling::Split(question) => vec![question.run_pilot(executor, budget)?],
         };
         // Checks and estimates of one scenario share their trials.
@@ -217,9 +217,9 @@ impl Group<'_> {
     /// Whether no trial was read for it yet.
     fn is_unread(&self) -> bool {
         match &self.sampling {
-            Sampling::Survey(survey) => survey.inquiries.iter().all(|i| i.tally.counts.trials == 0),
-            Sampling::Contrast(contrast) => contrast.is_unread(),
-            Sampling::Race(contest) => contest.is_unread(),
+            Sampling::Estimate(estimate) => estimate.entries.iter().all(|i| i.tally.counts.trials == 0),
+            Sampling::Compare(compare) => compare.is_unread(),
+            Sampling::Rank(rank) => rank.is_unread(),
             Sampling::Split(_) => true,
         }
     }
@@ -228,9 +228,9 @@ impl Group<'_> {
 /// How they are answered.
 #[allow(clippy::large_enum_variant, reason = "there are as many as queries")]
 enum Sampling<'q> {
-    Survey(Survey<'q>),
-    Contrast(Contrast<'q>),
-    Race(Contest<'q>),
+    Estimate(EstimateSampling<'q>),
+    Compare(CompareSampling<'q>),
+    Rank(RankSampling<'q>),
     Split(Question<'q>),
 }
 
@@ -326,32 +326,39 @@ impl<'a> Session<'a> {
                     for &k in &together {
                         taken[k] = true;
                     }
-                    let inquiries = together
+                    let entries = together
                         .iter()
-                        .map(|&k| self.inquiry(asked[k]).map_err(refused(asked[k])))
+                        .map(|&k| self.entry(asked[k]).map_err(refused(asked[k])))
                         .collect::<Result<Vec<_>, _>>()?;
-                    let kept = inquiries.iter().map(|one| one.procedure.most_values(self.budget.max_trials));
+                    let kept = entries.iter().map(|one| one.procedure.most_values(self.budget.max_trials));
                     let values = kept.fold(0, u64::saturating_add);
                     if values > MOST_VALUES {
                         return Err(Fault::Memory { place: query.span, values });
                     }
-                    (together, Sampling::Survey(Survey::new(self.subject(world)?, inquiries, self.call.seed)))
+                    (
+                        together,
+                        Sampling::Estimate(EstimateSampling::new(
+                            self.subject(world)?,
+                            entries,
+                            self.call.seed,
+                        )),
+                    )
                 }
                 Ask::Compare { .. } => {
-                    (vec![at], Sampling::Contrast(self.contrast(query).map_err(refused(query))?))
+                    (vec![at], Sampling::Compare(self.compare(query).map_err(refused(query))?))
                 }
-                Ask::Rank { .. } => (vec![at], Sampling::Race(self.contest(query).map_err(refused(query))?)),
+                Ask::Rank { .. } => (vec![at], Sampling::Rank(self.rank(query).map_err(refused(query))?)),
             };
             groups.push(Group { places, sampling });
         }
         Ok(groups)
     }
 
-    fn inquiry<'q>(&self, query: &'q Query) -> Result<Inquiry<'q>, Fault> {
+    fn entry<'q>(&self, query: &'q Query) -> Result<EstimateEntry<'q>, Fault> {
         let (Ask::Check { measure, .. } | Ask::Estimate { measure, .. }) = &query.ask else {
             return Err(Fault::Unsuitable);
         };
-        Ok(Inquiry {
+        Ok(EstimateEntry {
             query,
             column: measure.target.column,
             range: range(measure),
@@ -365,7 +372,7 @@ impl<'a> Session<'a> {
         })
     }
 
-    fn contrast<'q>(&self, query: &'q Query) -> Result<Contrast<'q>, Fault>
+    fn compare<'q>(&self, query: &'q Query) -> Result<CompareSampling<'q>, Fault>
     where
         'a: 'q,
     {
@@ -376,10 +383,10 @@ impl<'a> Session<'a> {
             subjects: [self.subject(first.target.world)?, self.subject(second.target.world)?],
             columns: [first.target.column, second.target.column],
         };
-        Contrast::new(query, &sides, &first.kind, (*within, *delta), self.call.seed)
+        CompareSampling::new(query, &sides, &first.kind, (*within, *delta), self.call.seed)
     }
 
-    fn contest<'q>(&self, query: &'q Query) -> Result<Contest<'q>, Fault>
+    fn rank<'q>(&self, query: &'q Query) -> Result<RankSampling<'q>, Fault>
     where
         'a: 'q,
     {
@@ -388,7 +395,7 @@ impl<'a> Session<'a> {
         };
         let subject = self.subject(measure.target.world)?;
         let declared = &subject.program.scenario.moves[*moves];
-        let field = Field {
+        let setup = RankSetup {
             subject,
             moves: *moves,
             deviations: declared.options.iter().map(|(_, m)| m.deviation()).collect(),
@@ -396,7 +403,7 @@ impl<'a> Session<'a> {
             kind: measure.kind.clone(),
             rule: (*epsilon, *delta, *ranking),
         };
-        Contest::new(query, field, self.call.seed)
+        RankSampling::new(query, setup, self.call.seed)
     }
 
     /// Runs a group for its share of the time.
@@ -412,50 +419,50 @@ impl<'a> Session<'a> {
         let budgets = (self.budget, share);
         let mut broken = None;
         let results = match sampling {
-            Sampling::Survey(mut survey) => {
-                match survey.run((executor, levels), budgets, watch)? {
+            Sampling::Estimate(mut estimate) => {
+                match estimate.run((executor, levels), budgets, watch)? {
                     Advance::Stopped => {}
                     Advance::Paused => {
                         return Ok(Turn::Paused(Box::new(Group {
                             places,
-                            sampling: Sampling::Survey(survey),
+                            sampling: Sampling::Estimate(estimate),
                         })));
                     }
-                    Advance::Broken(found) => {
+                    Advance::Faulty(found) => {
                         broken = Some(flaw(found.fault)?);
                         // Those that had stopped before that trial do not know of it.
-                        survey.keep(&mut places, |inquiry| inquiry.stopped_before(found.index));
+                        estimate.keep(&mut places, |entry| entry.stopped_before(found.index));
                     }
                     Advance::Apart(columns) => {
                         let (slow, fast) = places
                             .into_iter()
-                            .zip(&survey.inquiries)
-                            .partition::<Vec<_>, _>(|(_, inquiry)| columns.contains(&inquiry.column));
-                        let of =
-                            |list: Vec<(usize, &Inquiry<'_>)>| list.into_iter().map(|(k, _)| k).collect();
+                            .zip(&estimate.entries)
+                            .partition::<Vec<_>, _>(|(_, entry)| columns.contains(&entry.column));
+                        let of = |list: Vec<(usize, &EstimateEntry<'_>)>| {
+                            list.into_iter().map(|(k, _)| k).collect()
+                        };
                         let (slow, fast) = (of(slow), of(fast));
-                        let apart = survey.part(&columns);
+                        let apart = estimate.part(&columns);
                         return Ok(Turn::Apart(Box::new([
-                            Group { places: fast, sampling: Sampling::Survey(survey) },
-                            Group { places: slow, sampling: Sampling::Survey(apart) },
+                            Group { places: fast, sampling: Sampling::Estimate(estimate) },
+                            Group { places: slow, sampling: Sampling::Estimate(apart) },
                         ])));
                     }
                 }
-                answers.survey(survey)
+                answers.estimate(estimate)
             }
-            Sampling::Contrast(mut contrast) => match answers.contrast(&mut contrast, executor, share, watch)
-            {
+            Sampling::Compare(mut compare) => match answers.compare(&mut compare, executor, share, watch) {
                 Ok(None) => {
                     return Ok(Turn::Paused(Box::new(Group {
                         places,
-                        sampling: Sampling::Contrast(contrast),
+                        sampling: Sampling::Compare(compare),
                     })));
                 }
                 result => result.map(Vec::from_iter),
             },
-            Sampling::Race(mut contest) => match answers.race(&mut contest, executor, share, watch) {
+            Sampling::Rank(mut rank) => match answers.rank(&mut rank, executor, share, watch) {
                 Ok(None) => {
-                    return Ok(Turn::Paused(Box::new(Group { places, sampling: Sampling::Race(contest) })));
+                    return Ok(Turn::Paused(Box::new(Group { places, sampling: Sampling::Rank(rank) })));
                 }
                 result => result.map(Vec::from_iter),
             },
@@ -471,11 +478,11 @@ impl<'a> Session<'a> {
 
     /// The results of the queries of a group that have stopped; the others are left out.
     fn decided(&self, group: Group<'_>) -> Result<Answered, Fault> {
-        let Group { mut places, sampling: Sampling::Survey(mut survey) } = group else {
+        let Group { mut places, sampling: Sampling::Estimate(mut estimate) } = group else {
             return Ok(Vec::new());
         };
-        survey.keep(&mut places, |inquiry| inquiry.stop.is_some());
+        estimate.keep(&mut places, |entry| entry.stop.is_some());
         let answers = Answers { call: self.call, budget: self.budget };
-        Ok(places.into_iter().zip(answers.survey(survey)?).collect())
+        Ok(places.into_iter().zip(answers.estimate(estimate)?).collect())
     }
 }

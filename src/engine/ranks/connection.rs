@@ -37,7 +37,11 @@ impl Orders {
 }
 
 /// Starts to write and to read; `events` hears all with the number of the rank.
-pub(super) fn open(rank: usize, connection: Connection, events: &Sender<(usize, Event)>) -> std::io::Result<Orders> {
+pub(super) fn open(
+    rank: usize,
+    connection: Connection,
+    events: &Sender<(usize, Event)>,
+) -> std::io::Result<Orders> {
     let (orders, given) = mpsc::channel();
     let Connection { from, to } = connection;
     let (said, broken) = (events.clone(), events.clone());

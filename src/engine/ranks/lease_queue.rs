@@ -1,7 +1,7 @@
 //! The queue of the head, at which leases are handed out and come back.
 
 use super::Traffic;
-use super::connection::{Event, Connection, Orders, open};
+use super::connection::{Connection, Event, Orders, open};
 use super::message::{Answer, Greeting, Lease, MOST_ITEMS, Order, Reply, print};
 use super::round::Round;
 use crate::base::math;
@@ -108,14 +108,20 @@ pub(super) struct LeaseQueue {
 
 impl LeaseQueue {
     /// Greets the ranks.
-    pub(super) fn new(connections: Vec<Connection>, study: &Study, inputs: Vec<u8>, each: usize) -> Result<Self, Fault> {
+    pub(super) fn new(
+        connections: Vec<Connection>,
+        study: &Study,
+        inputs: Vec<u8>,
+        each: usize,
+    ) -> Result<Self, Fault> {
         let (sender, events) = mpsc::channel();
         let (print, each) = (print(study), each.max(1));
         let version = env!("CARGO_PKG_VERSION").to_owned();
         let greeting =
             Order::Greeting(Greeting { version, print: print.clone(), threads: each, inputs }).bytes();
         let greet = |(rank, connection)| {
-            let orders = open(rank, connection, &sender).map_err(|error| Fault::Threads(error.to_string()))?;
+            let orders =
+                open(rank, connection, &sender).map_err(|error| Fault::Threads(error.to_string()))?;
             orders.send(greeting.clone());
             Ok(Rank { orders: Some(orders), ready: false, held: VecDeque::new(), why: String::new() })
         };

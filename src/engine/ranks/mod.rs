@@ -5,8 +5,8 @@
 //! and one that comes back twice counts once. Where no rank is left, the head runs the rest itself. Nothing here knows of
 //! processes: a rank is a connection on which one speaks and listens.
 
-mod lease_queue;
 mod connection;
+mod lease_queue;
 mod message;
 mod round;
 mod serve;

@@ -5,8 +5,8 @@
 
 use super::super::code::Readings;
 use super::draws::Draws;
-use crate::kernel::fault::{Fault, Faults};
 use crate::base::lanes::{LANES, Lanes, Mask};
+use crate::kernel::fault::{Fault, Faults};
 use crate::model::{Bool, Domain, Num, Process, Timing, process::are_weights};
 use std::collections::BTreeSet;
 

@@ -7,9 +7,9 @@ use super::super::code::{Code, Readings};
 use super::super::state::State;
 use super::commands::{Commands, Event, Way};
 use super::draws::Draws;
-use crate::kernel::fault::{Fault, Faults};
 use super::keys::Keys;
 use crate::base::lanes::{LANES, Lanes, Mask};
+use crate::kernel::fault::{Fault, Faults};
 use crate::model::{Domain, Scenario};
 use std::collections::BTreeSet;
 
