@@ -53,5 +53,5 @@ pub use placement::{overfull_starts, placeable};
 pub use ranks::Ranks;
 pub use session::{forecast, run};
 pub use subject::Subject;
-pub use watch::{Forecast, Likely, Nobody, Outlook, Watch};
+pub use watch::{CallForecast, Forecast, Likely, Nobody, Watch};
 pub use words::at_most;

@@ -16,7 +16,7 @@ use super::rank::{RankSampling, RankSetup};
 use super::splitting::Question;
 use super::subject::Subject;
 use super::tally::Tally;
-use super::watch::{Forecast, Outlook, Watch};
+use super::watch::{CallForecast, Forecast, Watch};
 use crate::compile::study::{Ask, Estimator, Measure, MeasureKind, Query, Study};
 use crate::stats::Levels;
 use std::collections::{BTreeMap, VecDeque};
@@ -39,8 +39,8 @@ pub fn run(
     let session = Session { call, budget, subjects: &subjects };
     let mut groups = session.groups(&asked)?;
     watch.samples();
-    if let Some(outlook) = outlook(&mut groups, executor, budget)? {
-        watch.forecast(&outlook);
+    if let Some(total) = forecast_groups(&mut groups, executor, budget)? {
+        watch.forecast(&total);
     }
     let mut results: Vec<Option<QueryResult>> = asked.iter().map(|_| None).collect();
     let mut failure = None;
@@ -115,7 +115,7 @@ fn consumed(asked: &[&Query], results: &[Option<QueryResult>]) -> u64 {
     let mut alone = 0;
     for (query, result) in asked.iter().zip(results) {
         let trials = result.as_ref().map_or(0, |result| result.counts.trials);
-        match surveyed(&query.ask) {
+        match estimated(&query.ask) {
             Some(world) => {
                 let most: &mut u64 = shared.entry(world).or_default();
                 *most = trials.max(*most);
@@ -151,12 +151,12 @@ pub fn forecast(
     call: &Call<'_>,
     executor: &dyn Executor,
     budget: &Budget,
-) -> Result<Outlook, Fault> {
+) -> Result<CallForecast, Fault> {
     let asked = asked(study, call);
     let subjects = subjects(study, &asked)?;
     let session = Session { call, budget, subjects: &subjects };
     let mut groups = session.groups(&asked)?;
-    Ok(outlook(&mut groups, executor, budget)?.unwrap_or_default())
+    Ok(forecast_groups(&mut groups, executor, budget)?.unwrap_or_default())
 }
 
 fn asked<'s>(study: &'s Study, call: &Call<'_>) -> Vec<&'s Query> {
@@ -178,15 +178,15 @@ fn subjects(study: &Study, asked: &[&Query]) -> Result<Vec<Option<Subject>>, Fau
 }
 
 /// Runs the pilot of each group. With a deadline there is nothing to forecast, and no time to spend on it.
-fn outlook(
+fn forecast_groups(
     groups: &mut [Group<'_>],
     executor: &dyn Executor,
     budget: &Budget,
-) -> Result<Option<Outlook>, Fault> {
+) -> Result<Option<CallForecast>, Fault> {
     if budget.has_deadline() {
         return Ok(None);
     }
-    let mut outlook = Outlook::default();
+    let mut total = CallForecast::default();
     for group in groups {
         if budget.is_interrupted() {
             return Ok(None);
@@ -199,12 +199,12 @@ fn outlook(
         };
         // Checks and estimates of one scenario share their trials.
         let longest = |of: &dyn Fn(&Forecast) -> f64| forecasts.iter().map(of).fold(0.0, f64::max);
-        outlook.seconds += longest(&|f| f.seconds);
-        outlook.between.0 += longest(&|f| f.seconds_between().0);
-        outlook.between.1 += longest(&|f| f.seconds_between().1);
-        outlook.queries.extend(forecasts);
+        total.seconds += longest(&|f| f.seconds);
+        total.between.0 += longest(&|f| f.seconds_between().0);
+        total.between.1 += longest(&|f| f.seconds_between().1);
+        total.queries.extend(forecasts);
     }
-    Ok(Some(outlook))
+    Ok(Some(total))
 }
 
 /// Queries that are answered together, by their places among those asked.
@@ -243,7 +243,7 @@ pub(super) fn worlds(ask: &Ask) -> Vec<usize> {
     }
 }
 
-fn surveyed(ask: &Ask) -> Option<usize> {
+fn estimated(ask: &Ask) -> Option<usize> {
     match ask {
         Ask::Estimate { estimator: Estimator::Splitting(_), .. } => None,
         Ask::Check { measure, .. } | Ask::Estimate { measure, .. } => Some(measure.target.world),
@@ -322,7 +322,7 @@ impl<'a> Session<'a> {
                     // All checks and estimates of a world read the same trials.
                     let world = measure.target.world;
                     let together: Vec<usize> =
-                        (at..asked.len()).filter(|&k| surveyed(&asked[k].ask) == Some(world)).collect();
+                        (at..asked.len()).filter(|&k| estimated(&asked[k].ask) == Some(world)).collect();
                     for &k in &together {
                         taken[k] = true;
                     }
