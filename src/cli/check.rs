@@ -12,7 +12,9 @@ use crate::base::visible::visible;
 use crate::compile::Study;
 use crate::engine::budget::DEFAULT_TRIALS;
 use crate::engine::outcome::{Failure, Finding, Run};
-use crate::engine::{Budget, Call, CommandLine, Fault, Outlook, Ranks, Threads, forecast, run as run_study};
+use crate::engine::{
+    Budget, Call, CallForecast, CommandLine, Fault, Ranks, Threads, forecast, run as run_study,
+};
 use crate::library;
 use crate::report::{self, ExitCode as Exit, Format, Palette};
 use crate::syntax::codes::Code;
@@ -74,7 +76,7 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     if arguments.forecast {
         deadline.enter(Phase::Sampling);
         return match forecast(study, &call, pool.executor(), &budget) {
-            Ok(outlook) => reporter.tell(&outlook),
+            Ok(total) => reporter.tell(&total),
             Err(fault) => reporter.fault(&fault),
         };
     }
@@ -137,11 +139,11 @@ struct Reporter<'a> {
 
 impl Reporter<'_> {
     /// Prints a forecast.
-    fn tell(self, outlook: &Outlook) -> Exit {
+    fn tell(self, total: &CallForecast) -> Exit {
         self.deadline.enter(Phase::Printing);
         let text = match self.arguments.format {
-            OutputFormat::Json => report::outlook::json(outlook),
-            OutputFormat::Text => visible(&report::outlook::text(outlook)).into_owned(),
+            OutputFormat::Json => report::forecast::json(total),
+            OutputFormat::Text => visible(&report::forecast::text(total)).into_owned(),
             OutputFormat::Junit | OutputFormat::Github => {
                 return self.refuse(complaint::argument(
                     "`--forecast` is no result of a test",

@@ -2,8 +2,8 @@
 
 use super::deadline::{Deadline, Phase};
 use crate::base::visible::visible;
-use crate::engine::{Outlook, Watch};
-use crate::report::outlook;
+use crate::engine::{CallForecast, Watch};
+use crate::report;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 
@@ -32,12 +32,12 @@ impl Progress {
 }
 
 impl Watch for Progress {
-    fn forecast(&self, outlook: &Outlook) {
+    fn forecast(&self, forecast: &CallForecast) {
         // What is over in a moment needs no forecast.
-        if self.quiet || outlook.seconds < WORTH_TELLING {
+        if self.quiet || forecast.seconds < WORTH_TELLING {
             return;
         }
-        let lines = visible(&outlook::text(outlook)).into_owned();
+        let lines = visible(&report::forecast::text(forecast)).into_owned();
         match &self.bar {
             Some(bar) => lines.lines().for_each(|line| bar.println(line)),
             None => super::terminal::say(&lines),

@@ -4,15 +4,15 @@ use super::budget::{Budget, DEFAULT_TRIALS};
 use super::call::Call;
 use super::cause;
 use super::cell::Item;
-use super::contrast::Contrast;
+use super::compare::CompareSampling;
+use super::estimate::{EstimateEntry, EstimateSampling};
 use super::executor::Executor;
 use super::fault::Fault;
 use super::method;
 use super::outcome::{Certificate, Certified, Counts, Kind, QueryResult, Shows, Stop, Verdict, Witness};
-use super::race::Contest;
-use super::standing;
+use super::rank::RankSampling;
 use super::subject::Subject;
-use super::survey::{Inquiry, Survey};
+use super::tables;
 use super::tally::Tally;
 use super::watch::Watch;
 use super::witness;
@@ -87,33 +87,33 @@ impl Answers<'_> {
         format!("{words} --only {} --seed {} {limit} {trials}", query.index, self.call.seed)
     }
 
-    /// The results of a survey that has stopped.
-    pub(super) fn survey(&self, survey: Survey<'_>) -> Result<Vec<QueryResult>, Fault> {
-        let subject = survey.subject();
-        survey.inquiries.into_iter().map(|inquiry| self.inquiry(subject, inquiry)).collect()
+    /// The results of an estimate that has stopped.
+    pub(super) fn estimate(&self, estimate: EstimateSampling<'_>) -> Result<Vec<QueryResult>, Fault> {
+        let subject = estimate.subject();
+        estimate.entries.into_iter().map(|entry| self.entry(subject, entry)).collect()
     }
 
-    fn inquiry(&self, subject: &Subject, mut inquiry: Inquiry<'_>) -> Result<QueryResult, Fault> {
-        let query = inquiry.query;
-        let counts = inquiry.tally.counts;
+    fn entry(&self, subject: &Subject, mut entry: EstimateEntry<'_>) -> Result<QueryResult, Fault> {
+        let query = entry.query;
+        let counts = entry.tally.counts;
         let (measure, kind) = match &query.ask {
             Ask::Check { measure, .. } => (measure, Kind::Check),
             Ask::Estimate { measure, .. } => (measure, Kind::Estimate),
             Ask::Compare { .. } | Ask::Rank { .. } => return Err(Fault::Unsuitable),
         };
         let mut result = self.blank(query, kind);
-        let stop = inquiry.stop.unwrap_or(Stop::Cap);
-        result.method = method::of(&query.ask, Some(&inquiry.procedure));
+        let stop = entry.stop.unwrap_or(Stop::Cap);
+        result.method = method::of(&query.ask, Some(&entry.procedure));
         result.unit = unit(measure);
         result.stopped_by = stop;
         result.replay = self.replay(query, MAX_TRIALS, counts.trials);
-        result.elapsed_s = inquiry.seconds;
-        let subject_words = measured_words(query, measure, inquiry.tally.clipped);
+        result.elapsed_s = entry.seconds;
+        let subject_words = measured_words(query, measure, entry.tally.clipped);
         let mut beside = match query.ask {
             Ask::Check { beside, .. } => beside,
             _ => 0.0,
         };
-        if let Some((interval, coverage, error)) = inquiry.procedure.interval(counts, beside) {
+        if let Some((interval, coverage, error)) = entry.procedure.interval(counts, beside) {
             beside = error;
             // Where no trial is resolved the middle of what is legal is no estimate.
             result.estimate = Some(interval.estimate)
@@ -161,21 +161,21 @@ impl Answers<'_> {
         if let Ask::Check { at_least, threshold, .. } = &query.ask {
             result.of = query.said.event.as_ref().map(|event| format!("P({event})"));
             result.against = result.of.is_some() && !*at_least;
-            let decision = inquiry.procedure.decision();
+            let decision = entry.procedure.decision();
             result.verdict = Some(match decision {
                 Some(Decision::Above) if *at_least => Verdict::Satisfied,
                 Some(Decision::Below) if !*at_least => Verdict::Satisfied,
                 Some(Decision::Above | Decision::Below) => Verdict::Violated,
                 Some(Decision::Within) | None => Verdict::Undecided,
             });
-            result.certificate = match inquiry.procedure.statement() {
+            result.certificate = match entry.procedure.statement() {
                 Some(Statement { claim, error }) => {
                     Some(Certificate { claim: Certified::Decided(claim), error })
                 }
                 None if !says_something(&query.ask, result.low, result.high) => None,
                 None => Some(between(&result, beside)),
             };
-            result.certifies = match inquiry.procedure.statement() {
+            result.certifies = match entry.procedure.statement() {
                 Some(statement) => words::quantile(&query.said, *threshold, &statement)
                     .unwrap_or_else(|| words::statement(&subject_words, &statement, &result.unit)),
                 None if !says_something(&query.ask, result.low, result.high) => String::new(),
@@ -185,23 +185,23 @@ impl Answers<'_> {
                     words::error(beside)
                 ),
             };
-            if inquiry.procedure.split() && counts.unresolved < counts.trials {
+            if entry.procedure.split() && counts.unresolved < counts.trials {
                 result.warnings.push(
                     "unresolved trials decide: read as failures and as successes they give opposite verdicts"
                         .to_owned(),
                 );
             }
         }
-        let cut = was_cut(subject, measure.target.column, &inquiry.tally);
+        let cut = was_cut(subject, measure.target.column, &entry.tally);
         let known = counts.unresolved < counts.trials && !cut;
-        result.distribution = inquiry.procedure.distribution().filter(|_| known);
-        Self::tell(&mut result, subject, &inquiry.tally, measure.target.column);
-        self.note_shrunk(&mut result, &[(subject, &inquiry.tally)]);
-        self.lament_one(&mut result, subject, &inquiry.tally, measure.target.column);
+        result.distribution = entry.procedure.distribution().filter(|_| known);
+        Self::tell(&mut result, subject, &entry.tally, measure.target.column);
+        self.note_shrunk(&mut result, &[(subject, &entry.tally)]);
+        self.lament_one(&mut result, subject, &entry.tally, measure.target.column);
         let picks = match (&measure.kind, kind) {
-            (MeasureKind::Probability, _) | (_, Kind::Check) => witness::sides(&inquiry.tally),
+            (MeasureKind::Probability, _) | (_, Kind::Check) => witness::sides(&entry.tally),
             _ if cut => Vec::new(),
-            _ => witness::extremes(&inquiry.tally),
+            _ => witness::extremes(&entry.tally),
         };
         result.witnesses = self.witnesses(&result, subject, measure.target.column, None, &picks);
         Ok(result)
@@ -317,20 +317,20 @@ impl Answers<'_> {
     }
 
     /// Runs a comparison for its share of the time, and its result.
-    pub(super) fn contrast(
+    pub(super) fn compare(
         &self,
-        contrast: &mut Contrast<'_>,
+        compare: &mut CompareSampling<'_>,
         executor: &dyn Executor,
         share: &Budget,
         watch: &dyn Watch,
     ) -> Result<Option<QueryResult>, Fault> {
-        let query = contrast.query();
+        let query = compare.query();
         let Ask::Compare { first, second, settings, delta, .. } = &query.ask else {
             return Err(Fault::Unsuitable);
         };
-        let subjects = [contrast.subject(0), contrast.subject(1)];
+        let subjects = [compare.subject(0), compare.subject(1)];
         let subject = subjects[0];
-        let Some(gap) = contrast.run(executor, (self.budget, share), watch)? else { return Ok(None) };
+        let Some(gap) = compare.run(executor, (self.budget, share), watch)? else { return Ok(None) };
         let mut result = self.blank(query, Kind::Compare);
         let unit = unit(first);
         result.method = method::of(&query.ask, None);
@@ -369,72 +369,72 @@ impl Answers<'_> {
             result.certificate = Some(between(&result, *delta));
         }
         result.unit = unit;
-        result.compare = Some(standing::sides(&gap, &labels, *delta));
-        result.elapsed_s = contrast.spent;
+        result.compare = Some(tables::sides(&gap, &labels, *delta));
+        result.elapsed_s = compare.spent;
         Ok(Some(result))
     }
 
     /// Runs a ranking for its share of the time, and its result.
-    pub(super) fn race(
+    pub(super) fn rank(
         &self,
-        contest: &mut Contest<'_>,
+        rank: &mut RankSampling<'_>,
         executor: &dyn Executor,
         share: &Budget,
         watch: &dyn Watch,
     ) -> Result<Option<QueryResult>, Fault> {
-        let query = contest.query();
+        let query = rank.query();
         let Ask::Rank { moves, measure, ranking } = &query.ask else {
             return Err(Fault::Unsuitable);
         };
         let delta = ranking.value("delta");
-        let Some(podium) = contest.run(executor, (self.budget, share), watch)? else { return Ok(None) };
-        let field = contest.field();
-        let subject = field.subject;
+        let Some(ranked) = rank.run(executor, (self.budget, share), watch)? else { return Ok(None) };
+        let setup = rank.setup();
+        let subject = setup.subject;
         let declared = &subject.program.scenario.moves[*moves];
         let mut result = self.blank(query, Kind::Rank);
         result.method = method::of(&query.ask, None);
         result.unit = unit(measure);
-        result.stopped_by = podium.stop;
-        let joined = total(&podium.tallies);
+        result.stopped_by = ranked.stop;
+        let joined = total(&ranked.tallies);
         result.replay = self.replay(query, "--total-trials", joined.counts.trials);
         Self::tell(&mut result, subject, &joined, measure.target.column);
-        let tallies: Vec<_> = podium.tallies.iter().map(|tally| (subject, tally)).collect();
+        let tallies: Vec<_> = ranked.tallies.iter().map(|tally| (subject, tally)).collect();
         self.note_shrunk(&mut result, &tallies);
-        let lost = podium.tallies.iter().enumerate().find_map(|(arm, tally)| {
+        let lost = ranked.tallies.iter().enumerate().find_map(|(arm, tally)| {
             let item = Item { advice: Some((*moves, arm)), index: tally.first[2]? };
             Some(First { subject, column: measure.target.column, item, settings: result.settings.clone() })
         });
         self.lament(&mut result, joined.counts.unresolved, lost.as_ref());
         let labels: Vec<&str> = declared.options.iter().map(|(label, _)| label.as_str()).collect();
-        let ranked = standing::ranked(&podium, &labels);
+        let listed = tables::ranked(&ranked, &labels);
         let score = measured_words(query, measure, joined.clipped);
-        if let Some(choice) = &ranked.choice {
-            if ranked.gap < podium.scale {
+        if let Some(choice) = &listed.choice {
+            if listed.gap < ranked.scale {
                 result.certifies = format!(
                     "{score} of `{choice}` is within {} of the best, error at most {}",
-                    words::quantity(words::at_most(ranked.gap), &result.unit),
+                    words::quantity(words::at_most(listed.gap), &result.unit),
                     words::error(delta)
                 );
-                let claim = Certified::Best { choice: choice.clone(), gap: ranked.gap };
+                let claim = Certified::Best { choice: choice.clone(), gap: listed.gap };
                 result.certificate = Some(Certificate { claim, error: delta });
             }
-            let chosen = &ranked.options[0].value;
+            let chosen = &listed.options[0].value;
             result.estimate = Some(chosen.estimate);
             result.low = chosen.low;
             result.high = chosen.high;
             result.interval =
                 format!("{}, all options jointly", words::interval(Coverage::TimeUniform, delta));
-            let arm = podium.choice.arm;
-            let tally = &podium.tallies[arm];
+            let arm = ranked.choice.arm;
+            let tally = &ranked.tallies[arm];
             let picks = match measure.kind {
                 MeasureKind::Probability => witness::sides(tally),
-                _ if was_cut(subject, field.column, tally) => Vec::new(),
+                _ if was_cut(subject, setup.column, tally) => Vec::new(),
                 _ => witness::extremes(tally),
             };
-            result.witnesses = self.witnesses(&result, subject, field.column, Some((*moves, arm)), &picks);
+            result.witnesses = self.witnesses(&result, subject, setup.column, Some((*moves, arm)), &picks);
         }
-        result.rank = Some(ranked);
-        result.elapsed_s = contest.spent;
+        result.rank = Some(listed);
+        result.elapsed_s = rank.spent;
         Ok(Some(result))
     }
 }

@@ -8,7 +8,7 @@ use super::words;
 use crate::base::lanes::Mask;
 use crate::base::random::TrialKey;
 use crate::base::tick::Tick;
-use crate::kernel::process::{self, Sight};
+use crate::kernel::process::{self, ViewReadings};
 use crate::kernel::start::Overlapped;
 use crate::kernel::{Code, End, Program, Readings, Run, State, start};
 use crate::model::{AgentId, Scenario, TOP_SPEED};
@@ -35,14 +35,14 @@ pub(super) fn unresolved(
     if scenario.clock.is_jumps() {
         return in_continuous_time(subject, column, &mut run, budget);
     }
-    let Ok(mut sheet) = subject.sheet(&[column]) else { return String::new() };
-    sheet.start(0);
+    let Ok(mut group) = subject.group(&[column]) else { return String::new() };
+    group.start(0);
     let mut missing = None;
     loop {
         let state = run.state();
         let time = moment(scenario, state.ticks[0]);
         let queues = &state.queues;
-        let lost_sight = || queues.lost_sight(&scenario.sources, 0).filter(|_| sheet.follows[0]);
+        let lost_sight = || queues.lost_sight(&scenario.sources, 0).filter(|_| group.follows[0]);
         if let Some(reason) = queues.overrun(&scenario.sources, 0).or_else(lost_sight) {
             return format!("{reason} (at {time})");
         }
@@ -50,14 +50,14 @@ pub(super) fn unresolved(
             return format!("it diverged at {time}: {}", divergence(program, state));
         }
         // As for a worker: only where something is looked at in this state that has no value.
-        let lost = sheet.read(&run).has(0);
-        let absent = absent(subject, column, state, &sheet.readings).map(|name| (name, time.clone()));
+        let lost = group.read(&run).has(0);
+        let absent = absent(subject, column, state, &group.readings).map(|name| (name, time.clone()));
         missing = missing.or_else(|| absent.clone());
         if lost {
             return nobody(subject, column, state, &time);
         }
-        let observer = &mut sheet.observers[0];
-        observer.observe(Mask::lane(0), &sheet.readings);
+        let observer = &mut group.observers[0];
+        observer.observe(Mask::lane(0), &group.readings);
         if observer.decided().has(0) {
             return match observer.reading(0) {
                 Reading::Unresolved => match absent.or(missing) {
@@ -230,15 +230,15 @@ fn nobody(subject: &Subject, column: usize, state: &State, time: &str) -> String
 fn in_continuous_time(subject: &Subject, column: usize, run: &mut Run<'_>, budget: &Budget) -> String {
     let view = subject.view(&[column]);
     let Ok(mut monitor) = SignalObserver::of(subject, column) else { return String::new() };
-    let mut sight = Sight::default();
+    let mut seen = ViewReadings::default();
     let enough = subject.most_jumps.min(subject.jumps_again);
     while run.state().clocks.jumps[0] < enough {
         let state = run.state();
         if state.clocks.jumps[0].is_multiple_of(JUMPS_BETWEEN_LOOKS) && budget.is_late() {
             return String::new();
         }
-        view.look(state, &mut sight);
-        let (atoms, signals) = view.of(state, &mut sight, 0);
+        view.look(state, &mut seen);
+        let (atoms, signals) = view.of(state, &mut seen, 0);
         let now = state.clocks.instant(0);
         let time = words::quantity(now.seconds, "s");
         let reading = match monitor.jump(now, atoms, signals) {

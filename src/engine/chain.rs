@@ -11,7 +11,7 @@ use super::subject::Subject;
 use crate::base::lanes::Lanes;
 use crate::compile::study::Root;
 use crate::kernel::State;
-use crate::kernel::process::{JumpBatch, Sight, Space, Stay, StepBatch};
+use crate::kernel::process::{JumpBatch, Space, Stay, StepBatch, ViewReadings};
 use crate::logic::{Flat, Glance, Sort};
 
 /// Steps, and rounds of jumps, between two looks at the clock.
@@ -43,12 +43,12 @@ impl Sorts {
         let view = subject.view(columns);
         let mut state = State::new(subject.program.layout, 0);
         state.variables = vec![Lanes::ZERO; subject.program.scenario.processes.variables.len()];
-        let mut sight = Sight::default();
+        let mut seen = ViewReadings::default();
         let mut all = vec![Self::default(); space.states()];
         for &place in space.reachable() {
             space.values(place, &mut state.variables, 0);
-            view.look(&state, &mut sight);
-            let (atoms, signals) = view.of(&state, &mut sight, 0);
+            view.look(&state, &mut seen);
+            let (atoms, signals) = view.of(&state, &mut seen, 0);
             let sorts = &mut all[place as usize];
             for k in 0..columns.len() {
                 let sort = sort(k, atoms, signals);
@@ -92,7 +92,7 @@ pub(super) struct StepChain {
 }
 
 /// The present tick for the columns, bit k for the k-th of them.
-struct Present {
+struct AtTick {
     tick: u64,
     /// The goal counts.
     begun: u64,
@@ -163,7 +163,7 @@ impl StepChain {
             // From here on it is the same tick for all.
             let tick = trials.tick();
             let (begun, over) = (columns(&|flat| flat.has_begun(tick)), columns(&|flat| flat.is_over(tick)));
-            let present = Present { tick, begun, over, negated };
+            let present = AtTick { tick, begun, over, negated };
             let watch = match (over, begun) {
                 (0, 0) => STOP,
                 (0, _) => STOP | GOAL,
@@ -188,7 +188,7 @@ impl StepChain {
     }
 }
 
-impl Present {
+impl AtTick {
     /// Fills the cells of the columns that a state decides. Which columns are open after it, and how many steps were
     /// left out.
     #[inline]
@@ -272,7 +272,7 @@ impl JumpChain {
                 let (judged, sorts) = (stay.end > stay.since, sorts[stay.state as usize]);
                 if exhausted || judged && ((sorts.goal | sorts.stop) & left != 0 || stay.end > quiet) {
                     let jumps = before + u64::from(stay.end < f64::INFINITY);
-                    let found = Found { sorts, stay, jumps };
+                    let found = EndedStay { sorts, stay, jumps };
                     let row = &mut block.cells[slot as usize * width..][..width];
                     left = found.settle(glances, left, row, exhausted);
                     if left == 0 {
@@ -288,7 +288,7 @@ impl JumpChain {
 }
 
 /// A stay that may decide something.
-struct Found {
+struct EndedStay {
     /// What its state is for the columns.
     sorts: Sorts,
     stay: Stay,
@@ -296,7 +296,7 @@ struct Found {
     jumps: u64,
 }
 
-impl Found {
+impl EndedStay {
     /// Fills the cells of the columns that it decides; those that are open after it. A trial that has made too many
     /// jumps is unresolved in what is left.
     #[inline]

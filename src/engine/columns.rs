@@ -3,10 +3,10 @@
 use super::batch::Monitors;
 use super::cell::{Cell, Reading};
 use super::observer::SignalObserver;
-use super::subject::{Sheet, Subject};
+use super::subject::{ColumnGroup, Subject};
 use crate::base::lanes::{LANES, Mask};
 use crate::kernel::Run;
-use crate::kernel::process::{Sight, View};
+use crate::kernel::process::{View, ViewReadings};
 use crate::logic::Invalid;
 
 /// Finished trials: the places of their items, and for each as many cells as there are columns.
@@ -76,7 +76,7 @@ impl Rows {
 
 /// From step to step.
 pub(super) struct StepColumns {
-    sheets: Vec<Sheet>,
+    groups: Vec<ColumnGroup>,
     /// For each column, the lanes in which it is decided.
     settled: Vec<Mask>,
     rows: Rows,
@@ -86,7 +86,7 @@ impl StepColumns {
     /// Monitors of some columns of a subject.
     pub(super) fn new(subject: &Subject, columns: &[usize]) -> Result<Self, Invalid> {
         let settled = vec![Mask::NONE; columns.len()];
-        Ok(Self { sheets: subject.sheets(columns)?, settled, rows: Rows::new(columns.len()) })
+        Ok(Self { groups: subject.groups(columns)?, settled, rows: Rows::new(columns.len()) })
     }
 
     /// What has been finished since this was asked last.
@@ -101,8 +101,8 @@ impl Monitors for StepColumns {
         for settled in &mut self.settled {
             *settled &= !Mask::lane(lane);
         }
-        for sheet in &mut self.sheets {
-            sheet.start(lane);
+        for group in &mut self.groups {
+            group.start(lane);
         }
     }
 
@@ -112,15 +112,15 @@ impl Monitors for StepColumns {
         let ended = run.ended();
         let watched = run.occupied() & !ended;
         let mut touched = Mask::NONE;
-        for sheet in &mut self.sheets {
-            let missing = sheet.read(run);
-            for (k, observer) in sheet.observers.iter_mut().enumerate() {
-                let place = sheet.places[k];
+        for group in &mut self.groups {
+            let missing = group.read(run);
+            for (k, observer) in group.observers.iter_mut().enumerate() {
+                let place = group.places[k];
                 let lost =
-                    (missing | if sheet.follows[k] { state.queues.reused } else { Mask::NONE }) & watched;
+                    (missing | if group.follows[k] { state.queues.reused } else { Mask::NONE }) & watched;
                 let open = watched & !lost & !self.settled[place];
                 if !open.is_empty() {
-                    observer.observe(open, &sheet.readings);
+                    observer.observe(open, &group.readings);
                 }
                 let decided = (observer.decided() & open) | (lost & !self.settled[place]);
                 if decided.is_empty() {
@@ -142,8 +142,8 @@ impl Monitors for StepColumns {
 
     fn finish(&mut self, place: usize, lane: usize, run: &Run<'_>) {
         let state = run.state();
-        for sheet in &self.sheets {
-            for (observer, &column) in sheet.observers.iter().zip(&sheet.places) {
+        for group in &self.groups {
+            for (observer, &column) in group.observers.iter().zip(&group.places) {
                 if self.settled[column].has(lane) {
                     continue;
                 }
@@ -178,7 +178,7 @@ impl Monitors for StepColumns {
 /// decision shows at the first jump after it, or at the horizon.
 pub(super) struct EventColumns {
     view: View,
-    sight: Sight,
+    seen: ViewReadings,
     /// Lane by lane, one a column.
     monitors: Vec<SignalObserver>,
     rows: Rows,
@@ -193,7 +193,7 @@ impl EventColumns {
             columns.iter().map(|&column| SignalObserver::of(subject, column)).collect::<Result<_, _>>()?;
         Ok(Self {
             view: subject.view(columns),
-            sight: Sight::default(),
+            seen: ViewReadings::default(),
             monitors: (0..LANES).flat_map(|_| one.iter().cloned()).collect(),
             rows: Rows::new(columns.len()),
             most: subject.most_jumps,
@@ -211,7 +211,7 @@ impl EventColumns {
         let state = run.state();
         let faulty = state.faulty.has(lane);
         let (now, jumps) = (state.clocks.instant(lane), state.clocks.jumps[lane]);
-        let (atoms, signals) = self.view.of(state, &mut self.sight, lane);
+        let (atoms, signals) = self.view.of(state, &mut self.seen, lane);
         let width = self.rows.width;
         let monitors = &mut self.monitors[lane * width..][..width];
         let row = &mut self.rows.cells[lane * width..][..width];
@@ -244,10 +244,10 @@ impl Monitors for EventColumns {
         if fresh.is_empty() {
             return Mask::NONE;
         }
-        self.view.look(run.state(), &mut self.sight);
+        self.view.look(run.state(), &mut self.seen);
         let width = self.rows.width;
         for lane in fresh.iter() {
-            let (atoms, signals) = self.view.of(run.state(), &mut self.sight, lane);
+            let (atoms, signals) = self.view.of(run.state(), &mut self.seen, lane);
             for monitor in &mut self.monitors[lane * width..][..width] {
                 monitor.start();
                 monitor.jump(0.0, atoms, signals);
@@ -257,7 +257,7 @@ impl Monitors for EventColumns {
     }
 
     fn follow(&mut self, run: &Run<'_>, moved: Mask) -> Mask {
-        self.view.look(run.state(), &mut self.sight);
+        self.view.look(run.state(), &mut self.seen);
         let occupied = run.occupied();
         for lane in occupied.iter() {
             self.judge(run, lane, moved.has(lane));

@@ -144,7 +144,7 @@ const fn guess(share: f64, mean: f64, variance: f64) -> Guess {
 }
 
 /// Pairs that a comparison is likely to take; `glimpse` is that of the differences.
-pub(super) fn contrast(glimpse: &Glimpse, range: f64, epsilon: f64, delta: f64) -> Likely {
+pub(super) fn compare(glimpse: &Glimpse, range: f64, epsilon: f64, delta: f64) -> Likely {
     let least = 0.1 * range;
     let of = |guess: Guess| until_narrow(guess.variance, 2.0 * range, epsilon, delta);
     let likely = of(glimpse.guess(least));

@@ -58,7 +58,7 @@ pub(super) fn of(ask: &Ask, procedure: Option<&Procedure>) -> Method {
             (name, [numbers, ends(first)].concat())
         }
         Ask::Rank { ranking, measure, .. } => {
-            let word = vec![("word", super::race::WORD as f64)];
+            let word = vec![("word", super::rank::WORD as f64)];
             (ranking.spec.reported, [values(ranking), word, ends(measure)].concat())
         }
     };

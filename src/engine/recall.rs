@@ -9,7 +9,7 @@ use super::subject::Subject;
 use super::words;
 use crate::base::random::TrialKey;
 use crate::compile::study::{Part, Root};
-use crate::kernel::process::Sight;
+use crate::kernel::process::ViewReadings;
 use crate::kernel::{End, Run, State};
 use crate::logic::{Reading, open_atoms};
 use crate::model::{AgentId, Bool, Set};
@@ -48,14 +48,14 @@ pub(super) fn decision(
     let mut kept: Checkpoints<(State, Past)> = Checkpoints::new(MOST_KEPT);
     let mut monitor = subject.signal_monitor(column).ok()?;
     let (mut run, _) = Run::of(&subject.program, TrialKey { seed, index, branch: 0 }.into()).ok()?;
-    let mut sight = Sight::default();
+    let mut seen = ViewReadings::default();
     for jumps in 0.. {
         if jumps % CLOCK_EVERY == CLOCK_EVERY - 1 && budget.is_late() {
             return None;
         }
         let state = run.state();
-        view.look(state, &mut sight);
-        let (atoms, signals) = view.of(state, &mut sight, 0);
+        view.look(state, &mut seen);
+        let (atoms, signals) = view.of(state, &mut seen, 0);
         let now = state.clocks.instant(0);
         if monitor.jump(now, atoms, signals).is_some() {
             break;
@@ -78,8 +78,8 @@ pub(super) fn decision(
     let (_, (state, past)) = kept.last(|_, (_, past)| past.last <= at + slack)?;
     let (mut run, mut past) = (Run::from_state(&subject.program, state), Past { at: at + slack, ..past });
     while let Ok(state) = run.next() {
-        view.look(state, &mut sight);
-        let (atoms, signals) = view.of(state, &mut sight, 0);
+        view.look(state, &mut seen);
+        let (atoms, signals) = view.of(state, &mut seen, 0);
         if !past.see(state.clocks.instant(0).seconds, atoms, signals) {
             break;
         }

@@ -12,10 +12,10 @@ use crate::logic::Invalid;
 pub(super) struct Runner<'s> {
     subject: &'s Subject,
     columns: Vec<usize>,
-    kind: Kind<'s>,
+    kind: RunnerKind<'s>,
 }
 
-enum Kind<'s> {
+enum RunnerKind<'s> {
     /// From step to step.
     Steps(Box<Batch<'s, StepColumns>>),
     /// From jump to jump.
@@ -30,9 +30,9 @@ impl<'s> Runner<'s> {
     /// A worker for some columns of a subject.
     pub(super) fn new(subject: &'s Subject, columns: &[usize]) -> Result<Self, Invalid> {
         let kind = if let Some(chain) = StepChain::of(subject, columns) {
-            Kind::StepChain(Box::new(chain))
+            RunnerKind::StepChain(Box::new(chain))
         } else if let Some(chain) = JumpChain::of(subject, columns) {
-            Kind::JumpChain(Box::new(chain))
+            RunnerKind::JumpChain(Box::new(chain))
         } else {
             return Self::general(subject, columns);
         };
@@ -43,9 +43,9 @@ impl<'s> Runner<'s> {
     pub(super) fn general(subject: &'s Subject, columns: &[usize]) -> Result<Self, Invalid> {
         let program = &subject.program;
         let kind = if program.scenario.clock.is_jumps() {
-            Kind::Events(Box::new(Batch::new(program, EventColumns::new(subject, columns)?)))
+            RunnerKind::Events(Box::new(Batch::new(program, EventColumns::new(subject, columns)?)))
         } else {
-            Kind::Steps(Box::new(Batch::new(program, StepColumns::new(subject, columns)?)))
+            RunnerKind::Steps(Box::new(Batch::new(program, StepColumns::new(subject, columns)?)))
         };
         Ok(Self { subject, columns: columns.to_vec(), kind })
     }
@@ -68,39 +68,39 @@ impl<'s> Runner<'s> {
             Some((place, item.address(seed)))
         };
         match &mut self.kind {
-            Kind::Steps(batch) => {
+            RunnerKind::Steps(batch) => {
                 batch.run(&mut next, budget);
                 batch.monitors.take()
             }
-            Kind::Events(batch) => {
+            RunnerKind::Events(batch) => {
                 batch.run(&mut next, budget);
                 batch.monitors.take()
             }
-            Kind::StepChain(_) | Kind::JumpChain(_) => Finished::default(),
+            RunnerKind::StepChain(_) | RunnerKind::JumpChain(_) => Finished::default(),
         }
     }
 
     /// Whether it takes trials in blocks.
     pub(super) fn takes_blocks(&self) -> bool {
-        matches!(self.kind, Kind::StepChain(_) | Kind::JumpChain(_))
+        matches!(self.kind, RunnerKind::StepChain(_) | RunnerKind::JumpChain(_))
     }
 
     /// Runs the trials of a block, if it takes blocks; the budget may say stop, then unfinished ones are dropped.
     pub(super) fn run_block(&mut self, seed: u64, block: &mut Block<'_>, budget: &Budget) {
         match &mut self.kind {
-            Kind::StepChain(chain) => chain.run(self.subject, seed, block, budget),
-            Kind::JumpChain(chain) => chain.run(self.subject, seed, block, budget),
-            Kind::Steps(_) | Kind::Events(_) => {}
+            RunnerKind::StepChain(chain) => chain.run(self.subject, seed, block, budget),
+            RunnerKind::JumpChain(chain) => chain.run(self.subject, seed, block, budget),
+            RunnerKind::Steps(_) | RunnerKind::Events(_) => {}
         }
     }
 
     /// Steps or jumps made since this was asked last, of all lanes.
     pub(super) fn take_steps(&mut self) -> u64 {
         std::mem::take(match &mut self.kind {
-            Kind::Steps(batch) => &mut batch.steps,
-            Kind::Events(batch) => &mut batch.steps,
-            Kind::StepChain(chain) => &mut chain.steps,
-            Kind::JumpChain(chain) => &mut chain.steps,
+            RunnerKind::Steps(batch) => &mut batch.steps,
+            RunnerKind::Events(batch) => &mut batch.steps,
+            RunnerKind::StepChain(chain) => &mut chain.steps,
+            RunnerKind::JumpChain(chain) => &mut chain.steps,
         })
     }
 }

@@ -3,20 +3,20 @@
 use super::answer::Answers;
 use super::budget::{Budget, DEFAULT_TRIALS};
 use super::call::Call;
-use super::contrast::{Contrast, Sides};
+use super::compare::{CompareSampling, Sides};
+use super::estimate::{Advance, EstimateEntry, EstimateSampling};
 use super::executor::Executor;
 use super::fault::Fault;
 use super::flaw::Flaw;
 use super::forecast::Glimpse;
 use super::outcome::{Failure, QueryResult, Run, Stop};
+use super::placement::all_placeable;
 use super::procedure::Procedure;
-use super::race::{Contest, Field};
-use super::room::all_placeable;
+use super::rank::{RankSampling, RankSetup};
 use super::splitting::Question;
 use super::subject::Subject;
-use super::survey::{Advance, Inquiry, Survey};
 use super::tally::Tally;
-use super::watch::{Forecast, Outlook, Watch};
+use super::watch::{CallForecast, Forecast, Watch};
 use crate::compile::study::{Ask, Measure, MeasureKind, Query, Study};
 use crate::stats::Levels;
 use crate::stats::spec::Make;
@@ -41,8 +41,8 @@ pub fn run(
     let session = Session { call, budget, subjects: &subjects };
     let mut groups = session.groups(&asked)?;
     watch.samples();
-    if let Some(outlook) = outlook(&mut groups, executor, budget)? {
-        watch.forecast(&outlook);
+    if let Some(total) = forecast_groups(&mut groups, executor, budget)? {
+        watch.forecast(&total);
     }
     let mut results: Vec<Option<QueryResult>> = asked.iter().map(|_| None).collect();
     let mut failure = None;
@@ -117,7 +117,7 @@ fn consumed(asked: &[&Query], results: &[Option<QueryResult>]) -> u64 {
     let mut alone = 0;
     for (query, result) in asked.iter().zip(results) {
         let trials = result.as_ref().map_or(0, |result| result.counts.trials);
-        match surveyed(&query.ask) {
+        match estimated(&query.ask) {
             Some(world) => {
                 let most: &mut u64 = shared.entry(world).or_default();
                 *most = trials.max(*most);
@@ -153,12 +153,12 @@ pub fn forecast(
     call: &Call<'_>,
     executor: &dyn Executor,
     budget: &Budget,
-) -> Result<Outlook, Fault> {
+) -> Result<CallForecast, Fault> {
     let asked = asked(study, call);
     let subjects = subjects(study, &asked)?;
     let session = Session { call, budget, subjects: &subjects };
     let mut groups = session.groups(&asked)?;
-    Ok(outlook(&mut groups, executor, budget)?.unwrap_or_default())
+    Ok(forecast_groups(&mut groups, executor, budget)?.unwrap_or_default())
 }
 
 fn asked<'s>(study: &'s Study, call: &Call<'_>) -> Vec<&'s Query> {
@@ -180,33 +180,33 @@ fn subjects(study: &Study, asked: &[&Query]) -> Result<Vec<Option<Subject>>, Fau
 }
 
 /// Runs the pilot of each group. With a deadline there is nothing to forecast, and no time to spend on it.
-fn outlook(
+fn forecast_groups(
     groups: &mut [Group<'_>],
     executor: &dyn Executor,
     budget: &Budget,
-) -> Result<Option<Outlook>, Fault> {
+) -> Result<Option<CallForecast>, Fault> {
     if budget.has_deadline() {
         return Ok(None);
     }
-    let mut outlook = Outlook::default();
+    let mut total = CallForecast::default();
     for group in groups {
         if budget.is_interrupted() {
             return Ok(None);
         }
         let forecasts = match &mut group.sampling {
-            Sampling::Survey(survey) => survey.run_pilot(executor, budget)?,
-            Sampling::Contrast(contrast) => vec![contrast.run_pilot(executor, budget)?],
-            Sampling::Race(contest) => vec![contest.run_pilot(executor, budget)?],
+            Sampling::Estimate(estimate) => estimate.run_pilot(executor, budget)?,
+            Sampling::Compare(compare) => vec![compare.run_pilot(executor, budget)?],
+            Sampling::Rank(rank) => vec![rank.run_pilot(executor, budget)?],
             Sampling::Split(question) => vec![question.run_pilot(executor, budget)?],
         };
         // Checks and estimates of one scenario share their trials.
         let longest = |of: &dyn Fn(&Forecast) -> f64| forecasts.iter().map(of).fold(0.0, f64::max);
-        outlook.seconds += longest(&|f| f.seconds);
-        outlook.between.0 += longest(&|f| f.seconds_between().0);
-        outlook.between.1 += longest(&|f| f.seconds_between().1);
-        outlook.queries.extend(forecasts);
+        total.seconds += longest(&|f| f.seconds);
+        total.between.0 += longest(&|f| f.seconds_between().0);
+        total.between.1 += longest(&|f| f.seconds_between().1);
+        total.queries.extend(forecasts);
     }
-    Ok(Some(outlook))
+    Ok(Some(total))
 }
 
 /// Queries that are answered together, by their places among those asked.
@@ -219,9 +219,9 @@ impl Group<'_> {
     /// Whether no trial was read for it yet.
     fn is_unread(&self) -> bool {
         match &self.sampling {
-            Sampling::Survey(survey) => survey.inquiries.iter().all(|i| i.tally.counts.trials == 0),
-            Sampling::Contrast(contrast) => contrast.is_unread(),
-            Sampling::Race(contest) => contest.is_unread(),
+            Sampling::Estimate(estimate) => estimate.entries.iter().all(|i| i.tally.counts.trials == 0),
+            Sampling::Compare(compare) => compare.is_unread(),
+            Sampling::Rank(rank) => rank.is_unread(),
             Sampling::Split(_) => true,
         }
     }
@@ -230,9 +230,9 @@ impl Group<'_> {
 /// How they are answered.
 #[allow(clippy::large_enum_variant, reason = "there are as many as queries")]
 enum Sampling<'q> {
-    Survey(Survey<'q>),
-    Contrast(Contrast<'q>),
-    Race(Contest<'q>),
+    Estimate(EstimateSampling<'q>),
+    Compare(CompareSampling<'q>),
+    Rank(RankSampling<'q>),
     Split(Question<'q>),
 }
 
@@ -245,7 +245,7 @@ pub(super) fn worlds(ask: &Ask) -> Vec<usize> {
     }
 }
 
-fn surveyed(ask: &Ask) -> Option<usize> {
+fn estimated(ask: &Ask) -> Option<usize> {
     match ask {
         Ask::Estimate { level: Some(_), .. } => None,
         Ask::Check { measure, .. } | Ask::Estimate { measure, .. } => Some(measure.target.world),
@@ -325,36 +325,43 @@ impl<'a> Session<'a> {
                     // All checks and estimates of a world read the same trials.
                     let world = measure.target.world;
                     let together: Vec<usize> =
-                        (at..asked.len()).filter(|&k| surveyed(&asked[k].ask) == Some(world)).collect();
+                        (at..asked.len()).filter(|&k| estimated(&asked[k].ask) == Some(world)).collect();
                     for &k in &together {
                         taken[k] = true;
                     }
-                    let inquiries = together
+                    let entries = together
                         .iter()
-                        .map(|&k| self.inquiry(asked[k]).map_err(refused(asked[k])))
+                        .map(|&k| self.entry(asked[k]).map_err(refused(asked[k])))
                         .collect::<Result<Vec<_>, _>>()?;
-                    let kept = inquiries.iter().map(|one| one.procedure.most_values(self.budget.max_trials));
+                    let kept = entries.iter().map(|one| one.procedure.most_values(self.budget.max_trials));
                     let values = kept.fold(0, u64::saturating_add);
                     if values > MOST_VALUES {
                         return Err(Fault::Memory { place: query.span, values });
                     }
-                    (together, Sampling::Survey(Survey::new(self.subject(world)?, inquiries, self.call.seed)))
+                    (
+                        together,
+                        Sampling::Estimate(EstimateSampling::new(
+                            self.subject(world)?,
+                            entries,
+                            self.call.seed,
+                        )),
+                    )
                 }
                 Ask::Compare { .. } => {
-                    (vec![at], Sampling::Contrast(self.contrast(query).map_err(refused(query))?))
+                    (vec![at], Sampling::Compare(self.compare(query).map_err(refused(query))?))
                 }
-                Ask::Rank { .. } => (vec![at], Sampling::Race(self.contest(query).map_err(refused(query))?)),
+                Ask::Rank { .. } => (vec![at], Sampling::Rank(self.rank(query).map_err(refused(query))?)),
             };
             groups.push(Group { places, sampling });
         }
         Ok(groups)
     }
 
-    fn inquiry<'q>(&self, query: &'q Query) -> Result<Inquiry<'q>, Fault> {
+    fn entry<'q>(&self, query: &'q Query) -> Result<EstimateEntry<'q>, Fault> {
         let (Ask::Check { measure, .. } | Ask::Estimate { measure, .. }) = &query.ask else {
             return Err(Fault::Unsuitable);
         };
-        Ok(Inquiry {
+        Ok(EstimateEntry {
             query,
             column: measure.target.column,
             range: range(measure),
@@ -368,7 +375,7 @@ impl<'a> Session<'a> {
         })
     }
 
-    fn contrast<'q>(&self, query: &'q Query) -> Result<Contrast<'q>, Fault>
+    fn compare<'q>(&self, query: &'q Query) -> Result<CompareSampling<'q>, Fault>
     where
         'a: 'q,
     {
@@ -379,10 +386,10 @@ impl<'a> Session<'a> {
             subjects: [self.subject(first.target.world)?, self.subject(second.target.world)?],
             columns: [first.target.column, second.target.column],
         };
-        Contrast::new(query, &sides, &first.kind, (*within, *delta), self.call.seed)
+        CompareSampling::new(query, &sides, &first.kind, (*within, *delta), self.call.seed)
     }
 
-    fn contest<'q>(&self, query: &'q Query) -> Result<Contest<'q>, Fault>
+    fn rank<'q>(&self, query: &'q Query) -> Result<RankSampling<'q>, Fault>
     where
         'a: 'q,
     {
@@ -392,7 +399,7 @@ impl<'a> Session<'a> {
         let Make::Ranking(kind) = ranking.spec.make else { return Err(Fault::Unsuitable) };
         let subject = self.subject(measure.target.world)?;
         let declared = &subject.program.scenario.moves[*moves];
-        let field = Field {
+        let setup = RankSetup {
             subject,
             moves: *moves,
             deviations: declared.options.iter().map(|(_, m)| m.deviation()).collect(),
@@ -400,7 +407,7 @@ impl<'a> Session<'a> {
             kind: measure.kind.clone(),
             rule: (ranking.value("epsilon"), ranking.value("delta"), kind),
         };
-        Contest::new(query, field, self.call.seed)
+        RankSampling::new(query, setup, self.call.seed)
     }
 
     /// Runs a group for its share of the time.
@@ -416,50 +423,50 @@ impl<'a> Session<'a> {
         let budgets = (self.budget, share);
         let mut broken = None;
         let results = match sampling {
-            Sampling::Survey(mut survey) => {
-                match survey.run((executor, levels), budgets, watch)? {
+            Sampling::Estimate(mut estimate) => {
+                match estimate.run((executor, levels), budgets, watch)? {
                     Advance::Stopped => {}
                     Advance::Paused => {
                         return Ok(Turn::Paused(Box::new(Group {
                             places,
-                            sampling: Sampling::Survey(survey),
+                            sampling: Sampling::Estimate(estimate),
                         })));
                     }
-                    Advance::Broken(found) => {
+                    Advance::Faulty(found) => {
                         broken = Some(flaw(found.fault)?);
                         // Those that had stopped before that trial do not know of it.
-                        survey.keep(&mut places, |inquiry| inquiry.stopped_before(found.index));
+                        estimate.keep(&mut places, |entry| entry.stopped_before(found.index));
                     }
                     Advance::Apart(columns) => {
                         let (slow, fast) = places
                             .into_iter()
-                            .zip(&survey.inquiries)
-                            .partition::<Vec<_>, _>(|(_, inquiry)| columns.contains(&inquiry.column));
-                        let of =
-                            |list: Vec<(usize, &Inquiry<'_>)>| list.into_iter().map(|(k, _)| k).collect();
+                            .zip(&estimate.entries)
+                            .partition::<Vec<_>, _>(|(_, entry)| columns.contains(&entry.column));
+                        let of = |list: Vec<(usize, &EstimateEntry<'_>)>| {
+                            list.into_iter().map(|(k, _)| k).collect()
+                        };
                         let (slow, fast) = (of(slow), of(fast));
-                        let apart = survey.part(&columns);
+                        let apart = estimate.part(&columns);
                         return Ok(Turn::Apart(Box::new([
-                            Group { places: fast, sampling: Sampling::Survey(survey) },
-                            Group { places: slow, sampling: Sampling::Survey(apart) },
+                            Group { places: fast, sampling: Sampling::Estimate(estimate) },
+                            Group { places: slow, sampling: Sampling::Estimate(apart) },
                         ])));
                     }
                 }
-                answers.survey(survey)
+                answers.estimate(estimate)
             }
-            Sampling::Contrast(mut contrast) => match answers.contrast(&mut contrast, executor, share, watch)
-            {
+            Sampling::Compare(mut compare) => match answers.compare(&mut compare, executor, share, watch) {
                 Ok(None) => {
                     return Ok(Turn::Paused(Box::new(Group {
                         places,
-                        sampling: Sampling::Contrast(contrast),
+                        sampling: Sampling::Compare(compare),
                     })));
                 }
                 result => result.map(Vec::from_iter),
             },
-            Sampling::Race(mut contest) => match answers.race(&mut contest, executor, share, watch) {
+            Sampling::Rank(mut rank) => match answers.rank(&mut rank, executor, share, watch) {
                 Ok(None) => {
-                    return Ok(Turn::Paused(Box::new(Group { places, sampling: Sampling::Race(contest) })));
+                    return Ok(Turn::Paused(Box::new(Group { places, sampling: Sampling::Rank(rank) })));
                 }
                 result => result.map(Vec::from_iter),
             },
@@ -475,11 +482,11 @@ impl<'a> Session<'a> {
 
     /// The results of the queries of a group that have stopped; the others are left out.
     fn decided(&self, group: Group<'_>) -> Result<Answered, Fault> {
-        let Group { mut places, sampling: Sampling::Survey(mut survey) } = group else {
+        let Group { mut places, sampling: Sampling::Estimate(mut estimate) } = group else {
             return Ok(Vec::new());
         };
-        survey.keep(&mut places, |inquiry| inquiry.stop.is_some());
+        estimate.keep(&mut places, |entry| entry.stop.is_some());
         let answers = Answers { call: self.call, budget: self.budget };
-        Ok(places.into_iter().zip(answers.survey(survey)?).collect())
+        Ok(places.into_iter().zip(answers.estimate(estimate)?).collect())
     }
 }

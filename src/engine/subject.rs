@@ -43,7 +43,7 @@ pub struct Subject {
 
 /// Code and monitors for some columns of a subject. Columns whose atoms can lack a value stand alone, so
 /// that the outcome of one never depends on which others are observed.
-pub(super) struct Sheet {
+pub(super) struct ColumnGroup {
     /// Code that reads the atoms and signals of these columns, and what it read last.
     code: Code,
     pub(super) readings: Readings,
@@ -57,7 +57,7 @@ pub(super) struct Sheet {
     needs: Needs,
 }
 
-impl Sheet {
+impl ColumnGroup {
     /// A trial begins in a lane.
     pub(super) fn start(&mut self, lane: usize) {
         for observer in &mut self.observers {
@@ -278,8 +278,8 @@ impl Subject {
         Ok(needs)
     }
 
-    /// Sheets for some columns.
-    pub(super) fn sheets(&self, columns: &[usize]) -> Result<Vec<Sheet>, Invalid> {
+    /// Groups for some columns.
+    pub(super) fn groups(&self, columns: &[usize]) -> Result<Vec<ColumnGroup>, Invalid> {
         let together = self.code(columns);
         let groups: Vec<Vec<usize>> = if together.may_be_unresolved() && columns.len() > 1 {
             (0..columns.len()).map(|place| vec![place]).collect()
@@ -288,14 +288,14 @@ impl Subject {
         };
         let of = |places: Vec<usize>| {
             let chosen: Vec<usize> = places.iter().map(|&p| columns[p]).collect();
-            Ok(Sheet { places, ..self.sheet(&chosen)? })
+            Ok(ColumnGroup { places, ..self.group(&chosen)? })
         };
         groups.into_iter().map(of).collect()
     }
 
-    /// One sheet for all of some columns.
-    pub(super) fn sheet(&self, columns: &[usize]) -> Result<Sheet, Invalid> {
-        Ok(Sheet {
+    /// One group for all of some columns.
+    pub(super) fn group(&self, columns: &[usize]) -> Result<ColumnGroup, Invalid> {
+        Ok(ColumnGroup {
             code: self.code(columns),
             readings: Readings::default(),
             places: (0..columns.len()).collect(),

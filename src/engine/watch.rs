@@ -47,7 +47,7 @@ impl Forecast {
 
 /// What a call is likely to take.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Outlook {
+pub struct CallForecast {
     /// Query by query, in the order in which they are answered.
     pub queries: Vec<Forecast>,
     /// Seconds of all of them, shared trials counted once.
@@ -59,7 +59,7 @@ pub struct Outlook {
 /// Somebody who watches a run. Nothing they do changes a result.
 pub trait Watch {
     /// What the call is likely to take; told once, before sampling, and never where there is a deadline.
-    fn forecast(&self, _outlook: &Outlook) {}
+    fn forecast(&self, _total: &CallForecast) {}
 
     /// The first trial is about to run: scenes and stopping rules are prepared.
     fn samples(&self) {}

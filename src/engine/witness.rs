@@ -69,10 +69,10 @@ fn witness(
         let (time, value, what) = recall::decision(subject, column, (trial, call.seed), dimension, budget)?;
         return Some(Witness { shows, trial, value, time, unit, what, decider: None, command });
     }
-    let mut sheet = subject.sheet(&[column]).ok()?;
+    let mut group = subject.group(&[column]).ok()?;
     // Where a robustness leaves its range a trial ends; here it is shown what it is, if the trial goes on so long.
     let mut clipped = None;
-    if let Observer::Robustness(_, sought @ Sought::Clipped(..)) = &mut sheet.observers[0] {
+    if let Observer::Robustness(_, sought @ Sought::Clipped(..)) = &mut group.observers[0] {
         *sought = Sought::Value;
         clipped = subject.observer(column).ok();
     }
@@ -81,7 +81,7 @@ fn witness(
     let key = TrialKey { seed: call.seed, index: trial, branch: 0 };
     let (mut run, _) = Run::of(program, Address { advice, ..key.into() }).ok()?;
     let lane = Mask::lane(0);
-    sheet.start(0);
+    group.start(0);
     if let Some(clipped) = &mut clipped {
         clipped.start(0);
     }
@@ -90,7 +90,7 @@ fn witness(
     let mut kept = Checkpoints::new(most);
     loop {
         let state = run.state();
-        let lost = sheet.read(&run).has(0) || (sheet.follows[0] && state.queues.reused.has(0));
+        let lost = group.read(&run).has(0) || (group.follows[0] && state.queues.reused.has(0));
         if clipped.is_some() && (lost || run.ended().has(0)) {
             let seconds = |tick: u64| program.scenario.clock.seconds(Tick(tick));
             let end = seconds(state.ticks[0]);
@@ -98,15 +98,15 @@ fn witness(
             let time = left.map_or(end, seconds);
             return Some(Witness { shows, trial, value: None, time, unit, what, decider: None, command });
         }
-        let readings = &sheet.readings;
-        sheet.observers[0].observe(lane, readings);
+        let readings = &group.readings;
+        group.observers[0].observe(lane, readings);
         if let Some(clipped) = clipped.as_mut().filter(|_| left.is_none()) {
             clipped.observe(lane, readings);
             left = clipped.decided().has(0).then(|| state.ticks[0]);
         }
         record.push(readings);
         kept.offer(state.ticks[0], || state.clone());
-        if sheet.observers[0].decided().has(0) {
+        if group.observers[0].decided().has(0) {
             break;
         }
         if budget.is_late() {
@@ -116,7 +116,7 @@ fn witness(
             break;
         }
     }
-    let observer = &sheet.observers[0];
+    let observer = &group.observers[0];
     let state_at = |tick: Tick| {
         let (_, state) = kept.last(|number, _| number <= tick.0)?;
         let mut run = Run::from_state(program, state);

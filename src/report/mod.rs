@@ -6,13 +6,13 @@
 
 pub mod behaviours;
 mod exit;
+pub mod forecast;
 pub mod github;
 pub mod html;
 pub mod json;
 pub mod junit;
 pub mod model;
 pub mod number;
-pub mod outlook;
 pub mod palette;
 mod phrase;
 pub mod text;

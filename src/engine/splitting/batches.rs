@@ -12,7 +12,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// A batch, as the clock needs it.
-enum Kind<'s> {
+enum PathBatch<'s> {
     Steps(Box<Batch<'s, StepPaths<'s>>>),
     Events(Box<Batch<'s, EventPaths<'s>>>),
 }
@@ -22,7 +22,7 @@ pub(super) struct Batches<'s> {
     subject: &'s Subject,
     /// Column of the formula, and of the robustness that is its level.
     columns: [usize; 2],
-    warm: Mutex<Vec<Kind<'s>>>,
+    warm: Mutex<Vec<PathBatch<'s>>>,
 }
 
 impl<'s> Batches<'s> {
@@ -30,15 +30,15 @@ impl<'s> Batches<'s> {
         Self { subject, columns, warm: Mutex::new(Vec::new()) }
     }
 
-    fn batch(&self) -> Result<Kind<'s>, Fault> {
+    fn batch(&self) -> Result<PathBatch<'s>, Fault> {
         if let Some(warm) = self.warm.lock().ok().and_then(|mut list| list.pop()) {
             return Ok(warm);
         }
         let program = &self.subject.program;
         Ok(if program.scenario.clock.is_jumps() {
-            Kind::Events(Box::new(Batch::new(program, EventPaths::new(self.subject, self.columns)?)))
+            PathBatch::Events(Box::new(Batch::new(program, EventPaths::new(self.subject, self.columns)?)))
         } else {
-            Kind::Steps(Box::new(Batch::new(program, StepPaths::new(self.subject, self.columns)?)))
+            PathBatch::Steps(Box::new(Batch::new(program, StepPaths::new(self.subject, self.columns)?)))
         })
     }
 
@@ -64,11 +64,11 @@ impl<'s> Batches<'s> {
             let list = match self.batch() {
                 Ok(mut batch) => {
                     let list = match &mut batch {
-                        Kind::Steps(batch) => {
+                        PathBatch::Steps(batch) => {
                             batch.run(&mut take, budget);
                             batch.monitors.take()
                         }
-                        Kind::Events(batch) => {
+                        PathBatch::Events(batch) => {
                             batch.run(&mut take, budget);
                             batch.monitors.take()
                         }

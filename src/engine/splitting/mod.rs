@@ -179,10 +179,10 @@ fn run(
 }
 
 /// Runs the paths of some runs; whether all of them came to an end.
-type Advance<'f> = &'f mut dyn FnMut(&mut [Running], &mut Found) -> Result<bool, Fault>;
+type RunPaths<'f> = &'f mut dyn FnMut(&mut [Running], &mut Found) -> Result<bool, Fault>;
 
 /// All runs under one reading of lost paths; `None` where they did not come to an end. `advance` finishes some of them.
-fn runs(question: &Question<'_>, found: &mut Found, advance: Advance<'_>) -> Result<Option<Spread>, Fault> {
+fn runs(question: &Question<'_>, found: &mut Found, advance: RunPaths<'_>) -> Result<Option<Spread>, Fault> {
     let rule = question.rule;
     let (replicas, seed) = (rule.replicas as usize, question.seed);
     let mut levels = Vec::new();

@@ -6,9 +6,9 @@ use crate::engine::batch::Monitors;
 use crate::engine::cell::Reading;
 use crate::engine::fault::Fault;
 use crate::engine::observer::Observer;
-use crate::engine::subject::{Sheet, Subject};
+use crate::engine::subject::{ColumnGroup, Subject};
 use crate::engine::trial::flaw;
-use crate::kernel::process::{Sight, View};
+use crate::kernel::process::{View, ViewReadings};
 use crate::kernel::{End, Run};
 use crate::logic::{self, Invalid, SignalMonitor, SignalRobustness};
 use crate::stats::splitting::Flight;
@@ -79,14 +79,14 @@ fn finite(level: f64) -> f64 {
 /// From step to step.
 pub(super) struct StepPaths<'s> {
     /// The formula and its level.
-    sheet: Sheet,
+    group: ColumnGroup,
     paths: Paths<'s>,
 }
 
 impl<'s> StepPaths<'s> {
     /// For a column that is a formula, and one that is the robustness that is its level.
     pub(super) fn new(subject: &'s Subject, columns: [usize; 2]) -> Result<Self, Invalid> {
-        Ok(Self { sheet: subject.sheet(&columns)?, paths: Paths::new(subject) })
+        Ok(Self { group: subject.group(&columns)?, paths: Paths::new(subject) })
     }
 
     /// The paths that ended since this was asked last.
@@ -97,20 +97,20 @@ impl<'s> StepPaths<'s> {
 
 impl Monitors for StepPaths<'_> {
     fn start(&mut self, lane: usize, _: bool) {
-        self.sheet.start(lane);
+        self.group.start(lane);
         self.paths.start(lane);
     }
 
     fn observe(&mut self, run: &Run<'_>, _: Mask) -> Mask {
         let state = run.state();
         let occupied = run.occupied();
-        let gone = if self.sheet.follows[0] { state.queues.reused } else { Mask::NONE };
-        let lost = (self.sheet.read(run) | run.ended() | gone) & occupied;
+        let gone = if self.group.follows[0] { state.queues.reused } else { Mask::NONE };
+        let lost = (self.group.read(run) | run.ended() | gone) & occupied;
         let watched = occupied & !lost;
-        for observer in &mut self.sheet.observers {
-            observer.observe(watched, &self.sheet.readings);
+        for observer in &mut self.group.observers {
+            observer.observe(watched, &self.group.readings);
         }
-        let [formula, level] = self.sheet.observers.as_slice() else { return occupied };
+        let [formula, level] = self.group.observers.as_slice() else { return occupied };
         let decided = formula.decided() & watched;
         let levels = match level {
             Observer::Robustness(robustness, _) => robustness.lower(),
@@ -149,7 +149,7 @@ impl Monitors for StepPaths<'_> {
 /// by then. Times are the bits of seconds, which order as the seconds do.
 pub(super) struct EventPaths<'s> {
     view: View,
-    sight: Sight,
+    seen: ViewReadings,
     formulas: Vec<SignalMonitor>,
     levels: Vec<SignalRobustness>,
     /// When the state of each lane began that will be judged next, s.
@@ -163,7 +163,7 @@ impl<'s> EventPaths<'s> {
         let [formula, level] = columns;
         Ok(Self {
             view: subject.view(&columns),
-            sight: Sight::default(),
+            seen: ViewReadings::default(),
             formulas: vec![subject.signal_monitor(formula)?; LANES],
             levels: vec![subject.signal_robustness(level)?.closely(); LANES],
             since: [0.0; LANES],
@@ -181,7 +181,7 @@ impl<'s> EventPaths<'s> {
     fn judge(&mut self, run: &Run<'_>, lane: usize, now: Option<Instant>) -> bool {
         let (formula, level) = (&mut self.formulas[lane], &mut self.levels[lane]);
         let (reading, bounds) = if let Some(now) = now {
-            let (atoms, signals) = self.view.of(run.state(), &mut self.sight, lane);
+            let (atoms, signals) = self.view.of(run.state(), &mut self.seen, lane);
             (formula.jump(now, atoms, signals), level.jump(now, atoms, signals))
         } else {
             (Some(formula.finish()), level.finish())
@@ -218,10 +218,10 @@ impl Monitors for EventPaths<'_> {
 
     fn observe(&mut self, run: &Run<'_>, fresh: Mask) -> Mask {
         if !fresh.is_empty() {
-            self.view.look(run.state(), &mut self.sight);
+            self.view.look(run.state(), &mut self.seen);
         }
         for lane in fresh.iter() {
-            let (atoms, signals) = self.view.of(run.state(), &mut self.sight, lane);
+            let (atoms, signals) = self.view.of(run.state(), &mut self.seen, lane);
             self.formulas[lane].start();
             self.formulas[lane].jump(0.0, atoms, signals);
             self.levels[lane].start();
@@ -231,7 +231,7 @@ impl Monitors for EventPaths<'_> {
     }
 
     fn follow(&mut self, run: &Run<'_>, moved: Mask) -> Mask {
-        self.view.look(run.state(), &mut self.sight);
+        self.view.look(run.state(), &mut self.seen);
         let mut over = run.ended();
         for lane in (run.occupied() & !over).iter() {
             let now = moved.has(lane).then(|| run.state().clocks.instant(lane));

@@ -22,7 +22,7 @@ pub use chain::Chain;
 pub use embedded::{Embedded, JumpBatch, Stay};
 pub use space::Space;
 pub use step_batch::StepBatch;
-pub use view::{Sight, View};
+pub use view::{View, ViewReadings};
 
 use super::code::{Code, Readings};
 pub use super::fault::Fault;

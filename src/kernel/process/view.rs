@@ -22,7 +22,7 @@ pub struct View {
 
 /// What was seen of the states of a batch.
 #[derive(Clone, Debug, Default)]
-pub struct Sight {
+pub struct ViewReadings {
     readings: Readings,
     atoms: Vec<bool>,
     signals: Vec<f64>,
@@ -55,24 +55,29 @@ impl View {
 
     /// Looks at the states of a batch.
     #[inline]
-    pub fn look(&self, state: &State, sight: &mut Sight) {
+    pub fn look(&self, state: &State, seen: &mut ViewReadings) {
         if self.keys.is_none() {
-            self.code.read(Layout::Trials, state, &mut sight.readings);
+            self.code.read(Layout::Trials, state, &mut seen.readings);
         }
     }
 
     /// The atoms and signals of one lane, of a batch that was looked at.
     #[inline]
-    pub fn of<'s>(&'s self, state: &State, sight: &'s mut Sight, lane: usize) -> (&'s [bool], &'s [f64]) {
+    pub fn of<'s>(
+        &'s self,
+        state: &State,
+        seen: &'s mut ViewReadings,
+        lane: usize,
+    ) -> (&'s [bool], &'s [f64]) {
         let (atoms, signals) = self.width;
         if let Some(keys) = &self.keys {
             let row = keys.row(&state.variables, lane);
             return (&self.atoms[row * atoms..][..atoms], &self.signals[row * signals..][..signals]);
         }
-        sight.atoms.clear();
-        sight.atoms.extend(sight.readings.atoms.iter().map(|mask| mask.has(lane)));
-        sight.signals.clear();
-        sight.signals.extend(sight.readings.signals.iter().map(|lanes| lanes.0[lane]));
-        (&sight.atoms, &sight.signals)
+        seen.atoms.clear();
+        seen.atoms.extend(seen.readings.atoms.iter().map(|mask| mask.has(lane)));
+        seen.signals.clear();
+        seen.signals.extend(seen.readings.signals.iter().map(|lanes| lanes.0[lane]));
+        (&seen.atoms, &seen.signals)
     }
 }

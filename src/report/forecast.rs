@@ -1,13 +1,13 @@
 //! Forecasts of a call, as text and as JSON.
 
 use super::number::{count, counted};
-use crate::engine::{Forecast, Outlook};
+use crate::engine::{CallForecast, Forecast};
 use serde_json::{Value, json};
 
 /// One line a query, and one for the whole.
-pub fn text(outlook: &Outlook) -> String {
+pub fn text(total: &CallForecast) -> String {
     let mut text = String::new();
-    for forecast in &outlook.queries {
+    for forecast in &total.queries {
         let Forecast { query, settings, trials, .. } = forecast;
         let (least, most) = (least(trials.least), rough(trials.most));
         let trials = if trials.least == trials.most {
@@ -23,17 +23,17 @@ pub fn text(outlook: &Outlook) -> String {
             between(forecast.seconds_between())
         ));
     }
-    if outlook.queries.len() > 1 {
+    if total.queries.len() > 1 {
         text.push_str(&format!(
             "forecast: {} in all; checks and estimates of one scenario share trials\n",
-            between(outlook.between)
+            between(total.between)
         ));
     }
     text
 }
 
 /// One object, ending with a line end.
-pub fn json(outlook: &Outlook) -> String {
+pub fn json(total: &CallForecast) -> String {
     let query = |forecast: &Forecast| {
         let settings: serde_json::Map<String, Value> =
             forecast.settings.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
@@ -46,8 +46,8 @@ pub fn json(outlook: &Outlook) -> String {
             "seconds": forecast.seconds,
         })
     };
-    let queries: Vec<Value> = outlook.queries.iter().map(query).collect();
-    format!("{:#}\n", json!({ "schema": 1, "forecast": queries, "seconds": outlook.seconds }))
+    let queries: Vec<Value> = total.queries.iter().map(query).collect();
+    format!("{:#}\n", json!({ "schema": 1, "forecast": queries, "seconds": total.seconds }))
 }
 
 /// Two digits are enough for a forecast: the last place that counts.
@@ -110,18 +110,15 @@ mod tests {
             trials: Likely { least: 20, likely: 53, most: 2_000 },
             seconds: 3.2,
         };
-        let outlook = Outlook { queries: vec![one.clone()], ..Outlook::default() };
+        let total = CallForecast { queries: vec![one.clone()], ..CallForecast::default() };
         assert_eq!(
-            text(&outlook),
+            text(&total),
             "forecast: 20 to 2,000 trials, 1 s to 2 min: estimate P(safe)   density = 0.2\n"
         );
         let known = Forecast { trials: Likely::exactly(53), ..one.clone() };
-        let outlook = Outlook { queries: vec![known], ..Outlook::default() };
-        assert_eq!(
-            text(&outlook),
-            "forecast: about 53 trials, about 3 s: estimate P(safe)   density = 0.2\n"
-        );
-        let outlook = Outlook { queries: vec![one.clone(), one], ..Outlook::default() };
-        assert_eq!(text(&outlook).lines().count(), 3);
+        let total = CallForecast { queries: vec![known], ..CallForecast::default() };
+        assert_eq!(text(&total), "forecast: about 53 trials, about 3 s: estimate P(safe)   density = 0.2\n");
+        let total = CallForecast { queries: vec![one.clone(), one], ..CallForecast::default() };
+        assert_eq!(text(&total).lines().count(), 3);
     }
 }

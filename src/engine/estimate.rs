@@ -28,7 +28,7 @@ const WORTH_TIMING: f64 = 1.0;
 pub(super) const LARGEST_ROUND: u64 = 16_384;
 
 /// One query on its way.
-pub(super) struct Inquiry<'q> {
+pub(super) struct EstimateEntry<'q> {
     /// The query.
     pub(super) query: &'q Query,
     /// Column of the subject.
@@ -47,15 +47,15 @@ pub(super) struct Inquiry<'q> {
     pub(super) lost: bool,
     /// Why it stopped.
     pub(super) stop: Option<Stop>,
-    /// Seconds from the start of the survey to its stop.
+    /// Seconds from the start of the estimate to its stop.
     pub(super) seconds: f64,
 }
 
 /// Checks and estimates of one subject on their way.
-pub(super) struct Survey<'q> {
+pub(super) struct EstimateSampling<'q> {
     job: Job<'q>,
     /// The queries.
-    pub(super) inquiries: Vec<Inquiry<'q>>,
+    pub(super) entries: Vec<EstimateEntry<'q>>,
     ahead: Option<Pilot>,
     /// The next trial.
     next: u64,
@@ -63,27 +63,27 @@ pub(super) struct Survey<'q> {
     spent: f64,
 }
 
-/// How far a survey came in its share of the time.
+/// How far an estimate came in its share of the time.
 pub(super) enum Advance {
-    /// Each inquiry has stopped.
+    /// Each entry has stopped.
     Stopped,
     /// Its share is over, and the time of the call is not.
     Paused,
     /// It came to a trial in which the model is wrong.
-    Broken(Broken),
+    Faulty(FaultyTrial),
     /// These columns hold the others up.
     Apart(Vec<usize>),
 }
 
 /// A trial in which the model is wrong, the first that was read.
-pub(super) struct Broken {
-    /// Its index: an inquiry that had stopped before does not know of it.
+pub(super) struct FaultyTrial {
+    /// Its index: an entry that had stopped before does not know of it.
     pub(super) index: u64,
     /// What is wrong.
     pub(super) fault: Fault,
 }
 
-impl Inquiry<'_> {
+impl EstimateEntry<'_> {
     /// Whether it reads on.
     const fn is_open(&self) -> bool {
         self.stop.is_none() && !self.waits && !self.lost
@@ -96,26 +96,26 @@ impl Inquiry<'_> {
     }
 }
 
-impl<'q> Survey<'q> {
-    /// A survey of some inquiries about one subject.
-    pub(super) fn new(subject: &'q Subject, inquiries: Vec<Inquiry<'q>>, seed: u64) -> Self {
-        let job = Job::new(subject, columns(&inquiries), seed);
-        Self { job, inquiries, ahead: None, next: 0, spent: 0.0 }
+impl<'q> EstimateSampling<'q> {
+    /// An estimate of some entries about one subject.
+    pub(super) fn new(subject: &'q Subject, entries: Vec<EstimateEntry<'q>>, seed: u64) -> Self {
+        let job = Job::new(subject, columns(&entries), seed);
+        Self { job, entries, ahead: None, next: 0, spent: 0.0 }
     }
 
-    /// Leaves the inquiries about some columns to a survey of their own, which goes on where this one is.
+    /// Leaves the entries about some columns to an estimate of their own, which goes on where this one is.
     pub(super) fn part(&mut self, slow: &[usize]) -> Self {
         let (slow, rest) =
-            std::mem::take(&mut self.inquiries).into_iter().partition(|i| slow.contains(&i.column));
-        self.inquiries = rest;
+            std::mem::take(&mut self.entries).into_iter().partition(|i| slow.contains(&i.column));
+        self.entries = rest;
         Self { next: self.next, spent: self.spent, ..Self::new(self.job.subject, slow, self.job.seed) }
     }
 
-    /// Leaves out some inquiries, and their places.
-    pub(super) fn keep(&mut self, places: &mut Vec<usize>, kept: impl Fn(&Inquiry<'_>) -> bool) {
-        let mut list = self.inquiries.iter().map(&kept);
+    /// Leaves out some entries, and their places.
+    pub(super) fn keep(&mut self, places: &mut Vec<usize>, kept: impl Fn(&EstimateEntry<'_>) -> bool) {
+        let mut list = self.entries.iter().map(&kept);
         places.retain(|_| list.next().unwrap_or(false));
-        self.inquiries.retain(kept);
+        self.entries.retain(kept);
     }
 
     /// The subject.
@@ -123,7 +123,7 @@ impl<'q> Survey<'q> {
         self.job.subject
     }
 
-    /// Runs the first trials, and forecasts from them what each inquiry is likely to take.
+    /// Runs the first trials, and forecasts from them what each entry is likely to take.
     pub(super) fn run_pilot(
         &mut self,
         executor: &dyn Executor,
@@ -131,25 +131,25 @@ impl<'q> Survey<'q> {
     ) -> Result<Vec<Forecast>, Fault> {
         let width = executor.width(&self.job) as u64;
         // As many on every machine, whatever a round would be.
-        let size = Pilot::size(width).min(most(&self.inquiries, 0, budget).max(1)).min(budget.max_trials);
+        let size = Pilot::size(width).min(most(&self.entries, 0, budget).max(1)).min(budget.max_trials);
         let pilot = Pilot::run(&self.job, Item::run(0, size), executor, budget)?;
         let mut seconds = pilot.seconds_per_trial(self.job.subject.most_steps());
-        let forecast = |inquiry: &Inquiry<'_>| {
+        let forecast = |entry: &EstimateEntry<'_>| {
             let mut glimpse = Glimpse::default();
-            let range = inquiry.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
-            if let Some(place) = self.job.columns.iter().position(|c| *c == inquiry.column) {
+            let range = entry.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+            if let Some(place) = self.job.columns.iter().position(|c| *c == entry.column) {
                 pilot.seen().for_each(|row| glimpse.read(&row[place], range));
             }
-            let expected = forecast::inquiry(&inquiry.query.ask, &inquiry.procedure, &glimpse);
+            let expected = forecast::inquiry(&entry.query.ask, &entry.procedure, &glimpse);
             let trials = expected.unwrap_or(Likely::exactly(u64::MAX)).map(|n| n.min(budget.max_trials));
             Forecast {
-                query: inquiry.query.text.clone(),
-                settings: inquiry.query.settings.clone(),
+                query: entry.query.text.clone(),
+                settings: entry.query.settings.clone(),
                 trials,
                 seconds: 0.0,
             }
         };
-        let mut forecasts: Vec<Forecast> = self.inquiries.iter().map(forecast).collect();
+        let mut forecasts: Vec<Forecast> = self.entries.iter().map(forecast).collect();
         let most = forecasts.iter().map(|forecast| forecast.trials.most).max().unwrap_or(0);
         if pilot.is_complete() && most as f64 * seconds > WORTH_TIMING {
             seconds = pilot::timed(&self.job, (size, seconds), executor, budget)?;
@@ -161,7 +161,7 @@ impl<'q> Survey<'q> {
         Ok(forecasts)
     }
 
-    /// Runs until each inquiry has stopped, its share of the time is over, or up to a trial in which the model is wrong.
+    /// Runs until each entry has stopped, its share of the time is over, or up to a trial in which the model is wrong.
     pub(super) fn run(
         &mut self,
         (executor, levels): (&dyn Executor, &mut Levels),
@@ -172,36 +172,36 @@ impl<'q> Survey<'q> {
         self.spent += self.ahead.as_ref().map_or(0.0, |ahead| ahead.seconds);
         let started = budget.elapsed() - self.spent;
         if budget.max_trials == 0 {
-            self.inquiries.iter_mut().for_each(|inquiry| inquiry.stop = Some(Stop::Cap));
+            self.entries.iter_mut().for_each(|entry| entry.stop = Some(Stop::Cap));
         }
         let mut advance = self.rounds((executor, started), u64::MAX, (budget, share), watch)?;
         // Proofs come when nobody reads on without one, so that none of them keeps others from their trials.
-        for k in 0..self.inquiries.len() {
+        for k in 0..self.entries.len() {
             // Who stops before the trial in which the model is wrong does not know of it.
             let end = match &advance {
                 Advance::Stopped => u64::MAX,
-                Advance::Broken(broken) => broken.index,
+                Advance::Faulty(broken) => broken.index,
                 Advance::Paused | Advance::Apart(_) => break,
             };
-            if !self.inquiries[k].waits {
+            if !self.entries[k].waits {
                 continue;
             }
             match self.go_on((executor, started), (k, end), levels, (budget, share), watch)? {
                 Advance::Stopped => {}
-                Advance::Paused if matches!(advance, Advance::Broken(_)) => {}
+                Advance::Paused if matches!(advance, Advance::Faulty(_)) => {}
                 other => advance = other,
             }
         }
         self.spent = budget.elapsed() - started;
         if !matches!(advance, Advance::Paused | Advance::Apart(_)) {
-            for inquiry in self.inquiries.iter_mut().filter(|i| i.seconds == 0.0) {
-                inquiry.seconds = self.spent;
+            for entry in self.entries.iter_mut().filter(|i| i.seconds == 0.0) {
+                entry.seconds = self.spent;
             }
         }
         Ok(advance)
     }
 
-    /// Proves the level for which an inquiry waits, and reads on, up to a trial.
+    /// Proves the level for which an entry waits, and reads on, up to a trial.
     fn go_on(
         &mut self,
         (executor, started): (&dyn Executor, f64),
@@ -210,40 +210,40 @@ impl<'q> Survey<'q> {
         (budget, share): (&Budget, &Budget),
         watch: &dyn Watch,
     ) -> Result<Advance, Fault> {
-        let inquiry = &mut self.inquiries[k];
-        let read = inquiry.tally.counts.trials;
+        let entry = &mut self.entries[k];
+        let read = entry.tally.counts.trials;
         let capped = read >= budget.max_trials;
-        let settled = prove(&inquiry.procedure, levels, share)?;
+        let settled = prove(&entry.procedure, levels, share)?;
         if settled.is_none() && !budget.must_stop() {
             return Ok(Advance::Paused);
         }
-        inquiry.waits = false;
-        inquiry.stop = match &settled {
+        entry.waits = false;
+        entry.stop = match &settled {
             Some(procedure) if procedure.is_finished() => Some(Stop::Width),
             _ if capped => Some(Stop::Cap),
             _ => ended(budget),
         };
-        let Some(procedure) = settled.filter(|one| one.is_finished() || inquiry.stop.is_none()) else {
+        let Some(procedure) = settled.filter(|one| one.is_finished() || entry.stop.is_none()) else {
             return Ok(Advance::Stopped);
         };
-        let before = std::mem::replace(&mut inquiry.procedure, procedure);
-        if inquiry.stop.is_some() {
-            inquiry.stop = Some(inquiry.reason());
-            inquiry.seconds = budget.elapsed() - started;
+        let before = std::mem::replace(&mut entry.procedure, procedure);
+        if entry.stop.is_some() {
+            entry.stop = Some(entry.reason());
+            entry.seconds = budget.elapsed() - started;
             return Ok(Advance::Stopped);
         }
         self.next = read;
         let advance = self.rounds((executor, started), end, (budget, share), watch)?;
-        let inquiry = &mut self.inquiries[k];
-        let unread = inquiry.tally.counts.trials == read;
-        match (&advance, inquiry.stop) {
+        let entry = &mut self.entries[k];
+        let unread = entry.tally.counts.trials == read;
+        match (&advance, entry.stop) {
             (Advance::Paused, _) | (_, Some(_)) if unread => {
                 // Time was up: it says what it would have said without the proof.
-                inquiry.procedure = before;
-                inquiry.waits = inquiry.stop.is_none();
+                entry.procedure = before;
+                entry.waits = entry.stop.is_none();
             }
             // It comes to the trial in which the model is wrong.
-            (Advance::Stopped | Advance::Broken(_), None) => inquiry.lost = true,
+            (Advance::Stopped | Advance::Faulty(_), None) => entry.lost = true,
             _ => {}
         }
         Ok(advance)
@@ -260,12 +260,12 @@ impl<'q> Survey<'q> {
         let mut items = Vec::new();
         // A round that takes longer than this without a trial to its name is of trials that are too long for some column.
         let patience = share.seconds_left().map(|seconds| 0.5 * seconds);
-        while self.next < end && self.inquiries.iter().any(Inquiry::is_open) {
+        while self.next < end && self.entries.iter().any(EstimateEntry::is_open) {
             if share.must_stop() {
                 if !budget.must_stop() {
                     return Ok(Advance::Paused);
                 }
-                close(&mut self.inquiries, budget);
+                close(&mut self.entries, budget);
                 break;
             }
             let cells = match self.ahead.take() {
@@ -274,10 +274,10 @@ impl<'q> Survey<'q> {
                     ahead.cells
                 }
                 None => {
-                    self.job.narrow(columns(&self.inquiries));
+                    self.job.narrow(columns(&self.entries));
                     let width = executor.width(&self.job) as u64;
                     items.clear();
-                    let size = round(&self.inquiries, self.next, width, share);
+                    let size = round(&self.entries, self.next, width, share);
                     items.extend(Item::row(self.next, size.min(end - self.next)));
                     match patience.zip(share.seconds_left()) {
                         Some((most, left)) if most < left && self.job.columns.len() > 1 => {
@@ -288,17 +288,17 @@ impl<'q> Survey<'q> {
                 }
             };
             if let Err(item) = self.read(&items, &cells, started, budget) {
-                self.inquiries.iter_mut().filter(|i| i.is_open()).for_each(|i| i.lost = true);
+                self.entries.iter_mut().filter(|i| i.is_open()).for_each(|i| i.lost = true);
                 let fault = super::trial::fault(self.job.subject, item, self.job.seed);
-                return Ok(Advance::Broken(Broken { index: item.index, fault }));
+                return Ok(Advance::Faulty(FaultyTrial { index: item.index, fault }));
             }
             self.next += cells.ready().min(items.len()) as u64;
             let slow = if share.has_deadline() { self.slow(&cells) } else { Vec::new() };
             self.job.reuse(cells);
-            if let Some(inquiry) = self.inquiries.iter().find(|i| i.is_open()) {
-                let (next, procedure) = (self.next, &inquiry.procedure);
-                let expected = forecast::inquiry(&inquiry.query.ask, procedure, &inquiry.glimpse);
-                watch.consumed(&inquiry.query.text, next, expected.map(|n| n.likely.max(next)));
+            if let Some(entry) = self.entries.iter().find(|i| i.is_open()) {
+                let (next, procedure) = (self.next, &entry.procedure);
+                let expected = forecast::inquiry(&entry.query.ask, procedure, &entry.glimpse);
+                watch.consumed(&entry.query.text, next, expected.map(|n| n.likely.max(next)));
             }
             if !slow.is_empty() && !budget.must_stop() {
                 return Ok(Advance::Apart(slow));
@@ -309,43 +309,43 @@ impl<'q> Survey<'q> {
 
     /// The columns that hold the others up: in which no trial of a round was decided in its time, or trials take much longer.
     fn slow(&self, cells: &Cells) -> Vec<usize> {
-        let open: Vec<&Inquiry<'_>> = self.inquiries.iter().filter(|i| i.is_open()).collect();
-        let steps = |inquiry: &Inquiry<'_>| {
-            let place = self.job.columns.iter().position(|c| *c == inquiry.column);
-            match inquiry.tally.counts.trials {
+        let open: Vec<&EstimateEntry<'_>> = self.entries.iter().filter(|i| i.is_open()).collect();
+        let steps = |entry: &EstimateEntry<'_>| {
+            let place = self.job.columns.iter().position(|c| *c == entry.column);
+            match entry.tally.counts.trials {
                 0 if place.is_some_and(|place| cells.decided(place) > 0) => 1.0,
                 0 => f64::INFINITY,
-                trials => math::at_least(inquiry.tally.steps as f64 / trials as f64, 1.0),
+                trials => math::at_least(entry.tally.steps as f64 / trials as f64, 1.0),
             }
         };
-        let least = open.iter().map(|inquiry| steps(inquiry)).fold(f64::INFINITY, math::at_most);
-        let slow = open.iter().filter(|inquiry| steps(inquiry) > MUCH_LONGER * least);
-        let mut slow: Vec<usize> = slow.map(|inquiry| inquiry.column).collect();
+        let least = open.iter().map(|entry| steps(entry)).fold(f64::INFINITY, math::at_most);
+        let slow = open.iter().filter(|entry| steps(entry) > MUCH_LONGER * least);
+        let mut slow: Vec<usize> = slow.map(|entry| entry.column).collect();
         slow.sort_unstable();
         slow.dedup();
         slow
     }
 
-    /// Shows a round to the inquiries; the first trial in which somebody sees that the model is wrong. None of them
+    /// Shows a round to the entries; the first trial in which somebody sees that the model is wrong. None of them
     /// depends on what another one finds, so each reads in one go, trial by trial, up to where it stops.
     fn read(&mut self, items: &[Item], cells: &Cells, started: f64, budget: &Budget) -> Result<(), Item> {
         let mut faulty: Option<usize> = None;
         // Where the call ends, a trial that is cut hands over what it has decided.
         let last = budget.must_stop();
-        for inquiry in self.inquiries.iter_mut().filter(|i| i.is_open()) {
-            if let Some(place) = self.job.columns.iter().position(|c| *c == inquiry.column) {
+        for entry in self.entries.iter_mut().filter(|i| i.is_open()) {
+            if let Some(place) = self.job.columns.iter().position(|c| *c == entry.column) {
                 // What follows an open trial is not looked at: outcomes count in index order.
                 let ready = if last { cells.decided(place) } else { cells.ready() };
                 let ready = &items[..ready.min(items.len())];
                 if ready.is_empty() {
                     continue;
                 }
-                match inquiry.read(ready, cells.column(place), budget.max_trials) {
-                    Ok(stop) => inquiry.stop = stop,
+                match entry.read(ready, cells.column(place), budget.max_trials) {
+                    Ok(stop) => entry.stop = stop,
                     Err(at) => faulty = Some(faulty.map_or(at, |first| first.min(at))),
                 }
-                if inquiry.stop.is_some() {
-                    inquiry.seconds = budget.elapsed() - started;
+                if entry.stop.is_some() {
+                    entry.seconds = budget.elapsed() - started;
                 }
             }
         }
@@ -353,7 +353,7 @@ impl<'q> Survey<'q> {
     }
 }
 
-impl Inquiry<'_> {
+impl EstimateEntry<'_> {
     /// Reads the trials of a round up to where it stops; the place of the trial in which the model is wrong, if it
     /// comes to it.
     fn read<'c>(
@@ -425,18 +425,18 @@ impl Inquiry<'_> {
 }
 
 /// Columns that somebody still reads.
-fn columns(inquiries: &[Inquiry<'_>]) -> Vec<usize> {
-    let mut columns: Vec<usize> = inquiries.iter().filter(|i| i.is_open()).map(|i| i.column).collect();
+fn columns(entries: &[EstimateEntry<'_>]) -> Vec<usize> {
+    let mut columns: Vec<usize> = entries.iter().filter(|i| i.is_open()).map(|i| i.column).collect();
     columns.sort_unstable();
     columns.dedup();
     columns
 }
 
 /// Time is up, or somebody interrupted: what is known stays known.
-fn close(inquiries: &mut [Inquiry<'_>], budget: &Budget) {
+fn close(entries: &mut [EstimateEntry<'_>], budget: &Budget) {
     let stop = if budget.is_interrupted() { Stop::Interrupt } else { Stop::Deadline };
-    for inquiry in inquiries.iter_mut().filter(|i| i.is_open()) {
-        inquiry.stop = Some(stop);
+    for entry in entries.iter_mut().filter(|i| i.is_open()) {
+        entry.stop = Some(stop);
     }
 }
 
@@ -459,23 +459,23 @@ fn prove(procedure: &Procedure, levels: &mut Levels, budget: &Budget) -> Result<
     }
 }
 
-/// How many trials an inquiry reads at most from here on.
-fn left(inquiry: &Inquiry<'_>, consumed: u64, budget: &Budget) -> u64 {
-    inquiry.procedure.limit().unwrap_or(u64::MAX).min(budget.max_trials).saturating_sub(consumed)
+/// How many trials an entry reads at most from here on.
+fn left(entry: &EstimateEntry<'_>, consumed: u64, budget: &Budget) -> u64 {
+    entry.procedure.limit().unwrap_or(u64::MAX).min(budget.max_trials).saturating_sub(consumed)
 }
 
 /// How many trials anybody reads at most from here on.
-fn most(inquiries: &[Inquiry<'_>], consumed: u64, budget: &Budget) -> u64 {
-    let open = inquiries.iter().filter(|inquiry| inquiry.is_open());
-    open.map(|inquiry| left(inquiry, consumed, budget)).max().unwrap_or(0)
+fn most(entries: &[EstimateEntry<'_>], consumed: u64, budget: &Budget) -> u64 {
+    let open = entries.iter().filter(|entry| entry.is_open());
+    open.map(|entry| left(entry, consumed, budget)).max().unwrap_or(0)
 }
 
 /// How many trials the next round has: enough to keep all lanes busy, few enough to waste little once the
 /// last query has stopped.
-fn round(inquiries: &[Inquiry<'_>], consumed: u64, width: u64, budget: &Budget) -> u64 {
-    let planned = inquiries.iter().filter(|i| i.is_open() && i.procedure.is_planned());
-    let sure = planned.map(|inquiry| left(inquiry, consumed, budget)).max().unwrap_or(0);
-    let most = most(inquiries, consumed, budget);
+fn round(entries: &[EstimateEntry<'_>], consumed: u64, width: u64, budget: &Budget) -> u64 {
+    let planned = entries.iter().filter(|i| i.is_open() && i.procedure.is_planned());
+    let sure = planned.map(|entry| left(entry, consumed, budget)).max().unwrap_or(0);
+    let most = most(entries, consumed, budget);
     let size = (consumed / 8).max(2 * width).max(sure.min(consumed.max(8 * width)));
     // With a deadline rounds stay short, so that little is thrown away at its end.
     let size = if budget.has_deadline() { size.min(consumed.max(2 * width)) } else { size };

@@ -2,6 +2,7 @@
 
 use super::budget::Budget;
 use super::cell::{Cell, Item, Reading};
+use super::estimate::LARGEST_ROUND;
 use super::executor::{Executor, Job};
 use super::fault::Fault;
 use super::forecast::{self, Glimpse};
@@ -9,7 +10,6 @@ use super::outcome::Stop;
 use super::pilot::Pilot;
 use super::procedure::{outcome, value};
 use super::subject::Subject;
-use super::survey::LARGEST_ROUND;
 use super::tally::Tally;
 use super::watch::{Forecast, Likely, Watch};
 use crate::compile::methods;
@@ -52,7 +52,7 @@ pub(super) struct Sides<'s> {
     pub(super) columns: [usize; 2],
 }
 
-/// How many pairs the next round has: as in a survey. With a deadline it takes no more than a tenth of the time that is
+/// How many pairs the next round has: as in an estimate. With a deadline it takes no more than a tenth of the time that is
 /// left, because nothing of a round counts until its second side runs.
 fn round(consumed: u64, width: u64, seconds: f64, budget: &Budget) -> u64 {
     let least = 2 * width;
@@ -68,7 +68,7 @@ fn clipped(cell: &Cell, (low, high): (f64, f64)) -> Option<f64> {
 }
 
 /// A comparison on its way.
-pub(super) struct Contrast<'s> {
+pub(super) struct CompareSampling<'s> {
     query: &'s Query,
     jobs: [Job<'s>; 2],
     procedure: Procedure,
@@ -84,7 +84,7 @@ pub(super) struct Contrast<'s> {
     pub(super) spent: f64,
 }
 
-impl<'s> Contrast<'s> {
+impl<'s> CompareSampling<'s> {
     /// A comparison of one kind of measure on two sides.
     pub(super) fn new(
         query: &'s Query,
@@ -158,7 +158,7 @@ impl<'s> Contrast<'s> {
             (0..2).map(|side| sides[side].seconds_per_trial(self.jobs[side].subject.most_steps())).sum();
         let width = self.range.map_or(1.0, |(low, high)| high - low);
         let pairs = match self.within {
-            Some(within) => forecast::contrast(&glimpse, width, within, self.delta),
+            Some(within) => forecast::compare(&glimpse, width, within, self.delta),
             None => Likely::exactly(methods::PLANNED_TRIALS),
         }
         .map(|n| n.min(budget.max_trials));

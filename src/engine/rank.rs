@@ -30,7 +30,7 @@ enum Procedure {
 }
 
 /// A ranking that has stopped.
-pub(super) struct Podium {
+pub(super) struct RankOutcome {
     /// What each option consumed.
     pub(super) tallies: Vec<Tally>,
     /// Estimate and interval of each option, jointly valid at all times.
@@ -46,7 +46,7 @@ pub(super) struct Podium {
 }
 
 /// What is ranked.
-pub(super) struct Field<'s> {
+pub(super) struct RankSetup<'s> {
     /// The subject.
     pub(super) subject: &'s Subject,
     /// Index of the moves declaration.
@@ -62,10 +62,10 @@ pub(super) struct Field<'s> {
 }
 
 impl Procedure {
-    fn new(field: &Field<'_>) -> Result<Self, Fault> {
-        let (epsilon, delta, ranking) = field.rule;
-        let arms = field.deviations.len();
-        Ok(match (&field.kind, ranking) {
+    fn new(setup: &RankSetup<'_>) -> Result<Self, Fault> {
+        let (epsilon, delta, ranking) = setup.rule;
+        let arms = setup.deviations.len();
+        Ok(match (&setup.kind, ranking) {
             (MeasureKind::Probability, Ranking::Okamoto) => {
                 Self::Each(Each::new(arms, epsilon, delta, 8 * WORD)?)
             }
@@ -121,9 +121,9 @@ impl Procedure {
 }
 
 /// A ranking on its way.
-pub(super) struct Contest<'s> {
+pub(super) struct RankSampling<'s> {
     query: &'s Query,
-    field: Field<'s>,
+    setup: RankSetup<'s>,
     job: Job<'s>,
     procedure: Procedure,
     range: Option<(f64, f64)>,
@@ -144,24 +144,24 @@ struct Round {
     cut: bool,
 }
 
-impl<'s> Contest<'s> {
-    /// A ranking of the options of a field.
-    pub(super) fn new(query: &'s Query, field: Field<'s>, seed: u64) -> Result<Self, Fault> {
-        let procedure = Procedure::new(&field)?;
-        let range = match &field.kind {
+impl<'s> RankSampling<'s> {
+    /// A ranking of the options of a setup.
+    pub(super) fn new(query: &'s Query, setup: RankSetup<'s>, seed: u64) -> Result<Self, Fault> {
+        let procedure = Procedure::new(&setup)?;
+        let range = match &setup.kind {
             MeasureKind::Expectation { range, .. } => Some(*range),
             _ => None,
         };
-        let job = Job::new(field.subject, vec![field.column], seed);
-        let arms = field.deviations.len();
+        let job = Job::new(setup.subject, vec![setup.column], seed);
+        let arms = setup.deviations.len();
         let means = match range {
             Some((low, high)) => (0..arms)
-                .map(|_| Mean::running(low, high, field.rule.1 / arms as f64))
+                .map(|_| Mean::running(low, high, setup.rule.1 / arms as f64))
                 .collect::<Result<_, _>>()?,
             None => Vec::new(),
         };
         let tallies = vec![Tally::default(); arms];
-        Ok(Self { query, field, job, procedure, range, ahead: None, tallies, means, spent: 0.0 })
+        Ok(Self { query, setup, job, procedure, range, ahead: None, tallies, means, spent: 0.0 })
     }
 
     /// The query.
@@ -169,9 +169,9 @@ impl<'s> Contest<'s> {
         self.query
     }
 
-    /// The field.
-    pub(super) fn field(&self) -> &Field<'s> {
-        &self.field
+    /// The setup.
+    pub(super) fn setup(&self) -> &RankSetup<'s> {
+        &self.setup
     }
 
     /// Whether no trial was read yet.
@@ -196,7 +196,7 @@ impl<'s> Contest<'s> {
                 if share.from + step < share.to.min(budget) {
                     places.push(items.len());
                     items
-                        .push(Item { advice: Some((self.field.moves, share.arm)), index: share.from + step });
+                        .push(Item { advice: Some((self.setup.moves, share.arm)), index: share.from + step });
                 }
             }
         }
@@ -207,7 +207,7 @@ impl<'s> Contest<'s> {
     pub(super) fn run_pilot(&mut self, executor: &dyn Executor, budget: &Budget) -> Result<Forecast, Fault> {
         let round = self.round(budget.max_trials);
         let pilot = Pilot::run(&self.job, round.items, executor, budget)?;
-        let arms = self.field.deviations.len();
+        let arms = self.setup.deviations.len();
         let range = self.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
         let mut glimpses = vec![Glimpse::default(); arms];
         let mut readings: Vec<Vec<Option<f64>>> = vec![Vec::new(); arms];
@@ -232,7 +232,7 @@ impl<'s> Contest<'s> {
             })
             .collect();
         let most = (arms as u64).saturating_mul(budget.max_trials);
-        let trials = forecast::race(&glimpses, &differences, self.scale(), self.field.rule);
+        let trials = forecast::race(&glimpses, &differences, self.scale(), self.setup.rule);
         let trials = trials.map(|n| n.max(pilot.items.len() as u64).min(most));
         let seconds = pilot.seconds_per_trial(self.job.subject.most_steps());
         self.ahead = pilot.is_complete().then_some(pilot);
@@ -252,10 +252,10 @@ impl<'s> Contest<'s> {
         executor: &dyn Executor,
         (budget, share): (&Budget, &Budget),
         watch: &dyn Watch,
-    ) -> Result<Option<Podium>, Fault> {
-        let arms = self.field.deviations.len();
+    ) -> Result<Option<RankOutcome>, Fault> {
+        let arms = self.setup.deviations.len();
         // Each option's interval is one of as many that hold jointly.
-        let delta = self.field.rule.1 / arms as f64;
+        let delta = self.setup.rule.1 / arms as f64;
         let (started, spent) = (budget.elapsed(), self.spent);
         let stop = loop {
             self.spent = spent + budget.elapsed() - started;
@@ -296,7 +296,7 @@ impl<'s> Contest<'s> {
         };
         self.spent = spent + budget.elapsed() - started;
         let (tallies, means) = (std::mem::take(&mut self.tallies), std::mem::take(&mut self.means));
-        let choice = self.procedure.choice(&self.field.deviations);
+        let choice = self.procedure.choice(&self.setup.deviations);
         let values = (0..arms)
             .map(|arm| match means.get(arm) {
                 Some(mean) => {
@@ -315,7 +315,7 @@ impl<'s> Contest<'s> {
             })
             .collect();
         let finished = self.procedure.finished();
-        Ok(Some(Podium { tallies, values, finished, choice, stop, scale: self.scale() }))
+        Ok(Some(RankOutcome { tallies, values, finished, choice, stop, scale: self.scale() }))
     }
 
     /// Shows the first trials of a round to the procedure, option by option; false where these are not all.
@@ -329,7 +329,7 @@ impl<'s> Contest<'s> {
                     Some(row) if !broken => {
                         let item = round.items[place];
                         if row[0].reading == Reading::Faulty {
-                            return Err(super::trial::fault(self.field.subject, item, self.job.seed));
+                            return Err(super::trial::fault(self.setup.subject, item, self.job.seed));
                         }
                         self.tallies[share.arm].add(item.index, &row[0], self.range);
                         if let Some(mean) = self.means.get_mut(share.arm) {
