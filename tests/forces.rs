@@ -35,7 +35,7 @@ fn decay(a: f64, gap: f64, b: f64, reach: f64) -> f64 {
 }
 
 /// Given-Wilson et al. 2017, equation (5) without contact: of straight walls and discs, of which those that meet do so
-/// at right angles, each pushes from its nearest point. (`kernel::surfaces` has the tests of what else faces do.)
+/// at right angles, each pushes from its nearest point. (`kernel::force::walls` has the tests of all other cases.)
 fn of_walls(scene: &Crowd, one: &Person, sum: &mut Sum) {
     for obstacle in &scene.obstacles {
         let nearest: Vec<(Vec2, f64)> = match obstacle {
