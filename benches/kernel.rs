@@ -15,8 +15,8 @@ use smc::base::random::TrialKey;
 use smc::base::tick::{Clock, Tick};
 use smc::kernel::{Layout, Program, Scratch, State, refresh, step};
 use smc::model::{
-    Agent, Barrier, Body, Family, Law, Obstacle, Parameter, Position, Route, Scenario, Scene as Surroundings,
-    Start,
+    Agent, Barrier, Body, Family, Kind, Law, Obstacle, Parameter, Position, Route, Scenario,
+    Scene as Surroundings, Start,
 };
 use std::io::Write;
 use std::sync::Arc;
@@ -146,23 +146,20 @@ fn uniform(low: f64, high: f64) -> Law {
 }
 
 fn scenario(scene: &Scene, own_b: bool) -> Scenario {
-    let constant = Law::Constant;
-    let body = Arc::new(Body {
-        mass: uniform(60.0, 90.0),
-        radius: uniform(0.2, 0.28),
-        speed: uniform(1.1, 1.6),
-        tau: uniform(0.4, 0.6),
-        a: uniform(1800.0, 2200.0),
-        b: if own_b { uniform(0.07, 0.09) } else { constant(0.08) },
-        lambda: uniform(0.2, 0.4),
-        a2: constant(0.0),
-        b2: constant(1.0),
-        lambda2: constant(1.0),
-        k1: constant(1.2e5),
-        k2: constant(2.4e5),
-        noise: constant(0.08),
-        attention: constant(1.0),
-    });
+    let body = Arc::new(Body::new(Kind::Sfm, |parameter| match parameter {
+        Parameter::Mass => uniform(60.0, 90.0),
+        Parameter::Radius => uniform(0.2, 0.28),
+        Parameter::Speed => uniform(1.1, 1.6),
+        Parameter::Tau => uniform(0.4, 0.6),
+        Parameter::A => uniform(1800.0, 2200.0),
+        Parameter::B if own_b => uniform(0.07, 0.09),
+        Parameter::B => Law::Constant(0.08),
+        Parameter::Lambda => uniform(0.2, 0.4),
+        Parameter::K1 => Law::Constant(1.2e5),
+        Parameter::K2 => Law::Constant(2.4e5),
+        Parameter::Noise => Law::Constant(0.08),
+        other => Law::Constant(other.description().default.unwrap_or(0.0)),
+    }));
     let agent = |(k, walker): (usize, &Walker)| Agent {
         name: format!("walker[{}]", k + 1),
         entity: k as u32,

@@ -12,7 +12,7 @@
 
 use smc::base::random::{Purpose, Stream, TrialKey};
 use smc::compile::{Files, Input, Study, compile};
-use smc::engine::{Budget, Call, Nobody, Threads, run};
+use smc::engine::{Budget, Call, CommandLine, Nobody, Threads, run};
 use smc::syntax::parse::{parse_properties, parse_scenario};
 use smc::syntax::source::{Source, SourceId};
 use std::hint::black_box;
@@ -59,15 +59,8 @@ fn busy(since: Instant) -> f64 {
 
 /// Steps per second and estimate of a query.
 fn ours(study: &Study) -> (f64, f64) {
-    let call = Call {
-        seed: 1,
-        command: String::new(),
-        point: String::new(),
-        simulate: String::new(),
-        only: Vec::new(),
-        place: &|_| (String::new(), 0),
-        file: String::new(),
-    };
+    let call =
+        Call { seed: 1, line: CommandLine::default(), only: Vec::new(), place: &|_| (String::new(), 0) };
     let threads = Threads::new(Some(1)).expect("one thread");
     let clock = Instant::now();
     let begun = busy(clock);

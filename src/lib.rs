@@ -4,46 +4,32 @@
 //! The floors, low to high, are described in `ARCHITECTURE.md` and held by `tests/floors.rs`.
 //!
 //! ```
-//! use smc::compile::{Files, Input, compile};
-//! use smc::engine::outcome::Verdict;
-//! use smc::engine::{Budget, Call, Nobody, Threads, run};
-//! use smc::syntax::parse::{parse_properties, parse_scenario};
-//! use smc::syntax::source::{Source, SourceId};
+//! use smc::engine::outcome::{Certified, Verdict};
+//! use smc::stats::Claim;
+//! use smc::{Model, Options};
 //!
-//! let scenario = Source::new(SourceId(0), "walk.scn", "
+//! let model = Model::parse("
 //!     horizon = 5 s
 //!     step = 0.02 s
 //!     kind adult: sfm preset helbing2000 { noise = 0.1 m/s }
 //!     agent user: adult { at = (0, 0)  route = (20, 0) }
-//! ");
-//! let property = Source::new(SourceId(1), "walk.bltl", "check P(F<=5 s (travelled(user) > 4 m)) >= 0.9");
-//! let (model, found) = parse_scenario(&scenario);
-//! let (questions, more) = parse_properties(&property);
-//! assert!(found.is_empty() && more.is_empty());
+//! ")?;
+//! let queries = "check P(F<=5 s (travelled(user) > 4 m)) >= 0.9";
+//! let report = model.check(queries, &Options::default().seed(1).max_trials(10_000))?;
+//! let result = &report.results()[0];
+//! assert_eq!(result.verdict, Some(Verdict::Satisfied));
+//! let certificate = result.certificate.as_ref().unwrap();
+//! assert_eq!(certificate.claim, Certified::Decided(Claim::AtLeast(0.9)));
+//! assert!(certificate.error <= 0.01);
 //!
-//! let input = Input {
-//!     sources: &[scenario.clone(), property.clone()],
-//!     scenario: &model,
-//!     properties: &[questions],
-//!     files: &Files::default(),
-//!     settings: &[],
-//! };
-//! let (study, diagnostics) = compile(&input);
-//! assert!(diagnostics.is_empty());
-//!
-//! let call = Call {
-//!     seed: 0,
-//!     command: "smc check walk.scn walk.bltl".into(),
-//!     point: String::new(),
-//!     simulate: "smc simulate walk.scn".into(),
-//!     only: vec![],
-//!     place: &|span| (property.name.clone(), property.line_column(span.start).0),
-//!     file: "walk.scn".into(),
-//! };
-//! let threads = Threads::new(Some(1)).unwrap();
-//! let outcome = run(&study.unwrap(), &call, &threads, &Budget::new(10_000, None), &Nobody).unwrap();
-//! assert_eq!(outcome.results[0].verdict, Some(Verdict::Satisfied));
+//! // The first trial that the check has read, state by state.
+//! let last = model.trial(1, 0)?.last().unwrap();
+//! assert!(last.agent("user").unwrap().position.x > 4.0);
+//! # Ok::<(), smc::Diagnostics>(())
 //! ```
+//!
+//! [`Draft`] sets parameters and gives files. `examples/` has programs that sweep a parameter, write trajectories, and
+//! drive agents by rules of their own. The modules below are for those who need more; their items may change.
 
 pub mod base;
 #[cfg(feature = "cli")]
@@ -52,8 +38,11 @@ pub mod compile;
 pub mod data;
 pub mod engine;
 pub mod kernel;
+pub mod library;
 pub mod logic;
 pub mod model;
 pub mod report;
 pub mod stats;
 pub mod syntax;
+
+pub use library::{AgentState, Diagnostics, Draft, Model, Options, Report, Snapshot, Trial};

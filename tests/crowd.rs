@@ -7,7 +7,8 @@ use smc::base::random::TrialKey;
 use smc::base::tick::{Clock, Tick};
 use smc::kernel::{Layout, Program, Scratch, State, refresh};
 use smc::model::{
-    Agent, Barrier, Body, Group, Law, Obstacle, Parameter, Particle, Position, Route, Scenario, Scene, Start,
+    Agent, Barrier, Body, Group, Kind, Law, Obstacle, Parameter, Particle, Position, Route, Scenario, Scene,
+    Start,
 };
 use std::sync::Arc;
 
@@ -61,6 +62,28 @@ pub(crate) fn person(at: Vec2) -> Person {
     }
 }
 
+impl Person {
+    /// The value of a parameter of its body.
+    fn value(&self, parameter: Parameter) -> f64 {
+        match parameter {
+            Parameter::Mass => self.mass,
+            Parameter::Radius => self.radius,
+            Parameter::Speed => self.drive,
+            Parameter::Tau => self.tau,
+            Parameter::A => self.a,
+            Parameter::B => self.b,
+            Parameter::Lambda => self.lambda,
+            Parameter::A2 => self.a2,
+            Parameter::B2 => self.b2,
+            Parameter::Lambda2 => self.lambda2,
+            Parameter::K1 => self.k1,
+            Parameter::K2 => self.k2,
+            Parameter::Noise => self.noise,
+            Parameter::Attention => 1.0,
+        }
+    }
+}
+
 /// Relaxation so slow that there is none.
 pub(crate) const NEVER: f64 = 1e300;
 
@@ -83,32 +106,14 @@ pub(crate) fn wall(a: Vec2, b: Vec2) -> Obstacle {
 
 impl Crowd {
     pub(crate) fn program(&self) -> Program {
-        let agent = |(k, person): (usize, &Person)| {
-            let law = Law::Constant;
-            Agent {
-                name: format!("person[{}]", k + 1),
-                entity: 100 + k as u32,
-                body: Arc::new(Body {
-                    mass: law(person.mass),
-                    radius: law(person.radius),
-                    speed: law(person.drive),
-                    tau: law(person.tau),
-                    a: law(person.a),
-                    b: law(person.b),
-                    lambda: law(person.lambda),
-                    a2: law(person.a2),
-                    b2: law(person.b2),
-                    lambda2: law(person.lambda2),
-                    k1: law(person.k1),
-                    k2: law(person.k2),
-                    noise: law(person.noise),
-                    attention: law(1.0),
-                }),
-                start: Start { position: Position::Point(person.at), velocity: person.velocity },
-                route: Route::Onward,
-                group: None,
-                particle: person.particle,
-            }
+        let agent = |(k, person): (usize, &Person)| Agent {
+            name: format!("person[{}]", k + 1),
+            entity: 100 + k as u32,
+            body: Arc::new(Body::new(Kind::Sfm, |parameter| Law::Constant(person.value(parameter)))),
+            start: Start { position: Position::Point(person.at), velocity: person.velocity },
+            route: Route::Onward,
+            group: None,
+            particle: person.particle,
         };
         let barrier = |obstacle: &Obstacle| Barrier { name: String::new(), obstacle: obstacle.clone() };
         let group = |(members, attraction): &(Vec<u32>, f64)| Group {
@@ -155,20 +160,10 @@ impl Crowd {
             state.driving.ex[b].0[l] = person.towards.x;
             state.driving.ey[b].0[l] = person.towards.y;
             state.driving.speed[b].0[l] = person.drive;
-            state.bodies[Parameter::Speed][b].0[l] = person.drive;
             state.motion.travelled[b].0[l] = 0.0;
-            state.bodies[Parameter::Mass][b].0[l] = person.mass;
-            state.bodies[Parameter::Radius][b].0[l] = person.radius;
-            state.bodies[Parameter::Tau][b].0[l] = person.tau;
-            state.bodies[Parameter::A][b].0[l] = person.a;
-            state.bodies[Parameter::B][b].0[l] = person.b;
-            state.bodies[Parameter::Lambda][b].0[l] = person.lambda;
-            state.bodies[Parameter::A2][b].0[l] = person.a2;
-            state.bodies[Parameter::B2][b].0[l] = person.b2;
-            state.bodies[Parameter::Lambda2][b].0[l] = person.lambda2;
-            state.bodies[Parameter::K1][b].0[l] = person.k1;
-            state.bodies[Parameter::K2][b].0[l] = person.k2;
-            state.bodies[Parameter::Noise][b].0[l] = person.noise;
+            for parameter in Parameter::ALL {
+                state.bodies[parameter][b].0[l] = person.value(parameter);
+            }
             state.motion.fx[b].0[l] = 0.0;
             state.motion.fy[b].0[l] = 0.0;
         }

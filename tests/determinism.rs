@@ -5,8 +5,8 @@ use smc::compile::{Files, Input, Study, compile};
 use smc::engine::cell::Item;
 use smc::engine::executor::{Cells, Job};
 use smc::engine::outcome::{Failure, QueryResult, Run};
-use smc::engine::ranks::{Line, serve};
-use smc::engine::{Budget, Call, Executor, Fault, Nobody, Ranks, Threads, run};
+use smc::engine::ranks::{Connection, serve};
+use smc::engine::{Budget, Call, CommandLine, Executor, Fault, Nobody, Ranks, Threads, run};
 use smc::logic::Invalid;
 use smc::syntax::parse::{parse_properties, parse_scenario};
 use smc::syntax::source::{Source, SourceId};
@@ -121,12 +121,13 @@ impl Executor for Restless {
 fn call() -> Call<'static> {
     Call {
         seed: 11,
-        command: "smc check a.scn a.bltl".to_owned(),
-        point: String::new(),
-        simulate: "smc simulate a.scn".to_owned(),
+        line: CommandLine {
+            scenario: "a.scn".to_owned(),
+            properties: vec!["a.bltl".to_owned()],
+            ..CommandLine::default()
+        },
         only: Vec::new(),
         place: &|_| (String::new(), 0),
-        file: String::new(),
     }
 }
 
@@ -287,27 +288,27 @@ impl Write for Voice {
     }
 }
 
-/// A line to nobody yet: what the head holds, what the rank hears, and where it speaks.
-fn line() -> (Line, PipeReader, PipeWriter) {
+/// A connection to nobody yet: what the head holds, what the rank hears, and where it speaks.
+fn connection() -> (Connection, PipeReader, PipeWriter) {
     let (heard, to) = io::pipe().unwrap();
     let (from, voice) = io::pipe().unwrap();
-    (Line { from: Box::new(from), to: Box::new(to) }, heard, voice)
+    (Connection { from: Box::new(from), to: Box::new(to) }, heard, voice)
 }
 
 /// A rank in a thread, which is lost in its message of this number, counted from 0.
-fn rank(study: &Study, state: u64, lost: u64) -> Line {
-    let (line, heard, to) = line();
+fn rank(study: &Study, state: u64, lost: u64) -> Connection {
+    let (connection, heard, to) = connection();
     let study = study.clone();
     std::thread::spawn(move || {
         let mut voice = Voice { to, state, left: lost };
         let _ = serve(Box::new(heard), &mut voice, &|_| Ok(study.clone()));
     });
-    line
+    connection
 }
 
-fn head(study: &Study, lines: Vec<Line>) -> Result<Ranks, Fault> {
+fn head(study: &Study, connections: Vec<Connection>) -> Result<Ranks, Fault> {
     let threads = Threads::new(Some(1)).unwrap();
-    Ranks::new(lines, study, Vec::new(), 1, threads, &Budget::new(1, None))
+    Ranks::new(connections, study, Vec::new(), 1, threads, &Budget::new(1, None))
 }
 
 #[test]
@@ -319,8 +320,8 @@ fn t16_neither_ranks_nor_their_loss_leave_a_trace() {
     for lost in
         [&[never][..], &[never, never], &[never; 4], &[9], &[3, never], &[never, 25, 1, 0], &[7, 20, 2, 60]]
     {
-        let lines = lost.iter().zip(1..).map(|(lost, state)| rank(&study, state, *lost)).collect();
-        let ranks = head(&study, lines).unwrap();
+        let connections = lost.iter().zip(1..).map(|(lost, state)| rank(&study, state, *lost)).collect();
+        let ranks = head(&study, connections).unwrap();
         let found = results(&study, &ranks);
         assert_eq!(found.len(), plain.len());
         for (found, plain) in found.iter().zip(&plain) {
@@ -368,9 +369,9 @@ impl<F: FnMut(u64, &mut Vec<u8>)> Read for Relay<F> {
 }
 
 /// A rank of whose messages some are changed on the way.
-fn relayed(study: &Study, change: impl FnMut(u64, &mut Vec<u8>) + Send + 'static) -> Line {
-    let Line { from, to } = rank(study, 9, u64::MAX);
-    Line { from: Box::new(Relay { from, message: Vec::new(), number: 0, change }), to }
+fn relayed(study: &Study, change: impl FnMut(u64, &mut Vec<u8>) + Send + 'static) -> Connection {
+    let Connection { from, to } = rank(study, 9, u64::MAX);
+    Connection { from: Box::new(Relay { from, message: Vec::new(), number: 0, change }), to }
 }
 
 #[test]
@@ -420,7 +421,7 @@ fn silent_after(last: u64, number: u64) {
 #[test]
 fn a_rank_that_falls_silent_blocks_nobody() {
     let (study, _sources) = study(SMALL, QUERIES);
-    // Its line stays open. The first messages answer rehearsals, which wait for nobody.
+    // Its connection stays open. The first messages answer pilots, which wait for nobody.
     let silent = relayed(&study, |number, _| silent_after(40, number));
     let ranks = head(&study, vec![silent, rank(&study, 1, u64::MAX)]).unwrap();
     let plain = results(&study, &Threads::new(Some(1)).unwrap());

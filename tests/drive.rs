@@ -10,8 +10,8 @@ use smc::kernel::drive::steer;
 use smc::kernel::start::load;
 use smc::kernel::{Layout, Program, Scratch, State, refresh};
 use smc::model::{
-    Agent, AgentId, Body, Family, Goal, Law, Leg, Move, Moves, Parameter, Position, Region, RegionId, Route,
-    Scenario, Scene, Start,
+    Agent, AgentId, Body, Family, Goal, Kind, Law, Leg, Move, Moves, Parameter, Position, Region, RegionId,
+    Route, Scenario, Scene, Start,
 };
 use std::sync::Arc;
 
@@ -22,23 +22,20 @@ fn p(x: f64, y: f64) -> Vec2 {
 }
 
 fn agent(at: Vec2, velocity: Vec2, route: Route) -> Agent {
-    let c = Law::Constant;
-    let body = Body {
-        mass: c(75.0),
-        radius: c(0.25),
-        speed: c(1.25),
-        tau: c(0.5),
-        a: c(2000.0),
-        b: c(0.08),
-        lambda: c(0.5),
-        a2: c(0.0),
-        b2: c(1.0),
-        lambda2: c(1.0),
-        k1: c(1.2e5),
-        k2: c(2.4e5),
-        noise: c(0.0),
-        attention: c(1.0),
-    };
+    let body = Body::new(Kind::Sfm, |parameter| {
+        Law::Constant(match parameter {
+            Parameter::Mass => 75.0,
+            Parameter::Radius => 0.25,
+            Parameter::Speed => 1.25,
+            Parameter::Tau => 0.5,
+            Parameter::A => 2000.0,
+            Parameter::B => 0.08,
+            Parameter::Lambda => 0.5,
+            Parameter::K1 => 1.2e5,
+            Parameter::K2 => 2.4e5,
+            other => other.description().default.unwrap_or(0.0),
+        })
+    });
     Agent {
         name: "walker".into(),
         entity: 77,

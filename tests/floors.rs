@@ -5,7 +5,7 @@
 use std::path::{Path, PathBuf};
 
 /// The floors, from the ground.
-const FLOORS: [&[&str]; 9] = [
+const FLOORS: [&[&str]; 10] = [
     &["base"],
     &["syntax", "model", "logic", "stats", "data"],
     &["compile", "kernel"],
@@ -14,6 +14,7 @@ const FLOORS: [&[&str]; 9] = [
     &["engine"],
     &["advise"],
     &["report"],
+    &["library"],
     &["cli"],
 ];
 

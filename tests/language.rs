@@ -1,5 +1,7 @@
 //! What the grammar accepts, and how it reads it.
 
+use smc::model::parameter::Range;
+use smc::model::{PARAMETERS, Parameter};
 use smc::syntax::ast::{ExprKind, Item, Leg, PropertyItem, QueryKind, SceneItem, ShapeExpr, Value};
 use smc::syntax::parse::{parse_properties, parse_scenario};
 use smc::syntax::print::{format_properties, format_scenario};
@@ -274,4 +276,31 @@ fn line_breaks_mean_nothing() {
     );
     assert_eq!(one.len(), 6);
     assert_eq!(many.len(), 6);
+}
+
+#[test]
+fn the_manual_has_the_table_of_parameters() {
+    let root = env!("CARGO_MANIFEST_DIR");
+    let read = |path: &str| std::fs::read_to_string(format!("{root}/{path}")).unwrap();
+    let manual = read("docs/language.md");
+    let cell = |text: &str| if text.is_empty() { " ".to_owned() } else { format!(" {text} ") };
+    let mut table =
+        "| field | unit | range | unless set | meaning |\n| --- | --- | --- | --- | --- |\n".to_owned();
+    for row in &PARAMETERS {
+        let range = match row.range {
+            Range::Positive => "above 0",
+            Range::NotNegative => "0 or above",
+            Range::Share => "0 to 1",
+        };
+        let default = row.default.map_or(String::new(), |value| value.to_string());
+        let cells =
+            [format!("`{}`", row.name), row.parameter.unit(), range.into(), default, row.meaning.into()];
+        table += &format!("|{}|\n", cells.map(|text| cell(&text)).join("|"));
+    }
+    assert!(manual.contains(&table), "docs/language.md should have\n{table}");
+    let changeable = Parameter::changeable().map(Parameter::name).collect::<Vec<_>>().join(", ");
+    for page in [manual, read("docs/errors/E0911.md")] {
+        let words = page.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words.contains(&changeable), "the list is {changeable}");
+    }
 }

@@ -24,6 +24,7 @@ mod formatter;
 mod jumps;
 mod lanes;
 mod language;
+mod library;
 mod machines;
 mod mistakes;
 mod mutants;

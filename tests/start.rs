@@ -8,7 +8,7 @@ use smc::base::tick::{Clock, Tick};
 use smc::kernel::start::{Fault, Overlapped, check_area, load};
 use smc::kernel::{Layout, Program, State};
 use smc::model::{
-    Agent, AgentId, Barrier, BarrierId, Body, Family, Goal, Law, Leg, Move, Moves, Obstacle, Parameter,
+    Agent, AgentId, Barrier, BarrierId, Body, Family, Goal, Kind, Law, Leg, Move, Moves, Obstacle, Parameter,
     Particle, Position, Region, RegionId, Route, Scenario, Scene, Start,
 };
 use std::sync::Arc;
@@ -22,23 +22,26 @@ fn uniform(low: f64, high: f64) -> Law {
 }
 
 fn body() -> Body {
-    let c = Law::Constant;
-    Body {
-        mass: uniform(60.0, 90.0),
-        radius: uniform(0.2, 0.28),
-        speed: uniform(1.0, 1.6),
-        tau: c(0.5),
-        a: c(2000.0),
-        b: c(0.08),
-        lambda: c(0.5),
-        a2: c(0.0),
-        b2: c(1.0),
-        lambda2: c(1.0),
-        k1: c(1.2e5),
-        k2: c(2.4e5),
-        noise: c(0.08),
-        attention: c(1.0),
-    }
+    Body::new(Kind::Sfm, |parameter| match parameter {
+        Parameter::Mass => uniform(60.0, 90.0),
+        Parameter::Radius => uniform(0.2, 0.28),
+        Parameter::Speed => uniform(1.0, 1.6),
+        Parameter::Tau => Law::Constant(0.5),
+        Parameter::A => Law::Constant(2000.0),
+        Parameter::B => Law::Constant(0.08),
+        Parameter::Lambda => Law::Constant(0.5),
+        Parameter::K1 => Law::Constant(1.2e5),
+        Parameter::K2 => Law::Constant(2.4e5),
+        Parameter::Noise => Law::Constant(0.08),
+        other => Law::Constant(other.description().default.unwrap_or(0.0)),
+    })
+}
+
+/// The same with another law of one parameter.
+fn body_with(parameter: Parameter, law: Law) -> Arc<Body> {
+    let mut body = body();
+    body[parameter] = law;
+    Arc::new(body)
 }
 
 fn agent(entity: u32, position: Position) -> Agent {
@@ -154,9 +157,9 @@ fn every_number_is_drawn_from_its_address() {
     for (k, agent) in program.scenario.agents.iter().enumerate() {
         let stream = Stream::of(key(7), agent.entity, Purpose::Parameter);
         let of = |name: &str, law: &Law| law.draw(stream.uniform(name_hash(name) as u32));
-        assert_eq!(state.bodies[Parameter::Mass][k].0[3], of("mass", &agent.body.mass));
-        assert_eq!(state.bodies[Parameter::Speed][k].0[3], of("speed", &agent.body.speed));
-        assert_eq!(state.bodies[Parameter::Radius][k].0[3], of("radius", &agent.body.radius));
+        assert_eq!(state.bodies[Parameter::Mass][k].0[3], of("mass", &agent.body[Parameter::Mass]));
+        assert_eq!(state.bodies[Parameter::Speed][k].0[3], of("speed", &agent.body[Parameter::Speed]));
+        assert_eq!(state.bodies[Parameter::Radius][k].0[3], of("radius", &agent.body[Parameter::Radius]));
     }
 }
 
@@ -267,7 +270,7 @@ fn overlapping_points_shrink_to_touch() {
     ];
     let law = Law::Constant(0.25);
     for agent in &mut agents {
-        agent.body = Arc::new(Body { radius: law.clone(), ..body() });
+        agent.body = body_with(Parameter::Radius, law.clone());
     }
     let program = Program::new(Arc::new(scenario(agents)));
     let mut state = empty(&program);
@@ -317,7 +320,8 @@ fn a_particle_is_the_sum_of_its_persons() {
     load(&program, &mut state, 0, key(0), None).unwrap();
     let stream = Stream::of(key(0), 9, Purpose::Parameter);
     let base = name_hash("mass") as u32;
-    let mass: f64 = (0..4).map(|k| four.body.mass.draw(stream.uniform(base.wrapping_add(k)))).sum();
+    let mass: f64 =
+        (0..4).map(|k| four.body[Parameter::Mass].draw(stream.uniform(base.wrapping_add(k)))).sum();
     assert_eq!(state.bodies[Parameter::Mass][0].0[0], mass);
     assert_eq!((state.bodies[Parameter::A][0].0[0], state.bodies[Parameter::Noise][0].0[0]), (8000.0, 0.04));
     assert_eq!((state.bodies[Parameter::K1][0].0[0], state.bodies[Parameter::K2][0].0[0]), (1.2e5, 2.4e5));
@@ -326,7 +330,7 @@ fn a_particle_is_the_sum_of_its_persons() {
 #[test]
 fn impossible_parameters_are_faults_and_leave_the_state_alone() {
     let mut bad = agent(9, Position::Point(p(3.0, 2.0)));
-    bad.body = Arc::new(Body { tau: Law::Constant(0.0), ..body() });
+    bad.body = body_with(Parameter::Tau, Law::Constant(0.0));
     let program = Program::new(Arc::new(scenario(vec![bad])));
     let mut state = empty(&program);
     let before = state.clone();
@@ -371,7 +375,7 @@ fn only_what_cannot_fit_is_refused() {
 /// Somebody of a fixed radius in a shape.
 fn of_radius(entity: u32, radius: f64, shape: &Shape) -> Agent {
     let mut agent = agent(entity, Position::Within(shape.clone()));
-    agent.body = Arc::new(Body { radius: Law::Constant(radius), ..body() });
+    agent.body = body_with(Parameter::Radius, Law::Constant(radius));
     agent
 }
 
@@ -409,8 +413,8 @@ fn few_are_refused_only_if_they_take_more_than_there_is() {
     let three = check_area(&scenario((0..3).map(|k| of_radius(k, 0.3, &spot)).collect()));
     assert_eq!((three.len(), three[0].share), (1, None));
     // Radii that may be drawn small tell nothing of those that are.
-    let drawn = Body { radius: uniform(0.01, 0.4), ..body() };
-    let drawn = |k| Agent { body: Arc::new(drawn.clone()), ..of_radius(k, 0.3, &spot) };
+    let drawn = body_with(Parameter::Radius, uniform(0.01, 0.4));
+    let drawn = |k| Agent { body: Arc::clone(&drawn), ..of_radius(k, 0.3, &spot) };
     assert_eq!(check_area(&scenario((0..3).map(drawn).collect())), []);
 }
 

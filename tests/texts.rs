@@ -2,7 +2,7 @@
 
 use smc::compile::{Files, Input, Study, compile};
 use smc::engine::outcome::Run;
-use smc::engine::{Budget, Call, Nobody, Threads};
+use smc::engine::{Budget, Call, CommandLine, Nobody, Threads};
 use smc::syntax::diagnostic::Severity;
 use smc::syntax::parse::{parse_properties, parse_scenario};
 use smc::syntax::render::render;
@@ -33,12 +33,9 @@ pub(crate) fn compiled(scenario: &str, properties: &str) -> Result<Study, String
 pub(crate) fn answered(study: &Study, seed: u64, threads: usize, most: u64) -> Run {
     let call = Call {
         seed,
-        command: String::new(),
-        point: String::new(),
-        simulate: "smc simulate model.scn".to_owned(),
+        line: CommandLine { scenario: "model.scn".to_owned(), ..CommandLine::default() },
         only: Vec::new(),
         place: &|_| (String::new(), 0),
-        file: String::new(),
     };
     let budget = Budget::new(most, None);
     smc::engine::run(study, &call, &Threads::new(Some(threads)).unwrap(), &budget, &Nobody).unwrap()

@@ -2,18 +2,18 @@
 
 use super::arguments::{Check, OutputFormat};
 use super::deadline::{Deadline, Ended, Phase};
+use super::file_cache::{FileCache, pack};
 use super::progress::Progress;
-use super::ranks::Crew;
-use super::shelf::{Shelf, pack};
+use super::ranks::ProcessPool;
 use super::terminal::{Colors, print, say};
 use super::{complaint, inputs, output, ranks};
 use crate::base::fingerprint::Fingerprint;
 use crate::base::visible::visible;
 use crate::compile::Study;
-use crate::compile::nearest::nearest;
 use crate::engine::budget::DEFAULT_TRIALS;
 use crate::engine::outcome::{Failure, Finding, Run};
-use crate::engine::{Budget, Call, Fault, Outlook, Ranks, Threads, forecast, run as run_study};
+use crate::engine::{Budget, Call, CommandLine, Fault, Outlook, Ranks, Threads, forecast, run as run_study};
+use crate::library;
 use crate::report::{self, ExitCode as Exit, Format, Palette};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -27,15 +27,15 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     budget.max_total = arguments.total_trials;
     let budget = Arc::new(budget);
     let deadline = Deadline::watch(&budget, ender(arguments, colors));
-    let shelf = if arguments.ranks.is_some() { Shelf::Kept(Vec::new()) } else { Shelf::Files };
-    let mut inputs = inputs::load_from(shelf, &arguments.model, &arguments.properties);
-    let shelf = std::mem::replace(&mut inputs.shelf, Shelf::Files);
+    let cache = if arguments.ranks.is_some() { FileCache::Kept(Vec::new()) } else { FileCache::Files };
+    let inputs::Loaded { inputs, paths, cache } =
+        inputs::load_from(cache, &arguments.model, &arguments.properties);
     if inputs.study.is_none() {
         deadline.enter(Phase::Printing);
     }
     super::diagnose(&inputs, colors);
-    let overwritten = output::guard(arguments.report.as_deref(), &inputs.paths).err();
-    let desk = Desk {
+    let overwritten = output::guard(arguments.report.as_deref(), &paths).err();
+    let reporter = Reporter {
         arguments,
         colors,
         deadline: deadline.clone(),
@@ -46,15 +46,16 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
         page: arguments.report.as_deref().filter(|_| overwritten.is_none()),
     };
     if let Some(error) = overwritten {
-        return desk.refuse(error);
+        return reporter.refuse(error);
     }
-    let Some(study) = &inputs.study else { return desk.refused() };
-    let only = match chosen(study, &arguments.only) {
+    let Some(study) = &inputs.study else { return reporter.refused() };
+    let only = match library::chosen(study, &arguments.only) {
         Ok(only) => only,
-        Err(error) => return desk.refuse(error),
+        Err(error) => return reporter.refuse(error),
     };
     if arguments.threads == Some(0) {
-        return desk.refuse(complaint::argument("`--threads 0` runs nothing", "it takes a number from 1"));
+        return reporter
+            .refuse(complaint::argument("`--threads 0` runs nothing", "it takes a number from 1"));
     }
     let most = most_threads();
     if arguments.threads.is_some_and(|threads| threads > most) {
@@ -63,60 +64,52 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
         ));
     }
     let threads = arguments.threads.unwrap_or_else(cores).min(most);
-    let crew = match crew(arguments, study, &shelf, threads, &budget) {
-        Ok(crew) => crew,
-        Err(error) => return desk.refuse(error),
+    let pool = match pool(arguments, study, &cache, threads, &budget) {
+        Ok(pool) => pool,
+        Err(error) => return reporter.refuse(error),
     };
-    drop(shelf);
+    drop(cache);
     let place = |span: Span| locate(&inputs.sources, span);
-    let call = Call {
-        seed: arguments.seed,
-        command: command("check", arguments, true),
-        point: command("check", arguments, false),
-        simulate: command("simulate", arguments, false),
-        only,
-        place: &place,
-        file: arguments.model.scenario.clone(),
-    };
+    let call = Call { seed: arguments.seed, line: line(arguments), only, place: &place };
     if arguments.forecast {
         deadline.enter(Phase::Sampling);
-        return match forecast(study, &call, crew.executor(), &budget) {
-            Ok(outlook) => desk.tell(&outlook),
-            Err(fault) => desk.fault(&fault),
+        return match forecast(study, &call, pool.executor(), &budget) {
+            Ok(outlook) => reporter.tell(&outlook),
+            Err(fault) => reporter.fault(&fault),
         };
     }
     let progress = Progress::new(arguments.quiet, deadline);
-    match run_study(study, &call, crew.executor(), &budget, &progress) {
+    match run_study(study, &call, pool.executor(), &budget, &progress) {
         Ok(mut run) => {
             // An interruption ends ranks too.
             if !run.interrupted {
-                run.warnings.extend(crew.warnings());
+                run.warnings.extend(pool.warnings());
             }
-            drop(crew);
-            desk.finish(run)
+            drop(pool);
+            reporter.finish(run)
         }
-        Err(fault) => desk.fault(&fault),
+        Err(fault) => reporter.fault(&fault),
     }
 }
 
 /// Those who run the trials of a call.
-fn crew(
+fn pool(
     arguments: &Check,
     study: &Study,
-    shelf: &Shelf,
+    cache: &FileCache,
     threads: usize,
     budget: &Budget,
-) -> Result<Crew, Diagnostic> {
-    let own = Threads::new(Some(threads))
-        .map_err(|error| complaint::refusal(&Fault::Threads(error.to_string())))?;
-    let Some(count) = arguments.ranks.map(usize::from) else { return Ok(Crew::Alone(own)) };
+) -> Result<ProcessPool, Diagnostic> {
+    let own =
+        Threads::new(Some(threads)).map_err(|error| library::refusal(&Fault::Threads(error.to_string())))?;
+    let Some(count) = arguments.ranks.map(usize::from) else { return Ok(ProcessPool::Alone(own)) };
     let each = (threads / count).max(1);
-    let packed = pack(&arguments.model, &arguments.properties, shelf);
+    let packed = pack(&arguments.model, &arguments.properties, cache);
     let (children, lines) = ranks::start(count)
         .map_err(|reason| complaint::argument(reason, "leave `--ranks` out: threads do the same"))?;
     let ranks =
-        Ranks::new(lines, study, packed, each, own, budget).map_err(|fault| complaint::refusal(&fault))?;
-    Ok(Crew::Led { ranks: Box::new(ranks), _children: children })
+        Ranks::new(lines, study, packed, each, own, budget).map_err(|fault| library::refusal(&fault))?;
+    Ok(ProcessPool::Led { ranks: Box::new(ranks), _children: children })
 }
 
 fn cores() -> usize {
@@ -129,7 +122,7 @@ fn most_threads() -> usize {
 }
 
 /// Where what a call has to say is handed out, in the format that was asked for.
-struct Desk<'a> {
+struct Reporter<'a> {
     arguments: &'a Check,
     colors: Colors,
     deadline: Deadline,
@@ -142,7 +135,7 @@ struct Desk<'a> {
     page: Option<&'a Path>,
 }
 
-impl Desk<'_> {
+impl Reporter<'_> {
     /// Prints a forecast.
     fn tell(self, outlook: &Outlook) -> Exit {
         self.deadline.enter(Phase::Printing);
@@ -190,7 +183,7 @@ impl Desk<'_> {
 
     /// Nothing could be run.
     fn fault(self, fault: &Fault) -> Exit {
-        self.refuse_for(&complaint::refusals(fault))
+        self.refuse_for(&library::refusals(fault))
     }
 
     /// A report of a run that never began, in formats for machines; people have read it already.
@@ -202,7 +195,7 @@ impl Desk<'_> {
             inputs: self.prints,
             diagnostics: self.findings,
             failure: Some(Failure::Input(reason)),
-            replay: format!("{} --seed {}", command("check", self.arguments, true), self.arguments.seed),
+            replay: format!("{} --seed {}", line(self.arguments).check(), self.arguments.seed),
             ..Run::default()
         };
         if self.arguments.format != OutputFormat::Text
@@ -218,7 +211,7 @@ impl Desk<'_> {
     fn finish(mut self, run: Run) -> Exit {
         self.deadline.enter(Phase::Printing);
         let broken = match &run.failure {
-            Some(Failure::Model(flaw)) => Some(complaint::of_model(flaw)),
+            Some(Failure::Model(flaw)) => Some(library::of_model(flaw)),
             _ => None,
         };
         self.findings.extend(inputs::findings(broken.as_slice(), self.sources));
@@ -242,7 +235,7 @@ fn ender(arguments: &Check, colors: Colors) -> impl Fn(Ended) -> Exit + Clone + 
         scenario: arguments.model.scenario.clone(),
         seed: arguments.seed,
         version: env!("CARGO_PKG_VERSION").to_owned(),
-        replay: format!("{} --seed {}", command("check", arguments, true), arguments.seed),
+        replay: format!("{} --seed {}", line(arguments).check(), arguments.seed),
         ..Run::default()
     };
     let chosen = arguments.format;
@@ -310,94 +303,18 @@ fn page(path: Option<&Path>, run: &Run, colors: Colors) -> Exit {
     Exit::Wrong
 }
 
-/// Indices of the queries that `--only` names.
-#[allow(clippy::result_large_err, reason = "called once")]
-fn chosen(study: &Study, only: &[String]) -> Result<Vec<usize>, Diagnostic> {
-    let mut chosen = Vec::new();
-    for wanted in only {
-        let number = wanted.parse::<usize>().ok();
-        let found: Vec<usize> = study
-            .queries
-            .iter()
-            .filter(|q| Some(q.index) == number || q.name.as_deref() == Some(wanted.as_str()))
-            .map(|q| q.index)
-            .collect();
-        if found.is_empty() {
-            let mut names: Vec<&str> = study.queries.iter().filter_map(|q| q.name.as_deref()).collect();
-            names.sort_unstable();
-            names.dedup();
-            let last = study.queries.iter().map(|q| q.index).max().unwrap_or(0);
-            let near = nearest(wanted, names.iter().copied());
-            let hint = match near {
-                Some(near) => format!("did you mean `{near}`?"),
-                None if names.is_empty() => format!("queries are numbered from 0 to {last}"),
-                None => format!("queries are numbered from 0 to {last}, and are about {}", names.join(", ")),
-            };
-            return Err(complaint::argument(
-                match number {
-                    Some(number) => format!("`--only {number}`: there is no query {number}"),
-                    None => format!("`--only {wanted}`: no query is about `{wanted}`"),
-                },
-                hint,
-            ));
-        }
-        chosen.extend(found);
-    }
-    chosen.sort_unstable();
-    chosen.dedup();
-    Ok(chosen)
-}
-
 /// File and line of a place.
 fn locate(sources: &[Source], span: Span) -> (String, usize) {
     let source = sources.iter().find(|s| s.id == span.source);
     source.map_or((String::new(), 0), |s| (s.name.clone(), s.line_column(span.start).0))
 }
 
-/// The call up to its options, as a shell would take it, with its sweeps or without them.
-fn command(verb: &str, arguments: &Check, sweeps: bool) -> String {
-    let mut words = vec!["smc".to_owned(), verb.to_owned(), named(&arguments.model.scenario)];
-    if verb == "check" {
-        words.extend(arguments.properties.iter().map(|p| named(p)));
-    }
-    for set in &arguments.model.set {
-        // A trial, or a query, belongs to one setting; that of a sweep is named with it.
-        if sweeps || !set.contains("..") {
-            words.push("--set".to_owned());
-            words.push(quoted(set));
-        }
-    }
-    for data in &arguments.model.data {
-        words.push("--data".to_owned());
-        words.push(quoted(&data.display().to_string()));
-    }
-    words.join(" ")
-}
-
-/// The name of a file as a shell would take it, and not for an option; `-` alone is the standard input.
-fn named(file: &str) -> String {
-    if file.len() > 1 && file.starts_with('-') { quoted(&format!("./{file}")) } else { quoted(file) }
-}
-
-/// A word as a shell would take it.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "-_./=:,+%@".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', "'\\''"))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn words_are_quoted_where_a_shell_would_split_them() {
-        assert_eq!(quoted("models/a.scn"), "models/a.scn");
-        assert_eq!(quoted("a b"), "'a b'");
-        assert_eq!(quoted("it's"), "'it'\\''s'");
-        assert_eq!([named("-"), named("-a b"), named("a-b")], ["-", "'./-a b'", "a-b"]);
+/// The files and settings of the call.
+fn line(arguments: &Check) -> CommandLine {
+    CommandLine {
+        scenario: arguments.model.scenario.clone(),
+        properties: arguments.properties.clone(),
+        settings: arguments.model.set.clone(),
+        data: arguments.model.data.iter().map(|data| data.display().to_string()).collect(),
     }
 }

@@ -1,8 +1,6 @@
-//! What is said of a call that is wrong in a way that no file shows, and of what the engine refuses: each with a code
-//! and with what to do.
+//! What is reported of a call that is wrong in a way that no file shows: each with a code and with what to do.
 
 use super::terminal::{Colors, say};
-use crate::engine::{Fault, Flaw};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::render::render;
@@ -34,55 +32,6 @@ pub(super) fn late() -> Diagnostic {
 /// The call was interrupted before the first trial.
 pub(super) fn interrupted() -> Diagnostic {
     Diagnostic::placeless(Code::E0922, "interrupted before the first trial")
-}
-
-/// What the engine refuses, each of it.
-pub(super) fn refusals(fault: &Fault) -> Vec<Diagnostic> {
-    match fault {
-        Fault::Crowded(places) => places.iter().map(refusal).collect(),
-        one => vec![refusal(one)],
-    }
-}
-
-/// What the engine refuses; of several the first.
-pub(super) fn refusal(fault: &Fault) -> Diagnostic {
-    match fault {
-        Fault::Placement { reason, place } => {
-            let error = match place {
-                Some(span) => Diagnostic::error(Code::E0801, *span, reason.as_str()),
-                None => Diagnostic::placeless(Code::E0801, reason.as_str()),
-            };
-            error.hint("fewer people, a larger shape to start from, or smaller radii")
-        }
-        Fault::Crowded(places) => match places.first() {
-            Some(first) => refusal(first),
-            None => Diagnostic::placeless(Code::E0801, fault.to_string()),
-        },
-        Fault::Procedure { place, reason } => Diagnostic::error(Code::E0604, *place, reason.to_string())
-            .hint("`smc explain E0604` says what each procedure takes"),
-        Fault::Memory { place, .. } => Diagnostic::error(Code::E0923, *place, fault.to_string())
-            .hint("one value is kept for each trial of each `E` and `Q`: set a smaller `--max-trials`, or ask fewer of them at once with `--only`"),
-        Fault::Model(flaw) => of_model(flaw),
-        Fault::Statistics(reason) => Diagnostic::placeless(Code::E0604, reason.to_string())
-            .hint("`smc explain E0604` says what each procedure takes"),
-        Fault::Logic(reason) => Diagnostic::placeless(Code::E0509, reason.to_string())
-            .hint("shorter bounds or a longer step need less memory"),
-        Fault::Unsuitable => Diagnostic::placeless(Code::E0603, fault.to_string())
-            .hint("`smc explain E0603` says which procedure goes with what"),
-        Fault::Rank { .. } => argument(fault.to_string(), "all processes of a call must be the same program"),
-        Fault::Threads(_) => argument(fault.to_string(), "ask for fewer: `--threads 1`"),
-    }
-}
-
-/// What a trial shows to be wrong with the model.
-pub(super) fn of_model(flaw: &Flaw) -> Diagnostic {
-    let title = format!("{}: {}", flaw.moment, flaw.what);
-    let error = match flaw.place {
-        Some(span) => Diagnostic::error(flaw.code, span, title),
-        None => Diagnostic::placeless(flaw.code, title),
-    };
-    let error = if flaw.state.is_empty() { error } else { error.label(format!("where {}", flaw.state)) };
-    error.hint(flaw.hint)
 }
 
 /// Says it on standard error.

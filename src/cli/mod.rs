@@ -6,13 +6,13 @@ mod complaint;
 mod deadline;
 mod drift;
 mod explain;
+mod file_cache;
 mod format;
 mod inputs;
 mod manual;
 mod output;
 mod progress;
 mod ranks;
-mod shelf;
 mod show;
 mod simulate;
 mod terminal;
@@ -126,7 +126,7 @@ fn dispatch(arguments: &Arguments) -> Exit {
 }
 
 /// Writes errors and warnings to standard error.
-fn diagnose(inputs: &inputs::Inputs, colors: Colors) {
+fn diagnose(inputs: &crate::library::Inputs, colors: Colors) {
     if !inputs.diagnostics.is_empty() {
         say(&render(&inputs.diagnostics, &inputs.sources, colors.err));
     }

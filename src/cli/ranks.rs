@@ -1,20 +1,20 @@
 //! Ranks as child processes: the same program, spoken to over its standard input and output.
 
-use super::shelf::unpack;
-use crate::engine::ranks::{Line, serve};
+use super::file_cache::unpack;
+use crate::engine::ranks::{Connection, serve};
 use crate::engine::{Executor, Ranks, Threads};
 use crate::report::ExitCode as Exit;
 use crate::syntax::diagnostic::Severity;
 use std::process::{Child, Command, Stdio};
 
-/// What makes this program a rank, where it is the only word. It is no part of the command line that people type.
+/// What makes this program a rank, where it is the only word. It is no part of the command connection that people type.
 pub(super) const WORD: &str = "--rank";
 
 /// Who runs the trials of a call.
-pub(super) enum Crew {
+pub(super) enum ProcessPool {
     /// This process alone.
     Alone(Threads),
-    /// Others, which end with it. Their lines are closed first.
+    /// Others, which end with it. Their connections are closed first.
     Led {
         /// Those others.
         ranks: Box<Ranks>,
@@ -23,7 +23,7 @@ pub(super) enum Crew {
     },
 }
 
-impl Crew {
+impl ProcessPool {
     /// Who runs the trials.
     pub(super) fn executor(&self) -> &dyn Executor {
         match self {
@@ -57,21 +57,21 @@ impl Drop for Children {
 }
 
 /// Starts so many ranks.
-pub(super) fn start(count: usize) -> Result<(Children, Vec<Line>), String> {
+pub(super) fn start(count: usize) -> Result<(Children, Vec<Connection>), String> {
     let program = std::env::current_exe().map_err(|error| format!("ranks cannot be started: {error}"))?;
     let mut children = Children(Vec::with_capacity(count));
-    let mut lines = Vec::with_capacity(count);
+    let mut connections = Vec::with_capacity(count);
     for _ in 0..count {
         let mut command = Command::new(&program);
         // What goes wrong with a rank is told by the head.
         command.arg(WORD).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
         let mut child = command.spawn().map_err(|error| format!("ranks cannot be started: {error}"))?;
         if let (Some(to), Some(from)) = (child.stdin.take(), child.stdout.take()) {
-            lines.push(Line { from: Box::new(from), to: Box::new(to) });
+            connections.push(Connection { from: Box::new(from), to: Box::new(to) });
         }
         children.0.push(child);
     }
-    Ok((children, lines))
+    Ok((children, connections))
 }
 
 /// Is a rank until its standard input ends.

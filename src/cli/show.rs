@@ -10,7 +10,7 @@ use crate::report::model;
 
 /// Runs the command.
 pub(super) fn run(arguments: &Show, colors: Colors) -> Exit {
-    let inputs = inputs::load(&arguments.model, &arguments.properties);
+    let inputs = inputs::load(&arguments.model, &arguments.properties).inputs;
     super::diagnose(&inputs, colors);
     let Some(study) = &inputs.study else { return Exit::Wrong };
     match print(&visible(&model::describe(study))) {

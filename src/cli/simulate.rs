@@ -15,6 +15,7 @@ use crate::data::table::{
 };
 use crate::engine::{divergence, no_start, placeable, smaller};
 use crate::kernel::{Address, End, Program, Run, Slot, State};
+use crate::library;
 use crate::model::{AgentId, Domain, Parameter, Scenario};
 use crate::report::ExitCode as Exit;
 use std::io::{BufWriter, Write};
@@ -266,10 +267,10 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
         let hint = format!("they are numbered from 0 to {}", MOST_TRIALS - 1);
         return refuse("a seed has no such trials", hint, colors);
     }
-    let inputs = inputs::load(&arguments.model, &[]);
+    let inputs::Loaded { inputs, paths, .. } = inputs::load(&arguments.model, &[]);
     super::diagnose(&inputs, colors);
     let Some(study) = &inputs.study else { return Exit::Wrong };
-    if let Err(error) = output::guard(arguments.output.as_deref(), &inputs.paths) {
+    if let Err(error) = output::guard(arguments.output.as_deref(), &paths) {
         complaint::tell(&error, &[], colors);
         return Exit::Wrong;
     }
@@ -288,7 +289,7 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
         None => None,
     };
     if let Err(fault) = placeable(world) {
-        complaint::tell(&complaint::refusal(&fault), &inputs.sources, colors);
+        complaint::tell(&library::refusal(&fault), &inputs.sources, colors);
         return Exit::Wrong;
     }
     let mut last = scenario.horizon;

@@ -2,9 +2,9 @@
 
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::laws::value_span;
-use super::presets::{PARAMETERS, PRESETS, law};
+use super::presets::{PRESETS, law};
 use super::symbols::{Meaning, unknown};
-use crate::model::{Body, Law, TOP_SPEED};
+use crate::model::{self, Body, Law, Parameter};
 use crate::syntax::ast::{Field, Ident, KindDecl};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -13,39 +13,35 @@ use std::collections::BTreeMap;
 /// The parameters of a kind as far as they are known.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Kind {
-    /// A law for each of `PARAMETERS`.
-    pub(super) laws: [Option<Law>; PARAMETERS.len()],
-}
-
-/// Index of a parameter.
-pub(super) fn parameter(name: &str) -> Option<usize> {
-    PARAMETERS.iter().position(|(n, ..)| *n == name)
+    /// The kind of the language from which it starts.
+    pub(super) base: model::Kind,
+    /// A law for each parameter.
+    laws: [Option<Law>; Parameter::COUNT],
 }
 
 /// Some law of a parameter.
-fn any_law(parameter: &str) -> Option<Law> {
+fn any_law(parameter: Parameter) -> Option<Law> {
     PRESETS.iter().find_map(|preset| law(preset.name, parameter))
 }
 
 impl Kind {
-    /// The law of a parameter.
-    pub(super) fn law(&self, name: &str) -> Option<&Law> {
-        parameter(name).and_then(|at| self.laws[at].as_ref())
+    /// The parameter of this name, if the kind has it.
+    fn parameter(&self, name: &str) -> Option<Parameter> {
+        Parameter::of_kind(self.base).find(|parameter| parameter.name() == name)
     }
 
-    /// Sets the law of a parameter.
-    pub(super) fn set(&mut self, name: &str, law: Law) {
-        if let Some(at) = parameter(name) {
-            self.laws[at] = Some(law);
-        }
+    /// The law of a parameter: as set, or its default.
+    fn law(&self, parameter: Parameter) -> Option<Law> {
+        let default = || parameter.description().default.map(Law::Constant);
+        self.laws[parameter as usize].clone().or_else(default)
     }
 }
 
 impl Elaborator<'_> {
     /// The parameters of a kind by name.
     pub(super) fn kind(&mut self, name: &Ident) -> Lowered<Kind> {
-        if name.name == "sfm" {
-            return Ok(Kind::default());
+        if let Some(base) = model::Kind::named(&name.name) {
+            return Ok(Kind { base, ..Kind::default() });
         }
         let Some((_, meaning)) = self.find(&name.name, 0) else {
             let looked_at = if self.looks_for_names() { usize::MAX } else { 0 };
@@ -54,7 +50,13 @@ impl Elaborator<'_> {
                 .take(looked_at)
                 .filter(|(_, e)| matches!(e.meaning, Meaning::Kind(_)))
                 .map(|(n, _)| n);
-            let error = unknown("kind", &name.name, name.span, Code::E0208, declared.chain(["sfm"]));
+            let error = unknown(
+                "kind",
+                &name.name,
+                name.span,
+                Code::E0208,
+                declared.chain(model::Kind::ALL.map(model::Kind::name)),
+            );
             return self.report(error);
         };
         let Meaning::Kind(decl) = meaning else {
@@ -96,9 +98,9 @@ impl Elaborator<'_> {
         if let Some(preset) = &decl.preset {
             if PRESETS.iter().any(|p| p.name == preset.name) {
                 if let Ok(kind) = &mut kind {
-                    for (parameter, ..) in PARAMETERS {
+                    for parameter in Parameter::of_kind(kind.base) {
                         if let Some(law) = law(&preset.name, parameter) {
-                            kind.set(parameter, law);
+                            kind.laws[parameter as usize] = Some(law);
                         }
                     }
                 }
@@ -114,9 +116,10 @@ impl Elaborator<'_> {
                 kind = Err(Reported);
             }
         }
+        let base = kind.as_ref().map(|kind| kind.base).unwrap_or_default();
         let rest = self.parameters(&decl.body, kind.as_mut().ok(), &Locals::default());
         for field in rest {
-            let known = PARAMETERS.iter().map(|(n, ..)| *n);
+            let known = Parameter::of_kind(base).map(Parameter::name);
             let error = unknown("parameter", &field.name.name, field.name.span, Code::E0207, known);
             self.note(error);
             self.look_at(&field.value, &Locals::default());
@@ -146,13 +149,16 @@ impl Elaborator<'_> {
                 self.note(error);
                 continue;
             }
-            let Some(index) = parameter(&field.name.name) else {
+            let known = match &kind {
+                Some(kind) => kind.parameter(&field.name.name),
+                None => Parameter::named(&field.name.name),
+            };
+            let Some(parameter) = known else {
                 rest.push(field);
                 continue;
             };
-            let (name, dimension, _) = PARAMETERS[index];
-            let law = match self.law(&field.value, dimension, locals) {
-                Ok(law) => match out_of_range(name, &law) {
+            let law = match self.law(&field.value, parameter.description().dimension, locals) {
+                Ok(law) => match parameter.refuses(&law) {
                     None => Ok(law),
                     Some(reason) => {
                         self.report(Diagnostic::error(Code::E0405, value_span(&field.value), reason))
@@ -161,11 +167,11 @@ impl Elaborator<'_> {
                 Err(reported) => Err(reported),
             };
             self.given_up |= law.is_err();
-            self.any_start |= law.is_err() && name == "radius";
+            self.any_start |= law.is_err() && parameter == Parameter::Radius;
             // What was set wrongly is set: any value will do until it is set right.
-            let Some(law) = law.ok().or_else(|| any_law(name)) else { continue };
+            let Some(law) = law.ok().or_else(|| any_law(parameter)) else { continue };
             if let Some(kind) = &mut kind {
-                kind.laws[index] = Some(law);
+                kind.laws[parameter as usize] = Some(law);
             }
         }
         rest
@@ -173,12 +179,8 @@ impl Elaborator<'_> {
 
     /// The body of a kind: every parameter must be known now.
     pub(super) fn body(&mut self, kind: &Kind, name: &Ident) -> Lowered<Body> {
-        let missing: Vec<&str> = PARAMETERS
-            .iter()
-            .enumerate()
-            .filter(|(at, (_, _, default))| kind.laws[*at].is_none() && default.is_none())
-            .map(|(_, (name, ..))| *name)
-            .collect();
+        let missing = Parameter::of_kind(kind.base).filter(|parameter| kind.law(*parameter).is_none());
+        let missing: Vec<&str> = missing.map(Parameter::name).collect();
         if !missing.is_empty() {
             let title = format!("`{}` has no {}", name.name, missing.join(", "));
             // Said once, however many are of that kind.
@@ -189,53 +191,7 @@ impl Elaborator<'_> {
                 .hint("set them, or start from a preset: `kind adult: sfm preset helbing2000 { … }`");
             return self.report(error);
         }
-        let law = |name: &str| {
-            kind.law(name)
-                .cloned()
-                .or_else(|| parameter(name).and_then(|at| PARAMETERS[at].2).map(Law::Constant))
-        };
-        let all = || -> Option<Body> {
-            Some(Body {
-                mass: law("mass")?,
-                radius: law("radius")?,
-                speed: law("speed")?,
-                tau: law("tau")?,
-                a: law("A")?,
-                b: law("B")?,
-                lambda: law("lambda")?,
-                a2: law("A2")?,
-                b2: law("B2")?,
-                lambda2: law("lambda2")?,
-                k1: law("k1")?,
-                k2: law("k2")?,
-                noise: law("noise")?,
-                attention: law("attention")?,
-            })
-        };
-        all().ok_or(Reported)
+        // A parameter that the kind does not have is 0 or its default.
+        Ok(Body::new(kind.base, |parameter| kind.law(parameter).unwrap_or(Law::Constant(0.0))))
     }
-}
-
-/// Why a law cannot be that of a parameter: the support must be physically possible.
-pub(super) fn out_of_range(name: &str, law: &Law) -> Option<String> {
-    let (low, high) = law.bounds();
-    let positive = matches!(name, "mass" | "radius" | "tau" | "B" | "B2");
-    let share = matches!(name, "lambda" | "lambda2" | "attention");
-    let constant = law.constant().is_some();
-    let truncate = if constant { "" } else { "; truncate the distribution: `… in lo .. hi`" };
-    if positive && (low < 0.0 || (constant && low == 0.0)) {
-        return Some(format!("`{name}` must be positive{truncate}"));
-    }
-    if !positive && low < 0.0 {
-        return Some(format!("`{name}` cannot be negative{truncate}"));
-    }
-    if matches!(name, "speed" | "noise") && low > TOP_SPEED {
-        return Some(format!(
-            "a `{name}` of more than {TOP_SPEED} m/s is nobody's: every trial would diverge"
-        ));
-    }
-    if share && high > 1.0 {
-        return Some(format!("`{name}` lies between 0 and 1{truncate}"));
-    }
-    None
 }

@@ -9,7 +9,9 @@ use super::places::Written;
 use super::symbols::{Entry, Meaning, unknown};
 use crate::base::geometry::Vec2;
 use crate::base::random::name_hash;
-use crate::model::{Agent, AgentId, Body, Group, Law, Particle, Position, Route, Start, TOP_SPEED, Who};
+use crate::model::{
+    Agent, AgentId, Body, Group, Law, Parameter, Particle, Position, Route, Start, TOP_SPEED, Who,
+};
 use crate::syntax::ast::{AgentsDecl, Expr, ExprKind, Field, GroupDecl, Ident, Value};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -447,7 +449,7 @@ impl<'a> Elaborator<'a> {
     /// Refuses fields that mean nothing here.
     pub(super) fn only(&mut self, fields: &[&Field], known: &[&str]) {
         for field in fields.iter().filter(|field| !known.contains(&field.name.name.as_str())) {
-            let all = known.iter().copied().chain(super::presets::PARAMETERS.iter().map(|(n, ..)| *n));
+            let all = known.iter().copied().chain(Parameter::ALL.map(Parameter::name));
             let error = unknown("field", &field.name.name, field.name.span, Code::E0207, all);
             self.note(error);
             // It may have been the radius.
@@ -476,14 +478,14 @@ impl<'a> Elaborator<'a> {
             self.define_empty(&decl.name, decl.plural || decl.count.is_some(), with);
             return;
         };
-        let found = self.onto_rims(recorded, found, &base.radius);
+        let found = self.onto_rims(recorded, found, &base[Parameter::Radius]);
         let own_speed = decl.body.iter().any(|f| f.name.name == "speed");
         let Ok(members) = self.people(&decl.name, found.len(), decl.plural, people, |k| {
             let velocity = found[k].velocity;
             let speed = velocity.norm();
             let mut body = base.clone();
             if speed >= STANDS && !own_speed {
-                body.speed = Law::Constant(speed);
+                body[Parameter::Speed] = Law::Constant(speed);
             }
             (Arc::new(body), Start { position: Position::Point(found[k].position), velocity }, route.clone())
         }) else {

@@ -8,7 +8,7 @@ use super::elaborator::Elaborator;
 use super::people::People;
 use super::symbols::Meaning;
 use crate::base::geometry::{Bounds, Shape, Vec2, rotated};
-use crate::model::{Agent, AgentId, Barrier, Obstacle, Position};
+use crate::model::{Agent, AgentId, Barrier, Obstacle, Parameter, Position};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -98,7 +98,7 @@ pub(super) fn beside(barriers: &[Solid<'_>], from: Vec2, radius: f64) -> Option<
 
 /// The smallest radius that a trial can give somebody, m.
 fn least_radius(agent: &Agent) -> f64 {
-    agent.body.radius.bounds().0 * agent.particle.map_or(1.0, |particle| particle.radius_factor)
+    agent.body[Parameter::Radius].bounds().0 * agent.particle.map_or(1.0, |particle| particle.radius_factor)
 }
 
 /// Whether some point of a shape may be as far as `radius` from all barriers. Only a sure no is a no.

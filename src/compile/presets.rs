@@ -1,26 +1,6 @@
 //! Named parameter sets of the social force model, with their sources.
 
-use super::dimension::Dimension;
-use crate::model::{Family, Law};
-
-/// Names of the parameters of a social force body, their dimensions, and their value if none is given.
-/// `None`: must be given.
-pub const PARAMETERS: [(&str, Dimension, Option<f64>); 14] = [
-    ("mass", Dimension::MASS, None),
-    ("radius", Dimension::LENGTH, None),
-    ("speed", Dimension::SPEED, None),
-    ("tau", Dimension::TIME, None),
-    ("A", Dimension::FORCE, None),
-    ("B", Dimension::LENGTH, None),
-    ("lambda", Dimension::NONE, Some(1.0)),
-    ("A2", Dimension::FORCE, Some(0.0)),
-    ("B2", Dimension::LENGTH, Some(1.0)),
-    ("lambda2", Dimension::NONE, Some(1.0)),
-    ("k1", Dimension::STIFFNESS, None),
-    ("k2", Dimension::FRICTION, None),
-    ("noise", Dimension::SPEED, Some(0.0)),
-    ("attention", Dimension::NONE, Some(1.0)),
-];
+use crate::model::{Family, Law, Parameter};
 
 /// A named parameter set.
 pub struct Preset {
@@ -52,56 +32,45 @@ pub const PRESETS: [Preset; 3] = [
 ];
 
 /// The law that a preset gives a parameter; `None` for an unknown preset or a parameter that it leaves open.
-pub fn law(preset: &str, parameter: &str) -> Option<Law> {
-    let special: &[(&str, f64)] = match preset {
-        "helbing2000" => &[("A", 2000.0), ("B", 0.08), ("tau", 0.5)],
-        "johansson2007" => &[("A", 33.6), ("B", 1.65), ("lambda", 0.12), ("tau", 0.5)],
-        "vissim2008" => &[
-            ("A", 40.0),
-            ("B", 2.8),
-            ("lambda", 0.1),
-            ("A2", 2000.0),
-            ("B2", 0.2),
-            ("lambda2", 1.0),
-            ("tau", 0.4),
-        ],
+pub fn law(preset: &str, parameter: Parameter) -> Option<Law> {
+    use Parameter::{A, A2, B, B2, K1, K2, Lambda, Mass, Radius, Speed, Tau};
+    let special: &[(Parameter, f64)] = match preset {
+        "helbing2000" => &[(A, 2000.0), (B, 0.08), (Tau, 0.5)],
+        "johansson2007" => &[(A, 33.6), (B, 1.65), (Lambda, 0.12), (Tau, 0.5)],
+        "vissim2008" => &[(A, 40.0), (B, 2.8), (Lambda, 0.1), (A2, 2000.0), (B2, 0.2), (Tau, 0.4)],
         _ => return None,
     };
-    if let Some((_, value)) = special.iter().find(|(name, _)| *name == parameter) {
+    if let Some((_, value)) = special.iter().find(|(one, _)| *one == parameter) {
         return Some(Law::Constant(*value));
     }
     match parameter {
-        "mass" => Some(Law::Constant(80.0)),
-        "radius" => Some(Law::Random {
+        Mass => Some(Law::Constant(80.0)),
+        Radius => Some(Law::Random {
             family: Family::Uniform { low: 0.25, high: 0.35 },
             low: f64::NEG_INFINITY,
             high: f64::INFINITY,
         }),
-        "speed" => Some(Law::Random { family: Family::Normal { mean: 1.34, sd: 0.26 }, low: 0.4, high: 2.2 }),
-        "k1" => Some(Law::Constant(1.2e5)),
-        "k2" => Some(Law::Constant(2.4e5)),
-        // A set is the whole force: of a kind that starts from another nothing of that one's is left.
-        "lambda" | "lambda2" | "B2" => Some(Law::Constant(1.0)),
-        "A2" => Some(Law::Constant(0.0)),
-        _ => None,
+        Speed => Some(Law::Random { family: Family::Normal { mean: 1.34, sd: 0.26 }, low: 0.4, high: 2.2 }),
+        K1 => Some(Law::Constant(1.2e5)),
+        K2 => Some(Law::Constant(2.4e5)),
+        other => other.description().default.filter(|_| other.description().preset).map(Law::Constant),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::Kind;
 
     #[test]
     fn every_preset_gives_every_parameter_that_has_no_default() {
         for preset in &PRESETS {
-            for (parameter, _, default) in PARAMETERS {
-                assert!(
-                    default.is_some() || law(preset.name, parameter).is_some(),
-                    "{} {parameter}",
-                    preset.name
-                );
+            for parameter in Parameter::of_kind(Kind::Sfm) {
+                let given =
+                    parameter.description().default.is_some() || law(preset.name, parameter).is_some();
+                assert!(given, "{} {}", preset.name, parameter.name());
             }
         }
-        assert!(law("unknown", "mass").is_none());
+        assert!(law("unknown", Parameter::Mass).is_none());
     }
 }

@@ -10,7 +10,7 @@ use super::symbols::Meaning;
 use crate::base::decimal::Decimal;
 use crate::base::math::{at_least, at_most};
 use crate::base::tick::Clock;
-use crate::model::{Agent, AgentId, Law};
+use crate::model::{Agent, AgentId, Law, Parameter};
 use crate::syntax::ast::{Item, ScenarioFile};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -37,10 +37,15 @@ impl Longest {
         let most = |law: &Law| law.draw(1.0 - RARE);
         let body = &agent.body;
         // A body of several persons has their mass and their force.
-        let slope = most(&body.a) / least(&body.b) + most(&body.a2) / least(&body.b2);
-        let rate = neighbours as f64 * most(&body.attention) * slope / least(&body.mass);
+        let slope = most(&body[Parameter::A]) / least(&body[Parameter::B])
+            + most(&body[Parameter::A2]) / least(&body[Parameter::B2]);
+        let rate =
+            neighbours as f64 * most(&body[Parameter::Attention]) * slope / least(&body[Parameter::Mass]);
         let slower = agent.particle.map_or(1.0, |particle| particle.tau_factor);
-        Self { force: 2.0 / at_least(rate, 0.0).sqrt(), relaxation: slower * least(&body.tau) / 10.0 }
+        Self {
+            force: 2.0 / at_least(rate, 0.0).sqrt(),
+            relaxation: slower * least(&body[Parameter::Tau]) / 10.0,
+        }
     }
 
     fn both(self) -> f64 {

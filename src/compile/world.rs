@@ -12,7 +12,7 @@ use super::symbols::Meaning;
 use super::told::{self, Told};
 use crate::base::decimal::Decimal;
 use crate::base::tick::{Clock, Tick};
-use crate::model::{BehaviourId, Moves, Scenario};
+use crate::model::{BehaviourId, Kind, Moves, Scenario};
 use crate::syntax::ast::{Expr, ExprKind, Ident, Item, PropertyFile, PropertyItem, ScenarioFile};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -69,8 +69,9 @@ impl<'a> Elaborator<'a> {
                 Item::Source(decl) => (&decl.name, Meaning::Declared),
             };
             let reserved = match (&meaning, name.name.as_str()) {
-                (Meaning::Kind(_), "sfm") => Some("`sfm` is the social force model, from which kinds start"),
-                (_, "self") => Some("`self` is whoever has a behaviour"),
+                (Meaning::Kind(_), name) => Kind::named(name)
+                    .map(|kind| format!("`{}` is {}, from which kinds start", kind.name(), kind.meaning())),
+                (_, "self") => Some("`self` is whoever has a behaviour".to_owned()),
                 _ => None,
             };
             if let Some(text) = reserved {

@@ -8,7 +8,7 @@ use super::contrast::Contrast;
 use super::executor::Executor;
 use super::fault::Fault;
 use super::method;
-use super::outcome::{Counts, Kind, QueryResult, Shows, Stop, Verdict, Witness};
+use super::outcome::{Certificate, Certified, Counts, Kind, QueryResult, Shows, Stop, Verdict, Witness};
 use super::race::Contest;
 use super::standing;
 use super::subject::Subject;
@@ -20,7 +20,7 @@ use super::words;
 use crate::base::random::TrialKey;
 use crate::compile::study::{Ask, Measure, MeasureKind, Query, Root, Sought};
 use crate::logic::{Term, TermId, Tree};
-use crate::stats::{Coverage, Decision};
+use crate::stats::{Coverage, Decision, Statement};
 
 /// The option that ends queries after so many trials.
 const MAX_TRIALS: &str = "--max-trials";
@@ -32,6 +32,11 @@ fn unit(measure: &Measure) -> String {
             dimension.to_string()
         }
     }
+}
+
+/// The interval of a result as what it certifies.
+fn between(result: &QueryResult, error: f64) -> Certificate {
+    Certificate { claim: Certified::Between { low: result.low, high: result.high }, error }
 }
 
 /// The first of the unresolved trials of a result.
@@ -73,10 +78,8 @@ impl Answers<'_> {
 
     /// The call that stops at the same trial; `limit` is the option that counts them.
     pub(super) fn replay(&self, query: &Query, limit: &str, trials: u64) -> String {
-        let mut words = if query.point.is_empty() { &self.call.command } else { &self.call.point }.clone();
-        for (name, value) in &query.point {
-            words.push_str(&format!(" --set '{name}={value}'"));
-        }
+        let line = &self.call.line;
+        let mut words = if query.point.is_empty() { line.check() } else { line.check_at(&query.point) };
         // In a ranking of which a round was cut, how many trials there are in all does not tell which.
         if limit != MAX_TRIALS && self.budget.max_trials != DEFAULT_TRIALS {
             words.push_str(&format!(" {MAX_TRIALS} {}", self.budget.max_trials));
@@ -144,6 +147,7 @@ impl Answers<'_> {
                 if says_something(&query.ask, interval.low, interval.high) {
                     result.certifies =
                         format!("{subject_words} {claim}, error at most {}", words::error(error));
+                    result.certificate = Some(between(&result, error));
                 }
                 let fixed = coverage == Coverage::FixedSize;
                 if fixed && result.estimate.is_some() && matches!(stop, Stop::Deadline | Stop::Interrupt) {
@@ -164,6 +168,13 @@ impl Answers<'_> {
                 Some(Decision::Above | Decision::Below) => Verdict::Violated,
                 Some(Decision::Within) | None => Verdict::Undecided,
             });
+            result.certificate = match inquiry.procedure.statement() {
+                Some(Statement { claim, error }) => {
+                    Some(Certificate { claim: Certified::Decided(claim), error })
+                }
+                None if !says_something(&query.ask, result.low, result.high) => None,
+                None => Some(between(&result, beside)),
+            };
             result.certifies = match inquiry.procedure.statement() {
                 Some(statement) => words::quantile(&query.said, *threshold, &statement)
                     .unwrap_or_else(|| words::statement(&subject_words, &statement, &result.unit)),
@@ -295,7 +306,7 @@ impl Answers<'_> {
             let why =
                 cause::unresolved(first.subject, first.column, first.item, (self.call.seed, self.budget));
             let index = first.item.index;
-            let mut command = self.call.simulate_with(&first.settings, index);
+            let mut command = self.call.line.simulate(&first.settings, self.call.seed, index);
             if let Some(label) = witness::label(first.subject, first.item.advice) {
                 command.push_str(&format!(" --move '{label}'"));
             }
@@ -355,6 +366,7 @@ impl Answers<'_> {
                 words::ends(result.low, result.high, &unit),
                 words::error(*delta)
             );
+            result.certificate = Some(between(&result, *delta));
         }
         result.unit = unit;
         result.compare = Some(standing::sides(&gap, &labels, *delta));
@@ -402,6 +414,8 @@ impl Answers<'_> {
                     words::quantity(words::at_most(ranked.gap), &result.unit),
                     words::error(*delta)
                 );
+                let claim = Certified::Best { choice: choice.clone(), gap: ranked.gap };
+                result.certificate = Some(Certificate { claim, error: *delta });
             }
             let chosen = &ranked.options[0].value;
             result.estimate = Some(chosen.estimate);

@@ -1,50 +1,134 @@
-//! What the command line adds to a study, and the calls that show what was found.
+//! What a call adds to a study, and the command lines that show what was found.
 
-/// What the command line adds to a study.
+use crate::syntax::source::Span;
+
+/// What a call adds to a study.
 pub struct Call<'c> {
     /// Seed of all random numbers.
     pub seed: u64,
-    /// The call up to its options, for replay lines: `smc check a.scn b.bltl --set density=0.8`.
-    pub command: String,
-    /// The same without sweeps.
-    pub point: String,
-    /// The call that shows a trial: `smc simulate a.scn --set density=0.8`.
-    pub simulate: String,
+    /// The files and settings of the call, for replay lines.
+    pub line: CommandLine,
     /// Indices of the queries to ask; all of them if empty.
     pub only: Vec<usize>,
     /// File and line of a span, for reports.
-    pub place: &'c (dyn Fn(crate::syntax::source::Span) -> (String, usize) + Sync),
-    /// Name for reports where the scenario has no title.
-    pub file: String,
+    pub place: &'c (dyn Fn(Span) -> (String, usize) + Sync),
 }
 
-impl Call<'_> {
-    /// The call that shows a trial under some settings: each takes the place of one of the call, and the last of several
-    /// of one name holds.
-    pub(super) fn simulate_with(&self, settings: &[(String, String)], trial: u64) -> String {
-        let mut command = String::new();
-        for (k, piece) in self.simulate.split(" --set ").enumerate() {
-            let quoted = piece.strip_prefix('\'');
-            let name = quoted.unwrap_or(piece).split('=').next().unwrap_or_default();
-            if k > 0 && settings.iter().any(|(own, _)| own == name) {
-                // What follows the value stays.
-                let end = quoted.map_or_else(
-                    || piece.find(' ').unwrap_or(piece.len()),
-                    |rest| rest.find('\'').map_or(piece.len(), |at| at + 2),
-                );
-                command.push_str(&piece[end..]);
-                continue;
-            }
-            if k > 0 {
-                command.push_str(" --set ");
-            }
-            command.push_str(piece);
+/// The files and settings of a call of the program.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct CommandLine {
+    /// The scenario; also its name in reports where it has no title.
+    pub scenario: String,
+    /// Property files.
+    pub properties: Vec<String>,
+    /// Values of `--set`: `density=0.8`, or a sweep, `density=0.1..0.8 by 0.1`.
+    pub settings: Vec<String>,
+    /// Values of `--data`.
+    pub data: Vec<String>,
+}
+
+impl CommandLine {
+    /// `smc check` with all its settings.
+    pub fn check(&self) -> String {
+        self.words("check", |_| true)
+    }
+
+    /// `smc check` at a point of its sweeps.
+    pub(super) fn check_at(&self, point: &[(String, String)]) -> String {
+        let mut words = self.words("check", |set| !is_sweep(set));
+        for (name, value) in point {
+            words.push_str(&format!(" --set '{name}={value}'"));
         }
+        words
+    }
+
+    /// `smc simulate` of a trial under some settings. Each replaces that of the call for the same parameter, and the last
+    /// of several for one parameter holds.
+    pub(super) fn simulate(&self, settings: &[(String, String)], seed: u64, trial: u64) -> String {
+        let is_replaced = |set: &str| settings.iter().any(|(name, _)| name == parameter(set));
+        let mut words = self.words("simulate", |set| !is_sweep(set) && !is_replaced(set));
         for (k, (name, value)) in settings.iter().enumerate() {
             if settings[k + 1..].iter().all(|(later, _)| later != name) {
-                command.push_str(&format!(" --set '{name}={value}'"));
+                words.push_str(&format!(" --set '{name}={value}'"));
             }
         }
-        format!("{command} --seed {} --trial {trial}", self.seed)
+        format!("{words} --seed {seed} --trial {trial}")
+    }
+
+    /// The call up to its other options, as a shell would take it.
+    fn words(&self, verb: &str, keep: impl Fn(&str) -> bool) -> String {
+        let mut words = vec!["smc".to_owned(), verb.to_owned(), file(&self.scenario)];
+        if verb == "check" {
+            words.extend(self.properties.iter().map(|name| file(name)));
+        }
+        for set in self.settings.iter().filter(|set| keep(set)) {
+            words.extend(["--set".to_owned(), quoted(set)]);
+        }
+        for data in &self.data {
+            words.extend(["--data".to_owned(), quoted(data)]);
+        }
+        words.join(" ")
+    }
+}
+
+/// A trial, or a query, belongs to one setting: the value of a sweep is named with it.
+fn is_sweep(set: &str) -> bool {
+    set.contains("..")
+}
+
+fn parameter(set: &str) -> &str {
+    set.split('=').next().unwrap_or_default().trim()
+}
+
+/// The name of a file as a shell would take it, and not for an option; `-` alone is the standard input.
+fn file(name: &str) -> String {
+    if name.len() > 1 && name.starts_with('-') { quoted(&format!("./{name}")) } else { quoted(name) }
+}
+
+/// A word as a shell would take it.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_./=:,+%@".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', "'\\''"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_quoted_where_a_shell_would_split_them() {
+        assert_eq!(quoted("models/a.scn"), "models/a.scn");
+        assert_eq!(quoted("a b"), "'a b'");
+        assert_eq!(quoted("it's"), "'it'\\''s'");
+        assert_eq!([file("-"), file("-a b"), file("a-b")], ["-", "'./-a b'", "a-b"]);
+    }
+
+    #[test]
+    fn a_setting_replaces_that_of_the_call_for_the_same_parameter() {
+        let line = CommandLine {
+            scenario: "a.scn".into(),
+            properties: vec!["a.bltl".into()],
+            settings: vec!["n=2".into(), "d=0.1..0.8 by 0.1".into(), "gap=1 m".into()],
+            data: vec!["my data".into()],
+        };
+        assert_eq!(
+            line.check(),
+            "smc check a.scn a.bltl --set n=2 --set 'd=0.1..0.8 by 0.1' --set 'gap=1 m' --data 'my data'"
+        );
+        let own = |pairs: &[(&str, &str)]| {
+            pairs.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect::<Vec<_>>()
+        };
+        assert_eq!(
+            line.check_at(&own(&[("d", "0.3")])),
+            "smc check a.scn a.bltl --set n=2 --set 'gap=1 m' --data 'my data' --set 'd=0.3'"
+        );
+        assert_eq!(
+            line.simulate(&own(&[("d", "0.3"), ("n", "4"), ("n", "5")]), 7, 12),
+            "smc simulate a.scn --set 'gap=1 m' --data 'my data' --set 'd=0.3' --set 'n=5' --seed 7 --trial 12"
+        );
     }
 }

@@ -6,8 +6,8 @@ use super::executor::{Executor, Job};
 use super::fault::Fault;
 use super::forecast::{self, Glimpse};
 use super::outcome::Stop;
+use super::pilot::Pilot;
 use super::procedure::{outcome, value};
-use super::rehearsal::Rehearsal;
 use super::subject::Subject;
 use super::survey::LARGEST_ROUND;
 use super::tally::Tally;
@@ -75,7 +75,7 @@ pub(super) struct Contrast<'s> {
     range: Option<(f64, f64)>,
     within: Option<f64>,
     delta: f64,
-    ahead: Option<[Rehearsal; 2]>,
+    ahead: Option<[Pilot; 2]>,
     /// What each side consumed.
     tallies: [Tally; 2],
     /// The mean of each side, for expectations.
@@ -142,11 +142,11 @@ impl<'s> Contrast<'s> {
     }
 
     /// Runs the first pairs, and forecasts from them what the comparison is likely to take.
-    pub(super) fn rehearse(&mut self, executor: &dyn Executor, budget: &Budget) -> Result<Forecast, Fault> {
-        let size = Rehearsal::size(executor.width(&self.jobs[0]) as u64)
+    pub(super) fn run_pilot(&mut self, executor: &dyn Executor, budget: &Budget) -> Result<Forecast, Fault> {
+        let size = Pilot::size(executor.width(&self.jobs[0]) as u64)
             .min(self.planned(budget))
             .min(budget.max_trials);
-        let one = |job: &Job<'_>| Rehearsal::run(job, Item::run(0, size), executor, budget);
+        let one = |job: &Job<'_>| Pilot::run(job, Item::run(0, size), executor, budget);
         let sides = [one(&self.jobs[0])?, one(&self.jobs[1])?];
         let mut glimpse = Glimpse::default();
         for (a, b) in sides[0].seen().zip(sides[1].seen()) {
@@ -162,7 +162,7 @@ impl<'s> Contrast<'s> {
             None => Likely::exactly(methods::PLANNED_TRIALS),
         }
         .map(|n| n.min(budget.max_trials));
-        self.ahead = sides.iter().all(Rehearsal::is_complete).then_some(sides);
+        self.ahead = sides.iter().all(Pilot::is_complete).then_some(sides);
         self.spent = self.ahead.iter().flatten().map(|ahead| ahead.seconds).sum();
         Ok(Forecast {
             query: self.query.text.clone(),

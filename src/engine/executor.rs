@@ -257,7 +257,7 @@ impl Executor for Threads {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::walker::tests::subject;
+    use crate::engine::chain::tests::subject;
     use std::time::Duration;
 
     #[test]

@@ -2,6 +2,7 @@
 //!
 //! Everything but the times is a function of input, seed and version. Counts are those of consumed trials.
 
+pub use super::certificate::{Certificate, Certified};
 pub use super::decider::Decider;
 pub use super::finding::{Finding, Spot};
 use super::flaw::Flaw;
@@ -86,6 +87,8 @@ pub struct QueryResult {
     pub verdict: Option<Verdict>,
     /// The certified statement in words.
     pub certifies: String,
+    /// The certified statement in numbers; `None` where nothing is certified.
+    pub certificate: Option<Certificate>,
     /// The horizon with its unit, `30 s`, where a formula has no bound of its own.
     pub horizon: Option<String>,
     /// The estimate; `None` where there is none (nothing was sampled), infinite where it lies beyond the horizon. Of a `compare`
@@ -149,6 +152,7 @@ impl QueryResult {
             settings: Vec::new(),
             verdict: None,
             certifies: String::new(),
+            certificate: None,
             horizon: None,
             estimate: None,
             low: f64::NEG_INFINITY,

@@ -9,8 +9,8 @@ use super::executor::{Cells, Executor, Job};
 use super::fault::Fault;
 use super::forecast::{self, Glimpse};
 use super::outcome::Stop;
+use super::pilot::Pilot;
 use super::procedure::{outcome, value};
-use super::rehearsal::Rehearsal;
 use super::subject::Subject;
 use super::tally::Tally;
 use super::watch::{Forecast, Watch};
@@ -132,7 +132,7 @@ pub(super) struct Contest<'s> {
     job: Job<'s>,
     procedure: Procedure,
     range: Option<(f64, f64)>,
-    ahead: Option<Rehearsal>,
+    ahead: Option<Pilot>,
     /// What each option consumed.
     tallies: Vec<Tally>,
     /// The mean of each option, for expectations.
@@ -209,15 +209,15 @@ impl<'s> Contest<'s> {
     }
 
     /// Runs the first round, and forecasts from it what the ranking is likely to take.
-    pub(super) fn rehearse(&mut self, executor: &dyn Executor, budget: &Budget) -> Result<Forecast, Fault> {
+    pub(super) fn run_pilot(&mut self, executor: &dyn Executor, budget: &Budget) -> Result<Forecast, Fault> {
         let round = self.round(budget.max_trials);
-        let rehearsal = Rehearsal::run(&self.job, round.items, executor, budget)?;
+        let pilot = Pilot::run(&self.job, round.items, executor, budget)?;
         let arms = self.field.deviations.len();
         let range = self.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
         let mut glimpses = vec![Glimpse::default(); arms];
         let mut readings: Vec<Vec<Option<f64>>> = vec![Vec::new(); arms];
         for (share, places) in round.shares.iter().zip(&round.places) {
-            for row in places.iter().map(|&place| rehearsal.cells.row(place)) {
+            for row in places.iter().map(|&place| pilot.cells.row(place)) {
                 let mut one = Glimpse::default();
                 if let Some([cell, ..]) = row {
                     glimpses[share.arm].read(cell, range);
@@ -238,9 +238,9 @@ impl<'s> Contest<'s> {
             .collect();
         let most = (arms as u64).saturating_mul(budget.max_trials);
         let trials = forecast::race(&glimpses, &differences, self.scale(), self.field.rule);
-        let trials = trials.map(|n| n.max(rehearsal.items.len() as u64).min(most));
-        let seconds = rehearsal.seconds_per_trial(self.job.subject.most_steps());
-        self.ahead = rehearsal.is_complete().then_some(rehearsal);
+        let trials = trials.map(|n| n.max(pilot.items.len() as u64).min(most));
+        let seconds = pilot.seconds_per_trial(self.job.subject.most_steps());
+        self.ahead = pilot.is_complete().then_some(pilot);
         self.spent = self.ahead.as_ref().map_or(0.0, |ahead| ahead.seconds);
         Ok(Forecast {
             query: self.query.text.clone(),

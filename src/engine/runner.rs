@@ -3,10 +3,9 @@
 use super::batch::Batch;
 use super::budget::Budget;
 use super::cell::{Block, Item};
+use super::chain::{JumpChain, StepChain};
 use super::columns::{EventColumns, Finished, StepColumns};
-use super::leaper::Leaper;
 use super::subject::Subject;
-use super::walker::Walker;
 use crate::logic::Invalid;
 
 /// Runs trials one after the other.
@@ -21,19 +20,19 @@ enum Kind<'s> {
     Steps(Box<Batch<'s, StepColumns>>),
     /// From jump to jump.
     Events(Box<Batch<'s, EventColumns>>),
-    /// From state to state of a small finite chain.
-    Walks(Box<Walker>),
-    /// From jump to jump of one small process.
-    Leaps(Box<Leaper>),
+    /// From step to step of a small chain.
+    StepChain(Box<StepChain>),
+    /// From jump to jump of a small chain.
+    JumpChain(Box<JumpChain>),
 }
 
 impl<'s> Runner<'s> {
     /// A worker for some columns of a subject.
     pub(super) fn new(subject: &'s Subject, columns: &[usize]) -> Result<Self, Invalid> {
-        let kind = if let Some(walker) = Walker::of(subject, columns) {
-            Kind::Walks(Box::new(walker))
-        } else if let Some(leaper) = Leaper::of(subject, columns) {
-            Kind::Leaps(Box::new(leaper))
+        let kind = if let Some(chain) = StepChain::of(subject, columns) {
+            Kind::StepChain(Box::new(chain))
+        } else if let Some(chain) = JumpChain::of(subject, columns) {
+            Kind::JumpChain(Box::new(chain))
         } else {
             return Self::general(subject, columns);
         };
@@ -77,20 +76,20 @@ impl<'s> Runner<'s> {
                 batch.run(&mut next, budget);
                 batch.monitors.take()
             }
-            Kind::Walks(_) | Kind::Leaps(_) => Finished::default(),
+            Kind::StepChain(_) | Kind::JumpChain(_) => Finished::default(),
         }
     }
 
     /// Whether it takes trials in blocks.
     pub(super) fn takes_blocks(&self) -> bool {
-        matches!(self.kind, Kind::Walks(_) | Kind::Leaps(_))
+        matches!(self.kind, Kind::StepChain(_) | Kind::JumpChain(_))
     }
 
     /// Runs the trials of a block, if it takes blocks; the budget may say stop, then unfinished ones are dropped.
     pub(super) fn run_block(&mut self, seed: u64, block: &mut Block<'_>, budget: &Budget) {
         match &mut self.kind {
-            Kind::Walks(walker) => walker.run(self.subject, seed, block, budget),
-            Kind::Leaps(leaper) => leaper.run(self.subject, seed, block, budget),
+            Kind::StepChain(chain) => chain.run(self.subject, seed, block, budget),
+            Kind::JumpChain(chain) => chain.run(self.subject, seed, block, budget),
             Kind::Steps(_) | Kind::Events(_) => {}
         }
     }
@@ -100,8 +99,8 @@ impl<'s> Runner<'s> {
         std::mem::take(match &mut self.kind {
             Kind::Steps(batch) => &mut batch.steps,
             Kind::Events(batch) => &mut batch.steps,
-            Kind::Walks(walker) => &mut walker.steps,
-            Kind::Leaps(leaper) => &mut leaper.steps,
+            Kind::StepChain(chain) => &mut chain.steps,
+            Kind::JumpChain(chain) => &mut chain.steps,
         })
     }
 }

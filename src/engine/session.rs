@@ -94,7 +94,7 @@ pub fn run(
     let trials = consumed(&asked, &results);
     let results: Vec<QueryResult> = results.into_iter().flatten().collect();
     Ok(Run {
-        scenario: if study.title.is_empty() { call.file.clone() } else { study.title.clone() },
+        scenario: if study.title.is_empty() { call.line.scenario.clone() } else { study.title.clone() },
         seed: call.seed,
         version: env!("CARGO_PKG_VERSION").to_owned(),
         inputs: Vec::new(),
@@ -132,7 +132,7 @@ fn again(call: &Call<'_>, budget: &Budget, results: &[QueryResult]) -> String {
         let each: Vec<&str> = results.iter().map(|r| r.replay.as_str()).collect();
         return each.join("\n");
     }
-    let mut words = call.command.clone();
+    let mut words = call.line.check();
     for index in &call.only {
         words.push_str(&format!(" --only {index}"));
     }
@@ -177,7 +177,7 @@ fn subjects(study: &Study, asked: &[&Query]) -> Result<Vec<Option<Subject>>, Fau
     Ok(subjects)
 }
 
-/// Rehearses each group. With a deadline there is nothing to forecast, and no time to spend on it.
+/// Runs the pilot of each group. With a deadline there is nothing to forecast, and no time to spend on it.
 fn outlook(
     groups: &mut [Group<'_>],
     executor: &dyn Executor,
@@ -192,10 +192,10 @@ fn outlook(
             return Ok(None);
         }
         let forecasts = match &mut group.sampling {
-            Sampling::Survey(survey) => survey.rehearse(executor, budget)?,
-            Sampling::Contrast(contrast) => vec![contrast.rehearse(executor, budget)?],
-            Sampling::Race(contest) => vec![contest.rehearse(executor, budget)?],
-            Sampling::Split(question) => vec![question.rehearse(executor, budget)?],
+            Sampling::Survey(survey) => survey.run_pilot(executor, budget)?,
+            Sampling::Contrast(contrast) => vec![contrast.run_pilot(executor, budget)?],
+            Sampling::Race(contest) => vec![contest.run_pilot(executor, budget)?],
+            Sampling::Split(question) => vec![question.run_pilot(executor, budget)?],
         };
         // Checks and estimates of one scenario share their trials.
         let longest = |of: &dyn Fn(&Forecast) -> f64| forecasts.iter().map(of).fold(0.0, f64::max);

@@ -10,8 +10,8 @@ use super::executor::{Cells, Executor, Job};
 use super::fault::Fault;
 use super::forecast::{self, Glimpse};
 use super::outcome::Stop;
+use super::pilot::{self, Pilot};
 use super::procedure::Procedure;
-use super::rehearsal::{self, Rehearsal};
 use super::subject::Subject;
 use super::tally::Tally;
 use super::watch::{Forecast, Likely, Watch};
@@ -56,7 +56,7 @@ pub(super) struct Survey<'q> {
     job: Job<'q>,
     /// The queries.
     pub(super) inquiries: Vec<Inquiry<'q>>,
-    ahead: Option<Rehearsal>,
+    ahead: Option<Pilot>,
     /// The next trial.
     next: u64,
     /// Seconds that it has taken so far.
@@ -124,21 +124,21 @@ impl<'q> Survey<'q> {
     }
 
     /// Runs the first trials, and forecasts from them what each inquiry is likely to take.
-    pub(super) fn rehearse(
+    pub(super) fn run_pilot(
         &mut self,
         executor: &dyn Executor,
         budget: &Budget,
     ) -> Result<Vec<Forecast>, Fault> {
         let width = executor.width(&self.job) as u64;
         // As many on every machine, whatever a round would be.
-        let size = Rehearsal::size(width).min(most(&self.inquiries, 0, budget).max(1)).min(budget.max_trials);
-        let rehearsal = Rehearsal::run(&self.job, Item::run(0, size), executor, budget)?;
-        let mut seconds = rehearsal.seconds_per_trial(self.job.subject.most_steps());
+        let size = Pilot::size(width).min(most(&self.inquiries, 0, budget).max(1)).min(budget.max_trials);
+        let pilot = Pilot::run(&self.job, Item::run(0, size), executor, budget)?;
+        let mut seconds = pilot.seconds_per_trial(self.job.subject.most_steps());
         let forecast = |inquiry: &Inquiry<'_>| {
             let mut glimpse = Glimpse::default();
             let range = inquiry.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
             if let Some(place) = self.job.columns.iter().position(|c| *c == inquiry.column) {
-                rehearsal.seen().for_each(|row| glimpse.read(&row[place], range));
+                pilot.seen().for_each(|row| glimpse.read(&row[place], range));
             }
             let expected = forecast::inquiry(&inquiry.query.ask, &inquiry.procedure, &glimpse);
             let trials = expected.unwrap_or(Likely::exactly(u64::MAX)).map(|n| n.min(budget.max_trials));
@@ -151,13 +151,13 @@ impl<'q> Survey<'q> {
         };
         let mut forecasts: Vec<Forecast> = self.inquiries.iter().map(forecast).collect();
         let most = forecasts.iter().map(|forecast| forecast.trials.most).max().unwrap_or(0);
-        if rehearsal.is_complete() && most as f64 * seconds > WORTH_TIMING {
-            seconds = rehearsal::timed(&self.job, (size, seconds), executor, budget)?;
+        if pilot.is_complete() && most as f64 * seconds > WORTH_TIMING {
+            seconds = pilot::timed(&self.job, (size, seconds), executor, budget)?;
         }
         for forecast in &mut forecasts {
             forecast.seconds = forecast.trials.likely as f64 * seconds;
         }
-        self.ahead = rehearsal.is_complete().then_some(rehearsal);
+        self.ahead = pilot.is_complete().then_some(pilot);
         Ok(forecasts)
     }
 

@@ -61,7 +61,7 @@ fn witness(
 ) -> Option<Witness> {
     let program = &subject.program;
     let unit = if program.scenario.clock == Clock::Steps { "steps" } else { "s" };
-    let mut command = call.simulate_with(settings, trial);
+    let mut command = call.line.simulate(settings, call.seed, trial);
     if let Some(label) = label(subject, advice) {
         command.push_str(&format!(" --move '{label}'"));
     }

@@ -30,7 +30,7 @@ impl Noise {
     /// Prepares it.
     pub fn new(scenario: &Scenario) -> Self {
         let agents = scenario.agents.iter();
-        let present = agents.clone().any(|agent| agent.body.noise.constant() != Some(0.0));
+        let present = agents.clone().any(|agent| agent.body[Parameter::Noise].constant() != Some(0.0));
         Self {
             present: present || scenario.behaviours.change(Parameter::Noise),
             words: agents.map(|agent| word_of(agent.entity)).collect(),

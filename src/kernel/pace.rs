@@ -43,7 +43,9 @@ impl<'s> Pace<'s> {
         let mut own = [0.0; Parameter::ALL.len()];
         for agent in &scenario.agents {
             let body = bodies.entry(Arc::as_ptr(&agent.body)).or_insert_with(|| {
-                Parameter::ALL.map(|parameter| law_of(&agent.body, parameter).map_or(f64::INFINITY, most))
+                Parameter::ALL.map(|parameter| {
+                    if is_asked_for(parameter) { most(&agent.body[parameter]) } else { f64::INFINITY }
+                })
             });
             // As they are drawn: who goes on as recorded has the recorded speed, and several as one body a longer
             // relaxation time.
@@ -133,16 +135,10 @@ impl<'s> Pace<'s> {
     }
 }
 
-/// The law of a parameter of the body whose largest value anybody asks for.
-fn law_of(body: &Body, parameter: Parameter) -> Option<&Law> {
-    match parameter {
-        Parameter::Speed => Some(&body.speed),
-        Parameter::Noise => Some(&body.noise),
-        Parameter::Tau => Some(&body.tau),
-        Parameter::Lambda => Some(&body.lambda),
-        Parameter::Attention => Some(&body.attention),
-        _ => None,
-    }
+/// Whether anybody asks for the largest value of a parameter.
+fn is_asked_for(parameter: Parameter) -> bool {
+    use Parameter::{Attention, Lambda, Noise, Speed, Tau};
+    matches!(parameter, Speed | Noise | Tau | Lambda | Attention)
 }
 
 /// The largest value of a law, or nearly.

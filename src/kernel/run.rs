@@ -14,6 +14,7 @@ use super::{Close, Layout};
 use crate::base::lanes::{LANES, Mask};
 use crate::base::random::TrialKey;
 use crate::base::tick::Tick;
+use std::borrow::Cow;
 
 /// The address of a trial.
 #[derive(Clone, Copy, Debug, Default)]
@@ -48,7 +49,7 @@ pub enum End {
 /// The trials of a batch.
 #[derive(Clone, Debug)]
 pub struct Run<'p> {
-    program: &'p Program,
+    program: Cow<'p, Program>,
     state: State,
     scratch: Scratch,
     /// Lane by lane the changes of the key that are still to come, the next one last; and where there are any.
@@ -63,13 +64,13 @@ impl<'p> Run<'p> {
     /// An empty batch of trials of a program.
     pub fn new(program: &'p Program) -> Self {
         Self {
-            program,
             state: State::new(program.layout, program.scenario.agents.len()),
             scratch: Scratch::new(),
             changes: Default::default(),
             changing: Mask::NONE,
             horizon: program.scenario.horizon,
             last: program.scenario.clock.seconds(program.scenario.horizon),
+            program: Cow::Borrowed(program),
         }
     }
 
@@ -79,6 +80,18 @@ impl<'p> Run<'p> {
     /// When the trial cannot start.
     pub fn of(program: &'p Program, address: Address<'_>) -> Result<(Self, Loaded), start::Fault> {
         let mut run = Self::new(program);
+        let loaded = run.start(address)?;
+        Ok((run, loaded))
+    }
+
+    /// A trial alone that owns its program, in its first state, and what its start found.
+    ///
+    /// # Errors
+    /// When the trial cannot start.
+    pub fn owned(program: Program, address: Address<'_>) -> Result<(Run<'static>, Loaded), start::Fault> {
+        let Run { state, scratch, changes, changing, horizon, last, .. } = Run::new(&program);
+        let program = Cow::Owned(program);
+        let mut run = Run { program, state, scratch, changes, changing, horizon, last };
         let loaded = run.start(address)?;
         Ok((run, loaded))
     }
@@ -127,7 +140,7 @@ impl<'p> Run<'p> {
     /// # Errors
     /// When the trial cannot start.
     pub fn load(&mut self, lane: usize, address: Address<'_>) -> Result<Loaded, start::Fault> {
-        let loaded = start::load(self.program, &mut self.state, lane, address.key, address.advice)?;
+        let loaded = start::load(&self.program, &mut self.state, lane, address.key, address.advice)?;
         self.changes[lane].clear();
         self.changes[lane].extend(address.changes.iter().rev());
         self.changing &= !Mask::lane(lane);
@@ -138,7 +151,7 @@ impl<'p> Run<'p> {
     /// Makes lanes that were just loaded ready.
     pub fn begin(&mut self, lanes: Mask) {
         if !lanes.is_empty() {
-            dynamics::refresh(self.program, &mut self.state, &mut self.scratch, lanes);
+            dynamics::refresh(&self.program, &mut self.state, &mut self.scratch, lanes);
         }
     }
 
@@ -179,7 +192,7 @@ impl<'p> Run<'p> {
                 self.state.keys[lane] = key;
             }
         }
-        dynamics::step(self.program, &mut self.state, &mut self.scratch);
+        dynamics::step(&self.program, &mut self.state, &mut self.scratch);
         self.state.occupied
     }
 
@@ -198,7 +211,7 @@ impl<'p> Run<'p> {
                     _ => last,
                 };
             }
-            jumped |= dynamics::jump_until(self.program, &mut self.state, &mut self.scratch, &until);
+            jumped |= dynamics::jump_until(&self.program, &mut self.state, &mut self.scratch, &until);
             let waiting = self.changing & self.state.occupied & !jumped & !self.state.faulty;
             if waiting.is_empty() {
                 return jumped;
@@ -209,7 +222,7 @@ impl<'p> Run<'p> {
             for lane in waiting.iter() {
                 if let Some((from, key)) = self.change(lane, |from| f64::from_bits(from) < last) {
                     let change = (f64::from_bits(from), key);
-                    dynamics::renew(self.program, &mut self.state, &mut self.scratch, lane, change);
+                    dynamics::renew(&self.program, &mut self.state, &mut self.scratch, lane, change);
                 }
                 until[lane] = last;
             }
@@ -248,6 +261,6 @@ impl<'p> Run<'p> {
 
     /// Reads the present states.
     pub fn read(&self, code: &Code, close: Option<Close<'_>>, readings: &mut Readings) {
-        code.run_close(self.program, &self.state, close, readings);
+        code.run_close(&self.program, &self.state, close, readings);
     }
 }

@@ -25,14 +25,6 @@ pub struct Flat {
     to: u64,
 }
 
-/// Atoms and signals of one state.
-pub trait Present {
-    /// Truth of an atom.
-    fn atom(&self, atom: usize) -> bool;
-    /// Value of a signal.
-    fn signal(&self, signal: usize) -> f64;
-}
-
 /// What a state is for a flat formula.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sort {
@@ -78,9 +70,9 @@ impl Flat {
         })
     }
 
-    /// What a state is for it.
-    pub fn sort(&self, tree: &Tree, state: &impl Present) -> Sort {
-        let known = &mut Known::default();
+    /// What a state with these atoms and signals is for it. What is missing counts as false and as NaN.
+    pub fn sort(&self, tree: &Tree, atoms: &[bool], signals: &[f64]) -> Sort {
+        let (known, state) = (&mut Known::default(), (atoms, signals));
         Sort {
             hold: self.hold.as_ref().is_none_or(|parts| truth(tree, parts, state, known)),
             goal: truth(tree, &self.goal, state, known) ^ self.inverted,
@@ -136,7 +128,7 @@ fn present_parts(tree: &Tree, node: NodeId) -> Option<Vec<Part>> {
 }
 
 /// The truth of a formula of the present state, from its parts; each is looked at once, however often it is shared.
-fn truth(tree: &Tree, parts: &[Part], state: &impl Present, known: &mut Known) -> bool {
+fn truth(tree: &Tree, parts: &[Part], (atoms, signals): (&[bool], &[f64]), known: &mut Known) -> bool {
     known.truths.resize(tree.nodes.len(), false);
     known.numbers.resize(tree.terms.len(), f64::NAN);
     let mut last = false;
@@ -147,7 +139,7 @@ fn truth(tree: &Tree, parts: &[Part], state: &impl Present, known: &mut Known) -
                 let number = |id: &TermId| known.numbers[id.0 as usize];
                 last = match &tree.nodes[id.0 as usize] {
                     Node::Constant(constant) => *constant,
-                    Node::Atom(atom) => state.atom(atom.0 as usize),
+                    Node::Atom(atom) => atoms.get(atom.0 as usize).is_some_and(|atom| *atom),
                     Node::Compare(relation, a, b) => relation.holds(number(a), number(b)),
                     Node::Not(a) => !of(a),
                     Node::And(list) => list.iter().all(of),
@@ -160,7 +152,7 @@ fn truth(tree: &Tree, parts: &[Part], state: &impl Present, known: &mut Known) -
                 let of = |id: &TermId| known.numbers[id.0 as usize];
                 known.numbers[id.0 as usize] = match &tree.terms[id.0 as usize] {
                     Term::Constant(value) => *value,
-                    Term::Signal(signal) => state.signal(signal.0 as usize),
+                    Term::Signal(signal) => signals.get(signal.0 as usize).copied().unwrap_or(f64::NAN),
                     Term::Combine(operation, a, b) => operation.apply(of(a), of(b)),
                     Term::Abs(a) => of(a).abs(),
                     _ => f64::NAN,
@@ -183,17 +175,6 @@ mod tests {
     use super::*;
     use crate::logic::formula::{AtomId, Window};
 
-    struct Only(bool);
-
-    impl Present for Only {
-        fn atom(&self, _: usize) -> bool {
-            self.0
-        }
-        fn signal(&self, _: usize) -> f64 {
-            0.0
-        }
-    }
-
     #[test]
     fn shared_parts_do_not_cost_exponential_time() {
         let mut tree = Tree::default();
@@ -207,7 +188,7 @@ mod tests {
         // x <=> x is always so, which nobody looks for: it is a goal like any other.
         let flat = Flat::of(&tree, always, Tick(9), Clock::Steps).unwrap();
         for atom in [false, true] {
-            assert_eq!(flat.sort(&tree, &Only(atom)), Sort { hold: true, goal: false });
+            assert_eq!(flat.sort(&tree, &[atom], &[]), Sort { hold: true, goal: false });
         }
     }
 }

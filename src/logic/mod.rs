@@ -16,7 +16,7 @@ mod source;
 
 pub use critical::{Critical, critical};
 pub use explain::{Explanation, Reason, explain, open_atoms};
-pub use flat::{Flat, Present, Sort};
+pub use flat::{Flat, Sort};
 pub use formula::{
     Aggregation, AtomId, Node, NodeId, Operation, Relation, SignalId, Term, TermId, Tree, Window,
 };

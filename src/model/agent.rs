@@ -1,11 +1,11 @@
 //! People: bodies, starts, routes, groups.
 
+use super::kind::Kind;
 use super::law::Law;
+use super::parameter::Parameter;
 use super::scene::RegionId;
 use crate::base::geometry::{Shape, Vec2};
-
-/// No human reaches this speed: a trial in which somebody does has diverged, m/s.
-pub const TOP_SPEED: f64 = 15.0;
+use std::ops::{Index, IndexMut};
 
 /// Index of an agent of the scenario.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -18,7 +18,7 @@ pub struct Agent {
     pub name: String,
     /// Stable number of 24 bits from the path of its declaration; addresses its random numbers.
     pub entity: u32,
-    /// Laws of its parameters.
+    /// How it moves: its kind and the laws of its parameters.
     pub body: std::sync::Arc<Body>,
     /// Where and how it starts.
     pub start: Start,
@@ -30,38 +30,33 @@ pub struct Agent {
     pub particle: Option<Particle>,
 }
 
-/// Laws of the parameters of the social force model, in SI units.
-/// Helbing, Farkas, Vicsek 2000; Given-Wilson et al. 2017, equations (1) to (6).
+/// The kind of an agent and the laws of its parameters, in SI units. Those that the kind does not have are constant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
-    /// Mass, kg.
-    pub mass: Law,
-    /// Radius of the disc, m.
-    pub radius: Law,
-    /// Driving speed, m/s.
-    pub speed: Law,
-    /// Relaxation time of the driving force, s.
-    pub tau: Law,
-    /// Social force at touching distance, N.
-    pub a: Law,
-    /// Range of the social force, m.
-    pub b: Law,
-    /// Weight of what is behind, 0 to 1 (1: the same all around).
-    pub lambda: Law,
-    /// Second exponential term: force at touch, N (0: none).
-    pub a2: Law,
-    /// Second exponential term: range, m.
-    pub b2: Law,
-    /// Second exponential term: weight of what is behind.
-    pub lambda2: Law,
-    /// Body compression, kg/s^2.
-    pub k1: Law,
-    /// Sliding friction, kg/(m s).
-    pub k2: Law,
-    /// Stationary standard deviation of each velocity component, m/s.
-    pub noise: Law,
-    /// Share of the social force that is felt, 0 to 1.
-    pub attention: Law,
+    /// Its kind.
+    pub kind: Kind,
+    laws: [Law; Parameter::COUNT],
+}
+
+impl Body {
+    /// Of a kind, with these laws.
+    pub fn new(kind: Kind, law: impl FnMut(Parameter) -> Law) -> Self {
+        Self { kind, laws: Parameter::ALL.map(law) }
+    }
+}
+
+impl Index<Parameter> for Body {
+    type Output = Law;
+
+    fn index(&self, parameter: Parameter) -> &Law {
+        &self.laws[parameter as usize]
+    }
+}
+
+impl IndexMut<Parameter> for Body {
+    fn index_mut(&mut self, parameter: Parameter) -> &mut Law {
+        &mut self.laws[parameter as usize]
+    }
 }
 
 /// A body that stands for a group (Given-Wilson et al. 2017, section 4.2).

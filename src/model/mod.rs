@@ -3,8 +3,10 @@
 pub mod agent;
 pub mod behaviour;
 mod digest;
+pub mod dimension;
 mod evaluation;
 pub mod expression;
+pub mod kind;
 mod lacking;
 pub mod law;
 pub mod mention;
@@ -15,14 +17,16 @@ pub mod scenario;
 pub mod scene;
 pub mod source;
 
-pub use agent::{Agent, AgentId, Body, Goal, Group, Leg, Particle, Position, Route, Start, TOP_SPEED};
+pub use agent::{Agent, AgentId, Body, Goal, Group, Leg, Particle, Position, Route, Start};
 pub use behaviour::{
     Amount, Attached, Behaviour, BehaviourId, Behaviours, Conduct, Mode, Transition, Trigger,
 };
+pub use dimension::Dimension;
 pub use expression::{Arithmetic, Axis, Bool, Comparison, Field, Fold, Function, Num, Place, Set, Who};
+pub use kind::Kind;
 pub use law::{Family, Law};
 pub use moves::{Move, Moves};
-pub use parameter::Parameter;
+pub use parameter::{PARAMETERS, Parameter, TOP_SPEED};
 pub use process::{Branch, Command, Domain, Process, Processes, Timing, Variable, VariableId};
 pub use scenario::Scenario;
 pub use scene::{Barrier, BarrierId, Obstacle, Region, RegionId, Scene};

@@ -1,101 +1,249 @@
-//! The parameters of an agent that moves by the social force model.
+//! The table of parameters: all that is said of a parameter of an agent stands in one row.
+//!
+//! Parsing of fields, presets, errors of range, changes by behaviours, drawing, `smc show` and the table of the manual read
+//! the rows below. A parameter that a new force term needs is a row here and a use in that term.
 
-/// A parameter of an agent.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Parameter {
-    /// Mass, kg.
-    Mass,
-    /// Radius of the disc, m.
-    Radius,
-    /// Driving speed, m/s.
-    Speed,
-    /// Relaxation time, s.
-    Tau,
-    /// Social force at touch, N.
-    A,
-    /// Its range, m.
-    B,
-    /// Weight of what is behind.
-    Lambda,
-    /// Second exponential term: force at touch, N.
-    A2,
-    /// Second exponential term: range, m.
-    B2,
-    /// Second exponential term: weight of what is behind.
-    Lambda2,
-    /// Body compression, kg/s^2.
-    K1,
-    /// Sliding friction, kg/(m s).
-    K2,
-    /// Standard deviation of each velocity component, m/s.
-    Noise,
-    /// Share of the social force that is felt, 0 to 1.
-    Attention,
+use super::dimension::Dimension;
+use super::kind::Kind;
+use super::law::Law;
+use crate::base::random::name_hash;
+
+/// No human reaches this speed: a trial in which somebody does has diverged, m/s.
+pub const TOP_SPEED: f64 = 15.0;
+
+/// What a parameter of a body may be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Range {
+    /// Above 0.
+    Positive,
+    /// 0 or above.
+    NotNegative,
+    /// From 0 to 1.
+    Share,
+}
+
+/// What a parameter is for the term of the force that it belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// The force at touching distance: attention multiplies it in the agent that feels it.
+    Strength,
+    /// How far the force reaches.
+    Reach,
+    /// A number of the body.
+    Plain,
+}
+
+/// When `smc show` prints a parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shown {
+    /// In each body.
+    Always,
+    /// In bodies that have another value than the default.
+    UnlessDefault,
+    /// In bodies in which this strength is not 0.
+    With(Parameter),
+}
+
+/// A row of the table.
+#[derive(Clone, Copy, Debug)]
+pub struct Description {
+    /// The parameter.
+    pub parameter: Parameter,
+    /// Its name in a scenario; addresses its draws.
+    pub name: &'static str,
+    /// What it means, for the manual.
+    pub meaning: &'static str,
+    /// Its dimension; values are in SI units.
+    pub dimension: Dimension,
+    /// What it may be.
+    pub range: Range,
+    /// The value beyond which every trial would diverge.
+    pub limit: f64,
+    /// Its value unless set; `None` if a kind must set it.
+    pub default: Option<f64>,
+    /// Whether a preset that does not set it gives it its default: a preset describes the whole force, so nothing is left of
+    /// a kind from which one with a preset starts.
+    pub preset: bool,
+    /// Whether a state of a behaviour may change it.
+    pub changeable: bool,
+    /// What it is for its term of the force.
+    pub role: Role,
+    /// When it is printed.
+    pub shown: Shown,
+    /// The kinds of agents that have it.
+    pub kinds: &'static [Kind],
+}
+
+impl Description {
+    /// What most parameters have in common.
+    const USUAL: Self = Self {
+        parameter: Parameter::Mass,
+        name: "",
+        meaning: "",
+        dimension: Dimension::NONE,
+        range: Range::NotNegative,
+        limit: f64::INFINITY,
+        default: None,
+        preset: false,
+        changeable: true,
+        role: Role::Plain,
+        shown: Shown::Always,
+        kinds: &[Kind::Sfm],
+    };
+    /// Of the body or of contact: the same in all states of a behaviour.
+    const FIXED: Self = Self { changeable: false, ..Self::USUAL };
+    /// Of the social force.
+    const FORCE: Self = Self { preset: true, ..Self::USUAL };
+}
+
+macro_rules! parameters {
+    ($($parameter:ident $name:literal $meaning:literal = $usual:ident { $($field:ident: $value:expr),* })*) => {
+        /// A parameter of an agent.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum Parameter {
+            $(#[doc = $meaning] $parameter,)*
+        }
+
+        /// The table.
+        pub const PARAMETERS: [Description; Parameter::COUNT] = [$(Description {
+            parameter: Parameter::$parameter,
+            name: $name,
+            meaning: $meaning,
+            $($field: $value,)*
+            ..Description::$usual
+        }),*];
+
+        impl Parameter {
+            /// How many there are.
+            pub const COUNT: usize = [$($name),*].len();
+
+            /// All of them, in the order of the table.
+            pub const ALL: [Self; Self::COUNT] = [$(Self::$parameter),*];
+
+            /// The draws that belong to their names.
+            const DRAWS: [u32; Self::COUNT] = [$(name_hash($name) as u32),*];
+        }
+    };
+}
+
+parameters! {
+    Mass "mass" "mass" = FIXED { dimension: Dimension::MASS, range: Range::Positive }
+    Radius "radius" "radius of the disc that represents the body" =
+        FIXED { dimension: Dimension::LENGTH, range: Range::Positive }
+    Speed "speed" "driving speed: the speed of undisturbed walking" =
+        USUAL { dimension: Dimension::SPEED, limit: TOP_SPEED }
+    Tau "tau" "relaxation time: how fast the velocity returns to the driving velocity" =
+        USUAL { dimension: Dimension::TIME, range: Range::Positive }
+    A "A" "social force: strength when two bodies touch" =
+        USUAL { dimension: Dimension::FORCE, role: Role::Strength }
+    B "B" "social force: range" =
+        USUAL { dimension: Dimension::LENGTH, range: Range::Positive, role: Role::Reach }
+    Lambda "lambda" "weight of agents behind; with 1 all directions count alike" =
+        FORCE { range: Range::Share, default: Some(1.0) }
+    A2 "A2" "a second social term, such as a weak one with a long range: strength; absent unless set" =
+        FORCE { dimension: Dimension::FORCE, default: Some(0.0), role: Role::Strength, shown: Shown::With(Parameter::A2) }
+    B2 "B2" "second social term: range" = FORCE {
+        dimension: Dimension::LENGTH,
+        range: Range::Positive,
+        default: Some(1.0),
+        role: Role::Reach,
+        shown: Shown::With(Parameter::A2)
+    }
+    Lambda2 "lambda2" "second social term: weight of agents behind" =
+        FORCE { range: Range::Share, default: Some(1.0), shown: Shown::With(Parameter::A2) }
+    K1 "k1" "body compression, in contact only" = FIXED { dimension: Dimension::STIFFNESS }
+    K2 "k2" "sliding friction, in contact only" = FIXED { dimension: Dimension::FRICTION }
+    Noise "noise" "standard deviation that each velocity component reaches in equilibrium, whatever the step" =
+        USUAL { dimension: Dimension::SPEED, limit: TOP_SPEED, default: Some(0.0) }
+    Attention "attention" "share of the social force, of agents and of walls, that the agent feels. Contact forces are not reduced" =
+        USUAL { range: Range::Share, default: Some(1.0), shown: Shown::UnlessDefault }
 }
 
 impl Parameter {
-    /// All of them.
-    pub const ALL: [Self; 14] = [
-        Self::Mass,
-        Self::Radius,
-        Self::Speed,
-        Self::Tau,
-        Self::A,
-        Self::B,
-        Self::Lambda,
-        Self::A2,
-        Self::B2,
-        Self::Lambda2,
-        Self::K1,
-        Self::K2,
-        Self::Noise,
-        Self::Attention,
-    ];
+    /// Its row.
+    pub const fn description(self) -> &'static Description {
+        const TABLE: &[Description; Parameter::COUNT] = &PARAMETERS;
+        &TABLE[self as usize]
+    }
 
     /// Its name in a scenario.
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Mass => "mass",
-            Self::Radius => "radius",
-            Self::Speed => "speed",
-            Self::Tau => "tau",
-            Self::A => "A",
-            Self::B => "B",
-            Self::Lambda => "lambda",
-            Self::A2 => "A2",
-            Self::B2 => "B2",
-            Self::Lambda2 => "lambda2",
-            Self::K1 => "k1",
-            Self::K2 => "k2",
-            Self::Noise => "noise",
-            Self::Attention => "attention",
-        }
+        self.description().name
+    }
+
+    /// Its unit; empty for a pure number.
+    pub fn unit(self) -> String {
+        self.description().dimension.to_string()
+    }
+
+    /// The number of the draw that belongs to its name.
+    pub const fn draw(self) -> u32 {
+        Self::DRAWS[self as usize]
+    }
+
+    /// The parameters of a kind.
+    pub fn of_kind(kind: Kind) -> impl Iterator<Item = Self> + Clone {
+        Self::ALL.into_iter().filter(move |parameter| parameter.description().kinds.contains(&kind))
+    }
+
+    /// The parameter of this name, of any kind.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|parameter| parameter.name() == name)
     }
 
     /// The parameters that a state of a behaviour may change.
     pub fn changeable() -> impl Iterator<Item = Self> {
-        Self::ALL.into_iter().filter(|parameter| parameter.may_change())
+        Self::ALL.into_iter().filter(|parameter| parameter.description().changeable)
     }
 
-    /// The parameter of this name that a state of a behaviour may change.
+    /// The parameter of this name, if a state of a behaviour may change it.
     pub fn changeable_of(name: &str) -> Option<Self> {
         Self::changeable().find(|parameter| parameter.name() == name)
     }
 
-    /// Whether a state of a behaviour may change it.
-    pub const fn may_change(self) -> bool {
-        !matches!(self, Self::Mass | Self::Radius | Self::K1 | Self::K2)
-    }
-
-    /// Whether someone can move with this value, SI units.
+    /// Whether an agent can move with this value, SI units.
     pub fn allows(self, value: f64) -> bool {
         value.is_finite()
-            && match self {
-                Self::Mass | Self::Tau | Self::B | Self::B2 => value > 0.0,
-                Self::Lambda | Self::Lambda2 | Self::Attention => (0.0..=1.0).contains(&value),
-                Self::Radius | Self::Speed | Self::A | Self::A2 | Self::K1 | Self::K2 | Self::Noise => {
-                    value >= 0.0
-                }
+            && match self.description().range {
+                Range::Positive => value > 0.0,
+                Range::NotNegative => value >= 0.0,
+                Range::Share => (0.0..=1.0).contains(&value),
             }
+    }
+
+    /// Why a law cannot be its: all values that the law can draw must be possible.
+    pub fn refuses(self, law: &Law) -> Option<String> {
+        let Description { name, range, limit, .. } = self.description();
+        let (low, high) = law.bounds();
+        let constant = law.constant().is_some();
+        let truncate = if constant { "" } else { "; truncate the distribution: `… in lo .. hi`" };
+        match range {
+            Range::Positive if low < 0.0 || (constant && low == 0.0) => {
+                Some(format!("`{name}` must be positive{truncate}"))
+            }
+            Range::NotNegative | Range::Share if low < 0.0 => {
+                Some(format!("`{name}` cannot be negative{truncate}"))
+            }
+            Range::Share if high > 1.0 => Some(format!("`{name}` lies between 0 and 1{truncate}")),
+            _ if low > *limit => {
+                let unit = self.unit();
+                Some(format!("a `{name}` of more than {limit} {unit} is nobody's: every trial would diverge"))
+            }
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_stand_in_the_order_of_the_parameters() {
+        for (at, row) in PARAMETERS.iter().enumerate() {
+            assert_eq!(row.parameter as usize, at);
+            assert_eq!(Parameter::named(row.name), Some(row.parameter));
+            assert!(row.default.is_none_or(|value| row.parameter.allows(value)), "{}", row.name);
+        }
     }
 }

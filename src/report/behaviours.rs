@@ -27,7 +27,7 @@ pub(super) fn describe(out: &mut String, world: &World, id: AgentId) {
                 .changes
                 .iter()
                 .map(|(parameter, amount)| {
-                    let unit = unit(*parameter);
+                    let unit = &parameter.unit();
                     let value = match amount {
                         Amount::Drawn(value) => law(value, unit),
                         Amount::Computed(num) => match num {
@@ -112,18 +112,5 @@ fn expression(scenario: &Scenario, num: &Num) -> String {
         }
         Num::Apply(Function::Negate, a) => format!("-{}", side(a)),
         _ => "…".to_owned(),
-    }
-}
-
-fn unit(parameter: Parameter) -> &'static str {
-    match parameter {
-        Parameter::Speed | Parameter::Noise => "m/s",
-        Parameter::Tau => "s",
-        Parameter::A | Parameter::A2 => "N",
-        Parameter::Radius | Parameter::B | Parameter::B2 => "m",
-        Parameter::Mass => "kg",
-        Parameter::K1 => "kg/s^2",
-        Parameter::K2 => "kg/(m s)",
-        Parameter::Lambda | Parameter::Lambda2 | Parameter::Attention => "",
     }
 }

@@ -7,7 +7,8 @@ use crate::base::tick::Clock;
 use crate::compile::Written;
 use crate::compile::study::{Ask, Estimator, MeasureKind, Ranking, Study, Test, World};
 use crate::engine::at_most;
-use crate::model::{Agent, AgentId, Family, Goal, Law, Leg, Obstacle, Position, Route, Scenario};
+use crate::model::parameter::Shown;
+use crate::model::{Agent, AgentId, Family, Goal, Law, Leg, Obstacle, Parameter, Position, Route, Scenario};
 use std::fmt::Write;
 
 /// Longest list of values that is shown in full.
@@ -163,29 +164,16 @@ fn people(out: &mut String, world: &World) {
 }
 
 fn agent(out: &mut String, scenario: &Scenario, agent: &Agent) {
-    let b = &agent.body;
-    let parameters = [
-        ("mass", &b.mass, "kg"),
-        ("radius", &b.radius, "m"),
-        ("speed", &b.speed, "m/s"),
-        ("tau", &b.tau, "s"),
-        ("A", &b.a, "N"),
-        ("B", &b.b, "m"),
-        ("lambda", &b.lambda, ""),
-        ("A2", &b.a2, "N"),
-        ("B2", &b.b2, "m"),
-        ("lambda2", &b.lambda2, ""),
-        ("k1", &b.k1, "kg/s^2"),
-        ("k2", &b.k2, "kg/(m s)"),
-        ("noise", &b.noise, "m/s"),
-        ("attention", &b.attention, ""),
-    ];
-    let second = b.a2 != Law::Constant(0.0);
-    let shown: Vec<String> = parameters
-        .iter()
-        .filter(|(name, ..)| second || !name.ends_with('2') || *name == "k2")
-        .filter(|(name, value, _)| *name != "attention" || **value != Law::Constant(1.0))
-        .map(|(name, value, unit)| format!("{name} {}", law(value, unit)))
+    let is = |parameter: Parameter, value: f64| agent.body[parameter] == Law::Constant(value);
+    let shown: Vec<String> = Parameter::of_kind(agent.body.kind)
+        .filter(|parameter| match parameter.description().shown {
+            Shown::Always => true,
+            Shown::UnlessDefault => {
+                parameter.description().default.is_none_or(|value| !is(*parameter, value))
+            }
+            Shown::With(strength) => !is(strength, 0.0),
+        })
+        .map(|parameter| format!("{} {}", parameter.name(), law(&agent.body[parameter], &parameter.unit())))
         .collect();
     for line in shown.chunks(4) {
         let _ = writeln!(out, "      {}", line.join(", "));

@@ -97,7 +97,7 @@ fn planned_numbers_are_told_exactly() {
 }
 
 #[test]
-fn a_rehearsal_leaves_no_trace() {
+fn a_pilot_leaves_no_trace() {
     let place = place();
     let results = |words: &[&str]| {
         let call = ["check", "leader.scn", "leader.bltl", "--format", "json", "-q"];
@@ -107,7 +107,7 @@ fn a_rehearsal_leaves_no_trace() {
         }
         json["results"].to_string()
     };
-    // With a deadline there is no rehearsal.
+    // With a deadline there is no pilot.
     assert_eq!(results(&[]), results(&["--timeout", "10min"]));
     assert_eq!(results(&["--max-trials", "3"]), results(&["--max-trials", "3", "--timeout", "10min"]));
 }

@@ -14,8 +14,8 @@ use smc::base::lanes::{LANES, Lanes, Mask};
 use smc::base::tick::{Clock, Tick};
 use smc::kernel::{Code, Layout, Program, Readings, State};
 use smc::model::{
-    Agent, AgentId, Arithmetic, Barrier, Body, Bool, Comparison, Field, Fold, Law, Num, Obstacle, Parameter,
-    Position, Region, Route, Scenario, Scene, Set, Start, Who,
+    Agent, AgentId, Arithmetic, Barrier, Body, Bool, Comparison, Field, Fold, Kind, Law, Num, Obstacle,
+    Parameter, Position, Region, Route, Scenario, Scene, Set, Start, Who,
 };
 use std::sync::Arc;
 
@@ -51,23 +51,7 @@ fn scene() -> Scene {
 }
 
 fn scenario(agents: usize, scene: Scene) -> Arc<Scenario> {
-    let law = || Law::Constant(1.0);
-    let body = Arc::new(Body {
-        mass: law(),
-        radius: law(),
-        speed: law(),
-        tau: law(),
-        a: law(),
-        b: law(),
-        lambda: law(),
-        a2: law(),
-        b2: law(),
-        lambda2: law(),
-        k1: law(),
-        k2: law(),
-        noise: law(),
-        attention: Law::Constant(1.0),
-    });
+    let body = Arc::new(Body::new(Kind::Sfm, |_| Law::Constant(1.0)));
     let agent = |k: usize| Agent {
         name: format!("a{k}"),
         entity: k as u32,

@@ -3,9 +3,7 @@
 use super::{lets, states};
 use crate::compile::dimension::Dimension;
 use crate::compile::elaborator::{Elaborator, Locals, Lowered, Reported};
-use crate::compile::kinds;
 use crate::compile::laws::{distribution, value_span};
-use crate::compile::presets::PARAMETERS;
 use crate::compile::typed::Typed;
 use crate::model::process::wrong_weights;
 use crate::model::{Amount, Bool, Conduct, Law, Mode, Num, Parameter, Transition, Trigger, VariableId};
@@ -151,13 +149,13 @@ impl<'a> Elaborator<'a> {
         variables: usize,
     ) -> Lowered<Amount> {
         let name = parameter.name();
-        let dimension = dimension_of(parameter);
+        let dimension = parameter.description().dimension;
         let span = value_span(&field.value);
         let expr = match &field.value {
             Value::Plain(expr) if distribution(expr).is_none() => expr,
             other => {
                 let law = self.law(other, dimension, locals)?;
-                return match kinds::out_of_range(name, &law) {
+                return match parameter.refuses(&law) {
                     Some(reason) => self.report(Diagnostic::error(Code::E0405, span, reason)),
                     None => Ok(Amount::Drawn(law)),
                 };
@@ -172,7 +170,8 @@ impl<'a> Elaborator<'a> {
             Num::Constant(value) if !parameter.allows(value) => self.report(Diagnostic::error(
                 Code::E0405,
                 span,
-                kinds::out_of_range(name, &Law::Constant(value))
+                parameter
+                    .refuses(&Law::Constant(value))
                     .unwrap_or_else(|| format!("`{name}` cannot be {value}")),
             )),
             value if value.reads(&mut BTreeSet::new()) => Ok(Amount::Computed(value)),
@@ -218,7 +217,7 @@ impl Elaborator<'_> {
     fn with_own(&self, locals: &Locals, variables: usize) -> Locals {
         let own = Parameter::changeable().map(|own| {
             let value = Num::Variable(VariableId((variables + own as usize) as u32));
-            (own.name().to_owned(), Some(Arc::new(Typed::Num(value, dimension_of(own)))))
+            (own.name().to_owned(), Some(Arc::new(Typed::Num(value, own.description().dimension))))
         });
         let own = own.filter(|(name, _)| !self.is_inside(name, locals));
         let names: Vec<_> = own.chain(locals.names.iter().cloned()).collect();
@@ -242,10 +241,4 @@ impl Elaborator<'_> {
         }
         Ok(num)
     }
-}
-
-/// The dimension of a parameter.
-fn dimension_of(parameter: Parameter) -> Dimension {
-    let known = PARAMETERS.iter().find(|(name, ..)| *name == parameter.name());
-    known.map_or(Dimension::NONE, |(_, dimension, _)| *dimension)
 }

@@ -123,7 +123,7 @@ impl<'a> Elaborator<'a> {
                 let error = Diagnostic::error(Code::E0202, field.name.span, format!("`{name}` is set twice"))
                     .related(first.name.span, "first set here");
                 self.note(error);
-            } else if super::kinds::parameter(name).is_some() && Parameter::changeable_of(name).is_none() {
+            } else if Parameter::named(name).is_some_and(|known| !known.description().changeable) {
                 let error = Diagnostic::error(
                     Code::E0911,
                     field.name.span,

@@ -356,7 +356,9 @@ impl<'i> Broken<'i> {
     fn is_whole_kind(&self, name: &str) -> bool {
         let mut name = name;
         for _ in 0..=self.kinds.len() {
-            let Some((base, place)) = self.kinds.get(name) else { return name == "sfm" };
+            let Some((base, place)) = self.kinds.get(name) else {
+                return crate::model::Kind::named(name).is_some();
+            };
             if self.is_torn_behind(*place) {
                 return false;
             }

@@ -116,7 +116,7 @@ pub(super) fn print(study: &Study) -> String {
     format!("{} worlds, {}", study.worlds.len(), ink.0)
 }
 
-/// The next message of a line; `None` where the line was closed between two of them.
+/// The next message of a connection; `None` where the connection was closed between two of them.
 pub(super) fn receive(from: &mut dyn Read) -> io::Result<Option<Vec<u8>>> {
     let mut length = [0; 4];
     let mut known = 0;
@@ -397,20 +397,20 @@ mod tests {
     proptest! {
         #[test]
         fn what_was_said_is_understood(order in orders(), reply in replies()) {
-            let mut line: &[u8] = &[order.bytes(), reply.bytes()].concat();
-            let first = receive(&mut line).unwrap().unwrap();
+            let mut connection: &[u8] = &[order.bytes(), reply.bytes()].concat();
+            let first = receive(&mut connection).unwrap().unwrap();
             prop_assert_eq!(Order::read(&first), Ok(order));
-            let second = receive(&mut line).unwrap().unwrap();
+            let second = receive(&mut connection).unwrap().unwrap();
             prop_assert_eq!(Reply::read(&second), Ok(reply));
-            prop_assert_eq!(receive(&mut line).unwrap(), None);
+            prop_assert_eq!(receive(&mut connection).unwrap(), None);
         }
 
         #[test]
         fn cut_short_it_is_refused(order in orders(), reply in replies(), cut: prop::sample::Index) {
             for (whose, bytes) in [order.bytes(), reply.bytes()].into_iter().enumerate() {
                 let cut = cut.index(bytes.len());
-                let mut line = &bytes[..cut];
-                prop_assert!(matches!(receive(&mut line), Err(_) | Ok(None)));
+                let mut connection = &bytes[..cut];
+                prop_assert!(matches!(receive(&mut connection), Err(_) | Ok(None)));
                 if cut > 4 {
                     let part = &bytes[4..cut];
                     let refused = if whose == 0 { Order::read(part).is_err() } else { Reply::read(part).is_err() };

@@ -3,16 +3,16 @@
 //!
 //! Trials are pure functions of model, seed and index. So a lease that does not come back is leased again to another rank,
 //! and one that comes back twice counts once. Where no rank is left, the head runs the rest itself. Nothing here knows of
-//! processes: a rank is a line on which one speaks and listens.
+//! processes: a rank is a connection on which one speaks and listens.
 
-mod desk;
-mod line;
+mod connection;
+mod lease_queue;
 mod message;
 mod round;
 mod serve;
 
-pub use line::Line;
-pub use serve::{Broken, serve};
+pub use connection::Connection;
+pub use serve::{ServeError, serve};
 
 use super::budget::Budget;
 use super::cell::Item;
@@ -20,7 +20,7 @@ use super::executor::{Cells, Executor, Job, Threads};
 use super::fault::Fault;
 use crate::compile::Study;
 use crate::logic::Invalid;
-use desk::{Desk, End};
+use lease_queue::{LeaseQueue, RoundEnd};
 use round::Round;
 use std::sync::Mutex;
 
@@ -36,7 +36,7 @@ pub struct Traffic {
 /// Runs trials on ranks, and what is none (paths of splitting) on threads of its own.
 pub struct Ranks {
     threads: Threads,
-    desk: Mutex<Desk>,
+    queue: Mutex<LeaseQueue>,
 }
 
 impl Ranks {
@@ -46,38 +46,38 @@ impl Ranks {
     /// # Errors
     /// If a rank runs another version or another model, or has reasons of its own not to take part.
     pub fn new(
-        lines: Vec<Line>,
+        connections: Vec<Connection>,
         study: &Study,
         inputs: Vec<u8>,
         each: usize,
         threads: Threads,
         budget: &Budget,
     ) -> Result<Self, Fault> {
-        let mut desk = Desk::new(lines, study, inputs, each)?;
-        desk.welcome(budget)?;
-        Ok(Self { threads, desk: Mutex::new(desk) })
+        let mut queue = LeaseQueue::new(connections, study, inputs, each)?;
+        queue.welcome(budget)?;
+        Ok(Self { threads, queue: Mutex::new(queue) })
     }
 
     /// What went wrong with ranks, in words. None of it changes a result.
     pub fn warnings(&self) -> Vec<String> {
-        self.desk.lock().map(|desk| desk.warnings()).unwrap_or_default()
+        self.queue.lock().map(|queue| queue.warnings()).unwrap_or_default()
     }
 
     /// How many leases there were so far.
     pub fn traffic(&self) -> Traffic {
-        self.desk.lock().map(|desk| desk.traffic).unwrap_or_default()
+        self.queue.lock().map(|queue| queue.traffic).unwrap_or_default()
     }
 }
 
 impl Executor for Ranks {
     fn run(&self, job: &Job<'_>, items: &[Item], budget: &Budget) -> Result<Cells, Invalid> {
-        let (Some(world), Ok(mut desk)) = (job.subject.number, self.desk.lock()) else {
+        let (Some(world), Ok(mut queue)) = (job.subject.number, self.queue.lock()) else {
             return self.threads.run(job, items, budget);
         };
         let mut round = Round::new(world, job, items);
-        let end = desk.run(&mut round, budget);
-        drop(desk);
-        if end == End::Alone {
+        let end = queue.run(&mut round, budget);
+        drop(queue);
+        if end == RoundEnd::Alone {
             let places = round.rest();
             let rest: Vec<Item> = places.iter().map(|&place| items[place]).collect();
             let cells = self.threads.run(job, &rest, budget)?;
@@ -92,7 +92,7 @@ impl Executor for Ranks {
     }
 
     fn width(&self, job: &Job<'_>) -> usize {
-        let threads = self.desk.lock().map_or(0, |desk| desk.width());
+        let threads = self.queue.lock().map_or(0, |queue| queue.width());
         if threads == 0 { self.threads.width(job) } else { threads * job.lanes() }
     }
 

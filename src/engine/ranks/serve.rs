@@ -18,10 +18,10 @@ const WARM: usize = 4;
 
 /// Why a rank ended early.
 #[derive(Debug, Error)]
-pub enum Broken {
-    /// Its line broke.
-    #[error("the line to the head broke: {0}")]
-    Line(#[from] io::Error),
+pub enum ServeError {
+    /// Its connection broke.
+    #[error("the connection to the head broke: {0}")]
+    Connection(#[from] io::Error),
     /// The head said what means nothing.
     #[error("the head is not understood: {0}")]
     Malformed(#[from] Malformed),
@@ -30,12 +30,12 @@ pub enum Broken {
     Refused(String),
 }
 
-/// What comes over the line, in its order.
+/// What comes over the connection, in its order.
 enum Task {
     Order(Order),
     /// A lease, and what may end it early.
     Lease(Lease, Arc<Budget>),
-    Broken(Broken),
+    ServeError(ServeError),
 }
 
 /// Leases that are not answered yet.
@@ -57,25 +57,25 @@ impl Open {
     }
 }
 
-/// Serves a head until it closes its line: trials of the study that `prepare` makes of what the head hands over. Nothing
-/// that is running outlives the line.
+/// Serves a head until it closes its connection: trials of the study that `prepare` makes of what the head hands over. Nothing
+/// that is running outlives the connection.
 pub fn serve(
     from: Box<dyn Read + Send>,
     to: &mut dyn Write,
     prepare: &dyn Fn(&[u8]) -> Result<Study, String>,
-) -> Result<(), Broken> {
+) -> Result<(), ServeError> {
     let (sender, inbox) = mpsc::channel();
     std::thread::Builder::new().spawn(move || listen(from, &sender))?;
     let mut say = |reply: &Reply| to.write_all(&reply.bytes()).and_then(|()| to.flush());
-    let refuse = |reason: String| (Reply::Refused(reason.clone()), Broken::Refused(reason));
+    let refuse = |reason: String| (Reply::Refused(reason.clone()), ServeError::Refused(reason));
     let greeting = match inbox.recv() {
         Ok(Task::Order(Order::Greeting(greeting))) => greeting,
-        Ok(Task::Broken(Broken::Malformed(reason))) => {
+        Ok(Task::ServeError(ServeError::Malformed(reason))) => {
             let (reply, broken) = refuse(reason.to_string());
             say(&reply)?;
             return Err(broken);
         }
-        Ok(Task::Broken(broken)) => return Err(broken),
+        Ok(Task::ServeError(broken)) => return Err(broken),
         Ok(Task::Order(Order::Lease(_) | Order::Stop) | Task::Lease(..)) => {
             return Err(Malformed("the head does not say what it runs").into());
         }
@@ -106,19 +106,19 @@ pub fn serve(
     drop(greeting);
     say(&Reply::Ready { version, print: own })?;
     let subjects: Vec<OnceCell<Subject>> = study.worlds.iter().map(|_| OnceCell::new()).collect();
-    let mut bench = Bench { study: &study, subjects: &subjects, jobs: Vec::new(), threads };
+    let mut worker = Worker { study: &study, subjects: &subjects, jobs: Vec::new(), threads };
     for task in inbox {
         match task {
-            Task::Lease(lease, budget) => say(&bench.run(&lease, &budget)?)?,
+            Task::Lease(lease, budget) => say(&worker.run(&lease, &budget)?)?,
             Task::Order(Order::Stop) => {}
             Task::Order(_) => return Err(Malformed("the head greets twice").into()),
-            Task::Broken(broken) => return Err(broken),
+            Task::ServeError(broken) => return Err(broken),
         }
     }
     Ok(())
 }
 
-/// Reads the line until it is closed. What is running then ends at once, and so it does when the head says so.
+/// Reads the connection until it is closed. What is running then ends at once, and so it does when the head says so.
 fn listen(mut from: Box<dyn Read + Send>, tasks: &mpsc::Sender<Task>) {
     let open = Open::default();
     loop {
@@ -135,12 +135,12 @@ fn listen(mut from: Box<dyn Read + Send>, tasks: &mpsc::Sender<Task>) {
                     Task::Order(Order::Stop)
                 }
                 Ok(order) => Task::Order(order),
-                Err(reason) => Task::Broken(reason.into()),
+                Err(reason) => Task::ServeError(reason.into()),
             },
             Ok(None) => break,
-            Err(error) => Task::Broken(error.into()),
+            Err(error) => Task::ServeError(error.into()),
         };
-        let last = matches!(task, Task::Broken(_));
+        let last = matches!(task, Task::ServeError(_));
         if tasks.send(task).is_err() || last {
             break;
         }
@@ -149,7 +149,7 @@ fn listen(mut from: Box<dyn Read + Send>, tasks: &mpsc::Sender<Task>) {
 }
 
 /// Jobs at hand.
-struct Bench<'s> {
+struct Worker<'s> {
     study: &'s Study,
     subjects: &'s [OnceCell<Subject>],
     /// Those used last, the latest at the end.
@@ -157,7 +157,7 @@ struct Bench<'s> {
     threads: Threads,
 }
 
-impl<'s> Bench<'s> {
+impl<'s> Worker<'s> {
     /// Runs the trials of a lease.
     #[allow(clippy::disallowed_methods, reason = "how long a lease takes decides how large the next one is")]
     fn run(&mut self, lease: &Lease, budget: &Budget) -> Result<Reply, Malformed> {
@@ -185,7 +185,7 @@ impl<'s> Bench<'s> {
         Ok(Reply::Answer(answer))
     }
 
-    /// The job of a lease, taken from the bench.
+    /// The job of a lease, taken from the worker.
     fn job(&mut self, lease: &Lease) -> Result<Job<'s>, Malformed> {
         let world = self.study.worlds.get(lease.world).ok_or(Malformed("there is no such world"))?;
         if lease.columns.is_empty() || lease.columns.iter().any(|&column| column >= world.columns.len()) {

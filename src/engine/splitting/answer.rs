@@ -8,7 +8,7 @@ use crate::engine::budget::Budget;
 use crate::engine::executor::Executor;
 use crate::engine::fault::Fault;
 use crate::engine::method;
-use crate::engine::outcome::{Kind, QueryResult, Rare, Stop};
+use crate::engine::outcome::{Certificate, Certified, Kind, QueryResult, Rare, Stop};
 use crate::engine::procedure;
 use crate::engine::watch::Watch;
 use crate::engine::witness;
@@ -60,6 +60,15 @@ impl Answers<'_> {
                 words::error(rule.delta)
             );
         }
+        let bound = (counts.trials > 0 && found.bound < 1.0).then_some(found.bound);
+        let floor =
+            found.spreads.map(|[low, _]| low.floor).filter(|floor| 0.0 < *floor && *floor <= found.bound);
+        // Each end may be wrong with its own error.
+        let ends = u8::from(floor.is_some()) + u8::from(bound.is_some());
+        result.certificate = (ends > 0).then(|| Certificate {
+            claim: Certified::Between { low: floor.unwrap_or(0.0), high: bound.unwrap_or(1.0) },
+            error: f64::from(ends) * rule.delta,
+        });
         state(&mut result, &found, rule.delta);
         let picks = witness::sides(&found.plain);
         result.witnesses = self.witnesses(&result, subject, column, None, &picks);

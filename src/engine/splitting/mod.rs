@@ -11,7 +11,7 @@ use super::cell::{Item, Reading};
 use super::executor::{Executor, Job};
 use super::fault::Fault;
 use super::outcome::Stop;
-use super::rehearsal::Rehearsal;
+use super::pilot::Pilot;
 use super::subject::Subject;
 use super::tally::Tally;
 use super::watch::{Forecast, Likely, Watch};
@@ -78,12 +78,12 @@ impl<'s> Question<'s> {
     }
 
     /// Runs a few plain trials, and forecasts from them what all is likely to take.
-    pub(super) fn rehearse(&self, executor: &dyn Executor, budget: &Budget) -> Result<Forecast, Fault> {
+    pub(super) fn run_pilot(&self, executor: &dyn Executor, budget: &Budget) -> Result<Forecast, Fault> {
         let job = Job::new(self.subject, vec![self.column], self.seed);
         let width = executor.width(&job) as u64;
         let few = width.min(self.rule.plain).min(budget.max_trials);
-        let rehearsal = Rehearsal::run(&job, Item::run(0, few), executor, budget)?;
-        let seconds = rehearsal.seconds_per_trial(self.subject.most_steps());
+        let pilot = Pilot::run(&job, Item::run(0, few), executor, budget)?;
+        let seconds = pilot.seconds_per_trial(self.subject.most_steps());
         // How many levels there will be is not known: from none to those of eight decades, and likely those of two.
         let started = self.rule.runs.saturating_mul(self.rule.replicas);
         let paths = Likely { least: 1, likely: DECADES, most: MOST_DECADES };

@@ -19,7 +19,7 @@ use super::start;
 use super::state::route::Halt;
 use super::state::{ActiveModes, Layout, OWN_ROUTE, Slot, State};
 use crate::base::lanes::{LANES, Lanes, Mask};
-use crate::base::random::{Purpose, Stream, TrialKey, name_hash};
+use crate::base::random::{Purpose, Stream, TrialKey};
 use crate::base::tick::steps_over;
 use crate::model::{AgentId, Parameter, Scenario};
 use conduct::{Amount, Conduct, Trigger, pick};
@@ -358,7 +358,7 @@ impl Behaviours {
                     let value = match amount {
                         Amount::Computed(num) => num.evaluate(&known).unwrap_or(f64::NAN),
                         Amount::Drawn(law) => {
-                            let draw = (name_hash(parameter.name()) as u32).wrapping_add(entered);
+                            let draw = parameter.draw().wrapping_add(entered);
                             let entity = machine.number(state, trial);
                             law.draw(Stream::of(state.keys[trial], entity, Purpose::Parameter).uniform(draw))
                         }
@@ -376,7 +376,7 @@ impl Behaviours {
                 (route, round) = (stage, entered);
             }
         }
-        let ranges = write(state, slot, &values);
+        let ranges = state.bodies.put(slot, &values, Parameter::changeable());
         dynamics::prepare(state, program.dt, slot);
         let (present, home) = state.behaviours.detours[slot.block][slot.lane];
         if route == present {
@@ -389,24 +389,6 @@ impl Behaviours {
         drive::divert(program, state, slot, (from, round), comes);
         ranges
     }
-}
-
-/// Writes the parameters of a slot; whether a range changed.
-fn write(state: &mut State, slot: Slot, values: &[f64; Parameter::ALL.len()]) -> bool {
-    let of = |parameter: Parameter| values[parameter as usize];
-    let put = |field: &mut [Lanes], value: f64| {
-        let old = std::mem::replace(&mut field[slot.block].0[slot.lane], value);
-        old.to_bits() != value.to_bits()
-    };
-    put(&mut state.bodies[Parameter::Speed], of(Parameter::Speed));
-    put(&mut state.bodies[Parameter::Tau], of(Parameter::Tau));
-    put(&mut state.bodies[Parameter::A], of(Parameter::A) * of(Parameter::Attention));
-    put(&mut state.bodies[Parameter::Lambda], of(Parameter::Lambda));
-    put(&mut state.bodies[Parameter::A2], of(Parameter::A2) * of(Parameter::Attention));
-    put(&mut state.bodies[Parameter::Lambda2], of(Parameter::Lambda2));
-    put(&mut state.bodies[Parameter::Noise], of(Parameter::Noise));
-    put(&mut state.bodies[Parameter::B], of(Parameter::B))
-        | put(&mut state.bodies[Parameter::B2], of(Parameter::B2))
 }
 
 fn fail(state: &mut State, trial: usize, fault: Fault) {

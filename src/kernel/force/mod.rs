@@ -85,11 +85,12 @@ impl Forces {
     pub fn new(scenario: &Scenario, dt: f64) -> Self {
         let changed = |parameter| scenario.behaviours.change(parameter);
         let particles = Particles::new(scenario);
-        let has_second = |body: &Body| body.a2.constant() != Some(0.0);
+        let has_second = |body: &Body| body[Parameter::A2].constant() != Some(0.0);
         let second = changed(Parameter::A2) || scenario.agents.iter().any(|agent| has_second(&agent.body));
         let same = !changed(Parameter::B) && !changed(Parameter::B2);
-        let first_range = shared_constant(scenario, |body| &body.b).filter(|_| same);
-        let second_range = if second { shared_constant(scenario, |body| &body.b2) } else { Some(1.0) };
+        let first_range = shared_constant(scenario, |body| &body[Parameter::B]).filter(|_| same);
+        let second_range =
+            if second { shared_constant(scenario, |body| &body[Parameter::B2]) } else { Some(1.0) };
         let shared = first_range.zip(second_range).filter(|_| particles.repulsion.is_empty());
         Self {
             surfaces: Surfaces::new(&scenario.scene.barriers),

@@ -5,7 +5,7 @@ use crate::base::decimal::Decimal;
 use crate::base::geometry::Vec2;
 use crate::base::tick::{Clock, Tick};
 use crate::model::{
-    Agent, AgentId, Attached, BehaviourId, Behaviours, Bool, Family, Leg, Mode, Particle, Position,
+    Agent, AgentId, Attached, BehaviourId, Behaviours, Bool, Family, Kind, Leg, Mode, Particle, Position,
     Processes, Scene, Start, Variable,
 };
 use proptest::prelude::*;
@@ -15,23 +15,11 @@ const HIGHS: [i64; 3] = [4, 1, 9];
 
 /// A scenario of one person with this speed and noise, three whole variables, and what a behaviour changes.
 fn scenario(speed: Law, noise: Law, changes: Vec<(Parameter, Amount)>) -> Scenario {
-    let none = || Law::Constant(0.0);
-    let body = Body {
-        mass: none(),
-        radius: none(),
-        speed,
-        tau: none(),
-        a: none(),
-        b: none(),
-        lambda: none(),
-        a2: none(),
-        b2: none(),
-        lambda2: none(),
-        k1: none(),
-        k2: none(),
-        noise,
-        attention: none(),
-    };
+    let body = Body::new(Kind::Sfm, |parameter| match parameter {
+        Parameter::Speed => speed.clone(),
+        Parameter::Noise => noise.clone(),
+        _ => Law::Constant(0.0),
+    });
     let agent = Agent {
         name: "me".to_owned(),
         entity: 1,
@@ -178,8 +166,7 @@ fn parameters_are_what_is_drawn_not_what_is_declared() {
     assert_eq!(fastest(&recorded), 1.0);
     // Sixteen as one body have four times the relaxation time.
     let mut group = scenario(Law::Constant(0.1), Law::Constant(0.0), twice(Parameter::Tau));
-    let body = Body { tau: Law::Constant(0.5), ..(*group.agents[0].body).clone() };
-    group.agents[0].body = Arc::new(body);
+    Arc::make_mut(&mut group.agents[0].body)[Parameter::Tau] = Law::Constant(0.5);
     assert_eq!(fastest(&group), 1.0);
     group.agents[0].particle =
         Some(Particle { persons: 16, repulsion: 1.0, friction: 0.0, radius_factor: 4.0, tau_factor: 4.0 });

@@ -6,19 +6,12 @@
 //! same addresses as elsewhere, and pass the same ends: a walk visits the states that the general path visits.
 
 use super::joint::Joint;
-use super::keys::Keys;
+use super::space::{MOST_WAYS, NEVER, Space};
 use super::{Form, Machine};
 use crate::base::lanes::{LANES, Lanes};
-use crate::model::{Domain, VariableId};
+use crate::model::Domain;
 use fearless_simd::Level;
 use std::collections::BTreeSet;
-
-/// Most states, reachable or not.
-const MOST_STATES: u64 = 1 << 14;
-/// Most ways from state to state.
-const MOST_WAYS: usize = 1 << 17;
-/// No number in (0, 1) passes it.
-const NEVER: f64 = 2.0;
 
 /// What a process does in each state.
 #[derive(Clone, Debug)]
@@ -40,14 +33,13 @@ pub(super) struct Steps {
 /// Processes as one chain.
 #[derive(Clone, Debug)]
 pub struct Chain {
-    keys: Keys,
+    /// Its states.
+    pub space: Space,
     pub(super) steps: Vec<Steps>,
     /// Bit k of a state: whether chance decides in the k-th process; the last bit stands for all beyond.
     pub(super) open: Vec<u64>,
     /// All processes together, if that is a small table.
     pub(super) joint: Option<Joint>,
-    pub(super) initial: u32,
-    reachable: Vec<u32>,
     pub(super) level: Level,
 }
 
@@ -63,32 +55,15 @@ impl Chain {
             }
             tables.push((machine.word, table));
         }
-        let all: BTreeSet<VariableId> = (0..domains.len() as u32).map(VariableId).collect();
-        let keys = Keys::of(&all, domains, MOST_STATES)?;
-        let states = keys.rows() as usize;
-        let mut values: Vec<Lanes> = initial.iter().map(|&value| Lanes::splat(value)).collect();
-        let start = u32::try_from(keys.row(&values, 0)).ok()?;
-        let mut seen = vec![false; states];
-        *seen.get_mut(start as usize)? = true;
-        let mut reachable = vec![start];
-        let mut found: Vec<Vec<Vec<(f64, i32)>>> = vec![vec![Vec::new(); states]; tables.len()];
-        let (mut done, mut ways) = (0, 0usize);
-        while let Some(&state) = reachable.get(done) {
-            done += 1;
-            keys.put(u64::from(state), &mut values, 0);
-            let old: Vec<f64> = values.iter().map(|lanes| lanes.0[0]).collect();
+        let mut found: Vec<Vec<Vec<(f64, i32)>>> = vec![Vec::new(); tables.len()];
+        let mut ways = 0;
+        let space = Space::explore(initial, domains, |keys, state, values| {
             let mut targets = vec![state as i32];
             for (found, (_, table)) in found.iter_mut().zip(&tables) {
-                let mut branches = Vec::new();
-                for (end, new) in table.outcomes(&old)? {
-                    for &(variable, value) in &new {
-                        values[variable as usize].0[0] = value;
-                    }
-                    branches.push((end, keys.row(&values, 0) as i32 - state as i32));
-                    for &(variable, _) in &new {
-                        values[variable as usize].0[0] = old[variable as usize];
-                    }
-                }
+                found.resize(keys.rows() as usize, Vec::new());
+                let by = |target: u32| target as i32 - state as i32;
+                let branches = keys.targets(table, state, values)?;
+                let branches: Vec<_> = branches.into_iter().map(|(end, target)| (end, by(target))).collect();
                 targets = targets.iter().flat_map(|t| branches.iter().map(move |(_, by)| t + by)).collect();
                 targets.sort_unstable();
                 targets.dedup();
@@ -98,13 +73,9 @@ impl Chain {
                 }
                 found[state as usize] = branches;
             }
-            for target in targets {
-                let place = usize::try_from(target).ok().filter(|&place| place < states)?;
-                if !std::mem::replace(&mut seen[place], true) {
-                    reachable.push(target as u32);
-                }
-            }
-        }
+            Some(targets.into_iter().map(|target| target as u32).collect())
+        })?;
+        let states = space.states();
         let steps = found.iter().zip(&tables).map(|(found, (word, _))| Steps::of(*word, found));
         let steps: Vec<Steps> = steps.collect();
         let open = |state: usize| {
@@ -116,33 +87,13 @@ impl Chain {
         };
         let open = (0..states).map(open).collect();
         let joint = Joint::of(&steps, states);
-        Some(Self { steps, open, joint, keys, initial: start, reachable, level: Level::new() })
+        Some(Self { space, steps, open, joint, level: Level::new() })
     }
 
     /// The same chain for the plainest vectors of the machine.
     pub(super) fn at_baseline(mut self) -> Self {
         self.level = Level::baseline();
         self
-    }
-
-    /// Number of states, reachable or not: a state is a number below it.
-    pub fn states(&self) -> usize {
-        self.keys.rows() as usize
-    }
-
-    /// The state in which trials begin.
-    pub fn initial(&self) -> u32 {
-        self.initial
-    }
-
-    /// The states that some trial may visit.
-    pub fn reachable(&self) -> &[u32] {
-        &self.reachable
-    }
-
-    /// Puts the values of a state into a lane of all variables.
-    pub fn values(&self, state: u32, variables: &mut [Lanes], lane: usize) {
-        self.keys.put(u64::from(state), variables, lane);
     }
 
     /// Whether a trial never leaves a state, and nothing is left to chance in it.

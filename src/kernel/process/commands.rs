@@ -1,32 +1,63 @@
-//! The commands of one process as places in compiled code, and one step of them in all lanes.
+//! The commands of one process as places in compiled code: what may happen in a lane, and one step of them in all lanes.
+//!
+//! All commands with rates of a process are one race: its rate is the sum of theirs, and when it is over one number
+//! in (0, 1) decides which command has won, and with which of its branches.
 
 use super::super::code::Readings;
 use super::draws::Draws;
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::kernel::fault::{Fault, Faults};
-use crate::model::{Bool, Domain, Num, Process, process::are_weights};
+use crate::model::{Bool, Domain, Num, Process, Timing, process::are_weights};
+use std::collections::BTreeSet;
 
-/// A new value: the variable, what it may hold, and the signal that holds the value.
+/// A new value: the variable, its domain, and the signal that holds the value.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Update {
-    pub(super) variable: u32,
+struct Update {
+    variable: u32,
     domain: Domain,
     signal: usize,
 }
 
-/// What may happen: the signal of its probability, and the new values.
-#[derive(Clone, Debug)]
-pub(super) struct Branch {
-    weight: usize,
-    pub(super) updates: Vec<Update>,
+impl Update {
+    #[inline(always)]
+    fn value(&self, readings: &Readings, lane: usize) -> Result<f64, Fault> {
+        let value = readings.signals[self.signal].0[lane];
+        if self.domain.contains(value) {
+            Ok(self.domain.kept(value))
+        } else {
+            Err(Fault::Range { variable: self.variable, value })
+        }
+    }
 }
 
-/// A command.
+/// A branch: the signal of its probability, and the new values.
 #[derive(Clone, Debug)]
-pub(super) struct Command {
-    /// The atom that tells where it is enabled.
+struct Branch {
+    weight: usize,
+    updates: Vec<Update>,
+}
+
+#[derive(Clone, Debug)]
+struct Command {
+    /// The atom that is true where it is enabled.
     guard: usize,
-    pub(super) branches: Vec<Branch>,
+    /// The signal of its rate; `None` where it has a delay, or is taken at steps.
+    rate: Option<usize>,
+    branches: Vec<Branch>,
+}
+
+/// What happens: a command and one of its branches, or an error.
+pub(super) type Way = Result<(usize, usize), Fault>;
+
+/// When a process does something.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Event {
+    /// At a step.
+    Step,
+    /// When the race of its commands with rates is over.
+    Race,
+    /// When the delay of a command is over.
+    Delay(usize),
 }
 
 /// The commands of one process.
@@ -34,26 +65,11 @@ pub(super) struct Command {
 pub(super) struct Commands {
     process: u32,
     choose: bool,
-    pub(super) list: Vec<Command>,
-}
-
-/// What a process does in one lane.
-pub(super) enum Choice {
-    /// Nothing.
-    Stutter,
-    /// One command, with the ends of the intervals of its branches in (0, 1].
-    Fire {
-        /// Which.
-        command: usize,
-        /// The branches with a positive probability, and where each ends.
-        ends: Vec<(usize, f64)>,
-    },
-    /// Several commands are enabled; chance decides.
-    Several,
+    list: Vec<Command>,
 }
 
 impl Commands {
-    /// Enters guards, probabilities and updates into lists that will be compiled.
+    /// Enters guards, rates, probabilities and updates into lists that will be compiled.
     pub(super) fn of(
         number: usize,
         process: &Process,
@@ -65,97 +81,186 @@ impl Commands {
             signals.push(num.clone());
             signals.len() - 1
         };
-        let list = process
-            .commands
-            .iter()
-            .map(|command| {
-                atoms.push(command.guard.clone());
-                let branches = command
-                    .branches
-                    .iter()
-                    .map(|branch| {
-                        let weight = signal(&branch.weight);
-                        let updates = branch
-                            .updates
-                            .iter()
-                            .filter_map(|(id, value)| {
-                                let domain = *domains.get(id.0 as usize)?;
-                                Some(Update { variable: id.0, domain, signal: signal(value) })
-                            })
-                            .collect();
-                        Branch { weight, updates }
-                    })
-                    .collect();
-                Command { guard: atoms.len() - 1, branches }
-            })
-            .collect();
+        let mut list = Vec::with_capacity(process.commands.len());
+        for command in &process.commands {
+            atoms.push(command.guard.clone());
+            let rate = match &command.timing {
+                Timing::Rate(rate) => Some(signal(rate)),
+                Timing::Delay(..) | Timing::Step => None,
+            };
+            let mut branches = Vec::with_capacity(command.branches.len());
+            for branch in &command.branches {
+                let weight = signal(&branch.weight);
+                let mut updates = Vec::with_capacity(branch.updates.len());
+                for (id, value) in &branch.updates {
+                    if let Some(&domain) = domains.get(id.0 as usize) {
+                        updates.push(Update { variable: id.0, domain, signal: signal(value) });
+                    }
+                }
+                branches.push(Branch { weight, updates });
+            }
+            list.push(Command { guard: atoms.len() - 1, rate, branches });
+        }
         Self { process: number as u32, choose: process.choose, list }
     }
 
-    /// What it does in one lane, with the numbers that were read there.
-    pub(super) fn choice(&self, readings: &Readings, lane: usize) -> Result<Choice, Fault> {
-        let mut enabled = self.enabled(readings, lane);
-        let Some(first) = enabled.next() else { return Ok(Choice::Stutter) };
-        if let Some(second) = enabled.next() {
-            if self.choose {
-                return Ok(Choice::Several);
-            }
-            let commands = (first as u32, second as u32);
-            return Err(Fault::Ambiguous { process: self.process, commands });
-        }
-        Ok(Choice::Fire { command: first, ends: self.ends(first, readings, lane)? })
+    /// The variables that it sets.
+    pub(super) fn written(&self) -> BTreeSet<u32> {
+        let branches = self.list.iter().flat_map(|command| &command.branches);
+        branches.flat_map(|branch| branch.updates.iter().map(|update| update.variable)).collect()
     }
 
-    fn enabled<'a>(&'a self, readings: &'a Readings, lane: usize) -> impl Iterator<Item = usize> + 'a {
-        self.list
-            .iter()
-            .enumerate()
-            .filter(move |(_, command)| readings.atoms[command.guard].has(lane))
-            .map(|(k, _)| k)
+    /// Whether a command is enabled in a lane.
+    #[inline]
+    pub(super) fn enabled(&self, command: usize, readings: &Readings, lane: usize) -> bool {
+        readings.atoms[self.list[command].guard].has(lane)
     }
 
-    /// Where the intervals of the branches of a command end.
-    fn ends(&self, command: usize, readings: &Readings, lane: usize) -> Result<Vec<(usize, f64)>, Fault> {
-        let branches = &self.list[command].branches;
-        let weight = |branch: &Branch| readings.signals[branch.weight].0[lane];
-        if !are_weights(branches.iter().map(weight)) {
-            return Err(Fault::Weights { process: self.process, command: command as u32 });
-        }
-        let mut ends = Vec::with_capacity(branches.len());
+    /// The rate of the race in a lane, 1/s.
+    pub(super) fn total(&self, readings: &Readings, lane: usize) -> Result<f64, Fault> {
         let mut sum = 0.0;
-        for (k, branch) in branches.iter().enumerate() {
-            if weight(branch) > 0.0 {
-                sum += weight(branch);
-                ends.push((k, sum));
+        for (k, command) in self.list.iter().enumerate() {
+            let Some(rate) = command.rate else { continue };
+            if readings.atoms[command.guard].has(lane) {
+                let value = readings.signals[rate].0[lane];
+                sum += value;
+                if !(value >= 0.0 && sum.is_finite()) {
+                    return Err(Fault::Rate { process: self.process, command: k as u32, value });
+                }
             }
         }
-        // Rounding leaves no gap at the end.
-        if let Some(last) = ends.last_mut() {
-            last.1 = 1.0;
-        }
-        Ok(ends)
+        Ok(sum)
     }
 
-    /// The new values of a branch in one lane.
-    pub(super) fn values(
+    /// All commands that are enabled in a lane.
+    fn all_enabled<'a>(&'a self, readings: &'a Readings, lane: usize) -> impl Iterator<Item = usize> + 'a {
+        (0..self.list.len()).filter(move |&command| self.enabled(command, readings, lane))
+    }
+
+    /// The error of several enabled commands, if one should choose among them and nothing does.
+    fn ambiguous(&self, readings: &Readings, lane: usize) -> Option<Fault> {
+        let mut enabled = self.all_enabled(readings, lane);
+        let commands = (enabled.next()? as u32, enabled.next()? as u32);
+        (!self.choose).then_some(Fault::Ambiguous { process: self.process, commands })
+    }
+
+    /// Whether chance decides in a lane which command is taken at a step.
+    pub(super) fn must_choose(&self, readings: &Readings, lane: usize) -> bool {
+        self.choose && self.all_enabled(readings, lane).nth(1).is_some()
+    }
+
+    /// Calls `each` with everything that may happen at an event in a lane and the end of its share of (0, 1], until that
+    /// says stop. At a step one command at most is enabled.
+    pub(super) fn ways(
+        &self,
+        event: Event,
+        readings: &Readings,
+        lane: usize,
+        mut each: impl FnMut(Way, f64) -> bool,
+    ) {
+        let mut sum = 0.0;
+        let command = match event {
+            Event::Delay(command) => Some(command),
+            Event::Step => match self.ambiguous(readings, lane) {
+                Some(fault) => {
+                    each(Err(fault), 1.0);
+                    return;
+                }
+                None => self.all_enabled(readings, lane).next(),
+            },
+            Event::Race => {
+                let Ok(total) = self.total(readings, lane) else { return };
+                for (k, command) in self.list.iter().enumerate() {
+                    let Some(rate) = command.rate else { continue };
+                    let rate = readings.signals[rate].0[lane];
+                    if !readings.atoms[command.guard].has(lane) || rate == 0.0 {
+                        continue;
+                    }
+                    if !self.branches(k, readings, lane, |way, weight| {
+                        sum += rate * weight;
+                        each(way, sum / total)
+                    }) {
+                        return;
+                    }
+                }
+                None
+            }
+        };
+        if let Some(command) = command {
+            self.branches(command, readings, lane, |way, weight| {
+                sum += weight;
+                each(way, sum)
+            });
+        }
+    }
+
+    /// Calls `each` with every branch that can be taken and its probability; false once that says stop.
+    fn branches(
         &self,
         command: usize,
-        branch: usize,
+        readings: &Readings,
+        lane: usize,
+        mut each: impl FnMut(Way, f64) -> bool,
+    ) -> bool {
+        let branches = &self.list[command].branches;
+        if let Err(fault) = self.check_weights(command, readings, lane) {
+            return each(Err(fault), 1.0);
+        }
+        for (b, branch) in branches.iter().enumerate() {
+            let weight = readings.signals[branch.weight].0[lane];
+            if weight > 0.0 && !each(Ok((command, b)), weight) {
+                return false;
+            }
+        }
+        true
+    }
+
+    fn check_weights(&self, command: usize, readings: &Readings, lane: usize) -> Result<(), Fault> {
+        let branches = self.list[command].branches.iter();
+        if are_weights(branches.map(|branch| readings.signals[branch.weight].0[lane])) {
+            Ok(())
+        } else {
+            Err(Fault::Weights { process: self.process, command: command as u32 })
+        }
+    }
+
+    /// What a number in (0, 1) decides at an event. Rounding leaves no gap after the last way.
+    pub(super) fn way(&self, event: Event, readings: &Readings, lane: usize, u: f64) -> Option<Way> {
+        let mut found = None;
+        self.ways(event, readings, lane, |way, end| {
+            found = Some(way);
+            u >= end
+        });
+        found
+    }
+
+    /// The new values of a branch in a lane.
+    pub(super) fn values(
+        &self,
+        (command, branch): (usize, usize),
         readings: &Readings,
         lane: usize,
     ) -> Result<Vec<(u32, f64)>, Fault> {
-        self.list[command].branches[branch]
-            .updates
-            .iter()
-            .map(|update| {
-                let value = readings.signals[update.signal].0[lane];
-                if update.domain.contains(value) {
-                    Ok((update.variable, update.domain.kept(value)))
-                } else {
-                    Err(Fault::Range { variable: update.variable, value })
-                }
-            })
-            .collect()
+        let updates = self.list[command].branches[branch].updates.iter();
+        updates.map(|update| Ok((update.variable, update.value(readings, lane)?))).collect()
+    }
+
+    /// Writes the new values of a branch, all of them or none.
+    pub(super) fn fire(
+        &self,
+        (command, branch): (usize, usize),
+        readings: &Readings,
+        lane: usize,
+        variables: &mut [Lanes],
+    ) -> Result<(), Fault> {
+        let updates = &self.list[command].branches[branch].updates;
+        for update in updates {
+            update.value(readings, lane)?;
+        }
+        for update in updates {
+            variables[update.variable as usize].0[lane] = update.value(readings, lane)?;
+        }
+        Ok(())
     }
 
     /// One step: new values go to `next`.
@@ -167,9 +272,6 @@ impl Commands {
         next: &mut [Lanes],
         faults: &mut Faults,
     ) {
-        let mut fault = |lane: usize, found: Fault| {
-            faults.add(lane, found);
-        };
         let mut numbers = None;
         // Where one command is enabled, and where several are.
         let (mut once, mut twice) = (Mask::NONE, Mask::NONE);
@@ -180,16 +282,14 @@ impl Commands {
         }
         let mut picked = [usize::MAX; LANES];
         for lane in twice.iter() {
-            if !self.choose {
-                if let Err(found) = self.choice(readings, lane) {
-                    fault(lane, found);
-                }
+            if let Some(fault) = self.ambiguous(readings, lane) {
+                faults.add(lane, fault);
                 continue;
             }
             let second = numbers.get_or_insert_with(|| draws.pair())[1][lane];
-            let count = self.enabled(readings, lane).count();
+            let count = self.all_enabled(readings, lane).count();
             let place = ((second * count as f64) as usize).min(count - 1);
-            picked[lane] = self.enabled(readings, lane).nth(place).unwrap_or(usize::MAX);
+            picked[lane] = self.all_enabled(readings, lane).nth(place).unwrap_or(usize::MAX);
         }
         for (k, command) in self.list.iter().enumerate() {
             let mut firing = readings.atoms[command.guard] & lanes & !twice;
@@ -202,14 +302,13 @@ impl Commands {
             let branches = command.branches.as_slice();
             let mut left = firing;
             for lane in firing.iter() {
-                let weights = branches.iter().map(|branch| readings.signals[branch.weight].0[lane]);
-                if !are_weights(weights) {
-                    fault(lane, Fault::Weights { process: self.process, command: k as u32 });
+                if let Err(fault) = self.check_weights(k, readings, lane) {
+                    faults.add(lane, fault);
                     left &= !Mask::lane(lane);
                 }
             }
             if let [only] = branches {
-                write(only, left, readings, next, &mut fault);
+                only.write(left, readings, next, faults);
                 continue;
             }
             let first = Lanes(numbers.get_or_insert_with(|| draws.pair())[0]);
@@ -225,32 +324,22 @@ impl Commands {
                     & weight.compare(Lanes::ZERO, |w, zero| w > zero)
                     & left;
                 left &= !here;
-                write(branch, here, readings, next, &mut fault);
+                branch.write(here, readings, next, faults);
             }
         }
     }
 }
 
-/// Writes the new values of a branch in the lanes that take it.
-#[inline(always)]
-fn write(
-    branch: &Branch,
-    lanes: Mask,
-    readings: &Readings,
-    next: &mut [Lanes],
-    fault: &mut impl FnMut(usize, Fault),
-) {
-    if lanes.is_empty() {
-        return;
-    }
-    for update in &branch.updates {
-        let values = readings.signals[update.signal];
-        for lane in lanes.iter() {
-            let value = values.0[lane];
-            if update.domain.contains(value) {
-                next[update.variable as usize].0[lane] = update.domain.kept(value);
-            } else {
-                fault(lane, Fault::Range { variable: update.variable, value });
+impl Branch {
+    /// Writes the new values in the lanes that take it.
+    #[inline(always)]
+    fn write(&self, lanes: Mask, readings: &Readings, next: &mut [Lanes], faults: &mut Faults) {
+        for update in &self.updates {
+            for lane in lanes.iter() {
+                match update.value(readings, lane) {
+                    Ok(value) => next[update.variable as usize].0[lane] = value,
+                    Err(fault) => faults.add(lane, fault),
+                }
             }
         }
     }

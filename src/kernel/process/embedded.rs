@@ -6,19 +6,12 @@
 //! n-th time: those that have ended are taken out, and the numbers of all are drawn in one go, logarithms too.
 
 use super::draws::{Draw, RoundKeys, round_keys};
-use super::keys::Keys;
-use super::rates::Rates;
+use super::space::{MOST_WAYS, NEVER, Space};
+use super::table::Table;
 use crate::base::lanes::{LANES, Lanes};
-use crate::model::{Domain, VariableId};
+use crate::model::Domain;
 use fearless_simd::{Level, dispatch};
-use std::collections::BTreeSet;
 
-/// Most states, reachable or not.
-const MOST_STATES: u64 = 1 << 14;
-/// Most places for ways.
-const MOST_WAYS: usize = 1 << 17;
-/// No number in (0, 1) passes it.
-const NEVER: f64 = 2.0;
 /// Most jumps that a trial is expected to make. Below it a wait that is lost beside the time it is added to is so
 /// rare that they never come in the rows that are an error of the model.
 const MOST_EXPECTED: f64 = 1e9;
@@ -34,11 +27,10 @@ struct Way {
 /// A process as the chain of its jumps.
 #[derive(Clone, Debug)]
 pub struct Embedded {
-    keys: Keys,
+    /// Its states.
+    pub space: Space,
     /// The part of the counter that names the process.
     word: u64,
-    initial: u32,
-    reachable: Vec<u32>,
     /// How long it stays in each state on the average, s.
     means: Vec<f64>,
     /// Each state has so many places for ways.
@@ -52,7 +44,7 @@ pub struct Embedded {
 
 /// Trials side by side, eight to a block. Places beyond the last trial hold anything.
 #[derive(Clone, Debug)]
-pub struct Leaps {
+pub struct JumpBatch {
     /// How many trials are left.
     len: usize,
     /// Jumps made by each of them.
@@ -82,61 +74,38 @@ pub struct Stay {
 impl Embedded {
     /// The chain of a table, if few states are there and no reachable one has an error. `until` is the horizon, s.
     pub(super) fn of(
-        (word, table): (u64, &Rates),
+        (word, table): (u64, &Table),
         initial: &[f64],
         domains: &[Domain],
         until: f64,
     ) -> Option<Self> {
-        let all: BTreeSet<VariableId> = (0..domains.len() as u32).map(VariableId).collect();
-        let keys = Keys::of(&all, domains, MOST_STATES)?;
-        let states = keys.rows() as usize;
-        let mut values: Vec<Lanes> = initial.iter().map(|&value| Lanes::splat(value)).collect();
-        let start = keys.row(&values, 0);
-        let mut found: Vec<Option<Vec<(f64, usize)>>> = vec![None; states];
-        *found.get_mut(start)? = Some(Vec::new());
-        let mut means = vec![f64::INFINITY; states];
-        let mut reachable = vec![start as u32];
-        let (mut done, mut most) = (0, 1);
-        while let Some(&state) = reachable.get(done) {
-            done += 1;
-            keys.put(u64::from(state), &mut values, 0);
-            let row = table.keys.row(&values, 0);
-            let (total, mean) = table.total(row).ok()?;
+        let (mut found, mut means) = (Vec::new(), Vec::new());
+        let space = Space::explore(initial, domains, |keys, state, values| {
+            found.resize(keys.rows() as usize, Vec::new());
+            means.resize(keys.rows() as usize, f64::INFINITY);
+            let (total, mean) = table.total(table.keys.row(values, 0)).ok()?;
             if total * until > MOST_EXPECTED {
                 return None;
             }
-            means[state as usize] = mean;
-            let mut ways = Vec::new();
-            for (end, new) in table.outcomes(row)? {
-                for (variable, value) in new {
-                    values[variable as usize].0[0] = value;
-                }
-                let target = keys.row(&values, 0);
-                ways.push((end, target));
-                keys.put(u64::from(state), &mut values, 0);
-                if found.get(target)?.is_none() {
-                    found[target] = Some(Vec::new());
-                    reachable.push(target as u32);
-                }
-            }
-            most = most.max(ways.len());
-            found[state as usize] = Some(ways);
-        }
+            let ways = keys.targets(table, state, values)?;
+            let targets = ways.iter().map(|(_, target)| *target).collect();
+            (means[state as usize], found[state as usize]) = (mean, ways);
+            Some(targets)
+        })?;
+        let most = found.iter().map(Vec::len).max().unwrap_or(1).max(1);
+        let states = space.states();
         if states * most > MOST_WAYS {
             return None;
         }
         let mut ways = Vec::with_capacity(states * most);
         for (state, found) in found.into_iter().enumerate() {
-            let found = found.unwrap_or_default();
             let last = found.len().saturating_sub(1);
             for place in 0..most {
-                let (end, target) = found.get(place).copied().unwrap_or((NEVER, state));
-                ways.push(Way { end: if place < last { end } else { NEVER }, target: target as u32 });
+                let (end, target) = found.get(place).copied().unwrap_or((NEVER, state as u32));
+                ways.push(Way { end: if place < last { end } else { NEVER }, target });
             }
         }
-        let initial = start as u32;
-        let level = Level::new();
-        Some(Self { keys, word, initial, reachable, means, most, ways, until, level })
+        Some(Self { space, word, means, most, ways, until, level: Level::new() })
     }
 
     /// The same chain for the plainest vectors of the machine.
@@ -145,57 +114,28 @@ impl Embedded {
         self
     }
 
-    /// Number of states, reachable or not: a state is a number below it.
-    pub fn states(&self) -> usize {
-        self.means.len()
-    }
-
-    /// The states that some trial may visit.
-    pub fn reachable(&self) -> &[u32] {
-        &self.reachable
-    }
-
-    /// Puts the values of a state into a lane of all variables.
-    pub fn values(&self, state: u32, variables: &mut [Lanes], lane: usize) {
-        self.keys.put(u64::from(state), variables, lane);
-    }
-
-    /// No trials yet.
-    pub fn leaps(&self, seed: u64) -> Leaps {
-        Leaps {
-            len: 0,
-            jumps: 0,
-            trials: Vec::new(),
-            states: Vec::new(),
-            since: Vec::new(),
-            waits: Vec::new(),
-            picks: Vec::new(),
-            keys: round_keys(seed),
-        }
-    }
-
     /// The trials with these indices begin; those of before are gone.
-    pub fn begin(&self, leaps: &mut Leaps, trials: impl ExactSizeIterator<Item = u64>) {
+    pub fn begin(&self, batch: &mut JumpBatch, trials: impl ExactSizeIterator<Item = u64>) {
         let blocks = trials.len().div_ceil(LANES);
-        (leaps.len, leaps.jumps) = (trials.len(), 0);
-        leaps.trials.resize(blocks, [0; LANES]);
-        for (place, trial) in leaps.trials.as_flattened_mut().iter_mut().zip(trials) {
+        (batch.len, batch.jumps) = (trials.len(), 0);
+        batch.trials.resize(blocks, [0; LANES]);
+        for (place, trial) in batch.trials.as_flattened_mut().iter_mut().zip(trials) {
             *place = trial;
         }
-        leaps.states.clear();
-        leaps.states.resize(blocks, [self.initial; LANES]);
-        leaps.since.clear();
-        leaps.since.resize(blocks, [0.0; LANES]);
-        leaps.waits.resize(blocks, Lanes::ZERO);
-        leaps.picks.resize(blocks, Lanes::ZERO);
+        batch.states.clear();
+        batch.states.resize(blocks, [self.space.initial(); LANES]);
+        batch.since.clear();
+        batch.since.resize(blocks, [0.0; LANES]);
+        batch.waits.resize(blocks, Lanes::ZERO);
+        batch.picks.resize(blocks, Lanes::ZERO);
     }
 
     /// The next jump of all trials. Of each the place and the stay that ends are shown, in order; it goes on if it
     /// jumps and `goes_on` says so. How many jumped.
     #[inline(always)]
-    pub fn jump(&self, leaps: &mut Leaps, mut goes_on: impl FnMut(usize, Stay) -> bool) -> u64 {
-        let blocks = leaps.len.div_ceil(LANES);
-        let Leaps { len, jumps, trials, states, since, waits, picks, keys } = leaps;
+    pub fn jump(&self, batch: &mut JumpBatch, mut goes_on: impl FnMut(usize, Stay) -> bool) -> u64 {
+        let blocks = batch.len.div_ceil(LANES);
+        let JumpBatch { len, jumps, trials, states, since, waits, picks, keys } = batch;
         let draw = Draw { number: *jumps, word: self.word, keys };
         dispatch!(self.level, simd => draw.exponential(
             simd,
@@ -229,7 +169,21 @@ impl Embedded {
     }
 }
 
-impl Leaps {
+impl JumpBatch {
+    /// No trials yet.
+    pub fn new(seed: u64) -> Self {
+        Self {
+            len: 0,
+            jumps: 0,
+            trials: Vec::new(),
+            states: Vec::new(),
+            since: Vec::new(),
+            waits: Vec::new(),
+            picks: Vec::new(),
+            keys: round_keys(seed),
+        }
+    }
+
     /// How many trials are left.
     pub fn len(&self) -> usize {
         self.len

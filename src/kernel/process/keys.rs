@@ -1,6 +1,8 @@
 //! The combinations of the values of few variables, numbered: rows of tables.
 
-use crate::base::lanes::Lanes;
+use super::super::code::{Code, Readings};
+use super::super::state::{Layout, State};
+use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::model::{Domain, VariableId};
 use std::collections::BTreeSet;
 
@@ -47,6 +49,41 @@ impl Keys {
             place += variables[variable as usize].0[lane] * worth;
         }
         place as usize
+    }
+
+    /// The row of each lane.
+    #[inline(always)]
+    pub(super) fn rows_in_lanes(&self, variables: &[Lanes]) -> [usize; LANES] {
+        let mut place = Lanes::splat(self.origin);
+        for &(variable, worth) in &self.list {
+            place = place.zip(variables[variable as usize], |sum, value| sum + value * worth);
+        }
+        place.0.map(|place| place as usize)
+    }
+
+    /// Calls `each` with what code reads in each row, and the lane of it, until that says stop; of so many variables those
+    /// that no key names are 0.
+    pub(super) fn each_row(
+        &self,
+        code: &Code,
+        variables: usize,
+        mut each: impl FnMut(&Readings, usize) -> Option<()>,
+    ) -> Option<()> {
+        let mut state = State::new(Layout::Trials, 0);
+        state.occupied = Mask::ALL;
+        state.variables = vec![Lanes::ZERO; variables];
+        let mut readings = Readings::default();
+        for start in (0..self.rows).step_by(LANES) {
+            let here = LANES.min((self.rows - start) as usize);
+            for lane in 0..here {
+                self.put(start + lane as u64, &mut state.variables, lane);
+            }
+            code.read(Layout::Trials, &state, &mut readings);
+            for lane in 0..here {
+                each(&readings, lane)?;
+            }
+        }
+        Some(())
     }
 
     /// Puts the values of a row into a lane.

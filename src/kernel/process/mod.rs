@@ -12,17 +12,17 @@ mod draws;
 mod embedded;
 mod joint;
 mod keys;
-mod race;
-mod rates;
+mod space;
+mod step_batch;
 mod table;
 mod timed;
 mod view;
-mod walk;
 
 pub use chain::Chain;
-pub use embedded::{Embedded, Leaps, Stay};
+pub use embedded::{Embedded, JumpBatch, Stay};
+pub use space::Space;
+pub use step_batch::StepBatch;
 pub use view::{Sight, View};
-pub use walk::Walk;
 
 use super::code::{Code, Readings};
 pub use super::fault::Fault;
@@ -31,8 +31,8 @@ use super::state::{Layout, State};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::random::{Purpose, Stream, TrialKey};
 use crate::base::tick::{Clock, Tick};
-use crate::model::{Domain, Scenario};
-use commands::Commands;
+use crate::model::{Bool, Domain, Num, Scenario};
+use commands::{Commands, Event};
 use draws::Draws;
 use fearless_simd::Level;
 use table::Table;
@@ -53,9 +53,26 @@ struct Machine {
 
 /// How a process is run.
 #[derive(Clone, Debug)]
+#[allow(clippy::large_enum_variant, reason = "tables are read at every jump, and there are few forms")]
 enum Form {
     Table(Table),
     Code(Commands),
+}
+
+impl Form {
+    /// A table of at most so many rows where that is possible; else code, which is entered into the lists.
+    fn of(
+        scenario: &Scenario,
+        number: usize,
+        domains: &[Domain],
+        events: &[Event],
+        rows: u64,
+        (atoms, signals): (&mut Vec<Bool>, &mut Vec<Num>),
+    ) -> Self {
+        let process = &scenario.processes.list[number];
+        Table::of(scenario, number, domains, events, rows)
+            .map_or_else(|| Self::Code(Commands::of(number, process, domains, atoms, signals)), Self::Table)
+    }
 }
 
 /// The processes of a scenario, made ready to run.
@@ -104,11 +121,8 @@ impl Processes {
             .enumerate()
             .filter(|(_, process)| !is_timed(process))
             .map(|(number, process)| {
-                let table = Table::of(scenario, number, &domains, rows);
-                let form = match table {
-                    Some(table) => Form::Table(table),
-                    None => Form::Code(Commands::of(number, process, &domains, &mut atoms, &mut signals)),
-                };
+                let lists = (&mut atoms, &mut signals);
+                let form = Form::of(scenario, number, &domains, &[Event::Step], rows, lists);
                 let stream = Stream::of(TrialKey::default(), process.entity, Purpose::Process);
                 Machine { word: stream.counter(0)[1], form }
             })

@@ -1,149 +1,173 @@
-//! A process as a table: for each combination of the values it reads, what may happen.
+//! A process as a table: for each combination of the values it reads, what may happen at each of its events.
 //!
-//! The table is made by the same code that runs processes without a table, eight rows at a time, so both
-//! take the same branch for the same number.
+//! The table is made by the same code that runs processes without a table, so both take the same branch for the same
+//! number.
 
 use super::super::code::{Code, Readings};
-use super::super::state::{Layout, State};
-use super::commands::{Choice, Commands};
+use super::super::state::State;
+use super::commands::{Commands, Event, Way};
 use super::draws::Draws;
+use super::keys::Keys;
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::kernel::fault::{Fault, Faults};
-use crate::model::{Domain, Scenario, Timing};
+use crate::model::{Domain, Scenario};
 use std::collections::BTreeSet;
 
 /// Most rows of a table.
 pub(super) const MOST_ROWS: u64 = 1 << 14;
-/// Most branches of all rows.
+/// Most ways of all rows.
 const MOST_ENTRIES: usize = 1 << 18;
 
-/// What happens for one combination of values.
-#[derive(Clone, Copy, Debug)]
-struct Row {
-    /// Its first entry.
+/// The ends of so many ways are looked at together.
+const BLOCK: usize = 4;
+
+/// Ways of one event in one row.
+#[derive(Clone, Copy, Debug, Default)]
+struct Ways {
+    /// The first one.
     first: u32,
-    /// Number of entries, at least one.
-    count: u32,
-    /// Whether some entry is an error.
-    faulty: bool,
+    /// The first block of ends, and how many blocks; none where there is no way. At a step none where there is one.
+    block: u32,
+    blocks: u32,
+}
+
+/// A new value of a variable, as bits: those of the old one that stay, and those that are set.
+#[derive(Clone, Copy, Debug)]
+struct Change {
+    stay: u64,
+    set: u64,
+}
+
+impl Change {
+    const NONE: Self = Self { stay: u64::MAX, set: 0 };
+
+    #[inline(always)]
+    fn of(self, old: f64) -> f64 {
+        f64::from_bits(old.to_bits() & self.stay | self.set)
+    }
 }
 
 /// A process as a table.
 #[derive(Clone, Debug)]
 pub(super) struct Table {
-    /// The variables that it reads, and what one more is worth in the number of the row.
-    keys: Vec<(u32, f64)>,
-    /// Number of the row in which all read variables are 0; perhaps negative.
-    origin: f64,
-    rows: Vec<Row>,
-    /// Where each entry ends in (0, 1].
-    ends: Vec<f64>,
-    /// The variables that it writes.
+    pub(super) keys: Keys,
+    /// What happens by itself in each row: a step alone, or a race and the delays of commands.
+    events: Vec<Event>,
+    /// Rate of the race in each row, and 1 over it; NaN where one is wrong.
+    totals: Vec<(f64, f64)>,
+    /// What is wrong there.
+    wrong: Vec<(usize, Fault)>,
+    /// Row by row, the ways of each event.
+    ways: Vec<Ways>,
+    /// Where the share of each way ends in (0, 1]; blocks are filled up with 1.
+    ends: Vec<[f64; BLOCK]>,
+    /// The variables that it sets.
     written: Vec<u32>,
-    /// New values, entry by entry; NaN where a variable stays.
-    values: Vec<f64>,
-    /// The error of each entry.
+    /// New values, way by way.
+    values: Vec<Change>,
+    /// The error of each way, and whether there is any.
     faults: Vec<Option<Fault>>,
+    faulty: bool,
 }
 
+/// What may happen in a row: where the share of each way ends in (0, 1], and the new values.
+pub(super) type Outcomes = Vec<(f64, Vec<(u32, f64)>)>;
+
 impl Table {
-    /// The table of a process, if it reads few values and nothing but variables.
-    pub(super) fn of(scenario: &Scenario, number: usize, domains: &[Domain], most: u64) -> Option<Self> {
+    /// The table of a process, if it reads few values and nothing but variables, and no event leaves to chance which command
+    /// is taken beside which branch.
+    pub(super) fn of(
+        scenario: &Scenario,
+        number: usize,
+        domains: &[Domain],
+        events: &[Event],
+        most: u64,
+    ) -> Option<Self> {
         let process = &scenario.processes.list[number];
         let mut read = BTreeSet::new();
-        let mut closed = true;
-        for command in &process.commands {
-            closed &= command.timing == Timing::Step && command.guard.reads(&mut read);
-            for branch in &command.branches {
-                closed &= branch.weight.reads(&mut read);
-                closed &= branch.updates.iter().fold(true, |so_far, (_, v)| so_far & v.reads(&mut read));
-            }
-        }
-        if !closed {
+        if !process.reads(&mut read) {
             return None;
         }
-        let mut rows = 1u64;
-        let mut lows = Vec::new();
-        let mut keys = Vec::new();
-        for id in read {
-            let (low, count) = domains.get(id.0 as usize)?.values()?;
-            keys.push((id.0, rows as f64));
-            lows.push((low, count));
-            rows = rows.checked_mul(count).filter(|&rows| rows <= most)?;
-        }
-        if rows > most {
-            return None;
-        }
-        let origin = -keys.iter().zip(&lows).map(|((_, stride), (low, _))| stride * low).sum::<f64>();
+        let keys = Keys::of(&read, domains, most)?;
         let (mut atoms, mut signals) = (Vec::new(), Vec::new());
         let commands = Commands::of(number, process, domains, &mut atoms, &mut signals);
         let code = Code::compile(scenario, &atoms, &signals);
-        let written: BTreeSet<u32> = commands
-            .list
-            .iter()
-            .flat_map(|command| &command.branches)
-            .flat_map(|branch| branch.updates.iter().map(|update| update.variable))
-            .collect();
         let mut table = Self {
-            keys,
-            origin,
-            rows: Vec::with_capacity(rows as usize),
+            keys: keys.clone(),
+            events: events.to_vec(),
+            totals: Vec::new(),
+            wrong: Vec::new(),
+            ways: Vec::new(),
             ends: Vec::new(),
-            written: written.into_iter().collect(),
+            written: commands.written().into_iter().collect(),
             values: Vec::new(),
             faults: Vec::new(),
+            faulty: false,
         };
-        let mut state = State::new(Layout::Trials, 0);
-        state.occupied = Mask::ALL;
-        state.variables = vec![Lanes::ZERO; domains.len()];
-        let mut readings = Readings::default();
-        for start in (0..rows).step_by(LANES) {
-            let here = LANES.min((rows - start) as usize);
-            for lane in 0..here {
-                let mut rest = start + lane as u64;
-                for ((variable, _), (low, count)) in table.keys.iter().zip(&lows) {
-                    state.variables[*variable as usize].0[lane] = low + (rest % count) as f64;
-                    rest /= count;
-                }
-            }
-            code.read(Layout::Trials, &state, &mut readings);
-            for lane in 0..here {
-                table.enter(&commands, &readings, lane)?;
-            }
-        }
+        keys.each_row(&code, domains.len(), |readings, lane| table.enter(&commands, readings, lane))?;
         Some(table)
     }
 
     /// Adds a row; `None` where chance picks the command too, or the table grows too large.
     fn enter(&mut self, commands: &Commands, readings: &Readings, lane: usize) -> Option<()> {
-        let first = self.ends.len() as u32;
-        let mut faulty = false;
-        match commands.choice(readings, lane) {
-            Ok(Choice::Several) => return None,
-            Ok(Choice::Stutter) => self.entry(1.0, Ok(Vec::new())),
-            Ok(Choice::Fire { command, ends }) => {
-                for (branch, end) in ends {
-                    let values = commands.values(command, branch, readings, lane);
-                    faulty |= values.is_err();
-                    self.entry(end, values);
-                }
-            }
+        match commands.total(readings, lane) {
+            Ok(total) => self.totals.push((total, 1.0 / total)),
             Err(fault) => {
-                faulty = true;
-                self.entry(1.0, Err(fault));
+                self.wrong.push((self.totals.len(), fault));
+                self.totals.push((f64::NAN, f64::NAN));
             }
         }
-        self.rows.push(Row { first, count: self.ends.len() as u32 - first, faulty });
-        (self.ends.len() <= MOST_ENTRIES).then_some(())
+        for event in self.events.clone() {
+            let mut found: Vec<(Way, f64)> = Vec::new();
+            let runs = match event {
+                Event::Step if commands.must_choose(readings, lane) => return None,
+                Event::Delay(command) => commands.enabled(command, readings, lane),
+                Event::Step | Event::Race => true,
+            };
+            if runs {
+                commands.ways(event, readings, lane, |way, end| {
+                    found.push((way, end));
+                    true
+                });
+            }
+            let (first, block) = (self.faults.len() as u32, self.ends.len() as u32);
+            let is_sure = event == Event::Step && found.len() <= 1;
+            if !is_sure {
+                self.add_ends(&found);
+            }
+            self.ways.push(Ways { first, block, blocks: self.ends.len() as u32 - block });
+            for &(way, _) in &found {
+                self.add_way(way.and_then(|way| commands.values(way, readings, lane)));
+            }
+            // A step at which nothing is enabled leads on too.
+            if is_sure && found.is_empty() {
+                self.add_way(Ok(Vec::new()));
+            }
+        }
+        (self.faults.len() <= MOST_ENTRIES).then_some(())
     }
 
-    fn entry(&mut self, end: f64, values: Result<Vec<(u32, f64)>, Fault>) {
-        self.ends.push(end);
+    fn add_ends(&mut self, found: &[(Way, f64)]) {
+        for ways in found.chunks(BLOCK) {
+            let mut ends = [1.0; BLOCK];
+            for (end, (_, found)) in ends.iter_mut().zip(ways) {
+                *end = *found;
+            }
+            self.ends.push(ends);
+        }
+        // Rounding leaves no gap after the last one.
+        if let (Some(ends), Some(last)) = (self.ends.last_mut(), found.len().checked_sub(1)) {
+            ends[last % BLOCK] = 1.0;
+        }
+    }
+
+    fn add_way(&mut self, values: Result<Vec<(u32, f64)>, Fault>) {
+        self.faulty |= values.is_err();
         self.faults.push(values.as_ref().err().copied());
         let values = values.unwrap_or_default();
         for variable in &self.written {
             let new = values.iter().find(|(v, _)| v == variable);
-            self.values.push(new.map_or(f64::NAN, |(_, value)| *value));
+            self.values.push(new.map_or(Change::NONE, |(_, value)| Change { stay: 0, set: value.to_bits() }));
         }
     }
 
@@ -152,26 +176,82 @@ impl Table {
         &self.written
     }
 
-    /// What may happen where the variables have these values: where each branch ends in (0, 1], and what it
-    /// writes. `None` where a branch is an error.
-    #[allow(clippy::type_complexity, reason = "said in the line above")]
-    pub(super) fn outcomes(&self, variables: &[f64]) -> Option<Vec<(f64, Vec<(u32, f64)>)>> {
-        let place =
-            self.keys.iter().fold(self.origin, |sum, (id, stride)| sum + variables[*id as usize] * stride);
-        let row = self.rows.get(place as usize).filter(|row| !row.faulty)?;
-        let entries = row.first as usize..(row.first + row.count) as usize;
-        let width = self.written.len();
-        Some(
-            entries
-                .map(|entry| {
-                    let new = self.written.iter().zip(&self.values[entry * width..]);
-                    (self.ends[entry], new.filter(|(_, v)| !v.is_nan()).map(|(k, v)| (*k, *v)).collect())
-                })
-                .collect(),
-        )
+    /// The rate of the race in a row, and 1 over it.
+    #[inline(always)]
+    pub(super) fn total(&self, row: usize) -> Result<(f64, f64), Fault> {
+        let total = self.totals[row];
+        if total.0.is_nan() {
+            return Err(self.wrong_rate(row));
+        }
+        Ok(total)
     }
 
-    /// One step: new values go to `next`.
+    #[cold]
+    fn wrong_rate(&self, row: usize) -> Fault {
+        let found = self.wrong.iter().find(|(wrong, _)| *wrong == row);
+        found.map_or(Fault::Rate { process: 0, command: 0, value: f64::NAN }, |(_, fault)| *fault)
+    }
+
+    /// Whether there are commands with delays.
+    pub(super) fn has_delays(&self) -> bool {
+        self.events.len() > 1
+    }
+
+    /// What may happen at the first event, the step or the race, in a row; `None` if there is an error among that.
+    pub(super) fn outcomes(&self, row: usize) -> Option<Outcomes> {
+        let place = row * self.events.len();
+        let ways = self.ways.get(place)?;
+        let blocks = &self.ends[ways.block as usize..(ways.block + ways.blocks) as usize];
+        let ends = blocks.as_flattened().iter().chain(std::iter::repeat(&1.0));
+        let last = self.ways.get(place + 1).map_or(self.faults.len(), |next| next.first as usize);
+        let width = self.written.len();
+        let way = |(entry, &end): (usize, &f64)| {
+            let changes = self.written.iter().zip(&self.values[entry * width..][..width]);
+            let new = changes.filter(|(_, change)| change.stay == 0);
+            let new = new.map(|(&variable, change)| (variable, f64::from_bits(change.set))).collect();
+            self.faults[entry].is_none().then_some((end, new))
+        };
+        (ways.first as usize..last).zip(ends).map(way).collect()
+    }
+
+    /// Whether an event comes in a row.
+    #[inline(always)]
+    pub(super) fn runs(&self, row: usize, event: usize) -> bool {
+        self.ways[row * self.events.len() + event].blocks > 0
+    }
+
+    /// An event comes in a lane: what belongs to a number in (0, 1) happens.
+    #[inline(always)]
+    pub(super) fn fire(
+        &self,
+        row: usize,
+        event: usize,
+        u: f64,
+        lane: usize,
+        variables: &mut [Lanes],
+    ) -> Result<(), Fault> {
+        let ways = self.ways[row * self.events.len() + event];
+        let mut entry = ways.first as usize;
+        // Ends ascend, so the way is the number of ends passed: no jump depends on chance.
+        for ends in &self.ends[ways.block as usize..(ways.block + ways.blocks) as usize] {
+            for &end in ends {
+                entry += usize::from(u >= end);
+            }
+        }
+        if self.faulty
+            && let Some(fault) = self.faults[entry]
+        {
+            return Err(fault);
+        }
+        let width = self.written.len();
+        for (&variable, change) in self.written.iter().zip(&self.values[entry * width..][..width]) {
+            let value = &mut variables[variable as usize].0[lane];
+            *value = change.of(*value);
+        }
+        Ok(())
+    }
+
+    /// One step of all lanes: new values go to `next`.
     #[inline]
     pub(super) fn step(
         &self,
@@ -181,34 +261,24 @@ impl Table {
         next: &mut [Lanes],
         faults: &mut Faults,
     ) {
-        let mut place = Lanes::splat(self.origin);
-        for &(variable, stride) in &self.keys {
-            place = place.zip(state.variables[variable as usize], |sum, value| sum + value * stride);
-        }
-        let mut first = [0usize; LANES];
-        let mut branches = [1usize; LANES];
-        let mut faulty = false;
-        for lane in 0..LANES {
-            if let Some(row) = self.rows.get(place.0[lane] as usize) {
-                first[lane] = row.first as usize;
-                branches[lane] = row.count as usize;
-                faulty |= row.faulty;
-            }
-        }
-        let mut entries = first;
-        let most = branches.iter().copied().fold(1, usize::max);
-        if most > 1 {
+        // Lanes without a trial may hold anything, and go anywhere.
+        let rows = self.keys.rows_in_lanes(&state.variables);
+        let ways = rows.map(|row| self.ways.get(row).copied().unwrap_or_default());
+        let mut entries = ways.map(|ways| ways.first as usize);
+        let most = ways.iter().fold(0, |most, ways| most.max(ways.blocks));
+        if most > 0 {
             let [numbers, _] = draws.pair();
-            // Ends ascend, so the entry is the number of ends passed: no jump depends on chance.
-            for k in 0..most - 1 {
+            for block in 0..most {
                 for lane in 0..LANES {
-                    let end = self.ends.get(first[lane] + k).copied().unwrap_or(1.0);
-                    let (more, passed) = (k + 1 < branches[lane], numbers[lane] >= end);
-                    entries[lane] += usize::from(more) & usize::from(passed);
+                    if block < ways[lane].blocks {
+                        let ends = &self.ends[(ways[lane].block + block) as usize];
+                        let passed: usize = ends.iter().map(|&end| usize::from(numbers[lane] >= end)).sum();
+                        entries[lane] += passed;
+                    }
                 }
             }
         }
-        if faulty {
+        if self.faulty {
             for lane in lanes.iter() {
                 if let Some(fault) = self.faults[entries[lane]] {
                     faults.add(lane, fault);
@@ -219,9 +289,7 @@ impl Table {
         for (k, &variable) in self.written.iter().enumerate() {
             let values = &mut next[variable as usize].0;
             for lane in 0..LANES {
-                let (old, new) = (values[lane], self.values[entries[lane] * width + k]);
-                // Lanes without a trial may hold what they like.
-                values[lane] = if new.is_nan() { old } else { new };
+                values[lane] = self.values[entries[lane] * width + k].of(values[lane]);
             }
         }
     }

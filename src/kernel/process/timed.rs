@@ -10,10 +10,11 @@
 
 use super::super::code::{Code, Readings};
 use super::super::state::{Layout, State};
+use super::Form;
+use super::commands::Event;
 use super::delay::{after, delay};
 use super::draws::exponentials;
-use super::race::Race;
-use super::rates::Rates;
+use super::table::Table;
 use crate::base::decimal::Decimal;
 use crate::base::instant::Instant;
 use crate::base::lanes::{LANES, Mask};
@@ -27,14 +28,6 @@ use std::collections::BTreeSet;
 
 /// More jumps than these at one time are an error of the model.
 const MOST_AT_ONCE: u32 = 100_000;
-
-/// How a process is run.
-#[derive(Clone, Debug)]
-#[allow(clippy::large_enum_variant, reason = "tables are read at every jump, and there are few forms")]
-enum Form {
-    Table(Rates),
-    Code(Race),
-}
 
 /// What a delay can be: doubles, ascending, and what they stand for.
 #[derive(Clone, Debug)]
@@ -118,14 +111,10 @@ impl Timed {
                     delayed.push((k, law.ready(), Exact::new(exact)));
                 }
             }
-            let with_delays: Vec<usize> = delayed.iter().map(|(k, ..)| *k).collect();
-            let form = match Rates::of(scenario, number, domains, &with_delays, rows) {
-                Some(table) => Form::Table(table),
-                None => {
-                    coded = true;
-                    Form::Code(Race::of(number, process, domains, &mut atoms, &mut signals))
-                }
-            };
+            let mut events = vec![Event::Race];
+            events.extend(delayed.iter().map(|(k, ..)| Event::Delay(*k)));
+            let form = Form::of(scenario, number, domains, &events, rows, (&mut atoms, &mut signals));
+            coded |= matches!(form, Form::Code(_));
             let mut variables = BTreeSet::new();
             let closed = process.reads(&mut variables);
             read.push(closed.then_some(variables));
@@ -164,7 +153,7 @@ impl Timed {
     }
 
     /// The one process that there is, where it is a table and has no delays, and the word that names it.
-    pub(super) fn alone(&self) -> Option<(u64, &Rates)> {
+    pub(super) fn alone(&self) -> Option<(u64, &Table)> {
         match self.racers.as_slice() {
             [Racer { word, form: Form::Table(table), .. }] if !table.has_delays() => Some((*word, table)),
             _ => None,
@@ -330,10 +319,10 @@ impl Timed {
                 let row = clocks.rows[place][lane] as usize;
                 table.fire(row, slot, u, lane, &mut state.variables)?;
             }
-            Form::Code(race) => {
-                let command = slot.checked_sub(1).map(|k| racer.delayed[k].0);
-                if let Some(way) = race.way(command, readings, lane, u) {
-                    race.fire(way?, readings, lane, &mut state.variables)?;
+            Form::Code(commands) => {
+                let event = slot.checked_sub(1).map_or(Event::Race, |k| Event::Delay(racer.delayed[k].0));
+                if let Some(way) = commands.way(event, readings, lane, u) {
+                    commands.fire(way?, readings, lane, &mut state.variables)?;
                 }
             }
         }
@@ -361,7 +350,7 @@ impl Timed {
                 state.clocks.rows[k][lane] = row as u32;
                 table.total(row)
             }
-            Form::Code(race) => race.total(readings, lane).map(|total| (total, 1.0 / total)),
+            Form::Code(commands) => commands.total(readings, lane).map(|total| (total, 1.0 / total)),
         };
         let (total, mean) = match total {
             Ok(found) => found,
@@ -387,7 +376,7 @@ impl Timed {
         for (j, (command, law, exact)) in racer.delayed.iter().enumerate() {
             let enabled = match &racer.form {
                 Form::Table(table) => table.runs(clocks.rows[k][lane] as usize, j + 1),
-                Form::Code(race) => race.enabled(*command, readings, lane),
+                Form::Code(commands) => commands.enabled(*command, readings, lane),
             };
             let clock = race + 1 + j;
             let due = clocks.due[clock].0[lane];

@@ -5,7 +5,6 @@ use super::super::code::{Code, Readings};
 use super::super::state::{Layout, State};
 use super::keys::Keys;
 use super::table::MOST_ROWS;
-use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::model::{Bool, Domain, Num, Scenario};
 use std::collections::BTreeSet;
 
@@ -43,21 +42,13 @@ impl View {
             signals: Vec::new(),
             width: (atoms.len(), signals.len()),
         };
-        let Some(keys) = &view.keys else { return view };
-        let mut state = State::new(Layout::Trials, 0);
-        state.occupied = Mask::ALL;
-        state.variables = vec![Lanes::ZERO; domains.len()];
-        let mut readings = Readings::default();
-        for start in (0..keys.rows()).step_by(LANES) {
-            let here = LANES.min((keys.rows() - start) as usize);
-            for lane in 0..here {
-                keys.put(start + lane as u64, &mut state.variables, lane);
-            }
-            view.code.read(Layout::Trials, &state, &mut readings);
-            for lane in 0..here {
-                view.atoms.extend(readings.atoms.iter().map(|mask| mask.has(lane)));
-                view.signals.extend(readings.signals.iter().map(|lanes| lanes.0[lane]));
-            }
+        if let Some(keys) = &view.keys {
+            let (atoms, signals) = (&mut view.atoms, &mut view.signals);
+            keys.each_row(&view.code, domains.len(), |readings, lane| {
+                atoms.extend(readings.atoms.iter().map(|mask| mask.has(lane)));
+                signals.extend(readings.signals.iter().map(|lanes| lanes.0[lane]));
+                Some(())
+            });
         }
         view
     }

@@ -3,7 +3,7 @@
 use super::arrival::Arrivals;
 use crate::base::geometry::{Bounds, Shape, Vec2};
 use crate::kernel::nearby::Nearby;
-use crate::model::{AgentId, Barrier, Law, Obstacle, Position, Scenario};
+use crate::model::{AgentId, Barrier, Law, Obstacle, Parameter, Position, Scenario};
 use std::f64::consts::PI;
 
 /// Discs that are thrown and pushed jam at about this share of an area.
@@ -175,7 +175,7 @@ pub fn check_area(scenario: &Scenario) -> Vec<Crowding> {
             crowds.push(Crowd { shape, agents: Vec::new(), mean: (0.0, 0.0), least: (0.0, 0.0) });
             crowds.len() - 1
         });
-        crowds[index].add(AgentId(k as u32), &agent.body.radius, wider);
+        crowds[index].add(AgentId(k as u32), &agent.body[Parameter::Radius], wider);
     }
     crowds.into_iter().filter_map(|crowd| crowd.crowding(scenario)).collect()
 }

@@ -8,9 +8,9 @@
 //! they touch nobody who is present and no barrier. Without a free place they wait, those behind them too, and try
 //! again at each state.
 
+use super::enter;
 use super::placement::{ATTEMPTS, Ground};
 use super::sampler::Sampler;
-use super::{body::Parameters, enter};
 use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::random::{Purpose, Stream, TrialKey};
@@ -189,15 +189,16 @@ impl Arrivals {
             let (member, later) = (door.members[place], number - place as u32);
             let agent = &program.scenario.agents[member.0 as usize];
             let entity = agent.entity + later;
-            let Ok(body) =
-                Parameters::draw(member, agent, entity, program.starts.laws(member.0 as usize), key)
-            else {
+            let laws = program.starts.laws(member.0 as usize);
+            let Ok(body) = laws.draw(member, agent, entity, key) else {
                 // Nobody can move like that; such laws are refused when they are compiled.
                 state.diverged |= Mask::lane(lane);
                 return came;
             };
             let tries = state.queues.tries[source][lane];
-            let Some(at) = free_place(program, state, lane, (member, entity), body.radius, tries) else {
+            let Some(at) =
+                free_place(program, state, lane, (member, entity), body[Parameter::Radius as usize], tries)
+            else {
                 state.queues.tries[source][lane] += 1;
                 return came;
             };

@@ -23,7 +23,7 @@ use crate::base::geometry::Vec2;
 use crate::base::lanes::{Lanes, Mask};
 use crate::base::random::TrialKey;
 use crate::model::{AgentId, BarrierId, Move, Parameter, Route};
-use body::Parameters;
+pub(super) use body::Values;
 
 /// What loading a trial found worth counting.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -136,17 +136,20 @@ pub fn load(
     let mut bodies = Vec::with_capacity(scenario.agents.len());
     for (k, agent) in scenario.agents.iter().enumerate() {
         let here = !program.arrivals.comes(k);
-        let draw = || Parameters::draw(AgentId(k as u32), agent, agent.entity, program.starts.laws(k), key);
+        let draw = || program.starts.laws(k).draw(AgentId(k as u32), agent, agent.entity, key);
         bodies.push(here.then(draw).transpose()?);
     }
-    let radii = bodies.iter().map(|body| body.as_ref().map_or(0.0, |body| body.radius)).collect();
+    let radii = bodies
+        .iter()
+        .map(|body| body.as_ref().map_or(0.0, |body| body[Parameter::Radius as usize]))
+        .collect();
     let placed = placement::place(scenario, &program.starts, key, radii)?;
 
     let lane = if state.layout == Layout::Agents { 0 } else { lane };
     begin(program, state, lane, key);
     for (k, body) in bodies.into_iter().enumerate() {
-        let Some(body) = body else { continue };
-        let body = Parameters { radius: placed.radii[k], ..body };
+        let Some(mut body) = body else { continue };
+        body[Parameter::Radius as usize] = placed.radii[k];
         let own = advised.filter(|(whose, _)| whose.0 as usize == k).map(|(_, advice)| advice);
         enter(program, state, k, lane, &body, placed.positions[k], own);
     }
@@ -160,12 +163,12 @@ fn enter(
     state: &mut State,
     agent: usize,
     lane: usize,
-    body: &Parameters,
+    body: &Values,
     at: Vec2,
     advice: Option<(Move, u64)>,
 ) {
-    write(state, agent, lane, body);
     let slot = state.slot(agent, lane);
+    state.bodies.put(slot, body, Parameter::ALL.into_iter());
     let velocity = program.scenario.agents[agent].start.velocity;
     let put = |field: &mut [Lanes], value| field[slot.block].0[slot.lane] = value;
     put(&mut state.motion.x, at.x);
@@ -190,54 +193,20 @@ fn begin(program: &Program, state: &mut State, lane: usize, key: TrialKey) {
     program.arrivals.load(state, lane, key);
 }
 
-/// The parameters of an agent, or of the person so many numbers later on its place, as drawn, in the order of [`Parameter::ALL`]; none if nobody can move with them.
+/// The parameters of an agent, or of the person so many numbers later on its place, as drawn; none if nobody can move with
+/// them.
 pub(super) fn own_parameters(
     program: &Program,
     key: TrialKey,
     (id, later): (AgentId, u32),
-) -> Option<[f64; Parameter::ALL.len()]> {
+) -> Option<Values> {
     let agent = program.scenario.agents.get(id.0 as usize)?;
     let laws = program.starts.laws(id.0 as usize);
-    let body = Parameters::draw(id, agent, agent.entity + later, laws, key).ok()?;
+    let mut values = laws.draw(id, agent, agent.entity + later, key).ok()?;
     // Who goes on as recorded has the recorded speed as driving speed.
     let recorded = agent.start.velocity.norm();
-    let speed = if agent.route == Route::Onward && recorded > 0.0 { recorded } else { body.speed };
-    Some(Parameter::ALL.map(|parameter| match parameter {
-        Parameter::Mass => body.mass,
-        Parameter::Radius => body.radius,
-        Parameter::K1 => body.k1,
-        Parameter::K2 => body.k2,
-        Parameter::Speed => speed,
-        Parameter::Tau => body.tau,
-        Parameter::A => body.a,
-        Parameter::B => body.b,
-        Parameter::Lambda => body.lambda,
-        Parameter::A2 => body.a2,
-        Parameter::B2 => body.b2,
-        Parameter::Lambda2 => body.lambda2,
-        Parameter::Noise => body.noise,
-        Parameter::Attention => body.attention,
-    }))
-}
-
-/// Writes the parameters of an agent.
-fn write(state: &mut State, agent: usize, lane: usize, body: &Parameters) {
-    let slot = state.slot(agent, lane);
-    for (parameter, value) in [
-        (Parameter::Mass, body.mass),
-        (Parameter::Radius, body.radius),
-        (Parameter::Speed, body.speed),
-        (Parameter::Tau, body.tau),
-        (Parameter::A, body.a * body.attention),
-        (Parameter::B, body.b),
-        (Parameter::Lambda, body.lambda),
-        (Parameter::A2, body.a2 * body.attention),
-        (Parameter::B2, body.b2),
-        (Parameter::Lambda2, body.lambda2),
-        (Parameter::K1, body.k1),
-        (Parameter::K2, body.k2),
-        (Parameter::Noise, body.noise),
-    ] {
-        state.bodies[parameter][slot.block].0[slot.lane] = value;
+    if agent.route == Route::Onward && recorded > 0.0 {
+        values[Parameter::Speed as usize] = recorded;
     }
+    Some(values)
 }

@@ -3,13 +3,14 @@
 use crate::base::lanes::Lanes;
 use crate::kernel::layout::Slot;
 use crate::model::Parameter;
+use crate::model::parameter::{Range, Role};
 use std::ops::{Index, IndexMut};
 
 /// Parameters of all slots, as drawn or as a behaviour has changed them, SI units. `A` and `A2` are those that are felt:
 /// times the attention (of a body that stands for a group also times its persons).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bodies {
-    values: [Vec<Lanes>; Parameter::ALL.len()],
+    values: [Vec<Lanes>; Parameter::COUNT],
     /// What is left of a deviation from the driving velocity after a step, exp(-dt/tau); from `refresh`.
     pub decay: Vec<Lanes>,
     /// Standard deviation that the noise of a step adds, noise sqrt(1 - decay^2), m/s; from `refresh`.
@@ -30,6 +31,25 @@ impl Bodies {
         }
     }
 
+    /// Puts the values of some parameters, in the order of [`Parameter::ALL`], into a slot. Whether the reach of a force
+    /// changed.
+    pub(in crate::kernel) fn put(
+        &mut self,
+        slot: Slot,
+        values: &[f64; Parameter::COUNT],
+        parameters: impl Iterator<Item = Parameter>,
+    ) -> bool {
+        let mut reach = false;
+        for parameter in parameters {
+            let role = parameter.description().role;
+            let felt = if role == Role::Strength { values[Parameter::Attention as usize] } else { 1.0 };
+            let value = values[parameter as usize] * felt;
+            let old = std::mem::replace(&mut self[parameter][slot.block].0[slot.lane], value);
+            reach |= role == Role::Reach && old.to_bits() != value.to_bits();
+        }
+        reach
+    }
+
     /// Harmless numbers in the place of an agent that is not in the scene.
     pub(in crate::kernel) fn clear(&mut self, slot: Slot) {
         for parameter in Parameter::ALL {
@@ -40,15 +60,8 @@ impl Bodies {
 
 /// A value with which an absent agent disturbs no vector: no force, no division by zero.
 fn harmless(parameter: Parameter) -> f64 {
-    match parameter {
-        Parameter::Mass
-        | Parameter::Tau
-        | Parameter::B
-        | Parameter::Lambda
-        | Parameter::B2
-        | Parameter::Lambda2 => 1.0,
-        _ => 0.0,
-    }
+    let divides = parameter.description().range == Range::Positive && parameter != Parameter::Radius;
+    if divides { 1.0 } else { 0.0 }
 }
 
 impl Index<Parameter> for Bodies {

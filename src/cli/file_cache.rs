@@ -2,8 +2,9 @@
 //! that has opened them, so that both compile the same even where a file changes in between.
 
 use super::arguments::Model;
-use super::inputs::{Inputs, load_from};
+use super::inputs::load_from;
 use crate::base::bytes::{Decoder, Encoder, Malformed};
+use crate::library::Inputs;
 use std::collections::VecDeque;
 
 /// A file that was opened, by the name under which it was asked for: its bytes, or why there are none.
@@ -11,7 +12,7 @@ type Opened = (String, Result<Vec<u8>, String>);
 
 /// Where files come from.
 #[derive(Clone, Debug)]
-pub(super) enum Shelf {
+pub(super) enum FileCache {
     /// From the disk.
     Files,
     /// From the disk; what was opened is kept, in this order.
@@ -20,7 +21,7 @@ pub(super) enum Shelf {
     Handed(VecDeque<Opened>),
 }
 
-impl Shelf {
+impl FileCache {
     /// Opens a file.
     pub(super) fn open(
         &mut self,
@@ -43,7 +44,7 @@ impl Shelf {
 }
 
 /// What a call names and what was opened for it, as bytes for another process.
-pub(super) fn pack(model: &Model, properties: &[String], shelf: &Shelf) -> Vec<u8> {
+pub(super) fn pack(model: &Model, properties: &[String], cache: &FileCache) -> Vec<u8> {
     let mut to = Encoder::default();
     to.text(&model.scenario);
     for list in [properties, &model.set] {
@@ -52,7 +53,7 @@ pub(super) fn pack(model: &Model, properties: &[String], shelf: &Shelf) -> Vec<u
             to.text(text);
         }
     }
-    let Shelf::Kept(opened) = shelf else { return to.finish() };
+    let FileCache::Kept(opened) = cache else { return to.finish() };
     for (name, contents) in opened {
         to.text(name);
         match contents {
@@ -87,7 +88,7 @@ pub(super) fn unpack(bytes: &[u8]) -> Result<Inputs, Malformed> {
         opened.push_back((name, contents));
     }
     let model = Model { scenario, set, data: Vec::new() };
-    Ok(load_from(Shelf::Handed(opened), &model, &properties))
+    Ok(load_from(FileCache::Handed(opened), &model, &properties).inputs)
 }
 
 #[cfg(test)]
@@ -106,7 +107,7 @@ mod tests {
             ("a.bltl".to_owned(), Ok(b"estimate P(F<=1 s (travelled(user) > 1 m))".to_vec())),
             ("walls.wkt".to_owned(), Ok(b"LINESTRING (-1 2, 6 2)".to_vec())),
         ];
-        pack(&model, &["a.bltl".to_owned()], &Shelf::Kept(opened))
+        pack(&model, &["a.bltl".to_owned()], &FileCache::Kept(opened))
     }
 
     #[test]
@@ -119,10 +120,10 @@ mod tests {
 
     #[test]
     fn a_file_that_was_not_handed_over_is_missed() {
-        let mut shelf = Shelf::Handed(VecDeque::from([("a".to_owned(), Ok(vec![1]))]));
-        assert_eq!(shelf.open("a", || Err("from the disk".to_owned())), Ok(vec![1]));
+        let mut cache = FileCache::Handed(VecDeque::from([("a".to_owned(), Ok(vec![1]))]));
+        assert_eq!(cache.open("a", || Err("from the disk".to_owned())), Ok(vec![1]));
         assert_eq!(
-            shelf.open("b", || Err("from the disk".to_owned())),
+            cache.open("b", || Err("from the disk".to_owned())),
             Err("`b` was not handed over".to_owned())
         );
     }

@@ -13,7 +13,7 @@ const SLOTS: [u32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7];
 
 /// Trials of a chain side by side, eight to a block. Places beyond the last trial walk on somewhere.
 #[derive(Clone, Debug)]
-pub struct Walk {
+pub struct StepBatch {
     /// How many trials are left.
     len: usize,
     /// Steps made by each of them.
@@ -33,9 +33,36 @@ pub struct Walk {
 }
 
 impl Chain {
-    /// A walk without trials.
-    pub fn walk(&self, seed: u64) -> Walk {
-        Walk {
+    /// The trials with these indices begin; those of before are gone.
+    pub fn begin(&self, batch: &mut StepBatch, trials: impl ExactSizeIterator<Item = u64>) {
+        let blocks = trials.len().div_ceil(LANES);
+        (batch.len, batch.tick) = (trials.len(), 0);
+        batch.trials.resize(blocks, [0; LANES]);
+        batch.states.clear();
+        batch.states.resize(blocks, [self.space.initial(); LANES]);
+        batch.slots.clear();
+        batch.slots.extend((0..blocks as u32).map(|block| SLOTS.map(|lane| block * LANES as u32 + lane)));
+        batch.sifted.resize(batch.len, (0, 0));
+        batch.next.resize(blocks, [self.space.initial(); LANES]);
+        batch.numbers.resize(blocks, Lanes::ZERO);
+        batch.branches.resize(blocks, [0; LANES]);
+        for (place, trial) in batch.trials.as_flattened_mut().iter_mut().zip(trials) {
+            *place = trial;
+        }
+    }
+
+    /// One step of all trials.
+    #[inline]
+    pub fn step(&self, batch: &mut StepBatch) {
+        dispatch!(self.level, simd => advance(simd, self, batch));
+        batch.tick += 1;
+    }
+}
+
+impl StepBatch {
+    /// No trials yet.
+    pub fn new(seed: u64) -> Self {
+        Self {
             len: 0,
             tick: 0,
             trials: Vec::new(),
@@ -49,33 +76,6 @@ impl Chain {
         }
     }
 
-    /// The trials with these indices begin; those of before are gone.
-    pub fn begin(&self, walk: &mut Walk, trials: impl ExactSizeIterator<Item = u64>) {
-        let blocks = trials.len().div_ceil(LANES);
-        (walk.len, walk.tick) = (trials.len(), 0);
-        walk.trials.resize(blocks, [0; LANES]);
-        walk.states.clear();
-        walk.states.resize(blocks, [self.initial; LANES]);
-        walk.slots.clear();
-        walk.slots.extend((0..blocks as u32).map(|block| SLOTS.map(|lane| block * LANES as u32 + lane)));
-        walk.sifted.resize(walk.len, (0, 0));
-        walk.next.resize(blocks, [self.initial; LANES]);
-        walk.numbers.resize(blocks, Lanes::ZERO);
-        walk.branches.resize(blocks, [0; LANES]);
-        for (place, trial) in walk.trials.as_flattened_mut().iter_mut().zip(trials) {
-            *place = trial;
-        }
-    }
-
-    /// One step of all trials.
-    #[inline]
-    pub fn step(&self, walk: &mut Walk) {
-        dispatch!(self.level, simd => advance(simd, self, walk));
-        walk.tick += 1;
-    }
-}
-
-impl Walk {
     /// How many trials are left.
     pub fn len(&self) -> usize {
         self.len
@@ -128,9 +128,9 @@ impl Walk {
 }
 
 #[inline(always)]
-fn advance<S: Simd>(simd: S, chain: &Chain, walk: &mut Walk) {
-    let blocks = walk.len.div_ceil(LANES);
-    let Walk { len, tick, trials, states, next, numbers, branches, keys, .. } = walk;
+fn advance<S: Simd>(simd: S, chain: &Chain, batch: &mut StepBatch) {
+    let blocks = batch.len.div_ceil(LANES);
+    let StepBatch { len, tick, trials, states, next, numbers, branches, keys, .. } = batch;
     let (old, trials) = (&states[..blocks], &trials[..blocks]);
     let (next, numbers, branches) = (&mut next[..blocks], &mut numbers[..blocks], &mut branches[..blocks]);
     let open = open_in(chain, &old.as_flattened()[..*len]);
@@ -162,7 +162,7 @@ fn advance<S: Simd>(simd: S, chain: &Chain, walk: &mut Walk) {
             }
         }
     }
-    std::mem::swap(states, &mut walk.next);
+    std::mem::swap(states, &mut batch.next);
 }
 
 /// The processes that some of these states leave to chance, bit by bit.

@@ -1,7 +1,7 @@
-//! The desk of the head, at which leases are handed out and come back.
+//! The queue of the head, at which leases are handed out and come back.
 
 use super::Traffic;
-use super::line::{Event, Line, Orders, open};
+use super::connection::{Connection, Event, Orders, open};
 use super::message::{Answer, Greeting, Lease, MOST_ITEMS, Order, Reply, print};
 use super::round::Round;
 use crate::base::math;
@@ -34,7 +34,7 @@ const MOST_CELLS: usize = 1 << 16;
 
 /// How a round ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum End {
+pub(super) enum RoundEnd {
     /// All is there that will come.
     Over,
     /// No rank can run what is left.
@@ -90,7 +90,7 @@ impl Rank {
 }
 
 /// All ranks.
-pub(super) struct Desk {
+pub(super) struct LeaseQueue {
     ranks: Vec<Rank>,
     events: Receiver<(usize, Event)>,
     /// Fingerprint of the study.
@@ -106,20 +106,26 @@ pub(super) struct Desk {
     pub(super) traffic: Traffic,
 }
 
-impl Desk {
+impl LeaseQueue {
     /// Greets the ranks.
-    pub(super) fn new(lines: Vec<Line>, study: &Study, inputs: Vec<u8>, each: usize) -> Result<Self, Fault> {
+    pub(super) fn new(
+        connections: Vec<Connection>,
+        study: &Study,
+        inputs: Vec<u8>,
+        each: usize,
+    ) -> Result<Self, Fault> {
         let (sender, events) = mpsc::channel();
         let (print, each) = (print(study), each.max(1));
         let version = env!("CARGO_PKG_VERSION").to_owned();
         let greeting =
             Order::Greeting(Greeting { version, print: print.clone(), threads: each, inputs }).bytes();
-        let greet = |(rank, line)| {
-            let orders = open(rank, line, &sender).map_err(|error| Fault::Threads(error.to_string()))?;
+        let greet = |(rank, connection)| {
+            let orders =
+                open(rank, connection, &sender).map_err(|error| Fault::Threads(error.to_string()))?;
             orders.send(greeting.clone());
             Ok(Rank { orders: Some(orders), ready: false, held: VecDeque::new(), why: String::new() })
         };
-        let ranks = lines.into_iter().enumerate().map(greet).collect::<Result<_, Fault>>()?;
+        let ranks = connections.into_iter().enumerate().map(greet).collect::<Result<_, Fault>>()?;
         Ok(Self {
             ranks,
             events,
@@ -179,7 +185,7 @@ impl Desk {
 
     /// Has a round run. Where time is up, what has come back by then is there.
     #[allow(clippy::disallowed_methods, reason = "the engine keeps deadlines; trials never see the clock")]
-    pub(super) fn run(&mut self, round: &mut Round<'_, '_>, budget: &Budget) -> End {
+    pub(super) fn run(&mut self, round: &mut Round<'_, '_>, budget: &Budget) -> RoundEnd {
         let mut halted: Option<Instant> = None;
         let mut able = true;
         while let Ok((rank, event)) = self.events.try_recv() {
@@ -187,10 +193,10 @@ impl Desk {
         }
         let end = loop {
             if round.open == 0 {
-                break End::Over;
+                break RoundEnd::Over;
             }
             if !able || !self.ranks.iter().any(|rank| rank.lives(self.patience)) {
-                break End::Alone;
+                break RoundEnd::Alone;
             }
             if budget.must_stop() {
                 if halted.is_none() && budget.is_interrupted() {
@@ -199,7 +205,7 @@ impl Desk {
                 let since = halted.get_or_insert_with(Instant::now);
                 let waited_for = self.ranks.iter().flat_map(|rank| &rank.held).any(|held| !held.void);
                 if !waited_for || since.elapsed().as_secs_f64() > GRACE {
-                    break End::Over;
+                    break RoundEnd::Over;
                 }
             } else {
                 self.hand_out(round, budget);
@@ -313,7 +319,7 @@ impl Desk {
         self.traffic.again += u64::from(again);
     }
 
-    /// Something happened on a line, in a round or between two, whose time may be up. False where the trials of the round
+    /// Something happened on a connection, in a round or between two, whose time may be up. False where the trials of the round
     /// cannot be run by ranks.
     fn hear(&mut self, rank: usize, event: Event, round: Option<(&mut Round<'_, '_>, bool)>) -> bool {
         if self.ranks[rank].orders.is_none() {

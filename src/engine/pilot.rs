@@ -1,6 +1,6 @@
 //! The first trials of a query, run before the others: they tell how long a trial takes and roughly what it
 //! yields, so that a forecast stands before the sampling. They are the trials that sampling begins with, and
-//! are not run twice unless they were too slow to finish in the rehearsal.
+//! are not run twice unless they were too slow to finish in the pilot.
 
 use super::budget::Budget;
 use super::cell::{Cell, Item};
@@ -10,7 +10,7 @@ use std::sync::atomic::Ordering;
 
 /// Trials that a forecast looks at: as many on every machine, so that it is the same on every machine.
 const SEEN: usize = 16;
-/// Longest rehearsal of one job, s.
+/// Longest pilot of one job, s.
 const LONGEST: f64 = 0.5;
 
 /// Part of a first run is the making of workers, which matters where it is shorter than this, s.
@@ -42,7 +42,7 @@ pub(super) fn timed(
 }
 
 /// The first trials of a job.
-pub(super) struct Rehearsal {
+pub(super) struct Pilot {
     /// Which trials.
     pub(super) items: Vec<Item>,
     /// What they yielded.
@@ -53,8 +53,8 @@ pub(super) struct Rehearsal {
     steps: u64,
 }
 
-impl Rehearsal {
-    /// How many trials a rehearsal has, where so many run side by side.
+impl Pilot {
+    /// How many trials a pilot has, where so many run side by side.
     pub(super) const fn size(width: u64) -> u64 {
         if width < SEEN as u64 { SEEN as u64 } else { width }
     }

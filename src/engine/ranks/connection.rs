@@ -1,4 +1,4 @@
-//! A line to a rank: two threads of the head, of which one writes to it and the other reads from it, so that the head
+//! A connection to a rank: two threads of the head, of which one writes to it and the other reads from it, so that the head
 //! itself never waits for a rank that does not answer.
 
 use super::message::{Order, Reply, receive};
@@ -6,14 +6,14 @@ use std::io::{Read, Write};
 use std::sync::mpsc::{self, Receiver, Sender};
 
 /// What a head says to a rank, and what it hears from it.
-pub struct Line {
+pub struct Connection {
     /// What the rank says.
     pub from: Box<dyn Read + Send>,
     /// What it is told.
     pub to: Box<dyn Write + Send>,
 }
 
-/// What happened on a line.
+/// What happened on a connection.
 pub(super) enum Event {
     /// The rank said something.
     Said(Reply),
@@ -21,7 +21,7 @@ pub(super) enum Event {
     Gone(String),
 }
 
-/// The end of a line at which orders are given. Where it is dropped the line is closed, and the rank ends.
+/// The end of a connection at which orders are given. Where it is dropped the connection is closed, and the rank ends.
 pub(super) struct Orders(Sender<Vec<u8>>);
 
 impl Orders {
@@ -37,9 +37,13 @@ impl Orders {
 }
 
 /// Starts to write and to read; `events` hears all with the number of the rank.
-pub(super) fn open(rank: usize, line: Line, events: &Sender<(usize, Event)>) -> std::io::Result<Orders> {
+pub(super) fn open(
+    rank: usize,
+    connection: Connection,
+    events: &Sender<(usize, Event)>,
+) -> std::io::Result<Orders> {
     let (orders, given) = mpsc::channel();
-    let Line { from, to } = line;
+    let Connection { from, to } = connection;
     let (said, broken) = (events.clone(), events.clone());
     std::thread::Builder::new()
         .spawn(move || write(to, &given, |why| broken.send((rank, Event::Gone(why))).is_ok()))?;

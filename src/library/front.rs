@@ -1,0 +1,331 @@
+//! The front of every call: texts and files are read, decoded, parsed and compiled, and what is wrong with them is
+//! filtered once, so that every user of the crate sees the same errors.
+
+use super::refusal::refusal;
+use crate::base::fingerprint::Fingerprint;
+use crate::compile::{Files, Input, Setting, SettingValue, Starts, Study, examine, own_errors, requests};
+use crate::engine::overfull_starts;
+use crate::syntax::ast::{Expr, Item, PropertyItem, ScenarioFile};
+use crate::syntax::codes::Code;
+use crate::syntax::diagnostic::{Diagnostic, Severity};
+use crate::syntax::parse::{continues_name, decode, parse_properties, parse_scenario, parse_value};
+use crate::syntax::source::{Source, SourceId, Span};
+use std::collections::BTreeMap;
+
+/// Code of a parameter that is set wrongly.
+const SETTING: Code = Code::E0210;
+
+/// Most errors of one code that are shown.
+const MOST_OF_A_KIND: usize = 100;
+
+/// Where texts and files are read from.
+pub trait Folder {
+    /// The bytes of a scenario or a property file, by the name that the call gives it.
+    ///
+    /// # Errors
+    /// A sentence that says why there are none.
+    fn text(&mut self, name: &str) -> Result<Vec<u8>, String>;
+
+    /// The bytes of a file that the scenario names.
+    ///
+    /// # Errors
+    /// A sentence that says why there are none.
+    fn file(&mut self, path: &str) -> Result<Vec<u8>, String>;
+
+    /// The name of a text for messages.
+    fn shown<'n>(&self, name: &'n str) -> &'n str {
+        name
+    }
+}
+
+/// What a call names.
+#[derive(Clone, Copy, Debug)]
+pub struct Names<'a> {
+    /// The scenario.
+    pub scenario: &'a str,
+    /// Property files.
+    pub properties: &'a [String],
+    /// Values of parameters: `density=0.8 /m^2`, or a sweep, `density=0.1..0.8 by 0.1`.
+    pub settings: &'a [String],
+}
+
+/// All that was read, and what was found wrong with it.
+#[derive(Debug, Default)]
+pub struct Inputs {
+    /// Texts.
+    pub sources: Vec<Source>,
+    /// Errors and warnings; of each kind the first hundred, and the number of the others.
+    pub diagnostics: Vec<Diagnostic>,
+    /// The number of errors, including those that are only counted.
+    pub errors: usize,
+    /// Each file and the fingerprint of its bytes.
+    pub prints: Vec<(String, Fingerprint)>,
+    /// What compilation yields, if nothing is wrong.
+    pub study: Option<Study>,
+}
+
+/// Reads, parses and compiles what a call names.
+pub fn load(names: Names<'_>, folder: &mut dyn Folder) -> Inputs {
+    let mut reader = Reader { folder, inputs: Inputs::default() };
+    let mut complete = true;
+    let mut scenario = ScenarioFile::default();
+    let mut parsed = Vec::new();
+    match reader.source(names.scenario) {
+        Some(source) => {
+            let (file, diagnostics) = parse_scenario(&source);
+            scenario = file;
+            if scenario.items.is_empty() && diagnostics.is_empty() {
+                // Nothing but comments: as an empty file.
+                complete = false;
+                let title = format!("{} declares nothing", source.name);
+                reader.report(Diagnostic::placeless(Code::E0108, title));
+            }
+            let hint = "these are properties; the scenario comes first, and properties after it";
+            reader.inputs.diagnostics.extend(misplaced(diagnostics, &source, is_of_properties, hint));
+        }
+        None => complete = false,
+    }
+    for name in names.properties {
+        // One that cannot be read was reported; the others are examined without it.
+        let Some(source) = reader.source(name) else { continue };
+        let (file, diagnostics) = parse_properties(&source);
+        parsed.push(file);
+        let hint = "this is a scenario; it comes first, and properties after it";
+        reader.inputs.diagnostics.extend(misplaced(diagnostics, &source, is_scenario, hint));
+    }
+    let in_files = reader.inputs.sources.len();
+    let settings: Vec<Setting> = names.settings.iter().filter_map(|text| reader.setting(text)).collect();
+    let mut files = Files::default();
+    for request in requests(&scenario) {
+        let contents = reader.folder.file(&request.path);
+        if let Ok(bytes) = &contents {
+            reader.inputs.prints.push((request.path.clone(), Fingerprint::of(bytes)));
+        }
+        files.insert(request.path, contents);
+    }
+    let last = names.properties.last().map(|name| reader.folder.shown(name));
+    let mut inputs = reader.inputs;
+    if complete {
+        let input = Input {
+            sources: &inputs.sources,
+            scenario: &scenario,
+            properties: &parsed,
+            files: &files,
+            settings: &settings,
+        };
+        let (study, found) = examined(&input, &inputs.diagnostics, in_files);
+        inputs.diagnostics.extend(found);
+        inputs.study = study;
+    }
+    if inputs.diagnostics.iter().any(is_error) {
+        inputs.study = None;
+    } else if inputs.study.is_none() {
+        // Nothing is refused without a word.
+        let title = "internal error: compilation failed without a diagnostic";
+        inputs.diagnostics.push(Diagnostic::placeless(Code::E0305, title));
+    }
+    if let (Some(study), Some(last)) = (&inputs.study, last)
+        && study.queries.is_empty()
+        && let Some(source) = inputs.sources.iter().rfind(|source| source.name == last)
+    {
+        let warning = Diagnostic::warning(Code::W0602, Span::new(source.id, 0, 0), "nothing is asked");
+        let hint = "add a query, as in `check P(safe) >= 0.9` or `estimate P(safe)`";
+        inputs.diagnostics.push(warning.hint(hint));
+    }
+    inputs.errors = inputs.diagnostics.iter().filter(|one| is_error(one)).count();
+    inputs.diagnostics = first_of_each_kind(inputs.diagnostics);
+    inputs
+}
+
+/// What compilation yields, and what is wrong beside what the parser said.
+fn examined(input: &Input<'_>, said: &[Diagnostic], files: usize) -> (Option<Study>, Vec<Diagnostic>) {
+    let examined = examine(input);
+    let is_any = is_any_world(&examined.found, said, input, files);
+    let mut found = own_errors(examined.found, said, input);
+    if found.iter().chain(said).any(is_error) && !is_any {
+        // Of files that are right the engine reports it, for the queries that were chosen.
+        let known: Vec<Diagnostic> = said.iter().chain(&found).cloned().collect();
+        found.extend(own_errors(crowded(&examined.starts, &known), said, input));
+    }
+    (examined.study, found)
+}
+
+struct Reader<'f> {
+    folder: &'f mut dyn Folder,
+    inputs: Inputs,
+}
+
+impl Reader<'_> {
+    fn report(&mut self, diagnostic: Diagnostic) {
+        self.inputs.diagnostics.push(diagnostic);
+    }
+
+    fn next_id(&self) -> SourceId {
+        SourceId(self.inputs.sources.len() as u16)
+    }
+
+    fn source(&mut self, name: &str) -> Option<Source> {
+        let id = self.next_id();
+        let bytes = match self.folder.text(name) {
+            Ok(bytes) => bytes,
+            Err(reason) => {
+                self.report(Diagnostic::placeless(Code::E0701, reason));
+                return None;
+            }
+        };
+        let shown = self.folder.shown(name);
+        self.inputs.prints.push((shown.to_owned(), Fingerprint::of(&bytes)));
+        match decode(id, shown, &bytes) {
+            Ok(source) => {
+                self.inputs.sources.push(source.clone());
+                Some(source)
+            }
+            Err(diagnostic) => {
+                self.inputs.sources.push(Source::new(id, shown, String::from_utf8_lossy(&bytes)));
+                self.report(diagnostic);
+                None
+            }
+        }
+    }
+
+    fn expression(&mut self, name: &str, text: &str) -> Option<Expr> {
+        // A part of the call is a source of its own.
+        let source = Source::new(self.next_id(), name, text.trim());
+        self.inputs.sources.push(source.clone());
+        match parse_value(&source) {
+            Ok(expr) => Some(expr),
+            Err(diagnostics) => {
+                self.inputs.diagnostics.extend(diagnostics);
+                None
+            }
+        }
+    }
+
+    /// `name=value` or `name=from..to by step`
+    fn setting(&mut self, text: &str) -> Option<Setting> {
+        let named = text.split_once('=').filter(|(name, _)| !name.trim().is_empty());
+        let Some((name, value)) = named else {
+            let error = Diagnostic::placeless(Code::E0210, format!("`--set {text}` sets nothing"))
+                .hint("write `--set name=value` or `--set name=from..to by step`");
+            self.report(error);
+            return None;
+        };
+        let (name, value) = (name.trim(), value.trim());
+        let label = format!("--set {name}");
+        let value = match value.split_once("..") {
+            None => SettingValue::One(self.expression(&label, value)?),
+            Some((from, rest)) => {
+                let Some((to, by)) = rest.split_once(" by ") else {
+                    let error =
+                        Diagnostic::placeless(Code::E0210, format!("the sweep `{value}` has no step"))
+                            .hint("write `--set name=0.1..0.8 by 0.1`");
+                    self.report(error);
+                    return None;
+                };
+                let parts =
+                    (self.expression(&label, from), self.expression(&label, to), self.expression(&label, by));
+                SettingValue::Sweep(parts.0?, parts.1?, parts.2?)
+            }
+        };
+        let span = match &value {
+            SettingValue::One(expr) => expr.span,
+            SettingValue::Sweep(from, ..) => from.span,
+        };
+        Some(Setting { name: name.to_owned(), span, value })
+    }
+}
+
+/// What is wrong with a file. Where it is a file of the other language, that is all there is to say.
+fn misplaced(
+    mut diagnostics: Vec<Diagnostic>,
+    source: &Source,
+    is_other: impl Fn(&Source) -> bool,
+    hint: &str,
+) -> Vec<Diagnostic> {
+    if let Some(first) = diagnostics.iter().position(is_error)
+        && is_other(source)
+    {
+        return vec![diagnostics.swap_remove(first).hint(hint)];
+    }
+    diagnostics
+}
+
+fn is_error(diagnostic: &Diagnostic) -> bool {
+    diagnostic.severity == Severity::Error
+}
+
+/// Of each kind of error or warning the first ones, and how many more there are.
+fn first_of_each_kind(mut diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    let mut found: BTreeMap<(Severity, Code), usize> = BTreeMap::new();
+    diagnostics.retain(|one| {
+        let count = found.entry((one.severity, one.code)).or_default();
+        *count += 1;
+        *count <= MOST_OF_A_KIND
+    });
+    for ((severity, code), count) in found {
+        if let Some(more) = count.checked_sub(MOST_OF_A_KIND).filter(|more| *more > 0) {
+            let title = if more == 1 {
+                "1 more of this kind".to_owned()
+            } else {
+                format!("{more} more of this kind")
+            };
+            diagnostics.push(Diagnostic { severity, ..Diagnostic::placeless(code, title) });
+        }
+    }
+    diagnostics
+}
+
+/// Where more people are to start than fit, but for what is known to be wrong there.
+fn crowded(starts: &[Starts], known: &[Diagnostic]) -> Vec<Diagnostic> {
+    let place = |one: &Diagnostic| one.place.as_ref().map(|place| place.span);
+    let is_known = |span: Span| {
+        let meets =
+            |other: Span| other.source == span.source && other.start < span.end && span.start < other.end;
+        known.iter().filter(|one| is_error(one)).filter_map(place).any(meets)
+    };
+    let found = overfull_starts(starts);
+    found.iter().map(refusal).filter(|one| !place(one).is_some_and(is_known)).collect()
+}
+
+/// Whether any number of people may be another than the files say. What is wrong with a value that the call sets tells
+/// nothing of the value that was meant; and where parameters decide anything, what could not be read of the properties may
+/// have set them. The first sources are those of files.
+fn is_any_world(found: &[Diagnostic], said: &[Diagnostic], input: &Input<'_>, files: usize) -> bool {
+    let source = |one: &Diagnostic| one.place.as_ref().map(|place| usize::from(place.span.source.0));
+    let of_setting = |one: &Diagnostic| source(one).map_or(one.code == SETTING, |source| source >= files);
+    let of_query = |one: &Diagnostic| source(one).is_none_or(|source| (1..files).contains(&source));
+    let is_lost = || input.properties.iter().any(|file| !file.lost.is_empty() || !file.cut.is_empty());
+    found.iter().chain(said).filter(|one| is_error(one)).any(of_setting)
+        || (is_lost() || said.iter().filter(|one| is_error(one)).any(of_query)) && has_used_parameter(input)
+}
+
+/// Whether the scenario names some parameter again where it is not declared.
+fn has_used_parameter(input: &Input<'_>) -> bool {
+    let mut params: BTreeMap<&str, usize> = BTreeMap::new();
+    for item in &input.scenario.items {
+        if let Item::Param { name, .. } = item {
+            params.insert(&name.name, 0);
+        }
+    }
+    let text = input.sources.first().map_or("", |source| source.text.as_ref());
+    for word in text.split(|c: char| !continues_name(c)) {
+        if let Some(count) = params.get_mut(word) {
+            *count += 1;
+        }
+    }
+    params.values().any(|count| *count > 1)
+}
+
+/// Whether a text is a scenario, with something in it that only scenarios have.
+fn is_scenario(source: &Source) -> bool {
+    let (file, said) = parse_scenario(source);
+    let shared = |item: &Item| matches!(item, Item::Const { .. } | Item::Let(_));
+    !said.iter().any(is_error) && !file.items.iter().all(shared)
+}
+
+/// Whether a text is one of properties, with something in it that only these have.
+fn is_of_properties(source: &Source) -> bool {
+    let (file, said) = parse_properties(source);
+    let shared = |item: &PropertyItem| matches!(item, PropertyItem::Const { .. } | PropertyItem::Let(_));
+    !said.iter().any(is_error) && !file.items.iter().all(shared)
+}

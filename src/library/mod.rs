@@ -1,0 +1,21 @@
+//! The crate as a library: a model from texts, checks with results, trials state by state.
+//!
+//! [`Model::parse`] reads a scenario, [`Draft`] one with parameters and files. [`Model::check`] answers the queries of a
+//! property file and returns a [`Report`]. [`Model::trial`] runs a trial and yields its states. Errors come back as the
+//! command line shows them: [`Diagnostics`].
+
+mod diagnostics;
+mod front;
+mod model;
+mod options;
+mod refusal;
+mod report;
+mod trial;
+
+pub use diagnostics::Diagnostics;
+pub use front::{Folder, Inputs, Names, load};
+pub use model::{Draft, Model};
+pub use options::{Options, chosen};
+pub use refusal::{of_model, refusal, refusals};
+pub use report::Report;
+pub use trial::{AgentState, Snapshot, Trial};

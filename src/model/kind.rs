@@ -1,0 +1,33 @@
+//! Kinds of agents: how an agent moves. Which parameters a kind has stands in the table of parameters.
+
+/// A kind of agents.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Kind {
+    /// A body of the social force model that a route drives.
+    #[default]
+    Sfm,
+}
+
+impl Kind {
+    /// All kinds.
+    pub const ALL: [Self; 1] = [Self::Sfm];
+
+    /// Its name in a scenario, from which declared kinds start.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Sfm => "sfm",
+        }
+    }
+
+    /// What it is, for messages.
+    pub const fn meaning(self) -> &'static str {
+        match self {
+            Self::Sfm => "the social force model",
+        }
+    }
+
+    /// The kind of this name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.name() == name)
+    }
+}

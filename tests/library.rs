@@ -1,0 +1,107 @@
+//! The crate as a library: the same results as the program, errors as it shows them, and the states of a trial.
+
+use smc::engine::outcome::{Certified, Verdict};
+use smc::report::Format;
+use smc::stats::Claim;
+use smc::{Draft, Model, Options};
+use std::process::Command;
+
+const SCENARIO: &str = "horizon = 6 s\nstep = 0.05 s\nparam n = 2\n\
+    kind adult: sfm preset helbing2000 { noise = 0.1 m/s }\n\
+    agent user: adult { at = (0, 0)  route = (20, 0) }\n\
+    agents crowd[n]: adult { at = uniform in rect (5, -2) .. (9, 2)  route = (-5, 0) }\n";
+
+#[test]
+fn a_model_gives_the_results_of_the_program() {
+    let place = crate::program::Place::new(&[
+        ("model.scn", SCENARIO),
+        (
+            "model.bltl",
+            "check P(F<=6 s (travelled(user) > 4 m)) >= 0.8\nestimate P(F<=6 s contact(user)) within 0.1\n",
+        ),
+    ]);
+    let said = place.call(&["check", "model.scn", "model.bltl", "--format", "json", "--seed", "5"]);
+    let model = Model::parse(SCENARIO).unwrap();
+    let queries = std::fs::read_to_string(place.path("model.bltl")).unwrap();
+    let report = model.check(&queries, &Options::default().seed(5).threads(1)).unwrap();
+    let mut own: serde_json::Value = serde_json::from_str(&report.render(Format::Json)).unwrap();
+    let mut theirs = said.json();
+    for json in [&mut own, &mut theirs] {
+        let object = json.as_object_mut().unwrap();
+        object.remove("elapsed_s");
+        // The program names the files it has read.
+        object.remove("inputs");
+        for result in object["results"].as_array_mut().unwrap() {
+            result.as_object_mut().unwrap().remove("elapsed_s");
+        }
+    }
+    assert_eq!(own, theirs);
+    assert_eq!(report.verdict(), Some(Verdict::Satisfied));
+    let certificates: Vec<_> = report.results().iter().map(|r| r.certificate.clone().unwrap()).collect();
+    assert_eq!(certificates[0].claim, Certified::Decided(Claim::AtLeast(0.8)));
+    let (low, high) = (report.results()[1].low, report.results()[1].high);
+    assert_eq!(certificates[1].claim, Certified::Between { low, high });
+    assert!(high - low <= 0.2 + 1e-12 && certificates[1].error <= 0.05);
+}
+
+#[test]
+fn a_trial_yields_its_states() {
+    let model = Model::parse(SCENARIO).unwrap();
+    let mut trial = model.trial(5, 3).unwrap();
+    let states: Vec<_> = trial.by_ref().collect();
+    assert_eq!(states.len(), 121);
+    assert_eq!((states[0].time, states[120].time), (0.0, 6.0));
+    assert!(trial.end().is_some() && trial.next().is_none());
+    assert_eq!(states[0].agents.len(), 3);
+    // The rows of `smc simulate` are these states.
+    let place = crate::program::Place::new(&[("model.scn", SCENARIO)]);
+    let said = place.call(&["simulate", "model.scn", "--seed", "5", "--trial", "3"]);
+    let last = said.out.lines().rev().find(|line| line.contains("user")).unwrap();
+    let user = states[120].agent("user").unwrap();
+    assert!(last.contains(&format!("{},{}", user.position.x, user.position.y)), "{last}\n{user:?}");
+}
+
+#[test]
+fn errors_are_those_of_the_command_line() {
+    let wrong = SCENARIO.replace("helbing2000", "helbing2001");
+    let error = Model::parse(&wrong).unwrap_err();
+    assert!(error.has_error() && error.to_string().contains("did you mean"), "{error}");
+    let place = crate::program::Place::new(&[("model.scn", wrong.as_str())]);
+    assert_eq!(place.call(&["show", "model.scn"]).err.trim_end(), error.to_string().trim_end());
+    let model = Model::parse(SCENARIO).unwrap();
+    assert!(model.check("check P(nobody) >= 0.5", &Options::default()).is_err());
+    assert!(model.with("m", "3").is_err(), "there is no such parameter");
+    assert!(model.check("estimate P(F<=1 s contact(user))", &Options::default().only("other")).is_err());
+    let crowded = SCENARIO.replace("crowd[n]", "crowd[400]");
+    let error = Model::parse(&crowded).unwrap_err();
+    assert!(error.to_string().contains("E0801"), "{error}");
+}
+
+#[test]
+fn a_draft_has_parameters_and_files() {
+    let text = format!("{SCENARIO}scene {{ import \"walls.wkt\" }}\n");
+    let draft = Draft::new("a.scn", &text).set("n", "3").file("walls.wkt", "LINESTRING (-1 3, 9 3)");
+    let model = draft.parse().unwrap();
+    assert_eq!(model.scenario().agents.len(), 4);
+    assert_eq!(model.scenario().scene.barriers.len(), 1);
+    assert_eq!(model.with("n", "1").unwrap().scenario().agents.len(), 2);
+    let error = Draft::new("a.scn", &text).parse().unwrap_err();
+    assert!(error.to_string().contains("Draft::file"), "{error}");
+}
+
+/// The examples are programs of their own; the test command builds them.
+#[test]
+fn the_examples_run() {
+    let folder = std::env::current_exe().unwrap();
+    let folder = folder.parent().and_then(|deps| deps.parent()).unwrap().join("examples");
+    for (name, expected) in [("check", "trials"), ("sweep", "1.2 m,"), ("trajectories", "t,agent,x,y")] {
+        let program = folder.join(name);
+        if !program.exists() {
+            eprintln!("SKIPPED: example {name} is not built; `cargo test` without `--test` builds it");
+            continue;
+        }
+        let output = Command::new(program).output().unwrap();
+        let text = String::from_utf8_lossy(&output.stdout);
+        assert!(output.status.success() && text.contains(expected), "{name}: {text}");
+    }
+}
