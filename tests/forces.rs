@@ -35,7 +35,7 @@ fn decay(a: f64, gap: f64, b: f64, reach: f64) -> f64 {
 }
 
 /// Given-Wilson et al. 2017, equation (5) without contact: of straight walls and discs, of which those that meet do so
-/// at right angles, each pushes from its nearest point. (`kernel::surfaces` has the tests of what else faces do.)
+/// at right angles, each pushes from its nearest point. (`kernel::force::walls` has the tests of all other cases.)
 fn of_walls(scene: &Crowd, one: &Person, sum: &mut Sum) {
     for obstacle in &scene.obstacles {
         let nearest: Vec<(Vec2, f64)> = match obstacle {
@@ -250,6 +250,7 @@ fn thousands_of_barriers_change_no_bit_of_the_forces_of_a_few() {
 fn hundreds_of_near_barriers_sum_to_the_plain_forces() {
     let mut rng = Numbers(6);
     let mut scene = random(50, 10.0, Kind { own_b: true, second: false, ties: false }, &mut rng);
+    scene.obstacles.clear();
     for k in 0..300 {
         // None meets another one.
         let at = p(f64::from(k % 20) * 0.7 - 2.0, f64::from(k / 20) * 0.7 - 0.9);

@@ -1,6 +1,6 @@
 //! Walls and obstacles as wholes: the nearest point of the surface, inside or outside.
 //!
-//! Inside a solid the normal points out. Which of the faces of a barrier push stands in `surfaces`.
+//! Inside a solid the normal points out. `force::walls` says which of the faces of a barrier push.
 
 use super::edges::Edges;
 use super::vector::{Doubles, Part};

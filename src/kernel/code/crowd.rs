@@ -3,14 +3,11 @@
 use super::lanes::{Body, Truth, Vector, View, by_lane_of_two, lesser, narrow, widen};
 use super::machine::compare_all;
 use super::node::{Measure, Reading};
+use super::proximity::MARGIN;
 use crate::base::lanes::{Lanes, Mask};
 use crate::base::math;
 use crate::model::{Comparison, Field, Pair, Parameter};
 use fearless_simd::{Simd, prelude::*};
-
-/// Relative margin within which a comparison without square root is not trusted: a million times what
-/// rounding can do.
-pub(super) const MARGIN: f64 = 1e-9;
 
 /// The members of a crowd, less perhaps one.
 #[derive(Clone, Copy)]

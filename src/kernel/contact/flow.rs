@@ -4,8 +4,8 @@
 //! It can therefore never reverse a slip, and never adds energy. Pairs are visited in order and then in reverse order,
 //! which keeps it symmetric.
 
+use super::clusters::Clusters;
 use super::overlap::exchange;
-use super::throng::Throng;
 use crate::base::math;
 use crate::kernel::force::Forces;
 use fearless_simd::Simd;
@@ -17,13 +17,13 @@ const PACKING: f64 = 4.0;
 /// More would help nobody: such constants diverge.
 const MOST_SUBSTEPS: f64 = 1000.0;
 
-/// Moves the bodies of the hot clusters of a throng over `h` seconds. (Others may drift along, idly.)
+/// Moves the bodies of the hot clusters over `h` seconds. (Others may drift along, idly.)
 #[inline(always)]
-pub(super) fn flow<S: Simd>(simd: S, forces: &Forces, throng: &mut Throng, h: f64) {
-    let wanted = (h * (PACKING * throng.stiffest()).sqrt() / PHASE).ceil();
+pub(super) fn flow<S: Simd>(simd: S, forces: &Forces, clusters: &mut Clusters, h: f64) {
+    let wanted = (h * (PACKING * clusters.stiffest()).sqrt() / PHASE).ceil();
     let count = math::at_most(math::at_least(wanted, 1.0), MOST_SUBSTEPS) as u32;
     let t = h / f64::from(count);
-    let Throng { hot_pairs: pairs, hot_walls: walls, x, motions, .. } = throng;
+    let Clusters { hot_pairs: pairs, hot_walls: walls, x, motions, .. } = clusters;
     let mut drift = 0.5 * t;
     for k in 0..=count {
         for (x, motion) in x.iter_mut().zip(motions.iter()) {

@@ -7,26 +7,26 @@
 //! contact alone (`flow`; reversible multiple time steps, Tuckerman, Berne, Martyna 1992).
 //!
 //! The forces list who may touch whom within a step, lane by lane. Where something then can touch
-//! within a drift, the lane's candidates are gathered (`throng`), and all bodies that hang together by
+//! within a drift, the lane's candidates are gathered (`clusters`), and all bodies that hang together by
 //! candidates with a pair that can touch move in sub-steps.
 //!
 //! Everything here looks at one lane at a time: which bodies take sub-steps, how many, and in what order
 //! depends on that lane alone.
 
+mod clusters;
 mod flow;
 mod overlap;
 #[cfg(test)]
 mod plain;
-mod throng;
 
 use super::force::Forces;
 use super::state::{Slot, State};
 use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::model::Parameter;
+use clusters::Clusters;
 use fearless_simd::Simd;
 use flow::flow;
-use throng::Throng;
 
 /// Candidates of contact of each lane, and room to work.
 #[derive(Clone, Debug, Default)]
@@ -35,7 +35,7 @@ pub(super) struct Contacts {
     /// Lanes that have any.
     listed: Mask,
     /// The same, gathered; up to date in these lanes.
-    throngs: [Throng; LANES],
+    clusters: [Clusters; LANES],
     gathered: Mask,
 }
 
@@ -107,17 +107,17 @@ impl Contacts {
     ) {
         for lane in (state.occupied & self.listed).iter() {
             let candidates = &self.candidates[lane];
-            let throng = &mut self.throngs[lane];
+            let clusters = &mut self.clusters[lane];
             if !self.gathered.has(lane) {
                 if !candidates.can_touch(forces, state, lane, h) {
                     continue;
                 }
-                throng.gather(forces, state, candidates, lane);
+                clusters.gather(forces, state, candidates, lane);
                 self.gathered |= Mask::lane(lane);
             }
-            if throng.heat(forces, state, h) {
-                flow(simd, forces, throng, h);
-                throng.hand_back(state, moved);
+            if clusters.heat(forces, state, h) {
+                flow(simd, forces, clusters, h);
+                clusters.hand_back(state, moved);
             }
         }
     }

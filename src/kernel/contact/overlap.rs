@@ -3,7 +3,6 @@
 //! Roots and exponentials are taken eight at a time. Impulses are exchanged one by one, since each changes
 //! the next.
 
-use super::throng::Motion;
 use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Lanes};
 use crate::kernel::force::contact::{compression, friction};
@@ -11,6 +10,14 @@ use crate::kernel::force::{Forces, walls};
 use crate::kernel::vector::{first_part, parts};
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
+
+/// How a body moves.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Motion {
+    pub(super) v: Vec2,
+    /// One over the mass, 1/kg.
+    pub(super) inverse: f64,
+}
 
 /// Two bodies that may touch, or one and a face.
 #[derive(Clone, Copy, Debug)]

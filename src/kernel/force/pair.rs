@@ -116,7 +116,10 @@ impl<A: PairTerm, B: PairTerm> PairTerm for Both<A, B> {
     #[inline(always)]
     fn load<T: Copy>(column: impl Fn(usize) -> T) -> Self::Of<T> {
         (
-            A::load(&column),
+            A::load(
+                #[inline(always)]
+                |k| column(k),
+            ),
             B::load(
                 #[inline(always)]
                 |k| column(A::COUNT + k),
@@ -126,7 +129,19 @@ impl<A: PairTerm, B: PairTerm> PairTerm for Both<A, B> {
 
     #[inline(always)]
     fn map<T: Copy, U: Copy>(of: &Self::Of<T>, f: impl Fn(T) -> U) -> Self::Of<U> {
-        (A::map(&of.0, &f), B::map(&of.1, &f))
+        // Not `&f`: calls by a reference to a closure are not inlined where vectors need it.
+        (
+            A::map(
+                &of.0,
+                #[inline(always)]
+                |number| f(number),
+            ),
+            B::map(
+                &of.1,
+                #[inline(always)]
+                |number| f(number),
+            ),
+        )
     }
 
     #[inline(always)]
@@ -137,7 +152,13 @@ impl<A: PairTerm, B: PairTerm> PairTerm for Both<A, B> {
         agents: impl AgentsInLanes<S>,
         mut put: impl FnMut(usize, Doubles<S>),
     ) {
-        self.0.keep(part, state, agents, &mut put);
+        self.0.keep(
+            part,
+            state,
+            agents,
+            #[inline(always)]
+            |k, numbers| put(k, numbers),
+        );
         self.1.keep(
             part,
             state,

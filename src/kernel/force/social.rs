@@ -178,12 +178,21 @@ impl<A: PairTerm> PairTerm for Bounded<'_, A> {
 
     #[inline(always)]
     fn load<T: Copy>(column: impl Fn(usize) -> T) -> Self::Of<T> {
-        Driven { term: A::load(&column), repulsion: column(A::COUNT), drive: column(A::COUNT + 1) }
+        let term = A::load(
+            #[inline(always)]
+            |k| column(k),
+        );
+        Driven { term, repulsion: column(A::COUNT), drive: column(A::COUNT + 1) }
     }
 
     #[inline(always)]
     fn map<T: Copy, U: Copy>(of: &Self::Of<T>, f: impl Fn(T) -> U) -> Self::Of<U> {
-        Driven { term: A::map(&of.term, &f), repulsion: f(of.repulsion), drive: f(of.drive) }
+        let term = A::map(
+            &of.term,
+            #[inline(always)]
+            |number| f(number),
+        );
+        Driven { term, repulsion: f(of.repulsion), drive: f(of.drive) }
     }
 
     #[inline(always)]
@@ -194,7 +203,13 @@ impl<A: PairTerm> PairTerm for Bounded<'_, A> {
         agents: impl AgentsInLanes<S>,
         mut put: impl FnMut(usize, Doubles<S>),
     ) {
-        self.term.keep(part, state, agents, &mut put);
+        self.term.keep(
+            part,
+            state,
+            agents,
+            #[inline(always)]
+            |k, numbers| put(k, numbers),
+        );
         let drive = agents.field(&state.bodies[Parameter::Mass])
             * agents.field(&state.bodies[Parameter::Speed])
             / agents.field(&state.bodies[Parameter::Tau]);
@@ -218,13 +233,12 @@ impl<A: PairTerm> PairTerm for Bounded<'_, A> {
         let (of_one, of_other) = self.term.force(part, pair, &one.term, &other.term);
         let mean = part.c(0.5) * (one.repulsion + other.repulsion);
         let is_bounded = mean.simd_eq(mean);
-        // The last term is for a body that nothing drives and nothing pushes.
-        let bound = |force: Doubles<S>, drive: Doubles<S>| {
-            force * (drive / (drive + (force * pair.distance).abs() + part.c(1e-300))) * mean
-        };
-        (
-            is_bounded.select(bound(of_one, one.drive), of_one),
-            is_bounded.select(bound(of_other, other.drive), of_other),
-        )
+        // For a body that nothing drives and nothing pushes.
+        let rest = part.c(1e-300);
+        let of_one_bounded =
+            of_one * (one.drive / (one.drive + (of_one * pair.distance).abs() + rest)) * mean;
+        let of_other_bounded =
+            of_other * (other.drive / (other.drive + (of_other * pair.distance).abs() + rest)) * mean;
+        (is_bounded.select(of_one_bounded, of_one), is_bounded.select(of_other_bounded, of_other))
     }
 }

@@ -1,35 +1,14 @@
 //! What everybody asks in each state: kept by blocks of agents, so that eight of them are told at once.
 
-use super::{Around, Asker, Proximity};
+use super::asker::Asker;
+use super::question::{All, Question};
+use super::touching::read_off;
+use super::{Around, Proximity};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::kernel::code::node::{Cut, Measure};
-use crate::model::Comparison;
 
 /// Questions of everybody that are kept apart; others are answered one by one.
 const QUESTIONS: usize = 8;
-
-/// What everybody may ask.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::kernel::code) enum Question {
-    /// The smallest measure to the others; where it is cut perhaps something larger.
-    Nearest {
-        /// What is measured.
-        measure: Measure,
-        /// Where.
-        cut: Cut,
-    },
-    /// Whether a comparison has the wanted value for all others.
-    AllFar {
-        /// What is measured.
-        measure: Measure,
-        /// Its comparison with the bound.
-        test: Comparison,
-        /// The value it must have.
-        wanted: bool,
-        /// The bits of the bound.
-        bound: u64,
-    },
-}
 
 /// The answers to a question.
 #[derive(Clone, Debug)]
@@ -42,15 +21,6 @@ pub(super) struct Answers {
     all: All,
 }
 
-/// Answers of all, by blocks of agents.
-#[derive(Clone, Debug, Default)]
-pub(super) struct All {
-    /// The smallest measures; no numbers for those who are no members or not there.
-    pub(super) nearest: Vec<Lanes>,
-    /// Who has an answer to whether, and for whom it holds.
-    pub(super) far: Vec<(Mask, Mask)>,
-}
-
 impl Answers {
     /// A new state.
     pub(super) fn forget(&mut self) {
@@ -60,6 +30,17 @@ impl Answers {
 }
 
 impl Proximity {
+    /// Answers everybody who is there, if the pairs who may touch can. Of centres that near nobody asks.
+    pub(super) fn touching(&mut self, around: &Around<'_>, question: Question, all: &mut All) -> bool {
+        let Some(close) = around.close else { return false };
+        if question.measure() == Measure::Centres {
+            return false;
+        }
+        let places = self.sets(around, question);
+        let asked = self.asked(places, &around.state.present);
+        read_off(around.state, close, question, asked, all).is_some()
+    }
+
     /// The smallest measure of one who is left out of the members, where most members ask the same in every state.
     #[inline(always)]
     pub(super) fn known_nearest(

@@ -12,62 +12,29 @@
 //! Where a position or a radius is no number, or beyond reason, nothing is sorted: a look at all covers that.
 
 mod answers;
+mod asker;
 mod neighbours;
+mod question;
 mod touching;
 
-use super::crowd::MARGIN;
-use super::node::Measure;
-use crate::base::geometry::Vec2;
-use crate::base::lanes::{LANES, Lanes, Mask};
+use super::node::Cut;
+use crate::base::lanes::{LANES, Mask};
 use crate::kernel::near::{Close, FARTHEST, Index};
 use crate::kernel::state::State;
-use crate::model::{Comparison, Parameter};
+use crate::model::Comparison;
 use answers::Answers;
+use asker::{has, square, squared, value};
 use neighbours::Neighbours;
+use touching::Asked;
 
-pub(super) use answers::Question;
+pub(super) use asker::{Asker, MARGIN};
+pub(super) use question::Question;
 
 /// In a list of so many, a look at all is as fast.
 const FEW: usize = 32;
 
 /// So many questions of a state are answered sooner than the agents are sorted.
 const FEW_QUESTIONS: u32 = 4;
-
-/// A body that asks.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Asker {
-    /// Its number.
-    pub(super) agent: usize,
-    at: Vec2,
-    radius: f64,
-    measure: Measure,
-}
-
-impl Asker {
-    /// How far apart the centres of the asker and a member can be if the measure is at most `bound`: never too little.
-    #[inline(always)]
-    fn reach(&self, index: &Index, bound: f64) -> f64 {
-        if self.measure == Measure::Centres {
-            return bound + bound.abs() * MARGIN + 1e-30;
-        }
-        let slack = (bound.abs() + self.radius.abs() + index.widest.abs()) * MARGIN + 1e-30;
-        bound + self.radius + index.widest + slack
-    }
-
-    /// An agent of the only trial of a state.
-    #[inline(always)]
-    pub(super) fn new(state: &State, agent: usize, measure: Measure) -> Self {
-        let radius =
-            if measure == Measure::Centres { 0.0 } else { of(&state.bodies[Parameter::Radius], agent) };
-        Self { agent, at: Vec2::new(of(&state.motion.x, agent), of(&state.motion.y, agent)), radius, measure }
-    }
-
-    /// Whether the cells can answer.
-    #[inline(always)]
-    fn is_reasonable(&self) -> bool {
-        self.at.x.abs() <= FARTHEST && self.at.y.abs() <= FARTHEST && self.radius.abs() <= FARTHEST
-    }
-}
 
 /// A state, and the members who are asked about.
 #[derive(Clone, Copy, Debug)]
@@ -113,11 +80,6 @@ pub(super) struct Proximity {
     least: [f64; 2],
     /// Lists of agents as sets of each block, as far as they were needed.
     sets: Vec<(u32, Vec<Mask>)>,
-}
-
-#[inline(always)]
-fn of(field: &[Lanes], agent: usize) -> f64 {
-    field[agent / LANES].0[agent % LANES]
 }
 
 impl Proximity {
@@ -175,6 +137,19 @@ impl Proximity {
         }
         self.sets.push((list, set));
         self.sets.len() - 1
+    }
+
+    /// Where the sets of members, and of those whose least is wanted, are.
+    fn sets(&mut self, around: &Around<'_>, question: Question) -> (usize, usize) {
+        let askers = match question {
+            Question::Nearest { cut: Cut::Least(askers), .. } => askers,
+            _ => around.own,
+        };
+        (self.set(around, around.own), self.set(around, askers))
+    }
+
+    fn asked<'a>(&'a self, (members, askers): (usize, usize), known: &'a [Mask]) -> Asked<'a> {
+        Asked { known, members: &self.sets[members].1, askers: &self.sets[askers].1 }
     }
 
     /// Smallest measure from somebody to the members; infinite over nobody. `None` where only a look at all can tell.
@@ -261,35 +236,5 @@ impl Proximity {
                 && test.of(value(measure, squared.sqrt(), radius, index.r[k]), bound) != wanted
         };
         Some(!index.places(&index.area(at, reach)).any(|mut places| places.any(&is_near)))
-    }
-}
-
-/// Whether an agent belongs to a set.
-#[inline(always)]
-fn has(set: &[Mask], agent: u32) -> bool {
-    set[agent as usize / LANES].has(agent as usize % LANES)
-}
-
-/// Squared distance of an agent from a place.
-#[inline(always)]
-fn squared(index: &Index, at: Vec2, k: usize) -> f64 {
-    let (dx, dy) = (at.x - index.x[k], at.y - index.y[k]);
-    dx * dx + dy * dy
-}
-
-/// The square of a reach; nobody is nearer than one below 0.
-#[inline(always)]
-fn square(reach: f64) -> f64 {
-    if reach > 0.0 { reach * reach } else { 0.0 }
-}
-
-/// The measure at a distance between a fixed body and a running one of these radii, with the roundings of the expression
-/// that it stands for.
-#[inline(always)]
-fn value(measure: Measure, distance: f64, fixed: f64, running: f64) -> f64 {
-    match measure {
-        Measure::Centres => distance,
-        Measure::GapFixedFirst => distance - fixed - running,
-        Measure::GapRunningFirst => distance - running - fixed,
     }
 }

@@ -4,9 +4,10 @@
 //! the rectangle around everybody's ways since then; a crowd that walks one way is no nearer to each other for it. So the
 //! list serves for many states, until the ways are as long as the skin.
 
-use super::answers::All;
+use super::asker::{Asker, MARGIN, has, square, squared};
+use super::question::{All, Question};
 use super::touching::read_off;
-use super::{Around, Asker, MARGIN, Proximity, Question, has, square, squared};
+use super::{Around, Proximity};
 use crate::base::lanes::{Lanes, Mask};
 use crate::kernel::code::node::{Cut, Measure};
 use crate::kernel::near::Close;

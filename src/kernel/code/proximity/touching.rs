@@ -4,8 +4,8 @@
 //! edge; and the least of all, where that is: then no other two have it, however far they are apart. Such pairs the forces
 //! list anyhow, of those who may touch.
 
-use super::answers::All;
-use super::{Around, Asker, MARGIN, Proximity, Question, square, value};
+use super::asker::{Asker, MARGIN, square, value};
+use super::question::{All, Question};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::kernel::code::node::{Cut, Measure};
 use crate::kernel::near::Close;
@@ -15,44 +15,10 @@ use crate::kernel::state::State;
 #[derive(Clone, Copy)]
 pub(super) struct Asked<'a> {
     /// Those who have an answer.
-    known: &'a [Mask],
-    members: &'a [Mask],
+    pub(super) known: &'a [Mask],
+    pub(super) members: &'a [Mask],
     /// Whose least is wanted, where that is.
-    askers: &'a [Mask],
-}
-
-impl Proximity {
-    /// Answers everybody who is there, if the pairs who may touch can. Of centres that near nobody asks.
-    pub(super) fn touching(&mut self, around: &Around<'_>, question: Question, all: &mut All) -> bool {
-        let Some(close) = around.close else { return false };
-        if question.measure() == Measure::Centres {
-            return false;
-        }
-        let places = self.sets(around, question);
-        let asked = self.asked(places, &around.state.present);
-        read_off(around.state, close, question, asked, all).is_some()
-    }
-
-    /// Where the sets of members, and of those whose least is wanted, are.
-    pub(super) fn sets(&mut self, around: &Around<'_>, question: Question) -> (usize, usize) {
-        let askers = match question {
-            Question::Nearest { cut: Cut::Least(askers), .. } => askers,
-            _ => around.own,
-        };
-        (self.set(around, around.own), self.set(around, askers))
-    }
-
-    pub(super) fn asked<'a>(&'a self, (members, askers): (usize, usize), known: &'a [Mask]) -> Asked<'a> {
-        Asked { known, members: &self.sets[members].1, askers: &self.sets[askers].1 }
-    }
-}
-
-impl Question {
-    pub(super) const fn measure(&self) -> Measure {
-        match self {
-            Self::Nearest { measure, .. } | Self::AllFar { measure, .. } => *measure,
-        }
-    }
+    pub(super) askers: &'a [Mask],
 }
 
 /// Answers all who are known, if the pairs can; gives what was searched up to: the bound, or the least.

@@ -5,7 +5,7 @@
 //! either body, and pairs of one turn share no body. So each body meets its neighbours in their order
 //! whatever stands between, and the processor works on several pairs at a time.
 
-use super::overlap::{Touch, Touches};
+use super::overlap::{Motion, Touch, Touches};
 use super::{Candidates, at, within_reach, within_reach_of_face};
 use crate::base::geometry::Vec2;
 use crate::base::lanes::Mask;
@@ -32,14 +32,6 @@ struct Body {
     turn: u32,
 }
 
-/// How a body moves.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Motion {
-    pub(super) v: Vec2,
-    /// One over the mass, 1/kg.
-    pub(super) inverse: f64,
-}
-
 /// Bodies that hang together.
 #[derive(Clone, Copy, Debug)]
 struct Cluster {
@@ -51,7 +43,7 @@ struct Cluster {
 
 /// The bodies of one trial that may touch something.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Throng {
+pub(super) struct Clusters {
     bodies: Vec<Body>,
     clusters: Vec<Cluster>,
     /// The pairs in the order of candidates, each with its turn.
@@ -71,7 +63,7 @@ pub(super) struct Throng {
     index: Vec<u32>,
 }
 
-impl Throng {
+impl Clusters {
     /// Gathers the candidates of a lane.
     pub(super) fn gather(&mut self, forces: &Forces, state: &State, candidates: &Candidates, lane: usize) {
         self.bodies.clear();
