@@ -54,12 +54,15 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
         Err(error) => return desk.refuse(error),
     };
     if arguments.threads == Some(0) {
-        return desk.refuse(complaint::argument("`--threads 0` runs nothing", "it takes a number from 1"));
+        return desk.refuse(complaint::argument(
+            "`--threads` must be positive (got 0)",
+            "write a number from 1, or remove the option to use all cores",
+        ));
     }
     let most = most_threads();
     if arguments.threads.is_some_and(|threads| threads > most) {
         say(&format!(
-            "warning: {most} threads are as many as help here; results are the same with any number\n"
+            "warning: more than {most} threads are not faster on this machine, so {most} are used; results do not change\n"
         ));
     }
     let threads = arguments.threads.unwrap_or_else(cores).min(most);
@@ -99,7 +102,7 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     }
 }
 
-/// Those who run the trials of a call.
+/// The executor of the trials of a call.
 fn crew(
     arguments: &Check,
     study: &Study,
@@ -113,7 +116,7 @@ fn crew(
     let each = (threads / count).max(1);
     let packed = pack(&arguments.model, &arguments.properties, shelf);
     let (children, lines) = ranks::start(count)
-        .map_err(|reason| complaint::argument(reason, "leave `--ranks` out: threads do the same"))?;
+        .map_err(|reason| complaint::argument(reason, "remove `--ranks`: threads give the same results"))?;
     let ranks =
         Ranks::new(lines, study, packed, each, own, budget).map_err(|fault| complaint::refusal(&fault))?;
     Ok(Crew::Led { ranks: Box::new(ranks), _children: children })
@@ -128,7 +131,7 @@ fn most_threads() -> usize {
     (2 * cores()).max(16)
 }
 
-/// Where what a call has to say is handed out, in the format that was asked for.
+/// Writes the output of a call in the requested format.
 struct Desk<'a> {
     arguments: &'a Check,
     colors: Colors,
@@ -151,8 +154,8 @@ impl Desk<'_> {
             OutputFormat::Text => visible(&report::outlook::text(outlook)).into_owned(),
             OutputFormat::Junit | OutputFormat::Github => {
                 return self.refuse(complaint::argument(
-                    "`--forecast` is no result of a test",
-                    "it is written as `--format text` or `--format json`",
+                    "`--forecast` supports only `--format text` and `--format json`",
+                    "write `--format text` or `--format json`",
                 ));
             }
         };
@@ -179,7 +182,7 @@ impl Desk<'_> {
     /// The inputs are wrong; standard error has said how.
     fn refused(self) -> Exit {
         let first = self.findings.iter().find(|finding| finding.error);
-        let first = first.map_or_else(|| "the inputs are wrong".to_owned(), Finding::line);
+        let first = first.map_or_else(|| "the inputs have errors".to_owned(), Finding::line);
         let reason = match self.errors.saturating_sub(1) {
             0 => first,
             1 => format!("{first} (and 1 more error)"),
@@ -236,7 +239,7 @@ impl Desk<'_> {
     }
 }
 
-/// What reports that a call ended before its first trial, on standard error and in formats for machines.
+/// Reports that a call ended before its first trial, on standard error and in formats for machines.
 fn ender(arguments: &Check, colors: Colors) -> impl Fn(Ended) -> Exit + Clone + Send + 'static {
     let run = Run {
         scenario: arguments.model.scenario.clone(),
@@ -330,8 +333,10 @@ fn chosen(study: &Study, only: &[String]) -> Result<Vec<usize>, Diagnostic> {
             let near = nearest(wanted, names.iter().copied());
             let hint = match near {
                 Some(near) => format!("did you mean `{near}`?"),
-                None if names.is_empty() => format!("queries are numbered from 0 to {last}"),
-                None => format!("queries are numbered from 0 to {last}, and are about {}", names.join(", ")),
+                None if names.is_empty() => format!("write a number from 0 to {last}"),
+                None => {
+                    format!("write a number from 0 to {last}, or one of the properties {}", names.join(", "))
+                }
             };
             return Err(complaint::argument(
                 match number {

@@ -16,27 +16,27 @@ pub(super) fn argument(title: impl Into<String>, hint: impl Into<String>) -> Dia
 /// A file, or standard output, cannot be written.
 pub(super) fn output(title: impl Into<String>) -> Diagnostic {
     Diagnostic::placeless(Code::E0706, title)
-        .hint("is the place there, may it be written, and is it not full?")
+        .hint("check that the folder exists, is writable and is not full")
 }
 
 /// A file, or standard input, cannot be read.
 pub(super) fn input(title: impl Into<String>) -> Diagnostic {
     Diagnostic::placeless(Code::E0701, title)
-        .hint("names are relative to the folder of the call; `-` is standard input")
+        .hint("file names are relative to the current folder; `-` is standard input")
 }
 
-/// Time was up before the first trial.
+/// The time limit ended the call before the first trial.
 pub(super) fn late() -> Diagnostic {
-    Diagnostic::placeless(Code::E0921, "time was up before the first trial")
-        .hint("give more time with `--timeout`, or make the scenario smaller")
+    Diagnostic::placeless(Code::E0921, "the time limit ended the call before the first trial")
+        .hint("write a longer `--timeout`, or make the scenario smaller")
 }
 
 /// The call was interrupted before the first trial.
 pub(super) fn interrupted() -> Diagnostic {
-    Diagnostic::placeless(Code::E0922, "interrupted before the first trial")
+    Diagnostic::placeless(Code::E0922, "the call was interrupted before the first trial")
 }
 
-/// What the engine refuses, each of it.
+/// The diagnostics of a fault of the engine.
 pub(super) fn refusals(fault: &Fault) -> Vec<Diagnostic> {
     match fault {
         Fault::Crowded(places) => places.iter().map(refusal).collect(),
@@ -44,7 +44,7 @@ pub(super) fn refusals(fault: &Fault) -> Vec<Diagnostic> {
     }
 }
 
-/// What the engine refuses; of several the first.
+/// The diagnostic of a fault of the engine; the first of several.
 pub(super) fn refusal(fault: &Fault) -> Diagnostic {
     match fault {
         Fault::Placement { reason, place } => {
@@ -52,29 +52,29 @@ pub(super) fn refusal(fault: &Fault) -> Diagnostic {
                 Some(span) => Diagnostic::error(Code::E0801, *span, reason.as_str()),
                 None => Diagnostic::placeless(Code::E0801, reason.as_str()),
             };
-            error.hint("fewer people, a larger shape to start from, or smaller radii")
+            error.hint("use fewer agents, a larger shape to start in, or smaller radii")
         }
         Fault::Crowded(places) => match places.first() {
             Some(first) => refusal(first),
             None => Diagnostic::placeless(Code::E0801, fault.to_string()),
         },
         Fault::Procedure { place, reason } => Diagnostic::error(Code::E0604, *place, reason.to_string())
-            .hint("`smc explain E0604` says what each procedure takes"),
+            .hint("see `smc explain E0604` for the arguments of each procedure"),
         Fault::Memory { place, .. } => Diagnostic::error(Code::E0923, *place, fault.to_string())
-            .hint("one value is kept for each trial of each `E` and `Q`: set a smaller `--max-trials`, or ask fewer of them at once with `--only`"),
+            .hint("one value is stored for each trial of each `E` and `Q`: write a smaller `--max-trials`, or select fewer queries with `--only`"),
         Fault::Model(flaw) => of_model(flaw),
         Fault::Statistics(reason) => Diagnostic::placeless(Code::E0604, reason.to_string())
-            .hint("`smc explain E0604` says what each procedure takes"),
+            .hint("see `smc explain E0604` for the arguments of each procedure"),
         Fault::Logic(reason) => Diagnostic::placeless(Code::E0509, reason.to_string())
-            .hint("shorter bounds or a longer step need less memory"),
+            .hint("use shorter bounds or a longer step, which need less memory"),
         Fault::Unsuitable => Diagnostic::placeless(Code::E0603, fault.to_string())
-            .hint("`smc explain E0603` says which procedure goes with what"),
-        Fault::Rank { .. } => argument(fault.to_string(), "all processes of a call must be the same program"),
-        Fault::Threads(_) => argument(fault.to_string(), "ask for fewer: `--threads 1`"),
+            .hint("see `smc explain E0603` for the procedures of each query"),
+        Fault::Rank { .. } => argument(fault.to_string(), "all processes of a call must run the same program"),
+        Fault::Threads(_) => argument(fault.to_string(), "use fewer threads: `--threads 1`"),
     }
 }
 
-/// What a trial shows to be wrong with the model.
+/// The diagnostic of an error of the model in a trial.
 pub(super) fn of_model(flaw: &Flaw) -> Diagnostic {
     let title = format!("{}: {}", flaw.moment, flaw.what);
     let error = match flaw.place {
@@ -85,7 +85,7 @@ pub(super) fn of_model(flaw: &Flaw) -> Diagnostic {
     error.hint(flaw.hint)
 }
 
-/// Says it on standard error.
+/// Writes it to standard error.
 pub(super) fn tell(error: &Diagnostic, sources: &[Source], colors: Colors) {
     tell_all(std::slice::from_ref(error), sources, colors);
 }

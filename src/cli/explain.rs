@@ -18,10 +18,10 @@ pub(super) fn run(arguments: &Explain, colors: Colors) -> Exit {
     }
     let hint = nearest(&wanted.trim().to_ascii_uppercase(), Code::ALL.iter().map(|code| code.name()));
     let hint = hint.map_or_else(
-        || "`smc explain` lists all".to_owned(),
-        |near| format!("did you mean {near}? `smc explain` lists all"),
+        || "`smc explain` lists all codes".to_owned(),
+        |near| format!("did you mean {near}? `smc explain` lists all codes"),
     );
-    complaint::tell(&complaint::argument(format!("there is no code `{wanted}`"), hint), &[], colors);
+    complaint::tell(&complaint::argument(format!("unknown code `{wanted}`"), hint), &[], colors);
     Exit::Wrong
 }
 

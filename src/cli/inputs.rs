@@ -39,9 +39,9 @@ pub(super) struct Inputs {
     pub(super) errors: usize,
     /// Each file and the fingerprint of its bytes.
     pub(super) prints: Vec<(String, Fingerprint)>,
-    /// What compilation yields, if nothing is wrong.
+    /// The result of compilation, if there is no error.
     pub(super) study: Option<Study>,
-    /// What was opened, for others who are to compile the same.
+    /// The opened files, for other processes that compile the same.
     pub(super) shelf: Shelf,
     /// The files that were opened, where they were found.
     pub(super) paths: Vec<PathBuf>,
@@ -71,7 +71,7 @@ pub(super) fn read(name: &str) -> Result<Vec<u8>, String> {
         return whole(std::io::stdin().lock()).map_err(|error| format!("standard input {error}"));
     }
     read_file(Path::new(name)).map_err(|error| match error {
-        Unread::Missing => format!("there is no file `{name}`"),
+        Unread::Missing => format!("the file `{name}` does not exist"),
         error => format!("`{name}` {error}"),
     })
 }
@@ -79,9 +79,9 @@ pub(super) fn read(name: &str) -> Result<Vec<u8>, String> {
 /// Why an input has no bytes, after its name.
 #[derive(Debug, thiserror::Error)]
 enum Unread {
-    #[error("is not there")]
+    #[error("does not exist")]
     Missing,
-    #[error("may not be read")]
+    #[error("is not readable")]
     Forbidden,
     #[error("is a directory")]
     Directory,
@@ -177,7 +177,7 @@ impl Reader {
     fn setting(&mut self, text: &str) -> Option<Setting> {
         let named = text.split_once('=').filter(|(name, _)| !name.trim().is_empty());
         let Some((name, value)) = named else {
-            let error = Diagnostic::placeless(Code::E0210, format!("`--set {text}` sets nothing"))
+            let error = Diagnostic::placeless(Code::E0210, format!("`--set {text}` has no value"))
                 .hint("write `--set name=value` or `--set name=from..to by step`");
             self.diagnostics.push(error);
             return None;
@@ -226,12 +226,12 @@ fn find(path: &str, scenario: &str, data: &[PathBuf]) -> Result<PathBuf, String>
         .map(|p| if p.as_os_str().is_empty() { ".".to_owned() } else { p.display().to_string() })
         .collect();
     Err(format!(
-        "there is no file `{path}` under {}",
+        "the file `{path}` does not exist in {}",
         if looked.is_empty() { "any --data directory".to_owned() } else { looked.join(", ") }
     ))
 }
 
-/// What is wrong with a file. Where it is a file of the other language, that is all there is to say.
+/// The errors of a file. If it is a file of the other language, only that is reported.
 fn misplaced(
     mut diagnostics: Vec<Diagnostic>,
     source: &Source,
@@ -250,7 +250,7 @@ fn is_error(diagnostic: &Diagnostic) -> bool {
     diagnostic.severity == Severity::Error
 }
 
-/// Of each kind of error or warning the first ones, and how many more there are.
+/// The first errors or warnings of each kind, and the number of the others.
 fn first_of_each_kind(mut diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
     let mut found: BTreeMap<(Severity, Code), usize> = BTreeMap::new();
     diagnostics.retain(|one| {
@@ -271,7 +271,7 @@ fn first_of_each_kind(mut diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
     diagnostics
 }
 
-/// Where more people are to start than fit, but for what is known to be wrong there.
+/// Places at which more agents start than fit, except those with other errors.
 fn crowded(starts: &[Starts], known: &[Diagnostic]) -> Vec<Diagnostic> {
     let place = |one: &Diagnostic| one.place.as_ref().map(|place| place.span);
     let is_known = |span: Span| {
@@ -337,7 +337,7 @@ pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> I
         Reader { shelf, sources: Vec::new(), prints: Vec::new(), diagnostics: Vec::new(), paths: Vec::new() };
     let twice = std::iter::once(&model.scenario).chain(properties).filter(|name| *name == "-").count() > 1;
     if twice {
-        reader.diagnostics.push(Diagnostic::placeless(Code::E0701, "standard input can be read once only"));
+        reader.diagnostics.push(Diagnostic::placeless(Code::E0701, "standard input can be read only once"));
     }
     let mut scenario = ScenarioFile::default();
     let mut parsed = Vec::new();
@@ -350,10 +350,10 @@ pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> I
                 if scenario.items.is_empty() && diagnostics.is_empty() {
                     // Nothing but comments: as an empty file.
                     complete = false;
-                    let title = format!("{} declares nothing", source.name);
+                    let title = format!("{} has no declarations", source.name);
                     reader.diagnostics.push(Diagnostic::placeless(Code::E0108, title));
                 }
-                let hint = "these are properties; the scenario comes first, and properties after it";
+                let hint = "this is a property file; write the scenario first and property files after it";
                 reader.diagnostics.extend(misplaced(diagnostics, &source, is_of_properties, hint));
             }
             None => complete = false,
@@ -363,16 +363,14 @@ pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> I
             let Some(source) = reader.source(name) else { continue };
             let (file, diagnostics) = parse_properties(&source);
             parsed.push(file);
-            let hint = "this is a scenario; it comes first, and properties after it";
+            let hint = "this is a scenario; write it first and property files after it";
             reader.diagnostics.extend(misplaced(diagnostics, &source, is_scenario, hint));
         }
     }
     for directory in model.data.iter().filter(|directory| !directory.is_dir()) {
-        let what = if directory.exists() { "no directory" } else { "not there" };
-        let error = Diagnostic::placeless(Code::E0701, format!("`--data {}` is {what}", directory.display()));
-        reader
-            .diagnostics
-            .push(error.hint("it names a folder in which recordings and imports are looked for"));
+        let what = if directory.exists() { "is not a directory" } else { "does not exist" };
+        let error = Diagnostic::placeless(Code::E0701, format!("`--data {}` {what}", directory.display()));
+        reader.diagnostics.push(error.hint("write a folder that contains recordings or imports"));
     }
     let in_files = reader.sources.len();
     let settings: Vec<Setting> = model.set.iter().filter_map(|text| reader.setting(text)).collect();
@@ -416,15 +414,19 @@ pub(super) fn load_from(shelf: Shelf, model: &Model, properties: &[String]) -> I
         study = None;
     } else if study.is_none() {
         // Nothing is refused without a word.
-        let title = "what is wrong with these files shows nowhere else";
+        let title = "internal error: compilation failed without a diagnostic";
         diagnostics.push(Diagnostic::placeless(Code::E0305, title));
     }
     if let (Some(study), Some(last)) = (&study, properties.last())
         && study.queries.is_empty()
         && let Some(source) = sources.iter().rfind(|source| source.name == shown(last))
     {
-        let warning = Diagnostic::warning(Code::W0602, Span::new(source.id, 0, 0), "nothing is asked");
-        diagnostics.push(warning.hint("add a query, as in `check P(safe) >= 0.9` or `estimate P(safe)`"));
+        let warning = Diagnostic::warning(
+            Code::W0602,
+            Span::new(source.id, 0, 0),
+            "the property files contain no query",
+        );
+        diagnostics.push(warning.hint("add a query such as `check P(safe) >= 0.9` or `estimate P(safe)`"));
     }
     let errors = diagnostics.iter().filter(|one| is_error(one)).count();
     let diagnostics = first_of_each_kind(diagnostics);

@@ -7,10 +7,10 @@ use crate::report::ExitCode as Exit;
 use crate::syntax::diagnostic::Severity;
 use std::process::{Child, Command, Stdio};
 
-/// What makes this program a rank, where it is the only word. It is no part of the command line that people type.
+/// The only argument of a process that is a rank. It is not part of the public command line.
 pub(super) const WORD: &str = "--rank";
 
-/// Who runs the trials of a call.
+/// The processes and threads that run the trials of a call.
 pub(super) enum Crew {
     /// This process alone.
     Alone(Threads),
@@ -24,7 +24,7 @@ pub(super) enum Crew {
 }
 
 impl Crew {
-    /// Who runs the trials.
+    /// The executor of trials.
     pub(super) fn executor(&self) -> &dyn Executor {
         match self {
             Self::Alone(threads) => threads,
@@ -32,7 +32,7 @@ impl Crew {
         }
     }
 
-    /// What went wrong with them.
+    /// Their warnings.
     pub(super) fn warnings(&self) -> Vec<String> {
         match self {
             Self::Alone(_) => Vec::new(),
@@ -80,7 +80,7 @@ pub(super) fn run() -> Exit {
         let inputs = unpack(bytes).map_err(|error| error.to_string())?;
         let mut errors = inputs.diagnostics.iter().filter(|found| found.severity == Severity::Error);
         inputs.study.ok_or_else(|| {
-            errors.next().map_or_else(|| "nothing can be compiled".to_owned(), |error| error.title.clone())
+            errors.next().map_or_else(|| "the inputs have errors".to_owned(), |error| error.title.clone())
         })
     };
     match serve(Box::new(std::io::stdin()), &mut std::io::stdout().lock(), &prepare) {

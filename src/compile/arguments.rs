@@ -37,9 +37,9 @@ impl Elaborator<'_> {
         for argument in &method.arguments {
             let Some(at) = names.iter().position(|n| *n == argument.name.name) else {
                 let known = if N == 0 {
-                    "it takes none".to_owned()
+                    "it has no arguments".to_owned()
                 } else {
-                    format!("it takes {}", names.join(", "))
+                    format!("its arguments are {}", names.join(", "))
                 };
                 let hint = nearest(&argument.name.name, names.iter().copied())
                     .map_or(known, |n| format!("did you mean `{n}`?"));

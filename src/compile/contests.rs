@@ -77,7 +77,7 @@ impl Elaborator<'_> {
             _ => self.unknown_method(method, &["betting", "one_challenger", "okamoto"], locals),
         };
         if ranking.is_err() && !method.arguments.is_empty() {
-            // What an unknown procedure takes nobody knows, the width among it.
+            // The arguments of an unknown procedure are unknown, including the width.
             let width = if clauses.within.is_some() { stated(clauses, within) } else { Err(Reported) };
             return (Err(Reported), width);
         }
@@ -93,7 +93,7 @@ impl Elaborator<'_> {
     fn loss(&mut self, width: Option<(f64, Span)>, sketch: Sketch, measured: Span) -> Lowered<f64> {
         let (epsilon, at) = match (width, sketch.dimension) {
             (Some(found), _) => found,
-            // What does not matter in metres nobody knows but who asks.
+            // Only the user can say which difference in metres does not matter.
             (None, Some(dimension)) if !dimension.is_none() => {
                 let error =
                     Diagnostic::error(Code::E0604, measured, "how much worse may a choice be?").formal();

@@ -38,18 +38,20 @@ impl Dimension {
     pub const STEPS: Self = Self([0, 0, 0, 0, 1]);
     /// 1/m^2
     pub const DENSITY: Self = Self([0, -2, 0, 0, 0]);
+    /// 1/s
+    pub const RATE: Self = Self([0, 0, -1, 0, 0]);
 
-    /// Of the product.
+    /// The dimension of a product.
     pub fn times(self, other: Self) -> Option<Self> {
         self.plus(other, 1)
     }
 
-    /// Of the quotient.
+    /// The dimension of a quotient.
     pub fn over(self, other: Self) -> Option<Self> {
         self.plus(other, -1)
     }
 
-    /// Of the power.
+    /// The dimension of a power.
     pub fn power(self, exponent: i32) -> Option<Self> {
         Self::NONE.plus(self, i8::try_from(exponent).ok()?)
     }
@@ -62,7 +64,7 @@ impl Dimension {
         Some(out)
     }
 
-    /// Of the square root, if the exponents are even.
+    /// The dimension of a square root, if the exponents are even.
     pub fn root(self) -> Option<Self> {
         self.0.iter().all(|e| e % 2 == 0).then(|| Self(self.0.map(|e| e / 2)))
     }
@@ -106,10 +108,10 @@ pub(super) fn single_number(text: &str) -> Option<&str> {
     (is_number && !unit.contains([' ', '('])).then_some(number)
 }
 
-/// What a dimension is called in messages: `a length (m)`, `a pure number`.
+/// The name of a dimension in messages: `a length (m)`, `a number without a unit`.
 pub fn describe(dimension: Dimension) -> String {
     let name = match dimension {
-        Dimension::NONE => return "a pure number".to_owned(),
+        Dimension::NONE => return "a number without a unit".to_owned(),
         Dimension::MASS => "a mass",
         Dimension::LENGTH => "a length",
         Dimension::AREA => "an area",
@@ -119,6 +121,7 @@ pub fn describe(dimension: Dimension) -> String {
         Dimension::ANGLE => "an angle",
         Dimension::STEPS => "a number of steps",
         Dimension::DENSITY => "a density",
+        Dimension::RATE => "a rate",
         _ => "a quantity",
     };
     format!("{name} ({dimension})")
@@ -218,7 +221,7 @@ mod tests {
         assert_eq!(Dimension::STIFFNESS.to_string(), "kg/s^2");
         assert_eq!(Dimension::DENSITY.to_string(), "/m^2");
         assert_eq!(Dimension::FORCE.to_string(), "N");
-        assert_eq!(describe(Dimension::NONE), "a pure number");
+        assert_eq!(describe(Dimension::NONE), "a number without a unit");
     }
 
     #[test]

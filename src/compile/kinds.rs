@@ -64,7 +64,7 @@ impl Elaborator<'_> {
             let error = Diagnostic::error(
                 Code::E0206,
                 name.span,
-                format!("expected a kind, `{}` is {}", name.name, meaning.noun()),
+                format!("expected a kind, but `{}` is {}", name.name, meaning.noun()),
             );
             return self.report(error);
         };
@@ -76,7 +76,7 @@ impl Elaborator<'_> {
             return self.report(Diagnostic::error(
                 Code::E0205,
                 name.span,
-                format!("the kind `{}` is defined by itself", name.name),
+                format!("the kind `{}` depends on itself", name.name),
             ));
         }
         if let Some(known) = self.kinds.get(&name.name) {
@@ -105,7 +105,7 @@ impl Elaborator<'_> {
             } else {
                 let error =
                     unknown("preset", &preset.name, preset.span, Code::E0208, PRESETS.iter().map(|p| p.name));
-                let known = format!("known presets: {}", PRESETS.map(|p| p.name).join(", "));
+                let known = format!("the presets are {}", PRESETS.map(|p| p.name).join(", "));
                 let error = match error.hint.clone() {
                     Some(near) => error.hint(format!("{near} {known}")),
                     None => error.hint(known),
@@ -186,7 +186,7 @@ impl Elaborator<'_> {
                 return Err(Reported);
             }
             let error = Diagnostic::error(Code::E0209, name.span, title)
-                .hint("set them, or start from a preset: `kind adult: sfm preset helbing2000 { … }`");
+                .hint("set the values, or start from a preset: `kind adult: sfm preset helbing2000 { … }`");
             return self.report(error);
         }
         let law = |name: &str| {
@@ -231,11 +231,11 @@ pub(super) fn out_of_range(name: &str, law: &Law) -> Option<String> {
     }
     if matches!(name, "speed" | "noise") && low > TOP_SPEED {
         return Some(format!(
-            "a `{name}` of more than {TOP_SPEED} m/s is nobody's: every trial would diverge"
+            "`{name}` exceeds {TOP_SPEED} m/s, the limit for a person; every trial would diverge"
         ));
     }
     if share && high > 1.0 {
-        return Some(format!("`{name}` lies between 0 and 1{truncate}"));
+        return Some(format!("`{name}` must be between 0 and 1{truncate}"));
     }
     None
 }

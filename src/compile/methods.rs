@@ -42,7 +42,7 @@ pub(super) struct Theta {
     /// Unless something is wrong with it.
     pub(super) value: Option<f64>,
     pub(super) at: Span,
-    /// What it is: a threshold, or the level of a quantile.
+    /// Its kind: a threshold, or the level of a quantile.
     pub(super) noun: &'static str,
 }
 
@@ -68,7 +68,7 @@ impl Elaborator<'_> {
             let error = Diagnostic::error(
                 Code::E0604,
                 expr.span,
-                format!("a confidence of {} does not lie above 50 % and below 100 %", number.value),
+                format!("the confidence must be above 50 % and below 100 % (got {})", number.value),
             )
             .hint("write `confidence 95 %` or `confidence 0.95`");
             return self.report(error);
@@ -105,10 +105,12 @@ impl Elaborator<'_> {
         let error = Diagnostic::error(
             Code::E0603,
             method.name.span,
-            format!("there is no procedure `{name}` for this"),
+            format!("the procedure `{name}` is not available for this query"),
         );
-        let hint = nearest(name, known.iter().copied())
-            .map_or_else(|| format!("known here: {}", known.join(", ")), |n| format!("did you mean `{n}`?"));
+        let hint = nearest(name, known.iter().copied()).map_or_else(
+            || format!("the procedures are {}", known.join(", ")),
+            |n| format!("did you mean `{n}`?"),
+        );
         self.report(error.hint(hint))
     }
 
@@ -117,9 +119,9 @@ impl Elaborator<'_> {
         let Some(within) = &clauses.within else { return Ok(()) };
         let error = Diagnostic::error(Code::E0607, within.span, "a check has no `within`");
         self.report(if what == What::Expectation {
-            error.hint("it ends as soon as the interval of the mean lies on one side of the threshold")
+            error.hint("remove `within`: the check stops as soon as the interval of the mean is on one side of the threshold")
         } else {
-            error.hint("for an indifference region write `by sprt(indifference = 0.01)`")
+            error.hint("remove `within`; for an indifference region write `by sprt(indifference = 0.01)`")
         })
     }
 
@@ -169,9 +171,9 @@ impl Elaborator<'_> {
                 };
                 if indifference < least {
                     let said =
-                        format!("`indifference` is {indifference}, but is at least {least} with `{name}`");
+                        format!("`indifference` must be at least {least} with `{name}` (got {indifference})");
                     let error = Diagnostic::error(Code::E0604, span, said);
-                    return self.report(error.hint("`sprt`, and the default test, know no such limit"));
+                    return self.report(error.hint("`sprt` and the default test have no such limit"));
                 }
                 Ok(match name {
                     "sprt" => Test::Sprt { alpha, beta, indifference },
@@ -214,9 +216,9 @@ impl Elaborator<'_> {
             let error = Diagnostic::error(
                 Code::E0602,
                 span,
-                format!("`indifference` is {indifference}, but is above 0"),
+                format!("`indifference` must be positive (got {indifference})"),
             );
-            return self.report(error.hint("leave the region out: the default test needs none"));
+            return self.report(error.hint("remove the region: the default test needs none"));
         }
         // Around what is no threshold nothing is asked of it.
         let Some(theta) = value else { return Ok((indifference, span)) };
@@ -228,11 +230,11 @@ impl Elaborator<'_> {
         let error = Diagnostic::error(
             Code::E0602,
             span,
-            format!("the indifference region {} to {} must lie inside (0, 1)", round(low), round(high)),
+            format!("the indifference region {} to {} must be inside (0, 1)", round(low), round(high)),
         )
         .hanging_on(at)
         .related(at, format!("around this {noun}"))
-        .hint("choose a smaller indifference, or leave the region out: the default test needs none");
+        .hint("write a smaller indifference, or remove the region: the default test needs none");
         self.report(error)
     }
 
@@ -253,11 +255,9 @@ impl Elaborator<'_> {
                 let error = Diagnostic::error(
                     Code::E0607,
                     expr.span,
-                    "a quantile takes a number of trials, not a width",
+                    "a quantile has a number of trials, not a width",
                 );
-                self.report(error.hint(
-                    "write `by fixed(trials = 2000)`; the interval follows from the order of the values",
-                ))
+                self.report(error.hint("write `by fixed(trials = 2000)`; the values determine the width"))
             }
             _ => Ok(()),
         };
@@ -338,7 +338,7 @@ impl Elaborator<'_> {
         if name == "gbas" {
             // A relative error has no scale.
             if !(1e-4..=0.999).contains(&epsilon) {
-                let said = format!("a relative error of {epsilon} is not between 0.0001 and 0.999");
+                let said = format!("the relative error must be between 0.0001 and 0.999 (got {epsilon})");
                 return self.report(Diagnostic::error(Code::E0604, span, said));
             }
         } else {
@@ -364,16 +364,17 @@ impl Elaborator<'_> {
         locals: &Locals,
     ) -> Lowered<Estimator> {
         let quantile = sketch.what == What::Quantile;
-        let misplaced = match &clauses.within {
-            Some(expr) if !quantile => {
-                let said = "a number of trials that is fixed promises no width";
-                let error = Diagnostic::error(Code::E0607, expr.span, said);
-                self.report(
-                    error.hint("leave out `by` and the trials follow from the width, or leave out `within`"),
-                )
-            }
-            _ => Ok(()),
-        };
+        let misplaced =
+            match &clauses.within {
+                Some(expr) if !quantile => {
+                    let said = "a fixed number of trials cannot guarantee a width";
+                    let error = Diagnostic::error(Code::E0607, expr.span, said);
+                    self.report(error.hint(
+                        "remove `by`, then the width determines the number of trials, or remove `within`",
+                    ))
+                }
+                _ => Ok(()),
+            };
         let arguments = self.arguments((clauses, method), ["trials", "delta"], sketch, locals);
         // The values of a quantile are kept.
         let most = if quantile { 1e9 } else { 1e12 };
@@ -381,7 +382,7 @@ impl Elaborator<'_> {
             if trials >= 1.0 && trials.fract() == 0.0 && trials <= most {
                 return Ok(trials as u64);
             }
-            let said = format!("`trials` must be a whole number from 1 to {most:e}");
+            let said = format!("`trials` must be a whole number from 1 to {most:e} (got {trials})");
             self.report(Diagnostic::error(Code::E0604, span, said))
         });
         let delta = self.claimed(arguments.values[1], delta, allowance);
@@ -404,8 +405,8 @@ impl Elaborator<'_> {
     ) -> Lowered<Estimator> {
         let misplaced = match &clauses.within {
             Some(within) => {
-                let error = Diagnostic::error(Code::E0607, within.span, "splitting promises no width").hint(
-                    "choose the number of `replicas` and of `runs`; the interval follows from how they scatter",
+                let error = Diagnostic::error(Code::E0607, within.span, "splitting cannot guarantee a width").hint(
+                    "remove `within` and choose `replicas` and `runs`; their scatter determines the width",
                 );
                 self.report(error)
             }
@@ -431,13 +432,13 @@ impl Elaborator<'_> {
         if paths > MOST_PATHS {
             let gigabytes = |paths: u64| (paths * BYTES_OF_A_PATH) as f64 / 1e9;
             let (taken, limit) = (gigabytes(paths), gigabytes(MOST_PATHS));
-            let said = format!("{paths} paths at once take {taken:.1} GB; the limit is {limit:.1} GB");
+            let said = format!("{paths} paths need {taken:.1} GB of memory; the limit is {limit:.1} GB");
             let error = Diagnostic::error(Code::E0923, method.span, said);
             let fewer = MOST_PATHS / runs;
             let error = of.into_iter().fold(error, Diagnostic::hanging_on);
-            return self.report(error.hint(format!(
-                "there is a path for each of the replicas in each of the runs: write `replicas = {fewer}`"
-            )));
+            return self.report(
+                error.hint(format!("each run has one path for each replica: write `replicas = {fewer}`")),
+            );
         }
         arguments.sound()?;
         misplaced?;
@@ -459,7 +460,7 @@ impl Elaborator<'_> {
                 Ok(value as u64)
             }
             Some((value, span)) => {
-                let said = format!("`{name}` is {value}, but is a whole number from {low} to {high}");
+                let said = format!("`{name}` must be a whole number from {low} to {high} (got {value})");
                 let error = Diagnostic::error(Code::E0604, span, said);
                 self.report(hangs_on.into_iter().fold(error, Diagnostic::hanging_on))
             }

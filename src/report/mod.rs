@@ -78,9 +78,9 @@ fn settings(result: &QueryResult) -> String {
     result.settings.iter().map(|(name, value)| format!("{name} = {value}")).collect::<Vec<_>>().join(", ")
 }
 
-/// What values above all numbers are called: a time that does not come lies beyond the horizon, a distance to
-/// nobody is infinite. Where the query names a metric that is declared
-/// elsewhere it cannot be told which, and "infinite" is true of both.
+/// The name of infinite values: a time that does not occur is beyond the horizon, a minimum over an empty set
+/// is infinite. If the query names a metric that is declared
+/// elsewhere, both are possible, and "infinite" is correct for both.
 fn endless(result: &QueryResult) -> &'static str {
     let time = result.censored.is_some() || result.query.contains("time_until");
     if time { "beyond the horizon" } else { "infinite" }

@@ -111,7 +111,7 @@ fn scene(out: &mut String, scenario: &Scenario) {
 fn people(out: &mut String, world: &World) {
     let scenario = &*world.scenario;
     let coming: usize = scenario.sources.iter().map(|source| source.members.len()).sum();
-    let _ = writeln!(out, "\nPeople: {}", scenario.agents.len() - coming);
+    let _ = writeln!(out, "\nAgents: {}", scenario.agents.len() - coming);
     let mut rest = scenario.agents.as_slice();
     while let Some(first) = rest.first() {
         // Members of one declaration that differ in nothing but their number are told once.
@@ -219,7 +219,7 @@ fn velocity(v: Vec2) -> String {
 /// A route in words.
 pub(super) fn way(scenario: &Scenario, route: &Route) -> String {
     match route {
-        Route::Onward => "goes on as it starts".to_owned(),
+        Route::Onward => "keeps its initial direction".to_owned(),
         Route::Legs { legs, .. } if legs.is_empty() => "stands".to_owned(),
         Route::Legs { legs, then_leave } => {
             let legs: Vec<String> = legs
@@ -355,7 +355,11 @@ fn procedure(ask: &Ask) -> String {
             };
             let how = match estimator {
                 Estimator::Default { epsilon, delta } => {
-                    format!("fewest trials for ± {}, error {}", number(*epsilon), at_most(*delta))
+                    format!(
+                        "calibrated sequential interval for ± {}, error {}",
+                        number(*epsilon),
+                        at_most(*delta)
+                    )
                 }
                 Estimator::Okamoto { epsilon, delta } => {
                     format!("Okamoto bound for ± {}, error {}", number(*epsilon), at_most(*delta))
@@ -404,7 +408,7 @@ fn procedure(ask: &Ask) -> String {
             let how = match ranking {
                 Ranking::Betting => "paired betting, all challengers",
                 Ranking::OneChallenger => "paired betting, one challenger",
-                Ranking::Okamoto => "Okamoto bound on each option",
+                Ranking::Okamoto => "Okamoto bound for each option",
             };
             format!("best within {}, error {}: {how}", number(*epsilon), at_most(*delta))
         }

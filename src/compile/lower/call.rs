@@ -66,9 +66,9 @@ impl Elaborator<'_> {
                     let error = Diagnostic::error(
                         Code::E0504,
                         expr.span,
-                        "`time_until` looks ahead over the trace, and here one state is read",
+                        "`time_until` is about a trace, but a value of one state is needed here",
                     )
-                    .hint("it stands in metrics and comparisons of property files, outside of folds over agents at one state");
+                    .hint("write it in a metric or a comparison of a property file, outside of folds over agents");
                     return self.report(error);
                 }
                 let typed = self.inside_a_formula(|this| this.lower(formula, locals));
@@ -80,18 +80,18 @@ impl Elaborator<'_> {
                 let error = Diagnostic::error(
                     Code::E0504,
                     expr.span,
-                    "`robustness` looks at a whole trace and stands only directly inside `E(…)`, `Q(…)` and `P(…)`",
+                    "`robustness` is allowed only directly inside `E(…)`, `Q(…)` and `P(…)`",
                 )
-                .hint("for example `E(robustness(safe)) in -1 m .. 1 m`, `P(robustness(safe) >= 0.2 m)`");
+                .hint("write `E(robustness(safe)) in -1 m .. 1 m` or `P(robustness(safe) >= 0.2 m)`");
                 self.report(error)
             }
             name if DISTRIBUTIONS.contains(&name) => {
                 let error = Diagnostic::error(
                     Code::E0404,
                     expr.span,
-                    format!("`{name}` is a distribution, and is no part of an expression"),
+                    format!("the distribution `{name}` cannot be part of an expression"),
                 )
-                .hint("give it to a field of a kind or an agent, or to `after`; it may be multiplied: `poisson(4) * (1 s / 3)`");
+                .hint("use it as the value of a field or of `after`; it may have a factor: `poisson(4) * (1 s / 3)`");
                 self.report(error)
             }
             name if FUNCTIONS.contains(&name) => {
@@ -114,7 +114,7 @@ impl Elaborator<'_> {
                     // That a name of the scenario was taken was said where that was done; and what is wrong with it
                     // may be just that it lacks its arguments.
                     if !hidden && self.lower_name(name, function.span, locals).is_ok() {
-                        let text = format!("`{name}` is {}, which takes no arguments", meaning.noun());
+                        let text = format!("`{name}` is {} and has no arguments", meaning.noun());
                         self.note(Diagnostic::error(Code::E0204, expr.span, text));
                     }
                     return self.lower_all(arguments, locals).and(Err(Reported));
@@ -259,7 +259,7 @@ impl Elaborator<'_> {
                 let error = Diagnostic::error(
                     Code::E0305,
                     function.span,
-                    format!("`{name}` joins values over a set or over time"),
+                    format!("`{name}` needs a set or a time window"),
                 )
                 .hint(format!("write `{name}(… for a in crowd)` or `{name}<=10 s (…)`"));
                 return self.report(error);
@@ -340,7 +340,7 @@ impl Elaborator<'_> {
     /// What a function gives for what is known now: exact where it is whole.
     fn computed(&mut self, value: f64, dimension: Dimension, function: &str, span: Span) -> Lowered<Typed> {
         if !value.is_finite() {
-            let text = format!("`{function}` of this is not a finite number");
+            let text = format!("`{function}` of this value is not finite");
             return self.report(Diagnostic::error(Code::E0405, span, text));
         }
         let whole = value.fract() == 0.0 && value.abs() < 9e15;

@@ -7,7 +7,7 @@ use super::lexeme;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
 
-/// What the scan says about a text.
+/// The result of the scan of a text.
 pub(super) enum Scan {
     /// It may be parsed.
     Fine,
@@ -19,8 +19,12 @@ pub(super) enum Scan {
 
 /// The error for nesting that is too deep.
 pub(super) fn too_deep(span: Span) -> Diagnostic {
-    Diagnostic::error(code::TOO_DEEP, span, format!("brackets and prefixes nest more than {NESTING} deep"))
-        .hint("give inner parts names with `let`")
+    Diagnostic::error(
+        code::TOO_DEEP,
+        span,
+        format!("brackets and prefixes are nested more than {NESTING} deep"),
+    )
+    .hint("name inner parts with `let`")
 }
 
 /// Scans a text, which is that of the source or one as long.
@@ -33,8 +37,8 @@ pub(super) fn scan(source: &Source, text: &str) -> Scan {
             let place = Span::new(source.id, at, at + 2);
             return Scan::Until(
                 at,
-                Diagnostic::error(code::COMMENT, place, "the comment never ends")
-                    .hint("close it with `*/`; `//` comments to the end of the line"),
+                Diagnostic::error(code::COMMENT, place, "the comment is not closed")
+                    .hint("close it with `*/`; a comment with `//` ends with its line"),
             );
         }
         if let Some(length) = lexeme::trivia(rest) {
