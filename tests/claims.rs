@@ -120,7 +120,7 @@ fn lost_paths_of_splitting_are_in_neither_reading() {
     assert!(number(result, "estimate") > 0.03, "the middle of both readings: {result:#}");
     let warnings = result["warnings"].to_string();
     assert!(
-        warnings.contains("paths of splitting are unresolved: read as reaching the event and as not"),
+        warnings.contains("paths of splitting are unresolved; the interval covers both cases"),
         "{warnings}"
     );
 }

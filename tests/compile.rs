@@ -240,7 +240,7 @@ fn headings_without_number_are_refused() {
     for to in ["1e30", "1000000000000000000000", "1001"] {
         let moves = format!("{THREE}moves me for 1 s {{ heading from 0 deg to {to} deg by 1 deg }}");
         let (study, found) = compiled(&moves, "");
-        assert!(study.is_none() && found.contains("these are more than 1000 options"), "{to}\n{found}");
+        assert!(study.is_none() && found.contains("the moves have more than 1000 options"), "{to}\n{found}");
     }
 }
 

@@ -385,7 +385,7 @@ fn a_rank_with_another_model_is_refused() {
     // Nor is one that says the same of another version.
     let change = |number, message: &mut Vec<u8>| message[6] ^= u8::from(number == 0);
     let refused = head(&study, vec![relayed(&study, change)]).err().unwrap();
-    assert!(refused.to_string().contains("the head is smc"), "{refused}");
+    assert!(refused.to_string().contains("that of the main process is smc"), "{refused}");
 }
 
 #[test]
@@ -427,7 +427,7 @@ fn a_rank_that_falls_silent_blocks_nobody() {
     let plain = results(&study, &Threads::new(Some(1)).unwrap());
     assert!(results(&study, &ranks) == plain);
     assert!(ranks.traffic().again > 0, "its lease is overdue");
-    assert!(ranks.warnings()[0].contains("answers no more"), "{:?}", ranks.warnings());
+    assert!(ranks.warnings()[0].contains("stopped answering"), "{:?}", ranks.warnings());
     // Nor does it hold up a call whose time is up.
     let silent = relayed(&study, |number, _| silent_after(0, number));
     let ranks = head(&study, vec![silent]).unwrap();

@@ -64,7 +64,7 @@ fn without_a_change_it_is_quiet_and_wrong_input_has_a_place() {
     assert_eq!((quiet.code, quiet.out.contains("no alarm")), (Some(0), true), "{}", quiet.err);
     let wrong = call(&["wrong"]);
     assert_eq!(wrong.code, Some(2));
-    assert!(wrong.err.contains("wrong: line 3: `2` is no outcome"), "{}", wrong.err);
+    assert!(wrong.err.contains("wrong: line 3: `2` is not an outcome"), "{}", wrong.err);
     assert_eq!(call(&["missing"]).code, Some(2));
     assert_eq!(call(&["fine", "--column", "0"]).code, Some(2));
     let same = place.call(&["drift", "fine", "--before", "0.9", "--after", "0.9"]);
@@ -95,12 +95,12 @@ fn input_of_another_kind_is_named() {
     place.write("late", b"1\n0\n\xff\n");
     place.write("long", format!("{}\n", "x".repeat(10_000)).as_bytes());
     for (file, said) in [
-        ("words", "words: line 1: `hello world` is no outcome"),
-        ("empty", "empty: there is no outcome in it"),
-        ("comments", "comments: there is no outcome in it"),
-        ("binary", "binary: line 1: this is not text in UTF-8"),
-        ("late", "late: line 3: this is not text in UTF-8"),
-        ("long", "x…` is no outcome"),
+        ("words", "words: line 1: `hello world` is not an outcome"),
+        ("empty", "empty contains no outcome"),
+        ("comments", "comments contains no outcome"),
+        ("binary", "binary: line 1: not UTF-8 text"),
+        ("late", "late: line 3: not UTF-8 text"),
+        ("long", "x…` is not an outcome"),
     ] {
         let found = place.call(&["drift", file, "--before", "95%", "--after", "0.85"]);
         assert_eq!((found.code, found.out.as_str()), (Some(2), ""), "{file}");

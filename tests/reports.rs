@@ -125,7 +125,7 @@ fn estimates() -> Vec<QueryResult> {
             clipped: 3,
             shrunk: 40,
             warnings: vec![
-                "bodies overlapped at the start and were made smaller in 40 trials; in trial 3: `user` at the wall `south` \
+                "radii of bodies that overlapped at the start were reduced in 40 trials; in trial 3: `user` at the wall `south` \
                  from a radius of 0.3 m to 0.2 m"
                     .into(),
             ],

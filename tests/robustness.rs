@@ -186,7 +186,7 @@ agents c[1]: adult { at = (0, 2)  route = exit then leave }\n";
     let witness = &found["witnesses"][0];
     assert_eq!((&witness["shows"], &witness["value"]), (&"fails".into(), &Value::Null), "{witness}");
     let what = witness["what"].as_str().unwrap();
-    assert!(what.contains("outside of its range") && what.ends_with("the trial ends at 1.5 s"), "{witness}");
+    assert!(what.contains("outside its range") && what.ends_with("the trial ends at 1.5 s"), "{witness}");
     // It is outside as soon as somebody has gone 1 m.
     assert_eq!(witness["time"], 0.9, "{witness}");
 }

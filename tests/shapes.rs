@@ -135,7 +135,7 @@ fn the_left_operand_of_an_until_is_not_needed_in_the_last_state() {
     assert!(found[0]["successes"].as_u64().unwrap() > 0);
     assert_eq!(found[2]["successes"], 64);
     let said = asked(&walk(19), "estimate P((F<=18 steps (c.x == 1)) U<=3 steps (c.x == 1))\n", &[]);
-    let refused = "this looks 20 steps ahead, but the horizon is 19 steps";
+    let refused = "the formula needs 20 steps, but the horizon is 19 steps";
     assert!(said.code == Some(2) && said.err.contains(refused), "{}", said.err);
     let said = asked(&walk(20), "estimate P((X (c.x == 1)) W (c.x == 2))\n", &[]);
     assert!(said.code == Some(2) && said.err.contains("this looks 21 steps ahead"), "{}", said.err);
@@ -162,7 +162,7 @@ estimate P(p), P(q) by fixed(trials = 16)
 ";
     let found = results(crate::program::SMALL, properties);
     assert_eq!((&found[0]["successes"], &found[1]["successes"]), (&16.into(), &16.into()));
-    // A name that does stand for a formula over time is still one.
+    // A name that does stand for a temporal formula is still one.
     let said = asked(
         crate::program::SMALL,
         "property v = F<=1 s (travelled(user) > 0 m)\nlet w = v\nproperty p = count(a in crowd: w) * 2 >= 0\nestimate P(p)\n",
@@ -194,7 +194,7 @@ fn a_time_that_is_always_soon_enough_needs_no_state() {
     );
     assert_eq!((&found[0]["successes"], &found[1]["successes"]), (&4.into(), &0.into()));
     let what = |k: usize| found[k]["witnesses"][0]["what"].as_str().unwrap().to_owned();
-    assert_eq!(what(0), "it does not depend on what happens");
+    assert_eq!(what(0), "its value does not depend on the trial");
     assert_eq!(what(1), "`c.x == 3` is false");
 }
 

@@ -11,10 +11,10 @@ use std::path::PathBuf;
     Start with: smc check models/corridor.scn properties/corridor.bltl"
 )]
 pub(super) struct Arguments {
-    /// What to do.
+    /// The command.
     #[command(subcommand)]
     pub(super) command: Command,
-    /// When to colour the output.
+    /// When to color the output.
     #[arg(long, global = true, value_enum, default_value_t = ColorChoice::Auto)]
     pub(super) color: ColorChoice,
 }
@@ -33,13 +33,13 @@ pub(super) enum ColorChoice {
 /// Verbs.
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
-    /// Decide, estimate, compare and rank what property files ask of a scenario.
+    /// Answer the queries of property files about a scenario: decide, estimate, compare, rank.
     Check(Box<Check>),
     /// Run trials of a scenario and write their traces.
     Simulate(Box<Simulate>),
-    /// Watch recorded or streamed outcomes for a change of their probability.
+    /// Detect a change of the probability of recorded or streamed outcomes.
     Drift(Drift),
-    /// Show how a scenario, and property files, were understood.
+    /// Show how a scenario and its property files were understood.
     Show(Show),
     /// Format scenarios and property files; comments are kept.
     Fmt(Format),
@@ -57,16 +57,16 @@ pub(super) enum Command {
     },
 }
 
-/// Where the model comes from and what is set in it.
+/// The model, and the values set in it.
 #[derive(Args, Clone, Debug)]
 pub(super) struct Model {
     /// Scenario file (`.scn`), or `-` for standard input.
     pub(super) scenario: String,
-    /// Set a parameter, or sweep it: `density=0.8`, `density=0.1..0.8 by 0.1`. A bare number takes the unit of
+    /// Set a parameter, or sweep it: `density=0.8`, `density=0.1..0.8 by 0.1`. A number without a unit takes that of
     /// the declared default.
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub(super) set: Vec<String>,
-    /// Look for recordings and imports here too. May be given several times.
+    /// Also search this folder for recordings and imports. May be given several times.
     #[arg(long = "data", value_name = "DIR")]
     pub(super) data: Vec<PathBuf>,
 }
@@ -86,17 +86,17 @@ pub(super) struct Check {
     /// Number of threads; all cores by default. Never changes a result.
     #[arg(short = 'j', long)]
     pub(super) threads: Option<usize>,
-    /// Number of further processes that run the trials and share the threads. Never changes a result.
+    /// Number of additional processes that run the trials and share the threads. Never changes a result.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
     pub(super) ranks: Option<u16>,
-    /// Most trials of one query (of a ranking: of one option); one million by default.
+    /// Largest number of trials of a query (of a ranking: of an option); one million by default.
     #[arg(long, value_name = "N", value_parser = parse_count)]
     pub(super) max_trials: Option<u64>,
-    /// Most trials of one ranking, over all its options.
+    /// Largest number of trials of a ranking, over all its options.
     #[arg(long, value_name = "N", value_parser = parse_count)]
     pub(super) total_trials: Option<u64>,
-    /// Time for the whole call, such as `50ms`, `2s`, `5min`; no limit by default. To show what decided a trial
-    /// may take a quarter of it more, at least 20 ms and at most a second.
+    /// Time limit of the whole call, such as `50ms`, `2s`, `5min`; none by default. The search for witnesses may
+    /// exceed it by 25 %, at least 20 ms and at most a second.
     #[arg(long, value_parser = parse_duration)]
     pub(super) timeout: Option<std::time::Duration>,
     /// Format of the results on standard output.
@@ -105,14 +105,14 @@ pub(super) struct Check {
     /// Also write a self-contained HTML page with charts.
     #[arg(long, value_name = "FILE.html")]
     pub(super) report: Option<PathBuf>,
-    /// Ask only this query: the name of its property, or its number, which counts from 0 in the order of writing (each
-    /// measure of a list by itself). May be given several times.
+    /// Answer only this query: the name of its property, or its number in writing order, starting at 0 (each measure of a
+    /// list has its own number). May be given several times.
     #[arg(long, value_name = "NAME")]
     pub(super) only: Vec<String>,
-    /// Only forecast how many trials and how much time each query is likely to take; runs the first few trials.
+    /// Only forecast the number of trials and the time of each query; runs the first few trials.
     #[arg(long, conflicts_with_all = ["timeout", "report"])]
     pub(super) forecast: bool,
-    /// No progress and no forecast on standard error.
+    /// Show no progress and no forecast on standard error.
     #[arg(short, long)]
     pub(super) quiet: bool,
 }
@@ -146,13 +146,13 @@ pub(super) struct Simulate {
     /// Number of trials.
     #[arg(long, default_value_t = 1, value_name = "N")]
     pub(super) trials: u64,
-    /// Follow a suggested move, by its name as in a ranking: `heading 15 deg`, `stop`.
+    /// Follow a move, named as in a ranking: `heading 15 deg`, `stop`.
     #[arg(long = "move", value_name = "MOVE")]
     pub(super) advice: Option<String>,
-    /// Write every N-th state only.
+    /// Write only every N-th state.
     #[arg(long, default_value_t = 1, value_name = "N")]
     pub(super) every: u64,
-    /// Stop at this time instead of the horizon: `2.5s`; a bare number is in seconds.
+    /// Stop at this time instead of the horizon: `2.5s`; a number without a unit is in seconds.
     #[arg(long, value_name = "TIME", allow_negative_numbers = true, value_parser = parse_moment)]
     pub(super) until: Option<f64>,
     /// Format of the table.
@@ -170,34 +170,34 @@ pub(super) enum TableFormat {
     Csv,
     /// One object with columns and rows.
     Json,
-    /// One object a line.
+    /// One object per line.
     Jsonl,
 }
 
 /// `smc drift`
 #[derive(Args, Debug)]
 pub(super) struct Drift {
-    /// Outcomes, one a line (`0`, `1`, `false`, `true`), or a table of comma-separated values; `-` for standard input.
+    /// Outcomes, one per line (`0`, `1`, `false`, `true`), or a table of comma-separated values; `-` for standard input.
     pub(super) file: String,
-    /// Probability of success as it was: `0.95` or `95%`.
+    /// Probability of success before the change: `0.95` or `95%`.
     #[arg(long, value_parser = parse_share, value_name = "P")]
     pub(super) before: f64,
-    /// Probability of success after the change that matters.
+    /// Probability of success after the change to detect.
     #[arg(long, value_parser = parse_share, value_name = "P")]
     pub(super) after: f64,
-    /// Outcomes that pass on average before a false alarm, at least; 1000 by default.
+    /// Smallest average number of outcomes before a false alarm; 1000 by default.
     #[arg(long, value_name = "N", conflicts_with = "threshold", value_parser = parse_quiet)]
     pub(super) false_alarm: Option<f64>,
-    /// Threshold of the sum: the logarithm of the number of outcomes to a false alarm.
+    /// Threshold of the sum: the logarithm of the number of outcomes before a false alarm.
     #[arg(long, value_name = "H", allow_negative_numbers = true)]
     pub(super) threshold: Option<f64>,
-    /// Column of a table: its head, or its number from 1.
+    /// Column of a table: its name, or its number, starting at 1.
     #[arg(long, value_name = "COLUMN")]
     pub(super) column: Option<String>,
     /// Stop at the first alarm.
     #[arg(long)]
     pub(super) first: bool,
-    /// Format on standard output; `json` is one object a line, the last one the summary.
+    /// Format on standard output; `json` writes one object per line, the summary last.
     #[arg(long, value_enum, default_value_t = DriftFormat::Text)]
     pub(super) format: DriftFormat,
 }
@@ -230,7 +230,7 @@ pub(super) struct Format {
     /// Change nothing; exit with 1 if a file is not formatted.
     #[arg(long)]
     pub(super) check: bool,
-    /// What standard input holds; found out by itself where it is left out.
+    /// Language of standard input; detected by default.
     #[arg(long, value_enum)]
     pub(super) language: Option<Language>,
 }
@@ -256,13 +256,17 @@ fn parse_share(text: &str) -> Result<f64, String> {
     let (digits, scale) = text.strip_suffix('%').map_or((text, 1.0), |digits| (digits, 100.0));
     let value: f64 = digits.trim().parse().map_err(|_| format!("`{text}` is not a number"))?;
     let share = value / scale;
-    if share > 0.0 && share < 1.0 { Ok(share) } else { Err("a probability lies between 0 and 1".to_owned()) }
+    if share > 0.0 && share < 1.0 {
+        Ok(share)
+    } else {
+        Err("a probability must be between 0 and 1".to_owned())
+    }
 }
 
 /// A number of outcomes.
 fn parse_quiet(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
-    if value > 1.0 && value < 1e300 { Ok(value) } else { Err("a number above 1".to_owned()) }
+    if value > 1.0 && value < 1e300 { Ok(value) } else { Err("the number must be above 1".to_owned()) }
 }
 
 /// A whole number: `20000`, `2e4`.
@@ -303,7 +307,7 @@ fn parse_seconds(text: &str) -> Result<f64, String> {
 fn parse_duration(text: &str) -> Result<std::time::Duration, String> {
     let seconds = parse_seconds(text)?;
     if seconds >= 1e9 {
-        return Err("a timeout is shorter than 30 years; leave it out to wait as long as it takes".to_owned());
+        return Err("a timeout must be shorter than 30 years; remove it for no limit".to_owned());
     }
     if seconds.is_nan() || seconds <= 0.0 {
         return Err("a timeout must be positive".to_owned());

@@ -62,7 +62,7 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     let most = most_threads();
     if arguments.threads.is_some_and(|threads| threads > most) {
         say(&format!(
-            "warning: {most} threads are as many as help here; results are the same with any number\n"
+            "warning: more than {most} threads are not faster on this machine, so {most} are used; results do not change\n"
         ));
     }
     let threads = arguments.threads.unwrap_or_else(cores).min(most);
@@ -108,7 +108,7 @@ fn pool(
     let each = (threads / count).max(1);
     let packed = pack(&arguments.model, &arguments.properties, cache);
     let (children, lines) = ranks::start(count)
-        .map_err(|reason| complaint::argument(reason, "leave `--ranks` out: threads do the same"))?;
+        .map_err(|reason| complaint::argument(reason, "remove `--ranks`: threads give the same results"))?;
     let ranks =
         Ranks::new(lines, study, packed, each, own, budget).map_err(|fault| library::refusal(&fault))?;
     Ok(ProcessPool::Led { ranks: Box::new(ranks), _children: children })
@@ -146,8 +146,8 @@ impl Reporter<'_> {
             OutputFormat::Text => visible(&report::forecast::text(total)).into_owned(),
             OutputFormat::Junit | OutputFormat::Github => {
                 return self.refuse(complaint::argument(
-                    "`--forecast` is no result of a test",
-                    "it is written as `--format text` or `--format json`",
+                    "`--forecast` supports only `--format text` and `--format json`",
+                    "write `--format text` or `--format json`",
                 ));
             }
         };
@@ -174,7 +174,7 @@ impl Reporter<'_> {
     /// The inputs are wrong; standard error has said how.
     fn refused(self) -> Exit {
         let first = self.findings.iter().find(|finding| finding.error);
-        let first = first.map_or_else(|| "the inputs are wrong".to_owned(), Finding::line);
+        let first = first.map_or_else(|| "the inputs have errors".to_owned(), Finding::line);
         let reason = match self.errors.saturating_sub(1) {
             0 => first,
             1 => format!("{first} (and 1 more error)"),
@@ -231,7 +231,7 @@ impl Reporter<'_> {
     }
 }
 
-/// What reports that a call ended before its first trial, on standard error and in formats for machines.
+/// Reports that a call ended before its first trial, on standard error and in formats for machines.
 fn ender(arguments: &Check, colors: Colors) -> impl Fn(Ended) -> Exit + Clone + Send + 'static {
     let run = Run {
         scenario: arguments.model.scenario.clone(),

@@ -15,24 +15,24 @@ pub(super) fn argument(title: impl Into<String>, hint: impl Into<String>) -> Dia
 /// A file, or standard output, cannot be written.
 pub(super) fn output(title: impl Into<String>) -> Diagnostic {
     Diagnostic::placeless(Code::E0706, title)
-        .hint("is the place there, may it be written, and is it not full?")
+        .hint("check that the folder exists, is writable and is not full")
 }
 
 /// A file, or standard input, cannot be read.
 pub(super) fn input(title: impl Into<String>) -> Diagnostic {
     Diagnostic::placeless(Code::E0701, title)
-        .hint("names are relative to the folder of the call; `-` is standard input")
+        .hint("file names are relative to the current folder; `-` is standard input")
 }
 
-/// Time was up before the first trial.
+/// The time limit ended the call before the first trial.
 pub(super) fn late() -> Diagnostic {
-    Diagnostic::placeless(Code::E0921, "time was up before the first trial")
-        .hint("give more time with `--timeout`, or make the scenario smaller")
+    Diagnostic::placeless(Code::E0921, "the time limit ended the call before the first trial")
+        .hint("write a longer `--timeout`, or make the scenario smaller")
 }
 
 /// The call was interrupted before the first trial.
 pub(super) fn interrupted() -> Diagnostic {
-    Diagnostic::placeless(Code::E0922, "interrupted before the first trial")
+    Diagnostic::placeless(Code::E0922, "the call was interrupted before the first trial")
 }
 
 /// Says it on standard error.

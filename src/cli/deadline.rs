@@ -9,7 +9,7 @@ use std::time::Duration;
 /// Least time that preparation may still take after the deadline: what is nearly ready should sample.
 const LEAST_GRACE: Duration = Duration::from_millis(250);
 
-/// What a call is at.
+/// The phase of a call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Phase {
     /// Files are read and compiled, scenes and stopping rules are prepared.
@@ -29,7 +29,7 @@ pub(super) enum Ended {
     Interrupted,
 }
 
-/// What a call is at, for those who may end it. Whoever holds the lock while it prepares ends it.
+/// The phase of a call, for the threads that can end it. The thread that holds the lock while the call prepares ends it.
 #[derive(Clone)]
 pub(super) struct Deadline(Arc<Mutex<Phase>>);
 

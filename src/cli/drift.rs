@@ -43,13 +43,17 @@ fn watch(arguments: &Drift) -> Result<bool, Diagnostic> {
         (Some(threshold), _) => threshold,
         (None, quiet) => math::ln(quiet.unwrap_or(QUIET)),
     };
-    let mut cusum = Cusum::new(arguments.before, arguments.after, threshold)
-        .map_err(|error| complaint::argument(error.to_string(), "for example `--before 0.9 --after 0.8`"))?;
+    let mut cusum = Cusum::new(arguments.before, arguments.after, threshold).map_err(|error| {
+        complaint::argument(error.to_string(), "write for example `--before 0.9 --after 0.8`")
+    })?;
     let column = match &arguments.column {
         None => Column::Line,
         Some(name) => match name.parse::<usize>() {
             Ok(0) => {
-                return Err(complaint::argument("`--column 0`: columns count from 1", "write `--column 1`"));
+                return Err(complaint::argument(
+                    "`--column` must be at least 1 (got 0)",
+                    "the first column is `--column 1`",
+                ));
             }
             Ok(number) => Column::Number(number),
             Err(_) => Column::Head(name.clone()),
@@ -62,7 +66,7 @@ fn watch(arguments: &Drift) -> Result<bool, Diagnostic> {
     for line in lines(&arguments.file).map_err(complaint::input)? {
         let line = line.map_err(|error| complaint::input(format!("`{name}` cannot be read: {error}")))?;
         let Ok(line) = std::str::from_utf8(&line) else {
-            let reason = format!("{name}: line {}: this is not text in UTF-8", outcomes.lines() + 1);
+            let reason = format!("{name}: line {}: not UTF-8 text", outcomes.lines() + 1);
             return Err(table(reason));
         };
         let Some(success) = outcomes.read(line).map_err(|error| table(format!("{name}: {error}")))? else {
@@ -87,7 +91,7 @@ fn watch(arguments: &Drift) -> Result<bool, Diagnostic> {
         }
     }
     if cusum.read() == 0 {
-        return Err(table(format!("{name}: there is no outcome in it")));
+        return Err(table(format!("{name} contains no outcome")));
     }
     print(&summary(arguments, &cusum, successes, &alarms)).map_err(complaint::output)?;
     Ok(!alarms.is_empty())
@@ -95,8 +99,9 @@ fn watch(arguments: &Drift) -> Result<bool, Diagnostic> {
 
 /// Outcomes that cannot be read as such.
 fn table(reason: String) -> Diagnostic {
-    Diagnostic::placeless(Code::E0707, reason)
-        .hint("one outcome a line: 0 or 1, true or false; `--column` picks one of a table")
+    Diagnostic::placeless(Code::E0707, reason).hint(
+        "write one outcome per line: 0 or 1, true or false; for a table select a column with `--column`",
+    )
 }
 
 /// Most bytes of one line: a device that has no lines must not fill the memory.
@@ -153,7 +158,7 @@ fn summary(arguments: &Drift, cusum: &Cusum, successes: u64, alarms: &[u64]) -> 
             let read = cusum.read();
             let share = 100.0 * successes as f64 / read as f64;
             let said = match alarms {
-                [] => format!("no alarm; the sum stands at {:.2}", cusum.sum()),
+                [] => format!("no alarm; the sum is {:.2}", cusum.sum()),
                 [one] => format!("1 alarm, after outcome {one}"),
                 [first, .., last] => {
                     format!("{} alarms, after outcomes {first} to {last}", alarms.len())

@@ -10,14 +10,14 @@ use std::collections::VecDeque;
 /// A file that was opened, by the name under which it was asked for: its bytes, or why there are none.
 type Opened = (String, Result<Vec<u8>, String>);
 
-/// Where files come from.
+/// The source of files.
 #[derive(Clone, Debug)]
 pub(super) enum FileCache {
     /// From the disk.
     Files,
     /// From the disk; what was opened is kept, in this order.
     Kept(Vec<Opened>),
-    /// From somebody who has opened them in the same order.
+    /// From a process that opened them in the same order.
     Handed(VecDeque<Opened>),
 }
 
@@ -37,7 +37,7 @@ impl FileCache {
             }
             Self::Handed(opened) => match opened.pop_front() {
                 Some((known, contents)) if known == name => contents,
-                _ => Err(format!("`{name}` was not handed over")),
+                _ => Err(format!("`{name}` was not sent by the main process")),
             },
         }
     }
@@ -83,7 +83,7 @@ pub(super) fn unpack(bytes: &[u8]) -> Result<Inputs, Malformed> {
         let contents = match from.byte()? {
             0 => Ok(from.bytes()?.to_vec()),
             1 => Err(from.text()?.to_owned()),
-            _ => return Err(Malformed("a file is neither there nor not")),
+            _ => return Err(Malformed("invalid state of a file")),
         };
         opened.push_back((name, contents));
     }

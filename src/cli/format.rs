@@ -18,7 +18,7 @@ pub(super) fn run(arguments: &Format, colors: Colors) -> Exit {
     let mut exit = Exit::Success;
     for (at, name) in arguments.files.iter().enumerate() {
         if name == "-" && arguments.files[..at].contains(name) {
-            complaint::tell(&complaint::input("standard input can be read once only"), &[], colors);
+            complaint::tell(&complaint::input("standard input can be read only once"), &[], colors);
             exit = Exit::Wrong;
             continue;
         }
@@ -28,7 +28,8 @@ pub(super) fn run(arguments: &Format, colors: Colors) -> Exit {
             Some("bltl") => Some(Language::Bltl),
             _ => {
                 let error = format!("`{name}` is neither a scenario (.scn) nor a property file (.bltl)");
-                let hint = "the ending says which it is; standard input is `-`, with `--language`";
+                let hint =
+                    "use a name that ends in .scn or .bltl; for standard input write `-` and `--language`";
                 complaint::tell(&complaint::argument(error, hint), &[], colors);
                 exit = Exit::Wrong;
                 continue;

@@ -41,7 +41,7 @@ pub(super) fn read(name: &str) -> Result<Vec<u8>, String> {
         return whole(std::io::stdin().lock()).map_err(|error| format!("standard input {error}"));
     }
     read_file(Path::new(name)).map_err(|error| match error {
-        Unread::Missing => format!("there is no file `{name}`"),
+        Unread::Missing => format!("the file `{name}` does not exist"),
         error => format!("`{name}` {error}"),
     })
 }
@@ -49,9 +49,9 @@ pub(super) fn read(name: &str) -> Result<Vec<u8>, String> {
 /// Why an input has no bytes, after its name.
 #[derive(Debug, thiserror::Error)]
 enum Unread {
-    #[error("is not there")]
+    #[error("does not exist")]
     Missing,
-    #[error("may not be read")]
+    #[error("is not readable")]
     Forbidden,
     #[error("is a directory")]
     Directory,
@@ -110,7 +110,7 @@ fn find(path: &str, scenario: &str, data: &[PathBuf]) -> Result<PathBuf, String>
         .map(|p| if p.as_os_str().is_empty() { ".".to_owned() } else { p.display().to_string() })
         .collect();
     Err(format!(
-        "there is no file `{path}` under {}",
+        "the file `{path}` does not exist in {}",
         if looked.is_empty() { "any --data directory".to_owned() } else { looked.join(", ") }
     ))
 }

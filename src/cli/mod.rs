@@ -56,13 +56,16 @@ pub fn run() -> process::ExitCode {
         Ok(Err(_)) => {
             say("this is a bug in smc; please report it with the files of this call\n");
             if let Some((format, scenario, seed)) = asked {
-                let bug = Failure::Bug("smc has a bug; standard error says more".to_owned());
+                let bug = Failure::Bug("smc has a bug; see standard error for details".to_owned());
                 check::without_results(format, scenario, seed, bug);
             }
             Exit::Bug
         }
         Err(error) => {
-            let error = complaint::argument(format!("no thread can be started: {error}"), "is memory short?");
+            let error = complaint::argument(
+                format!("no thread can be started: {error}"),
+                "check that enough memory is available",
+            );
             complaint::tell(&error, &[], Colors { out: false, err: false });
             Exit::Wrong
         }

@@ -7,7 +7,7 @@ use crate::report;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 
-/// Forecasts shorter than this are not told, s.
+/// Forecasts shorter than this are not shown, s.
 const WORTH_TELLING: f64 = 2.0;
 
 /// Shows how far a query is.

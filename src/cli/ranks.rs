@@ -32,7 +32,7 @@ impl ProcessPool {
         }
     }
 
-    /// What went wrong with them.
+    /// Their warnings.
     pub(super) fn warnings(&self) -> Vec<String> {
         match self {
             Self::Alone(_) => Vec::new(),
@@ -80,7 +80,7 @@ pub(super) fn run() -> Exit {
         let inputs = unpack(bytes).map_err(|error| error.to_string())?;
         let mut errors = inputs.diagnostics.iter().filter(|found| found.severity == Severity::Error);
         inputs.study.ok_or_else(|| {
-            errors.next().map_or_else(|| "nothing can be compiled".to_owned(), |error| error.title.clone())
+            errors.next().map_or_else(|| "the inputs have errors".to_owned(), |error| error.title.clone())
         })
     };
     match serve(Box::new(std::io::stdin()), &mut std::io::stdout().lock(), &prepare) {

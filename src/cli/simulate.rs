@@ -237,8 +237,8 @@ fn option(scenario: &Scenario, name: &str) -> Result<(usize, usize), (String, St
         .collect();
     if !same.is_empty() {
         return Err((
-            format!("several people have a move `{wanted}`"),
-            format!("say whose: {}", same.join(", ")),
+            format!("several agents have a move `{wanted}`"),
+            format!("write one of {}", same.join(", ")),
         ));
     }
     let labels: Vec<String> = all().filter_map(|of| scenario.move_name(of)).collect();
@@ -246,9 +246,9 @@ fn option(scenario: &Scenario, name: &str) -> Result<(usize, usize), (String, St
         _ if labels.is_empty() => "the scenario declares no moves".to_owned(),
         // Of numbers that differ, none is meant more than another.
         Some(near) if !wanted.contains(|c: char| c.is_ascii_digit()) => format!("did you mean `{near}`?"),
-        _ => format!("there are {}", labels.join(", ")),
+        _ => format!("the moves are {}", labels.join(", ")),
     };
-    Err((format!("there is no move `{wanted}`"), hint))
+    Err((format!("unknown move `{wanted}`"), hint))
 }
 
 /// The call is wrong.
@@ -261,11 +261,11 @@ fn refuse(reason: impl Into<String>, hint: impl Into<String>, colors: Colors) ->
 pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
     if arguments.every == 0 || arguments.trials == 0 {
         let option = if arguments.every == 0 { "--every" } else { "--trials" };
-        return refuse(format!("`{option} 0` writes nothing"), "it takes a number from 1", colors);
+        return refuse(format!("`{option}` must be positive (got 0)"), "write a number from 1", colors);
     }
     if arguments.trial.saturating_add(arguments.trials) > MOST_TRIALS {
-        let hint = format!("they are numbered from 0 to {}", MOST_TRIALS - 1);
-        return refuse("a seed has no such trials", hint, colors);
+        let hint = format!("trials are numbered from 0 to {}", MOST_TRIALS - 1);
+        return refuse("the trial number is out of range", hint, colors);
     }
     let inputs::Loaded { inputs, paths, .. } = inputs::load(&arguments.model, &[]);
     complaint::diagnose(&inputs, colors);
@@ -276,11 +276,7 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
     }
     let Some(world) = study.worlds.last() else { return Exit::Wrong };
     if study.worlds.len() > 2 {
-        return refuse(
-            "a sweep has several settings, and a trace is of one",
-            "write `--set name=value`",
-            colors,
-        );
+        return refuse("a trace cannot be written for a sweep", "write `--set name=value`", colors);
     }
     let scenario: Arc<Scenario> = world.scenario.clone();
     let advice = match arguments.advice.as_deref().map(|name| option(&scenario, name)) {
@@ -295,13 +291,17 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
     let mut last = scenario.horizon;
     if let Some(until) = arguments.until {
         if until.is_nan() || until < 0.0 {
-            return refuse(format!("`--until {until}` is no time"), "it takes a number of seconds", colors);
+            return refuse(
+                format!("`--until` must be a time that is not negative (got {until})"),
+                "write a number of seconds",
+                colors,
+            );
         }
         let end = scenario.clock.seconds(scenario.horizon);
         if until > end * (1.0 + 1e-12) {
             let unit = if scenario.clock == Clock::Steps { "steps" } else { "s" };
             let hint = format!("the horizon of the scenario is {end} {unit}");
-            return refuse(format!("`--until {until}` lies beyond the horizon"), hint, colors);
+            return refuse(format!("`--until` must not exceed the horizon (got {until})"), hint, colors);
         }
         // The longest time that is a whole number of ticks, in continuous time of very short ones.
         last = last.min(Tick(match scenario.clock {

@@ -4,7 +4,7 @@ use super::arguments::ColorChoice;
 use crate::base::visible::visible;
 use std::io::{IsTerminal, Write};
 
-/// Where colours are wanted.
+/// Whether output is colored.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Colors {
     /// On standard output.

@@ -44,7 +44,7 @@ impl<'a> Compiler<'a> {
             (What::Expectation, None) => confidence
                 .map(|stated| RUNNING.with([allowance.error(stated, super::methods::DEFAULT_ALPHA)])),
             (What::Expectation, Some(method)) => {
-                let said = "a check of an expectation has one procedure only";
+                let said = "a check of an expectation has only one procedure, without `by`";
                 elaborator.report(Diagnostic::error(Code::E0603, method.span, said))
             }
             (What::Quantile, _) => {
@@ -100,7 +100,7 @@ impl<'a> Compiler<'a> {
                 let text = format!("`{}` is set twice", binding.name.name);
                 let error = Diagnostic::error(Code::E0210, binding.name.span, text)
                     .related(common.name.span, "set here for both sides")
-                    .hint("leave one of them out");
+                    .hint("remove one of them");
                 self.sites[site].elaborator.note(error);
             }
         }
@@ -125,7 +125,7 @@ impl<'a> Compiler<'a> {
         let allowance = Allowance { family, claims: 1 };
         let quantile = sketch.what == What::Quantile;
         let comparable = if quantile {
-            let error = Diagnostic::error(Code::E0607, measure.span, "quantiles cannot be compared directly")
+            let error = Diagnostic::error(Code::E0607, measure.span, "`compare` does not accept quantiles")
                 .hint("compare `P(metric <= bound)`, or estimate both");
             elaborator.report(error)
         } else {
@@ -160,7 +160,7 @@ impl<'a> Compiler<'a> {
         let moves = self.moves(site, what, agent, &locals);
         let elaborator = &mut self.sites[site].elaborator;
         let rankable = if sketch.what == What::Quantile {
-            let error = Diagnostic::error(Code::E0607, measure.span, "moves are ranked by `P(…)` or `E(…)`");
+            let error = Diagnostic::error(Code::E0607, measure.span, "`rank` accepts only `P(…)` and `E(…)`");
             elaborator.report(error)
         } else {
             Ok(())
@@ -172,8 +172,9 @@ impl<'a> Compiler<'a> {
         if let (Ok(Make::Ranking(Ranking::Okamoto)), What::Expectation, Some(method)) =
             (procedure.as_ref().map(|chosen| chosen.spec.make), sketch.what, &clauses.by)
         {
-            let error = Diagnostic::error(Code::E0607, method.span, "`okamoto` ranks moves by `P(…)` only")
-                .hint("the default ranks by `E(…)` too, and needs fewer trials");
+            let error = Diagnostic::error(Code::E0607, method.span, "`okamoto` ranks only by `P(…)`").hint(
+                "remove `by okamoto`: the default procedure also ranks by `E(…)`, and needs fewer trials",
+            );
             return elaborator.report(error);
         }
         rankable?;
@@ -188,7 +189,7 @@ impl<'a> Compiler<'a> {
             Ok(())
         } else {
             let error =
-                Diagnostic::error(Code::E0606, what.span, format!("`{}` cannot be ranked here", what.name))
+                Diagnostic::error(Code::E0606, what.span, format!("`{}` cannot be ranked", what.name))
                     .hint("write `rank moves of …`");
             elaborator.report(error)
         };
@@ -196,7 +197,7 @@ impl<'a> Compiler<'a> {
         let Who::Agent(id) = elaborator.as_agent(typed, agent.span)? else { return Err(Reported) };
         wanted?;
         let advised = &self.sites[site].elaborator.advised;
-        // With moves that are wrong nobody knows whose they are.
+        // If some moves have errors, their agents are unknown.
         if advised.as_ref().is_some_and(|advised| !advised.contains(&id)) {
             return self.sites[site].elaborator.without_moves(id, agent.span);
         }
@@ -204,7 +205,7 @@ impl<'a> Compiler<'a> {
         let Some(moves) = scenario.moves.iter().position(|m| m.agent == id) else { return Err(Reported) };
         let options = scenario.moves[moves].options.len();
         if options > MOST_OPTIONS {
-            let said = format!("a ranking is of at most {MOST_OPTIONS} options, and these are {options}");
+            let said = format!("a ranking has at most {MOST_OPTIONS} options (got {options})");
             return self.sites[site].elaborator.report(Diagnostic::error(Code::E0606, agent.span, said));
         }
         Ok(moves)
@@ -212,7 +213,7 @@ impl<'a> Compiler<'a> {
 }
 
 impl Elaborator<'_> {
-    /// That nothing advises somebody.
+    /// Reports that an agent has no moves.
     fn without_moves<T>(&mut self, id: AgentId, at: Span) -> Lowered<T> {
         // One that could not be declared was reported.
         let Some(name) = self.agent_names.get(id.0 as usize).filter(|_| !self.undeclared.contains(&id))
@@ -222,18 +223,18 @@ impl Elaborator<'_> {
         let name = name.clone();
         // Moves are those of somebody who has a name alone.
         let (alone, first) = if name.contains('[') {
-            ("robot", "moves are those of one agent, declared alone as `agent robot: …`; ")
+            ("robot", "moves belong to one agent, declared as `agent robot: …`; ")
         } else {
             (name.as_str(), "")
         };
         let hint = format!(
-            "{first}for example `moves {alone} for 2 s {{ heading from -60 deg to 60 deg by 15 deg  stop }}`"
+            "{first}write for example `moves {alone} for 2 s {{ heading from -60 deg to 60 deg by 15 deg  stop }}`"
         );
-        let said = format!("the scenario declares no moves of `{name}`");
+        let said = format!("the scenario declares no moves for `{name}`");
         self.report(Diagnostic::error(Code::E0606, at, said).hint(hint))
     }
 
-    /// What a measure is compared with: a number in its unit, between 0 and 1 if it is a probability and within the range
+    /// The threshold of a measure: a number in its unit, between 0 and 1 if it is a probability and within the range
     /// of an expectation.
     fn threshold(
         &mut self,
@@ -242,12 +243,12 @@ impl Elaborator<'_> {
         sketch: Sketch,
         locals: &Locals,
     ) -> Lowered<Number> {
-        // Without a metric nobody knows the unit of the threshold.
+        // Without a metric the unit of the threshold is unknown.
         let bound = self.number_in(threshold, sketch, locals)?;
         let theta = bound.value;
         if sketch.what == What::Probability && (theta <= 0.0 || theta >= 1.0) {
             let hint = if theta > 1.0 && theta <= 100.0 {
-                format!("a share is written with its sign: `{theta} %`")
+                format!("write a percentage with its sign: `{theta} %`")
             } else {
                 let near = if theta <= 0.0 { 0.001 } else { 0.999 };
                 let sign = match relation {
@@ -257,20 +258,20 @@ impl Elaborator<'_> {
                     _ => ">=",
                 };
                 format!(
-                    "sampling cannot decide whether something is certain or impossible; write `{sign} {near}`"
+                    "no number of trials can show that an event is certain or impossible; write `{sign} {near}`"
                 )
             };
             let error = Diagnostic::error(
                 Code::E0601,
                 threshold.span,
-                format!("a probability is compared with a number between 0 and 1, not with {theta}"),
+                format!("the threshold of a probability must be between 0 and 1 (got {theta})"),
             );
             return self.report(error.hint(hint));
         }
         if let Some(((low, high), range)) = sketch.range
             && (theta <= low || theta >= high)
         {
-            let said = "this threshold lies outside the range of the metric";
+            let said = "the threshold is outside the range of the metric";
             return self.report(Diagnostic::error(Code::E0601, threshold.span, said).hanging_on(range));
         }
         Ok(bound)
@@ -300,7 +301,7 @@ fn unlike(
     Diagnostic::error(
         Code::E0605,
         place,
-        format!("the sides of a comparison need one range: it is {first}, but {second}"),
+        format!("both sides of a comparison need the same range ({first}, {second})"),
     )
-    .hint("write a range that holds for both sides and depends on none of the parameters that differ")
+    .hint("write a range that is valid for both sides and depends on none of the parameters that differ")
 }

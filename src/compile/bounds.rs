@@ -8,7 +8,7 @@ use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
-/// Who errs as often as not says nothing. Two errors below it sum to less than 1, without which a sequential
+/// An error probability of 0.5 carries no information. Two errors below it sum to less than 1, without which a sequential
 /// test has no region to sample in.
 const COIN: f64 = 0.5;
 
@@ -28,12 +28,12 @@ impl Elaborator<'_> {
                 let error = Diagnostic::error(
                     Code::E0604,
                     span,
-                    format!("`{name}` is {value}, but lies between 0 and 0.5"),
+                    format!("`{name}` must be between 0 and 0.5 (got {value})"),
                 );
                 let hint = if value >= COIN {
-                    "who errs as often as not says nothing; 0.01 and 0.05 are usual"
+                    "an error probability of 0.5 or more carries no information; write for example 0.01 or 0.05"
                 } else {
-                    "no number of trials excludes every error; 0.01 and 0.05 are usual"
+                    "no number of trials excludes every error; write for example 0.01 or 0.05"
                 };
                 self.report(error.hint(hint))
             }
@@ -47,25 +47,35 @@ impl Elaborator<'_> {
             Sketch {
                 what: What::Expectation, range: Some((range, at)), dimension: Some(dimension), ..
             } => (range.1 - range.0, Some(at), dimension),
-            // Of what nobody knows no part is asked.
+            // Without a range there is nothing to compare the width with.
             _ if epsilon > 0.0 || sketch.what == What::Quantile => return Ok(epsilon),
-            _ => return self.report(Diagnostic::error(Code::E0604, at, "a width must be positive")),
+            _ => {
+                return self.report(Diagnostic::error(
+                    Code::E0604,
+                    at,
+                    format!("the width must be positive (got {epsilon})"),
+                ));
+            }
         };
         let part = epsilon / range;
         if (NARROWEST..=widest).contains(&part) {
             return Ok(epsilon);
         }
         if epsilon <= 0.0 {
-            return self.report(Diagnostic::error(Code::E0604, at, "a width must be positive"));
+            return self.report(Diagnostic::error(
+                Code::E0604,
+                at,
+                format!("the width must be positive (got {epsilon})"),
+            ));
         }
         let unit = if dimension.is_none() { String::new() } else { format!(" {dimension}") };
         let (word, end, hint) = if part < NARROWEST {
-            let hint = "so narrow an interval takes more trials than there is time for";
-            ("below", NARROWEST * range, hint)
+            let hint = "such a narrow interval needs too many trials; write a larger width";
+            ("at least", NARROWEST * range, hint)
         } else {
-            ("above", widest * range, "every number would do: ask for a width that says something")
+            ("at most", widest * range, "such a wide interval carries no information; write a smaller width")
         };
-        let said = format!("a width of {epsilon}{unit} is {word} {end}{unit}");
+        let said = format!("the width must be {word} {end}{unit} (got {epsilon}{unit})");
         let error = Diagnostic::error(Code::E0604, at, said).hint(hint);
         self.report(ranged.into_iter().fold(error, Diagnostic::hanging_on))
     }

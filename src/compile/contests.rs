@@ -74,7 +74,7 @@ impl Elaborator<'_> {
     ) -> (Lowered<(&'static Spec, f64)>, Stated) {
         let ranking = self.procedure(method, Serves::Ranking, locals);
         if ranking.is_err() && !method.arguments.is_empty() {
-            // What an unknown procedure takes nobody knows, the width among it.
+            // The arguments of an unknown procedure are unknown, including the width.
             let width = if clauses.within.is_some() { stated(clauses, within) } else { Err(Reported) };
             return (Err(Reported), width);
         }
@@ -92,7 +92,7 @@ impl Elaborator<'_> {
     fn loss(&mut self, width: Option<(f64, Span)>, sketch: Sketch, measured: Span) -> Lowered<f64> {
         let (epsilon, at) = match (width, sketch.dimension) {
             (Some(found), _) => found,
-            // What does not matter in metres nobody knows but who asks.
+            // Only the user can say which difference in metres does not matter.
             (None, Some(dimension)) if !dimension.is_none() => {
                 let error =
                     Diagnostic::error(Code::E0604, measured, "how much worse may a choice be?").formal();

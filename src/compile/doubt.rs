@@ -1,4 +1,4 @@
-//! Names of which nobody knows what they mean: declared twice as different things, or wrong where they are declared.
+//! Names with an uncertain meaning: declared twice as different things, or with an error in their declaration.
 //!
 //! That is told where it is declared. What follows from the one meaning that happens to stand would only confuse: such a name
 //! is looked up as one that was reported.
@@ -34,7 +34,7 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    /// What is wrong with such a default.
+    /// The error of such a default.
     pub(super) fn fault_of_default(
         &mut self,
         name: &Ident,
@@ -60,18 +60,18 @@ impl<'a> Elaborator<'a> {
         let (default, low, high) = (number(value)?, number(low)?, number(high)?);
         let is_beyond = low <= high && (default < low || default > high);
         is_beyond.then(|| {
-            let text = format!("the default of `{}` lies outside its range", name.name);
+            let text = format!("the default of `{}` is outside its range", name.name);
             Diagnostic::error(Code::E0405, value.span, text)
         })
     }
 
-    /// What a name means is anybody's guess from now on.
+    /// Marks the meaning of a name as uncertain.
     pub(super) fn doubt(&mut self, scope: ScopeId, name: &str) {
         self.given_up = true;
         self.doubtful.insert((scope, name.to_owned()));
     }
 
-    /// Whether it is anybody's guess what a name means.
+    /// Whether the meaning of a name is uncertain.
     pub(super) fn is_doubtful(&self, scope: ScopeId, name: &str) -> bool {
         !self.doubtful.is_empty() && self.doubtful.contains(&(scope, name.to_owned()))
     }

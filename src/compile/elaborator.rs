@@ -41,7 +41,7 @@ pub(super) type Lowered<T> = Result<T, Reported>;
 const DEEPEST: u32 = 1000;
 /// How many expression nodes one combination of parameter values may expand to.
 pub(super) const MOST_NODES: u64 = 4_000_000;
-/// After so many errors no unknown name is told which one it may mean.
+/// After so many errors, no similar name is searched for an unknown name.
 const MOST_LOOKED_FOR: usize = 100;
 
 /// Names of enclosing expressions: function arguments and quantified agents.
@@ -49,11 +49,11 @@ const MOST_LOOKED_FOR: usize = 100;
 pub(super) struct Locals {
     /// Which table of names is looked up after the locals.
     pub(super) scope: ScopeId,
-    /// Bound names, innermost last. `None`: nobody knows what it stands for, and nothing is said of what needs that.
+    /// Bound names, innermost last. `None`: the meaning is unknown, and expressions that need it report no error.
     pub(super) names: Vec<(String, Option<Arc<Typed>>)>,
     /// Where the arguments of a function are written that is called, by their places among the names.
     pub(super) written: Vec<(usize, Span)>,
-    /// What the bound names are called in texts.
+    /// The bound names in texts.
     pub(super) frame: Option<Arc<Frame>>,
     /// Number of enclosing folds over agents.
     pub(super) running: u32,
@@ -76,7 +76,7 @@ impl Locals {
         self.names.push((name.to_owned(), Some(Arc::new(value))));
     }
 
-    /// Binds a name of which nobody knows what it stands for.
+    /// Binds a name with an unknown meaning.
     pub(super) fn bind_unknown(&mut self, name: &str) {
         self.names.push((name.to_owned(), None));
     }
@@ -97,7 +97,7 @@ pub(super) struct Elaborator<'a> {
     pub(super) expanding: Vec<(ScopeId, String)>,
     /// Recordings read so far.
     pub(super) recordings: Vec<Option<Recording>>,
-    /// Who of which recording is among the people, and where that is written.
+    /// The recorded persons in use, with the places of their declarations.
     pub(super) recorded: BTreeMap<(usize, u32), Span>,
     /// Shapes of regions known so far.
     pub(super) shapes: Vec<Option<Lowered<Shape>>>,
@@ -109,33 +109,33 @@ pub(super) struct Elaborator<'a> {
     pub(super) processes: Vec<Declared<'a>>,
     /// Behaviours so far.
     pub(super) behaviours: Vec<&'a BehaviourDecl>,
-    /// Who has which, by declarations.
+    /// The behaviours of agents, by declaration.
     pub(super) withs: Vec<With<'a>>,
-    /// Who has which, one by one.
+    /// The behaviours of single agents.
     pub(super) having: BTreeSet<(AgentId, BehaviourId)>,
-    /// Who was given a behaviour that nobody knows.
+    /// Agents with an unknown behaviour.
     pub(super) strayed: BTreeSet<AgentId>,
-    /// Arguments of behaviours that nobody knows.
+    /// Arguments of unknown behaviours.
     pub(super) stray: Vec<&'a [Expr]>,
     /// Names of the agents so far.
     pub(super) agent_names: Vec<String>,
     /// Where the starts of people are written.
     pub(super) places: Written,
-    /// Who starts where, of a scenario that is wrong elsewhere.
+    /// The starts of agents, in a scenario with other errors.
     pub(super) starts: Option<Starts>,
     /// Stand-ins for people whose declaration is wrong.
     pub(super) undeclared: BTreeSet<AgentId>,
     /// Whether a part of the scenario was left out, which is never done without an error.
     pub(super) given_up: bool,
-    /// Whether what is said of starts is anybody's guess: a radius, a field or a number that decides them is wrong.
+    /// An earlier error makes the checks of start positions unreliable; skip them.
     pub(super) any_start: bool,
     /// Where the behaviour that is looked at gets its arguments, if it takes any.
     pub(super) attached_at: Option<Span>,
     /// Where processes and behaviours are written.
     pub(super) origins: Origins,
-    /// Whether somebody may come in during a trial.
+    /// Whether agents can arrive during a trial.
     pub(super) coming: bool,
-    /// Who has moves; `None` where some moves are wrong.
+    /// The agents with moves; `None` if some moves have errors.
     pub(super) advised: Option<BTreeSet<AgentId>>,
     /// Agents who come or leave during a trial.
     pub(super) passing: BTreeSet<AgentId>,
@@ -173,7 +173,7 @@ pub(super) struct Elaborator<'a> {
     pub(super) frame: Option<Arc<Frame>>,
     /// Where the name of a bare number stands, and where that is declared.
     pub(super) bare: BTreeMap<Span, Span>,
-    /// Of each file, an exponent that hangs on parameters: so does the unit of what it raises.
+    /// For each file, an exponent that depends on parameters: so does the unit of its power.
     pub(super) exponents: BTreeMap<SourceId, Span>,
     /// How often an unknown name was come upon.
     pub(super) unknowns: u64,
@@ -185,11 +185,11 @@ pub(super) struct Elaborator<'a> {
     pub(super) circles: Vec<String>,
     /// Whether a parameter has a value outside of its range here.
     pub(super) is_astray: bool,
-    /// What was found wrong.
+    /// The errors found.
     pub(super) diagnostics: Vec<Diagnostic>,
     /// Codes and places of all that was ever noted: only what stands here can be among the diagnostics.
     noted: BTreeSet<(Code, Option<Span>)>,
-    /// What is known of margins, while the formula of a robustness is lowered.
+    /// Knowledge about margins, while the formula of a robustness is lowered.
     pub(super) margins: Option<Margins>,
     /// Present depth of lowering.
     pub(super) depth: u32,
@@ -197,15 +197,15 @@ pub(super) struct Elaborator<'a> {
     outermost: Span,
     /// Names that were expanded in vain: what is wrong with them was said.
     pub(super) broken: BTreeSet<(ScopeId, String)>,
-    /// Names of which nobody knows which of two things they mean, or what.
+    /// Names with an ambiguous or unknown meaning.
     pub(super) doubtful: BTreeSet<(ScopeId, String)>,
-    /// What was looked at in vain, in order.
+    /// The expressions that failed, in order.
     pub(super) journal: Vec<(Vain, (ScopeId, String))>,
     /// Parts of the files that were not read to their end, ascending, none within another: what is wrong with them was said.
     pub(super) cut: Vec<Span>,
     /// Parts of the files that were not read at all, or not to their end.
     pub(super) torn: Vec<Span>,
-    /// What is known of the clock: errors of times that need more say nothing.
+    /// How much of the clock is known: errors about times that need more are not reported.
     pub(super) told: Told,
     /// Nodes lowered so far.
     pub(super) nodes: u64,
@@ -372,12 +372,12 @@ impl<'a> Elaborator<'a> {
             // A unit belongs to a number or a point.
             let is_number = text.ends_with(|c: char| c.is_ascii_digit() || c == '.' || c == ')')
                 && text.starts_with(|c: char| !c.is_alphabetic() && c != '_');
-            // Nobody writes angles of people in radians.
+            // Angles of agents are usually written in degrees.
             let unit = if expected == Dimension::ANGLE { "deg".to_owned() } else { expected.to_string() };
             error = error.hint(if is_number {
-                format!("write the unit, as in `{text} {unit}`")
+                format!("write the unit: `{text} {unit}`")
             } else {
-                format!("write the unit where the number stands, or multiply: `{text} * 1 {unit}`")
+                format!("write the unit after the number, or multiply: `{text} * 1 {unit}`")
             });
         }
         if let Some(number) = single_number(&text).filter(|_| !found.is_none() && !expected.is_none()) {
@@ -397,7 +397,7 @@ impl<'a> Elaborator<'a> {
         within.all(|(_, other)| other == first).then_some(*first)
     }
 
-    /// Counts one more level; an error where expressions nest or grow beyond reason.
+    /// Counts one more level; an error if an expression is too deep or too large.
     pub(super) fn descend(&mut self, span: Span) -> Lowered<()> {
         if self.depth == 0 {
             self.outermost = span;
@@ -411,10 +411,10 @@ impl<'a> Elaborator<'a> {
             let mut error = Diagnostic::error(
                 Code::E0211,
                 self.outermost,
-                format!("this nests deeper than {DEEPEST} once names are expanded"),
+                format!("the expression has more than {DEEPEST} levels after names are expanded"),
             );
             if let Some((_, name)) = self.expanding.first() {
-                error = error.hint(format!("`{name}` leads through {} names", self.expanding.len()));
+                error = error.hint(format!("`{name}` expands through {} names", self.expanding.len()));
             }
             if span != self.outermost {
                 error = error.related(span, "too deep here");
@@ -429,22 +429,22 @@ impl<'a> Elaborator<'a> {
         Ok(())
     }
 
-    /// Something grows beyond reason.
+    /// Reports an expression that is too large.
     pub(super) fn too_large<T>(&mut self, span: Span) -> Lowered<T> {
         if self.endless() {
             return Err(Reported);
         }
-        let error = Diagnostic::error(Code::E0211, span, "this grows beyond reason once names are expanded")
-            .hint("quantifiers over formulas are written out for every agent; quantify over states where you can");
+        let error = Diagnostic::error(Code::E0211, span, "the expression is too large after names are expanded")
+            .hint("a quantifier over formulas is expanded for every agent; quantify over states instead: `F<=1 s (forall a in crowd: …)`");
         self.report(error)
     }
 
-    /// Whether it was said that something nests or grows beyond reason.
+    /// Whether an expression was already reported as too deep or too large.
     fn endless(&self) -> bool {
         self.diagnostics.iter().any(|d| d.code == Code::E0211)
     }
 
-    /// An error where names lead through too many others.
+    /// Reports a name that expands through too many others.
     pub(super) fn expand_further(&mut self, span: Span) -> Lowered<()> {
         if self.expanding.len() < DEEPEST as usize {
             return Ok(());
@@ -453,7 +453,7 @@ impl<'a> Elaborator<'a> {
             return Err(Reported);
         }
         let first = self.expanding.first().map_or("", |(_, name)| name.as_str());
-        let text = format!("`{first}` leads through more than {DEEPEST} names");
+        let text = format!("`{first}` expands through more than {DEEPEST} names");
         self.report(Diagnostic::error(Code::E0211, span, text))
     }
 
@@ -469,7 +469,7 @@ impl<'a> Elaborator<'a> {
             return self.wrong_dimension(expr.span, dimension, number.dimension);
         }
         if !number.value.is_finite() {
-            let error = Diagnostic::error(Code::E0405, expr.span, "this is not a finite number");
+            let error = Diagnostic::error(Code::E0405, expr.span, "the value is not a finite number");
             return self.report(error);
         }
         Ok(number)
@@ -481,13 +481,16 @@ impl<'a> Elaborator<'a> {
             Typed::Number(number) => Ok(number),
             found @ (Typed::Num(..) | Typed::Term(..)) => {
                 let when = match &found {
-                    Typed::Num(num, _) if num.is_fixed() => "is computed in each",
-                    Typed::Num(num, _) if num.is_drawn() => "is not known before a trial",
+                    Typed::Num(num, _) if num.is_fixed() => "is computed in each trial",
+                    Typed::Num(num, _) if num.is_drawn() => "is drawn in each trial",
                     _ => "changes during a trial",
                 };
-                let error =
-                    Diagnostic::error(Code::E0304, expr.span, "this must be known before a trial starts")
-                        .label(format!("{} that {when}", found.noun()));
+                let error = Diagnostic::error(
+                    Code::E0304,
+                    expr.span,
+                    "the value must be known before a trial starts",
+                )
+                .label(format!("{} that {when}", found.noun()));
                 self.report(error)
             }
             found => self.mismatch(expr.span, "a number", &found),

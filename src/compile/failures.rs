@@ -21,7 +21,7 @@ pub(super) struct Failures {
     circles: usize,
 }
 
-/// What was looked at in vain since then.
+/// The expressions that failed since then.
 pub(super) struct Forgotten {
     journal: Vec<(Vain, (ScopeId, String))>,
     circles: Vec<String>,

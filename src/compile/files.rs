@@ -49,7 +49,7 @@ impl Files {
         match self.contents.get(path) {
             Some(Ok(bytes)) => Ok(bytes.strip_prefix("\u{FEFF}".as_bytes()).unwrap_or(bytes)),
             Some(Err(reason)) => Err(reason.clone()),
-            None => Err(format!("`{path}` was not opened")),
+            None => Err(format!("internal error: `{path}` was not opened")),
         }
     }
 }

@@ -84,7 +84,7 @@ fn wrong(expr: &Expr) -> Diagnostic {
     Diagnostic::error(
         Code::E0305,
         expr.span,
-        "a filter compares properties of features with texts, numbers or truth values",
+        "a filter can compare properties of features only with texts, numbers and truth values",
     )
-    .hint("for example `where source == \"map.png\" & height > 1`")
+    .hint("write for example `where source == \"map.png\" & height > 1`")
 }

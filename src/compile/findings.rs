@@ -1,6 +1,6 @@
 //! What was found in the worlds of a call: each place says the same thing once.
 
-use super::consequences::{BY_ITSELF, UNKNOWN, words};
+use super::consequences::{CIRCULAR, UNKNOWN, words};
 use super::dimension;
 use super::elaborator::Elaborator;
 use super::queries::Compiler;
@@ -10,9 +10,9 @@ use crate::syntax::diagnostic::{Diagnostic, Severity};
 use crate::syntax::source::Span;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Codes of errors of queries that hang on no value, besides those of names, kinds and units.
+/// Codes of errors of queries that depend on no value, besides those of names, kinds and units.
 const VALUELESS: [Code; 6] = [Code::E0204, Code::E0507, Code::E0508, Code::E0603, Code::E0606, Code::E0607];
-/// Codes of numbers that hang on no other value where they are written as such.
+/// Codes of errors about numbers that depend on no other value if they are written as literals.
 const WRITTEN: [Code; 9] = [
     Code::E0402,
     Code::E0404,
@@ -31,7 +31,7 @@ const MOST_WORLDS: usize = 3;
 /// Most calls that are shown of an error inside functions.
 const MOST_CALLS: usize = 4;
 
-/// What was found, in the same words.
+/// An error and the worlds in which it was found with the same text.
 struct Finding {
     /// As in the first world.
     diagnostic: Diagnostic,
@@ -54,8 +54,8 @@ impl Finding {
 }
 
 impl Compiler<'_> {
-    /// What was found in all worlds. The same place says the same thing once, with the values of the parameters of which
-    /// that depends, as far as is known; in other words, with other values, a few times.
+    /// The errors of all worlds. One error at one place is reported once, with the values of the parameters on which
+    /// it depends, as far as is known. Similar errors with other values are counted.
     pub(super) fn findings(&self) -> Vec<Diagnostic> {
         let mut found: Vec<Finding> = Vec::new();
         let mut places: BTreeMap<_, Vec<usize>> = BTreeMap::new();
@@ -130,7 +130,7 @@ impl Compiler<'_> {
             shown.push(format!("and {more} more"));
         }
         if others > 0 {
-            shown.push(format!("in other words with {others} more"));
+            shown.push(format!("and {others} similar"));
         }
         diagnostic.title = format!("{} (with {})", diagnostic.title, shown.join("; "));
         diagnostic
@@ -147,8 +147,8 @@ impl Compiler<'_> {
 }
 
 impl Elaborator<'_> {
-    /// Of what was found from a number on, in a world that stands in for one that could not be set up, only what does not
-    /// hang on values: names, kinds and units, and numbers as they are written.
+    /// Keeps only some errors, from a given one on, of a world that replaces one that could not be set up: those that do not
+    /// depend on values: names, kinds and units, and literal numbers.
     pub(super) fn keep_sure(&mut self, from: usize) {
         let found = self.diagnostics.split_off(from.min(self.diagnostics.len()));
         let sure: Vec<Diagnostic> = found.into_iter().filter(|one| self.is_sure(one)).collect();
@@ -162,7 +162,7 @@ impl Elaborator<'_> {
         if one.is_formal {
             return true;
         }
-        let is_circle = one.code == Code::E0205 && one.title.ends_with(BY_ITSELF);
+        let is_circle = one.code == Code::E0205 && one.title.ends_with(CIRCULAR);
         if is_circle || UNKNOWN.contains(&one.code) || one.code.is_of("E03") || VALUELESS.contains(&one.code)
         {
             return true;
@@ -170,7 +170,7 @@ impl Elaborator<'_> {
         WRITTEN.contains(&one.code) && one.place.as_ref().is_some_and(|place| self.is_literal(place.span))
     }
 
-    /// Whether what is written somewhere hangs on a parameter, by whatever names.
+    /// Whether the expression at a place depends on a parameter, directly or by names.
     pub(super) fn hangs_on_parameters(&self, place: Span) -> bool {
         let (mut left, mut seen) = (vec![place], BTreeSet::new());
         while let Some(place) = left.pop() {

@@ -66,7 +66,7 @@ impl Elaborator<'_> {
             let error = Diagnostic::error(
                 Code::E0206,
                 name.span,
-                format!("expected a kind, `{}` is {}", name.name, meaning.noun()),
+                format!("expected a kind, but `{}` is {}", name.name, meaning.noun()),
             );
             return self.report(error);
         };
@@ -78,7 +78,7 @@ impl Elaborator<'_> {
             return self.report(Diagnostic::error(
                 Code::E0205,
                 name.span,
-                format!("the kind `{}` is defined by itself", name.name),
+                format!("the kind `{}` depends on itself", name.name),
             ));
         }
         if let Some(known) = self.kinds.get(&name.name) {
@@ -107,7 +107,7 @@ impl Elaborator<'_> {
             } else {
                 let error =
                     unknown("preset", &preset.name, preset.span, Code::E0208, PRESETS.iter().map(|p| p.name));
-                let known = format!("known presets: {}", PRESETS.map(|p| p.name).join(", "));
+                let known = format!("the presets are {}", PRESETS.map(|p| p.name).join(", "));
                 let error = match error.hint.clone() {
                     Some(near) => error.hint(format!("{near} {known}")),
                     None => error.hint(known),
@@ -188,7 +188,7 @@ impl Elaborator<'_> {
                 return Err(Reported);
             }
             let error = Diagnostic::error(Code::E0209, name.span, title)
-                .hint("set them, or start from a preset: `kind adult: sfm preset helbing2000 { … }`");
+                .hint("set the values, or start from a preset: `kind adult: sfm preset helbing2000 { … }`");
             return self.report(error);
         }
         // A parameter that the kind does not have is 0 or its default.

@@ -47,7 +47,7 @@ pub(super) fn truncate(error: Diagnostic, law: &Law, text: &str) -> Diagnostic {
         Some(_) => error,
         None => {
             let law_alone = text.split(" in ").next().unwrap_or_default();
-            error.hint(format!("cut it off, as in `{law_alone} in 0 s .. {} s`", cut(law.mean())))
+            error.hint(format!("truncate it: `{law_alone} in 0 s .. {} s`", cut(law.mean())))
         }
     }
 }
@@ -96,7 +96,7 @@ impl Elaborator<'_> {
                     let error =
                         Diagnostic::error(Code::E0404, law.span, "only a distribution can be truncated")
                             .hint(format!(
-                                "for example `normal(mean, sd) in lo .. hi`; known are {}",
+                                "write for example `normal(mean, sd) in lo .. hi`; the distributions are {}",
                                 DISTRIBUTIONS.join(", ")
                             ));
                     return self.report(error);
@@ -114,7 +114,7 @@ impl Elaborator<'_> {
         }
     }
 
-    /// What a value is made of that nobody knows what to do with: what is wrong with that is said all the same.
+    /// The parts of an invalid value, to report their errors as well.
     pub(super) fn look_at(&mut self, value: &Value, locals: &Locals) {
         match value {
             Value::Plain(expr) => self.look_at_drawn(expr, locals),
@@ -169,7 +169,7 @@ impl Elaborator<'_> {
                 self.report(if dimension.is_none() {
                     error
                 } else {
-                    error.hint(format!("numbers here are in {dimension}"))
+                    error.hint(format!("the value is in {dimension}"))
                 })
             }
         }
@@ -191,20 +191,17 @@ impl Elaborator<'_> {
         let (family, by) = (family?, by?);
         self.validated(family.clone(), (f64::NEG_INFINITY, f64::INFINITY), Dimension::NONE, span)?;
         if !(by.value > 0.0 && by.value.is_finite()) {
-            let error = Diagnostic::error(
-                Code::E0404,
-                factor.span,
-                "a distribution is multiplied by what is positive",
-            );
+            let error =
+                Diagnostic::error(Code::E0404, factor.span, "the factor of a distribution must be positive");
             return self.report(error);
         }
         let Some(mut scaled) = family.scaled(by.value) else {
             let error = Diagnostic::error(
                 Code::E0404,
                 span,
-                format!("no multiple of this `{}` is drawn", drawn.name),
+                format!("this `{}` cannot be multiplied", drawn.name),
             )
-            .hint("a multiple of `beta` leaves (0, 1), and a count has at most 4096 values");
+            .hint("a multiple of `beta` would leave (0, 1), and a multiple of a count can have at most 4096 values");
             return self.report(error);
         };
         // Three times 0.1 s is 0.3 s, which a product of doubles misses.
@@ -285,21 +282,21 @@ impl Elaborator<'_> {
         };
         if arguments.len() != wanted {
             let usage = match name {
-                "uniform" | "uniform_int" => "its ends: `uniform(low, high)`".to_owned(),
-                "exponential" | "poisson" => format!("its mean: `{name}(mean)`"),
+                "uniform" | "uniform_int" => "both ends: `uniform(low, high)`".to_owned(),
+                "exponential" | "poisson" => format!("the mean: `{name}(mean)`"),
                 "bernoulli" => "the probability of 1: `bernoulli(p)`".to_owned(),
                 "choice" => "the values to choose from".to_owned(),
-                _ => format!("mean and standard deviation: `{name}(mean, sd)`"),
+                _ => format!("the mean and the standard deviation: `{name}(mean, sd)`"),
             };
-            return self.report(Diagnostic::error(Code::E0204, span, format!("`{name}` takes {usage}")));
+            return self.report(Diagnostic::error(Code::E0204, span, format!("`{name}` needs {usage}")));
         }
         if matches!(name, "uniform_int" | "poisson" | "bernoulli") && !dimension.is_none() {
             let error = Diagnostic::error(
                 Code::E0404,
                 span,
-                format!("`{name}` gives pure numbers, here {dimension} is needed"),
+                format!("`{name}` draws numbers without a unit, but {dimension} is needed"),
             )
-            .hint(format!("multiply it by what one stands for: `{} * 1 {dimension}`", self.text(span)));
+            .hint(format!("multiply it by a unit: `{} * 1 {dimension}`", self.text(span)));
             return self.report(error);
         }
         let numbers: Vec<_> = arguments.iter().map(|a| self.number_of(a, dimension, locals)).collect();
@@ -315,7 +312,7 @@ impl Elaborator<'_> {
                     return self.report(Diagnostic::error(
                         Code::E0404,
                         span,
-                        "the ends of `uniform_int` must be whole",
+                        "the ends of `uniform_int` must be whole numbers",
                     ));
                 }
                 Family::UniformInt { low: first as i64, high: second as i64 }

@@ -17,7 +17,7 @@ use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::collections::BTreeMap;
 
-/// What is known of the margins of the formula that is lowered at present.
+/// Knowledge about the margins of the formula that is being lowered.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Margins {
     /// Dimension of the first condition with a margin, and where it stands.
@@ -57,13 +57,13 @@ impl Elaborator<'_> {
                     Code::E0611,
                     span,
                     format!(
-                        "the robustness of a formula needs one unit: this is {}, before it was {}",
+                        "all margins of a robustness need the same unit (found {} and {})",
                         name(dimension),
                         name(first)
                     ),
                 )
-                .related(place, "this one came first")
-                .hint("divide each side by what matters, as in `speed(user) / 1 m/s < 1.3`, so that all margins are pure numbers");
+                .related(place, "first margin")
+                .hint("divide both sides by a reference value: `speed(user) / 1 m/s < 1.3`");
                 self.note(error);
             }
             Some(_) => {}
@@ -85,12 +85,15 @@ impl Elaborator<'_> {
         }
         let Some((dimension, _)) = margins.first else {
             if let Some((place, instead)) = margins.equality {
-                let title = format!("`{}` has no margin: `==` and `!=` are true or false", self.text(place));
+                let title = format!(
+                    "`{}` has no margin, because `==` and `!=` are only true or false",
+                    self.text(place)
+                );
                 let error = Diagnostic::error(Code::E0610, place, title);
                 return self.report(error.hint(format!("write `{instead}`, or `<=`")));
             }
-            let error = Diagnostic::error(Code::E0610, span, "nothing in this formula has a margin")
-                .hint("robustness measures how far comparisons with `<`, `<=`, `>`, `>=`, contacts and regions are from changing");
+            let error = Diagnostic::error(Code::E0610, span, "no condition in this formula has a margin")
+                .hint("comparisons with `<`, `<=`, `>`, `>=`, contacts and regions have a margin");
             return self.report(error);
         };
         let node = Rewriting {
@@ -109,8 +112,10 @@ impl Elaborator<'_> {
         match made {
             Some(Invalid::NoMargin | Invalid::MovingNumber) => {
                 let error = Diagnostic::error(Code::E0610, span, "a condition in this formula has no margin")
-                    .label("it compares a number of several states")
-                    .hint("compare state by state, or smallest and largest values: `min<=5 s (x) > c`");
+                    .label("this compares an aggregate of several states")
+                    .hint(
+                        "compare in each state, or compare the smallest or largest value: `min<=5 s (x) > c`",
+                    );
                 self.report(error)
             }
             // A bound beyond the horizon is said by whoever asks how far the formula looks.

@@ -28,7 +28,7 @@ pub(super) struct Observed {
     pub(super) unbounded: bool,
 }
 
-/// What a measure asks for.
+/// The kind of a measure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum What {
     Probability,
@@ -36,21 +36,20 @@ pub(super) enum What {
     Quantile,
 }
 
-/// What is known of a measure of which something may be wrong: the rest of its query is judged by that, and by nothing
-/// that only follows from what is wrong.
+/// The known properties of a measure that may have errors. The rest of its query is checked only against these.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sketch {
     pub(super) what: What,
-    /// Of its values, and so of thresholds and widths.
+    /// The dimension of its values, thresholds and widths.
     pub(super) dimension: Option<Dimension>,
-    /// Of an expectation, and where it is written.
+    /// The range of an expectation, and its place.
     pub(super) range: Option<((f64, f64), Span)>,
-    /// Of a quantile.
+    /// The level of a quantile.
     pub(super) level: Option<f64>,
 }
 
 impl Sketch {
-    /// Of a probability everything is known.
+    /// A probability, for which everything is known.
     pub(super) const PROBABILITY: Self =
         Self { what: What::Probability, dimension: Some(Dimension::NONE), range: None, level: None };
 
@@ -60,7 +59,7 @@ impl Sketch {
 }
 
 impl Elaborator<'_> {
-    /// A number in the dimension of a measure; of any where nobody knows that.
+    /// A number in the dimension of a measure; in any dimension if that is unknown.
     pub(super) fn number_in(&mut self, expr: &Expr, sketch: Sketch, locals: &Locals) -> Lowered<Number> {
         match sketch.dimension {
             Some(dimension) => self.number_of(expr, dimension, locals),
@@ -88,13 +87,14 @@ impl Elaborator<'_> {
         let unbounded = self.within_horizon(Part::Node(node), place)?;
         self.watchable(Root::Formula(node), place)?;
         if !matches!(self.tree.nodes[node.0 as usize], Node::Constant(_)) && !self.reads_states(node) {
-            let warning = Diagnostic::warning(Code::W0501, place, "this is always the same")
-                .hint("it does not depend on what happens in a trial");
+            let warning =
+                Diagnostic::warning(Code::W0501, place, "the formula has the same value in every trial")
+                    .hint("no part of it depends on the trial");
             self.note(warning);
         }
         if let Node::Constant(value) = self.tree.nodes[node.0 as usize] {
-            let warning = Diagnostic::warning(Code::W0501, place, format!("this is always {value}"))
-                .hint("it does not depend on what happens in a trial");
+            let warning = Diagnostic::warning(Code::W0501, place, format!("the formula is always {value}"))
+                .hint("no part of it depends on the trial");
             self.note(warning);
         }
         let text = self.text(body.span);
@@ -113,9 +113,9 @@ impl Elaborator<'_> {
             long if long.len() > 60 => "(…)".to_owned(),
             short => format!("({short})"),
         };
-        let warning = Diagnostic::warning(Code::W0502, span, "this is read in the first state").hint(format!(
-            "write `G<={bound} {inner}` if it has to hold all the time, `F<={bound} {inner}` if it has to happen"
-        ));
+        let warning = Diagnostic::warning(Code::W0502, span, "the value of the first state is used").hint(
+            format!("write `G<={bound} {inner}` for all states, or `F<={bound} {inner}` for some state"),
+        );
         self.note(warning);
     }
 
@@ -146,8 +146,9 @@ impl Elaborator<'_> {
             (Some(Moment::Time(_)), Some(Some(tick))) => term = self.term(Term::Later(tick, term)),
             (Some(_), _) => term = self.term(Term::AtEnd(term)),
             (None, _) if of_state => {
-                let warning = Diagnostic::warning(Code::W0502, body.span, "this is read in the first state")
-                    .hint("write `… at end`, `… at 5 s`, or join states as in `max<=10 s (…)`");
+                let warning =
+                    Diagnostic::warning(Code::W0502, body.span, "the value of the first state is used")
+                        .hint("write `… at end`, `… at 5 s`, or an aggregate such as `max<=10 s (…)`");
                 self.note(warning);
             }
             (None, _) => {}
@@ -172,7 +173,7 @@ impl Elaborator<'_> {
         }
     }
 
-    /// What a metric is read from, before it is known what is wanted of it.
+    /// The source of a metric, before its use is known.
     fn metric_root(&mut self, body: &Expr, scope: ScopeId) -> Lowered<(Root, Dimension, bool)> {
         let Some(formula) = self.inside_robustness(body, scope) else {
             let (term, dimension, unbounded) = self.metric(body, scope)?;
@@ -254,7 +255,7 @@ impl Elaborator<'_> {
         };
         match &measure.range {
             Some((low, _)) if !matches!(measure.kind, ast::MeasureKind::Expectation) => {
-                let error = Diagnostic::error(Code::E0605, low.span, "only an expectation needs a range");
+                let error = Diagnostic::error(Code::E0605, low.span, "only an expectation has a range");
                 (self.report(error), sketch)
             }
             _ => (observed, sketch),
@@ -274,7 +275,7 @@ impl Elaborator<'_> {
                 let error =
                     Diagnostic::error(Code::E0605, measure.span, "an expectation needs the range of its metric")
                         .hint(format!(
-                            "write the range of its values, as in `E(…) in 0{unit} .. 10{unit}`; values beyond are clipped and counted"
+                            "write the range of its values: `E(…) in 0{unit} .. 10{unit}`; values outside are clipped and counted"
                         ));
                 self.report(error)
             }
@@ -323,11 +324,7 @@ impl Elaborator<'_> {
         let expected = Sketch { dimension: Some(least.dimension), ..sketch };
         let most = self.number_in(high, expected, locals)?;
         if least.value >= most.value {
-            return self.report(Diagnostic::error(
-                Code::E0605,
-                low.span.to(high.span),
-                "this range is empty",
-            ));
+            return self.report(Diagnostic::error(Code::E0605, low.span.to(high.span), "the range is empty"));
         }
         Ok((least.value, most.value))
     }
@@ -349,15 +346,16 @@ impl Elaborator<'_> {
         {
             // `Q(time_until(safe), 0.95)`
             let (metric, number) = (self.text(level.span), self.text(measure.body.span));
-            let error = Diagnostic::error(Code::E0601, level.span, "the level of a quantile comes first")
-                .hint(format!("write `Q({number}, {metric})`"));
+            let error =
+                Diagnostic::error(Code::E0601, level.span, "the first argument of a quantile is its level")
+                    .hint(format!("write `Q({number}, {metric})`"));
             return (self.report(error), Sketch::of(What::Quantile, None));
         }
         let number = self.number_of(level, Dimension::NONE, &Locals::of(scope)).and_then(|number| {
             if number.value > 0.0 && number.value < 1.0 {
                 return Ok(number.value);
             }
-            let said = "the level of a quantile lies between 0 and 1";
+            let said = "the level of a quantile must be between 0 and 1";
             self.report(Diagnostic::error(Code::E0601, level.span, said))
         });
         let metric = self.metric_root(&measure.body, scope);
@@ -420,13 +418,13 @@ impl Elaborator<'_> {
             None => Ok(()),
             Some(reason @ (Invalid::TooLarge { .. } | Invalid::TooMany { .. })) => {
                 let hint = if matches!(reason, Invalid::TooMany { .. }) {
-                    "give the sum or mean a bound, or ask for it at fewer states"
+                    "write a bound for the sum or mean, or evaluate it in fewer states"
                 } else {
-                    "a longer step, shorter windows, or fewer of them in one another"
+                    "use a longer step, shorter windows, or fewer nested windows"
                 };
                 self.report(Diagnostic::error(Code::E0509, span, reason.to_string()).hint(hint))
             }
-            // How far the horizon is nobody knows.
+            // The horizon is unknown.
             Some(Invalid::BeyondHorizon { .. }) if self.told < Told::Whole => Ok(()),
             Some(reason @ Invalid::BeyondHorizon { .. }) => {
                 self.report(Diagnostic::error(Code::E0502, span, reason.to_string()))
@@ -451,7 +449,7 @@ impl Elaborator<'_> {
         let mut error = Diagnostic::error(
             Code::E0502,
             span,
-            format!("this looks {needed} ahead, but the horizon is {horizon}"),
+            format!("the formula needs {needed}, but the horizon is {horizon}"),
         );
         // One that begins beyond has no bounded one inside to blame.
         let begins = match part {
@@ -462,7 +460,7 @@ impl Elaborator<'_> {
             Part::Term(_) => false,
         };
         error = if reach.unbounded && !begins {
-            error.hint("an operator without a bound, as `time_until` is, asks at every state up to the horizon, and the bounded one inside looks beyond; bound the outer one, or wait for what is so in one state")
+            error.hint("an operator without a bound, including `time_until`, evaluates its operand up to the horizon, and the bounded operator inside extends beyond it; write a bound for the outer operator, or use a condition of one state inside")
         } else {
             error.hint(format!("set `horizon = {needed}` in the scenario, or shorten the bounds"))
         };

@@ -37,7 +37,7 @@ pub(super) struct Theta {
     /// Unless something is wrong with it.
     pub(super) value: Option<f64>,
     pub(super) at: Span,
-    /// What it is: a threshold, or the level of a quantile.
+    /// Its kind: a threshold, or the level of a quantile.
     pub(super) noun: &'static str,
 }
 
@@ -63,7 +63,7 @@ impl Elaborator<'_> {
             let error = Diagnostic::error(
                 Code::E0604,
                 expr.span,
-                format!("a confidence of {} does not lie above 50 % and below 100 %", number.value),
+                format!("the confidence must be above 50 % and below 100 % (got {})", number.value),
             )
             .hint("write `confidence 95 %` or `confidence 0.95`");
             return self.report(error);
@@ -104,7 +104,11 @@ impl Elaborator<'_> {
         let error = Diagnostic::error(
             Code::E0603,
             method.name.span,
-            format!("there is no procedure `{name}` for this"),
+            format!("the procedure `{name}` is not available for this query"),
+        );
+        let hint = nearest(name, known.iter().copied()).map_or_else(
+            || format!("the procedures are {}", known.join(", ")),
+            |n| format!("did you mean `{n}`?"),
         );
         let known: Vec<&str> = Spec::names(serves).collect();
         let hint = nearest(name, known.iter().copied())
@@ -117,9 +121,9 @@ impl Elaborator<'_> {
         let Some(within) = &clauses.within else { return Ok(()) };
         let error = Diagnostic::error(Code::E0607, within.span, "a check has no `within`");
         self.report(if what == What::Expectation {
-            error.hint("it ends as soon as the interval of the mean lies on one side of the threshold")
+            error.hint("remove `within`: the check stops as soon as the interval of the mean is on one side of the threshold")
         } else {
-            error.hint("for an indifference region write `by sprt(indifference = 0.01)`")
+            error.hint("remove `within`; for an indifference region write `by sprt(indifference = 0.01)`")
         })
     }
 
@@ -166,11 +170,9 @@ impl Elaborator<'_> {
                 let error = Diagnostic::error(
                     Code::E0607,
                     expr.span,
-                    "a quantile takes a number of trials, not a width",
+                    "a quantile has a number of trials, not a width",
                 );
-                self.report(error.hint(
-                    "write `by fixed(trials = 2000)`; the interval follows from the order of the values",
-                ))
+                self.report(error.hint("write `by fixed(trials = 2000)`; the values determine the width"))
             }
             _ => Ok(()),
         };

@@ -72,7 +72,7 @@ impl Elaborator<'_> {
         told.unwrap_or_else(|| bare(&self.text(place)).to_owned())
     }
 
-    /// One that nobody wrote is another than what somebody wrote in the same words.
+    /// A generated condition differs from a written one with the same text.
     fn atom_said(&mut self, truth: Bool, span: Span, text: String, implied: bool) -> NodeId {
         if let Bool::Constant(value) = truth {
             return self.node(Node::Constant(value));
@@ -82,9 +82,9 @@ impl Elaborator<'_> {
                 let error = Diagnostic::error(
                     Code::E0211,
                     span,
-                    format!("this is written out into more than {MOST_ATOMS} conditions"),
+                    format!("the formula expands into more than {MOST_ATOMS} conditions"),
                 )
-                .hint("quantifiers over formulas are written out for every agent; quantify over states where you can");
+                .hint("a quantifier over formulas is expanded for every agent; quantify over states instead: `F<=1 s (forall a in crowd: …)`");
                 self.note(error);
             }
             self.overflown = true;
@@ -102,7 +102,7 @@ impl Elaborator<'_> {
         self.node(Node::Atom(crate::logic::AtomId(at as u32)))
     }
 
-    /// Whether somebody is there, which nobody wrote: it is named for what it is.
+    /// A generated condition that an agent is present, with a text of its own.
     pub(super) fn presence(&mut self, id: AgentId, span: Span) -> NodeId {
         let name = self.agent_names.get(id.0 as usize).map_or("", String::as_str);
         let text = format!("present({name})");

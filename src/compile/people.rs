@@ -42,7 +42,7 @@ pub(super) struct People {
     pub(super) groups: Vec<Group>,
     /// Where the starts are written.
     pub(super) places: Written,
-    /// Who comes in by a source.
+    /// Agents of a source.
     pub(super) coming: BTreeSet<AgentId>,
     /// First numbers and sizes of the ranges of entities in use.
     ranges: Vec<(u32, u32)>,
@@ -91,8 +91,8 @@ impl<'a> Elaborator<'a> {
         match people.entities(path, size) {
             Some(first) => Ok(first),
             None => self.report(
-                Diagnostic::error(Code::E0913, span, "with this there are more people than can be told apart")
-                    .hint("all who may come by sources count, about 16 million in all: let fewer come, or shorten the horizon"),
+                Diagnostic::error(Code::E0913, span, "too many agents: the 16 million stable ids are used up")
+                    .hint("every agent that may arrive by a source needs an id: reduce the arrivals, or shorten the horizon"),
             ),
         }
     }
@@ -102,22 +102,25 @@ impl<'a> Elaborator<'a> {
         let kind = self.kind(&decl.kind);
         let count = match (&decl.count, &decl.recorded) {
             (Some(count), None) if !decl.plural => {
-                let error = Diagnostic::error(Code::E0402, count.span, "`agent` declares one")
-                    .hint(format!("write `agents {}[…]: …` for several", decl.name.name));
+                let error = Diagnostic::error(Code::E0402, count.span, "`agent` declares only one agent")
+                    .hint(format!("write `agents {}[…]: …` for several agents", decl.name.name));
                 self.report(error)
             }
             (Some(count), None) => self.count(count),
             (Some(count), Some(_)) => {
-                let error =
-                    Diagnostic::error(Code::E0402, count.span, "a recording decides how many there are")
-                        .hint("leave out the number in brackets");
+                let error = Diagnostic::error(
+                    Code::E0402,
+                    count.span,
+                    "the recording determines the number of agents",
+                )
+                .hint("remove the number in brackets");
                 self.report(error)
             }
             (None, None) if decl.plural => {
                 let error = Diagnostic::error(
                     Code::E0402,
                     decl.name.span,
-                    format!("how many `{}` are there?", decl.name.name),
+                    format!("the number of `{}` is missing", decl.name.name),
                 )
                 .hint(format!("write `agents {}[12]: …`", decl.name.name));
                 self.report(error)
@@ -194,7 +197,7 @@ impl<'a> Elaborator<'a> {
         };
         if let Some(span) = decl.particle {
             if count == 0 {
-                self.note(Diagnostic::error(Code::E0402, span, "a body stands for at least one person"));
+                self.note(Diagnostic::error(Code::E0402, span, "a particle needs at least one person"));
                 self.define_empty(&decl.name, false, with);
                 return;
             }
@@ -308,24 +311,27 @@ impl<'a> Elaborator<'a> {
     pub(super) fn count(&mut self, expr: &Expr) -> Lowered<usize> {
         let number = self.number_of(expr, Dimension::NONE, &Locals::default())?;
         match number.as_whole() {
-            Some(n) if n < 0 => {
-                self.report(Diagnostic::error(Code::E0402, expr.span, format!("there cannot be {n} of them")))
-            }
+            Some(n) if n < 0 => self.report(Diagnostic::error(
+                Code::E0402,
+                expr.span,
+                format!("the number of agents cannot be negative (got {n})"),
+            )),
             Some(n) if n as usize <= MOST_AGENTS => Ok(n as usize),
             Some(n) => self.report(Diagnostic::error(
                 Code::E0402,
                 expr.span,
-                format!("{n} agents are more than {MOST_AGENTS}"),
+                format!("the number of agents must be at most {MOST_AGENTS} (got {n})"),
             )),
             None if number.value > MOST_AGENTS as f64 && number.value.fract() == 0.0 => {
-                let text = format!("{} agents are more than {MOST_AGENTS}", number.value);
+                let text =
+                    format!("the number of agents must be at most {MOST_AGENTS} (got {})", number.value);
                 self.report(Diagnostic::error(Code::E0402, expr.span, text))
             }
             None => {
                 let error = Diagnostic::error(
                     Code::E0402,
                     expr.span,
-                    format!("the number of agents must be whole, this is {}", number.value),
+                    format!("the number of agents must be whole (got {})", number.value),
                 )
                 .hint("round it: `round(…)`");
                 self.report(error)
@@ -344,9 +350,8 @@ impl<'a> Elaborator<'a> {
             Some(field) if self.misread_placement(&field.value) => Err(Reported),
             Some(field) => self.position(name, &field.value, people),
             None if required => {
-                let error =
-                    Diagnostic::error(Code::E0209, name.span, format!("where does `{}` start?", name.name))
-                        .hint("set `at`: a point, `uniform in` a shape, or `near` another agent");
+                let error = Diagnostic::error(Code::E0209, name.span, format!("`{}` has no `at`", name.name))
+                    .hint("write `at = ` with a point, `uniform in` a shape, or `near` another agent");
                 self.report(error)
             }
             None => Err(Reported),
@@ -369,22 +374,24 @@ impl<'a> Elaborator<'a> {
                 let found = describe(x.dimension);
                 let error =
                     Diagnostic::error(Code::E0303, expr.span, format!("expected a velocity, found {found}"))
-                        .hint("the unit follows the parentheses: `(1, 0) m/s`");
+                        .hint("write the unit after the parentheses: `(1, 0) m/s`");
                 return self.report(error);
             }
             found => return self.mismatch(expr.span, "a velocity such as `(1, 0) m/s`", &found),
         };
         if velocity.norm() > TOP_SPEED {
             let speed = (velocity.norm() * 1e3).round() / 1e3;
-            let text = format!("nobody starts with {speed} m/s");
+            let text = format!(
+                "the initial speed exceeds {TOP_SPEED} m/s, the limit for a person (got {speed} m/s)"
+            );
             let error = Diagnostic::error(Code::E0405, expr.span, text)
-                .hint(format!("a trial in which somebody is faster than {TOP_SPEED} m/s has diverged"));
+                .hint("every trial would diverge; write a smaller velocity");
             return self.report(error);
         }
         Ok(velocity)
     }
 
-    /// An error where nobody of a name is there yet to start near, by where the names stand.
+    /// Reports an anchor that is declared later or arrives by a source.
     fn declared_before(&mut self, of: &Ident, agent: &Expr) -> Lowered<()> {
         let whose = if let ExprKind::Index(base, _) = &agent.kind { &**base } else { agent };
         let ExprKind::Name(name) = &whose.kind else { return Ok(()) };
@@ -392,13 +399,16 @@ impl<'a> Elaborator<'a> {
             return Ok(());
         };
         let (title, hint) = if *span == of.span {
-            (format!("`{name}` cannot start near itself"), "start near somebody else, or at a place")
+            (format!("`{name}` cannot start near itself"), "start near another agent, or at a place")
         } else if span.start > of.span.start {
-            let hint = "an agent near another one is declared after it";
-            ("this agent is declared later".to_owned(), hint)
+            let hint = "an agent must be declared after the agent near which it starts";
+            ("the agent is declared later".to_owned(), hint)
         } else {
             // All others that stand before are known.
-            (format!("who comes by `{name}` is not there yet"), "start near an agent, or at a place")
+            (
+                format!("agents from source `{name}` are not present at the start"),
+                "start near an agent, or at a place",
+            )
         };
         self.report(Diagnostic::error(Code::E0403, agent.span, title).hint(hint))
     }
@@ -410,7 +420,7 @@ impl<'a> Elaborator<'a> {
             Value::Near { agent, within } => {
                 let distance = match self.number_of(within, Dimension::LENGTH, &Locals::default()) {
                     Ok(distance) if distance.value <= 0.0 => {
-                        let said = "this distance must be positive";
+                        let said = "the distance must be positive";
                         self.report(Diagnostic::error(Code::E0405, within.span, said))
                     }
                     far => far.and_then(|d| self.in_reach(within.span, Vec2::new(d.value, 0.0)).map(|_| d)),

@@ -6,12 +6,12 @@ use crate::syntax::source::Span;
 use std::sync::Arc;
 
 impl Elaborator<'_> {
-    /// A condition that is written at a place; none where nobody asks why a condition is as it is.
+    /// A condition that is written at a place; `None` if no witness needs it.
     pub(super) fn phrase(&self, place: Span, form: Form) -> Option<Arc<Part>> {
         self.temporal.then(|| Arc::new(Part { place, frame: self.frame.clone(), said: None, form }))
     }
 
-    /// The same of a condition that nobody wrote.
+    /// The same for a generated condition.
     pub(super) fn unwritten(&self, place: Span, form: Form, text: &str) -> Option<Arc<Part>> {
         let said = Some(text.into());
         self.temporal.then(|| Arc::new(Part { place, frame: self.frame.clone(), said, form }))
@@ -30,7 +30,7 @@ impl Elaborator<'_> {
                 list.push(side);
                 continue;
             }
-            // That of a chain is nobody else's, so it is moved.
+            // The text of a chain is used only once, so it is moved.
             let inner = match Arc::try_unwrap(side) {
                 Ok(Part { form: Form::All(inner) | Form::Any(inner), .. }) => inner,
                 Err(shared) => match &shared.form {

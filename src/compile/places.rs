@@ -32,7 +32,7 @@ const CELLS: f64 = 10_000.0;
 /// Where the start of a declaration is written, by the first of its people.
 pub(super) type Written = Vec<(AgentId, Span)>;
 
-/// The place where the start of somebody is written.
+/// The place where the start of an agent is written.
 pub(super) fn written(places: &[(AgentId, Span)], agent: AgentId) -> Option<Span> {
     let after = places.partition_point(|(first, _)| *first <= agent);
     Some(places.get(after.checked_sub(1)?)?.1)
@@ -96,7 +96,7 @@ pub(super) fn beside(barriers: &[Solid<'_>], from: Vec2, radius: f64) -> Option<
     None
 }
 
-/// The smallest radius that a trial can give somebody, m.
+/// The smallest radius that a trial can give an agent, m.
 fn least_radius(agent: &Agent) -> f64 {
     agent.body[Parameter::Radius].bounds().0 * agent.particle.map_or(1.0, |particle| particle.radius_factor)
 }
@@ -203,20 +203,19 @@ impl Elaborator<'_> {
         let called = barrier.phrase();
         let error = if distance <= ONE_POINT {
             Diagnostic::error(Code::E0409, span, format!("`{name}` starts {place} {called}"))
-                .hint("nobody can stand there: move the start or the barrier")
+                .hint("move the start or the barrier")
         } else if comes && distance < radius {
             let text = format!(
-                "nobody finds room to come in here: {called} is {distance:.3} m away, and `{name}` has a radius of at \
-                 least {radius:.3} m"
+                "agents of `{name}` have no room to arrive here: {called} is {distance:.3} m away, and their radius is at least {radius:.3} m"
             );
             Diagnostic::error(Code::E0801, span, text)
-                .hint("people of a source come in where they touch nothing")
+                .hint("agents of a source arrive where they touch nothing; move the place or the barrier")
         } else if !comes && distance < LEAST_LEFT * radius {
             let text = format!(
                 "`{name}` starts {distance:.3} m from {called}, which leaves less than half of its radius ({radius:.3} m)"
             );
             let hint = format!(
-                "move the start at least {radius:.3} m away from the {what}, or give a smaller radius"
+                "move the start at least {radius:.3} m away from the {what}, or set a smaller radius"
             );
             Diagnostic::error(Code::E0409, span, text).hint(hint)
         } else {
@@ -231,7 +230,7 @@ impl Elaborator<'_> {
         })
     }
 
-    /// More around somebody than fit.
+    /// More agents around an anchor than fit.
     fn crowded_around(&mut self, people: &People, anchor: AgentId, members: &[(AgentId, f64)]) {
         let centre = &people.agents[anchor.0 as usize];
         let mut distances: Vec<f64> = members.iter().map(|(_, within)| *within).collect();
@@ -252,14 +251,14 @@ impl Elaborator<'_> {
             // One alone was looked at already.
             if squares > room && count > 1 {
                 let text = format!(
-                    "{count} people cannot start within {within} m of `{}`: they fill at least {:.1} m^2, and there is room for {:.1} m^2",
+                    "{count} agents cannot start within {within} m of `{}`: they need at least {:.1} m^2, and {:.1} m^2 are available",
                     centre.name,
                     std::f64::consts::PI * squares,
                     std::f64::consts::PI * room
                 );
                 self.note(
                     Diagnostic::error(Code::E0801, span, text)
-                        .hint("fewer people, a larger distance, or smaller radii"),
+                        .hint("use fewer agents, a larger distance, or smaller radii"),
                 );
                 return;
             }
@@ -273,9 +272,9 @@ fn together(first: &Agent, second: &Agent, other: Option<Span>, span: Span) -> D
     let error = Diagnostic::error(Code::E0409, span, text);
     match other {
         Some(other) if other != span => error
-            .related(other, "taken here")
-            .hint("bodies that overlap shrink until they touch, these cannot"),
-        _ => error.hint("give each a place of its own, or choose by chance: `at = uniform in …`"),
+            .related(other, "first used here")
+            .hint("radii of overlapping bodies are reduced until they touch, which is impossible at one point; move one of them"),
+        _ => error.hint("give each agent its own place, or draw the places: `at = uniform in …`"),
     }
 }
 
@@ -286,10 +285,10 @@ fn without_room(agent: &Agent, shape: &Shape, barriers: &[Solid<'_>], span: Span
         return None;
     }
     let text = format!(
-        "`{}` finds no free place here: walls and obstacles leave no room for a radius of at least {radius:.3} m",
+        "`{}` has no free place here: walls and obstacles leave no room for a radius of {radius:.3} m or more",
         agent.name
     );
-    Some(Diagnostic::error(Code::E0801, span, text).hint("a larger shape to start from, or smaller radii"))
+    Some(Diagnostic::error(Code::E0801, span, text).hint("use a larger shape or smaller radii"))
 }
 
 /// Two bodies that are larger than the distance at which they are to be.
@@ -302,7 +301,10 @@ fn too_near(agent: &Agent, anchor: &Agent, within: f64, span: Span) -> Option<Di
         "`{}` cannot start within {within} m of `{}`: their bodies touch at {sum:.3} m or more",
         agent.name, anchor.name
     );
-    Some(Diagnostic::error(Code::E0801, span, text).hint("the distance is that of their middles"))
+    Some(
+        Diagnostic::error(Code::E0801, span, text)
+            .hint("the distance is between the centers; write a larger one"),
+    )
 }
 
 /// The first of the people of a declaration.

@@ -19,7 +19,7 @@ use crate::syntax::source::{Source, Span};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// What a call hands over.
+/// The input of compilation.
 pub struct Input<'a> {
     /// All sources, for the texts of queries.
     pub sources: &'a [Source],
@@ -33,14 +33,14 @@ pub struct Input<'a> {
     pub settings: &'a [Setting],
 }
 
-/// What compilation yields.
+/// The result of compilation.
 #[derive(Debug)]
 pub struct Examined {
     /// All that is asked, if nothing is wrong.
     pub study: Option<Study>,
-    /// What is wrong.
+    /// The errors and warnings.
     pub found: Vec<Diagnostic>,
-    /// Who starts where in the worlds that are surely asked about.
+    /// The starts of agents in the worlds that are certainly used.
     pub starts: Vec<Starts>,
 }
 
@@ -237,8 +237,9 @@ impl<'a> Compiler<'a> {
         for item in &file.items {
             if let PropertyItem::Family { confidence, .. } = item {
                 if let Some(first) = stated.replace(confidence.span) {
-                    let error = Diagnostic::error(Code::E0202, confidence.span, "a file is one family")
-                        .related(first, "its confidence is said here");
+                    let error =
+                        Diagnostic::error(Code::E0202, confidence.span, "a file can have only one family")
+                            .related(first, "first stated here");
                     self.sites[base].elaborator.note(error);
                 }
                 family = self.sites[base].elaborator.confidence(confidence, &locals).ok();
@@ -250,8 +251,8 @@ impl<'a> Compiler<'a> {
             if let PropertyItem::Query(query) = item {
                 let settings = self.described(base, point, swept);
                 if let (Some(_), Some(span)) = (family, families::own_errors(&query.clauses)) {
-                    let warning = Diagnostic::warning(Code::W0601, span, "this query leaves the family")
-                        .hint("its own error counts instead of its share; leave it out to hold jointly with the others");
+                    let warning = Diagnostic::warning(Code::W0601, span, "the query leaves its family")
+                        .hint("it states its own error; remove that to hold jointly with the other queries");
                     self.sites[base].elaborator.note(warning);
                 }
                 let before = self.queries.len();
@@ -436,7 +437,7 @@ impl<'a> Compiler<'a> {
         if let Some(query) = self.refused.first().filter(|_| !is_torn)
             && !diagnostics.iter().any(|d| d.severity == Severity::Error)
         {
-            let text = "what is wrong with this query shows nowhere else";
+            let text = "internal error: this query was rejected without a diagnostic";
             diagnostics.push(Diagnostic::error(Code::E0305, *query, text));
         }
         // What was cut short is refused by the parser; what was left out without an error, by whoever reads this.

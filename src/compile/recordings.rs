@@ -29,7 +29,7 @@ impl<'a> Elaborator<'a> {
     fn recording(&mut self, format: &Ident, path: &Text, files: &Files) -> Lowered<Recording> {
         if format.name != "eth_biwi" {
             let error = unknown("format", &format.name, format.span, Code::E0702, ["eth_biwi"].into_iter())
-                .hint("known formats: eth_biwi");
+                .hint("the only format is eth_biwi");
             return self.report(error);
         }
         let bytes = match files.get(&path.value) {
@@ -37,7 +37,7 @@ impl<'a> Elaborator<'a> {
             Err(reason) => return self.report(missing(path.span, &reason)),
         };
         let Ok(text) = std::str::from_utf8(bytes) else {
-            return self.report(Diagnostic::error(Code::E0702, path.span, "this file is not text in UTF-8"));
+            return self.report(Diagnostic::error(Code::E0702, path.span, "the file is not UTF-8 text"));
         };
         match read_eth_biwi(text) {
             Ok(recording) => Ok(recording),
@@ -49,10 +49,12 @@ impl<'a> Elaborator<'a> {
                     Code::E0702,
                     path.span,
                     match errors.as_slice() {
-                        [LineError { line: 0, .. }] => "this is no such recording".to_owned(),
-                        [_] => "a line of this file cannot be read".to_owned(),
+                        [LineError { line: 0, .. }] => {
+                            "the file is not a recording in this format".to_owned()
+                        }
+                        [_] => "1 line of this file cannot be read".to_owned(),
                         many => match many.iter().map(|one| one.line).collect::<BTreeSet<_>>().len() {
-                            1 => "a line of this file cannot be read".to_owned(),
+                            1 => "1 line of this file cannot be read".to_owned(),
                             lines => format!("{lines} lines of this file cannot be read"),
                         },
                     },
@@ -76,7 +78,7 @@ impl<'a> Elaborator<'a> {
                 let error = Diagnostic::error(
                     Code::E0206,
                     name.span,
-                    format!("expected a recording, `{}` is {}", name.name, meaning.noun()),
+                    format!("expected a recording, but `{}` is {}", name.name, meaning.noun()),
                 );
                 return self.report(error);
             }
@@ -107,10 +109,12 @@ impl<'a> Elaborator<'a> {
         let found = recording.at(time.value);
         if found.is_empty() {
             let near = recording.nearest_time(time.value);
-            let error = Diagnostic::error(Code::E0703, recorded.at.span, "nobody was recorded at this time")
-                .hint(near.map_or("the recording is empty".to_owned(), |t| {
-                    format!("the nearest time with people is {t} s")
-                }));
+            let error =
+                Diagnostic::error(Code::E0703, recorded.at.span, "no person was recorded at this time").hint(
+                    near.map_or("the recording is empty".to_owned(), |t| {
+                        format!("the nearest time with persons is {t} s")
+                    }),
+                );
             return self.report(error);
         }
         let mut failed = false;
@@ -122,7 +126,7 @@ impl<'a> Elaborator<'a> {
                     expr.span,
                     format!("person {id} was not recorded at this time"),
                 )
-                .hint(format!("recorded were {}", present.join(", ")));
+                .hint(format!("the recorded persons are {}", present.join(", ")));
                 self.note(error);
                 failed = true;
             }
@@ -134,7 +138,7 @@ impl<'a> Elaborator<'a> {
         let mut named: Vec<u32> = Vec::new();
         for (expr, id) in asked {
             if named.contains(id) {
-                let text = format!("person {id} is named twice");
+                let text = format!("person {id} is listed twice");
                 return self.report(Diagnostic::error(Code::E0703, expr.span, text));
             }
             named.push(*id);
@@ -147,9 +151,9 @@ impl<'a> Elaborator<'a> {
             let error = Diagnostic::error(
                 Code::E0703,
                 recorded.span,
-                format!("{} people are recorded there, one is needed", chosen.len()),
+                format!("{} persons were recorded at this time, but one is needed", chosen.len()),
             )
-            .hint("choose one by `id`, or declare `agents`");
+            .hint("choose one with `id`, or declare `agents`");
             return self.report(error);
         }
         for person in &chosen {
@@ -158,10 +162,10 @@ impl<'a> Elaborator<'a> {
                     free.insert(recorded.span);
                 }
                 Entry::Occupied(first) => {
-                    let text = format!("person {} of `{}` is there already", person.id, name.name);
+                    let text = format!("person {} of `{}` is already used", person.id, name.name);
                     let error = Diagnostic::error(Code::E0703, recorded.span, text)
-                        .related(*first.get(), "taken here")
-                        .hint(format!("leave this one out: `except {}`", person.id));
+                        .related(*first.get(), "first used here")
+                        .hint(format!("exclude it: `except {}`", person.id));
                     return self.report(error);
                 }
             }
@@ -193,13 +197,13 @@ impl<'a> Elaborator<'a> {
             let by = (p - person.position).norm();
             let (id, x, y) = (person.id, p.x, p.y);
             moved.push(format!(
-                "person {id} was recorded {place}, and starts {by:.3} m away at ({x:.3}, {y:.3})"
+                "person {id} was recorded {place} and starts {by:.3} m away at ({x:.3}, {y:.3})"
             ));
             person.position = p;
         }
         if !moved.is_empty() {
             let title = match moved.len() {
-                1 => "a person was recorded inside or close to a barrier and starts beside it".to_owned(),
+                1 => "1 person was recorded inside or close to a barrier and starts beside it".to_owned(),
                 many => {
                     format!("{many} persons were recorded inside or close to barriers and start beside them")
                 }
@@ -217,9 +221,11 @@ impl<'a> Elaborator<'a> {
         let number = self.number_of(expr, Dimension::NONE, &Locals::default())?;
         match number.as_whole().and_then(|n| u32::try_from(n).ok()) {
             Some(id) => Ok(id),
-            None => {
-                self.report(Diagnostic::error(Code::E0703, expr.span, "a person is known by a whole number"))
-            }
+            None => self.report(Diagnostic::error(
+                Code::E0703,
+                expr.span,
+                "the id of a person must be a whole number",
+            )),
         }
     }
 }

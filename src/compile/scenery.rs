@@ -18,7 +18,7 @@ use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::collections::BTreeSet;
 
-/// Walls that miss each other by less are told, m.
+/// Walls that miss each other by less than this distance are reported, m.
 const NEAR_MISS: f64 = 0.05;
 /// Within at most so many metres walls are joined.
 const WIDEST_SNAP: f64 = 1.0;
@@ -103,15 +103,11 @@ impl<'a> Elaborator<'a> {
             return self.report(Diagnostic::error(
                 Code::E0205,
                 span,
-                format!("the region `{name}` is not known here"),
+                format!("the region `{name}` is not declared yet"),
             ));
         };
         if self.expanding.iter().any(|(_, n)| *n == name) {
-            return self.report(Diagnostic::error(
-                Code::E0205,
-                span,
-                format!("`{name}` is defined by itself"),
-            ));
+            return self.report(Diagnostic::error(Code::E0205, span, format!("`{name}` depends on itself")));
         }
         self.expand_further(span)?;
         self.expanding.push((0, name));
@@ -126,7 +122,7 @@ impl<'a> Elaborator<'a> {
         let corners: Vec<_> = points.iter().enumerate().map(corner).collect();
         let corners: Vec<Vec2> = corners.into_iter().collect::<Lowered<_>>()?;
         if corners.windows(2).all(|pair| pair[0] == pair[1]) {
-            return self.report(Diagnostic::error(Code::E0401, span, "this wall has no length"));
+            return self.report(Diagnostic::error(Code::E0401, span, "the wall has no length"));
         }
         Ok(corners
             .windows(2)
@@ -149,7 +145,7 @@ impl<'a> Elaborator<'a> {
             let name = &function.name;
             let error = Diagnostic::error(Code::E0203, function.span, format!("unknown function `{name}`"));
             return self.report(error.hint(format!(
-                "a name is followed by `:`: `wall {name}: {}`",
+                "write `:` after a name: `wall {name}: {}`",
                 self.text(Span { start: function.span.end, ..point.span },)
             )));
         }
@@ -179,7 +175,7 @@ impl<'a> Elaborator<'a> {
                 let corners = (self.point_of(a, locals), self.point_of(b, locals));
                 let (a, b) = (corners.0?, corners.1?);
                 if a.x == b.x || a.y == b.y {
-                    return self.report(Diagnostic::error(Code::E0401, *span, "this rectangle has no area"));
+                    return self.report(Diagnostic::error(Code::E0401, *span, "the rectangle has no area"));
                 }
                 Ok(Shape::rectangle(a.inf(&b), a.sup(&b)))
             }
@@ -206,25 +202,25 @@ impl<'a> Elaborator<'a> {
                     let error = Diagnostic::error(
                         Code::E0401,
                         *span,
-                        format!("the corner ({}, {}) is there twice in a row", corner.x, corner.y),
+                        format!("the corner ({}, {}) is repeated", corner.x, corner.y),
                     )
-                    .hint("polygons close by themselves: the last corner is not the first again");
+                    .hint("polygons are closed automatically: do not repeat the first corner at the end");
                     return self.report(error);
                 }
                 if !polygon.is_simple() {
                     return self.report(Diagnostic::error(
                         Code::E0401,
                         *span,
-                        "the edges of this polygon cross",
+                        "the edges of the polygon cross",
                     ));
                 }
                 if let Some(fault) = polygon.hole_fault() {
                     let error = Diagnostic::error(Code::E0401, *span, fault.to_string())
-                        .hint("holes lie inside the outline and apart from each other");
+                        .hint("holes must be inside the outline and must not meet each other");
                     return self.report(error);
                 }
                 if polygon.area() <= 0.0 {
-                    return self.report(Diagnostic::error(Code::E0401, *span, "this polygon has no area"));
+                    return self.report(Diagnostic::error(Code::E0401, *span, "the polygon has no area"));
                 }
                 Ok(Shape::Polygon(polygon))
             }
@@ -266,7 +262,7 @@ impl<'a> Elaborator<'a> {
                 let error = Diagnostic::error(
                     Code::E0206,
                     name.span,
-                    format!("expected a region, `{}` is {}", name.name, meaning.noun()),
+                    format!("expected a region, but `{}` is {}", name.name, meaning.noun()),
                 );
                 self.report(error)
             }
@@ -345,7 +341,7 @@ impl<'a> Elaborator<'a> {
             let twice = counted(slips.doubled, "wall drawn twice", "walls drawn twice");
             let what: Vec<String> = ends.into_iter().chain(twice).collect();
             let warning =
-                Diagnostic::warning(Code::W0702, path.span, format!("this file has {}", what.join(" and ")))
+                Diagnostic::warning(Code::W0702, path.span, format!("the file has {}", what.join(" and ")))
                     .label(format!("for example at ({:.3}, {:.3})", slips.place.x, slips.place.y));
             let text = self.text(path.span);
             self.note(
@@ -406,18 +402,19 @@ impl<'a> Elaborator<'a> {
             let warning = Diagnostic::warning(
                 Code::W0401,
                 path.span,
-                format!("nothing of this file was taken: it has {have}"),
+                format!("the import adds nothing: the file has {have}"),
             );
             let names: Vec<String> = known.iter().take(MOST_NAMES).map(|name| format!("`{name}`")).collect();
             self.note(warning.hint(if points > 0 {
-                "polygons become obstacles, lines become walls; points are left out".to_owned()
+                "polygons become obstacles and lines become walls; points are ignored".to_owned()
             } else if total == 0 {
-                "polygons become obstacles, lines become walls".to_owned()
+                "polygons become obstacles and lines become walls".to_owned()
             } else if names.is_empty() {
-                "the filter after `where` compares properties of features, and these have none".to_owned()
+                "the filter after `where` compares properties of features, but these features have none"
+                    .to_owned()
             } else {
                 format!(
-                    "the filter after `where` compares properties of features; these have {}",
+                    "the filter after `where` matches no feature; their properties are {}",
                     names.join(", ")
                 )
             }));
@@ -431,10 +428,10 @@ impl<'a> Elaborator<'a> {
             Err(reason) => return self.report(missing(path.span, &reason)),
         };
         let Ok(text) = std::str::from_utf8(bytes) else {
-            return self.report(Diagnostic::error(Code::E0704, path.span, "this file is not text in UTF-8"));
+            return self.report(Diagnostic::error(Code::E0704, path.span, "the file is not UTF-8 text"));
         };
         if text.trim().is_empty() {
-            return self.report(Diagnostic::error(Code::E0704, path.span, "this file is empty"));
+            return self.report(Diagnostic::error(Code::E0704, path.span, "the file is empty"));
         }
         let wkt = path.value.to_ascii_lowercase().ends_with(".wkt");
         // Well-known text has no properties, so that a filter takes all of it or nothing.
@@ -450,7 +447,7 @@ impl<'a> Elaborator<'a> {
             Err(errors) => {
                 let shown: Vec<String> = errors.iter().take(5).map(ToString::to_string).collect();
                 let error =
-                    Diagnostic::error(Code::E0704, path.span, "the geometry of this file cannot be read")
+                    Diagnostic::error(Code::E0704, path.span, "the geometry in the file cannot be read")
                         .label(shown.join("; "));
                 self.report(error)
             }
@@ -461,5 +458,5 @@ impl<'a> Elaborator<'a> {
 /// A file that could not be opened.
 pub(super) fn missing(span: Span, reason: &str) -> Diagnostic {
     Diagnostic::error(Code::E0701, span, reason.to_owned())
-        .hint("files are looked for beside the scenario, then under each `--data DIR`")
+        .hint("files are searched beside the scenario, then in each `--data DIR`")
 }

@@ -10,7 +10,7 @@ use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
-/// What a `--set` asks for.
+/// A value of `--set`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setting {
     /// Name of the parameter.
@@ -108,7 +108,11 @@ impl<'a> Elaborator<'a> {
             return self.wrong_dimension(value.span, declared.dimension, number.dimension);
         }
         if !number.value.is_finite() {
-            return self.report(Diagnostic::error(Code::E0405, value.span, "this is not a finite number"));
+            return self.report(Diagnostic::error(
+                Code::E0405,
+                value.span,
+                "the value is not a finite number",
+            ));
         }
         // A range that hangs on other parameters is that of the world in which the value is set.
         if let Some((low, high)) = range
@@ -135,7 +139,7 @@ impl<'a> Elaborator<'a> {
         if number.value < low.value || number.value > high.value {
             let at = if number.value < low.value { at.0 } else { at.1 };
             let [low, high] = [low, high].map(|n| self.shown(default, n));
-            let said = format!("`{name}` lies between {low} and {high}");
+            let said = format!("`{name}` must be between {low} and {high}");
             return self.report(Diagnostic::error(Code::E0405, at, said).hanging_on(place));
         }
         Ok(())
@@ -148,7 +152,7 @@ impl<'a> Elaborator<'a> {
             SettingValue::One(value) => Ok(vec![self.setting(&setting.name, value, &locals)?]),
             SettingValue::Sweep(from, to, by) => {
                 let Ok((default, _)) = self.param(&setting.name, setting.span) else {
-                    // What they are worth nobody knows; what is wrong with them is said.
+                    // Their values are unknown; their errors are reported.
                     return self.lower_all([from, to, by], &locals).and(Err(Reported));
                 };
                 let step = self.number(by, &locals);
@@ -170,7 +174,7 @@ impl<'a> Elaborator<'a> {
                     let error = Diagnostic::error(
                         Code::E0405,
                         if step.value <= 0.0 { by.span } else { to.span },
-                        "a sweep goes up from its first to its last value by a positive step",
+                        "a sweep must go up from its first to its last value by a positive step",
                     );
                     return self.report(error);
                 }

@@ -39,7 +39,7 @@ impl<'a> Elaborator<'a> {
         self.only(&rest, &["at", "every", "route", "limit", "velocity"]);
         let body = kind.and_then(|kind| self.body(&kind, &decl.kind));
         let places = match (&every, &limit) {
-            // Without a clock nobody knows how many come.
+            // Without a clock the number of arrivals is unknown.
             (Ok(_), Ok(_)) if self.told < Told::Whole => Err(super::elaborator::Reported),
             (Ok(every), Ok(limit)) => self.places(decl, &rest, every, *limit),
             (Err(reported), _) | (_, Err(reported)) => Err(*reported),
@@ -75,7 +75,7 @@ impl<'a> Elaborator<'a> {
         Some(Source { name: decl.name.name.clone(), entity, every, members, most: range })
     }
 
-    /// Who comes in leaves at the last goal.
+    /// Agents of a source leave at the last goal.
     fn way_out(&mut self, decl: &'a SourceDecl, fields: &[&'a Field]) -> Lowered<Route> {
         let Some(field) = fields.iter().find(|field| field.name.name == "route") else {
             let error = Diagnostic::error(
@@ -98,22 +98,26 @@ impl<'a> Elaborator<'a> {
             let error = Diagnostic::error(
                 Code::E0209,
                 decl.name.span,
-                format!("how often does somebody come by `{}`?", decl.name.name),
+                format!("source `{}` has no `every`", decl.name.name),
             )
-            .hint("set `every`, the time between two arrivals: `every = exponential(4 s)`");
+            .hint("write the time between two arrivals: `every = exponential(4 s)`");
             return self.report(error);
         };
         let law = self.law(&field.value, Dimension::TIME, &Locals::default())?;
         let span = value_span(&field.value);
         if law.bounds().0 < 0.0 {
-            let error = Diagnostic::error(Code::E0405, span, "a time between arrivals cannot be negative");
+            let error = Diagnostic::error(Code::E0405, span, "the time between arrivals cannot be negative");
             let text = self.text(span);
             return self.report(truncate(error, &law, &text));
         }
         if law.mean() > 0.0 {
             Ok(law)
         } else {
-            self.report(Diagnostic::error(Code::E0405, span, "infinitely many would come at once"))
+            self.report(Diagnostic::error(
+                Code::E0405,
+                span,
+                "the time between arrivals is 0: infinitely many agents would arrive at once",
+            ))
         }
     }
 
@@ -124,7 +128,7 @@ impl<'a> Elaborator<'a> {
             other => self.report(Diagnostic::error(
                 Code::E0305,
                 value_span(other),
-                "expected how many may come at most",
+                "expected the largest number of agents",
             )),
         }
     }
@@ -156,12 +160,12 @@ impl<'a> Elaborator<'a> {
             }
             (None, Some(places)) if places <= MOST_PLACES => Ok((places, range(places))),
             (limit, _) => {
-                let text = format!("about {expected:.0} people would come by `{}`", decl.name.name);
+                let text = format!("about {expected:.0} agents would arrive by source `{}`", decl.name.name);
                 let error = Diagnostic::error(Code::E0913, span.unwrap_or(decl.name.span), text);
                 self.report(error.hint(if limit.is_none() {
-                    "say how many may be there at once with `limit`, or shorten the horizon"
+                    "write `limit`, the largest number of agents present at once, or shorten the horizon"
                 } else {
-                    "shorten the horizon, or let fewer come"
+                    "shorten the horizon, or reduce the arrivals"
                 }))
             }
         }

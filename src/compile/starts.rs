@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 /// Words that start a query of the world of the call, unless it sets values of its own.
 const ASKING: [&str; 3] = ["check", "estimate", "rank"];
-/// Code of what is declared or set twice: nobody knows which is meant.
+/// Code of a name that is declared or set twice, so its meaning is uncertain.
 const TWICE: Code = Code::E0202;
 
 /// The people of a world and where they start.
@@ -28,7 +28,7 @@ pub struct Starts {
 }
 
 impl Starts {
-    /// The place where the start of somebody is written.
+    /// The place where the start of an agent is written.
     pub fn place_of(&self, agent: AgentId) -> Option<Span> {
         places::written(&self.places, agent)
     }

@@ -97,9 +97,9 @@ impl Elaborator<'_> {
         let text = format!("a step of {step} s is too long for {}", names.join(" and "));
         let mut warning = Diagnostic::warning(Code::W0801, span, text);
         let reason = if strictest.force < strictest.relaxation {
-            format!("2 / sqrt(n A / (m B)) with n = {neighbours} is the longest step for bodies that touch")
+            format!("the longest step for touching bodies is 2 / sqrt(n A / (m B)) with n = {neighbours}")
         } else {
-            "a tenth of `tau` is the longest step for driving".to_owned()
+            "the longest step for the driving force is a tenth of `tau`".to_owned()
         };
         if let Some(shorter) = shorter(step, strictest.both()) {
             warning = warning.hint(format!("write `step = {shorter}`: {reason}"));

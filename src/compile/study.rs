@@ -40,7 +40,7 @@ pub struct World {
     pub signals: Vec<Num>,
     /// Formulas and metrics over them.
     pub tree: Tree,
-    /// What is asked of each trace.
+    /// The formulas and metrics that are read from each trace.
     pub columns: Vec<Column>,
     /// Where what can go wrong while a trial runs is written.
     pub origins: Origins,
@@ -49,7 +49,7 @@ pub struct World {
 }
 
 impl World {
-    /// The place where the start of somebody is written.
+    /// The place where the start of an agent is written.
     pub fn place_of(&self, agent: AgentId) -> Option<Span> {
         super::places::written(&self.places, agent)
     }
@@ -73,9 +73,9 @@ pub struct Texts {
     pub atoms: Vec<String>,
     /// Those of them that are made of others, by their number.
     pub parts: BTreeMap<u32, Arc<Part>>,
-    /// Those of them that ask whether someone has the left side of an implication, which nobody wrote.
+    /// Generated atoms: an agent has the left side of an implication.
     pub cases: BTreeSet<u32>,
-    /// Those of them that ask whether somebody is there, where a quantifier does and nobody wrote it.
+    /// Generated atoms: an agent of a quantified set is present.
     pub implied: BTreeSet<u32>,
     /// Each signal, and its dimension.
     pub signals: Vec<(String, Dimension)>,
@@ -94,7 +94,7 @@ pub struct Part {
     pub(super) place: Span,
     /// What names stand for there.
     pub(super) frame: Option<Arc<Frame>>,
-    /// Its words, where nobody wrote it.
+    /// Its text, if it was generated.
     pub(super) said: Option<Box<str>>,
     /// What it is made of.
     pub form: Form,

@@ -28,12 +28,10 @@ impl Compiler<'_> {
                     Code::E0405,
                     setting.span,
                     format!(
-                        "with this there are {combinations} combinations of values, more than {MOST_POINTS}"
+                        "a call can have at most {MOST_POINTS} combinations of values (got {combinations})"
                     ),
                 );
-                self.sites[plain]
-                    .elaborator
-                    .note(error.hint("sweep fewer parameters at once, or by larger steps"));
+                self.sites[plain].elaborator.note(error.hint("sweep fewer parameters, or use larger steps"));
                 continue;
             }
             points = points

@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// Which table of names: the scenario's is 0, property file k has k + 1.
 pub(super) type ScopeId = usize;
 
-/// What a name stands for.
+/// The meaning of a name.
 #[derive(Clone, Debug)]
 pub(super) enum Meaning<'a> {
     /// A constant, evaluated when it is first used.
@@ -42,7 +42,7 @@ pub(super) enum Meaning<'a> {
     Process(u32),
     /// A behaviour.
     Behaviour(BehaviourId),
-    /// Nobody knows which of two things; that was reported.
+    /// Ambiguous: declared as two different things, which was reported.
     Doubtful,
     /// Agents that are declared but not elaborated yet.
     Declared,
@@ -73,7 +73,7 @@ impl Meaning<'_> {
         group(self).is_some_and(|own| group(other) == Some(own))
     }
 
-    /// What it is called in messages.
+    /// Its name in messages.
     pub(super) fn noun(&self) -> &'static str {
         match self {
             Self::Constant(_) => "a constant",
@@ -100,7 +100,7 @@ impl Meaning<'_> {
 pub(super) struct Entry<'a> {
     /// Where it was declared.
     pub(super) span: Span,
-    /// What it stands for.
+    /// Its meaning.
     pub(super) meaning: Meaning<'a>,
 }
 

@@ -1,9 +1,9 @@
-//! What is known of the clock of a scenario that has errors: an error of a time is told as far as it is sure.
+//! Knowledge about the clock of a scenario with errors: an error about a time is reported only if it is certain.
 
 use crate::syntax::ast::{Item, ScenarioFile};
 use crate::syntax::codes::Code;
 
-/// What is known of a clock.
+/// How much of a clock is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Told {
     /// Nothing, not even whether there are steps.
@@ -17,7 +17,7 @@ pub(super) enum Told {
 }
 
 impl Told {
-    /// What has to be known before an error with this code says anything.
+    /// The knowledge that an error with this code needs.
     pub(super) fn needed(code: Code) -> Self {
         match code {
             Code::E0502 => Self::Whole,

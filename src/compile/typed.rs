@@ -7,7 +7,7 @@ use crate::logic::{NodeId, TermId};
 use crate::model::{BarrierId, BehaviourId, Bool, Num, RegionId, Set, Who};
 use std::sync::Arc;
 
-/// What an expression turned out to be.
+/// The type of an expression, with its value as far as it is known.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Typed {
     /// A number known now.
@@ -77,7 +77,7 @@ impl Typed {
         if let Self::Truth(_, phrase) = self { phrase.take() } else { None }
     }
 
-    /// What it is called in messages.
+    /// Its name in messages.
     pub(super) fn noun(&self) -> String {
         match self {
             Self::Number(n) => describe(n.dimension),
@@ -94,8 +94,8 @@ impl Typed {
             Self::Mode { .. } => "a behaviour, whose state is compared: `user.phone == looking`".to_owned(),
             Self::Region(_) => "a region".to_owned(),
             Self::Barrier(_) => "a wall or obstacle".to_owned(),
-            Self::Formula(_) => "a formula over time".to_owned(),
-            Self::Tally(_) => "a count of formulas over time".to_owned(),
+            Self::Formula(_) => "a temporal formula".to_owned(),
+            Self::Tally(_) => "a count of temporal formulas".to_owned(),
         }
     }
 }

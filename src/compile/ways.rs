@@ -34,7 +34,7 @@ impl<'a> Elaborator<'a> {
                             match law {
                                 Ok(law) if law.bounds().0 < 0.0 => {
                                     let at = value_span(value);
-                                    let said = "a time to wait cannot be negative";
+                                    let said = "a waiting time cannot be negative";
                                     let text = self.text(at);
                                     self.report(truncate(
                                         Diagnostic::error(Code::E0405, at, said),
@@ -54,14 +54,14 @@ impl<'a> Elaborator<'a> {
                     return self.report(Diagnostic::error(
                         Code::E0408,
                         span,
-                        "who leaves needs a goal first",
+                        "`then leave` needs a goal before it",
                     ));
                 }
                 Ok(Route::Legs { legs, then_leave: route.then_leave.is_some() })
             }
             other => {
                 let error = Diagnostic::error(Code::E0305, value_span(other), "expected a route")
-                    .hint("goals joined by arrows: `(9, 3) -> exit`");
+                    .hint("write goals joined by arrows: `(9, 3) -> exit`");
                 self.report(error)
             }
         }
@@ -74,13 +74,13 @@ impl<'a> Elaborator<'a> {
                 self.find(name, locals.scope)
             && locals.names.iter().all(|(bound, _)| bound != name)
         {
-            let said = format!("expected a region or a point to go to, found {}", meaning.noun());
+            let said = format!("expected a region or a point as a goal, found {}", meaning.noun());
             return self.report(Diagnostic::error(Code::E0305, expr.span, said));
         }
         match self.lower(expr, locals)? {
             Typed::Region(id) => Ok(Goal::Region(id)),
             Typed::Point(x, y) => self.place(expr.span, (x, y)).map(Goal::Point),
-            found => self.mismatch(expr.span, "a region or a point to go to", &found),
+            found => self.mismatch(expr.span, "a region or a point as a goal", &found),
         }
     }
 
@@ -96,8 +96,8 @@ impl<'a> Elaborator<'a> {
         }
         let typed = typed?;
         if matches!(typed, Typed::Agents { .. }) {
-            let error = Diagnostic::error(Code::E0406, decl.agent.span, "moves are those of one agent")
-                .hint("declare that one by itself, as in `agent user: …`");
+            let error = Diagnostic::error(Code::E0406, decl.agent.span, "moves must belong to one agent")
+                .hint("declare it as a single agent: `agent user: …`");
             return self.report(error);
         }
         let Who::Agent(agent) = self.as_agent(typed, decl.agent.span)? else {
@@ -107,12 +107,12 @@ impl<'a> Elaborator<'a> {
             return self.report(Diagnostic::error(
                 Code::E0406,
                 decl.duration.span,
-                "a move holds for a finite time",
+                "the duration of a move must be finite",
             ));
         };
         if duration == Tick(0) {
             let error =
-                Diagnostic::error(Code::E0406, decl.duration.span, "a move that holds for no time is none");
+                Diagnostic::error(Code::E0406, decl.duration.span, "the duration of a move must be positive");
             return self.report(error);
         }
         if failed {
@@ -120,8 +120,8 @@ impl<'a> Elaborator<'a> {
         }
         if options.is_empty() {
             return self.report(
-                Diagnostic::error(Code::E0406, decl.span, "there is no option to choose from")
-                    .hint("for example `heading from -60 deg to 60 deg by 15 deg` and `stop`"),
+                Diagnostic::error(Code::E0406, decl.span, "the moves have no option")
+                    .hint("write for example `heading from -60 deg to 60 deg by 15 deg` and `stop`"),
             );
         }
         if people.agents.get(agent.0 as usize).is_none() {
@@ -134,7 +134,7 @@ impl<'a> Elaborator<'a> {
         match option {
             MoveOption::Stop(span) => {
                 if options.iter().any(|(_, m)| *m == Move::Stop) {
-                    return self.report(Diagnostic::error(Code::E0406, *span, "`stop` is there already"));
+                    return self.report(Diagnostic::error(Code::E0406, *span, "`stop` is listed twice"));
                 }
                 options.push(("stop".to_owned(), Move::Stop));
                 Ok(())
@@ -154,7 +154,7 @@ impl<'a> Elaborator<'a> {
                     let error = Diagnostic::error(
                         Code::E0406,
                         *span,
-                        "headings go up from the first to the last by a positive angle",
+                        "headings must go up from the first to the last by a positive angle",
                     );
                     return self.report(error);
                 }
@@ -164,7 +164,7 @@ impl<'a> Elaborator<'a> {
                     return self.report(Diagnostic::error(
                         Code::E0406,
                         *span,
-                        format!("these are more than {MOST_OPTIONS} options"),
+                        format!("the moves have more than {MOST_OPTIONS} options"),
                     ));
                 }
                 for k in 0..=steps as usize {
@@ -190,9 +190,9 @@ impl<'a> Elaborator<'a> {
         };
         if let Some((known, _)) = options.iter().find(|(_, option)| same(option)) {
             let text = if *known == label {
-                format!("`{label}` is there already")
+                format!("`{label}` is listed twice")
             } else {
-                format!("`{label}` is there already, as `{known}`")
+                format!("`{label}` is listed twice, first as `{known}`")
             };
             return self.report(Diagnostic::error(Code::E0406, span, text));
         }

@@ -52,7 +52,7 @@ pub(super) enum Given {
     Written(Span),
     /// A copy of a process.
     Copy(Arc<str>),
-    /// Somebody.
+    /// An agent.
     Person(Who),
 }
 
@@ -68,7 +68,7 @@ impl Frame {
 }
 
 impl Locals {
-    /// Binds the name of somebody; `told` says whether a text may speak of it.
+    /// Binds the name of an agent; `told` is true if a text may mention it.
     pub(super) fn bind_person(&mut self, name: &Ident, who: Who, told: bool) {
         self.give(told.then_some(Given::Person(who)));
         self.bind(&name.name, Typed::Agent(who));

@@ -99,7 +99,7 @@ impl<'a> Elaborator<'a> {
                     )
                     .related(first.span, "declared here");
                     self.note(error);
-                    // What it means in this file is anybody's guess: no further error comes of its uses.
+                    // Its meaning in this file is uncertain, so its uses cause no further errors.
                     self.broken.insert((self.scopes.len(), name.name.clone()));
                     self.doubt(self.scopes.len(), &name.name);
                     let _ = scope.declare(&name.name, name.span, meaning);
@@ -121,11 +121,11 @@ impl<'a> Elaborator<'a> {
                 let hint = if BUILT_IN.contains(&name) || calls && BuiltIn::find(name).is_some() {
                     "what is built in by that name is hidden; choose another"
                 } else if number == 0 && OPERATORS.contains(&name) {
-                    "in property files this is an operator, so that no formula there can name it; choose another"
+                    "it is an operator in property files, so formulas there cannot use it; choose another name"
                 } else {
                     continue;
                 };
-                let text = format!("the name `{name}` means something else, too");
+                let text = format!("the name `{name}` has another meaning");
                 found.push(Diagnostic::warning(Code::W0201, entry.span, text).hint(hint));
             }
         }
@@ -134,7 +134,7 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    /// What names mean whose declarations were not read to their end is anybody's guess: no further error comes of them.
+    /// Names whose declarations were not read to their end have an unknown meaning and cause no further errors.
     fn set_aside(&mut self, scenario: &ScenarioFile, properties: &[PropertyFile]) {
         let lost = scenario.lost.iter().chain(properties.iter().flat_map(|file| &file.lost));
         self.torn = lost.copied().collect();
@@ -212,7 +212,7 @@ impl<'a> Elaborator<'a> {
                         format!("the moves of `{}` are declared twice", decl.agent.name),
                     )
                     .related(declared[first], "first declared here")
-                    .hint("put all options into one list");
+                    .hint("write all options in one list");
                     self.note(error);
                 }
                 moves.push(one);
@@ -255,13 +255,13 @@ impl<'a> Elaborator<'a> {
         let titles: Vec<Span> = titles.collect();
         if let [first, others @ ..] = titles.as_slice() {
             for other in others {
-                let error = Diagnostic::error(Code::E0202, *other, "a scenario has one title");
-                self.note(error.related(*first, "first said here").hint("leave one of them out"));
+                let error = Diagnostic::error(Code::E0202, *other, "a scenario can have only one title");
+                self.note(error.related(*first, "first title").hint("remove one of them"));
             }
         }
     }
 
-    /// What nobody uses is checked as well.
+    /// Checks unused declarations as well.
     fn check_unused(&mut self, file: &'a ScenarioFile) {
         let locals = Locals::of(0);
         for item in &file.items {
@@ -325,9 +325,9 @@ impl<'a> Elaborator<'a> {
         let (Ok(low), Ok(high)) = ends else { return };
         if low.value > high.value {
             self.any_start = true;
-            self.note(Diagnostic::error(Code::E0405, place, "this range is empty"));
+            self.note(Diagnostic::error(Code::E0405, place, "the range is empty"));
         } else if !is_replaced && (number.value < low.value || number.value > high.value) {
-            let text = format!("the default of `{}` lies outside its range", name.name);
+            let text = format!("the default of `{}` is outside its range", name.name);
             self.any_start = true;
             self.note(Diagnostic::error(Code::E0405, value.span, text).hanging_on(place));
         }
@@ -365,7 +365,8 @@ impl<'a> Elaborator<'a> {
                     );
                     let near = super::nearest::nearest(&name.name, ["horizon", "step"].into_iter());
                     meant = [meant[0] || near == Some("horizon"), meant[1] || near == Some("step")];
-                    let general = "a scenario sets `horizon` and `step`; constants start with `const`";
+                    let general =
+                        "the settings of a scenario are `horizon` and `step`; a constant begins with `const`";
                     let hint = match &error.hint {
                         Some(near) => format!("{near} {general}"),
                         None => general.to_owned(),
@@ -447,7 +448,7 @@ impl<'a> Elaborator<'a> {
             return self.report(Diagnostic::error(
                 Code::E0505,
                 step.span,
-                "the step must be a positive, exact time",
+                "the step must be a positive time",
             ));
         };
         self.clock = Clock::Stepped(exact);
@@ -468,15 +469,11 @@ impl<'a> Elaborator<'a> {
     fn settle_continuous(&mut self, horizon: &Expr, failed: bool) -> Lowered<()> {
         let end = self.number_of(horizon, Dimension::TIME, &Locals::of(0))?;
         if end.value <= 0.0 {
-            return self.report(Diagnostic::error(
-                Code::E0505,
-                horizon.span,
-                "the horizon must be later than the start",
-            ));
+            return self.report(Diagnostic::error(Code::E0505, horizon.span, "the horizon must be positive"));
         }
         let tick = moments::tick(end.exact, end.value, &self.measured);
         let Some((tick, last)) = tick.and_then(|(tick, end)| Some((tick, end.div(tick)?.as_whole()?))) else {
-            return self.report(Diagnostic::error(Code::E0501, horizon.span, "this time is out of range"));
+            return self.report(Diagnostic::error(Code::E0501, horizon.span, "the time is out of range"));
         };
         self.clock = Clock::Jumps(tick);
         self.horizon = Tick(last as u64);
@@ -486,11 +483,9 @@ impl<'a> Elaborator<'a> {
     fn settle_horizon(&mut self, horizon: &Expr, failed: bool) -> Lowered<()> {
         let end = self.time(horizon, &Locals::of(0))?;
         match end {
-            Some(Tick(0)) => self.report(Diagnostic::error(
-                Code::E0505,
-                horizon.span,
-                "the horizon must be later than the start",
-            )),
+            Some(Tick(0)) => {
+                self.report(Diagnostic::error(Code::E0505, horizon.span, "the horizon must be positive"))
+            }
             Some(tick) if tick.0 <= MOST_TICKS => {
                 self.horizon = tick;
                 if failed { Err(Reported) } else { Ok(()) }
@@ -498,7 +493,7 @@ impl<'a> Elaborator<'a> {
             _ => self.report(Diagnostic::error(
                 Code::E0505,
                 horizon.span,
-                format!("a trial has at most {MOST_TICKS} steps"),
+                format!("a trial can have at most {MOST_TICKS} steps"),
             )),
         }
     }

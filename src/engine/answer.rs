@@ -152,7 +152,7 @@ impl Answers<'_> {
                 let fixed = coverage == Coverage::FixedSize;
                 if fixed && result.estimate.is_some() && matches!(stop, Stop::Deadline | Stop::Interrupt) {
                     result.warnings.push(
-                        "the interval is for a number of trials fixed in advance, but sampling was cut short"
+                        "the interval is for a number of trials fixed in advance, but sampling ended earlier"
                             .to_owned(),
                     );
                 }
@@ -187,7 +187,7 @@ impl Answers<'_> {
             };
             if entry.procedure.split() && counts.unresolved < counts.trials {
                 result.warnings.push(
-                    "unresolved trials decide: read as failures and as successes they give opposite verdicts"
+                    "the verdict depends on the unresolved trials: as failures and as successes they give opposite verdicts"
                         .to_owned(),
                 );
             }
@@ -250,18 +250,18 @@ impl Answers<'_> {
         match idle(false) {
             (0, _) => {}
             (1, 1) => result.warnings.push(format!(
-                "the implication in it was never triggered: the left side was true in none of {trials}"
+                "the implication was never triggered: its left side was true in none of {trials}"
             )),
             (idle, all) => result.warnings.push(format!(
-                "{idle} of its {all} implications were never triggered: the left side was true in none of {trials}"
+                "{idle} of {all} implications were never triggered: their left sides were true in none of {trials}"
             )),
         }
         if let (idle, all @ 1..) = idle(true)
             && idle == all
         {
-            result
-                .warnings
-                .push(format!("nobody was there whenever it asked about those who are, in all of {trials}"));
+            result.warnings.push(format!(
+                "no agent was present in any state that the formula reads, in all of {trials}"
+            ));
         }
     }
 
@@ -297,7 +297,7 @@ impl Answers<'_> {
         let how_many = match (counts.trials, unresolved) {
             (1, _) => "the only trial is unresolved".to_owned(),
             (all, some) if all == some => {
-                format!("all {all} trials are unresolved, so that nothing is known")
+                format!("all {all} trials are unresolved, so there is no result")
             }
             (all, 1) => format!("1 of {all} trials is unresolved"),
             (all, some) => format!("{some} of {all} trials are unresolved"),

@@ -114,7 +114,9 @@ pub(super) fn truth(
                 list.dedup();
                 (list.join("; "), deciders.into_iter().flatten().next())
             }
-            None if explanation.verdict.is_some() => ("it does not depend on what happens".to_owned(), None),
+            None if explanation.verdict.is_some() => {
+                ("its value does not depend on the trial".to_owned(), None)
+            }
             None => Said::default(),
         }
     })
@@ -277,7 +279,7 @@ fn closing(
     match &subject.tree.nodes[reason.leaf.0 as usize] {
         Node::Atom(atom) if let Bool::Present(Who::Agent(id)) = &subject.atoms()[atom.0 as usize] => {
             let name = subject.program.scenario.agents.get(id.0 as usize).map_or("", |agent| &agent.name);
-            (format!("{name} is {}there", if reason.value { "" } else { "not " }), None)
+            (format!("{name} is {}present", if reason.value { "" } else { "not " }), None)
         }
         Node::Atom(atom) => {
             let Some(text) = subject.texts.atoms.get(atom.0 as usize) else { return Said::default() };

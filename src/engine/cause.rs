@@ -62,9 +62,9 @@ pub(super) fn unresolved(
             return match observer.reading(0) {
                 Reading::Unresolved => match absent.or(missing) {
                     Some((name, time)) => format!(
-                        "`{name}` has not come at {time}, and what is asked of it is no number; ask only while `present({name})`"
+                        "`{name}` has not arrived at {time}, so its values are undefined; add the condition `present({name})`"
                     ),
-                    None => format!("the metric is not a number at {time}; look for 0 / 0 or ∞ - ∞ in it"),
+                    None => format!("the metric is NaN at {time}; avoid 0 / 0 and ∞ - ∞ in it"),
                 },
                 _ => String::new(),
             };
@@ -81,10 +81,10 @@ pub fn divergence(program: &Program, state: &State) -> String {
         let most = words::number(f64::from(process::MOST_BETWEEN));
         let busiest = busiest(program, state);
         return format!(
-            "more than {most} jumps between two steps{busiest}; lower rates or longer delays help"
+            "more than {most} jumps between two steps{busiest}; use lower rates or longer delays"
         );
     }
-    format!("{}; a smaller step may help", runaway(&program.scenario, state))
+    format!("{}; try a smaller step", runaway(&program.scenario, state))
 }
 
 /// Who left every human speed, with the speed.
@@ -104,10 +104,10 @@ fn runaway(scenario: &Scenario, state: &State) -> String {
     let most = words::quantity(TOP_SPEED, "m/s");
     match found {
         Some((name, speed)) if speed.is_finite() => {
-            format!("{name} went at {}, and nobody goes beyond {most}", words::brief(speed, "m/s"))
+            format!("{name} exceeded {most}, the limit for a person ({})", words::brief(speed, "m/s"))
         }
-        Some((name, _)) => format!("{name} left every human speed ({most})"),
-        None => format!("somebody left every human speed ({most})"),
+        Some((name, _)) => format!("{name} exceeded {most}, the limit for a person"),
+        None => format!("an agent exceeded {most}, the limit for a person"),
     }
 }
 
@@ -140,7 +140,7 @@ pub fn smaller(program: &Program, key: TrialKey, trials: u64) -> String {
     }
     let trials = if trials == 1 { "1 trial".to_owned() } else { format!("{trials} trials") };
     format!(
-        "bodies overlapped at the start and were made smaller in {trials}; in trial {}: {}",
+        "radii of bodies that overlapped at the start were reduced in {trials}; in trial {}: {}",
         key.index,
         said.join(", ")
     )
@@ -149,31 +149,30 @@ pub fn smaller(program: &Program, key: TrialKey, trials: u64) -> String {
 /// Why a trial cannot start, and what helps.
 pub fn no_start(scenario: &Scenario, fault: start::Fault) -> String {
     let name = |agent: AgentId| {
-        scenario.agents.get(agent.0 as usize).map_or("somebody", |agent| agent.name.as_str())
+        scenario.agents.get(agent.0 as usize).map_or("an agent", |agent| agent.name.as_str())
     };
     match fault {
         start::Fault::Parameter { agent, name: parameter, value } => format!(
-            "`{parameter}` of {} is drawn as {}, with which nobody can move; a range keeps it legal: `normal(…) in low .. high`",
+            "the drawn `{parameter}` of {} is {}, which is invalid; truncate the distribution: `normal(…) in low .. high`",
             name(agent),
             words::brief(value, "")
         ),
         start::Fault::Nowhere { agent } => {
-            format!("{} finds no place; give more room to start in", name(agent))
+            format!("{} has no free place to start; use a larger start area", name(agent))
         }
         start::Fault::Far { agent } => {
-            format!("{} finds no place as near as it is to start; give more room to start in", name(agent))
+            format!("{} has no free place within the given distance; use a larger distance", name(agent))
         }
-        start::Fault::Inside { agent } => format!(
-            "{} finds no place but in an obstacle or on a wall; give more room to start in",
-            name(agent)
-        ),
+        start::Fault::Inside { agent } => {
+            format!("{} has no place outside obstacles and walls; use a larger start area", name(agent))
+        }
         start::Fault::Together { agents: (one, other) } => format!(
-            "{} and {} find no place but the same point; give more room to start in",
+            "{} and {} have only the same point to start at; use a larger start area",
             name(one),
             name(other)
         ),
         start::Fault::Order { agent } => {
-            format!("{} starts near somebody who is placed later", name(agent))
+            format!("{} starts near an agent that is placed later", name(agent))
         }
         start::Fault::Advice { .. } => String::new(),
     }
@@ -222,7 +221,7 @@ fn nobody(subject: &Subject, column: usize, state: &State, time: &str) -> String
     });
     let of = text.map_or(String::new(), |text| format!(" in `{text}`"));
     format!(
-        "a mean or a middle{of} is over nobody at {time}; ask for it only where somebody is there: `count(a in …) > 0 & …`"
+        "a mean or a centroid{of} is over an empty set at {time}; add the condition `count(a in …) > 0 & …`"
     )
 }
 
@@ -248,11 +247,11 @@ fn in_continuous_time(subject: &Subject, column: usize, run: &mut Run<'_>, budge
         };
         return match reading {
             Reading::Unresolved if monitor.is_no_number() => {
-                format!("the metric is not a number at {time}; look for 0 / 0 or ∞ - ∞ in it")
+                format!("the metric is NaN at {time}; avoid 0 / 0 and ∞ - ∞ in it")
             }
-            Reading::Unresolved => format!(
-                "the formula has to remember more changes at {time} than there is room for; shorter bounds help"
-            ),
+            Reading::Unresolved => {
+                format!("the formula has too many pieces to store at {time}; use shorter bounds")
+            }
             _ => String::new(),
         };
     }
@@ -260,11 +259,11 @@ fn in_continuous_time(subject: &Subject, column: usize, run: &mut Run<'_>, budge
     let time = words::quantity(state.clocks.now[0], "s");
     let busiest = busiest(&subject.program, state);
     let said = if enough < subject.most_jumps {
-        "what it is was not found in the part that was run again"
+        "the cause was not found in the part that was run again"
     } else {
-        "it jumps more often than can be followed"
+        "the trial has too many jumps"
     };
-    format!("{said}: {enough} jumps by {time}{busiest}; a shorter horizon, lower rates or longer delays help")
+    format!("{said}: {enough} jumps by {time}{busiest}; use a shorter horizon, lower rates or longer delays")
 }
 
 /// `, most of them of ‹process›, now at a rate of …`, or nothing where no process jumps by itself.

@@ -28,7 +28,7 @@ pub enum Fault {
     #[error(transparent)]
     Logic(#[from] crate::logic::Invalid),
     /// A procedure does not fit what is measured.
-    #[error("this procedure does not fit what is measured")]
+    #[error("the procedure is not available for this measure")]
     Unsuitable,
     /// People that cannot be placed.
     #[error("{reason}")]
@@ -42,7 +42,7 @@ pub enum Fault {
     #[error("{}", .0.first().map(ToString::to_string).unwrap_or_default())]
     Crowded(Vec<Fault>),
     /// More values than fit into memory.
-    #[error("the values of metrics take {:.1} GB; the limit is {:.1} GB", gigabytes(*.values), gigabytes(MOST_VALUES))]
+    #[error("the values of metrics need {:.1} GB; the limit is {:.1} GB", gigabytes(*.values), gigabytes(MOST_VALUES))]
     Memory {
         /// The first query of those that share trials.
         place: Span,

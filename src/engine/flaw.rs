@@ -44,29 +44,33 @@ impl Flaw {
             process::Fault::Ambiguous { process, commands } => (
                 Code::E0901,
                 command(process, commands.1),
-                "make their guards exclude each other, or add `choose`",
+                "make the guards exclude each other, or add `choose`",
             ),
-            process::Fault::Weights { process, command: one } => {
-                (Code::E0902, command(process, one), "they must be at least 0 and sum to 1 in every state")
-            }
-            process::Fault::Branches { attached } => {
-                (Code::E0902, behaviour(attached), "they must be at least 0 and sum to 1 in every state")
-            }
+            process::Fault::Weights { process, command: one } => (
+                Code::E0902,
+                command(process, one),
+                "the probabilities must be at least 0 and sum to 1 in every state",
+            ),
+            process::Fault::Branches { attached } => (
+                Code::E0902,
+                behaviour(attached),
+                "the probabilities must be at least 0 and sum to 1 in every state",
+            ),
             process::Fault::Range { variable, .. } => (
                 Code::E0903,
                 origins.variables.get(variable as usize).copied(),
-                "a guard can keep it inside, or give it a wider range",
+                "add a guard, or widen the range",
             ),
-            process::Fault::Rate { process, command: one, .. } => (
-                Code::E0904,
-                command(process, one),
-                "`max(0 /s, …)` or a guard can keep it from falling below 0",
-            ),
-            process::Fault::Stuck { process } => {
-                (Code::E0907, command(process, 0), "let the command change its own guard, or take some time")
+            process::Fault::Rate { process, command: one, .. } => {
+                (Code::E0904, command(process, one), "add a guard, or write `max(0 /s, …)`")
             }
+            process::Fault::Stuck { process } => (
+                Code::E0907,
+                command(process, 0),
+                "let the command change its own guard, or give it a positive delay",
+            ),
             process::Fault::Change { attached, .. } => {
-                (Code::E0914, behaviour(attached), "keep the value in a range: `max(0.1 m/s, …)`")
+                (Code::E0914, behaviour(attached), "limit the value: `max(0.1 m/s, …)`")
             }
         };
         let state = process::Fault::state(&scenario.processes, value);

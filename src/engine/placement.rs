@@ -66,19 +66,19 @@ fn crowded(scenario: &Scenario, crowding: &start::Crowding) -> String {
     let who = match names.as_slice() {
         [] => "nobody".to_owned(),
         [one] => (*one).to_owned(),
-        [first, .., last] => format!("{first} to {last} ({} people)", names.len()),
+        [first, .., last] => format!("{first} to {last} ({} agents)", names.len()),
     };
     let (bodies, free) = (crowding.bodies, crowding.free);
     let all = |least: &str| {
         format!(
-            "{who} cannot be placed: their bodies take {least}{bodies:.2} m^2, and where they start they can cover {free:.2} m^2"
+            "{who} cannot be placed: their bodies need {least}{bodies:.2} m^2, and the start area has room for {free:.2} m^2"
         )
     };
     match crowding.share.map(|share| (100.0 * share).round()) {
         None => all("at least "),
         Some(100.0..) => all(""),
         Some(share) => format!(
-            "{who} cannot be placed: their bodies take {bodies:.2} m^2 of the {free:.2} m^2 that they can cover where they start, and more than {share} % are never filled"
+            "{who} cannot be placed: their bodies need {bodies:.2} m^2 of the {free:.2} m^2 in the start area, of which at most {share} % can be filled"
         ),
     }
 }

@@ -37,7 +37,7 @@ pub(super) fn decision(
     let used = match subject.columns[column] {
         Root::Formula(root) => match open_atoms(tree, root, subject.horizon, clock).ok()? {
             Some(atoms) => atoms.into_iter().map(|atom| atom.0 as usize).collect(),
-            None => return Some((0.0, None, "it does not depend on what happens".to_owned())),
+            None => return Some((0.0, None, "its value does not depend on the trial".to_owned())),
         },
         _ => subject.atoms_of(column),
     };
@@ -113,7 +113,7 @@ pub(super) fn decision(
             };
             Some((at, Some(value), text))
         }
-        _ if what.is_empty() => Some((at, None, "its time was over".to_owned())),
+        _ if what.is_empty() => Some((at, None, "the bound ended".to_owned())),
         _ => Some((at, None, what)),
     }
 }

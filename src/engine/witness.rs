@@ -94,7 +94,7 @@ fn witness(
         if clipped.is_some() && (lost || run.ended().has(0)) {
             let seconds = |tick: u64| program.scenario.clock.seconds(Tick(tick));
             let end = seconds(state.ticks[0]);
-            let what = format!("outside of its range, nobody knows how far: the trial ends at {end} {unit}");
+            let what = format!("outside its range by an unknown amount: the trial ends at {end} {unit}");
             let time = left.map_or(end, seconds);
             return Some(Witness { shows, trial, value: None, time, unit, what, decider: None, command });
         }

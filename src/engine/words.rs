@@ -23,7 +23,7 @@ pub(super) fn number(value: f64) -> String {
 /// A number with all its digits.
 fn as_it_is(value: f64) -> String {
     if value.is_nan() {
-        return "no number".to_owned();
+        return "NaN".to_owned();
     }
     if !value.is_finite() {
         return if value > 0.0 { "∞".to_owned() } else { "-∞".to_owned() };

@@ -103,7 +103,7 @@ impl Fault {
         let name = |process: u32| processes.list.get(process as usize).map_or("", |p| p.name.as_str());
         match *self {
             Self::Ambiguous { process, commands: (a, b) } => format!(
-                "commands {} and {} of `{}` are both enabled, and without `choose` nothing says which one fires",
+                "commands {} and {} of `{}` are both enabled, and the process has no `choose`",
                 a + 1,
                 b + 1,
                 name(process)
@@ -114,15 +114,12 @@ impl Fault {
                 name(process)
             ),
             Self::Rate { process, command, value } => format!(
-                "the rate of command {} of `{}` is {value} /s: a rate is a finite number, not negative",
+                "the rate of command {} of `{}` must be finite and not negative (got {value} /s)",
                 command + 1,
                 name(process)
             ),
             Self::Stuck { process } => {
-                format!(
-                    "time does not go on: more than 100000 jumps at one time, the last one of `{}`",
-                    name(process)
-                )
+                format!("more than 100000 jumps at one time, the last one of `{}`", name(process))
             }
             Self::Branches { attached } => {
                 format!(
@@ -131,11 +128,7 @@ impl Fault {
                 )
             }
             Self::Change { attached, parameter, value } => {
-                format!(
-                    "{} would set `{}` to {value}, with which nobody can move",
-                    whose(attached),
-                    parameter.name()
-                )
+                format!("{} sets `{}` to {value}, which is invalid", whose(attached), parameter.name())
             }
             Self::Range { variable, value } => {
                 let Some(variable) = processes.variables.get(variable as usize) else { return String::new() };
@@ -144,7 +137,7 @@ impl Fault {
                     Domain::Truth => "truth values".to_owned(),
                     Domain::Real => "finite numbers".to_owned(),
                 };
-                format!("`{}` would become {value}, but it holds {range}", variable.name)
+                format!("`{}` would become {value}, but its values are {range}", variable.name)
             }
         }
     }

@@ -14,7 +14,7 @@ pub enum Invalid {
         horizon: u64,
     },
     /// A window that holds no state.
-    #[error("a window from step {from} to step {to} holds no state")]
+    #[error("a window from step {from} to step {to} contains no state")]
     EmptyWindow {
         /// First state.
         from: u64,
@@ -25,7 +25,7 @@ pub enum Invalid {
     #[error("a part of the formula refers to a part that does not exist or that contains it")]
     Malformed,
     /// Too many levels of parts.
-    #[error("the formula is nested {depth} levels deep, at most {limit} are possible")]
+    #[error("the formula is nested {depth} levels deep; the limit is {limit}")]
     TooDeep {
         /// Levels.
         depth: u64,
@@ -33,7 +33,7 @@ pub enum Invalid {
         limit: u64,
     },
     /// Nested windows that would need too many stored states.
-    #[error("the nested windows of the formula need {needed} stored states, at most {limit} are possible")]
+    #[error("the nested windows of the formula need {needed} stored states; the limit is {limit}")]
     TooLarge {
         /// Stored states.
         needed: u64,
@@ -42,7 +42,7 @@ pub enum Invalid {
     },
     /// Sums or means up to the horizon, at so many states that all of them, which come at once there, take too long.
     #[error(
-        "sums of all states up to the horizon, at each state, add {needed} numbers, at most {limit} are possible"
+        "sums of all states up to the horizon, in each state, add {needed} numbers; the limit is {limit}"
     )]
     TooMany {
         /// Numbers that are added.
@@ -60,10 +60,10 @@ pub enum Invalid {
     },
     /// A comparison of numbers that look at other states than the present one has no margin, except
     /// of the extremes of windows and of times with a constant.
-    #[error("a comparison of numbers of several states has no margin")]
+    #[error("a comparison of an aggregate of several states has no margin")]
     NoMargin,
     /// A sum over continuous time.
-    #[error("in continuous time there are no states to add up: use the mean, which is the time average")]
+    #[error("`sum` over time is not available in continuous time: write `mean`, the time average")]
     SumOverTime,
     /// A time or a time average, asked about at many moments, that is not compared with a constant.
     #[error("a time or a time average inside another window can only be compared with a constant")]

@@ -131,7 +131,7 @@ pub fn wrong_weights(weights: &[f64]) -> Option<String> {
         let sum: f64 = weights.iter().sum();
         // `0.1 + 0.2` is shown as 0.3; what is farther from 1 than the slack stays so.
         let shown = if sum < 1e3 { (sum * 1e12).round() / 1e12 } else { sum };
-        format!("these probabilities sum to {shown}, not to 1")
+        format!("the probabilities must sum to 1 (got {shown})")
     })
 }
 

@@ -2,12 +2,12 @@
 
 use crate::engine::outcome::{Failure, Run, Verdict};
 
-/// What the program exits with.
+/// The exit code of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExitCode {
     /// 0: every `check` is satisfied, everything was computed.
     Success,
-    /// 4: a query that is no `check` was not begun or fell short of what it asks, for lack of time or of trials.
+    /// 4: a query other than a `check` was not begun or is incomplete, for lack of time or trials.
     Incomplete,
     /// 3: a `check` is undecided within the budget, and none is violated.
     Undecided,

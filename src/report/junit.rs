@@ -1,6 +1,6 @@
 //! `JUnit` XML: one suite per property file, one test case per result.
 //!
-//! A violated `check` is a failure; an undecided one is an error, so that nothing undecided passes as green.
+//! A violated `check` is a failure. An undecided one is an error, so an undecided result never passes as green.
 //! Other queries pass with their numbers as output.
 
 use super::palette::Palette;
@@ -36,7 +36,7 @@ pub fn render(run: &Run) -> String {
         let kind = if failure.is_bug() { "bug" } else { "input" };
         report.add_test_suite(stopped("run", kind, &failure.message()));
     } else if run.interrupted {
-        report.add_test_suite(stopped("run", "interrupted", "interrupted before all queries were answered"));
+        report.add_test_suite(stopped("run", "interrupted", "interrupted before all queries were complete"));
     }
     // Writing into memory fails only for what XML cannot hold, and the crate drops that from every string.
     let mut text = report.to_string().unwrap_or_default();

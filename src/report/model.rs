@@ -114,7 +114,7 @@ fn scene(out: &mut String, scenario: &Scenario) {
 fn people(out: &mut String, world: &World) {
     let scenario = &*world.scenario;
     let coming: usize = scenario.sources.iter().map(|source| source.members.len()).sum();
-    let _ = writeln!(out, "\nPeople: {}", scenario.agents.len() - coming);
+    let _ = writeln!(out, "\nAgents: {}", scenario.agents.len() - coming);
     let mut rest = scenario.agents.as_slice();
     while let Some(first) = rest.first() {
         // Members of one declaration that differ in nothing but their number are told once.
@@ -209,7 +209,7 @@ fn velocity(v: Vec2) -> String {
 /// A route in words.
 pub(super) fn way(scenario: &Scenario, route: &Route) -> String {
     match route {
-        Route::Onward => "goes on as it starts".to_owned(),
+        Route::Onward => "keeps its initial direction".to_owned(),
         Route::Legs { legs, .. } if legs.is_empty() => "stands".to_owned(),
         Route::Legs { legs, then_leave } => {
             let legs: Vec<String> = legs

@@ -6,7 +6,7 @@ pub struct Palette {
     colours: bool,
 }
 
-/// What a word is, which decides how it looks.
+/// The kind of a word, which determines its color.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Paint {
     /// All is well.

@@ -6,7 +6,7 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum Invalid {
     /// A probability that must lie strictly between 0 and 1.
-    #[error("{name} = {value} must lie between 0 and 1, both excluded")]
+    #[error("{name} must be strictly between 0 and 1 (got {value})")]
     Probability {
         /// The parameter.
         name: &'static str,
@@ -14,7 +14,7 @@ pub enum Invalid {
         value: f64,
     },
     /// The indifference region leaves (0, 1).
-    #[error("indifference = {indifference} around the threshold {theta} leaves the range from 0 to 1")]
+    #[error("the indifference region of {indifference} around the threshold {theta} must be inside (0, 1)")]
     Indifference {
         /// The threshold.
         theta: f64,
@@ -22,7 +22,7 @@ pub enum Invalid {
         indifference: f64,
     },
     /// A number outside the range in which the procedure works.
-    #[error("{name} = {value} must lie between {low} and {high}")]
+    #[error("{name} must be between {low} and {high} (got {value})")]
     Range {
         /// The parameter.
         name: &'static str,

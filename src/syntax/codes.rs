@@ -54,7 +54,7 @@ impl Code {
         self.name().starts_with(range)
     }
 
-    /// What is wrong, in one line: the title of the page.
+    /// The error in one line: the title of the page.
     pub fn title(self) -> &'static str {
         let head = self.page().lines().next().unwrap_or_default();
         head.split_once(": ").map_or(head, |(_, title)| title)

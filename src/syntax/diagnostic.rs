@@ -28,19 +28,19 @@ pub struct Diagnostic {
     pub severity: Severity,
     /// Stable code, such as `E0201`; every code has a page (`smc explain`).
     pub code: Code,
-    /// What is wrong.
+    /// The error, in one line.
     pub title: String,
     /// The place. `None` only for what has none (a missing file).
     pub place: Option<Label>,
     /// Further places that explain it.
     pub related: Vec<Label>,
-    /// What to do about it.
+    /// How to correct it.
     pub hint: Option<String>,
-    /// What it hangs on besides what stands at its place: a threshold may lie outside of a range.
+    /// The places of other values that it depends on: a threshold may be outside a range.
     pub hangs_on: Vec<Span>,
-    /// Whether it hangs on no value at its place: an argument may be missing.
+    /// Whether it depends on no value at its place: an argument may be missing.
     pub is_formal: bool,
-    /// Where the bare number is declared that it comes of: that one lacks a unit.
+    /// The declaration of a number without a unit that causes it.
     pub comes_of: Option<Span>,
 }
 
@@ -80,14 +80,14 @@ impl Diagnostic {
         }
     }
 
-    /// What it says hangs on a value that stands elsewhere.
+    /// Marks that it depends on a value at another place.
     #[must_use]
     pub fn hanging_on(mut self, value: Span) -> Self {
         self.hangs_on.push(value);
         self
     }
 
-    /// It hangs on no value at its place.
+    /// Marks that it depends on no value at its place.
     #[must_use]
     pub fn formal(mut self) -> Self {
         self.is_formal = true;

@@ -40,7 +40,9 @@ fn a_source_goes_on_for_an_hour_with_few_places() {
     assert_eq!(counts[4].unresolved, 3, "{:?}", run.results[4]);
     let warning = &run.results[4].warnings[0];
     assert!(
-        warning.contains("more than 12 people came by `doors`, and this follows single ones of them"),
+        warning.contains(
+            "more than 12 agents arrived by source `doors`, and the formula follows single agents of it"
+        ),
         "{warning}"
     );
 }

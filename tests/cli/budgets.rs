@@ -83,8 +83,8 @@ fn what_falls_short_says_so() {
     assert!(whole.code == Some(0) && !whole.out.contains("incomplete"), "{}", whole.out);
     assert!(whole.out.contains("1 computed; "), "{}", whole.out);
     for (words, word, said) in [
-        (["--max-trials", "9"], "incomplete", "incomplete: trials did not suffice for what the query asks"),
-        (["--max-trials", "0"], "not begun", "not begun: trials did not suffice for one trial"),
+        (["--max-trials", "9"], "incomplete", "incomplete: too few trials for the requested result"),
+        (["--max-trials", "0"], "not begun", "not begun: the budget has no trial"),
     ] {
         let found = call(estimate, &words);
         assert_eq!(found.code, Some(4));

@@ -149,14 +149,19 @@ fn warnings_point_at_families_that_are_left_and_formulas_that_never_change() {
          check P(G<=1 s (1 m < 2 m)) >= 0.5\n",
         &[],
     );
-    assert_eq!(said.err.matches("warning[W0601]: this query leaves the family").count(), 2, "{}", said.err);
-    assert_eq!(said.err.matches("warning[W0501]: this is always the same").count(), 1, "{}", said.err);
+    assert_eq!(said.err.matches("warning[W0601]: the query leaves its family").count(), 2, "{}", said.err);
+    assert_eq!(
+        said.err.matches("warning[W0501]: the formula has the same value in every trial").count(),
+        1,
+        "{}",
+        said.err
+    );
     // In a sweep with the point of which it is said.
     let said = checked(
         "check P(F<=1 s (contact(user) | density > 0.15 /m^2)) >= 0.5\n",
         &["--set", "density=0.1..0.2 by 0.1"],
     );
-    let warning = "warning[W0501]: this is always the same (with density = 0.2 /m^2)";
+    let warning = "warning[W0501]: the formula has the same value in every trial (with density = 0.2 /m^2)";
     assert_eq!(said.err.matches(warning).count(), 1, "{}", said.err);
 }
 
@@ -164,14 +169,14 @@ fn warnings_point_at_families_that_are_left_and_formulas_that_never_change() {
 fn calls_that_would_do_nothing_are_refused() {
     let place = small("check P(F<=3 s contact(user)) >= 0.5\nestimate P(F<=3 s contact(user)) within 0.1\n");
     for (words, said) in [
-        (&["simulate", "a.scn", "--every", "0"][..], "`--every 0` writes nothing"),
-        (&["simulate", "a.scn", "--trials", "0"], "`--trials 0` writes nothing"),
+        (&["simulate", "a.scn", "--every", "0"][..], "`--every` must be positive (got 0)"),
+        (&["simulate", "a.scn", "--trials", "0"], "`--trials` must be positive (got 0)"),
         (&["simulate", "a.scn", "--trial", "281474976710656"], "numbered from 0 to 281474976710655"),
         (&["simulate", "a.scn", "--until", "4.5"], "the horizon of the scenario is 4 s"),
         (&["simulate", "a.scn", "--until", "-1"], "is no time"),
         (&["simulate", "a.scn", "--until", "nan"], "is no time"),
-        (&["simulate", "a.scn", "--data", "nowhere"], "`--data nowhere` is not there"),
-        (&["check", "a.scn", "a.bltl", "--data", "a.bltl"], "`--data a.bltl` is no directory"),
+        (&["simulate", "a.scn", "--data", "nowhere"], "`--data nowhere` does not exist"),
+        (&["check", "a.scn", "a.bltl", "--data", "a.bltl"], "`--data a.bltl` is not a directory"),
         (&["check", "a.scn", "a.bltl", "--only", "2"], "there is no query 2"),
     ] {
         let found = place.call(words);
@@ -186,7 +191,7 @@ fn a_file_that_asks_nothing_is_warned_of() {
     for properties in ["property p = F<=3 s contact(user)\n", "// later\n"] {
         let said = small(properties).call(&["check", "a.scn", "a.bltl"]);
         assert_eq!(said.code, Some(0));
-        assert!(said.err.contains("warning[W0602]: nothing is asked"), "{}", said.err);
+        assert!(said.err.contains("warning[W0602]: the property files contain no query"), "{}", said.err);
     }
     let place = small("property p = F<=3 s contact(user)\n");
     std::fs::write(place.path("b.bltl"), "check P(F<=3 s contact(user)) >= 0.5\n").unwrap();
@@ -213,7 +218,7 @@ fn more_threads_than_help_are_not_started() {
     };
     let (few, many) = (call("1"), call("100000"));
     assert_eq!(few.err, "");
-    assert!(many.err.contains("threads are as many as help here"), "{}", many.err);
+    assert!(many.err.contains("threads are not faster on this machine"), "{}", many.err);
     for field in ["trials", "successes", "verdict"] {
         assert_eq!(few.json()["results"][0][field], many.json()["results"][0][field]);
     }

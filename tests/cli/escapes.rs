@@ -88,7 +88,9 @@ fn errors_of_the_command_line_come_in_the_chosen_format() {
     assert_eq!(call(&["--nonsense"]).out, "");
     let said = place.call(&["drift", "-", "--before", "2", "--after", "0.8", "--format", "json"]);
     assert_eq!(said.code, Some(2));
-    assert!(said.json()["error"]["message"].as_str().unwrap().contains("a probability lies between 0 and 1"));
+    assert!(
+        said.json()["error"]["message"].as_str().unwrap().contains("a probability must be between 0 and 1")
+    );
 }
 
 #[test]

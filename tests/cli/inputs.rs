@@ -16,8 +16,8 @@ fn bad_files_are_refused_with_a_reason() {
     place.write("deeper.bltl", format!("property p = {}true\n", "!".repeat(100_000)).as_bytes());
     std::fs::create_dir(place.path("directory")).unwrap();
     for (scenario, properties, code, reason) in [
-        ("none.scn", "a.bltl", "E0701", "there is no file `none.scn`"),
-        ("a.scn", "none.bltl", "E0701", "there is no file `none.bltl`"),
+        ("none.scn", "a.bltl", "E0701", "the file `none.scn` does not exist"),
+        ("a.scn", "none.bltl", "E0701", "the file `none.bltl` does not exist"),
         ("directory", "a.bltl", "E0701", "`directory` is a directory"),
         ("empty.scn", "a.bltl", "E0108", "empty"),
         ("a.scn", "empty.bltl", "E0108", "empty"),
@@ -134,7 +134,7 @@ fn filters_of_imports_come_before_what_is_wrong_with_shapes() {
     let said = import("where kind == \"wall\"");
     assert_eq!((said.code, said.err.as_str()), (Some(0), ""));
     let said = import("where kind != \"broken\"");
-    assert!(said.code == Some(2) && said.err.contains("hole 1 lies outside the outline"), "{}", said.err);
+    assert!(said.code == Some(2) && said.err.contains("hole 1 is outside the outline"), "{}", said.err);
     let said = import("");
     assert!(said.err.contains("E0704") && said.err.contains("meets itself"), "{}", said.err);
 }
@@ -149,9 +149,9 @@ fn what_the_draw_makes_impossible_is_unresolved() {
     let place = Place::new(&[("a.scn", scenario), ("a.bltl", query)]);
     let said = place.call(&["check", "a.scn", "a.bltl", "-q"]);
     assert_eq!(said.code, Some(0), "{}", said.err);
-    assert!(said.out.contains(": it cannot start: crowd["), "{}", said.out);
+    assert!(said.out.contains(": cannot start: crowd["), "{}", said.out);
     assert!(
-        said.out.contains("finds no place but in an obstacle or on a wall; give more room"),
+        said.out.contains("has no place outside obstacles and walls; use a larger start area"),
         "{}",
         said.out
     );
@@ -176,9 +176,9 @@ fn nobody_comes_twice_from_a_recording() {
     let user = "agent user: adult from t at 0 s id 1\n";
     assert_eq!(show(&format!("{user}agents rest: adult from t at 0 s except 1")).code, Some(0));
     for (people, said) in [
-        (format!("{user}agents rest: adult from t at 0.2 s"), "person 1 of `t` is there already"),
-        (format!("{user}agent other: adult from t at 0.2 s id 1"), "person 1 of `t` is there already"),
-        ("agents rest: adult from t at 0 s except 1, 1".to_owned(), "person 1 is named twice"),
+        (format!("{user}agents rest: adult from t at 0.2 s"), "person 1 of `t` is already used"),
+        (format!("{user}agent other: adult from t at 0.2 s id 1"), "person 1 of `t` is already used"),
+        ("agents rest: adult from t at 0 s except 1, 1".to_owned(), "person 1 is listed twice"),
     ] {
         let found = show(&people);
         assert_eq!(found.code, Some(2), "{people}");
@@ -207,9 +207,9 @@ agents all: adult from t at 0 s
         "{}",
         said.err
     );
-    let moved = "person 1 was recorded inside the obstacle `box`, and starts 0.550 m away at (1.700, 0.500)";
+    let moved = "person 1 was recorded inside the obstacle `box` and starts 0.550 m away at (1.700, 0.500)";
     assert!(said.err.contains(moved), "{}", said.err);
-    let moved = "person 2 was recorded 0.050 m from a wall, and starts 0.250 m away at (4.750, 0.500)";
+    let moved = "person 2 was recorded 0.050 m from a wall and starts 0.250 m away at (4.750, 0.500)";
     assert!(said.err.contains(moved), "{}", said.err);
     assert!(!said.out.contains("made smaller"), "{}", said.out);
 }
@@ -254,11 +254,12 @@ agent right: adult { at = (5.45, 1.5) }
     assert_eq!(&result["shrunk"], trials);
     let bodies = "in trial 0: `near` at the wall `south` from a radius of 0.3 m to 0.2 m, `left` at `right` from a radius \
                   of 0.3 m to 0.225 m, `right` at `left` from a radius of 0.3 m to 0.225 m";
-    let wanted = format!("bodies overlapped at the start and were made smaller in {trials} trials; {bodies}");
+    let wanted =
+        format!("radii of bodies that overlapped at the start were reduced in {trials} trials; {bodies}");
     assert_eq!(result["warnings"][0], wanted);
     let traced = place.call(&["simulate", "a.scn", "--trials", "2"]);
     assert_eq!(traced.code, Some(0), "{}", traced.err);
-    let wanted = format!("bodies overlapped at the start and were made smaller in 2 trials; {bodies}");
+    let wanted = format!("radii of bodies that overlapped at the start were reduced in 2 trials; {bodies}");
     assert!(traced.err.contains(&wanted), "{}", traced.err);
 }
 
@@ -278,7 +279,7 @@ fn walls_of_imports_that_nearly_meet_are_told_and_joined() {
     ]);
     let plain = place.call(&["show", "plain.scn"]);
     assert_eq!(plain.code, Some(0), "{}", plain.err);
-    let told = "warning[W0702]: this file has 3 ends of walls that miss another wall by less than 5 cm and 1 wall drawn twice";
+    let told = "warning[W0702]: the file has 3 ends of walls that miss another wall by less than 5 cm and 1 wall drawn twice";
     assert!(plain.err.contains(told), "{}", plain.err);
     assert!(plain.err.contains("write `import \"w.wkt\" { snap = 5 cm }`"), "{}", plain.err);
     let snapped = place.call(&["show", "a.scn"]);
@@ -322,8 +323,8 @@ fn imports_that_yield_nothing_are_told() {
     let line = r#"{"type":"FeatureCollection","features":[{"type":"Feature","properties":{"kind":"wall"},"geometry":{"type":"LineString","coordinates":[[1,2],[3,4]]}}]}"#;
     let place = Place::new(&[("e.wkt", " \n"), ("p.geojson", point), ("l.geojson", line)]);
     for (import, code, said) in [
-        (r#""e.wkt""#, Some(2), "error[E0704]: this file is empty"),
-        (r#""p.geojson""#, Some(0), "points are left out"),
+        (r#""e.wkt""#, Some(2), "error[E0704]: the file is empty"),
+        (r#""p.geojson""#, Some(0), "points are ignored"),
         (r#""l.geojson" where kind == "door""#, Some(0), "these have `kind`"),
         // What no feature has would differ from everything.
         (r#""l.geojson" where knd == "wall""#, Some(2), "did you mean `kind`?"),
@@ -349,7 +350,7 @@ fn a_scenario_of_comments_is_an_empty_one() {
         for call in [&["check", "a.scn", "a.bltl"][..], &["show", "a.scn"], &["simulate", "a.scn"]] {
             let said = place.call(call);
             assert_eq!(said.code, Some(2), "{}", said.err);
-            assert_eq!(said.err, "error[E0108]: a.scn declares nothing\n\n", "{text}");
+            assert_eq!(said.err, "error[E0108]: a.scn has no declarations\n\n", "{text}");
         }
     }
 }
@@ -366,7 +367,7 @@ fn files_in_the_wrong_order_are_named_as_such() {
         Place::new(&[("a.scn", SMALL), ("a.bltl", "property p = contact(user)\ncheck P(p) >= 0.5\n")]);
     let said = place.call(&["check", "a.bltl", "a.scn"]);
     assert_eq!((said.code, said.err.matches("error[").count()), (Some(2), 2), "{}", said.err);
-    for hint in ["these are properties; the scenario comes first", "this is a scenario; it comes first"] {
+    for hint in ["this is a property file; write the scenario first", "this is a scenario; write it first"] {
         assert!(said.err.contains(hint), "{}", said.err);
     }
     // What is wrong in either language is no matter of order.

@@ -27,11 +27,14 @@ fn time_ends_a_call_that_is_still_preparing() {
     let place = slow();
     let said = place.call(&["check", "a.scn", "a.bltl", "-q", "--timeout", "200ms", "--format", "json"]);
     assert_eq!(said.code, Some(3), "{}", said.err);
-    assert_eq!(said.err.lines().next(), Some("error[E0921]: time was up before the first trial"));
+    assert_eq!(
+        said.err.lines().next(),
+        Some("error[E0921]: the time limit ended the call before the first trial")
+    );
     let json = said.json();
     validated(&json);
     assert_eq!((&json["results"], &json["interrupted"]), (&serde_json::json!([]), &false.into()));
-    assert_eq!(json["error"]["message"], "time was up before the first trial");
+    assert_eq!(json["error"]["message"], "the time limit ended the call before the first trial");
     assert_eq!(json["diagnostics"][0]["code"], "E0921");
 }
 
@@ -59,14 +62,14 @@ fn more_memory_than_there_may_be_is_refused_with_its_number() {
     let said = place.call(&["check", "a.scn", "s.bltl"]);
     assert_eq!(said.code, Some(2), "{}", said.err);
     assert!(
-        said.err.starts_with("error[E0923]: 1000000000 paths at once take 400.0 GB; the limit is 2.0 GB"),
+        said.err.starts_with("error[E0923]: 1000000000 paths need 400.0 GB of memory; the limit is 2.0 GB"),
         "{}",
         said.err
     );
     let said = place.call(&["check", "a.scn", "m.bltl", "--max-trials", "200000000"]);
     assert_eq!(said.code, Some(2), "{}", said.err);
     assert!(
-        said.err.starts_with("error[E0923]: the values of metrics take 3.2 GB; the limit is 2.1 GB"),
+        said.err.starts_with("error[E0923]: the values of metrics need 3.2 GB; the limit is 2.1 GB"),
         "{}",
         said.err
     );

@@ -180,7 +180,7 @@ fn ranks_that_all_fall_silent_change_no_result() {
         assert_eq!(led, alone, "{ranks} ranks");
         let warnings: Vec<&str> = warnings.as_array().unwrap().iter().filter_map(Value::as_str).collect();
         assert_eq!(warnings.len(), ranks, "{warnings:?}");
-        let told = |one: &&str| one.contains("answers no more; this process ran its trials");
+        let told = |one: &&str| one.contains("stopped answering; this process ran its trials");
         assert!(warnings.iter().all(told), "{warnings:?}");
         soon("all ranks are over", || there.iter().all(|pid| status(*pid).is_none()));
     }

@@ -248,9 +248,9 @@ fn why_a_trial_is_unresolved_is_what_made_it_so() {
     let place = Place::new(&[("a.scn", LATE), ("a.bltl", queries)]);
     let json = place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "json"]).json();
     let said = [
-        "in `mean(speed(a) for a in entrance) > 0 m/s` is over nobody at 1 s",
-        "in `mean(speed(a) for a in entrance)` is over nobody at 1 s",
-        "in `mean(clearance(b) for b in entrance)` is over nobody at 2 s",
+        "in `mean(speed(a) for a in entrance) > 0 m/s` is over an empty set at 1 s",
+        "in `mean(speed(a) for a in entrance)` is over an empty set at 1 s",
+        "in `mean(clearance(b) for b in entrance)` is over an empty set at 2 s",
     ];
     for (result, said) in json["results"].as_array().unwrap().iter().zip(said) {
         assert_eq!(result["unresolved"], 2, "{result}");
@@ -274,6 +274,6 @@ fn a_left_side_that_parameters_make_false_never_had_a_case_in_either_time() {
         let never = |k: usize| json["results"][k]["warnings"].to_string().contains("never triggered");
         assert_eq!((never(0), never(1), never(2)), (true, true, false), "{json:#}");
         let witness = &json["results"][0]["witnesses"][0];
-        assert_eq!(witness["what"], "it does not depend on what happens", "{witness}");
+        assert_eq!(witness["what"], "its value does not depend on the trial", "{witness}");
     }
 }

@@ -316,7 +316,7 @@ estimate P(late) by fixed(trials = 12)
     assert!(named > 0);
     assert_eq!(json["results"][0]["witnesses"][0]["what"], "no agent of the quantified set was present");
     let warnings = json["results"][0]["warnings"].to_string();
-    assert!(warnings.contains("nobody was there") && !warnings.contains("implications"), "{warnings}");
+    assert!(warnings.contains("no agent was present") && !warnings.contains("implications"), "{warnings}");
 }
 
 #[test]
@@ -352,7 +352,7 @@ fn what_is_wrong_later_than_is_asked_for_is_not_told() {
     assert_eq!((before.code, before.err.as_str()), (Some(0), ""), "{}", before.out);
     let after = place.call(&["simulate", "a.scn", "--until", "6"]);
     assert_eq!(after.code, Some(2));
-    assert!(after.err.contains("ends in an error of the model"), "{}", after.err);
+    assert!(after.err.contains("ended with an error of the model"), "{}", after.err);
 }
 
 #[test]

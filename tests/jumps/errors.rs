@@ -71,7 +71,7 @@ fn errors_that_show_while_running_name_trial_time_and_state() {
         ("when true at 1 /s * (x - 0.5) -> x = x + 1", "rate of command 1 of `p` is -0.5 /s", "E0904"),
         ("when true at 1 /s -> x = x / 0", "`p.x` would become", "E0903"),
         ("when true at 1 /s -> x / 3: x = 1 | 2 / 3: x = 2", "probabilities of command 1 of `p`", "E0902"),
-        ("when x >= 0 after 0 s -> x = x + 1", "time does not go on", "E0907"),
+        ("when x >= 0 after 0 s -> x = x + 1", "more than 100000 jumps at one time", "E0907"),
     ] {
         let scenario = format!("horizon = 50 s\nprocess p {{ var x = 0\n {process} }}");
         let study = compiled(&scenario, "estimate P(F (p.x > 9000000)) within 0.01").unwrap();

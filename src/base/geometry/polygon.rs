@@ -16,7 +16,7 @@ pub struct Polygon {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum HoleFault {
     /// It has no part inside the outline.
-    #[error("hole {0} lies outside the outline")]
+    #[error("hole {0} is outside the outline")]
     Outside(usize),
     /// It lies inside the outline in part only.
     #[error("hole {0} crosses the outline")]

@@ -179,9 +179,9 @@ impl<'a> Elaborator<'a> {
                 let error = Diagnostic::error(
                     Code::E0304,
                     span,
-                    "what a state sets cannot depend on where people are",
+                    "a value set by a state cannot depend on the movement of agents",
                 )
-                .hint("it is computed on entering, from constants, the agent's own parameters and processes");
+                .hint("use constants, the agent's own parameters and processes");
                 self.report(error)
             }
         }
@@ -234,7 +234,7 @@ impl Elaborator<'_> {
             return self.wrong_dimension(weight.span, Dimension::NONE, dimension);
         }
         if !num.reads(&mut BTreeSet::new()) {
-            let said = "these probabilities cannot depend on where people are";
+            let said = "these probabilities cannot depend on the movement of agents";
             let error = Diagnostic::error(Code::E0304, weight.span, said)
                 .hint("use `when` conditions, or several states");
             return self.report(error);

@@ -21,12 +21,12 @@ use crate::syntax::source::{Source, Span};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// What happens to agents from outside.
+/// Events that reach agents from outside the model.
 const EVENTS: [&str; 1] = ["advice"];
-/// What can be done about advice.
+/// The answers to advice.
 const OUTCOMES: [&str; 2] = ["follow", "ignore"];
-/// Codes of errors of behaviours that hang on nobody who could be missing: weights, delays, fields of a state.
-const OF_NOBODY: [Code; 3] = [Code::E0902, Code::E0906, Code::E0911];
+/// Codes of errors of behaviours that do not depend on the agents that have them: weights, delays, fields of a state.
+const OF_NO_AGENT: [Code; 3] = [Code::E0902, Code::E0906, Code::E0911];
 
 /// `with` of one declaration, and those who have it.
 pub(super) struct With<'a> {
@@ -35,9 +35,9 @@ pub(super) struct With<'a> {
     /// Name of the declaration.
     name: String,
     members: Vec<AgentId>,
-    /// Whether it names a behaviour that nobody knows.
+    /// Whether it names an unknown behaviour.
     strays: bool,
-    /// Of a source: how many may come.
+    /// For a source: the largest number of agents.
     pub(super) most: u32,
 }
 
@@ -94,7 +94,7 @@ impl<'a> Elaborator<'a> {
                     if !EVENTS.contains(&on.event.name.as_str()) {
                         let known = EVENTS.into_iter();
                         let error = unknown("event", &on.event.name, on.event.span, Code::E0201, known)
-                            .hint("the only event is `advice`: a move is suggested to the agent; what happens around it is a condition of a state, as in `when self in exit -> …`, `when contact(self) -> …`");
+                            .hint("the only event is `advice`, a move suggested to the agent; write other events as conditions of a state: `when self in exit -> …`, `when contact(self) -> …`");
                         self.note(error);
                     }
                     self.check_targets(
@@ -127,9 +127,9 @@ impl<'a> Elaborator<'a> {
                 let error = Diagnostic::error(
                     Code::E0911,
                     field.name.span,
-                    format!("`{name}` belongs to the body and is the same in all states"),
+                    format!("`{name}` belongs to the body and cannot change"),
                 )
-                .hint(format!("a state can change {} and route", all_parameters().join(", ")));
+                .hint(format!("a state can set {} and route", all_parameters().join(", ")));
                 self.note(error);
             } else if name != "route" && Parameter::changeable_of(name).is_none() {
                 let known = all_parameters().into_iter().chain(["route"]);
@@ -150,7 +150,7 @@ impl<'a> Elaborator<'a> {
                 let error = unknown(what, &target.name, target.span, Code::E0201, names);
                 let error = match &error.hint {
                     Some(_) => error,
-                    None => error.hint(format!("known are {}", known.listed())),
+                    None => error.hint(format!("the fields are {}", known.listed())),
                 };
                 self.note(error);
             }
@@ -177,7 +177,7 @@ impl<'a> Elaborator<'a> {
                 Some((_, Meaning::Behaviour(id))) => id,
                 Some((_, other)) => {
                     if !matches!(other, Meaning::Doubtful) {
-                        let text = format!("expected a behaviour, `{called}` is {}", other.noun());
+                        let text = format!("expected a behaviour, but `{called}` is {}", other.noun());
                         self.note(Diagnostic::error(Code::E0206, expr.span, text));
                     }
                     self.stray.push(arguments);
@@ -198,9 +198,9 @@ impl<'a> Elaborator<'a> {
                 let error = Diagnostic::error(
                     Code::E0912,
                     expr.span,
-                    format!("`{}` has the behaviour `{called}` already", name.name),
+                    format!("`{}` already has the behaviour `{called}`", name.name),
                 )
-                .related(first.span, "first here");
+                .related(first.span, "first attached here");
                 self.note(error);
                 self.stray.push(arguments);
                 continue;
@@ -256,10 +256,10 @@ impl<'a> Elaborator<'a> {
             for &(id, arguments, written) in &with.behaviours {
                 match self.settle_one(with, id, (arguments, written), people, variables) {
                     Ok(attached) => out.attached.extend(attached),
-                    // What failed was said; nobody goes without what they were given, without a word.
+                    // The failure was reported; a behaviour is never dropped without a diagnostic.
                     Err(Reported) if self.failed() || !self.torn.is_empty() => {}
                     Err(Reported) => {
-                        let text = "what is wrong with this behaviour shows nowhere else";
+                        let text = "internal error: this behaviour was rejected without a diagnostic";
                         self.note(Diagnostic::error(Code::E0305, written.span, text));
                     }
                 }
@@ -268,11 +268,11 @@ impl<'a> Elaborator<'a> {
         self.withs = withs;
         self.check_unused_behaviours(variables);
         if taken {
-            // What stands elsewhere, as a constant that they use, hangs on nobody; nor do weights, delays and fields.
+            // Errors elsewhere, as in a constant that they use, do not depend on the agent; nor do weights, delays and fields.
             let found = self.diagnostics.split_off(before.min(self.diagnostics.len()));
-            let hangs_on_nobody =
-                |one: &Diagnostic| elsewhere(one) || OF_NOBODY.contains(&one.code) || self.is_sure(one);
-            let kept: Vec<Diagnostic> = found.into_iter().filter(hangs_on_nobody).collect();
+            let of_no_agent =
+                |one: &Diagnostic| elsewhere(one) || OF_NO_AGENT.contains(&one.code) || self.is_sure(one);
+            let kept: Vec<Diagnostic> = found.into_iter().filter(of_no_agent).collect();
             self.diagnostics.extend(kept);
         }
         for one in &out.attached {
@@ -301,7 +301,7 @@ impl<'a> Elaborator<'a> {
         self.withs.iter().flat_map(each).collect()
     }
 
-    /// Marks in what was found wrong in a behaviour from a number on the arguments that it was given, where it hangs on them.
+    /// Adds the arguments of a behaviour to the errors in it that depend on them, from a given error on.
     fn given(&mut self, from: usize, decl: &BehaviourDecl, at: Span) {
         // What stands before the place in its condition or value belongs to it: `gap > 2` is wrong at its number.
         let hangs = |sources: &[Source], place: Span| {
@@ -340,7 +340,7 @@ impl<'a> Elaborator<'a> {
         if failed {
             let wanted = counted_arguments(decl.arguments.len());
             let _: Lowered<()> = self.arity(&decl.name, written.span, &wanted, (arguments, &locals));
-            // Which of them is missing nobody knows.
+            // It is unknown which of them is missing.
             decl.arguments.iter().for_each(|name| locals.bind_unknown(&name.name));
         }
         let given = if failed { &[] } else { arguments };
@@ -396,12 +396,12 @@ impl<'a> Elaborator<'a> {
         Ok(out)
     }
 
-    /// Lets the first agent stand in for anybody, who may have any behaviour.
+    /// Uses the first agent in place of any agent, with any behaviour.
     pub(super) fn stand_in(&mut self) {
         self.having.extend((0..self.behaviours.len()).map(|k| (AgentId(0), BehaviourId(k as u32))));
     }
 
-    /// Behaviours that nobody has are checked too; what hangs on their arguments is not.
+    /// Checks behaviours that no agent has, except the parts that depend on their arguments.
     fn check_unused_behaviours(&mut self, variables: usize) {
         // Whoever would have one could have the others too.
         let having = self.having.clone();

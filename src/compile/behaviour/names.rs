@@ -88,13 +88,13 @@ impl<'a> Elaborator<'a> {
         if let Who::Agent(agent) = who
             && !self.has_behaviour(agent, behaviour)
         {
-            // What it was given instead nobody knows.
+            // The behaviour that it has instead is unknown.
             if self.strayed.contains(&agent) {
                 return Err(Reported);
             }
             let text = format!("`{}` has no behaviour `{}`", self.text(base), member.name);
             let error = Diagnostic::error(Code::E0201, member.span, text)
-                .hint(format!("give it one: `agent … : … with {}`", member.name));
+                .hint(format!("attach it: `agent … : … with {}`", member.name));
             return self.report(error);
         }
         Ok(Typed::Mode { behaviour, who })
@@ -145,7 +145,7 @@ impl<'a> Elaborator<'a> {
         let error = unknown(&what, wanted, named.span, Code::E0201, names.iter().copied());
         self.report(match &error.hint {
             Some(_) => error,
-            None => error.hint(format!("its states are {}", names.join(", "))),
+            None => error.hint(format!("the states are {}", names.join(", "))),
         })
     }
 }

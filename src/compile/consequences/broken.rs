@@ -1,8 +1,7 @@
 //! What could not be read, and which errors come of it.
 
 use super::{
-    BY_ITSELF, DIMENSION, EARLY, LACKING, UNKNOWN, bare, block_end, has_word, leading_word, lines, word,
-    words,
+    CIRCULAR, DIMENSION, EARLY, LACKING, UNKNOWN, bare, block_end, has_word, leading_word, lines, word, words,
 };
 use crate::compile::dimension;
 use crate::compile::queries::Input;
@@ -24,22 +23,22 @@ const PLACED_AT_NAME: [Code; 5] = [Code::E0201, Code::E0203, Code::E0208, Code::
 const CLOCKS: [Code; 3] = [Code::E0503, Code::E0507, Code::E0508];
 /// Codes of brackets that do not pair up.
 const BRACKETS: [Code; 6] = [Code::E0102, Code::E0103, Code::E0104, Code::E0105, Code::E0106, Code::E0107];
-/// Codes of a file that was not read at all, or not from here on.
+/// Codes of a file that was not read at all, or not from this place on.
 const TOO_DEEP: Code = Code::E0106;
 const COMMENT: Code = Code::E0104;
-/// Code of a bracket that closes nothing.
+/// Code of a closing bracket without an opening one.
 const STRAY: Code = Code::E0103;
-/// Code of a scenario without a horizon or a step, or with one that is none.
+/// Code of a scenario without a valid horizon or step.
 const SETTING: Code = Code::E0505;
 /// Code of moves without an option.
 const NO_OPTIONS: Code = Code::E0406;
-/// Code of an agent that nothing advises.
+/// Code of an agent without moves.
 const NO_MOVES: Code = Code::E0606;
-/// Codes of people who start inside an obstacle, or where there is no room.
+/// Codes of agents that start inside an obstacle, or where there is no room.
 const INSIDE: [Code; 2] = [Code::E0409, Code::E0801];
-/// How it is told that many people start where few find room.
+/// Part of the title of an error about too many agents for a place.
 const CROWDED: &str = " cannot be placed: ";
-/// Codes after which the rest of a line is anybody's guess, besides those of brackets.
+/// Codes after which the rest of a line is unreliable, besides those of brackets.
 const DERAILS: [Code; 2] = [Code::E0101, Code::E0112];
 /// Marks that follow the name of a declaration.
 const AFTER_NAME: [char; 4] = ['=', ':', '{', '['];
@@ -113,7 +112,7 @@ impl Parts {
     }
 }
 
-/// What could not be read.
+/// The parts of the sources that could not be read.
 #[allow(clippy::struct_excessive_bools, reason = "each answers a question of its own")]
 pub(super) struct Broken<'i> {
     sources: &'i [Source],
@@ -202,9 +201,8 @@ impl<'i> Broken<'i> {
         broken
     }
 
-    /// What an error of brackets or comments says of the names around it. Where braces did not pair up, declarations may
-    /// have gone into the wrong block, and what a line declares whose brackets are amiss may be misspelt by just these; who
-    /// asks declares nothing.
+    /// Notes the names that an error of brackets or comments makes unreliable. Where braces did not pair up, declarations may
+    /// be in the wrong block, and the name on a line with wrong brackets may be misspelt. A query declares nothing.
     fn swallow(&mut self, one: &Diagnostic, place: Span) {
         let bracket = BRACKETS.contains(&one.code) && place.source == SourceId(0);
         let braces = one.title.contains("`{`") || one.title.contains("`}`");
@@ -318,7 +316,7 @@ impl<'i> Broken<'i> {
             || self.skipped.hold(place)
     }
 
-    /// What an error leaves in doubt of its line: all of it, but for what the parser is sure of.
+    /// The part of its line that an error makes unreliable: everything except what the parser is sure of.
     fn derail(&mut self, place: Span, doubts: &[Span]) {
         let (Some(line), Some(key)) = (lines(self.sources, place), self.line_of(place)) else { return };
         let before =
@@ -388,16 +386,16 @@ impl<'i> Broken<'i> {
         // With barriers that were not read there is less room for many, not more.
         let is_crowd = one.title.contains(CROWDED);
         let of_scenery = INSIDE.contains(&one.code) && self.scenery && !is_crowd;
-        // Of bodies of which something may not have been read nobody knows how much room they take.
+        // The room that bodies need is unknown if a part of them was not read.
         let of_bodies = is_crowd && scenario && (self.fields || self.any_name);
         // No name that is missing makes a circle; only the scenario declares moves; a start stands with its agent.
-        let alone = one.title.ends_with(BY_ITSELF)
+        let alone = one.title.ends_with(CIRCULAR)
             || one.code == NO_MOVES && !scenario
-            || one.code == LACKING && one.title.starts_with("where does") && !self.is_torn_behind(place)
+            || one.code == LACKING && one.title.ends_with(" has no `at`") && !self.is_torn_behind(place)
             || one.code == LACKING && !self.any_name && (!self.fields || self.is_whole_kind(text))
             || one.code == SETTING
                 && (!one.title.contains("has no") || !self.settings && !self.any_name && !self.clock)
-            || one.code == EARLY && one.title.ends_with("not known yet here");
+            || one.code == EARLY && one.title.ends_with("is not available here");
         let of_name = !alone
             && NAMES.contains(&one.code)
             && (!PLACED_AT_NAME.contains(&one.code) || self.may_declare(place));

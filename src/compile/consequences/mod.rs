@@ -20,22 +20,22 @@ use std::ops::RangeInclusive;
 
 /// Code of what a declaration lacks.
 const LACKING: Code = Code::E0209;
-/// Code of a field that nobody knows.
+/// Code of an unknown field.
 const UNKNOWN_FIELD: Code = Code::E0207;
-/// Code of a unit that nobody knows.
+/// Code of an unknown unit.
 const UNKNOWN_UNIT: Code = Code::E0113;
 /// Code of a wrong dimension.
 const DIMENSION: Code = Code::E0303;
 /// Code of a name that is used before it can be known.
 const EARLY: Code = Code::E0205;
-/// How that ends of a name that leads back to itself.
-pub(super) const BY_ITSELF: &str = "by itself";
+/// The end of the title of an error about a circular definition.
+pub(super) const CIRCULAR: &str = "depends on itself";
 /// Codes of unknown names, told once.
 pub(super) const UNKNOWN: [Code; 4] = [Code::E0201, Code::E0203, Code::E0208, Code::E0210];
 /// Most further places that are marked.
 const MOST_MARKS: usize = 3;
 
-/// What compilation found, less what follows from what the parser had said of the same texts.
+/// The errors of compilation without those that follow from errors of the parser in the same texts.
 pub fn own_errors(found: Vec<Diagnostic>, said: &[Diagnostic], input: &Input<'_>) -> Vec<Diagnostic> {
     let broken = Broken::of(said, input);
     let fails = |all: &[Diagnostic]| all.iter().any(|one| one.severity == Severity::Error);
@@ -99,7 +99,7 @@ fn less_what_follows(mut found: Vec<Diagnostic>, sources: &[Source]) -> Vec<Diag
         // Who could not be declared is not known yet, either.
         let early = broken
             && one.code == EARLY
-            && !one.title.ends_with(BY_ITSELF)
+            && !one.title.ends_with(CIRCULAR)
             && place(one).is_some_and(|span| span.source != SourceId(0));
         early || follows(one)
     };
@@ -127,7 +127,7 @@ struct Bare<'i> {
     value: Span,
 }
 
-/// Of a bare number that is used as a quantity its declaration lacks the unit, not each of its uses.
+/// Reports a number without a unit that is used as a quantity once, at its declaration, not at each use.
 fn at_declarations(found: Vec<Diagnostic>, input: &Input<'_>) -> Vec<Diagnostic> {
     let bare = |name: &'_ Ident, value: &'_ Expr| {
         matches!(&value.kind, ExprKind::Quantity(quantity) if quantity.unit.is_none())
@@ -165,11 +165,11 @@ fn at_declarations(found: Vec<Diagnostic>, input: &Input<'_>) -> Vec<Diagnostic>
             }
             continue;
         }
-        let title = format!("`{}` is a pure number, but is used as {wanted}", bare.name);
+        let title = format!("`{}` has no unit, but is used as {wanted}", bare.name);
         let mut moved = Diagnostic::error(DIMENSION, bare.value, title);
         let number = word(input.sources, bare.value).unwrap_or_default();
         if let Some((_, unit)) = wanted.split_once('(') {
-            moved = moved.hint(format!("write its unit: `{number} {}`", unit.trim_end_matches(')')));
+            moved = moved.hint(format!("write a unit: `{number} {}`", unit.trim_end_matches(')')));
         }
         moved.related.push(use_of);
         told_at.insert(bare.value, kept.len());
@@ -184,7 +184,7 @@ fn blamed<'b, 'd>(
     declared: &'b [Bare<'b>],
     sources: &[Source],
 ) -> Option<(&'b Bare<'b>, &'d str, Span)> {
-    let wanted = one.title.strip_prefix("expected ")?.strip_suffix(", found a pure number")?;
+    let wanted = one.title.strip_prefix("expected ")?.strip_suffix(", found a number without a unit")?;
     let place = one.place.as_ref().filter(|_| one.code == DIMENSION)?.span;
     // A call may make a pure number of anything.
     let comes_of = one.comes_of.filter(|_| word(sources, place).is_some_and(|text| !text.contains('(')))?;
@@ -192,7 +192,7 @@ fn blamed<'b, 'd>(
     Some((bare, wanted, place))
 }
 
-/// Tells of an unknown name where it stands first, and marks where it stands again.
+/// Reports an unknown name at its first place, and marks the other places.
 fn once_a_name(found: Vec<Diagnostic>, sources: &[Source]) -> Vec<Diagnostic> {
     let mut kept: Vec<Diagnostic> = Vec::new();
     let mut again: Vec<Vec<Span>> = Vec::new();
@@ -221,9 +221,9 @@ fn once_a_name(found: Vec<Diagnostic>, sources: &[Source]) -> Vec<Diagnostic> {
         for (k, span) in again.into_iter().take(MOST_MARKS).enumerate() {
             let last = k + 1 == MOST_MARKS && more > 0;
             let text = match more {
-                1 if last => "here too, and once more".to_owned(),
-                _ if last => format!("here too, and {more} more times"),
-                _ => "here too".to_owned(),
+                1 if last => "also here, and in 1 more place".to_owned(),
+                _ if last => format!("also here, and in {more} more places"),
+                _ => "also here".to_owned(),
             };
             one.related.push(Label { span, text });
         }

@@ -101,7 +101,9 @@ impl Elaborator<'_> {
         };
         match joined {
             Some(dimension) => Ok(dimension),
-            None => self.report(Diagnostic::error(Code::E0302, span, "the unit of this is out of range")),
+            None => {
+                self.report(Diagnostic::error(Code::E0302, span, "the unit of the result is out of range"))
+            }
         }
     }
 
@@ -118,7 +120,7 @@ impl Elaborator<'_> {
             _ => a.over(b),
         };
         value.map_or_else(
-            || self.report(Diagnostic::error(Code::E0302, span, "the unit of this is out of range")),
+            || self.report(Diagnostic::error(Code::E0302, span, "the unit of the result is out of range")),
             Ok,
         )
     }
@@ -134,7 +136,7 @@ impl Elaborator<'_> {
         let x = self.fold(span, op, ax, (bx, right))?;
         let y = self.fold(span, op, ay, (by, right))?;
         if !(x.value.is_finite() && y.value.is_finite()) {
-            return self.report(Diagnostic::error(Code::E0405, span, "this is not a finite point"));
+            return self.report(Diagnostic::error(Code::E0405, span, "the point is not finite"));
         }
         Ok(Typed::Point(x, y))
     }
@@ -174,7 +176,7 @@ impl Elaborator<'_> {
                 let error = Diagnostic::error(
                     Code::E0305,
                     a.1.to(b.1),
-                    "vectors are added, subtracted, and multiplied by numbers",
+                    "vectors can only be added, subtracted, and multiplied by numbers",
                 )
                 .hint("for the length of a vector write `distance(a, b)` or `speed(a)`");
                 self.report(error)
@@ -194,9 +196,11 @@ impl Elaborator<'_> {
             match whole {
                 Some(n) => match dimension.power(n) {
                     Some(d) => Ok(d),
-                    None => {
-                        this.report(Diagnostic::error(Code::E0302, span, "the unit of this is out of range"))
-                    }
+                    None => this.report(Diagnostic::error(
+                        Code::E0302,
+                        span,
+                        "the unit of the result is out of range",
+                    )),
                 },
                 None => this.report(Diagnostic::error(
                     Code::E0303,
@@ -211,7 +215,7 @@ impl Elaborator<'_> {
                 if base.value == 0.0 && exponent.value < 0.0 {
                     return self.report(
                         Diagnostic::error(Code::E0405, left.span, "division by zero")
-                            .hint("zero has no negative powers"),
+                            .hint("a negative power of zero is undefined"),
                     );
                 }
                 if let Some(n) = whole {
@@ -224,7 +228,11 @@ impl Elaborator<'_> {
                 }
                 let value = math::pow(base.value, exponent.value);
                 if !value.is_finite() {
-                    return self.report(Diagnostic::error(Code::E0405, span, "this is not a finite number"));
+                    return self.report(Diagnostic::error(
+                        Code::E0405,
+                        span,
+                        "the value is not a finite number",
+                    ));
                 }
                 Ok(Typed::Number(Number::rounded(value, dimension)))
             }
@@ -239,7 +247,7 @@ impl Elaborator<'_> {
 }
 
 impl Elaborator<'_> {
-    /// Notes an exponent that hangs on parameters, by itself or by the arguments of a function.
+    /// Notes an exponent that depends on parameters, directly or by the arguments of a function.
     fn note_exponent(&mut self, exponent: &Expr) {
         let place = exponent.span;
         if matches!(exponent.kind, ExprKind::Quantity(_)) || self.exponents.contains_key(&place.source) {

@@ -128,7 +128,7 @@ impl Elaborator<'_> {
                 let error = Diagnostic::error(
                     Code::E0504,
                     expr.span,
-                    "`robustness` looks at a whole trace and stands only directly inside `E(…)`, `Q(…)` and `P(…)`",
+                    "`robustness` is allowed only directly inside `E(…)`, `Q(…)` and `P(…)`",
                 )
                 .hint("for example `E(robustness(safe)) in -1 m .. 1 m`, `P(robustness(safe) >= 0.2 m)`");
                 return self.report(error);
@@ -290,7 +290,7 @@ impl Elaborator<'_> {
                 let error = Diagnostic::error(
                     Code::E0305,
                     function.span,
-                    format!("`{name}` joins values over a set or over time"),
+                    format!("`{name}` needs a set or a time window"),
                 )
                 .hint(format!("write `{name}(… for a in crowd)` or `{name}<=10 s (…)`"));
                 return self.report(error);
@@ -348,7 +348,7 @@ impl Elaborator<'_> {
     /// What a function gives for what is known now: exact where it is whole.
     fn computed(&mut self, value: f64, dimension: Dimension, function: &str, span: Span) -> Lowered<Typed> {
         if !value.is_finite() {
-            let text = format!("`{function}` of this is not a finite number");
+            let text = format!("`{function}` of this value is not finite");
             return self.report(Diagnostic::error(Code::E0405, span, text));
         }
         let whole = value.fract() == 0.0 && value.abs() < 9e15;

@@ -104,7 +104,7 @@ impl Gist<'_, '_> {
         }
     }
 
-    /// What a name stands for; nobody knows of what was not read to its end, as in `const D = 2 meter`.
+    /// The type of a name; unknown if its declaration was not read to its end, as in `const D = 2 meter`.
     fn of_declared(&mut self, value: &Expr, locals: &Locals) -> Option<Dimension> {
         if self.elaborator.is_cut(value.span) { None } else { self.of(value, locals) }
     }

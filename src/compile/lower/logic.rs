@@ -72,7 +72,7 @@ impl Elaborator<'_> {
         if let (Typed::Truth(when, _), Typed::Truth(then, phrase)) = (&a.0, &b.0)
             && then.may_lack_value()
         {
-            // `a => b` is `a => (!a | b)`: where the guard is false, nobody misses what the rest lacks.
+            // `a => b` is `a => (!a | b)`: where the guard is false, undefined values of the rest do not matter.
             let phrase = self.connected(BinaryOp::Implies, b.1, (a.0.phrase(), phrase.clone()), a.1);
             b.0 = Typed::Truth(any(negated(when.clone()), then.clone()), phrase);
         }
@@ -162,11 +162,11 @@ impl Elaborator<'_> {
                 let error = Diagnostic::error(
                     Code::E0305,
                     whole,
-                    format!("`{}` compares agents, which are no numbers", self.text(whole)),
+                    format!("`{}` compares two agents, not two numbers", self.text(whole)),
                 );
                 let other = self.text(right.span);
                 return self.report(error.hint(format!(
-                    "everybody but `{other}` is the set `others({other})`: `forall a in others({other}): …`"
+                    "the set of all agents except `{other}` is `others({other})`: write `forall a in others({other}): …`"
                 )));
             }
             (Typed::Tally(formulas), Typed::Number(bound)) if bound.dimension.is_none() => {
@@ -207,8 +207,8 @@ impl Elaborator<'_> {
             return Ok(Typed::Formula(self.comparison((relation, a, b), text, da)));
         }
         if [&a, &b].iter().all(|side| matches!(side, Typed::Vector(..) | Typed::Point(..))) {
-            let error = Diagnostic::error(Code::E0305, whole, "vectors are not compared")
-                .hint("compare their `distance`, or their components: `x(position(a))`");
+            let error = Diagnostic::error(Code::E0305, whole, "vectors cannot be compared")
+                .hint("compare their `distance` or their components: `x(position(a))`");
             return self.report(error);
         }
         let sides = (self.as_num(a, left.span), self.as_num(b, right.span));
@@ -225,9 +225,9 @@ impl Elaborator<'_> {
             self.note_margin(da, whole);
         }
         if !margin && let Some(name) = self.real_in(&a).or_else(|| self.real_in(&b)) {
-            let said = format!("`{name}` is a real number, which is rounded, and is compared for equality");
+            let said = format!("`{name}` is a rounded real number, but is compared for equality");
             let warning = Diagnostic::warning(Code::W0503, whole, said)
-                .hint("compare with `<` or `>`, or within a tolerance, as in `abs(x - 0.3) < 1e-9`; for whole numbers declare a range, as in `var x: 0 .. 10 = 0`");
+                .hint("compare with `<` or `>`, or within a tolerance: `abs(x - 0.3) < 1e-9`; for whole numbers declare a range: `var x: 0 .. 10 = 0`");
             self.note(warning);
         }
         Ok(Typed::truth(Bool::Compare(comparison(op), Box::new(a), Box::new(b))))
@@ -266,7 +266,7 @@ impl Elaborator<'_> {
     }
 
     /// An error where the time until something is compared with one that no trial reaches: of what has not happened by the
-    /// horizon nobody knows whether it takes so long.
+    /// horizon it is unknown whether it takes so long.
     pub(in crate::compile) fn within_a_trial(&mut self, sides: (TermId, TermId), span: Span) -> Lowered<()> {
         // Horizons that are no decimals are kept to ten digits.
         let end = self.clock.seconds(self.horizon) * (1.0 + 1e-9);
@@ -283,11 +283,11 @@ impl Elaborator<'_> {
         let error = Diagnostic::error(
             Code::E0502,
             span,
-            format!("this looks {limit} {unit} ahead, but the horizon is {}", self.duration(self.horizon.0)),
+            format!("the formula needs {limit} {unit}, but the horizon is {}", self.duration(self.horizon.0)),
         );
-        self.report(
-            error.hint(format!("set `horizon = {limit} {unit}` in the scenario, or compare with less")),
-        )
+        self.report(error.hint(format!(
+            "set `horizon = {limit} {unit}` in the scenario, or compare with a smaller number"
+        )))
     }
 
     /// Something is wrong with one of two sides that ought to have one dimension. That they have not is told as well, as

@@ -13,7 +13,7 @@ use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::parse::{foreign_word, time_meant, unit_meant};
 use crate::syntax::source::Span;
 
-/// The word before a shape in which somebody starts.
+/// The word before a shape in which an agent starts.
 const PLACES: &str = "uniform";
 
 impl Elaborator<'_> {
@@ -30,14 +30,16 @@ impl Elaborator<'_> {
         let hint = match self.clock {
             // There a bare number is a bound, and nothing but the name is amiss.
             Clock::Steps if !is_sure || self.told < Told::Stepped => return false,
-            Clock::Steps => format!("steps have no length here: write `#{number}` or `{number} steps`"),
+            Clock::Steps => {
+                format!("the steps of this scenario have no length: write `#{number}` or `{number} steps`")
+            }
             _ => format!("did you mean `{number} {unit}`?"),
         };
         self.note(Diagnostic::error(Code::E0113, span, format!("unknown unit `{name}`")).hint(hint));
         true
     }
 
-    /// What an unknown name may stand for: a variable of a process, a word of another language, a unit.
+    /// A likely meaning of an unknown name: a variable of a process, a word of another language, a unit.
     pub(super) fn misread_name(&self, name: &str) -> Option<String> {
         let of_processes = self.paths_of(name);
         if !of_processes.is_empty() {
@@ -46,7 +48,7 @@ impl Elaborator<'_> {
         foreign_word(name, "").or_else(|| {
             dimension::unit(name)?;
             Some(format!(
-                "a unit belongs to a number: `1 {name}`; one to divide by has no blank after the slash: `1 /{name}`"
+                "write a unit after a number: `1 {name}`, or `1 /{name}` (no blank after the slash)"
             ))
         })
     }
@@ -62,10 +64,10 @@ impl Elaborator<'_> {
             && matches!(function.name.as_str(), "P" | "E" | "Q")
             && !self.is_known(&function.name, locals)
         {
-            let title = format!("`{}` stands only in queries, not in formulas", function.name);
+            let title = format!("`{}` is allowed only in queries, not in formulas", function.name);
             let query = self.text(left.span.to(right.span));
             let error = Diagnostic::error(Code::E0504, function.span, title);
-            return Some(self.report(error.hint(format!("write a query of its own: `check {query}`"))));
+            return Some(self.report(error.hint(format!("write a separate query: `check {query}`"))));
         }
         let (span, inner, moment) = [left, right].into_iter().find_map(|side| match &side.kind {
             ExprKind::At(inner, moment) => Some((side.span, inner.span, moment)),
@@ -89,7 +91,7 @@ impl Elaborator<'_> {
             Moment::End => (self.duration(self.horizon.0), "at end".to_owned()),
             Moment::Time(time) => (self.text(time.span), format!("at {}", self.text(time.span))),
         };
-        let title = format!("`{written}` stands only around the whole metric of `E(…)` or `Q(…)`");
+        let title = format!("`{written}` must apply to the whole metric of `E(…)` or `Q(…)`");
         // `at` stands behind what is read, and a parenthesis behind it.
         let source = self.sources.iter().find(|source| source.id == span.source);
         let behind = source.map_or("", |source| source.slice(Span { start: inner.end, ..span }));
@@ -98,7 +100,7 @@ impl Elaborator<'_> {
         let end = start + behind[at..].trim_end_matches([')', ' ']).len() as u32;
         let error = Diagnostic::error(Code::E0504, Span { start, end, ..span }, title);
         self.report(match read {
-            Some(read) => error.hint(format!("of a condition write `F[{time}, {time}] ({read})`")),
+            Some(read) => error.hint(format!("for a condition write `F[{time}, {time}] ({read})`")),
             None => error.hint(format!("write it last: `E(… {written})`")),
         })
     }
@@ -156,7 +158,7 @@ impl Elaborator<'_> {
                 Some((unit, is_sure)) => misspelt.push((*name, *span, unit, is_sure)),
             }
         }
-        // Where all are units, or none surely is one, they are names that nobody knows.
+        // If all are units, or none is certainly one, they are unknown names.
         let is_sure = misspelt.len() < factors.len() || misspelt.iter().any(|(.., is_sure)| *is_sure);
         if misspelt.is_empty() || !is_sure {
             return false;

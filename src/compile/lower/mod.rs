@@ -164,12 +164,8 @@ impl Elaborator<'_> {
                     Ok(number.times(Number::literal(crate::base::decimal::Decimal::ONE, &unit)))
                 }
                 (Some(_), false) => this.report(
-                    Diagnostic::error(
-                        Code::E0303,
-                        span,
-                        "this coordinate has a unit of its own beside that of the point",
-                    )
-                    .hint("write the unit once, after the parenthesis or in each coordinate"),
+                    Diagnostic::error(Code::E0303, span, "both the coordinate and the point have a unit")
+                        .hint("write the unit once, after the parenthesis or in each coordinate"),
                 ),
                 // A point without a unit is in metres.
                 (None, true) => Ok(metre
@@ -210,16 +206,16 @@ impl Elaborator<'_> {
                 let error = Diagnostic::error(
                     Code::E0504,
                     span,
-                    "a count of formulas over time is only compared with a number",
+                    "a count of temporal formulas can only be compared with a number",
                 )
-                .hint("as in `count(a in crowd: F<=5 s (a in exit)) >= 3`");
+                .hint("write for example `count(a in crowd: F<=5 s (a in exit)) >= 3`");
                 self.report(error)
             }
             Typed::Term(..) => {
                 let error = Diagnostic::error(
                     Code::E0504,
                     span,
-                    "a number of one state is needed here, not one of a stretch of time",
+                    "a value of one state is needed here, not an aggregate over time",
                 );
                 self.report(error)
             }
@@ -289,7 +285,7 @@ impl Elaborator<'_> {
                 let error = Diagnostic::error(
                     Code::E0504,
                     span,
-                    "a condition on one state is needed here, not a formula over time",
+                    "a condition of one state is needed here, not a temporal formula",
                 );
                 self.report(error)
             }
@@ -308,7 +304,7 @@ impl Elaborator<'_> {
                     span,
                     format!("expected an agent, found {}", found.noun()),
                 )
-                .hint("choose a member, as in `crowd[1]`, or quantify: `forall a in crowd: …`");
+                .hint("choose a member such as `crowd[1]`, or quantify: `forall a in crowd: …`");
                 self.report(error)
             }
             found => self.mismatch(span, "an agent", &found),
@@ -354,7 +350,7 @@ impl Elaborator<'_> {
             found @ Typed::Agents { .. } => {
                 let error =
                     Diagnostic::error(Code::E0305, span, format!("expected a place, found {}", found.noun()))
-                        .hint("use its middle, `centroid(…)`, or a member");
+                        .hint("use `centroid(…)` or a member");
                 self.report(error)
             }
             found => self.mismatch(span, "a place: an agent, point, region or wall", &found),
@@ -373,8 +369,11 @@ impl Elaborator<'_> {
                 }
                 Place::Point(x, y) => Ok((*x, *y, Dimension::LENGTH)),
                 Place::Region(_) | Place::Barrier(_) => {
-                    let error =
-                        Diagnostic::error(Code::E0305, span, "this has an extent and no single position");
+                    let error = Diagnostic::error(
+                        Code::E0305,
+                        span,
+                        "a region or an obstacle has no single position",
+                    );
                     self.report(error)
                 }
             },
@@ -394,7 +393,7 @@ impl Elaborator<'_> {
             Code::E0204,
             span,
             format!(
-                "`{}` takes {wanted}, but {found} {} given",
+                "`{}` needs {wanted}, but {found} {} given",
                 function.name,
                 if found == 1 { "is" } else { "are" }
             ),

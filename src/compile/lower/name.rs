@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 use super::super::dimension::Dimension;
 
-/// Down to what depth calls are followed whose arguments nobody knows.
+/// The depth to which calls with unknown arguments are followed.
 const FOLLOWED: u32 = 400;
 /// Most calls that are shown of an error inside functions that call each other.
 const MOST_CALLS: usize = 4;
@@ -57,12 +57,9 @@ impl<'a> Elaborator<'a> {
         let Some((scope, meaning)) = self.find(name, locals.scope) else {
             return match name {
                 "time" if self.clock.is_jumps() => {
-                    let error = Diagnostic::error(
-                        Code::E0508,
-                        span,
-                        "in continuous time a state has no time of its own",
-                    )
-                    .hint("use a bound, as in `F[4 s, 5 s]`, or `time_until(…)`");
+                    let error =
+                        Diagnostic::error(Code::E0508, span, "`time` is not available in continuous time")
+                            .hint("use a bound such as `F[4 s, 5 s]`, or `time_until(…)`");
                     self.report(error)
                 }
                 "time" => Ok(Typed::Num(crate::model::Num::Time, self.time_dimension())),
@@ -110,7 +107,7 @@ impl<'a> Elaborator<'a> {
                 self.expand_once(scope, name, span, |this| this.lower(&decl.body, &inner))
             }
             Meaning::Property(_) if !self.temporal => {
-                let text = format!("`{name}` is a property, and a number is needed here");
+                let text = format!("a number is needed here, but `{name}` is a property");
                 self.report(Diagnostic::error(Code::E0305, span, text))
             }
             Meaning::Property(formula) => {
@@ -137,7 +134,7 @@ impl<'a> Elaborator<'a> {
                 Err(Reported)
             }
             Meaning::Declared => {
-                let error = Diagnostic::error(Code::E0205, span, format!("`{name}` is not known yet here"))
+                let error = Diagnostic::error(Code::E0205, span, format!("`{name}` is not available here"))
                     .hint("numbers of agents and parameters cannot depend on agents");
                 self.report(error)
             }
@@ -145,7 +142,7 @@ impl<'a> Elaborator<'a> {
                 let error = Diagnostic::error(
                     Code::E0206,
                     span,
-                    format!("`{name}` is {}, which has no value", meaning.noun()),
+                    format!("`{name}` is {} and has no value", meaning.noun()),
                 );
                 self.report(error)
             }
@@ -217,7 +214,7 @@ impl<'a> Elaborator<'a> {
         lowered
     }
 
-    /// What a constant stands for, if it is the same in all states of all trials.
+    /// The value of a constant, if it is the same in all states of all trials.
     pub(in crate::compile) fn unchanging(&mut self, lowered: Lowered<Typed>, value: &Expr) -> Lowered<Typed> {
         let found = lowered?;
         let (is_fixed, is_drawn) = match &found {
@@ -231,15 +228,16 @@ impl<'a> Elaborator<'a> {
             return Ok(found);
         }
         let label = match found {
-            _ if is_drawn => format!("{} that is not known before a trial", found.noun()),
-            Typed::Truth(..) => "a condition, which may change during a trial".to_owned(),
+            _ if is_drawn => format!("{} that is drawn in each trial", found.noun()),
+            Typed::Truth(..) => "a condition that changes during a trial".to_owned(),
             _ => format!("{} that changes during a trial", found.noun()),
         };
-        let error = Diagnostic::error(Code::E0304, value.span, "this must be known before a trial starts");
+        let error =
+            Diagnostic::error(Code::E0304, value.span, "the value must be known before a trial starts");
         self.report(error.label(label).hint(if is_drawn {
-            "`let` names what each trial draws"
+            "name a value that is drawn in each trial with `let`"
         } else {
-            "`let` names what changes"
+            "name a value that changes during a trial with `let`"
         }))
     }
 
@@ -267,7 +265,7 @@ impl<'a> Elaborator<'a> {
                 .chain([name])
                 .collect();
             self.circles.extend(way.iter().map(|n| (*n).to_owned()));
-            let error = Diagnostic::error(Code::E0205, span, format!("`{name}` is defined by itself"))
+            let error = Diagnostic::error(Code::E0205, span, format!("`{name}` depends on itself"))
                 .label(way.join(" → "));
             return self.report(error);
         }
@@ -351,7 +349,7 @@ impl<'a> Elaborator<'a> {
         value
     }
 
-    /// What is wrong with a function whatever it is called with: nobody may call it.
+    /// Reports the errors of a function that no argument can correct, even if it is never called.
     pub(in crate::compile) fn look_into(&mut self, decl: &LetDecl, locals: &Locals) {
         let mut inner = locals.clone();
         for argument in &decl.arguments {
@@ -363,7 +361,7 @@ impl<'a> Elaborator<'a> {
         self.looking = around;
     }
 
-    /// Follows a call whose arguments nobody knows, each function once: it may lead back to itself.
+    /// Follows a call with unknown arguments, each function once, because it may be recursive.
     fn follow(&mut self, decl: &LetDecl, (mut inner, path): (Locals, String), span: Span) {
         // Functions through hundreds of others are too deep only if somebody calls them.
         if !self.looking || self.depth > FOLLOWED {
@@ -386,9 +384,9 @@ impl<'a> Elaborator<'a> {
     pub(in crate::compile) fn check_arguments(&mut self, arguments: &[Ident]) {
         for (k, argument) in arguments.iter().enumerate() {
             if let Some(first) = arguments[..k].iter().find(|first| first.name == argument.name) {
-                let text = format!("`{}` is an argument twice", argument.name);
+                let text = format!("the argument `{}` is declared twice", argument.name);
                 let error = Diagnostic::error(Code::E0202, argument.span, text);
-                self.note(error.related(first.span, "first here").hint("rename one of them"));
+                self.note(error.related(first.span, "first declared here").hint("rename one of them"));
             }
         }
     }
@@ -429,14 +427,14 @@ impl<'a> Elaborator<'a> {
                 let error = Diagnostic::error(
                     Code::E0206,
                     base.span,
-                    "this group is simulated as one body and has no members",
+                    "a group `as particle` is one body and has no members",
                 )
-                .hint("leave out `as particle` to simulate its members");
+                .hint("remove `as particle` to simulate the members");
                 return self.report(error);
             }
             found => return self.mismatch(base.span, "a set of agents", &found),
         };
-        // Of those who could not be declared nobody knows the number.
+        // The number of agents whose declaration failed is unknown.
         if let [only] = set.members[..]
             && self.undeclared.contains(&only)
         {
@@ -450,9 +448,9 @@ impl<'a> Elaborator<'a> {
                 let error = Diagnostic::error(
                     Code::E0304,
                     base.span,
-                    "who the members of this are depends on whom the quantifier is at",
+                    "the members of this set differ for each value of the quantifier",
                 )
-                .hint("choose a member of a set that is the same for all, as in `crowd[1]`, or quantify over this one");
+                .hint("choose a member of a fixed set such as `crowd[1]`, or quantify over this set");
                 return self.report(error);
             }
         };
@@ -482,14 +480,14 @@ impl<'a> Elaborator<'a> {
                 let error = Diagnostic::error(
                     Code::E0212,
                     index.span,
-                    format!("there is no member {} of `{}`", number.value, self.text(base.span)),
+                    format!("`{1}` has no member {0}", number.value, self.text(base.span)),
                 )
                 .hint(match count {
-                    0 => "it has no members".to_owned(),
-                    1 => "it has 1 member, `[1]`".to_owned(),
+                    0 => "the set is empty".to_owned(),
+                    1 => "the only member is `[1]`".to_owned(),
                     count => {
                         let name = self.text(base.span);
-                        format!("it has {count} members, `{name}[1]` to `{name}[{count}]`")
+                        format!("the members are `{name}[1]` to `{name}[{count}]`")
                     }
                 });
                 self.report(error)

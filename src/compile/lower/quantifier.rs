@@ -67,7 +67,7 @@ impl Elaborator<'_> {
                     return Ok(Typed::Truth(all, phrase));
                 };
                 // "Each a: if p then q" is "if some a has p, then each a: if p then q"; so the monitor sees whether
-                // anybody ever had p.
+                // any agent ever had p.
                 let some = self.someone((variable, place, set), left, span);
                 let some = self.atom_worded(some.truth, span, some.text, some.phrase.as_ref());
                 if let Node::Atom(atom) = &self.tree.nodes[some.0 as usize] {
@@ -117,7 +117,7 @@ impl Elaborator<'_> {
         }
     }
 
-    /// That someone of a set has a left side: nobody wrote it, so it is worded here.
+    /// The condition that a member of a set has the left side. It is not in the source, so its text is made here.
     fn someone(&self, (variable, place, set): (&Ident, Span, Set), left: Case, span: Span) -> Case {
         let text = format!("exists {} in {}: {}", variable.name, self.words(place), left.text);
         let someone = left.phrase.map(|one| Form::Someone(set.clone(), one));
@@ -229,7 +229,7 @@ impl Elaborator<'_> {
                 let error = Diagnostic::error(
                     Code::E0504,
                     span,
-                    "a formula over time cannot be quantified inside a fold over states",
+                    "a temporal formula cannot be quantified inside a fold over agents",
                 );
                 return self.report(error);
             }
@@ -247,7 +247,7 @@ impl Elaborator<'_> {
             });
         }
         if each.is_empty() && !self.agent_names.is_empty() {
-            // Over nobody the body is read for anybody: what is wrong in it is reported, and a fold needs its unit.
+            // Over an empty set the body is lowered for any agent, to report its errors and to get the unit of the fold.
             let mut inner = locals.clone();
             inner.bind(&variable.name, Typed::Agent(Who::Agent(AgentId(0))));
             let having = self.having.clone();
@@ -257,14 +257,14 @@ impl Elaborator<'_> {
             let typed = typed?;
             if let Quantifier::Fold(aggregate) = quantifier {
                 let (_, dimension) = self.as_term(typed, body.span)?;
-                return Ok(Typed::Term(self.fold_of_nobody(aggregate), dimension));
+                return Ok(Typed::Term(self.empty_fold(aggregate), dimension));
             }
         }
         match quantifier {
             Quantifier::Forall | Quantifier::Exists => {
                 let nodes = self.of_those_present(quantifier, each, &members, body.span)?;
                 let all = quantifier == Quantifier::Forall;
-                // All of nobody is true, any of nobody false.
+                // Over an empty set `forall` is true and `exists` false.
                 Ok(Typed::Formula(self.node(match nodes.is_empty() {
                     true => Node::Constant(all),
                     false if all => Node::And(nodes),
@@ -278,17 +278,17 @@ impl Elaborator<'_> {
                 let error = Diagnostic::error(
                     Code::E0504,
                     span,
-                    "numbers over time cannot be joined over people who come or leave",
+                    "aggregates over time cannot be folded over agents that arrive or leave",
                 )
-                .hint("join the numbers of each state: `min<=10 s (min(… for a in doors))`");
+                .hint("fold the values of each state: `min<=10 s (min(… for a in doors))`");
                 self.report(error)
             }
             Quantifier::Fold(aggregate) => self.fold_terms(aggregate, each, body.span),
         }
     }
 
-    /// The smallest number of nobody is infinite, the largest minus infinite, the sum 0, and the mean none.
-    fn fold_of_nobody(&mut self, aggregate: Aggregate) -> TermId {
+    /// Over an empty set the minimum is infinite, the maximum minus infinite, the sum 0, and the mean undefined.
+    fn empty_fold(&mut self, aggregate: Aggregate) -> TermId {
         self.term(Term::Constant(match aggregate {
             Aggregate::Min => f64::INFINITY,
             Aggregate::Max => f64::NEG_INFINITY,
@@ -341,7 +341,7 @@ impl Elaborator<'_> {
             });
         }
         let Some(joined) = joined else {
-            return Ok(Typed::Term(self.fold_of_nobody(aggregate), dimension));
+            return Ok(Typed::Term(self.empty_fold(aggregate), dimension));
         };
         if aggregate == Aggregate::Mean {
             let count = self.term(Term::Constant(count as f64));

@@ -21,10 +21,10 @@ impl Elaborator<'_> {
             let error = Diagnostic::error(
                 Code::E0204,
                 expr.span,
-                format!("`{}` joins at least two values", function.name),
+                format!("`{}` needs at least two values", function.name),
             )
             .hint(format!(
-                "over a set write `{0}(… for a in crowd)`, over time `{0}<=10 s (…)`",
+                "for a set write `{0}(… for a in crowd)`, for a time window `{0}<=10 s (…)`",
                 function.name
             ));
             return self.report(error);

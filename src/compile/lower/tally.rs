@@ -62,9 +62,12 @@ impl Elaborator<'_> {
             return Ok(self.node(Node::Or(formulas.to_vec())));
         }
         if n.saturating_mul(k.min(n - k + 1)) > LARGEST {
-            let error =
-                Diagnostic::error(Code::E0504, span, format!("{n} formulas over time are too many to count"))
-                    .hint("count states, as in `F<=10 s (count(a in crowd: a in exit) >= 3)`");
+            let error = Diagnostic::error(
+                Code::E0504,
+                span,
+                format!("a count of {n} temporal formulas is too large"),
+            )
+            .hint("count in each state: `F<=10 s (count(a in crowd: a in exit) >= 3)`");
             return self.report(error);
         }
         if n - k + 1 < k {

@@ -22,12 +22,13 @@ impl Elaborator<'_> {
             let error = Diagnostic::error(
                 Code::E0504,
                 span,
-                "a formula over time cannot stand inside a fold over states",
+                "a temporal formula is not allowed inside a fold over agents",
             );
             return self.report(error);
         }
         if !self.temporal {
-            let error = Diagnostic::error(Code::E0504, span, "operators over time belong in property files");
+            let error =
+                Diagnostic::error(Code::E0504, span, "temporal operators are allowed only in property files");
             return self.report(error);
         }
         Ok(())
@@ -56,8 +57,8 @@ impl Elaborator<'_> {
             Temporal::Next => {
                 if self.clock.is_jumps() {
                     let error =
-                        Diagnostic::error(Code::E0507, span, "in continuous time there is no next state")
-                            .hint("use `F[a, b]`, or give the scenario a step");
+                        Diagnostic::error(Code::E0507, span, "`X` is not available in continuous time")
+                            .hint("write `F[a, b]`, or set a `step` in the scenario");
                     return self.report(error);
                 }
                 // X<=k p: p at exactly the k-th state, as in the paper; X p is X<=1.
@@ -65,8 +66,8 @@ impl Elaborator<'_> {
                     (None, _) => Tick(1),
                     (Some(Bound::Interval(start, end)), _) => {
                         let place = start.span.to(end.span);
-                        let error = Diagnostic::error(Code::E0503, place, "`X` asks one state, not an interval")
-                            .hint("`X<=0.5 s p` is p at exactly 0.5 s; for some or all states of an interval write `F[a, b]` or `G[a, b]`");
+                        let error = Diagnostic::error(Code::E0503, place, "`X` needs one time, not an interval")
+                            .hint("`X<=0.5 s p` means p at exactly 0.5 s; for an interval write `F[a, b]` or `G[a, b]`");
                         return self.report(error.formal());
                     }
                     (Some(_), Some(to)) => to,
@@ -112,8 +113,8 @@ impl Elaborator<'_> {
         self.expect_temporal(span, locals)?;
         if aggregate == Aggregate::Sum && self.clock.is_jumps() {
             let error =
-                Diagnostic::error(Code::E0508, span, "in continuous time there are no states to add up")
-                    .hint("use `mean`, the time average");
+                Diagnostic::error(Code::E0508, span, "`sum` over time is not available in continuous time")
+                    .hint("write `mean`, the time average");
             return self.report(error);
         }
         let window = self.window(Some(bound), body, locals);
@@ -140,7 +141,7 @@ impl Elaborator<'_> {
                     return self.report(Diagnostic::error(
                         Code::E0503,
                         start.span,
-                        "an interval starts at a finite time",
+                        "the start of an interval must be finite",
                     ));
                 };
                 let to = ends.1?;
@@ -148,7 +149,7 @@ impl Elaborator<'_> {
                     let error = Diagnostic::error(
                         Code::E0503,
                         start.span.to(end.span),
-                        "this interval ends before it starts",
+                        "the interval ends before it starts",
                     );
                     return self.report(error);
                 }
@@ -178,13 +179,17 @@ impl Elaborator<'_> {
             return match number.as_whole().and_then(|n| u64::try_from(n).ok()) {
                 Some(n) if !self.clock.is_jumps() => Ok(Tick(n)),
                 Some(_) => self.report(
-                    Diagnostic::error(Code::E0503, span, "a scenario in continuous time has no steps")
-                        .formal()
-                        .hint("write a time, as in `5 s`"),
+                    Diagnostic::error(
+                        Code::E0503,
+                        span,
+                        "bounds in steps are not available in continuous time",
+                    )
+                    .formal()
+                    .hint("write a time such as `5 s`"),
                 ),
                 None => {
                     let below = number.value.floor();
-                    let error = Diagnostic::error(Code::E0501, span, "a number of steps must be whole");
+                    let error = Diagnostic::error(Code::E0501, span, "the number of steps must be whole");
                     self.report(error.hint(format!("the nearest bounds are #{below} and #{}", below + 1.0)))
                 }
             };
@@ -196,18 +201,18 @@ impl Elaborator<'_> {
                 text.starts_with(|c: char| c.is_ascii_digit() || c == '.') && Decimal::parse(&text).is_some();
             let is_whole = text.bytes().all(|byte| byte.is_ascii_digit());
             let hint = match (is_number, self.clock.is_jumps()) {
-                (true, true) => format!("write a time, as in `{text} s`"),
-                (false, true) => "write a time, as in `10 s`".to_owned(),
+                (true, true) => format!("write a time: `{text} s`"),
+                (false, true) => "write a time such as `10 s`".to_owned(),
                 (true, false) if is_whole => {
                     let steps = if text == "1" { "step" } else { "steps" };
                     format!("write `{text} s`, or `#{text}` (`{text} {steps}`) for a number of steps")
                 }
                 (true, false) => format!("write `{text} s`"),
                 (false, false) => {
-                    "write a time, as in `10 s`, or a number of steps, as in `#10` (`10 steps`)".to_owned()
+                    "write a time such as `10 s`, or a number of steps such as `#10` (`10 steps`)".to_owned()
                 }
             };
-            let error = Diagnostic::error(Code::E0503, span, "this bound needs a unit").formal();
+            let error = Diagnostic::error(Code::E0503, span, "the bound needs a unit").formal();
             return self.report(error.hint(hint));
         }
         if number.dimension != Dimension::TIME {
@@ -217,9 +222,9 @@ impl Elaborator<'_> {
             Clock::Stepped(step) => step,
             Clock::Jumps(tick) => return self.moment(number, tick, span),
             Clock::Steps => {
-                let error = Diagnostic::error(Code::E0503, span, "this scenario has steps without a length")
+                let error = Diagnostic::error(Code::E0503, span, "the steps of this scenario have no length")
                     .formal()
-                    .hint("write the bound in steps, as in `#10` or `10 steps`");
+                    .hint("write the bound in steps: `#10` or `10 steps`");
                 return self.report(error);
             }
         };
@@ -244,7 +249,7 @@ impl Elaborator<'_> {
                 let error = Diagnostic::error(
                     Code::E0501,
                     span,
-                    format!("`{}` is no multiple of the step of {step} s", self.text(span)),
+                    format!("`{}` is not a multiple of the step of {step} s", self.text(span)),
                 )
                 .hint(format!(
                     "the nearest bounds are {} and {}",
@@ -253,28 +258,28 @@ impl Elaborator<'_> {
                 ));
                 self.report(error)
             }
-            _ => self.report(Diagnostic::error(Code::E0501, span, "this time is out of range")),
+            _ => self.report(Diagnostic::error(Code::E0501, span, "the time is out of range")),
         }
     }
 
     /// A time in continuous time, as ticks. One between two ticks is noted: all will be compiled again.
     fn moment(&mut self, number: Number, tick: Decimal, span: Span) -> Lowered<Tick> {
         let Some(time) = number.exact.or_else(|| moments::nearest(number.value, tick)) else {
-            return self.report(Diagnostic::error(Code::E0501, span, "this time is out of range"));
+            return self.report(Diagnostic::error(Code::E0501, span, "the time is out of range"));
         };
         match self.clock.tick_at(time) {
             Ok(found) => Ok(found),
             Err((below, above)) if above.0 < u64::MAX => {
                 let horizon = Decimal::whole(self.horizon.0 as i64).mul(tick);
                 if horizon.and_then(|horizon| moments::finer(tick, horizon, time)).is_none() {
-                    let error = Diagnostic::error(Code::E0501, span, "this time is too fine for the horizon")
-                        .hint("about twelve digits lie between the shortest time and the horizon");
+                    let error = Diagnostic::error(Code::E0501, span, "the time is too short for the horizon")
+                        .hint("the horizon can be at most about 10^12 times the shortest time");
                     return self.report(error);
                 }
                 self.between.push(time);
                 Ok(below)
             }
-            Err(_) => self.report(Diagnostic::error(Code::E0501, span, "this time is out of range")),
+            Err(_) => self.report(Diagnostic::error(Code::E0501, span, "the time is out of range")),
         }
     }
 }

@@ -19,9 +19,9 @@ impl Elaborator<'_> {
             let error = Diagnostic::error(
                 Code::E0905,
                 decl.name.span,
-                format!("some commands of `{}` have a rate or delay and some have none", decl.name.name),
+                format!("some commands of `{}` have a rate or delay and others have none", decl.name.name),
             )
-            .hint("make them two processes: one of steps, one of times; each can read the other");
+            .hint("write two processes, one with times and one without; each can read the other");
             self.note(error);
             false
         } else if commands.iter().any(timed)
@@ -30,9 +30,8 @@ impl Elaborator<'_> {
                 _ => None,
             })
         {
-            let error =
-                Diagnostic::error(Code::E0905, span, "commands with times race; there is nothing to choose")
-                    .hint("leave `choose` out: the earliest command fires");
+            let error = Diagnostic::error(Code::E0905, span, "commands with times cannot have `choose`")
+                .hint("remove `choose`: the earliest command is executed");
             self.note(error);
             false
         } else {
@@ -121,7 +120,7 @@ impl Elaborator<'_> {
                 unknown("variable", &update.target.name, update.target.span, Code::E0201, known.into_iter());
             let error = match &error.hint {
                 Some(_) => error,
-                None => error.hint("a process sets its own variables only"),
+                None => error.hint("a process can set only its own variables"),
             };
             return self.report(error);
         };

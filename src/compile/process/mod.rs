@@ -64,9 +64,9 @@ pub(super) struct Declared<'a> {
     decl: &'a ProcessDecl,
     /// Number of copies, of an array.
     pub(super) copies: Option<u32>,
-    /// Whether that number is not settled yet, or is wrong, so that nobody knows it.
+    /// Whether that number is not known yet, or has an error.
     pub(super) uncounted: bool,
-    /// Whether something is wrong with its variables, so that nobody knows what they hold.
+    /// Whether its variables have errors, so their values are unknown.
     is_unknown: bool,
     /// First variable of the first copy.
     first: u32,
@@ -156,7 +156,7 @@ impl Elaborator<'_> {
                     self.note(Diagnostic::error(
                         Code::E0402,
                         count.span,
-                        format!("the number of copies must be whole, from 1 to {MOST_COPIES}"),
+                        format!("the number of copies must be a whole number from 1 to {MOST_COPIES}"),
                     ));
                     1
                 }
@@ -228,7 +228,7 @@ impl Elaborator<'_> {
             Typed::Num(..) => this.report(Diagnostic::error(
                 Code::E0304,
                 span,
-                "the value at the start must be known before a trial starts",
+                "the initial value must be known before a trial starts",
             )),
             found => this.mismatch(span, "a number", &found),
         };
@@ -237,7 +237,7 @@ impl Elaborator<'_> {
             Typed::Truth(..) => this.report(Diagnostic::error(
                 Code::E0304,
                 span,
-                "the value at the start must be known before a trial starts",
+                "the initial value must be known before a trial starts",
             )),
             found => this.mismatch(span, "`true` or `false`", &found),
         };
@@ -250,7 +250,7 @@ impl Elaborator<'_> {
                     return self.report(Diagnostic::error(
                         Code::E0405,
                         low.span.to(high.span),
-                        "this range is empty",
+                        "the range is empty",
                     ));
                 }
                 let domain = Domain::Whole { low: low_end, high: high_end };
@@ -270,14 +270,15 @@ impl Elaborator<'_> {
                     Ok((number.dimension, Domain::Real, Ok(number.value)))
                 }
                 "int" => {
-                    let error = Diagnostic::error(Code::E0405, name.span, "a whole number needs its range")
-                        .hint(format!("write `var {}: 0 .. 10 = …`", var.name.name));
+                    let error =
+                        Diagnostic::error(Code::E0405, name.span, "an integer variable needs a range")
+                            .hint(format!("write `var {}: 0 .. 10 = …`", var.name.name));
                     self.report(error)
                 }
                 _ => {
                     let known = ["bool", "real"].into_iter();
                     let error = unknown("type of variable", &name.name, name.span, Code::E0207, known);
-                    self.report(error.hint("a variable is `lo .. hi`, `bool` or `real`"))
+                    self.report(error.hint("the types are `lo .. hi`, `bool` and `real`"))
                 }
             },
             None => match initial? {
@@ -300,7 +301,7 @@ impl Elaborator<'_> {
             Domain::Whole { low, high } if !domain.contains(number.value) => self.report(Diagnostic::error(
                 Code::E0903,
                 span,
-                format!("`{}` holds whole numbers from {low} to {high}", var.name.name),
+                format!("`{}` must be a whole number from {low} to {high}", var.name.name),
             )),
             _ => Ok(domain.kept(number.value)),
         }
@@ -311,13 +312,17 @@ impl Elaborator<'_> {
         match number.as_whole() {
             Some(whole) if whole.abs() < LARGEST => Ok(whole),
             _ if number.value.fract() == 0.0 => {
-                let said = format!("`{}` is too large for the end of a range", self.text(expr.span));
+                let said = format!("`{}` is too large for an end of a range", self.text(expr.span));
                 let error = Diagnostic::error(Code::E0405, expr.span, said)
-                    .label(format!("the limit is {}, in either direction", LARGEST - 1))
-                    .hint("write `real` instead of a range for a number of any size");
+                    .label(format!("the limit is ±{}", LARGEST - 1))
+                    .hint("for a number of any size write `real` instead of a range");
                 self.report(error)
             }
-            _ => self.report(Diagnostic::error(Code::E0405, expr.span, "the ends of a range must be whole")),
+            _ => self.report(Diagnostic::error(
+                Code::E0405,
+                expr.span,
+                "the ends of a range must be whole numbers",
+            )),
         }
     }
 
@@ -386,7 +391,7 @@ impl Elaborator<'_> {
         self.torn.iter().any(meets)
     }
 
-    /// Names that nobody uses are checked too.
+    /// Checks unused names too.
     fn check_names(&mut self, at: usize) {
         let locals = Locals { process: Some((at as u32, 0)), ..Locals::of(0) };
         for item in &self.processes[at].decl.items {

@@ -47,7 +47,7 @@ impl<'a> Elaborator<'a> {
                 self.report(error)
             }
             Inside::Let(LetDecl { body, .. }) | Inside::Label(body) => {
-                // What was not read to its end means nobody knows what.
+                // A declaration that was not read to its end has an unknown meaning.
                 if self.is_cut(body.span) {
                     return Some(Err(Reported));
                 }
@@ -84,9 +84,9 @@ impl<'a> Elaborator<'a> {
             Inside::Variable(_) | Inside::Early => "a variable of",
             Inside::Let(_) | Inside::Label(_) => "a name inside",
         };
-        let label = format!("{what} `{}`, known only when all of its variables are", process.decl.name.name);
+        let label = format!("{what} `{}`, which has no value yet", process.decl.name.name);
         let error = Diagnostic::error(Code::E0201, span, format!("unknown name `{name}`")).label(label);
-        Some(self.report(error.hint("what variables start with is known before a trial starts")))
+        Some(self.report(error.hint("initial values cannot depend on the process")))
     }
 
     /// Notes that a name used inside a process is one of it.
@@ -96,7 +96,7 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    /// What a process or a copy of one is called where a text may speak of it.
+    /// The name of a process or of a copy of it in texts.
     pub(in crate::compile) fn label(&self, (at, copy): (u32, u32)) -> Option<Arc<str>> {
         let process = self.processes.get(at as usize).filter(|_| self.temporal)?;
         let name = &process.decl.name.name;
@@ -105,9 +105,10 @@ impl<'a> Elaborator<'a> {
 
     fn too_early<T>(&mut self, (at, what): (u32, &str), span: Span) -> Lowered<T> {
         let name = self.processes.get(at as usize).map_or("", |process| process.decl.name.name.as_str());
-        let label = format!("{what} `{name}`, which may change during a trial");
+        let label = format!("{what} `{name}`, which changes during a trial");
         self.report(
-            Diagnostic::error(Code::E0304, span, "this must be known before a trial starts").label(label),
+            Diagnostic::error(Code::E0304, span, "the value must be known before a trial starts")
+                .label(label),
         )
     }
 
@@ -117,10 +118,10 @@ impl<'a> Elaborator<'a> {
         if is_settled {
             return Ok(());
         }
-        let text = format!("`{}` is not known yet here", self.text(span));
+        let text = format!("`{}` is not available here", self.text(span));
         self.report(
             Diagnostic::error(Code::E0205, span, text)
-                .hint("how many copies there are, and what variables start with, cannot depend on processes"),
+                .hint("numbers of copies and initial values cannot depend on processes"),
         )
     }
 
@@ -141,7 +142,7 @@ impl<'a> Elaborator<'a> {
         self.processes.iter().any(|process| process.names.contains_key(name))
     }
 
-    /// What a variable of processes is called elsewhere, with its process.
+    /// The name of a variable outside its process: with the process.
     pub(in crate::compile) fn paths_of(&self, name: &str) -> Vec<String> {
         let having = self.processes.iter().filter(|process| process.names.contains_key(name));
         let path = |process: &super::Declared<'_>| {
@@ -175,8 +176,12 @@ impl<'a> Elaborator<'a> {
             Typed::Process { process, copy } => (process, copy),
             Typed::Agent(who) => return self.lower_mode(who, base.span, member),
             Typed::Processes(_) => {
-                let error = Diagnostic::error(Code::E0305, base.span, "this is an array of processes")
-                    .hint(format!("choose one, as in `{}[1].{}`", self.text(base.span), member.name));
+                let error = Diagnostic::error(
+                    Code::E0305,
+                    base.span,
+                    "expected a process, found an array of processes",
+                )
+                .hint(format!("choose one: `{}[1].{}`", self.text(base.span), member.name));
                 return self.report(error);
             }
             Typed::Vector(x, y, dimension) if matches!(member.name.as_str(), "x" | "y") => {
@@ -192,9 +197,9 @@ impl<'a> Elaborator<'a> {
                 let hint = match (&found, is_behaviour) {
                     (Typed::Agents { .. }, true) => {
                         let people = self.text(base.span);
-                        format!("choose one, or count them: `count(a in {people}: a.{name} == …) > 0`")
+                        format!("choose one agent, or count: `count(a in {people}: a.{name} == …) > 0`")
                     }
-                    _ => "numbers of agents are functions: `speed(user)`".to_owned(),
+                    _ => "the values of agents are functions: `speed(user)`".to_owned(),
                 };
                 return self.report(Diagnostic::error(Code::E0305, base.span, said).hint(hint));
             }
@@ -210,7 +215,7 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    /// Of what a function is called with nobody knows more than that something must have such a member.
+    /// A member of an argument of a function: nothing is known about the argument except that a member of this name exists.
     fn member_of_anybody(&mut self, base: &Expr, member: &Ident, locals: &Locals) -> Lowered<Typed> {
         let ExprKind::Name(name) = &base.kind else { return Err(Reported) };
         let bound = locals.names.iter().rev().find(|(bound, _)| bound == name);
@@ -226,7 +231,7 @@ impl<'a> Elaborator<'a> {
         let error = unknown("name", &member.name, member.span, Code::E0201, known.into_iter());
         self.report(match &error.hint {
             Some(_) => error,
-            None => error.hint("numbers of agents are functions: `speed(user)`"),
+            None => error.hint("the values of agents are functions: `speed(user)`"),
         })
     }
 

@@ -1,6 +1,6 @@
 //! Which processes hang together: those that read one another's variables.
 //!
-//! Nobody but a process itself sets its variables, and none waits for another. So what is wrong with one says nothing of
+//! Only a process itself sets its variables, and no process waits for another. So an error in one says nothing about
 //! those that read nothing of it, and processes that read nothing of each other can be looked at one after the other.
 
 use super::reachable::Lines;
@@ -45,7 +45,7 @@ impl<'p> Part<'p> {
                 owners[variable] = Some(process);
             }
         }
-        // Of each, whose variables it reads; none where nobody can tell what it does.
+        // For each, the processes whose variables it reads; `None` if its commands are unknown.
         let reads: Vec<Option<BTreeSet<usize>>> = processes
             .list
             .iter()
@@ -91,7 +91,7 @@ impl<'p> Part<'p> {
     }
 }
 
-/// Whether nobody can tell what a process does hangs on those that it reads, and on those that they read.
+/// A process is unknown if one that it reads, directly or indirectly, is unknown.
 fn known(reads: &[Option<BTreeSet<usize>>]) -> Vec<bool> {
     let mut known: Vec<bool> = reads.iter().map(Option::is_some).collect();
     let mut readers: Vec<Vec<usize>> = vec![Vec::new(); reads.len()];

@@ -37,7 +37,7 @@ pub(super) struct Lines {
     pub(super) command: Span,
     /// Of each branch.
     updates: Vec<Vec<Span>>,
-    /// Whether something is wrong with its rate or its branches: when it fires, nobody knows what follows.
+    /// Whether its rate or its branches have an error, so its successor states are unknown.
     is_broken: bool,
 }
 
@@ -61,7 +61,7 @@ impl Lines {
 /// A command of a part: of which member, which one.
 type Which = (usize, usize);
 
-/// What is wrong, and where it is written.
+/// An error and its place.
 struct Wrong {
     code: Code,
     which: Which,
@@ -73,7 +73,7 @@ struct Wrong {
 /// There are too many states, or they depend on more than variables.
 struct Unknown;
 
-/// What is wrong, each thing where it was met first.
+/// The errors, each where it was first found.
 struct Findings<'p> {
     variables: &'p [Variable],
     /// Code and place of what was found: the copies of a process share them.
@@ -266,8 +266,8 @@ impl Walk<'_, '_> {
                         code: Code::E0904,
                         which: (member, k),
                         span: lines.command,
-                        what: format!("the rate of this command would be {rate} /s"),
-                        hint: Some("a rate is a finite number, not negative; 0 disables the command"),
+                        what: format!("the rate of this command is {rate} /s"),
+                        hint: Some("a rate must be finite and not negative; 0 disables the command"),
                     });
                     ends = true;
                 } else if rate > 0.0 {
@@ -354,8 +354,8 @@ fn changes(
             code: Code::E0901,
             which: *which,
             span: second.command,
-            what: format!("another command of `{}` is enabled together with this one", process.name),
-            hint: Some("`choose` in the process makes each of them equally likely"),
+            what: format!("two commands of `{}` are enabled at once", process.name),
+            hint: Some("make the guards exclude each other, or write `choose` to draw one of them, all equally likely"),
         });
     }
     if enabled.is_empty() {
@@ -401,7 +401,7 @@ fn branches(
                     which,
                     span: *span,
                     what: format!("`{}` would become {value}, outside its range", variable.name),
-                    hint: Some("a guard can keep it inside"),
+                    hint: Some("add a guard, or widen the range"),
                 });
             }
             change.push((id.0 as usize, value as i64));

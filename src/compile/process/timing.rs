@@ -19,9 +19,9 @@ impl Elaborator<'_> {
                 let error = Diagnostic::error(
                     Code::E0905,
                     command.span,
-                    "this command has no rate, and other commands of this scenario have",
+                    "this command has no rate, but other commands of this scenario have one",
                 )
-                .hint("give it `at` a rate or `after` a distribution, or set a `step` for the scenario");
+                .hint("add `at` with a rate or `after` with a distribution, or set a `step` in the scenario");
                 self.report(error)
             }
             None => Ok(Timing::Step),
@@ -57,7 +57,7 @@ impl Elaborator<'_> {
             if law.constant().is_some() {
                 return self.report(Diagnostic::error(Code::E0906, span, "a delay cannot be negative"));
             }
-            let error = Diagnostic::error(Code::E0906, span, "this delay can be negative");
+            let error = Diagnostic::error(Code::E0906, span, "the delay can be negative");
             let error = laws::truncate(error, &law, &self.text(span));
             return self.report(error);
         }

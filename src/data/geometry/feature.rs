@@ -89,7 +89,7 @@ pub(super) fn line(mut points: Vec<Vec2>) -> Result<Geometry, String> {
     in_reach(&points)?;
     points.dedup();
     if points.len() < 2 {
-        return Err("a line needs two points apart from each other".into());
+        return Err("a line needs two different points".into());
     }
     Ok(Geometry::Line(points))
 }
@@ -136,7 +136,7 @@ mod tests {
     fn what_is_no_shape_is_refused() {
         let fault = |rings| polygon(rings).unwrap_err();
         assert_eq!(fault(vec![]), "a polygon needs an outline");
-        assert_eq!(fault(vec![square(0.0, 1.0), square(3.0, 4.0)]), "hole 1 lies outside the outline");
+        assert_eq!(fault(vec![square(0.0, 1.0), square(3.0, 4.0)]), "hole 1 is outside the outline");
         assert_eq!(fault(vec![square(0.0, 1.0), square(0.5, 0.5)]), "hole 1 has fewer than three corners");
         let mut bad = square(0.0, 1.0);
         bad[2].x = f64::NAN;

@@ -75,7 +75,7 @@ fn malformed(error: &geojson::Error) -> GeometryError {
             message = message.replace(&place, "");
         }
     }
-    GeometryError { line, column, feature: None, message: format!("this is no GeoJSON: {message}") }
+    GeometryError { line, column, feature: None, message: format!("the text is not GeoJSON: {message}") }
 }
 
 fn property(value: JsonValue) -> PropertyValue {
@@ -94,8 +94,8 @@ fn property(value: JsonValue) -> PropertyValue {
 fn vector(position: &Position) -> Result<Vec2, String> {
     match *position.as_slice() {
         [x, y, ..] => Ok(Vec2::new(x, y)),
-        [x] => Err(format!("a position has two numbers; this one has one: [{x}]")),
-        [] => Err("a position has two numbers; this one has none".into()),
+        [x] => Err(format!("a position needs two numbers (got one: [{x}])")),
+        [] => Err("a position needs two numbers (got none)".into()),
     }
 }
 
@@ -167,7 +167,7 @@ mod tests {
             {"type": "Feature", "properties": {}, "geometry": {"type": "LineString", "coordinates": [[1,1],[1,1]]}}]}"#;
         let said: Vec<String> = read_geojson(text).unwrap_err().iter().map(ToString::to_string).collect();
         assert_eq!(said[0], "feature 1 `bow`: the outline meets itself near (1, 1)");
-        assert_eq!(said[1], "feature 2: a line needs two points apart from each other");
+        assert_eq!(said[1], "feature 2: a line needs two different points");
     }
 
     #[test]
@@ -179,9 +179,9 @@ mod tests {
         assert!(read_geojson("{\"type\": \"Point\", \"coordinates\": [1]}").is_err());
         let fault = |text| read_geojson(text).unwrap_err()[0].message.clone();
         let one = fault("{\"type\": \"LineString\", \"coordinates\": [[1], [1, 1]]}");
-        assert_eq!(one, "a position has two numbers; this one has one: [1]");
+        assert_eq!(one, "a position needs two numbers (got one: [1])");
         let none = fault("{\"type\": \"Polygon\", \"coordinates\": [[[1, 1], [], [0, 1]]]}");
-        assert_eq!(none, "a position has two numbers; this one has none");
+        assert_eq!(none, "a position needs two numbers (got none)");
         assert!(read_geojson(&"[".repeat(100_000)).is_err());
     }
 }

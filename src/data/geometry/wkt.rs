@@ -44,7 +44,7 @@ pub fn read_wkt(text: &str) -> Result<Vec<Feature>, Vec<GeometryError>> {
                 Some(at) => {
                     let word = words(&piece.text[at..]).next().map_or("", |(_, word)| word);
                     let (line, column) = after((piece.line, piece.column), &piece.text[..at]);
-                    let message = format!("this is no WKT: `{word}` is no number");
+                    let message = format!("the text is not WKT: `{word}` is not a number");
                     errors.push(GeometryError {
                         line: Some(line),
                         column: Some(column),
@@ -52,7 +52,7 @@ pub fn read_wkt(text: &str) -> Result<Vec<Feature>, Vec<GeometryError>> {
                         message,
                     });
                 }
-                None => fail(format!("this is no WKT: {}", lower_case_start(message))),
+                None => fail(format!("the text is not WKT: {}", lower_case_start(message))),
             },
             Ok(shape) => flatten(&shape, &mut |part| match part {
                 Ok(shape) => found.push(Feature { name: String::new(), properties: Vec::new(), shape }),
@@ -212,8 +212,8 @@ mod tests {
         let errors = read_wkt(text).unwrap_err();
         let places: Vec<_> = errors.iter().map(|e| (e.line.unwrap(), e.column.unwrap())).collect();
         assert_eq!(places, [(2, 12), (3, 1), (3, 27), (5, 4), (5, 7)]);
-        assert_eq!(errors[0].message, "this is no WKT: `oops` is no number");
-        assert_eq!(errors[3].message, "this is no WKT: `x` is no number");
+        assert_eq!(errors[0].message, "the text is not WKT: `oops` is not a number");
+        assert_eq!(errors[3].message, "the text is not WKT: `x` is not a number");
         assert_eq!(errors[1].message, "the outline has fewer than three corners");
         assert_eq!(errors[2].message, "a coordinate must lie between -1e6 m and 1e6 m (got inf m)");
     }

@@ -62,7 +62,7 @@ pub fn read_eth_biwi(text: &str) -> Result<Recording, Vec<LineError>> {
         }
     }
     if rows.is_empty() && errors.is_empty() {
-        errors.push(LineError::of_file("there is no observation in this file"));
+        errors.push(LineError::of_file("the file contains no observation"));
     }
     if !errors.is_empty() {
         errors.sort_by_key(|error| (error.line, error.column));
@@ -81,8 +81,7 @@ pub fn read_eth_biwi(text: &str) -> Result<Recording, Vec<LineError>> {
     let stride = usual_stride(&people).unwrap_or(DEFAULT_STRIDE);
     if let Some(seconds) = other_interval(&people, stride) {
         let message = format!(
-            "the velocities in this file tell that its annotations are about {seconds:.2} s apart, and in this format they \
-             are {SECONDS_PER_ANNOTATION} s apart"
+            "the velocities in the file imply annotations {seconds:.2} s apart, but the format has {SECONDS_PER_ANNOTATION} s"
         );
         return Err(vec![LineError::of_file(message)]);
     }
@@ -215,7 +214,7 @@ mod tests {
         );
         let far = read_eth_biwi("1 1 0 0 2e6 0 0 0\n").unwrap_err();
         assert_eq!(far[0].to_string(), "line 1: a coordinate must lie between -1e6 m and 1e6 m (got 2e6 m)");
-        assert_eq!(read_eth_biwi(" \n").unwrap_err()[0].to_string(), "there is no observation in this file");
+        assert_eq!(read_eth_biwi(" \n").unwrap_err()[0].to_string(), "the file contains no observation");
     }
 
     #[test]

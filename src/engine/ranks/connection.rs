@@ -65,7 +65,7 @@ fn read(mut from: Box<dyn Read + Send>, tell: impl Fn(Event) -> bool) {
         let event = match receive(&mut *from) {
             Ok(Some(bytes)) => match Reply::read(&bytes) {
                 Ok(reply) => Event::Said(reply),
-                Err(reason) => Event::Gone(format!("it said what means nothing: {reason}")),
+                Err(reason) => Event::Gone(format!("its message is invalid: {reason}")),
             },
             Ok(None) => Event::Gone("it ended".to_owned()),
             Err(error) => Event::Gone(error.to_string()),

@@ -169,10 +169,10 @@ impl LeaseQueue {
         match reply {
             Reply::Refused(reason) => Err(reason.clone()),
             Reply::Ready { version, .. } if version != own => {
-                Err(format!("it is smc {version}, the head is smc {own}"))
+                Err(format!("its version is smc {version}, that of the main process is smc {own}"))
             }
             Reply::Ready { print, .. } if *print != self.print => {
-                Err(format!("it has another model: {print} instead of {}", self.print))
+                Err(format!("its model differs: {print} instead of {}", self.print))
             }
             _ => Ok(()),
         }
@@ -401,7 +401,7 @@ impl LeaseQueue {
                     rank.why
                 ));
             } else if rank.hangs() {
-                warnings.push(format!("rank {} of {all} answers no more; {others} ran its trials", k + 1));
+                warnings.push(format!("rank {} of {all} stopped answering; {others} ran its trials", k + 1));
             } else if !rank.ready {
                 warnings.push(format!("rank {} of {all} never answered; it ran no trial", k + 1));
             }
@@ -411,5 +411,5 @@ impl LeaseQueue {
 }
 
 fn nonsense() -> String {
-    "it said what does not fit what it was asked".to_owned()
+    "its reply does not match the request".to_owned()
 }

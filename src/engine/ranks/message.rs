@@ -175,7 +175,7 @@ impl Order {
         let order = match from.byte()? {
             0 => {
                 if from.text()? != OPENING {
-                    return Err(Malformed("the head speaks another edition of this protocol"));
+                    return Err(Malformed("the main process uses another version of this protocol"));
                 }
                 let (version, print) = (from.text()?.to_owned(), from.text()?.to_owned());
                 let threads = from.whole()?.clamp(1, MOST_THREADS) as usize;
@@ -183,7 +183,7 @@ impl Order {
             }
             1 => Self::Lease(Lease::read(&mut from)?),
             2 => Self::Stop,
-            _ => return Err(Malformed("an order is of no known kind")),
+            _ => return Err(Malformed("an order has an unknown kind")),
         };
         from.end()?;
         Ok(order)
@@ -223,14 +223,14 @@ impl Lease {
         let seconds = match from.number()? {
             f64::INFINITY => None,
             seconds if (0.0..1e10).contains(&seconds) => Some(seconds),
-            _ => return Err(Malformed("a deadline is no time")),
+            _ => return Err(Malformed("a deadline is not a time")),
         };
         let mut items = Vec::new();
         for _ in 0..from.count()? {
             let advice = match from.byte()? {
                 0 => None,
                 1 => Some((from.size()?, from.size()?)),
-                _ => return Err(Malformed("an advice is of no known kind")),
+                _ => return Err(Malformed("an advice has an unknown kind")),
             };
             let (first, count) = (from.whole()?, from.size()?);
             let last = first.checked_add(count as u64).ok_or(Malformed("trials beyond the last one"))?;
@@ -277,7 +277,7 @@ impl Reply {
             1 => Self::Refused(from.text()?.to_owned()),
             2 => Self::Answer(Answer::read(&mut from)?),
             3 => Self::Failed(from.whole()?),
-            _ => return Err(Malformed("a reply is of no known kind")),
+            _ => return Err(Malformed("a reply has an unknown kind")),
         };
         from.end()?;
         Ok(reply)
@@ -322,7 +322,7 @@ impl Answer {
             .map(|_| match from.byte()? {
                 0 => Ok(false),
                 1 => Ok(true),
-                _ => Err(Malformed("a trial is neither finished nor not")),
+                _ => Err(Malformed("the state of a trial is invalid")),
             })
             .collect::<Result<_, _>>()?;
         let count = from.count()?;
@@ -330,7 +330,7 @@ impl Answer {
         for _ in 0..count {
             let first = from.byte()?;
             if first >= 2 * TRIGGERED {
-                return Err(Malformed("a cell is of no known kind"));
+                return Err(Malformed("a cell has an unknown kind"));
             }
             let steps = from.whole()?;
             let triggered = if first & TRIGGERED == 0 { 0 } else { from.whole()? };
@@ -340,7 +340,7 @@ impl Answer {
                 2 => Reading::Value(from.number()?),
                 3 => Reading::Unresolved,
                 4 => Reading::Faulty,
-                _ => return Err(Malformed("a cell is of no known kind")),
+                _ => return Err(Malformed("a cell has an unknown kind")),
             };
             cells.push(Cell { reading, steps, triggered, shrunk: first & SHRUNK != 0 });
         }

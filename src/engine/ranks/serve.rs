@@ -23,7 +23,7 @@ pub enum ServeError {
     #[error("the connection to the head broke: {0}")]
     Connection(#[from] io::Error),
     /// The head said what means nothing.
-    #[error("the head is not understood: {0}")]
+    #[error("the message of the main process is invalid: {0}")]
     Malformed(#[from] Malformed),
     /// It cannot take part; the head knows why.
     #[error("{0}")]
@@ -77,7 +77,7 @@ pub fn serve(
         }
         Ok(Task::ServeError(broken)) => return Err(broken),
         Ok(Task::Order(Order::Lease(_) | Order::Stop) | Task::Lease(..)) => {
-            return Err(Malformed("the head does not say what it runs").into());
+            return Err(Malformed("the main process did not send its inputs").into());
         }
         Err(_) => return Ok(()),
     };
@@ -85,12 +85,12 @@ pub fn serve(
     let prepared = if greeting.version == version {
         prepare(&greeting.inputs)
     } else {
-        Err(format!("it is smc {version}, the head is smc {}", greeting.version))
+        Err(format!("its version is smc {version}, that of the main process is smc {}", greeting.version))
     };
     let ready = prepared.and_then(|study| {
         let own = print(&study);
         if own != greeting.print {
-            return Err(format!("it has another model: {own} instead of {}", greeting.print));
+            return Err(format!("its model differs: {own} instead of {}", greeting.print));
         }
         let threads = Threads::new(Some(greeting.threads)).map_err(|error| error.to_string())?;
         Ok((study, own, threads))
@@ -187,15 +187,15 @@ impl<'s> Worker<'s> {
 
     /// The job of a lease, taken from the worker.
     fn job(&mut self, lease: &Lease) -> Result<Job<'s>, Malformed> {
-        let world = self.study.worlds.get(lease.world).ok_or(Malformed("there is no such world"))?;
+        let world = self.study.worlds.get(lease.world).ok_or(Malformed("unknown world"))?;
         if lease.columns.is_empty() || lease.columns.iter().any(|&column| column >= world.columns.len()) {
-            return Err(Malformed("there is no such column"));
+            return Err(Malformed("unknown column"));
         }
         let there = |(moves, option): (usize, usize)| {
             world.scenario.moves.get(moves).is_some_and(|moves| option < moves.options.len())
         };
         if !lease.items.iter().all(|item| item.advice.is_none_or(there)) {
-            return Err(Malformed("there is no such advice"));
+            return Err(Malformed("unknown advice"));
         }
         let warm = self.jobs.iter().position(|job| {
             let same = job.subject.number == Some(lease.world) && job.seed == lease.seed;
@@ -207,8 +207,7 @@ impl<'s> Worker<'s> {
         let subject = match self.subjects[lease.world].get() {
             Some(subject) => subject,
             None => {
-                let subject =
-                    Subject::of(self.study, lease.world).ok_or(Malformed("there is no such world"))?;
+                let subject = Subject::of(self.study, lease.world).ok_or(Malformed("unknown world"))?;
                 self.subjects[lease.world].get_or_init(|| subject)
             }
         };

@@ -118,12 +118,12 @@ fn state(result: &mut QueryResult, found: &Found, delta: f64) {
                 format!("asymptotic, {}, {} runs: not certified", words::level(delta), spread.runs);
             if spread.extinct > 0 {
                 result.warnings.push(format!(
-                    "{} of {} runs never reached the event; with more replicas the estimate scatters less",
+                    "{} of {} runs never reached the event; more replicas reduce the scatter",
                     spread.extinct, spread.runs
                 ));
             }
             result.warnings.push(
-                "the interval supposes that the robustness sees the way on which the event mostly comes; its misses are mostly low"
+                "the interval assumes that the robustness rises on most paths to the event; if not, it is too low"
                     .to_owned(),
             );
         }
@@ -138,27 +138,27 @@ fn state(result: &mut QueryResult, found: &Found, delta: f64) {
             result.warnings.push(match spread {
                 // The bound is that of one side, at the error that was asked for.
                 Some(spread) if over && spread.mean <= plain.high => format!(
-                    "{DISAGREES}: splitting says {}, which the plain trials exclude at {}: refused; more of them (`plain`) tell whether that is chance",
+                    "{DISAGREES}: splitting estimates {}, which the plain trials exclude at {}: refused; use more plain trials (`plain`) to exclude chance",
                     words::number(spread.mean),
                     words::level(delta)
                 ),
                 Some(spread) if !agrees => format!(
-                    "{DISAGREES}: splitting says {}, which the plain trials exclude at {}: refused; the robustness does not see the way on which the event comes",
+                    "{DISAGREES}: splitting estimates {}, which the plain trials exclude at {}: refused; the robustness does not rise on most paths to the event",
                     words::number(spread.mean),
                     words::level(DISAGREEMENT)
                 ),
                 Some(_) if found.blind => format!(
-                    "{DISAGREES}: no run reached the event, and the robustness rose in none of them before it; ask for the opposite, or for an event that comes by and by"
+                    "{DISAGREES}: no run reached the event, and the robustness rose in none of them; use the complement, or an event that is approached gradually"
                 ),
-                Some(_) => "no run of splitting reached the event: more replicas, or a later horizon".to_owned(),
-                None if stopped => "sampling ended before the runs of splitting did: this is what the plain trials say".to_owned(),
-                None => "splitting came to no estimate".to_owned(),
+                Some(_) => "no run of splitting reached the event; use more replicas or a later horizon".to_owned(),
+                None if stopped => "sampling ended before the runs of splitting were complete; this is the result of the plain trials".to_owned(),
+                None => "splitting gave no estimate".to_owned(),
             });
         }
     }
     if found.lost > 0 {
         result
             .warnings
-            .push(format!("{} paths of splitting are unresolved: read as reaching the event and as not, and the interval holds both", found.lost));
+            .push(format!("{} paths of splitting are unresolved; the interval covers both cases, that they reach the event and that they do not", found.lost));
     }
 }

@@ -71,13 +71,12 @@ impl Family {
                 finite("mean", *mean)?;
                 spread(*sd)?;
                 if !(0.0 < *mean && *mean < 1.0) {
-                    return Err(format!("mean of a beta law is {mean}; it must lie between 0 and 1"));
+                    return Err(format!("mean of a beta distribution is {mean}; it must be between 0 and 1"));
                 }
                 let limit = (mean * (1.0 - mean)).sqrt();
                 if *sd >= limit {
                     return Err(format!(
-                        "standard deviation {sd} is too large for a beta law of mean {mean}: it must stay \
-                         below sqrt(mean (1 - mean)) = {limit}"
+                        "standard deviation {sd} is too large for a beta distribution of mean {mean}: it must be below sqrt(mean (1 - mean)) = {limit}"
                     ));
                 }
                 Ok(())
@@ -104,13 +103,15 @@ impl Family {
             Self::Poisson { mean } => {
                 finite("mean", *mean)?;
                 if !(0.0..=POISSON_LIMIT).contains(mean) {
-                    return Err(format!("mean of a Poisson law is {mean}; it must lie between 0 and 1e9"));
+                    return Err(format!(
+                        "mean of a Poisson distribution is {mean}; it must be between 0 and 1e9"
+                    ));
                 }
                 Ok(())
             }
             Self::Bernoulli { p } => {
                 if !(0.0..=1.0).contains(p) {
-                    return Err(format!("probability is {p}; it must lie between 0 and 1"));
+                    return Err(format!("probability is {p}; it must be between 0 and 1"));
                 }
                 Ok(())
             }
@@ -122,7 +123,7 @@ impl Family {
                     finite("value", *value)?;
                     if !(0.0..=1.0).contains(weight) {
                         return Err(format!(
-                            "probability of {value} is {weight}; it must lie between 0 and 1"
+                            "probability of {value} is {weight}; it must be between 0 and 1"
                         ));
                     }
                 }
@@ -150,7 +151,7 @@ impl Law {
                 // Written so that a mass that is not a number is refused too.
                 let some = interval_mass(family, *low, *high) > 0.0;
                 if !free && !some {
-                    return Err(format!("the law has no mass between {low} and {high}"));
+                    return Err(format!("the distribution has no probability between {low} and {high}"));
                 }
                 Ok(())
             }

@@ -99,10 +99,10 @@ fn section(page: &mut String, group: &[&QueryResult]) {
             Some(choice) if !first.certifies.is_empty() => format!(
                 "Choose <strong>{}</strong>{}.",
                 escape(choice),
-                if ranking.tied { "; those marked tied carry the same certificate" } else { "" }
+                if ranking.tied { "; options marked tied have the same certificate" } else { "" }
             ),
             Some(choice) => {
-                format!("<strong>{}</strong> leads so far, but nothing is certified yet.", escape(choice))
+                format!("<strong>{}</strong> is best so far, but nothing is certified.", escape(choice))
             }
         };
         let _ = writeln!(page, "<p>{said}</p>");

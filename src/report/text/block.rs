@@ -69,7 +69,7 @@ pub(super) fn word(result: &QueryResult) -> (&'static str, Paint) {
 fn value(text: &mut String, result: &QueryResult, palette: Palette) {
     let Some(estimate) = result.estimate else {
         let sampled = result.counts.trials > 0;
-        line(text, if sampled { "nothing is known" } else { "nothing was sampled" });
+        line(text, if sampled { "no result" } else { "nothing was sampled" });
         return;
     };
     let (shown, range) = printed(result, &Interval { estimate, low: result.low, high: result.high });
@@ -109,7 +109,7 @@ pub(super) fn method(text: &mut String, result: &QueryResult, palette: Palette) 
     line(text, &palette.paint(Paint::Faint, &format!("method: {name}({})", numbers.join(", "))));
 }
 
-/// What the plain trials say by themselves, and what the runs of splitting took.
+/// The result of the plain trials alone, and the cost of the runs of splitting.
 fn rare(text: &mut String, rare: &Rare) {
     let Rare { plain_low, plain_high, .. } = *rare;
     let plain_middle =
@@ -131,16 +131,17 @@ fn rare(text: &mut String, rare: &Rare) {
     }
 }
 
-/// How a result falls short of what was asked.
+/// How a result falls short of its query.
 pub(super) fn shortfall(text: &mut String, result: &QueryResult, palette: Palette) {
     let Some(shortfall) = result.shortfall() else { return };
-    let lacking = if result.stopped_by == Stop::Cap { "trials" } else { "time" };
+    let lacking = if result.stopped_by == Stop::Cap { "too few trials" } else { "too little time" };
     let said = match (shortfall, result.kind) {
-        (Shortfall::NotBegun, _) => format!("{lacking} did not suffice for one trial"),
+        (Shortfall::NotBegun, _) if result.stopped_by == Stop::Cap => "the budget has no trial".to_owned(),
+        (Shortfall::NotBegun, _) => format!("{lacking} for a trial"),
         (Shortfall::Incomplete, Kind::Rank) => {
-            format!("{lacking} did not suffice for a choice that is certain enough")
+            format!("{lacking} for a choice with the requested certificate")
         }
-        (Shortfall::Incomplete, _) => format!("{lacking} did not suffice for what the query asks"),
+        (Shortfall::Incomplete, _) => format!("{lacking} for the requested result"),
     };
     let word = palette.paint(Paint::Caution, &format!("{}:", shortfall.name()));
     line(text, &format!("{word} {said}"));
@@ -179,20 +180,18 @@ pub(super) fn cause(result: &QueryResult) -> &'static str {
     let counts = result.counts;
     match result.stopped_by {
         Stop::Boundary => "stopped at the boundary of the test",
-        Stop::Width if result.rank.is_some() => "stopped once the choice was certain enough",
+        Stop::Width if result.rank.is_some() => "stopped when the choice was certified",
         Stop::Width => "stopped when narrow enough",
-        Stop::Unresolved if counts.unresolved == counts.trials => {
-            "stopped because all of them are unresolved"
-        }
+        Stop::Unresolved if counts.unresolved == counts.trials => "stopped because all trials are unresolved",
         Stop::Unresolved if result.kind == Kind::Check => {
-            "stopped because how unresolved trials are read decides, however many more there are"
+            "stopped: the verdict depends on the unresolved trials, and more trials cannot change that"
         }
         Stop::Unresolved => {
-            "stopped when narrow enough in each reading of the unresolved trials, but not in both together"
+            "stopped when narrow enough for unresolved trials read as failures and as successes, but not for both together"
         }
         Stop::Plan => "as planned",
         Stop::Cap => "stopped at the largest number of trials",
-        Stop::Deadline => "stopped when time was up",
+        Stop::Deadline => "stopped at the time limit",
         Stop::Interrupt => "interrupted",
     }
 }
@@ -210,7 +209,7 @@ pub(in crate::report) fn moment(time: f64, unit: &str) -> String {
     if unit == "steps" { format!("step {}", plain(time)) } else { format!("{} {unit}", plain(time)) }
 }
 
-/// What a witness is one of, in words. Of a quantile the event is not the claim.
+/// The kind of a witness, in words. For a quantile the event is not the claim.
 pub(in crate::report) fn shown(shows: Shows, of: bool) -> &'static str {
     match shows {
         Shows::Fails if of => "without it",

@@ -16,12 +16,12 @@ pub(super) fn write(text: &mut String, result: &QueryResult, ranking: &Ranking, 
     };
     let choice = palette.paint(Paint::Good, choice);
     let mut said = if result.certifies.is_empty() {
-        format!("{choice} leads so far, but nothing is certified yet")
+        format!("{choice} is best so far, but nothing is certified")
     } else {
         format!("choose {choice}")
     };
     if ranking.tied {
-        said += "; those marked tied carry the same certificate";
+        said += "; options marked tied have the same certificate";
     }
     rows::line(text, &said);
     let rows: Vec<Vec<Cell>> = ranking

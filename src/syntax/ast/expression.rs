@@ -129,7 +129,7 @@ pub enum Aggregate {
     Mean,
 }
 
-/// What binds a name over a set.
+/// A construct that binds a name over a set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantifier {
     /// `forall a in S: body`
@@ -164,13 +164,13 @@ pub enum Moment {
 /// An expression and its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expr {
-    /// What it is.
+    /// Its kind.
     pub kind: ExprKind,
     /// Where.
     pub span: Span,
 }
 
-/// What an expression is.
+/// The kind of an expression.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ExprKind {
     /// `0.2 m/s`
@@ -215,7 +215,7 @@ pub enum ExprKind {
         variable: Ident,
         /// The set it ranges over.
         set: Box<Expr>,
-        /// What is said of each. For `count(a in S)` without a condition: `true`.
+        /// The condition for each member. For `count(a in S)` without a condition: `true`.
         body: Box<Expr>,
     },
     /// `F<=10 s p`

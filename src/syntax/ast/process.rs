@@ -41,13 +41,13 @@ pub enum ProcessItem {
 pub struct VarDecl {
     /// Its name.
     pub name: Ident,
-    /// What it may hold. `None`: a number or truth value, as its initial value says.
+    /// Its domain. `None`: a number or a truth value, like its initial value.
     pub domain: Option<Domain>,
     /// Its value at the start.
     pub initial: Expr,
 }
 
-/// What a variable may hold.
+/// The domain of a variable.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Domain {
     /// `0 .. 7`: whole numbers, ends included.
@@ -63,7 +63,7 @@ pub struct Command {
     pub guard: Expr,
     /// How long it waits. `None`: it fires at the next step.
     pub timing: Option<Timing>,
-    /// What may happen; several need weights.
+    /// The branches; several need weights.
     pub branches: Vec<Branch>,
     /// The whole command.
     pub span: Span,
@@ -83,7 +83,7 @@ pub enum Timing {
 pub struct Branch {
     /// Its weight, if written.
     pub weight: Option<Expr>,
-    /// What changes, all at once; empty for `{ }`.
+    /// The updates, applied together; empty for `{ }`.
     pub updates: Vec<Update>,
     /// Where.
     pub span: Span,
@@ -127,7 +127,7 @@ pub enum BehaviourItem {
 pub struct StateDecl {
     /// Its name.
     pub name: Ident,
-    /// What it overrides while it lasts.
+    /// The fields that it sets while it lasts.
     pub fields: Vec<Field>,
     /// How it ends.
     pub transitions: Vec<Transition>,
@@ -142,7 +142,7 @@ pub struct Transition {
     pub guard: Option<Expr>,
     /// `after …`
     pub after: Option<Box<Value>>,
-    /// Where to; several need weights.
+    /// The target states; several need weights.
     pub targets: Vec<Choice>,
     /// The whole transition.
     pub span: Span,
@@ -151,9 +151,9 @@ pub struct Transition {
 /// `on advice { choose { p: follow | 1 - p: ignore } }`
 #[derive(Clone, Debug, PartialEq)]
 pub struct OnDecl {
-    /// What happens.
+    /// The event.
     pub event: Ident,
-    /// What may be done then; several need weights.
+    /// The answers; several need weights.
     pub choices: Vec<Choice>,
     /// The whole declaration.
     pub span: Span,

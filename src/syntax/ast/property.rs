@@ -51,7 +51,7 @@ pub enum PropertyItem {
 /// One query.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Query {
-    /// What is asked.
+    /// The query.
     pub kind: QueryKind,
     /// How sure, by which procedure.
     pub clauses: Clauses,
@@ -59,7 +59,7 @@ pub struct Query {
     pub span: Span,
 }
 
-/// What is asked.
+/// The kinds of queries.
 #[derive(Clone, Debug, PartialEq)]
 pub enum QueryKind {
     /// `check P(safe) >= 0.9`
@@ -102,7 +102,7 @@ pub struct Binding {
     pub value: Expr,
 }
 
-/// What is measured of the distribution of traces.
+/// A number of the distribution of traces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measure {
     /// Which.

@@ -81,7 +81,7 @@ pub struct LetDecl {
     pub name: Ident,
     /// Names of its arguments.
     pub arguments: Vec<Ident>,
-    /// What it stands for.
+    /// Its value.
     pub body: Expr,
 }
 
@@ -115,7 +115,7 @@ pub enum SceneItem {
     Point {
         /// Its name.
         name: Ident,
-        /// Where it is.
+        /// Its shape.
         at: Expr,
     },
     /// `import "file.geojson" where source == "map.png"`
@@ -168,7 +168,7 @@ pub enum ShapeExpr {
 /// `name = value`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field {
-    /// What is set.
+    /// The setting.
     pub name: Ident,
     /// To what.
     pub value: Value,
@@ -228,7 +228,7 @@ pub struct KindDecl {
     pub base: Ident,
     /// `preset name`
     pub preset: Option<Ident>,
-    /// What it sets.
+    /// Its fields.
     pub body: Vec<Field>,
 }
 
@@ -262,7 +262,7 @@ pub struct AgentsDecl {
     pub with: Vec<Expr>,
     /// Start state from a recording.
     pub recorded: Option<Recorded>,
-    /// What it sets; kinds' fields too.
+    /// Its fields, including those of kinds.
     pub body: Vec<Field>,
 }
 
@@ -275,18 +275,18 @@ pub struct GroupDecl {
     pub count: Expr,
     /// Kind of its members.
     pub kind: Ident,
-    /// Where `as particle` stands, if it does.
+    /// The place of `as particle`, if present.
     pub particle: Option<Span>,
     /// Behaviours attached by `with`.
     pub with: Vec<Expr>,
-    /// What it sets.
+    /// Its fields.
     pub body: Vec<Field>,
 }
 
 /// `moves user for 2 s { heading from -60 deg to 60 deg by 15 deg  stop }`
 #[derive(Clone, Debug, PartialEq)]
 pub struct MovesDecl {
-    /// Who may move otherwise.
+    /// The agent with the moves.
     pub agent: Ident,
     /// For how long.
     pub duration: Expr,

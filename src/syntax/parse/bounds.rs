@@ -41,7 +41,7 @@ impl Builder<'_> {
             Diagnostic::error(
                 code::UNEXPECTED,
                 Span::new(self.source.id, at, at + letter.len_utf8()),
-                format!("`{letter}` looks ahead in time, which a scenario cannot"),
+                format!("the temporal operator `{letter}` is not allowed in a scenario"),
             )
             .hint("move this formula to a property file (`.bltl`)"),
         )
@@ -65,8 +65,12 @@ impl Builder<'_> {
         let place = self.place(fault.at, fault.found);
         if comparison && matches!(word, "F" | "G" | "X" | "U" | "W" | "R") {
             return Some(
-                Diagnostic::error(code::BOUND, place, format!("a bound of `{word}` is written with `<=`"))
-                    .hint(format!("write `{word}<=` and a time, or an interval: `{word}[1 s, 5 s]`")),
+                Diagnostic::error(
+                    code::BOUND,
+                    place,
+                    format!("the bound of `{word}` must be written with `<=`"),
+                )
+                .hint(format!("write `{word}<=` and a time, or an interval: `{word}[1 s, 5 s]`")),
             );
         }
         if !(comparison || matches!(fault.found, "+" | "*" | "/" | "^" | "-" | "in"))
@@ -85,9 +89,9 @@ impl Builder<'_> {
         let formula = format!("({word} {} …)", fault.found);
         // Whether it has steps, or steps of a length, only the scenario knows.
         let steps =
-            number.bytes().all(|byte| byte.is_ascii_digit()).then(|| format!(" (of steps `#{number}`)"));
+            number.bytes().all(|byte| byte.is_ascii_digit()).then(|| format!(" (for steps `#{number}`)"));
         let hint = format!(
-            "write the bound with a unit{}, and parentheses: `{operator}{mark}{number} s {formula}`",
+            "write a unit{} and parentheses: `{operator}{mark}{number} s {formula}`",
             steps.unwrap_or_default()
         );
         Some(

@@ -54,7 +54,7 @@ struct Open {
     last: bool,
 }
 
-/// What is wrong with the braces.
+/// An error of the braces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Slip {
     /// A line lacks a `{`; or, where it has a `}` within it, at this byte, that one is too many.
@@ -259,23 +259,23 @@ fn error(source: &Source, slip: Slip, change: &Change) -> Diagnostic {
             let title = format!("expected `{}`, found `{}`", change.by, &text[at..=at]);
             Diagnostic::error(code::UNEXPECTED, span(at, at + 1), title)
         }
-        Slip::Stray { at } => Diagnostic::error(code::STRAY, span(at, at + 1), "`}` closes nothing"),
+        Slip::Stray { at } => Diagnostic::error(code::STRAY, span(at, at + 1), "`}` has no opening `{`"),
         Slip::NotOpened { close: Some(at), .. } if change.by == ' ' => {
-            Diagnostic::error(code::STRAY, span(at, at + 1), "`}` closes nothing")
+            Diagnostic::error(code::STRAY, span(at, at + 1), "`}` has no opening `{`")
         }
         Slip::NotOpened { .. } => {
             Diagnostic::error(code::UNEXPECTED, place, format!("expected `{{`, found {}", quote(found)))
         }
         Slip::NotClosed { open, .. } if change.by == ' ' => {
-            Diagnostic::error(code::UNEXPECTED, span(open, open + 1), "unexpected `{`, which nothing closes")
+            Diagnostic::error(code::UNEXPECTED, span(open, open + 1), "unexpected `{`, which is not closed")
         }
         Slip::NotClosed { open, .. } if found == "}" => {
-            Diagnostic::error(code::UNCLOSED, span(open, open + 1), "this `{` is not closed")
+            Diagnostic::error(code::UNCLOSED, span(open, open + 1), "`{` is not closed")
                 .related(place, "this closes the block around it")
         }
         Slip::NotClosed { open, .. } => {
             Diagnostic::error(code::UNCLOSED, place, format!("expected `}}`, found {}", quote(found)))
-                .related(span(open, open + 1), "this `{` is not closed")
+                .related(span(open, open + 1), "`{` is not closed")
         }
     }
 }
@@ -311,7 +311,7 @@ pub(super) fn together(source: &Source, said: Vec<Diagnostic>, slips: Vec<Diagno
     kept
 }
 
-/// What one error costs, where what it hides costs less.
+/// The cost of one error; the errors that it hides cost less.
 pub(super) const ONE: usize = 1 << 10;
 
 /// Mends a text whose braces do not pair up, in the way that leaves the fewest errors: `errors` weighs them, of a

@@ -35,13 +35,13 @@ pub(super) struct Builder<'s> {
     pub(super) doubts: Vec<(Range<usize>, usize)>,
     /// Where, behind one of them on its line, an item surely begins and no bracket is open.
     pub(super) resumed: Vec<u32>,
-    /// Whether the braces of the source pair up, once somebody asked for that.
+    /// Whether the braces of the source pair up, computed on first use.
     pub(super) even: OnceCell<bool>,
-    /// The braces of the text, once somebody asked for them.
+    /// The braces of the text, computed on first use.
     pub(super) braces: OnceCell<Braces>,
-    /// Its arrows, once somebody asked for them: thousands of errors on a line look for one.
+    /// Its arrows, computed on first use: thousands of errors on a line search for one.
     pub(super) arrows: OnceCell<Vec<usize>>,
-    /// The names that it declares, each with the word before it, once somebody asked for them.
+    /// The names that it declares, each with the word before it, computed on first use.
     pub(super) names: OnceCell<BTreeMap<&'s str, &'s str>>,
 }
 
@@ -160,7 +160,9 @@ impl Builder<'_> {
                 ident.span,
                 format!("the name `{name}` is also a unit"),
             )
-            .hint(format!("after a number `{name}` is read as the unit: `2 {name}` never means this name; choose another"));
+            .hint(format!(
+                "after a number, `{name}` is read as the unit, as in `2 {name}`; choose another name"
+            ));
             self.say(warning);
         }
         ident
@@ -186,7 +188,7 @@ impl Builder<'_> {
                         let place = Span::new(span.source, start, start + 1 + unknown.len_utf8());
                         self.say(
                             Diagnostic::error(code::ESCAPE, place, format!("unknown escape `\\{unknown}`"))
-                                .hint("known are `\\\"`, `\\\\`, `\\n` and `\\t`"),
+                                .hint("the escapes are `\\\"`, `\\\\`, `\\n` and `\\t`"),
                         );
                         value.push(unknown);
                     }

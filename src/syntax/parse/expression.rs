@@ -176,7 +176,7 @@ impl Builder<'_> {
             if first == COMPARISON && level == COMPARISON {
                 let span = self.span(place);
                 self.say(
-                    Diagnostic::error(code::CHAIN, span, "comparisons do not chain")
+                    Diagnostic::error(code::CHAIN, span, "comparisons cannot be chained")
                         .hint("join two comparisons with `&`: `a < b & b < c`"),
                 );
                 return None;
@@ -304,12 +304,11 @@ impl Builder<'_> {
         }
         if built.height > HEIGHT {
             // Operators in a row stand upon one another, the last one on the highest of the parts.
-            let title = format!(
-                "the expression is more than {HEIGHT} levels high, and each operator in a row is one"
-            );
+            let title =
+                format!("the expression has more than {HEIGHT} levels; each operator in a chain is a level");
             self.say(
                 Diagnostic::error(code::TOO_LONG, built.expr.span, title)
-                    .hint("give parts of it names with `let`, or write a fold such as `forall a in S: …`"),
+                    .hint("name parts of it with `let`, or write a fold such as `forall a in S: …`"),
             );
             return None;
         }
@@ -326,7 +325,7 @@ impl Builder<'_> {
                     "the temporal operator binds tighter than `=>`",
                 )
                 .hint(format!(
-                    "this reads `({whole}) => …`; write parentheses around what the operator is to cover"
+                    "this means `({whole}) => …`; write parentheses around the operand of the operator"
                 ));
                 self.say(warning);
             }
@@ -337,10 +336,10 @@ impl Builder<'_> {
                 let warning = Diagnostic::warning(
                     code::POWER_OF_QUANTITY,
                     left.expr.span.to(right.expr.span),
-                    "this is a power of the whole quantity, number and unit",
+                    "the power applies to the number and its unit",
                 )
                 .hint(
-                    "a power of the unit alone has no blanks: `2 m^2`; else write parentheses: `(2 m) ^ 2`",
+                    "for a power of the unit write no blanks: `2 m^2`; for a power of the quantity write parentheses: `(2 m) ^ 2`",
                 );
                 self.say(warning);
             }
@@ -358,7 +357,7 @@ impl Builder<'_> {
             // `5. m/s`
             let place =
                 Span { end: span.end.min(target.expr.span.end + 1), start: target.expr.span.end, ..span };
-            let error = Diagnostic::error(code::UNEXPECTED, place, "a number does not end in a point");
+            let error = Diagnostic::error(code::UNEXPECTED, place, "a number cannot end in a point");
             self.say(error.hint(format!("write `{written}`, or `{written}.0`")));
             return None;
         }
@@ -460,7 +459,7 @@ impl Builder<'_> {
             let variable = self.declared(&over.part(Rule::name)?);
             let set = self.sequence(over.part(Rule::set)?)?;
             let Some(fold) = aggregate(&function.name) else {
-                let title = format!("`{}` does not fold over a set", function.name);
+                let title = format!("`{}` cannot fold over a set", function.name);
                 let quantifier = match function.name.as_str() {
                     "all" => Some("forall"),
                     "any" => Some("exists"),
@@ -473,7 +472,7 @@ impl Builder<'_> {
                         let (set, body) = (self.source.slice(set.expr.span), self.source.slice(body));
                         error.hint(format!("write `{quantifier} {} in {set}: {body}`", variable.name))
                     }
-                    None => error.hint("`min`, `max`, `sum` and `mean` take `… for a in S`"),
+                    None => error.hint("only `min`, `max`, `sum` and `mean` accept `… for a in S`"),
                 });
                 return None;
             };

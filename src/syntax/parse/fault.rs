@@ -14,17 +14,17 @@ use crate::syntax::source::Span;
 use pest::Parser;
 use pest::error::{ErrorVariant, InputLocation};
 
-/// Where the strict rule failed, and what it would have taken there.
+/// The place where the strict rule failed, with the rules expected there.
 pub(super) struct Fault<'t> {
     /// Byte of the failure.
     pub(super) at: usize,
-    /// What stands there; empty at the end of the text.
+    /// The text found there; empty at the end of the file.
     pub(super) found: &'t str,
-    /// What could have stood there.
+    /// The rules expected there.
     pub(super) expected: Vec<Rule>,
     /// Start of the declaration.
     pub(super) from: usize,
-    /// What it was meant to be.
+    /// The rule of the enclosing construct.
     pub(super) rule: Rule,
 }
 
@@ -115,7 +115,7 @@ impl Builder<'_> {
         }
         let place = self.place_of(&fault);
         let mut diagnostic = if matches!(fault.found, ")" | "]" | "}") && self.closes_nothing(&fault) {
-            Diagnostic::error(code::STRAY, place, format!("`{}` closes nothing", fault.found))
+            Diagnostic::error(code::STRAY, place, format!("`{}` has no opening bracket", fault.found))
         } else {
             let expected = expected_nouns(&fault.expected);
             let title = if expected.is_empty() {
@@ -134,17 +134,20 @@ impl Builder<'_> {
             if bracket != '{' && (later || self.ends_bracket(&fault, bracket)) {
                 // What follows on a later line, or cannot stand in it, belongs to something else: the bracket is the error.
                 let close = nesting::partner(bracket);
-                return Diagnostic::error(code::UNCLOSED, span, format!("this `{bracket}` is not closed"))
-                    .related(self.place(fault.at, fault.found), format!("expected `{close}` before this"));
+                return Diagnostic::error(code::UNCLOSED, span, format!("`{bracket}` is not closed"))
+                    .related(
+                        self.place(fault.at, fault.found),
+                        format!("expected `{close}` before this text"),
+                    );
             }
             if closes {
-                diagnostic = diagnostic.related(span, format!("this `{bracket}` is still open"));
+                diagnostic = diagnostic.related(span, format!("`{bracket}` is still open"));
             }
         }
         if let Some(hint) = self.belonging(&fault) {
             diagnostic = diagnostic.hint(hint);
         } else if nouns::OPERATORS.contains(&fault.found) && lexeme::declares_name(self.text, fault.at) {
-            diagnostic = diagnostic.hint("in property files that is an operator; another name is free");
+            diagnostic = diagnostic.hint("this is an operator in property files; choose another name");
         } else if let Some(word) = Self::meant(&fault) {
             diagnostic = diagnostic.hint(format!("did you mean `{word}`?"));
         } else if let Some(missing) = self.missing(&fault) {
@@ -189,9 +192,9 @@ impl Builder<'_> {
         let (_, block) = blocks.into_iter().find(|(rule, _)| in_scenario && starts(*rule))?;
         let is_after_a_brace = self.text[..fault.at].trim_end().ends_with('}');
         Some(if is_after_a_brace {
-            format!("`{}` stands in a {block}: is the `}}` before this one too many?", fault.found)
+            format!("`{}` belongs in a {block}; the `}}` before it may be one too many", fault.found)
         } else {
-            format!("`{}` stands in a {block}", fault.found)
+            format!("`{}` belongs in a {block}", fault.found)
         })
     }
 
@@ -310,7 +313,7 @@ fn last_token_end(text: &str, from: usize, end: usize) -> usize {
     last
 }
 
-/// What is found, for a message.
+/// The text found, for a message.
 pub(super) fn quote(found: &str) -> String {
     if found.is_empty() {
         return "the end of the file".to_owned();

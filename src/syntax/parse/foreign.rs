@@ -39,9 +39,9 @@ type Row = (In, &'static str, &'static str, &'static str);
 
 /// Titles of several rows.
 const QUERY: &str = "a query starts with `check` or `estimate`, found `{}`";
-const ONE_SET: &str = "a quantifier goes over one set, found `{}`";
-const MOMENT: &str = "`at` reads a number once, and stands around the whole metric of `E(…)` or `Q(…)`";
-const UPDATE: &str = "an update is written with `=`, found `{}`";
+const ONE_SET: &str = "a quantifier needs one set, found `{}`";
+const MOMENT: &str = "`at` must apply to the whole metric of `E(…)` or `Q(…)`";
+const UPDATE: &str = "an update needs `=`, found `{}`";
 
 /// The forms of other languages.
 #[rustfmt::skip]
@@ -64,14 +64,14 @@ const FORMS: &[Row] = &[
     (Properties, "UPPAAL", "E < > $e", "check P(F ($e)) > 0.01"),
     (Properties, "UPPAAL", "E [ ] $e", "check P(G ($e)) > 0.01"),
     (Properties, "UPPAAL", "simulate [ $e1 ] { $e2 }", " `smc simulate` runs trials and writes their states"),
-    (Properties, "a threshold stands after `P(…)`, found `{}`", "check P @ $r $n ( $e )", "check P($e) $r $n"),
+    (Properties, "the threshold must follow `P(…)`, found `{}`", "check P @ $r $n ( $e )", "check P($e) $r $n"),
     (Properties, QUERY, "P ( $e ) $r $n", "check P($e) $r $n"),
     (Properties, QUERY, "P ( $e )", "estimate P($e)"),
     (Properties, QUERY, "Q ( $e1 , $e2 )", "estimate Q($e1, $e2)"),
     (Properties, QUERY, "E ( $e )", "estimate E($e)"),
     // Formulas.
-    (Properties, MOMENT, "at end $r", " of a condition write `F[T, T] (…)` with the horizon for T"),
-    (Properties, MOMENT, "at $t $r", " of a condition write `F[$t, $t] (…)`"),
+    (Properties, MOMENT, "at end $r", " for a condition write `F[T, T] (…)` with the horizon for T"),
+    (Properties, MOMENT, "at $t $r", " for a condition write `F[$t, $t] (…)`"),
     (Properties, "UPPAAL", "= $e1 @ -- > $e2", "= G ($e1 => F ($e2))"),
     (Properties, "LTL", "< > _ [ $t1 , $t2 ]", "F[$t1, $t2]"),
     (Properties, "LTL", "< > [ $t1 , $t2 ]", "F[$t1, $t2]"),
@@ -91,9 +91,9 @@ const FORMS: &[Row] = &[
     (Properties, "LTL", "always $e", "G $e"),
     (Properties, "LTL", "globally $e", "G $e"),
     (Properties, "LTL", "until", "U"),
-    (Properties, "an interval has two ends, found `{}`", "$o @ [ $t ]", "$o<=$t"),
+    (Properties, "an interval needs two ends, found `{}`", "$o @ [ $t ]", "$o<=$t"),
     (Properties, "a bound has no brackets, found `{}`", "$o @ [ <= $t ]", "$o<=$t"),
-    (Properties, "an interval stands in `[` and `]`, found `{}`", "$o @ { $t1 , $t2 }", "$o[$t1, $t2]"),
+    (Properties, "an interval must be in `[` and `]`, found `{}`", "$o @ { $t1 , $t2 }", "$o[$t1, $t2]"),
     (Properties, "a bound has no brackets, found `{}`", "$o @ { <= $t }", "$o<=$t"),
     (Both, "UPPAAL", "forall @ ( $w1 : $w2 )", "forall $w1 in $w2:"),
     (Both, "UPPAAL", "exists @ ( $w1 : $w2 )", "exists $w1 in $w2:"),
@@ -105,11 +105,11 @@ const FORMS: &[Row] = &[
     (Both, "Python", "# $l", "// $l"),
     (Both, "MATLAB", "% $l", "// $l"),
     // Declarations.
-    (Scenario, "PRISM", "dtmc", " leave it out: commands without rates make steps"),
-    (Scenario, "PRISM", "ctmc", " leave it out: commands with rates (`at 1 /s`) run in continuous time"),
-    (Scenario, "PRISM", "mdp", " leave it out: `choose` makes all enabled commands as likely"),
+    (Scenario, "PRISM", "dtmc", " remove it: commands without rates make steps"),
+    (Scenario, "PRISM", "ctmc", " remove it: commands with rates (`at 1 /s`) run in continuous time"),
+    (Scenario, "PRISM", "mdp", " remove it: `choose` draws one of the enabled commands, all equally likely"),
     (Scenario, "PRISM", "module $w", "process $w { … }"),
-    (Scenario, "PRISM", "rewards $q", " leave it out: a query adds up a number, `estimate E(sum<=10 steps (…)) in 0 .. 10`"),
+    (Scenario, "PRISM", "rewards $q", " remove it: a query sums a number, `estimate E(sum<=10 steps (…)) in 0 .. 10`"),
     (Both, "PRISM", "const @ $y $w = $e", "const $w = $e"),
     (Both, "PRISM", "formula $w = $c", "let $w = $c"),
     (Properties, "PRISM", "label $q = $c", "property $q = $c"),
@@ -126,7 +126,7 @@ const FORMS: &[Row] = &[
     (Scenario, "UPPAAL", "int $w = $e", "var $w: 0 .. 10 = $e"),
     (Scenario, "UPPAAL", "bool $w = $e", "var $w = $e"),
     (Scenario, "UPPAAL", "$y $w = $e", "var $w: real = $e"),
-    (Scenario, "UPPAAL", "clock $w", " a process has no clocks: `when … after 3 s -> …` waits for a time"),
+    (Scenario, "UPPAAL", "clock $w", " a process has no clocks: write `when … after 3 s -> …` to wait for a time"),
     (Scenario, UPDATE, "$w @ + = $e", "$w = $w + $e"),
     (Scenario, UPDATE, "$w @ - = $e", "$w = $w - $e"),
     (Scenario, UPDATE, "$w @ + +", "$w = $w + 1"),
@@ -134,8 +134,8 @@ const FORMS: &[Row] = &[
     (Scenario, "Python", "$w ( @ $w1 = $e1 , $w2 = $e2 )", "$w($e1, $e2)"),
     (Scenario, "Python", "$w ( @ $w1 = $e1 )", "$w($e1)"),
     (Scenario, "Python", "= @ [ $e1 , $e2 ]", "= ($e1, $e2)"),
-    (Scenario, "a number of agents stands after their name, found `{}`", "agents @ $n $w : $w2", "agents $w[$n]: $w2"),
-    (Scenario, "goals are joined by `->`, found `{}`", "route = $w1 @ , $w2", "route = $w1 -> $w2"),
+    (Scenario, "the number of agents must follow their name, found `{}`", "agents @ $n $w : $w2", "agents $w[$n]: $w2"),
+    (Scenario, "goals must be joined by `->`, found `{}`", "route = $w1 @ , $w2", "route = $w1 -> $w2"),
     (Scenario, "expected `in`, found `{}`", "uniform @ $w", "uniform in $w"),
     (Scenario, "expected a quoted text, found `{}`", "import @ $w", "import \"$w\""),
 ];
@@ -150,14 +150,14 @@ const OPERATORS: &[Row] = &[
     (Both, "", "**", "^"),
 ];
 
-/// What else is written otherwise within a hole.
+/// Other spellings within a hole.
 const INSIDE: &[Row] = &[
     (Scenario, "", "( $w1 ' = $e1 ) & ( $w2 ' = $e2 )", "{ $w1 = $e1; $w2 = $e2 }"),
     (Scenario, "", "( $w ' = $e )", "$w = $e"),
     (Scenario, "", "+ $p :", "| $p:"),
     (Scenario, "", "$p :", "$p:"),
 ];
-/// What is written otherwise within a condition of PRISM, where operators over time bind more loosely than others.
+/// Other spellings within a condition of PRISM, where temporal operators bind more loosely than others.
 #[rustfmt::skip]
 const CONDITION: &[Row] = &[
     (Properties, "", "$c1 U <= $n $c2", "($c1) U<=$n ($c2)"),
@@ -192,7 +192,7 @@ const WORDS: [(&str, &str); 20] = [
     ("log", "ln"),
 ];
 
-/// What to write for a name or function that is unknown here and known elsewhere.
+/// The replacement of a name or function that belongs to another language.
 pub(crate) fn word(name: &str, arguments: &str) -> Option<String> {
     let (_, ours) = WORDS.iter().find(|(foreign, _)| *foreign == name)?;
     Some(format!("write `{}`", ours.replace("$a", arguments)))
@@ -474,7 +474,7 @@ struct Hit {
     place: Span,
     /// The spelling, for the title.
     shown: String,
-    /// What to write.
+    /// The replacement.
     ours: String,
 }
 

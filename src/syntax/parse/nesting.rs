@@ -21,8 +21,12 @@ pub(super) enum Scan {
 
 /// The error for nesting that is too deep.
 pub(super) fn too_deep(span: Span) -> Diagnostic {
-    Diagnostic::error(code::TOO_DEEP, span, format!("brackets and prefixes nest more than {NESTING} deep"))
-        .hint("give inner parts names with `let`")
+    Diagnostic::error(
+        code::TOO_DEEP,
+        span,
+        format!("brackets and prefixes are nested more than {NESTING} deep"),
+    )
+    .hint("name inner parts with `let`")
 }
 
 /// Scans a text, which is that of the source or one as long.
@@ -35,8 +39,8 @@ pub(super) fn scan(source: &Source, text: &str) -> Scan {
             let place = Span::new(source.id, at, at + 2);
             return Scan::Until(
                 at,
-                Diagnostic::error(code::COMMENT, place, "the comment never ends")
-                    .hint("close it with `*/`; `//` comments to the end of the line"),
+                Diagnostic::error(code::COMMENT, place, "the comment is not closed")
+                    .hint("close it with `*/`; a comment with `//` ends with its line"),
             );
         }
         if let Some(length) = lexeme::trivia(rest) {

@@ -182,7 +182,7 @@ pub(super) fn words(rule: Rule) -> &'static [&'static str] {
     }
 }
 
-/// What a rule is called: `rank` orders the nouns of one message, lower first.
+/// The name of a rule in messages; `rank` orders the nouns of one message, lower first.
 pub(super) fn noun(rule: Rule) -> Option<(u8, String)> {
     if let Some(mark) = mark(rule) {
         return Some((4, format!("`{mark}`")));

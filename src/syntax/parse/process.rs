@@ -115,8 +115,8 @@ impl Builder<'_> {
         }
         for (_, span) in branches.iter().filter(|(has_weight, _)| !has_weight) {
             self.say(
-                Diagnostic::error(code::WEIGHT, *span, "one of several branches has no weight")
-                    .hint("write `1/2: …` before each; a Boolean value that needs `|` stands in parentheses"),
+                Diagnostic::error(code::WEIGHT, *span, "a branch has no weight")
+                    .hint("write `1/2: …` before each branch; write a Boolean value with `|` in parentheses"),
             );
         }
     }
@@ -169,8 +169,12 @@ impl Builder<'_> {
             if !transitions.is_empty() {
                 let place = self.span(&part);
                 self.say(
-                    Diagnostic::error(code::FIELD_PLACE, place, "in a state fields come first")
-                        .hint("move it before the transitions"),
+                    Diagnostic::error(
+                        code::FIELD_PLACE,
+                        place,
+                        "fields of a state must come before its transitions",
+                    )
+                    .hint("move it before the transitions"),
                 );
             }
             fields.extend(self.field(part));

@@ -89,8 +89,8 @@ impl Builder<'_> {
             && let MeasureKind::Quantile(level) = &second.kind
         {
             self.say(
-                Diagnostic::error(code::SEVERAL_LEVELS, level.span, "only one level fits here")
-                    .hint("several quantiles at once are estimated: `estimate Q(0.5, 0.9, …)`"),
+                Diagnostic::error(code::SEVERAL_LEVELS, level.span, "only one level is allowed here")
+                    .hint("several quantiles can only be estimated: `estimate Q(0.5, 0.9, …)`"),
             );
             return None;
         }
@@ -177,8 +177,8 @@ impl Builder<'_> {
             if twice {
                 let word = self.source.slice(span).split_whitespace().next().unwrap_or("").to_owned();
                 self.say(
-                    Diagnostic::error(code::TWICE, span, format!("`{word}` stands here a second time"))
-                        .hint("keep one of the two"),
+                    Diagnostic::error(code::TWICE, span, format!("`{word}` is repeated"))
+                        .hint("remove one of them"),
                 );
             }
         }

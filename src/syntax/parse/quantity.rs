@@ -17,7 +17,7 @@ pub(super) const UNITS: [&str; 18] = [
 /// Those of times.
 const TIMES: [&str; 6] = ["s", "ms", "min", "h", "step", "steps"];
 
-/// What people write for a unit, and the unit.
+/// Common spellings of units, and the unit.
 const SPOKEN: [(&[&str], &str); 18] = [
     (&["metre", "metres", "meter", "meters", "M"], "m"),
     (&["centimetre", "centimetres", "centimeter", "centimeters"], "cm"),
@@ -104,9 +104,10 @@ impl Builder<'_> {
     }
 
     fn number_too_long(&mut self, span: Span) {
-        self.say(Diagnostic::error(code::NUMBER, span, "the number has too many digits").hint(
-            "numbers are kept exactly; about 37 digits fit, places after the point and exponent included",
-        ));
+        self.say(
+            Diagnostic::error(code::NUMBER, span, "the number has too many digits")
+                .hint("a number can have about 37 digits, including decimals and exponent"),
+        );
     }
 
     /// `kg/(m s)`, of a quantity or a point.

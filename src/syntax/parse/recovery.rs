@@ -105,7 +105,7 @@ impl Builder<'_> {
             Diagnostic::error(code::UNCLOSED, place, format!("expected `}}`, found {}", quote(found)));
         if let Some((open, _)) = nesting::open_bracket(self.text, block.as_span().start(), at) {
             let span = Span::new(self.source.id, open, open + 1);
-            diagnostic = diagnostic.related(span, "this `{` is not closed");
+            diagnostic = diagnostic.related(span, "`{` is not closed");
         }
         self.say(diagnostic);
     }

@@ -19,7 +19,7 @@ const MOST_WORDS: usize = 4;
 /// Keywords in whose place the grammar takes a name, so that it stumbles only over what follows.
 const OPENERS: [&str; 9] =
     ["circle", "rect", "polygon", "near", "uniform", "wait", "choose", "from", "count"];
-/// What people write for a shape, and the shape.
+/// Common spellings of shapes, and the shape.
 const SPOKEN: [(&str, &str); 3] = [("rectangle", "rect"), ("disc", "circle"), ("disk", "circle")];
 
 impl Builder<'_> {
@@ -44,11 +44,10 @@ impl Builder<'_> {
             }
             let mark = |at: usize| Span::new(self.source.id, at, at + 1);
             let close = nesting::partner(bracket);
-            let error =
-                Diagnostic::error(code::UNCLOSED, mark(at), format!("this `{bracket}` is not closed"))
-                    .related(self.place(fault.at, fault.found), format!("expected `{close}` before this"));
+            let error = Diagnostic::error(code::UNCLOSED, mark(at), format!("`{bracket}` is not closed"))
+                .related(self.place(fault.at, fault.found), format!("expected `{close}` before this text"));
             let others = open.iter().rev().skip(1).take(count - 1);
-            return Some(others.fold(error, |error, (at, _)| error.related(mark(*at), "nor is this one")));
+            return Some(others.fold(error, |error, (at, _)| error.related(mark(*at), "also not closed")));
         }
         None
     }

@@ -77,13 +77,14 @@ impl Builder<'_> {
             let title = format!("expected `>=`, `>`, `<=` or `<`, found `{}`", fault.found);
             let hint = match fault.found {
                 "=>" => "write `>=`; `=>` is an implication",
-                _ => "a test tells on which side of a number something lies, never whether it is that number",
+                _ => "a test can only decide on which side of a number a probability is",
             };
             return Some(Diagnostic::error(code::EQUALS, place, title).hint(hint));
         }
         if fault.found == ":=" && !fault.expected.contains(&Rule::t_assign) {
             return Some(
-                Diagnostic::error(code::EQUALS, place, "`:=` is not known").hint("`=` sets, `==` compares"),
+                Diagnostic::error(code::EQUALS, place, "`:=` is not an operator")
+                    .hint("`=` sets a value, `==` compares"),
             );
         }
         if matches!(fault.found, "==" | ":=" | "===")
@@ -120,14 +121,15 @@ impl Builder<'_> {
             && let Some((_, word)) = word.rsplit_once('.')
             && self.follows_arrow(start)
         {
-            let error = Diagnostic::error(code::UNEXPECTED, place, "a process sets its own variables only");
+            let error =
+                Diagnostic::error(code::UNEXPECTED, place, "a process can set only its own variables");
             return Some(error.hint(format!(
-                "let the process that has `{word}` set it, by a command that reads this one"
+                "set `{word}` in the process that declares it, in a command that reads this process"
             )));
         }
         Some(
             Diagnostic::error(code::EQUALS, place, "expected an operator, found `=`")
-                .hint("`=` sets, `==` compares"),
+                .hint("`=` sets a value, `==` compares"),
         )
     }
 
@@ -152,7 +154,7 @@ impl Builder<'_> {
         let place = Span::new(self.source.id, equals, equals + 1);
         let error =
             Diagnostic::error(code::UNEXPECTED, place, format!("unexpected `=` after `{number} {name}`"));
-        self.say(error.hint("the name that is set is missing; `==` compares"));
+        self.say(error.hint("the name to set is missing; `==` compares"));
         self.cut.push(Span::new(self.source.id, line, start + text.len()));
         true
     }
@@ -174,8 +176,9 @@ impl Builder<'_> {
         if word != "if" || !fault.after_value() {
             return None;
         }
-        let error = Diagnostic::error(code::OPERATOR, self.place(at, "if"), "`if` is a function");
-        Some(error.hint("write `if(condition, then, otherwise)`; of formulas `(a => b) & (!a => c)`"))
+        let error =
+            Diagnostic::error(code::OPERATOR, self.place(at, "if"), "`if` must be written as a function");
+        Some(error.hint("write `if(condition, then, otherwise)`; for formulas `(a => b) & (!a => c)`"))
     }
 
     /// `check E(m) >= 1.5 in 0 .. 2`
@@ -184,8 +187,8 @@ impl Builder<'_> {
             return None;
         }
         let place = self.place(fault.at, fault.found);
-        let error = Diagnostic::error(code::UNEXPECTED, place, "a range stands after what it is of");
-        Some(error.hint("as in `check E(m) in 0 .. 2 >= 1.5`; a probability needs none"))
+        let error = Diagnostic::error(code::UNEXPECTED, place, "a range must follow its metric");
+        Some(error.hint("write for example `check E(m) in 0 .. 2 >= 1.5`; a probability has no range"))
     }
 
     /// `foral a in crowd: …`
@@ -198,7 +201,7 @@ impl Builder<'_> {
         let (at, word) = lexeme::word_before(self.text, fault.at)?;
         let meant = nouns::nearest(word, ["forall", "exists"].into_iter())?;
         let place = Span::new(self.source.id, at, at + word.len());
-        let error = Diagnostic::error(code::UNEXPECTED, place, format!("there is no quantifier `{word}`"));
+        let error = Diagnostic::error(code::UNEXPECTED, place, format!("unknown quantifier `{word}`"));
         Some(error.hint(format!("did you mean `{meant}`?")))
     }
 
@@ -224,10 +227,7 @@ impl Builder<'_> {
         let name = set.filter(|name| name.starts_with(lexeme::starts_name)).unwrap_or("n");
         let title = format!("expected `{lacks}`, found {}", quote(fault.found));
         let error = Diagnostic::error(code::UNEXPECTED, self.place_of(fault), title);
-        Some(
-            error
-                .hint(format!("a comparison has two sides: `compare P(…) under {name} = … with {name} = …`")),
-        )
+        Some(error.hint(format!("write two sides: `compare P(…) under {name} = … with {name} = …`")))
     }
 
     /// `estimate P(p) with n = 3`
@@ -236,9 +236,12 @@ impl Builder<'_> {
             return None;
         }
         let place = self.place(fault.at, fault.found);
-        let error =
-            Diagnostic::error(code::UNEXPECTED, place, "`with` stands between the sides of a `compare`");
-        Some(error.hint("a query sets values of parameters by `under n = …`"))
+        let error = Diagnostic::error(
+            code::UNEXPECTED,
+            place,
+            "`with` is allowed only between the sides of a `compare`",
+        );
+        Some(error.hint("to set parameters of a query write `under n = …`"))
     }
 
     /// `under n = 1 and m = 2`, `under n = 1 & m = 2`
@@ -267,9 +270,9 @@ impl Builder<'_> {
             }
             (fault.at, fault.found)
         };
-        let title = format!("`{joined}` does not join what is set");
+        let title = format!("`{joined}` cannot join the values of parameters");
         let hint = if compares {
-            "write `,` before more of this side, `with` before the other side"
+            "write `,` between values of one side, and `with` before the other side"
         } else {
             "write `,`"
         };
@@ -287,8 +290,8 @@ impl Builder<'_> {
         }
         let place = self.place(fault.at, fault.found);
         if self.follows_arrow(fault.at) {
-            let error = Diagnostic::error(code::UNEXPECTED, place, "several updates stand in braces");
-            return Some(error.hint("as in `-> { a = 1; b = 2 }`"));
+            let error = Diagnostic::error(code::UNEXPECTED, place, "several updates need braces");
+            return Some(error.hint("write for example `-> { a = 1; b = 2 }`"));
         }
         Some(
             Diagnostic::error(code::FIELD_PLACE, place, "a process has no fields")
@@ -299,14 +302,14 @@ impl Builder<'_> {
 
 /// `n % 2`
 fn percent(place: Span) -> Diagnostic {
-    Diagnostic::error(code::CHARACTER, place, "`%` is the unit percent, no operator")
-        .hint("the remainder of a division is `modulo(n, 2)`; a share is written `95 %`")
+    Diagnostic::error(code::CHARACTER, place, "`%` is the unit percent, not an operator")
+        .hint("for a remainder write `modulo(n, 2)`; for a percentage write `95 %`")
 }
 
 /// One sign of equality for another.
 fn unequal(place: Span, wanted: &str, found: &str) -> Diagnostic {
     Diagnostic::error(code::EQUALS, place, format!("expected `{wanted}`, found `{found}`"))
-        .hint("`=` sets, `==` compares")
+        .hint("`=` sets a value, `==` compares")
 }
 
 /// What is wanted after a word that is followed by no sign of equality.

@@ -81,11 +81,10 @@ impl Builder<'_> {
             };
             if after_number && is_unit() {
                 let place = self.place(at, token);
-                let error = Diagnostic::error(code::UNIT, place, "a range of whole numbers has no units");
+                let error =
+                    Diagnostic::error(code::UNIT, place, "a range of whole numbers cannot have units");
                 return Some(
-                    error.hint(format!(
-                        "leave the units out, or let it be any number: `var {name}: real = …`"
-                    )),
+                    error.hint(format!("remove the units, or declare a real number: `var {name}: real = …`")),
                 );
             }
             after_number = token.starts_with(|c: char| c.is_ascii_digit());
@@ -113,7 +112,7 @@ impl Builder<'_> {
             let title = format!("unexpected `{}` after `{number} {before_it}`", fault.found);
             return Some(
                 Diagnostic::error(code::UNIT, place, title)
-                    .hint(format!("a product of units is written `{number} {before_it}*{}`", fault.found)),
+                    .hint(format!("write a product of units as `{number} {before_it}*{}`", fault.found)),
             );
         }
         let before = &self.text[..fault.at];
@@ -134,7 +133,7 @@ impl Builder<'_> {
                 self.place(at, "="),
                 format!("unexpected `=` after `{number} {}`", fault.found),
             );
-            return Some(said.hint("`=` sets the name before it; `==` compares"));
+            return Some(said.hint("`=` sets a value, `==` compares"));
         }
         let unit = quantity::nearest_unit(fault.found);
         let near_keyword = fault.expected.iter().any(|&rule| {
@@ -161,7 +160,7 @@ impl Builder<'_> {
         let hint = match unit {
             Some(unit) => format!("did you mean `{number} {unit}`?"),
             None => format!(
-                "units are {}; to multiply write `{number} * {}`",
+                "the units are {}; to multiply write `{number} * {}`",
                 quantity::UNITS.join(", "),
                 fault.found
             ),
