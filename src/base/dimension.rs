@@ -95,7 +95,7 @@ impl fmt::Display for Dimension {
 /// What a dimension is called in messages: `a length (m)`, `a pure number`.
 pub fn describe(dimension: Dimension) -> String {
     let name = match dimension {
-        Dimension::NONE => return "a pure number".to_owned(),
+        Dimension::NONE => return "a number without a unit".to_owned(),
         Dimension::MASS => "a mass",
         Dimension::LENGTH => "a length",
         Dimension::AREA => "an area",
@@ -120,6 +120,6 @@ mod tests {
         assert_eq!(Dimension::STIFFNESS.to_string(), "kg/s^2");
         assert_eq!(Dimension::DENSITY.to_string(), "/m^2");
         assert_eq!(Dimension::FORCE.to_string(), "N");
-        assert_eq!(describe(Dimension::NONE), "a pure number");
+        assert_eq!(describe(Dimension::NONE), "a number without a unit");
     }
 }

@@ -56,8 +56,10 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
         Err(error) => return reporter.refuse(error),
     };
     if arguments.threads == Some(0) {
-        return reporter
-            .refuse(complaint::argument("`--threads 0` runs nothing", "it takes a number from 1"));
+        return reporter.refuse(complaint::argument(
+            "`--threads` must be positive (got 0)",
+            "write a number from 1, or remove the option to use all cores",
+        ));
     }
     let most = most_threads();
     if arguments.threads.is_some_and(|threads| threads > most) {
@@ -94,7 +96,7 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     }
 }
 
-/// Those who run the trials of a call.
+/// The executor of the trials of a call.
 fn pool(
     arguments: &Check,
     study: &Study,
@@ -123,7 +125,7 @@ fn most_threads() -> usize {
     (2 * cores()).max(16)
 }
 
-/// Where what a call has to say is handed out, in the format that was asked for.
+/// Writes the output of a call in the requested format.
 struct Reporter<'a> {
     arguments: &'a Check,
     colors: Colors,

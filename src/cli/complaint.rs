@@ -35,12 +35,12 @@ pub(super) fn interrupted() -> Diagnostic {
     Diagnostic::placeless(Code::E0922, "the call was interrupted before the first trial")
 }
 
-/// Says it on standard error.
+/// Writes it to standard error.
 pub(super) fn tell(error: &Diagnostic, sources: &[Source], colors: Colors) {
     tell_all(std::slice::from_ref(error), sources, colors);
 }
 
-/// Says them on standard error.
+/// Writes them to standard error.
 pub(super) fn tell_all(errors: &[Diagnostic], sources: &[Source], colors: Colors) {
     say(&render(errors, sources, colors.err));
 }

@@ -170,12 +170,12 @@ pub(super) fn load_from(cache: FileCache, model: &Model, properties: &[String]) 
     };
     let mut errors = Vec::new();
     if twice {
-        errors.push(Diagnostic::placeless(Code::E0701, "standard input can be read once only"));
+        errors.push(Diagnostic::placeless(Code::E0701, "standard input can be read only once"));
     }
     for directory in model.data.iter().filter(|directory| !directory.is_dir()) {
-        let what = if directory.exists() { "no directory" } else { "not there" };
-        let error = Diagnostic::placeless(Code::E0701, format!("`--data {}` is {what}", directory.display()));
-        errors.push(error.hint("it names a folder in which recordings and imports are looked for"));
+        let what = if directory.exists() { "is not a directory" } else { "does not exist" };
+        let error = Diagnostic::placeless(Code::E0701, format!("`--data {}` {what}", directory.display()));
+        errors.push(error.hint("write a folder that contains recordings or imports"));
     }
     if !errors.is_empty() {
         inputs.study = None;

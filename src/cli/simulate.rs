@@ -129,7 +129,7 @@ impl<'p> Walk<'p> {
             End::Horizon => return,
             End::Faulty(fault) => {
                 self.is_wrong = true;
-                format!("trial {trial} ends in an error of the model: {}", fault.describe(scenario))
+                format!("trial {trial} ended with an error of the model: {}", fault.describe(scenario))
             }
             End::Full => {
                 let reason = state.queues.overrun(&scenario.sources, 0).unwrap_or_default();

@@ -59,7 +59,7 @@ impl Elaborator<'_> {
         let names: Vec<&str> = known.iter().map(|one| one.name).collect();
         for argument in &method.arguments {
             let Some(at) = names.iter().position(|n| *n == argument.name.name) else {
-                let known = format!("it takes {}", names.join(", "));
+                let known = format!("its arguments are {}", names.join(", "));
                 let hint = nearest(&argument.name.name, names.iter().copied())
                     .map_or(known, |n| format!("did you mean `{n}`?"));
                 let error = Diagnostic::error(
@@ -149,7 +149,7 @@ impl Elaborator<'_> {
         if RELATIVE.contains(&epsilon) {
             return Ok(epsilon);
         }
-        let said = format!("a relative error of {epsilon} is not between 0.0001 and 0.999");
+        let said = format!("the relative error must be between 0.0001 and 0.999 (got {epsilon})");
         self.report(Diagnostic::error(Code::E0604, span, said))
     }
 
@@ -160,7 +160,7 @@ impl Elaborator<'_> {
         if trials >= 1.0 && trials.fract() == 0.0 && trials <= most {
             return Ok(trials);
         }
-        let said = format!("`trials` must be a whole number from 1 to {most:e}");
+        let said = format!("`trials` must be a whole number from 1 to {most:e} (got {trials})");
         self.report(Diagnostic::error(Code::E0604, span, said))
     }
 
@@ -177,9 +177,9 @@ impl Elaborator<'_> {
             let error = Diagnostic::error(
                 Code::E0602,
                 span,
-                format!("`indifference` is {indifference}, but is above 0"),
+                format!("`indifference` must be positive (got {indifference})"),
             );
-            return self.report(error.hint("leave the region out: the default test needs none"));
+            return self.report(error.hint("remove the region: the default test needs none"));
         }
         // Around what is no threshold nothing is asked of it.
         if let Some(Theta { value: Some(theta), at, noun }) = theta {
@@ -190,22 +190,22 @@ impl Elaborator<'_> {
                     Code::E0602,
                     span,
                     format!(
-                        "the indifference region {} to {} must lie inside (0, 1)",
+                        "the indifference region {} to {} must be inside (0, 1)",
                         round(low),
                         round(high)
                     ),
                 )
                 .hanging_on(at)
                 .related(at, format!("around this {noun}"))
-                .hint("choose a smaller indifference, or leave the region out: the default test needs none");
+                .hint("write a smaller indifference, or remove the region: the default test needs none");
                 return self.report(error);
             }
         }
         if indifference < least {
             let name = &arguments.method.name.name;
-            let said = format!("`indifference` is {indifference}, but is at least {least} with `{name}`");
+            let said = format!("`indifference` must be at least {least} with `{name}` (got {indifference})");
             let error = Diagnostic::error(Code::E0604, span, said);
-            return self.report(error.hint("`sprt`, and the default test, know no such limit"));
+            return self.report(error.hint("`sprt` and the default test have no such limit"));
         }
         Ok(indifference)
     }

@@ -106,13 +106,11 @@ impl Elaborator<'_> {
             method.name.span,
             format!("the procedure `{name}` is not available for this query"),
         );
+        let known: Vec<&str> = Spec::names(serves).collect();
         let hint = nearest(name, known.iter().copied()).map_or_else(
             || format!("the procedures are {}", known.join(", ")),
             |n| format!("did you mean `{n}`?"),
         );
-        let known: Vec<&str> = Spec::names(serves).collect();
-        let hint = nearest(name, known.iter().copied())
-            .map_or_else(|| format!("known here: {}", known.join(", ")), |n| format!("did you mean `{n}`?"));
         self.report(error.hint(hint))
     }
 
@@ -215,12 +213,12 @@ impl Elaborator<'_> {
         let Some(within) = &clauses.within else { return Ok(()) };
         let (said, hint) = match spec.make {
             Make::Splitting { .. } => (
-                "splitting promises no width",
-                "choose the number of `replicas` and of `runs`; the interval follows from how they scatter",
+                "splitting cannot guarantee a width",
+                "remove `within` and choose `replicas` and `runs`; their scatter determines the width",
             ),
             _ if spec.arguments.iter().any(|argument| matches!(argument.kind, Kind::Trials(_))) => (
-                "a number of trials that is fixed promises no width",
-                "leave out `by` and the trials follow from the width, or leave out `within`",
+                "a fixed number of trials cannot guarantee a width",
+                "remove `by`, then the width determines the number of trials, or remove `within`",
             ),
             _ => return Ok(()),
         };
@@ -236,13 +234,11 @@ impl Elaborator<'_> {
         }
         let gigabytes = |paths: u64| (paths * BYTES_OF_A_PATH) as f64 / 1e9;
         let (taken, limit) = (gigabytes(paths), gigabytes(MOST_PATHS));
-        let said = format!("{paths} paths at once take {taken:.1} GB; the limit is {limit:.1} GB");
+        let said = format!("{paths} paths need {taken:.1} GB of memory; the limit is {limit:.1} GB");
         let error = Diagnostic::error(Code::E0923, method.span, said);
         let given = method.arguments.iter().find(|argument| argument.name.name == "replicas");
         let error = given.map(|one| one.value.span).into_iter().fold(error, Diagnostic::hanging_on);
         let fewer = MOST_PATHS / rule.runs;
-        self.report(error.hint(format!(
-            "there is a path for each of the replicas in each of the runs: write `replicas = {fewer}`"
-        )))
+        self.report(error.hint(format!("each run has one path for each replica: write `replicas = {fewer}`")))
     }
 }

@@ -71,7 +71,7 @@ impl<'a> Elaborator<'a> {
             let reserved = match (&meaning, name.name.as_str()) {
                 (Meaning::Kind(_), name) => Kind::named(name)
                     .map(|kind| format!("`{}` is {}, from which kinds start", kind.name(), kind.meaning())),
-                (_, "self") => Some("`self` is whoever has a behaviour".to_owned()),
+                (_, "self") => Some("`self` is the agent that has a behaviour".to_owned()),
                 _ => None,
             };
             if let Some(text) = reserved {
@@ -119,7 +119,7 @@ impl<'a> Elaborator<'a> {
             for (name, entry) in scope.entries() {
                 let calls = matches!(&entry.meaning, Meaning::Let(decl) if !decl.arguments.is_empty());
                 let hint = if BUILT_IN.contains(&name) || calls && BuiltIn::find(name).is_some() {
-                    "what is built in by that name is hidden; choose another"
+                    "it hides the built-in meaning; choose another name"
                 } else if number == 0 && OPERATORS.contains(&name) {
                     "it is an operator in property files, so formulas there cannot use it; choose another name"
                 } else {

@@ -30,7 +30,7 @@ pub(super) fn unresolved(
     let scenario = &program.scenario;
     let mut run = match Run::of(program, item.address(seed)) {
         Ok((run, _)) => run,
-        Err(fault) => return format!("it cannot start: {}", no_start(scenario, fault)),
+        Err(fault) => return format!("cannot start: {}", no_start(scenario, fault)),
     };
     if scenario.clock.is_jumps() {
         return in_continuous_time(subject, column, &mut run, budget);

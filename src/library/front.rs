@@ -77,10 +77,10 @@ pub fn load(names: Names<'_>, folder: &mut dyn Folder) -> Inputs {
             if scenario.items.is_empty() && diagnostics.is_empty() {
                 // Nothing but comments: as an empty file.
                 complete = false;
-                let title = format!("{} declares nothing", source.name);
+                let title = format!("{} has no declarations", source.name);
                 reader.report(Diagnostic::placeless(Code::E0108, title));
             }
-            let hint = "these are properties; the scenario comes first, and properties after it";
+            let hint = "this is a property file; write the scenario first and property files after it";
             reader.inputs.diagnostics.extend(misplaced(diagnostics, &source, is_of_properties, hint));
         }
         None => complete = false,
@@ -90,7 +90,7 @@ pub fn load(names: Names<'_>, folder: &mut dyn Folder) -> Inputs {
         let Some(source) = reader.source(name) else { continue };
         let (file, diagnostics) = parse_properties(&source);
         parsed.push(file);
-        let hint = "this is a scenario; it comes first, and properties after it";
+        let hint = "this is a scenario; write it first and property files after it";
         reader.inputs.diagnostics.extend(misplaced(diagnostics, &source, is_scenario, hint));
     }
     let in_files = reader.inputs.sources.len();
@@ -128,8 +128,12 @@ pub fn load(names: Names<'_>, folder: &mut dyn Folder) -> Inputs {
         && study.queries.is_empty()
         && let Some(source) = inputs.sources.iter().rfind(|source| source.name == last)
     {
-        let warning = Diagnostic::warning(Code::W0602, Span::new(source.id, 0, 0), "nothing is asked");
-        let hint = "add a query, as in `check P(safe) >= 0.9` or `estimate P(safe)`";
+        let warning = Diagnostic::warning(
+            Code::W0602,
+            Span::new(source.id, 0, 0),
+            "the property files contain no query",
+        );
+        let hint = "add a query such as `check P(safe) >= 0.9` or `estimate P(safe)`";
         inputs.diagnostics.push(warning.hint(hint));
     }
     inputs.errors = inputs.diagnostics.iter().filter(|one| is_error(one)).count();
@@ -205,7 +209,7 @@ impl Reader<'_> {
     fn setting(&mut self, text: &str) -> Option<Setting> {
         let named = text.split_once('=').filter(|(name, _)| !name.trim().is_empty());
         let Some((name, value)) = named else {
-            let error = Diagnostic::placeless(Code::E0210, format!("`--set {text}` sets nothing"))
+            let error = Diagnostic::placeless(Code::E0210, format!("`--set {text}` has no value"))
                 .hint("write `--set name=value` or `--set name=from..to by step`");
             self.report(error);
             return None;

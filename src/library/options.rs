@@ -93,8 +93,10 @@ pub fn chosen(study: &Study, only: &[String]) -> Result<Vec<usize>, Diagnostic> 
             let near = nearest(wanted, names.iter().copied());
             let hint = match near {
                 Some(near) => format!("did you mean `{near}`?"),
-                None if names.is_empty() => format!("queries are numbered from 0 to {last}"),
-                None => format!("queries are numbered from 0 to {last}, and are about {}", names.join(", ")),
+                None if names.is_empty() => format!("write a number from 0 to {last}"),
+                None => {
+                    format!("write a number from 0 to {last}, or one of the properties {}", names.join(", "))
+                }
             };
             return Err(argument(
                 match number {

@@ -1,4 +1,4 @@
-//! What the engine refuses, as diagnostics: each with a code, a place where it has one, and what to do.
+//! Faults of the engine as diagnostics: each with a code, a place if it has one, and a hint.
 
 use crate::engine::{Fault, Flaw};
 use crate::syntax::codes::Code;
@@ -9,7 +9,7 @@ fn call(fault: &Fault, hint: &str) -> Diagnostic {
     Diagnostic::placeless(Code::E0705, fault.to_string()).hint(hint)
 }
 
-/// What the engine refuses, each of it.
+/// The diagnostics of a fault of the engine.
 pub fn refusals(fault: &Fault) -> Vec<Diagnostic> {
     match fault {
         Fault::Crowded(places) => places.iter().map(refusal).collect(),
@@ -17,7 +17,7 @@ pub fn refusals(fault: &Fault) -> Vec<Diagnostic> {
     }
 }
 
-/// What the engine refuses; of several the first.
+/// The diagnostic of a fault of the engine; the first of several.
 pub fn refusal(fault: &Fault) -> Diagnostic {
     match fault {
         Fault::Placement { reason, place } => {
@@ -25,29 +25,29 @@ pub fn refusal(fault: &Fault) -> Diagnostic {
                 Some(span) => Diagnostic::error(Code::E0801, *span, reason.as_str()),
                 None => Diagnostic::placeless(Code::E0801, reason.as_str()),
             };
-            error.hint("fewer people, a larger shape to start from, or smaller radii")
+            error.hint("use fewer agents, a larger shape to start in, or smaller radii")
         }
         Fault::Crowded(places) => match places.first() {
             Some(first) => refusal(first),
             None => Diagnostic::placeless(Code::E0801, fault.to_string()),
         },
         Fault::Procedure { place, reason } => Diagnostic::error(Code::E0604, *place, reason.to_string())
-            .hint("`smc explain E0604` says what each procedure takes"),
+            .hint("see `smc explain E0604` for the arguments of each procedure"),
         Fault::Memory { place, .. } => Diagnostic::error(Code::E0923, *place, fault.to_string())
-            .hint("one value is kept for each trial of each `E` and `Q`: set a smaller `--max-trials`, or ask fewer of them at once with `--only`"),
+            .hint("one value is stored for each trial of each `E` and `Q`: write a smaller `--max-trials`, or select fewer queries with `--only`"),
         Fault::Model(flaw) => of_model(flaw),
         Fault::Statistics(reason) => Diagnostic::placeless(Code::E0604, reason.to_string())
-            .hint("`smc explain E0604` says what each procedure takes"),
+            .hint("see `smc explain E0604` for the arguments of each procedure"),
         Fault::Logic(reason) => Diagnostic::placeless(Code::E0509, reason.to_string())
-            .hint("shorter bounds or a longer step need less memory"),
+            .hint("use shorter bounds or a longer step, which need less memory"),
         Fault::Unsuitable => Diagnostic::placeless(Code::E0603, fault.to_string())
-            .hint("`smc explain E0603` says which procedure goes with what"),
-        Fault::Rank { .. } => call(fault, "all processes of a call must be the same program"),
-        Fault::Threads(_) => call(fault, "ask for fewer: `--threads 1`"),
+            .hint("see `smc explain E0603` for the procedures of each query"),
+        Fault::Rank { .. } => call(fault, "all processes of a call must run the same program"),
+        Fault::Threads(_) => call(fault, "use fewer threads: `--threads 1`"),
     }
 }
 
-/// What a trial shows to be wrong with the model.
+/// The diagnostic of an error of the model in a trial.
 pub fn of_model(flaw: &Flaw) -> Diagnostic {
     let title = format!("{}: {}", flaw.moment, flaw.what);
     let error = match flaw.place {

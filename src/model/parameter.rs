@@ -224,7 +224,7 @@ impl Parameter {
             Range::NotNegative | Range::Share if low < 0.0 => {
                 Some(format!("`{name}` cannot be negative{truncate}"))
             }
-            Range::Share if high > 1.0 => Some(format!("`{name}` lies between 0 and 1{truncate}")),
+            Range::Share if high > 1.0 => Some(format!("`{name}` must be between 0 and 1{truncate}")),
             _ if low > *limit => {
                 let unit = self.unit();
                 Some(format!("a `{name}` of more than {limit} {unit} is nobody's: every trial would diverge"))

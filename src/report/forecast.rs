@@ -25,7 +25,7 @@ pub fn text(total: &CallForecast) -> String {
     }
     if total.queries.len() > 1 {
         text.push_str(&format!(
-            "forecast: {} in all; checks and estimates of one scenario share trials\n",
+            "forecast: {} in total; checks and estimates of one scenario share trials\n",
             between(total.between)
         ));
     }

@@ -78,7 +78,7 @@ impl<'a> Elaborator<'a> {
                     error.hint(match member.name.as_str() {
                         name @ ("x" | "y") => format!("write `{name}(position({who}))`"),
                         name if BuiltIn::find(name).is_some() => format!("write `{name}({who})`"),
-                        _ => "numbers of agents are functions: `speed(user)`".to_owned(),
+                        _ => "the values of agents are functions: `speed(user)`".to_owned(),
                     })
                 }
             };

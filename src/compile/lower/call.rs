@@ -55,7 +55,7 @@ impl Elaborator<'_> {
                 expr.span,
                 format!("`{}` is a distribution, and is no part of an expression", function.name),
             )
-            .hint("give it to a field of a kind or an agent, or to `after`; it may be multiplied: `poisson(4) * (1 s / 3)`");
+            .hint("use it as the value of a field or of `after`; it may have a factor: `poisson(4) * (1 s / 3)`");
             return self.report(error);
         }
         self.unknown_function(function, expr.span, arguments, locals)
@@ -82,7 +82,7 @@ impl Elaborator<'_> {
             // That a name of the scenario was taken was said where that was done; and what is wrong with it
             // may be just that it lacks its arguments.
             if !hidden && self.lower_name(name, function.span, locals).is_ok() {
-                let text = format!("`{name}` is {}, which takes no arguments", meaning.noun());
+                let text = format!("`{name}` is {} and has no arguments", meaning.noun());
                 self.note(Diagnostic::error(Code::E0204, span, text));
             }
             return self.lower_all(arguments, locals).and(Err(Reported));
@@ -130,7 +130,7 @@ impl Elaborator<'_> {
                     expr.span,
                     "`robustness` is allowed only directly inside `E(…)`, `Q(…)` and `P(…)`",
                 )
-                .hint("for example `E(robustness(safe)) in -1 m .. 1 m`, `P(robustness(safe) >= 0.2 m)`");
+                .hint("write `E(robustness(safe)) in -1 m .. 1 m` or `P(robustness(safe) >= 0.2 m)`");
                 return self.report(error);
             }
             _ if !built_in.takes(arguments.len()) => {
@@ -176,9 +176,9 @@ impl Elaborator<'_> {
             let error = Diagnostic::error(
                 Code::E0504,
                 expr.span,
-                "`time_until` looks ahead over the trace, and here one state is read",
+                "`time_until` is about a trace, but a value of one state is needed here",
             )
-            .hint("it stands in metrics and comparisons of property files, outside of folds over agents at one state");
+            .hint("write it in a metric or a comparison of a property file, outside of folds over agents");
             return self.report(error);
         }
         let typed = self.inside_a_formula(|this| this.lower(formula, locals));

@@ -111,7 +111,7 @@ pub fn serve(
         match task {
             Task::Lease(lease, budget) => say(&worker.run(&lease, &budget)?)?,
             Task::Order(Order::Stop) => {}
-            Task::Order(_) => return Err(Malformed("the head greets twice").into()),
+            Task::Order(_) => return Err(Malformed("the main process sent two greetings").into()),
             Task::ServeError(broken) => return Err(broken),
         }
     }
