@@ -59,8 +59,13 @@ fn busy(since: Instant) -> f64 {
 
 /// Steps per second and estimate of a query.
 fn ours(study: &Study) -> (f64, f64) {
-    let call =
-        Call { seed: 1, line: CommandLine::default(), only: Vec::new(), place: &|_| (String::new(), 0) };
+    let call = Call {
+        seed: 1,
+        line: CommandLine::default(),
+        only: Vec::new(),
+        place: &|_| (String::new(), 0),
+        drivers: &smc::kernel::driver::straight,
+    };
     let threads = Threads::new(Some(1)).expect("one thread");
     let clock = Instant::now();
     let begun = busy(clock);

@@ -128,6 +128,7 @@ fn call() -> Call<'static> {
         },
         only: Vec::new(),
         place: &|_| (String::new(), 0),
+        drivers: &smc::kernel::driver::straight,
     }
 }
 

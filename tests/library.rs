@@ -94,7 +94,9 @@ fn a_draft_has_parameters_and_files() {
 fn the_examples_run() {
     let folder = std::env::current_exe().unwrap();
     let folder = folder.parent().and_then(|deps| deps.parent()).unwrap().join("examples");
-    for (name, expected) in [("check", "trials"), ("sweep", "1.2 m,"), ("trajectories", "t,agent,x,y")] {
+    for (name, expected) in
+        [("check", "trials"), ("sweep", "1.2 m,"), ("trajectories", "t,agent,x,y"), ("driver", "satisfied")]
+    {
         let program = folder.join(name);
         if !program.exists() {
             eprintln!("SKIPPED: example {name} is not built; `cargo test` without `--test` builds it");

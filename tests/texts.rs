@@ -36,6 +36,7 @@ pub(crate) fn answered(study: &Study, seed: u64, threads: usize, most: u64) -> R
         line: CommandLine { scenario: "model.scn".to_owned(), ..CommandLine::default() },
         only: Vec::new(),
         place: &|_| (String::new(), 0),
+        drivers: &smc::kernel::driver::straight,
     };
     let budget = Budget::new(most, None);
     smc::engine::run(study, &call, &Threads::new(Some(threads)).unwrap(), &budget, &Nobody).unwrap()

@@ -15,6 +15,7 @@ use crate::engine::outcome::{Failure, Finding, Run};
 use crate::engine::{
     Budget, Call, CallForecast, CommandLine, Fault, Ranks, Threads, forecast, run as run_study,
 };
+use crate::kernel::driver::straight;
 use crate::library;
 use crate::report::{self, ExitCode as Exit, Format, Palette};
 use crate::syntax::codes::Code;
@@ -74,7 +75,7 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     };
     drop(cache);
     let place = |span: Span| locate(&inputs.sources, span);
-    let call = Call { seed: arguments.seed, line: line(arguments), only, place: &place };
+    let call = Call { seed: arguments.seed, line: line(arguments), only, place: &place, drivers: &straight };
     if arguments.forecast {
         deadline.enter(Phase::Sampling);
         return match forecast(study, &call, pool.executor(), &budget) {

@@ -1,5 +1,6 @@
 //! What a call adds to a study, and the command lines that show what was found.
 
+use crate::kernel::driver::MakeDrivers;
 use crate::syntax::source::Span;
 
 /// What a call adds to a study.
@@ -12,6 +13,8 @@ pub struct Call<'c> {
     pub only: Vec<usize>,
     /// File and line of a span, for reports.
     pub place: &'c (dyn Fn(Span) -> (String, usize) + Sync),
+    /// Makes the drivers of the agents of a world. Trials that ranks run have only those that are built in.
+    pub drivers: &'c MakeDrivers,
 }
 
 /// The files and settings of a call of the program.

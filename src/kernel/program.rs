@@ -1,12 +1,15 @@
 //! A scenario made ready to run: everything that is the same in every trial.
 
 use super::behaviour::Behaviours;
-use super::drive::Drive;
+use super::code::{Code, Readings};
+use super::driver::{Drive, Drivers};
 use super::force::Forces;
+use super::near::Close;
 use super::noise::Noise;
+use super::parameters::Parameters;
 use super::process::Processes;
 use super::start::{Arrivals, Starts};
-use super::state::Layout;
+use super::state::{Layout, State};
 use crate::model::Scenario;
 use std::sync::Arc;
 
@@ -28,8 +31,10 @@ pub struct Program {
     pub forces: Forces,
     /// The noise of velocities.
     pub noise: Noise,
-    /// The routes.
+    /// The routes and drivers.
     pub drive: Drive,
+    /// The laws of the parameters of bodies.
+    pub parameters: Parameters,
     /// The placements.
     pub starts: Starts,
     /// The processes.
@@ -41,17 +46,54 @@ pub struct Program {
 }
 
 impl Program {
-    /// Prepares a scenario.
+    /// Prepares a scenario whose agents head straight for the goals of their routes.
     pub fn new(scenario: Arc<Scenario>) -> Self {
+        Self::driven(scenario, Drivers::default())
+    }
+
+    /// Prepares a scenario with the drivers of a run.
+    pub fn driven(scenario: Arc<Scenario>, drivers: Drivers) -> Self {
         let layout = if scenario.agents.len() <= LARGEST_IN_LANES { Layout::Trials } else { Layout::Agents };
         let dt = scenario.clock.step_seconds();
         let forces = Forces::new(&scenario, dt);
         let noise = Noise::new(&scenario);
-        let mut drive = Drive::new(&scenario);
+        let mut drive = Drive::new(&scenario, drivers);
+        let parameters = Parameters::new(&scenario);
         let starts = Starts::new(&scenario);
         let processes = Processes::new(&scenario);
         let arrivals = Arrivals::new(&scenario);
         let behaviours = Behaviours::new(&scenario, &mut drive);
-        Self { scenario, layout, dt, forces, noise, drive, starts, processes, arrivals, behaviours }
+        Self {
+            scenario,
+            layout,
+            dt,
+            forces,
+            noise,
+            drive,
+            parameters,
+            starts,
+            processes,
+            arrivals,
+            behaviours,
+        }
+    }
+}
+
+impl Code {
+    /// Reads all lanes of a state. Values of lanes without a trial mean nothing; in `Layout::Agents` every
+    /// lane has the value of the only trial.
+    pub fn run(&self, program: &Program, state: &State, readings: &mut Readings) {
+        self.read(program.layout, state, readings);
+    }
+
+    /// The same, with what the kernel found out about who is close to whom in this state: the same bits, sooner.
+    pub fn run_close(
+        &self,
+        program: &Program,
+        state: &State,
+        close: Option<Close<'_>>,
+        readings: &mut Readings,
+    ) {
+        self.read_close(program.layout, (state, close), readings);
     }
 }

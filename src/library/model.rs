@@ -10,12 +10,14 @@ use crate::base::random::TrialKey;
 use crate::compile::Study;
 use crate::engine::outcome::Run;
 use crate::engine::{Call, CommandLine, Nobody, no_start, placeable, run};
+use crate::kernel::driver::{Drivers, MakeDrivers, straight};
 use crate::kernel::{Address, Program};
 use crate::model::Scenario;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
 use std::collections::BTreeMap;
+use std::fmt;
 use std::sync::Arc;
 
 /// A scenario with what belongs to it, before it is parsed.
@@ -67,7 +69,7 @@ impl Draft {
         let scenario = scenario.ok_or_else(|| Diagnostics::new(Vec::new(), sources.clone()))?;
         let world = study.worlds.len() - 1;
         placeable(&study.worlds[world]).map_err(|fault| Diagnostics::new(vec![refusal(&fault)], sources))?;
-        Ok(Model { draft: self, scenario, warnings })
+        Ok(Model { draft: self, scenario, warnings, drivers: Arc::new(straight) })
     }
 
     /// Compiles the scenario, perhaps with a property file.
@@ -108,11 +110,21 @@ impl Folder for Given<'_> {
 }
 
 /// A scenario that was understood.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Model {
     draft: Draft,
     scenario: Arc<Scenario>,
     warnings: Diagnostics,
+    drivers: Arc<MakeOwn>,
+}
+
+/// Makes the drivers of a run.
+type MakeOwn = dyn Fn(&Scenario, u64) -> Drivers + Send + Sync;
+
+impl fmt::Debug for Model {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Model").field("draft", &self.draft).finish_non_exhaustive()
+    }
 }
 
 impl Model {
@@ -129,7 +141,15 @@ impl Model {
     /// # Errors
     /// Where there is no such parameter, or it takes no such value.
     pub fn with(&self, parameter: &str, value: &str) -> Result<Self, Diagnostics> {
-        self.draft.clone().set(parameter, value).parse()
+        let model = self.draft.clone().set(parameter, value).parse()?;
+        Ok(Self { drivers: self.drivers.clone(), ..model })
+    }
+
+    /// Gives agents drivers of their own: `make` is called with the scenario and the seed of a run, and says which agents
+    /// have which driver. All others head straight for the goals of their routes.
+    #[must_use]
+    pub fn driven(self, make: impl Fn(&Scenario, u64) -> Drivers + Send + Sync + 'static) -> Self {
+        Self { drivers: Arc::new(make), ..self }
     }
 
     /// What the scenario says, without its language.
@@ -163,7 +183,8 @@ impl Model {
             settings: self.draft.assignments(),
             data: Vec::new(),
         };
-        let call = Call { seed: options.seed, line, only, place: &place };
+        let drivers: &MakeDrivers = &*self.drivers;
+        let call = Call { seed: options.seed, line, only, place: &place, drivers };
         let threads = options.executor().map_err(|fault| wrong(vec![refusal(&fault)]))?;
         let outcome = run(&study, &call, &threads, &options.budget(), &Nobody);
         let run: Run = outcome.map_err(|fault| wrong(refusals(&fault)))?;
@@ -175,7 +196,7 @@ impl Model {
     /// # Errors
     /// Where the trial cannot start: people find no place.
     pub fn trial(&self, seed: u64, index: u64) -> Result<Trial, Diagnostics> {
-        let program = Program::new(self.scenario.clone());
+        let program = Program::driven(self.scenario.clone(), (self.drivers)(&self.scenario, seed));
         let key = TrialKey { seed, index, branch: 0 };
         Trial::new(program, Address::from(key)).map_err(|fault| {
             let reason = no_start(&self.scenario, fault);
