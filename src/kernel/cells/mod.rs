@@ -49,7 +49,7 @@ impl Cells {
     /// What was found out about the state that was last seen, with the pairs that may touch; `None` where some place is no
     /// number or beyond reason.
     pub(super) fn close<'a>(&'a self, pairs: &'a [(u32, u32)]) -> Option<Close<'a>> {
-        (self.edge > f64::NEG_INFINITY).then(|| Close { pairs, edge: self.edge, index: Some(&self.index) })
+        (self.edge > f64::NEG_INFINITY).then_some(Close { pairs, edge: self.edge, index: Some(&self.index) })
     }
 
     /// Forces at the present positions into `sums`, and who may touch whom into `contacts`.

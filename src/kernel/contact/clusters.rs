@@ -45,7 +45,7 @@ struct Cluster {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Clusters {
     bodies: Vec<Body>,
-    clusters: Vec<Cluster>,
+    all: Vec<Cluster>,
     /// The pairs in the order of candidates, each with its turn.
     pairs: Vec<(u32, Touch)>,
     walls: Vec<Touch>,
@@ -161,12 +161,12 @@ impl Clusters {
 
     /// Numbers the clusters, and finds how stiff each is.
     fn find_clusters(&mut self) {
-        self.clusters.clear();
+        self.all.clear();
         for index in 0..self.bodies.len() {
             let parent = self.bodies[index].parent as usize;
             self.bodies[index].cluster = if parent == index {
-                self.clusters.push(Cluster { hot: false, stiffest: 0.0 });
-                self.clusters.len() as u32 - 1
+                self.all.push(Cluster { hot: false, stiffest: 0.0 });
+                self.all.len() as u32 - 1
             } else {
                 // Whoever is above came before.
                 self.bodies[parent].cluster
@@ -174,7 +174,7 @@ impl Clusters {
         }
         for touch in self.pairs.iter_mut().map(|(_, touch)| touch).chain(&mut self.walls) {
             touch.cluster = self.bodies[touch.a as usize].cluster;
-            let stiffest = &mut self.clusters[touch.cluster as usize].stiffest;
+            let stiffest = &mut self.all[touch.cluster as usize].stiffest;
             *stiffest = math::at_least(touch.k1 * touch.inverse, *stiffest);
         }
     }
@@ -189,30 +189,30 @@ impl Clusters {
             self.motions
                 .push(Motion { v: at(&state.motion.vx, &state.motion.vy, body.slot), inverse: body.inverse });
         }
-        for cluster in &mut self.clusters {
+        for cluster in &mut self.all {
             cluster.hot = false;
         }
         let (x, motions) = (&self.x, &self.motions);
         let moving = |body: u32| (x[body as usize], motions[body as usize].v);
-        let mut cold = self.clusters.len();
+        let mut cold = self.all.len();
         for (_, touch) in &self.pairs {
             if cold == 0 {
                 break;
             }
-            let hot = &mut self.clusters[touch.cluster as usize].hot;
+            let hot = &mut self.all[touch.cluster as usize].hot;
             if !*hot && within_reach(touch.distance, moving(touch.a), moving(touch.b), h) {
                 *hot = true;
                 cold -= 1;
             }
         }
         for touch in &self.walls {
-            let hot = &mut self.clusters[touch.cluster as usize].hot;
+            let hot = &mut self.all[touch.cluster as usize].hot;
             if !*hot && within_reach_of_face(forces, touch.b, touch.distance, moving(touch.a), h) {
                 *hot = true;
                 cold -= 1;
             }
         }
-        let hot = self.clusters.len() - cold;
+        let hot = self.all.len() - cold;
         if hot > 0 && !(hot == self.listed && cold == 0) {
             self.list_hot();
             self.listed = hot;
@@ -223,8 +223,8 @@ impl Clusters {
     /// Puts the pairs of hot clusters in turns: a counting sort.
     fn list_hot(&mut self) {
         self.starts.clear();
-        let clusters = &self.clusters;
-        let is_hot = |touch: &Touch| clusters[touch.cluster as usize].hot;
+        let all = &self.all;
+        let is_hot = |touch: &Touch| all[touch.cluster as usize].hot;
         for (turn, _) in self.pairs.iter().filter(|(_, touch)| is_hot(touch)) {
             if *turn as usize >= self.starts.len() {
                 self.starts.resize(*turn as usize + 1, 0);
@@ -249,14 +249,14 @@ impl Clusters {
 
     /// Largest k1 over mass of the hot clusters, 1/s^2.
     pub(super) fn stiffest(&self) -> f64 {
-        let hot = self.clusters.iter().filter(|cluster| cluster.hot);
+        let hot = self.all.iter().filter(|cluster| cluster.hot);
         hot.fold(0.0, |stiffest, cluster| math::at_least(cluster.stiffest, stiffest))
     }
 
     /// Hands places and velocities of the bodies of hot clusters back, and marks them in `moved`.
     pub(super) fn hand_back(&self, state: &mut State, moved: &mut [Mask]) {
         for ((body, x), motion) in self.bodies.iter().zip(&self.x).zip(&self.motions) {
-            if self.clusters[body.cluster as usize].hot {
+            if self.all[body.cluster as usize].hot {
                 let Slot { block, lane } = body.slot;
                 state.motion.x[block].0[lane] = x.x;
                 state.motion.y[block].0[lane] = x.y;

@@ -3,6 +3,8 @@
 //! A term works out beforehand the numbers of a body that do not depend on the other one. Both layouts keep these as columns,
 //! and hand those of a pair back in registers, whether the lanes are eight trials or eight agents of one trial.
 
+#![allow(clippy::redundant_closure, reason = "a reference to a closure is not inlined where vectors need it")]
+
 use crate::base::lanes::Lanes;
 use crate::kernel::state::State;
 use crate::kernel::vector::{Doubles, Part, larger};
@@ -129,7 +131,6 @@ impl<A: PairTerm, B: PairTerm> PairTerm for Both<A, B> {
 
     #[inline(always)]
     fn map<T: Copy, U: Copy>(of: &Self::Of<T>, f: impl Fn(T) -> U) -> Self::Of<U> {
-        // Not `&f`: calls by a reference to a closure are not inlined where vectors need it.
         (
             A::map(
                 &of.0,

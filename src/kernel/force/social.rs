@@ -9,6 +9,8 @@
 //! What depends on one body alone is worked out beforehand: A Lambda is `even` - n . (`ex`, `ey`), and the exponential a
 //! power of two. Between two bodies of several persons the sum of both terms is bounded.
 
+#![allow(clippy::redundant_closure, reason = "a reference to a closure is not inlined where vectors need it")]
+
 use super::pair::{AgentsInLanes, Pair, PairTerm};
 use crate::kernel::state::State;
 use crate::kernel::vector::{Doubles, Part, exp2};

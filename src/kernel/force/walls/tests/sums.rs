@@ -192,36 +192,22 @@ fn contact_shares_as_the_social_force_does() {
 
 #[test]
 fn what_is_drawn_twice_or_in_another_order_pushes_the_same() {
-    let rooms = |order: [usize; 2]| {
-        let rooms = [
-            wall(&[p(0.0, 0.0), p(4.0, 0.0), p(4.0, 3.0), p(0.0, 3.0), p(0.0, 0.0)]),
-            wall(&[p(4.0, 0.0), p(8.0, 0.0), p(8.0, 3.0), p(4.0, 3.0), p(4.0, 0.0)]),
-        ];
-        order.map(|k| rooms[k].clone()).to_vec()
-    };
-    let with_block = |order: [usize; 2]| {
-        let both = [block(p(3.0, 0.0), p(4.0, 3.0)), wall(&[p(4.0, 3.0), p(4.0, 0.0), p(8.0, 0.0)])];
-        order.map(|k| both[k].clone()).to_vec()
-    };
-    let overlaid = |order: [usize; 2]| {
-        let both = [wall(&[p(0.0, 0.0), p(5.0, 0.0)]), wall(&[p(0.0, 5.0), p(0.0, 0.0), p(5.0, 0.0)])];
-        order.map(|k| both[k].clone()).to_vec()
-    };
-    let close = |found: Vec2, wanted: Vec2| (found - wanted).norm() < 1e-9 * wanted.norm();
+    let room = |x: f64| wall(&[p(x, 0.0), p(x + 4.0, 0.0), p(x + 4.0, 3.0), p(x, 3.0), p(x, 0.0)]);
+    // The first of each changes nothing at these places.
+    let scenes = [
+        [room(-4.0), room(0.0)],
+        [block(p(-1.0, 0.0), p(0.0, 3.0)), wall(&[p(0.0, 3.0), p(0.0, 0.0), p(4.0, 0.0)])],
+        [wall(&[p(0.0, 0.0), p(5.0, 0.0)]), wall(&[p(0.0, 5.0), p(0.0, 0.0), p(5.0, 0.0)])],
+    ];
     for k in 0..900 {
-        let (x, y) = (4.0 + 0.1 * (f64::from(k % 30) + 0.53), 0.1 * (f64::from(k / 30) + 0.37));
-        let wanted = force(&rooms([0, 1])[1..], p(x, y), 0.2);
-        for order in [[0, 1], [1, 0]] {
-            assert!(close(force(&rooms(order), p(x, y), 0.2), wanted), "{x} {y}");
-        }
-        let wanted = force(&with_block([0, 1])[1..], p(x, y), 0.2);
-        for order in [[0, 1], [1, 0]] {
-            // Above the upper end of the wall the block pushes on.
-            assert!(y > 2.9 || close(force(&with_block(order), p(x, y), 0.2), wanted), "{x} {y}");
-        }
-        let wanted = force(&overlaid([0, 1])[1..], p(x - 4.0, y), 0.2);
-        for order in [[0, 1], [1, 0]] {
-            assert!(close(force(&overlaid(order), p(x - 4.0, y), 0.2), wanted), "{x} {y}");
+        let place = p(0.1 * (f64::from(k % 30) + 0.53), 0.1 * (f64::from(k / 30) + 0.37));
+        // Above the upper end of the wall the block pushes on.
+        for scene in scenes.iter().filter(|_| place.y < 2.9) {
+            let wanted = force(&scene[1..], place, 0.2);
+            for barriers in [scene.clone(), [scene[1].clone(), scene[0].clone()]] {
+                let found = force(&barriers, place, 0.2);
+                assert!((found - wanted).norm() < 1e-9 * wanted.norm(), "{place} {found} {wanted}");
+            }
         }
     }
 }
@@ -296,7 +282,7 @@ fn a_straight_wall_in_pieces_is_one_wall() {
 }
 
 #[test]
-fn outside_a_corner_of_two_walls_one_pushes_and_inside_both() {
+fn inside_a_corner_both_walls_push_and_outside_one() {
     let (east, north) = (wall(&[p(0.0, 0.0), p(9.0, 0.0)]), wall(&[p(0.0, 9.0), p(0.0, 0.0)]));
     for barriers in [[east.clone(), north.clone()], [north, east]] {
         for place in free_places() {
@@ -305,6 +291,11 @@ fn outside_a_corner_of_two_walls_one_pushes_and_inside_both() {
             let one = if both[0].1 < both[1].1 { both[0] } else { both[1] };
             pushes_as(&barriers, place, if inside { &both[..] } else { std::slice::from_ref(&one) });
         }
+    }
+    let cross = [p(9.0, 0.0), p(0.0, 9.0), p(-9.0, 0.0), p(0.0, -9.0)].map(|end| wall(&[end, Vec2::zeros()]));
+    for place in free_places() {
+        let faces = [(p(place.x.signum(), 0.0), place.x.abs()), (p(0.0, place.y.signum()), place.y.abs())];
+        pushes_as(&cross, place, &faces);
     }
 }
 
@@ -344,16 +335,6 @@ fn blocks_side_by_side_or_overlapping_are_one_block() {
 }
 
 #[test]
-fn four_walls_that_meet_in_a_point_push_with_the_two_faces_of_a_quarter() {
-    let ends = [p(9.0, 0.0), p(0.0, 9.0), p(-9.0, 0.0), p(0.0, -9.0)];
-    let cross = ends.map(|end| wall(&[end, Vec2::zeros()]));
-    for place in free_places() {
-        let faces = [(p(place.x.signum(), 0.0), place.x.abs()), (p(0.0, place.y.signum()), place.y.abs())];
-        pushes_as(&cross, place, &faces);
-    }
-}
-
-#[test]
 fn what_is_drawn_twice_is_felt_once_and_what_is_apart_twice() {
     let (first, gap) = (wall(&[p(0.0, 0.0), p(1.0, 0.0)]), wall(&[p(1.01, 0.0), p(2.0, 0.0)]));
     let place = p(1.005, 1.0);
@@ -361,7 +342,6 @@ fn what_is_drawn_twice_is_felt_once_and_what_is_apart_twice() {
     for place in free_places() {
         pushes_as(&[first.clone(), first.clone()], place, &[nearest(&first, place)]);
     }
-    pushes_as(&[first.clone(), first.clone(), first.clone()], p(0.5, 0.3), &[nearest(&first, p(0.5, 0.3))]);
 }
 
 #[test]
@@ -399,10 +379,9 @@ fn a_rounded_corner_pushes_alike_however_it_is_drawn_and_nothing_jumps() {
 
 #[test]
 fn however_many_share_they_give_what_one_would() {
-    for count in [1, 3, 10, 15, 20, 40] {
+    for count in [1, 3, 40] {
         let same = vec![wall(&[p(-5.0, 0.0), p(5.0, 0.0)]); count];
-        let found = force(&same, p(0.0, 0.5), 0.08);
-        assert!((found.y / alone(0.5, 0.08) - 1.0).abs() < 1e-12, "{count} {found}");
+        pushes_as(&same, p(0.0, 0.5), &[(p(0.0, 1.0), 0.5)]);
     }
     // At the centre of a half circle, and about it.
     for count in [16, 64, 128] {
