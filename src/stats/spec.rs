@@ -119,6 +119,9 @@ impl Kind {
     }
 }
 
+/// The ends of the range of a metric.
+pub type Range = (f64, f64);
+
 /// The threshold that a test decides about.
 #[derive(Clone, Copy, Debug)]
 pub struct Against {
@@ -136,7 +139,7 @@ pub enum Make {
     /// An estimator of a probability; the seed addresses what it draws for itself.
     Estimator(fn(&[f64], u64) -> Result<Sequential<AnyEstimator>, Invalid>),
     /// An estimator of the mean of a metric with a range.
-    Mean(fn((f64, f64), &[f64]) -> Result<Mean, Invalid>),
+    Mean(fn(Range, &[f64]) -> Result<Mean, Invalid>),
     /// Order statistics, or the band around the distribution function.
     Quantile {
         /// Whether it is the band, which holds all quantiles at once.
