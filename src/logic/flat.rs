@@ -33,7 +33,7 @@ pub trait Present {
     fn signal(&self, signal: usize) -> f64;
 }
 
-/// What a state is for a flat formula.
+/// The effect of a state on a flat formula.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sort {
     /// What must be so up to the goal is so.
@@ -171,7 +171,7 @@ fn truth(tree: &Tree, parts: &[Part], state: &impl Present, known: &mut Known) -
     last
 }
 
-/// What is known of one state, by the numbers of the parts.
+/// The known truth in one state, by the numbers of the parts.
 #[derive(Default)]
 struct Known {
     truths: Vec<bool>,

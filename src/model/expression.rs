@@ -66,7 +66,7 @@ pub enum Place {
     Agent(Who),
     /// A point.
     Point(Box<Num>, Box<Num>),
-    /// Mean position of a set; unresolved for nobody.
+    /// Mean position of a set; undefined for an empty set.
     Centroid(Set),
     /// A region: distance 0 inside. Only in distances.
     Region(RegionId),
@@ -77,13 +77,13 @@ pub enum Place {
 /// How a fold joins the values of a set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Fold {
-    /// Smallest; infinite over nobody.
+    /// Smallest; infinite over an empty set.
     Min,
-    /// Largest; minus infinity over nobody.
+    /// Largest; minus infinity over an empty set.
     Max,
-    /// Sum, ascending; 0 over nobody.
+    /// Sum, ascending; 0 over an empty set.
     Sum,
-    /// Mean; unresolved over nobody.
+    /// Mean; undefined over an empty set.
     Mean,
 }
 
@@ -168,7 +168,7 @@ pub enum Num {
     Of(Field, Who),
     /// A coordinate of a place (no region or barrier), m.
     Coordinate(Axis, Place),
-    /// A component of the mean velocity of a set, m/s; unresolved for nobody.
+    /// A component of the mean velocity of a set, m/s; undefined for an empty set.
     MeanVelocity(Axis, Set),
     /// Distance of two places, m. Of two agents: of their centres.
     Distance(Place, Place),
@@ -179,7 +179,7 @@ pub enum Num {
     Clearance(Who),
     /// Seconds until two bodies touch if both keep their velocity: 0 in contact, infinite if never.
     TimeToCollision(Who, Who),
-    /// Root of the mean squared distance of the members from their centroid, m; unresolved for nobody.
+    /// Root of the mean squared distance of the members from their centroid, m; undefined for an empty set.
     Spread(Set),
     /// A function of a number.
     Apply(Function, Box<Num>),
@@ -216,8 +216,8 @@ pub enum Bool {
     Contact(Who),
     /// Whether the bodies of two agents touch.
     Touching(Who, Who),
-    /// Whether it holds for all members; true for nobody.
+    /// Whether it holds for all members; true for an empty set.
     Forall(Set, Box<Bool>),
-    /// Whether it holds for some member; false for nobody.
+    /// Whether it holds for some member; false for an empty set.
     Exists(Set, Box<Bool>),
 }

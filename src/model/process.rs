@@ -11,7 +11,7 @@ use crate::base::decimal::Decimal;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct VariableId(pub u32);
 
-/// What a variable may hold. Truth values are kept as 0 and 1.
+/// The domain of a variable. Truth values are stored as 0 and 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Domain {
     /// Whole numbers, ends included.
@@ -60,7 +60,7 @@ impl Domain {
 pub struct Variable {
     /// `die.s`, `sensor[2].works`
     pub name: String,
-    /// What it may hold.
+    /// Its domain.
     pub domain: Domain,
     /// Its value at the start.
     pub initial: f64,
@@ -78,7 +78,7 @@ pub enum Timing {
     Delay(Law, Vec<(f64, Decimal)>),
 }
 
-/// What may happen when a command fires.
+/// The branches of a command.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Branch {
     /// Its probability.
@@ -94,7 +94,7 @@ pub struct Command {
     pub guard: Bool,
     /// When it fires.
     pub timing: Timing,
-    /// What may happen; the probabilities sum to 1.
+    /// The branches; the probabilities sum to 1.
     pub branches: Vec<Branch>,
 }
 
@@ -123,7 +123,7 @@ pub struct Processes {
 /// How far the probabilities of a command may be from 1 together: what rounding can do.
 pub const WEIGHT_SLACK: f64 = 1e-9;
 
-/// What is wrong with numbers as probabilities of all branches, if anything is.
+/// The error of numbers as probabilities of all branches, if there is one.
 pub fn wrong_weights(weights: &[f64]) -> Option<String> {
     if are_weights(weights.iter().copied()) {
         return None;

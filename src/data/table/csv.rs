@@ -8,7 +8,7 @@ use std::io::{self, Write};
 /// Writes a header and all rows; returns their number.
 ///
 /// # Errors
-/// What the writer fails with, and a row whose signals do not fit `signals`.
+/// Errors of the writer, and a row whose signals do not match `signals`.
 pub fn write_csv<'a>(
     out: impl Write,
     signals: &[&str],

@@ -33,7 +33,7 @@ use moment::{Moment, Scale};
 use plan::plan;
 use present::Present;
 
-/// What a monitor found.
+/// The result of a monitor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reading {
     /// The formula's truth.
