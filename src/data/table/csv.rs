@@ -15,7 +15,7 @@ pub fn write_csv<'a>(
     rows: impl IntoIterator<Item = Row<'a>>,
 ) -> io::Result<u64> {
     write(csv::Writer::from_writer(out), signals, rows).map_err(|error| match error.into_kind() {
-        // A closed pipe is told from other failures by its kind.
+        // The kind of the error distinguishes a closed pipe from other failures.
         csv::ErrorKind::Io(error) => error,
         other => io::Error::other(format!("{other:?}")),
     })

@@ -55,7 +55,7 @@ pub fn write_states_csv(
 ) -> io::Result<u64> {
     let mut table = csv::Writer::from_writer(out);
     let failed = |error: csv::Error| match error.into_kind() {
-        // A closed pipe is told from other failures by its kind.
+        // The kind of the error distinguishes a closed pipe from other failures.
         csv::ErrorKind::Io(error) => error,
         other => io::Error::other(format!("{other:?}")),
     };
