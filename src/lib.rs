@@ -1,7 +1,7 @@
 //! Statistical model checking of people in motion: scenarios, bounded temporal logic, and verdicts with
-//! the guarantee they can honestly give.
+//! stated guarantees.
 //!
-//! The floors, low to high, are described in `ARCHITECTURE.md` and held by `tests/floors.rs`.
+//! `ARCHITECTURE.md` describes the floors of modules, and `tests/floors.rs` checks them.
 //!
 //! ```
 //! use smc::engine::outcome::{Certified, Verdict};

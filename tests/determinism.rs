@@ -394,9 +394,12 @@ fn a_rank_that_talks_nonsense_is_as_good_as_lost() {
     let (study, _sources) = study(SMALL, QUERIES);
     let plain = results(&study, &Threads::new(Some(1)).unwrap());
     // The kind of a message, the number of a lease, a message that is cut short and one that is too long.
-    for (place, by, why) in
-        [(4, 0x40, "means nothing"), (5, 1, "does not fit"), (0, 1, "means nothing"), (3, 0x80, "too long")]
-    {
+    for (place, by, why) in [
+        (4, 0x40, "message is invalid"),
+        (5, 1, "does not match"),
+        (0, 1, "message is invalid"),
+        (3, 0x80, "too long"),
+    ] {
         let change = move |number, message: &mut Vec<u8>| {
             if number == 6 {
                 message[place] ^= by;

@@ -1,4 +1,4 @@
-//! The floors of the house: a module uses only floors below its own, and modules of one floor do not know
+//! The order of floors: a module uses only floors below its own, and modules on one floor do not use
 //! each other. `ARCHITECTURE.md` has the picture; here every path that starts at the crate is read,
 //! and every one that climbs up to it by `super::`.
 

@@ -138,7 +138,7 @@ fn the_left_operand_of_an_until_is_not_needed_in_the_last_state() {
     let refused = "the formula needs 20 steps, but the horizon is 19 steps";
     assert!(said.code == Some(2) && said.err.contains(refused), "{}", said.err);
     let said = asked(&walk(20), "estimate P((X (c.x == 1)) W (c.x == 2))\n", &[]);
-    assert!(said.code == Some(2) && said.err.contains("this looks 21 steps ahead"), "{}", said.err);
+    assert!(said.code == Some(2) && said.err.contains("the formula needs 21 steps"), "{}", said.err);
 }
 
 #[test]

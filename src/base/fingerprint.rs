@@ -1,5 +1,5 @@
 //! Fingerprints of texts: FNV-1a with 64 bits (Fowler, Noll, Vo; RFC 9923). They tell whether two calls read the same
-//! inputs; they are no protection against somebody who wants them to collide.
+//! inputs; they do not protect against deliberate collisions.
 
 /// The fingerprint of some bytes, one after the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,9 +2,9 @@
 //! as easy as 1, 2, 3", SC 2011).
 //!
 //! First rule of the kernel: a trial is a pure function of (model, seed, trial index). Every draw is
-//! addressed, never consumed: the key is the seed, the counter names the draw, who draws it, for what
-//! purpose, in which trial and which branch. So adding an agent, a query or a move changes nobody
-//! else's draws, and trials can run in any order on any machine.
+//! addressed, never consumed: the key is the seed; the counter is the number of the draw, its entity, purpose, trial
+//! and branch. So adding an agent, a query or a move changes no other draw, and trials can run in any order on any
+//! machine.
 
 use super::math;
 use std::convert::Infallible;
@@ -38,7 +38,7 @@ pub fn philox(mut counter: [u32; 4], mut key: [u32; 2]) -> [u32; 4] {
     counter
 }
 
-/// What a draw is for. The number is part of the counter: never renumber, only append.
+/// The purpose of a draw. The number is part of the counter: never renumber, only append.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Purpose {
@@ -58,7 +58,7 @@ pub enum Purpose {
     Delay = 7,
     /// Pauses on a route.
     Pause = 8,
-    /// What a statistical procedure draws for itself.
+    /// Draws of statistical procedures.
     Procedure = 9,
     /// Drawn once per run (roadmaps, learned gaits).
     Run = 10,

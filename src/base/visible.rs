@@ -1,4 +1,4 @@
-//! Text that may hold anything, as it is shown: characters that a terminal obeys, or that nobody sees, become escapes.
+//! Safe display of arbitrary text: control characters and invisible characters become escapes.
 
 use std::borrow::Cow;
 

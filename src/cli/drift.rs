@@ -99,9 +99,8 @@ fn watch(arguments: &Drift) -> Result<bool, Diagnostic> {
 
 /// Outcomes that cannot be read as such.
 fn table(reason: String) -> Diagnostic {
-    Diagnostic::placeless(Code::E0707, reason).hint(
-        "write one outcome per line: 0 or 1, true or false; for a table select a column with `--column`",
-    )
+    Diagnostic::placeless(Code::E0707, reason)
+        .hint("write one outcome per line, 0 or 1, true or false; `--column` selects one of a table")
 }
 
 /// Most bytes of one line: a device that has no lines must not fill the memory.

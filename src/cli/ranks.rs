@@ -63,7 +63,7 @@ pub(super) fn start(count: usize) -> Result<(Children, Vec<Connection>), String>
     let mut connections = Vec::with_capacity(count);
     for _ in 0..count {
         let mut command = Command::new(&program);
-        // What goes wrong with a rank is told by the head.
+        // The main process reports the errors of a rank.
         command.arg(WORD).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
         let mut child = command.spawn().map_err(|error| format!("ranks cannot be started: {error}"))?;
         if let (Some(to), Some(from)) = (child.stdin.take(), child.stdout.take()) {

@@ -80,11 +80,11 @@ impl<'a> Compiler<'a> {
         Ok((site, described))
     }
 
-    /// Whether what is set lies in ranges that hang on other parameters. In a world where it does not nothing else is said but
-    /// what is so in every world.
+    /// Whether the set values are in ranges that depend on other parameters. In a world where they are not, only that
+    /// and the errors of all worlds are reported.
     pub(super) fn check_ranges(&mut self, site: usize, set: Vec<(String, (Span, Span))>) -> Lowered<()> {
         let Site { settings, elaborator, .. } = &mut self.sites[site];
-        // What is wrong with these values is told at each place where they are set.
+        // Errors of these values are reported at each place where they are set.
         let was_astray = std::mem::replace(&mut elaborator.is_astray, false);
         let before = elaborator.diagnostics.len();
         let mut result = Ok(());

@@ -100,7 +100,7 @@ impl Compiler<'_> {
         if diagnostic.severity != Severity::Error && diagnostic.code != Code::W0501 {
             return diagnostic;
         }
-        // What hangs on no value is so in all worlds in which that is asked.
+        // An error that depends on no value occurs in all worlds.
         if others == 0 && self.sites[worlds[0]].elaborator.is_sure(&diagnostic) {
             return diagnostic;
         }

@@ -25,8 +25,8 @@ impl Elaborator<'_> {
         TermId(self.known[1].place(&mut self.tree.terms, term).0 as u32)
     }
 
-    /// The formula that reads a truth value of the present state. Each way in which a query says it counts, so that it is
-    /// told in words of its own.
+    /// The formula that reads a truth value of the present state. Each spelling is separate, so a
+    /// witness shows it as written.
     pub(super) fn atom(&mut self, truth: Bool, span: Span, phrase: Option<&Arc<Part>>) -> NodeId {
         let text = self.words(span);
         self.atom_worded(truth, span, text, phrase)

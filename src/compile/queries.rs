@@ -432,7 +432,7 @@ impl<'a> Compiler<'a> {
 
     fn finish(self) -> (Option<Study>, Vec<Diagnostic>) {
         let mut diagnostics = self.findings();
-        // Nothing is left out without a word; of what was not read the parser told.
+        // No query is dropped without a diagnostic; the parser reported the parts that it skipped.
         let is_torn = self.sites.iter().any(|site| !site.elaborator.torn.is_empty());
         if let Some(query) = self.refused.first().filter(|_| !is_torn)
             && !diagnostics.iter().any(|d| d.severity == Severity::Error)

@@ -301,7 +301,7 @@ impl<'a> Elaborator<'a> {
         snap
     }
 
-    /// Joins the walls of an import that nearly meet, or tells of them.
+    /// Joins the walls of an import that nearly touch, or reports them.
     fn join_walls(&mut self, path: &Text, first: usize, snap: f64) {
         let imported = &mut self.scene.barriers[first..];
         let edges: Vec<Segment> = imported
@@ -375,7 +375,7 @@ impl<'a> Elaborator<'a> {
             return self.note(error);
         }
         let Ok(features) = features else { return };
-        // A property that no feature has equals nothing, and differs from everything. What all lack is told below.
+        // A property that no feature has equals nothing, and differs from everything; it is reported below.
         let all_known = unknown.is_empty() || known.is_empty();
         for (name, span) in unknown.into_iter().filter(|_| !all_known) {
             let known = known.iter().map(String::as_str).chain(["name"]);

@@ -114,7 +114,7 @@ impl<'a> Elaborator<'a> {
                 "the value is not a finite number",
             ));
         }
-        // A range that hangs on other parameters is that of the world in which the value is set.
+        // A range that depends on other parameters is that of the world in which the value is set.
         if let Some((low, high)) = range
             && !self.hangs_on_parameters(low.span.to(high.span))
         {
@@ -123,8 +123,8 @@ impl<'a> Elaborator<'a> {
         Ok(number)
     }
 
-    /// Whether a parameter takes a value that lies in its range, as that is here; where it is told that it is too low, and too
-    /// high.
+    /// Whether the value of a parameter is in its range in this world. `at` has the places for the errors of a value that
+    /// is too low and of one that is too high.
     pub(super) fn in_range(&mut self, (name, number): (&str, Number), at: (Span, Span)) -> Lowered<()> {
         let Ok((default, Some((low, high)))) = self.param(name, at.0) else { return Ok(()) };
         let place = low.span.to(high.span);

@@ -87,7 +87,7 @@ pub struct Texts {
     pub uses: Uses,
 }
 
-/// A condition of one state as it was written. Few are ever told, so its words are made only then.
+/// A condition of one state as it was written. Few are ever shown, so the text is made only on request.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
     /// Where it is written.

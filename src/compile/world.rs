@@ -343,7 +343,7 @@ impl<'a> Elaborator<'a> {
         self.lower(&expr, &Locals::of(0))
     }
 
-    /// Settles the clock; of one with steps of a length it is also told how much of it is sure.
+    /// Settles the clock, and notes how much of it is certain.
     fn settle_clock(&mut self, file: &'a ScenarioFile, told: &mut Told) -> Lowered<()> {
         let mut found: [Option<(&Expr, Span)>; 2] = [None, None];
         // What a slip of the pen was probably meant to set.

@@ -1,7 +1,7 @@
 //! Floor 1: bytes to tracks and geometry, and traces to tables.
 //!
-//! Everything here reads text that somebody else has opened and writes to what somebody else has
-//! created. A bad input gives every fault in it at once, each with its place.
+//! These functions read text and write to writers that the caller has opened. A bad input gives all its errors
+//! at once, each with its place.
 
 pub mod geometry;
 pub mod outcomes;

@@ -80,7 +80,7 @@ pub fn open_atoms(
     Ok((!known.is_empty()).then_some(open))
 }
 
-/// What forces the truth of a formula, which is known, at a state.
+/// The reasons of the known truth of a formula at a state.
 pub(super) fn explain_at(offline: &Offline<'_>, root: NodeId, at: u64) -> Vec<Reason> {
     let Some(root) = offline.slot(root) else { return Vec::new() };
     let mut demand = Demand { offline, changes: vec![Vec::new(); root + 1] };

@@ -163,7 +163,7 @@ fn truth(tree: &Tree, parts: &[Part], (atoms, signals): (&[bool], &[f64]), known
     last
 }
 
-/// What is known of one state, by the numbers of the parts.
+/// The known truth in one state, by the numbers of the parts.
 #[derive(Default)]
 struct Known {
     truths: Vec<bool>,

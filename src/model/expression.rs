@@ -43,7 +43,7 @@ pub enum Place {
     Agent(Who),
     /// A point.
     Point(Box<Num>, Box<Num>),
-    /// Mean position of a set; unresolved for nobody.
+    /// Mean position of a set; undefined for an empty set.
     Centroid(Set),
     /// A region: distance 0 inside. Only in distances.
     Region(RegionId),
@@ -54,13 +54,13 @@ pub enum Place {
 /// How a fold joins the values of a set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Fold {
-    /// Smallest; infinite over nobody.
+    /// Smallest; infinite over an empty set.
     Min,
-    /// Largest; minus infinity over nobody.
+    /// Largest; minus infinity over an empty set.
     Max,
-    /// Sum, ascending; 0 over nobody.
+    /// Sum, ascending; 0 over an empty set.
     Sum,
-    /// Mean; unresolved over nobody.
+    /// Mean; undefined over an empty set.
     Mean,
 }
 
@@ -189,8 +189,8 @@ pub enum Bool {
     Contact(Who),
     /// Whether the bodies of two agents touch.
     Touching(Who, Who),
-    /// Whether it holds for all members; true for nobody.
+    /// Whether it holds for all members; true for an empty set.
     Forall(Set, Box<Bool>),
-    /// Whether it holds for some member; false for nobody.
+    /// Whether it holds for some member; false for an empty set.
     Exists(Set, Box<Bool>),
 }

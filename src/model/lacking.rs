@@ -1,4 +1,4 @@
-//! Which expressions can lack a value: a mean, a centroid or a spread of nobody.
+//! Which expressions can be undefined: a mean, a centroid or a spread of an empty set.
 //!
 //! Sets of people who are always there cannot be empty by chance, but whether they are is not asked here: an answer
 //! "it can" is always safe.

@@ -57,7 +57,7 @@ impl Domain {
 pub struct Variable {
     /// `die.s`, `sensor[2].works`
     pub name: String,
-    /// What it may hold.
+    /// Its domain.
     pub domain: Domain,
     /// Its value at the start.
     pub initial: f64,
@@ -75,7 +75,7 @@ pub enum Timing {
     Delay(Law, Vec<(f64, Decimal)>),
 }
 
-/// What may happen when a command fires.
+/// The branches of a command.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Branch {
     /// Its probability.
@@ -91,7 +91,7 @@ pub struct Command {
     pub guard: Bool,
     /// When it fires.
     pub timing: Timing,
-    /// What may happen; the probabilities sum to 1.
+    /// The branches; the probabilities sum to 1.
     pub branches: Vec<Branch>,
 }
 
@@ -120,7 +120,7 @@ pub struct Processes {
 /// How far the probabilities of a command may be from 1 together: what rounding can do.
 pub const WEIGHT_SLACK: f64 = 1e-9;
 
-/// What is wrong with numbers as probabilities of all branches, if anything is.
+/// The error of numbers as probabilities of all branches, if there is one.
 pub fn wrong_weights(weights: &[f64]) -> Option<String> {
     if are_weights(weights.iter().copied()) {
         return None;

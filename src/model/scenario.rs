@@ -17,15 +17,15 @@ pub struct Scenario {
     pub clock: Clock,
     /// Tick of the last state.
     pub horizon: Tick,
-    /// What stands still.
+    /// Walls, obstacles, regions and points.
     pub scene: Scene,
-    /// Who moves.
+    /// The agents.
     pub agents: Vec<Agent>,
     /// Groups whose members attract each other.
     pub groups: Vec<Group>,
-    /// What may be suggested to whom.
+    /// The moves, each with its agent.
     pub moves: Vec<Moves>,
-    /// What chance changes besides the agents.
+    /// The processes.
     pub processes: Processes,
     /// Automata of agents.
     pub behaviours: Behaviours,

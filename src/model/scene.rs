@@ -10,12 +10,12 @@ pub struct RegionId(pub u32);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct BarrierId(pub u32);
 
-/// What stands still.
+/// The fixed parts of a scenario.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
     /// Walls and obstacles.
     pub barriers: Vec<Barrier>,
-    /// Regions, which hinder nobody.
+    /// Regions, which do not block agents.
     pub regions: Vec<Region>,
     /// Named points, m.
     pub points: Vec<(String, Vec2)>,
@@ -26,7 +26,7 @@ pub struct Scene {
 pub struct Barrier {
     /// Its name, or what an import calls it; may be empty.
     pub name: String,
-    /// What it is.
+    /// Its kind.
     pub obstacle: Obstacle,
 }
 
@@ -49,7 +49,7 @@ pub struct Region {
 }
 
 impl Barrier {
-    /// What it is called in texts: the wall `south`, an obstacle.
+    /// Its name in texts: the wall `south`, an obstacle.
     pub fn phrase(&self) -> String {
         let (what, article) = match self.obstacle {
             Obstacle::Wall(_) => ("wall", "a"),

@@ -117,7 +117,7 @@ fn people(out: &mut String, world: &World) {
     let _ = writeln!(out, "\nAgents: {}", scenario.agents.len() - coming);
     let mut rest = scenario.agents.as_slice();
     while let Some(first) = rest.first() {
-        // Members of one declaration that differ in nothing but their number are told once.
+        // Members of one declaration that differ only in their number are shown once.
         let stem = first.name.split('[').next().unwrap_or("").to_owned();
         let alike = |a: &Agent| {
             a.name.split('[').next() == Some(stem.as_str())

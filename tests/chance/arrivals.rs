@@ -127,7 +127,10 @@ fn a_trial_in_which_too_many_come_is_unresolved_and_says_why() {
     assert!(near(share, 0.3155, 0.4647, 200.0), "{share}");
     assert_eq!(result.counts.unresolved + result.counts.failures, 200);
     let warning = &result.warnings[0];
-    assert!(warning.contains("more than 32 people came by `doors`; a larger `limit`"), "{warning}");
+    assert!(
+        warning.contains("more than 32 agents arrived by source `doors`; write a larger `limit`"),
+        "{warning}"
+    );
     assert!(result.high > share && result.low <= 0.0);
 }
 

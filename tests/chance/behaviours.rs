@@ -287,7 +287,7 @@ fn what_nobody_can_move_with_is_an_error_of_the_model() {
     let study = compiled(&text, "estimate P(F<=2 s (travelled(a) > 100 m)) within 0.1");
     let run = answered(&study, 0, 1, 1_000);
     let reason = format!("{:?}", run.failure.unwrap());
-    assert!(reason.contains("`slower` of a would set `tau` to -0.5"), "{reason}");
+    assert!(reason.contains("`slower` of a sets `tau` to -0.5"), "{reason}");
 }
 
 #[test]

@@ -196,7 +196,7 @@ fn where_behaviours_speak_of_single_ones_places_are_used_once() {
     let study = compiled(&text, "estimate P(F (count(a in doors) > 4)) by fixed(trials = 2)");
     let run = answered(&study, 0, 1, 1_000);
     assert_eq!(run.results[0].counts.unresolved, 2);
-    assert!(run.results[0].warnings[0].contains("more than 4 people came by `doors`"));
+    assert!(run.results[0].warnings[0].contains("more than 4 agents arrived by source `doors`"));
 }
 
 #[test]

@@ -135,7 +135,7 @@ fn help_for_shells_and_manuals() {
     assert!(place.path("pages/smc.1").is_file() && place.path("pages/smc-check.1").is_file());
     let said = place.call(&["show", "a.scn", "a.bltl", "--set", "density=0.4"]);
     assert_eq!(said.code, Some(0));
-    for words in ["horizon 4 s", "200 steps", "region hall", "People: 7", "mass 80 kg"] {
+    for words in ["horizon 4 s", "200 steps", "region hall", "Agents: 7", "mass 80 kg"] {
         assert!(said.out.contains(words), "{words}\n{}", said.out);
     }
 }
@@ -173,8 +173,8 @@ fn calls_that_would_do_nothing_are_refused() {
         (&["simulate", "a.scn", "--trials", "0"], "`--trials` must be positive (got 0)"),
         (&["simulate", "a.scn", "--trial", "281474976710656"], "numbered from 0 to 281474976710655"),
         (&["simulate", "a.scn", "--until", "4.5"], "the horizon of the scenario is 4 s"),
-        (&["simulate", "a.scn", "--until", "-1"], "is no time"),
-        (&["simulate", "a.scn", "--until", "nan"], "is no time"),
+        (&["simulate", "a.scn", "--until", "-1"], "must be a time that is not negative"),
+        (&["simulate", "a.scn", "--until", "nan"], "must be a time that is not negative"),
         (&["simulate", "a.scn", "--data", "nowhere"], "`--data nowhere` does not exist"),
         (&["check", "a.scn", "a.bltl", "--data", "a.bltl"], "`--data a.bltl` is not a directory"),
         (&["check", "a.scn", "a.bltl", "--only", "2"], "there is no query 2"),

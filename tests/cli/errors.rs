@@ -103,21 +103,21 @@ fn what_a_trial_shows_has_a_place_and_a_code() {
 fn a_wrong_call_has_a_code_and_a_hint() {
     let place = Place::new(&[("a.scn", SMALL), ("a.bltl", "check P(F<=1 s contact(user)) >= 0.5\n")]);
     for (words, code, hint) in [
-        (&["check", "a.scn", "a.bltl", "--only", "7"][..], "E0705", "numbered from 0 to 0"),
+        (&["check", "a.scn", "a.bltl", "--only", "7"][..], "E0705", "a number from 0 to 0"),
         (&["check", "a.scn", "a.bltl", "--threads", "0"], "E0705", "a number from 1"),
         (
             &["check", "a.scn", "a.bltl", "-q", "--max-trials", "9", "--report", "none/a.html"],
             "E0706",
-            "the place",
+            "the folder",
         ),
         (&["simulate", "a.scn", "--until", "900"], "E0705", "horizon"),
         (&["simulate", "a.scn", "--trials", "0"], "E0705", "from 1"),
-        (&["simulate", "a.scn", "--move", "heading 0.5 rad"], "E0705", "there are heading"),
-        (&["simulate", "a.scn", "--output", "none/a.csv"], "E0706", "the place"),
+        (&["simulate", "a.scn", "--move", "heading 0.5 rad"], "E0705", "the moves are heading"),
+        (&["simulate", "a.scn", "--output", "none/a.csv"], "E0706", "the folder"),
         (&["fmt", "a.txt"], "E0705", "--language"),
         (&["fmt", "none.scn"], "E0701", "relative"),
         (&["fmt", "-", "-"], "E0701", "relative"),
-        (&["explain", "E9999"], "E0705", "lists all"),
+        (&["explain", "E9999"], "E0705", "lists all codes"),
         (&["drift", "none.csv", "--before", "0.9", "--after", "0.8"], "E0701", "relative"),
         (&["drift", "a.scn", "--before", "0.9", "--after", "0.8"], "E0707", "0 or 1"),
         (&["drift", "a.scn", "--before", "0.9", "--after", "0.9"], "E0705", "--before"),
@@ -287,7 +287,11 @@ source door: adult { at = uniform in hall  every = exponential(10 s)  route = (2
     let place = Place::new(&[("a.scn", door), ("a.bltl", properties)]);
     let json = place.call(&["check", "a.scn", "a.bltl", "-q", "--format", "json"]).json();
     let warning = |at: usize| json["results"][at]["warnings"][0].as_str().unwrap().to_owned();
-    assert!(warning(0).contains("more than 3 people came by `door`; a larger `limit`"), "{}", warning(0));
+    assert!(
+        warning(0).contains("more than 3 agents arrived by source `door`; write a larger `limit`"),
+        "{}",
+        warning(0)
+    );
     assert!(
         warning(1).contains("is over an empty set at 0 s") && !warning(1).contains("step"),
         "{}",
@@ -379,10 +383,7 @@ fn a_formula_without_a_temporal_operator_is_read_in_the_first_state() {
     };
     let (count, text) = warned("property low = w.x < 3\ncheck P(low) >= 0.5\ncheck P(G<=9 low) >= 0.5\n");
     assert_eq!(count, 1, "{text}");
-    assert!(
-        text.contains("a.bltl:2:9") && text.contains("write `G<=9 steps low` if it has to hold"),
-        "{text}"
-    );
+    assert!(text.contains("a.bltl:2:9") && text.contains("write `G<=9 steps low` for all states"), "{text}");
     for formula in ["w.x < 3 & w.x >= mode", "robustness(w.x < 3) > 0"] {
         assert_eq!(warned(&format!("estimate P({formula})\n")).0, 1, "{formula}");
     }
@@ -413,7 +414,7 @@ fn real_variables_are_not_to_be_compared_for_equality_and_ranges_have_a_limit() 
     assert!(said.contains("a.scn:3:8") && said.contains("a.bltl:1:12"), "{said}");
     let said = place(&model.replace("0 .. 9", "0 .. 1e18"), "check P(F (tank.n == 3)) >= 0.5\n");
     assert!(said.contains("error[E0405]: `1e18` is too large for an end of a range"), "{said}");
-    assert!(said.contains("the limit is 4503599627370495"), "{said}");
+    assert!(said.contains("the limit is ±4503599627370495"), "{said}");
     let said = place(&model.replace("0 .. 9", "0 .. 9.5"), "check P(F (tank.n == 3)) >= 0.5\n");
     assert!(said.contains("the ends of a range must be whole numbers"), "{said}");
 }

@@ -93,7 +93,7 @@ fn planned_numbers_are_told_exactly() {
     assert!(jsonschema::validator_for(&schema).unwrap().is_valid(&said.json()), "{}", said.out);
     let text = place.call(&["check", "a.scn", "a.bltl", "--forecast"]).out;
     assert!(text.starts_with("forecast: about 740 trials, "), "{text}");
-    assert!(text.lines().count() == 3 && text.lines().last().unwrap().contains(" in all;"), "{text}");
+    assert!(text.lines().count() == 3 && text.lines().last().unwrap().contains(" in total;"), "{text}");
 }
 
 #[test]

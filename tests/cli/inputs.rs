@@ -325,11 +325,11 @@ fn imports_that_yield_nothing_are_told() {
     for (import, code, said) in [
         (r#""e.wkt""#, Some(2), "error[E0704]: the file is empty"),
         (r#""p.geojson""#, Some(0), "points are ignored"),
-        (r#""l.geojson" where kind == "door""#, Some(0), "these have `kind`"),
+        (r#""l.geojson" where kind == "door""#, Some(0), "their properties are `kind`"),
         // What no feature has would differ from everything.
         (r#""l.geojson" where knd == "wall""#, Some(2), "did you mean `kind`?"),
         (r#""l.geojson" where kind == wall"#, Some(2), "error[E0201]: unknown property `wall`"),
-        (r#""l.geojson" where "kind" == "wall""#, Some(2), "error[E0305]: a filter compares properties"),
+        (r#""l.geojson" where "kind" == "wall""#, Some(2), "error[E0305]: a filter can compare properties"),
         (r#""l.geojson" where kind == "wall""#, Some(0), ""),
     ] {
         place.write("a.scn", format!("{SMALL}\nscene {{ import {import} }}\n").as_bytes());

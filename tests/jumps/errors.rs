@@ -62,13 +62,17 @@ fn questions_that_have_no_meaning_in_continuous_time() {
         assert!(found.contains(code), "{question}\n{found}");
     }
     let horizon = compiled(QUEUE, "check P(F<=11 s (queue.n == 1)) >= 0.5").unwrap_err();
-    assert!(horizon.contains("11 s ahead") && horizon.contains("the horizon is 10 s"), "{horizon}");
+    assert!(horizon.contains("needs 11 s") && horizon.contains("the horizon is 10 s"), "{horizon}");
 }
 
 #[test]
 fn errors_that_show_while_running_name_trial_time_and_state() {
     for (process, what, code) in [
-        ("when true at 1 /s * (x - 0.5) -> x = x + 1", "rate of command 1 of `p` is -0.5 /s", "E0904"),
+        (
+            "when true at 1 /s * (x - 0.5) -> x = x + 1",
+            "rate of command 1 of `p` must be finite and not negative (got -0.5 /s)",
+            "E0904",
+        ),
         ("when true at 1 /s -> x = x / 0", "`p.x` would become", "E0903"),
         ("when true at 1 /s -> x / 3: x = 1 | 2 / 3: x = 2", "probabilities of command 1 of `p`", "E0902"),
         ("when x >= 0 after 0 s -> x = x + 1", "more than 100000 jumps at one time", "E0907"),

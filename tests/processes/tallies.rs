@@ -68,7 +68,7 @@ fn a_count_over_time_has_its_probability() {
 #[test]
 fn a_count_over_time_is_no_number() {
     let refused = compiled(COINS, "check P(count(c in coin: F<=#3 (c.heads)) + 1 >= 4) >= 0.5").unwrap_err();
-    assert!(refused.contains("E0504") && refused.contains("only compared with a number"), "{refused}");
+    assert!(refused.contains("E0504") && refused.contains("only be compared with a number"), "{refused}");
 }
 
 #[test]

@@ -18,7 +18,7 @@ pub type Vec2 = nalgebra::Vector2<f64>;
 /// from the origin, rounding would swallow the step.
 pub const FARTHEST: f64 = 1e6;
 
-/// What is wrong with the coordinates of a point; `None` where a scene can have it.
+/// The error of the coordinates of a point; `None` if they are valid.
 pub fn coordinate_fault(p: Vec2) -> Option<String> {
     let far = [p.x, p.y].into_iter().find(|coordinate| coordinate.abs() > FARTHEST || coordinate.is_nan())?;
     Some(format!("a coordinate must lie between -1e6 m and 1e6 m (got {far:e} m)"))

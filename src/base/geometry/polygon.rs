@@ -12,7 +12,7 @@ pub struct Polygon {
     pub holes: Vec<Vec<Vec2>>,
 }
 
-/// What is wrong with the holes of a polygon; holes count from 1.
+/// An error of the holes of a polygon; holes are numbered from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum HoleFault {
     /// It has no part inside the outline.

@@ -1,8 +1,8 @@
-//! Errors that follow from others: said once, or not at all.
+//! Errors that follow from others are reported once or not at all.
 //!
-//! What the parser could not read is missing from the tree. A name declared there is then unknown, a process that had
-//! rates seems to have none, moves have no options: those errors would only confuse, and go away with the first one.
-//! Nor is it told at each of its uses that a name is unknown.
+//! Text that the parser could not read is missing from the tree. A name declared there is then unknown, a process with
+//! rates seems to have none, moves have no options. Such errors would confuse, and disappear with the first one.
+//! An unknown name is not reported at each of its uses.
 
 mod broken;
 
@@ -30,7 +30,7 @@ const DIMENSION: Code = Code::E0303;
 const EARLY: Code = Code::E0205;
 /// The end of the title of an error about a circular definition.
 pub(super) const CIRCULAR: &str = "depends on itself";
-/// Codes of unknown names, told once.
+/// Codes of unknown names, reported once.
 pub(super) const UNKNOWN: [Code; 4] = [Code::E0201, Code::E0203, Code::E0208, Code::E0210];
 /// Most further places that are marked.
 const MOST_MARKS: usize = 3;

@@ -50,7 +50,7 @@ pub enum Geometry {
     Polygon(Polygon),
 }
 
-/// What is wrong with a geometry.
+/// An error of a geometry.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}", self.sentence())]
 pub struct GeometryError {
@@ -60,7 +60,7 @@ pub struct GeometryError {
     pub column: Option<usize>,
     /// Which feature, from 1, and its name if it has one.
     pub feature: Option<String>,
-    /// What is wrong: one sentence, lower case, no full stop.
+    /// The error: one sentence, lower case, no full stop.
     pub message: String,
 }
 

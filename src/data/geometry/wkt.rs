@@ -8,7 +8,7 @@ use wkt::types::{Coord, LineString, Polygon};
 
 /// Deepest nesting of parentheses; beyond it the text is refused before it is parsed.
 const DEEPEST: usize = 64;
-/// What stands within parentheses beside numbers.
+/// The content of parentheses other than numbers.
 const WORDS: [&str; 11] = [
     "point",
     "linestring",
@@ -74,7 +74,7 @@ struct Piece<'a> {
     depth: usize,
 }
 
-/// What stands between geometries.
+/// The separators between geometries.
 fn parting(c: char) -> bool {
     c.is_whitespace() || c == ',' || c == ';'
 }

@@ -8,14 +8,14 @@ use std::io::{self, Write};
 /// Writes a header and all rows; returns their number.
 ///
 /// # Errors
-/// What the writer fails with, and a row whose signals do not fit `signals`.
+/// Errors of the writer, and a row whose signals do not match `signals`.
 pub fn write_csv<'a>(
     out: impl Write,
     signals: &[&str],
     rows: impl IntoIterator<Item = Row<'a>>,
 ) -> io::Result<u64> {
     write(csv::Writer::from_writer(out), signals, rows).map_err(|error| match error.into_kind() {
-        // A closed pipe is told from other failures by its kind.
+        // The kind of the error distinguishes a closed pipe from other failures.
         csv::ErrorKind::Io(error) => error,
         other => io::Error::other(format!("{other:?}")),
     })

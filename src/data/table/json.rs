@@ -8,7 +8,7 @@ use std::io::{self, Write};
 /// Writes one object per row and line; returns the number of rows.
 ///
 /// # Errors
-/// What the writer fails with, and a row whose signals do not fit `signals`.
+/// Errors of the writer, and a row whose signals do not match `signals`.
 pub fn write_json_lines<'a>(
     mut out: impl Write,
     signals: &[&str],
@@ -35,7 +35,7 @@ pub fn write_json_lines<'a>(
 /// number of rows.
 ///
 /// # Errors
-/// What the writer fails with, and a row whose signals do not fit `signals`.
+/// Errors of the writer, and a row whose signals do not match `signals`.
 pub fn write_json<'a>(
     mut out: impl Write,
     signals: &[&str],

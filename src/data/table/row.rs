@@ -50,7 +50,7 @@ impl Row<'_> {
 pub(super) mod samples {
     use super::*;
 
-    /// Two rows with one signal, the second of somebody absent.
+    /// Two rows with one signal, the second of an absent agent.
     pub(in crate::data::table) fn rows() -> [Row<'static>; 2] {
         [
             Row {

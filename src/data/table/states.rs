@@ -4,7 +4,7 @@
 
 use std::io::{self, Write};
 
-/// What a variable holds.
+/// The value of a variable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Held {
     /// A number.
@@ -47,7 +47,7 @@ fn columns<'n>(names: &[&'n str]) -> Vec<&'n str> {
 /// Writes a header and all rows as CSV; returns their number.
 ///
 /// # Errors
-/// What the writer fails with.
+/// Errors of the writer.
 pub fn write_states_csv(
     out: impl Write,
     names: &[&str],
@@ -55,7 +55,7 @@ pub fn write_states_csv(
 ) -> io::Result<u64> {
     let mut table = csv::Writer::from_writer(out);
     let failed = |error: csv::Error| match error.into_kind() {
-        // A closed pipe is told from other failures by its kind.
+        // The kind of the error distinguishes a closed pipe from other failures.
         csv::ErrorKind::Io(error) => error,
         other => io::Error::other(format!("{other:?}")),
     };
@@ -72,7 +72,7 @@ pub fn write_states_csv(
 /// Writes one JSON object per row and line; returns the number of rows.
 ///
 /// # Errors
-/// What the writer fails with.
+/// Errors of the writer.
 pub fn write_states_json_lines(
     mut out: impl Write,
     names: &[&str],
@@ -94,7 +94,7 @@ pub fn write_states_json_lines(
 /// number of rows.
 ///
 /// # Errors
-/// What the writer fails with.
+/// Errors of the writer.
 pub fn write_states_json(
     mut out: impl Write,
     names: &[&str],

@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 
 /// Seconds between two annotations, in every sequence of the set.
 const SECONDS_PER_ANNOTATION: f64 = 0.4;
-/// Frames between two annotations where nobody was seen twice, as at 25 frames per second.
+/// Frames between two annotations if no person was annotated twice, as at 25 frames per second.
 const DEFAULT_STRIDE: u32 = 10;
 
 /// So many metres tell how places and velocities belong together, and so far apart they do not. In the published tables the
@@ -230,7 +230,7 @@ mod tests {
         assert!(read_eth_biwi(&known).is_ok());
         let said = read_eth_biwi(&table(20)).unwrap_err();
         assert!(said[0].to_string().starts_with("the velocities"), "{said:?}");
-        assert!(said[0].message.contains("about 0.80 s apart"), "{said:?}");
+        assert!(said[0].message.contains("annotations 0.80 s apart"), "{said:?}");
         // Nearer ones, and few rows.
         let short = |frames: u32, rows: u32| -> String {
             let at = |k: u32| f64::from(k * frames) / 25.0;

@@ -1,16 +1,16 @@
 //! Reader of annotated groups (`groups.txt`): one group per line, ids as in the recording.
 //!
-//! A line is a set: a repeated id counts once. Lines that share somebody are one group, as the eth sequence
+//! A line is a set: a repeated id counts once. Lines that share a person are one group, because the eth sequence
 //! lists some groups twice with different members.
 
 use super::line::{LineError, fields, quoted};
 use std::collections::BTreeMap;
 
 /// Reads groups: each ascending, in the order of their smallest members. Empty lines are passed over; a
-/// line with one person joins nobody and is left out.
+/// line with one person is ignored.
 ///
 /// # Errors
-/// Every field that is no whole number from 0 to 4294967295.
+/// Every field that is not a whole number from 0 to 4294967295.
 pub fn read_groups(text: &str) -> Result<Vec<Vec<u32>>, Vec<LineError>> {
     let mut errors = Vec::new();
     let mut parents = BTreeMap::<u32, u32>::new();

@@ -1,6 +1,6 @@
 //! A fault in one line of a text table, and the fields of such a line.
 
-/// What is wrong with a line.
+/// An error of a line.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}", self.sentence())]
 pub struct LineError {
@@ -8,7 +8,7 @@ pub struct LineError {
     pub line: usize,
     /// Character of the line at which the fault begins, from 1; `None` where the whole line is meant.
     pub column: Option<usize>,
-    /// What is wrong: one sentence, lower case, no full stop.
+    /// The error: one sentence, lower case, no full stop.
     pub message: String,
 }
 

@@ -70,7 +70,7 @@ impl Recording {
         self.people.iter().map(|person| person.id)
     }
 
-    /// Annotated frames with somebody in them, ascending.
+    /// Annotated frames with at least one person, ascending.
     pub fn frames(&self) -> &[u32] {
         &self.frames
     }
@@ -140,7 +140,7 @@ impl Recording {
         ))
     }
 
-    /// The annotated time nearest to a time, s; for messages about a time at which nobody is present.
+    /// The annotated time nearest to a time, s; for messages about a time at which no person is present.
     pub fn nearest_time(&self, time: f64) -> Option<f64> {
         let after = self.frames.partition_point(|&frame| self.time_of(frame) < time);
         let around = self

@@ -47,7 +47,7 @@ fn a_trial_of_too_many_jumps_is_unresolved_and_the_process_is_named() {
     let item = Item { index: 0, advice: None };
     let words = unresolved(&subject, 0, item, (7, &Budget::new(u64::MAX, None)));
     assert!(
-        words.contains("can be followed: 500 jumps by 0.") && words.contains("most of them of `blinker["),
+        words.contains("too many jumps: 500 jumps by 0.") && words.contains("most of them of `blinker["),
         "{words}"
     );
     assert!(words.contains("at a rate of 1500 /s"), "{words}");
@@ -56,7 +56,7 @@ fn a_trial_of_too_many_jumps_is_unresolved_and_the_process_is_named() {
     let words = unresolved(&subject, 0, item, (7, &Budget::new(u64::MAX, None)));
     assert!(words.contains("run again: 400 jumps by 0.") && words.contains("of `blinker["), "{words}");
     subject.jumps_again = 1 << 20;
-    // Enough jumps: nobody is to blame.
+    // Enough jumps: no cause is reported.
     subject.most_jumps = 100_000;
     assert_eq!(unresolved(&subject, 0, item, (7, &Budget::new(u64::MAX, None))), "");
 }

@@ -73,7 +73,7 @@ impl Extent {
     }
 }
 
-/// What a cell computes.
+/// The operation of a cell.
 #[derive(Clone, Debug)]
 pub(super) enum Machine {
     /// A truth value of the present state.
@@ -128,7 +128,7 @@ pub(super) enum Machine {
     EndLate(usize),
 }
 
-/// What a step brings.
+/// The input of a step.
 pub(super) struct Context<'a> {
     /// The batch's step.
     pub(super) now: u64,

@@ -7,7 +7,7 @@ use super::cell::{Cell, Context, Machine, Ref};
 use super::track::select;
 use crate::base::lanes::{LANES, Lanes, Mask};
 
-/// What is known of a margin in eight lanes.
+/// Bounds of a margin in eight lanes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Bounds {
     pub(super) lower: Lanes,
@@ -58,7 +58,7 @@ impl Bounds {
     }
 }
 
-/// What the monitor knows of one cell.
+/// The bounds of one cell.
 #[derive(Clone, Debug)]
 pub(super) struct Margin {
     /// Of the present state, or the answer at the only position.

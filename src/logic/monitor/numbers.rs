@@ -1,6 +1,6 @@
 //! Numbers: arithmetic, aggregates over windows, times, and comparisons.
 //!
-//! A number that is none (NaN) makes every comparison with it false, and every aggregate, smaller and
+//! NaN makes every comparison with it false, and every aggregate, smaller and
 //! larger of it none. Sums run over the states in ascending order; a mean lies between the least and the greatest number that
 //! it averages.
 

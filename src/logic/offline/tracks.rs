@@ -34,7 +34,7 @@ fn truth(known: Option<bool>) -> u8 {
     known.map_or(OPEN, |known| if known { TRUE } else { FALSE })
 }
 
-/// What is known of a slot.
+/// The known values of a slot.
 #[derive(Clone, Debug)]
 pub(super) struct Track {
     /// The first state.

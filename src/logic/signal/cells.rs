@@ -130,7 +130,7 @@ impl Cells {
         truths + self.numbers.iter().map(|number| number.stream.len()).sum::<usize>()
     }
 
-    /// Drops what nobody will look at again.
+    /// Drops values that are never read again.
     fn forget(&mut self) {
         let (truths, numbers) = &mut self.needed;
         truths.fill(Moment::MAX);

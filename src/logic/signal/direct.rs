@@ -48,7 +48,7 @@ impl Stay {
     }
 }
 
-/// What is asked at the start of the trial.
+/// The formula or metric that is evaluated at the start of the trial.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Question {
     /// Until, or weak until, perhaps negated; without `first` the second somewhere in the window.

@@ -42,7 +42,7 @@ pub(super) struct Track {
     pub(super) first: Moment,
     /// Moments from here on are not asked about.
     pub(super) end: Moment,
-    /// What became known in the present step.
+    /// The values that became known in the present step.
     pub(super) fresh: Vec<Fresh>,
 }
 

@@ -83,13 +83,13 @@ pub(super) struct Step<'a> {
     pub(super) present: &'a Present,
 }
 
-/// What is known of an operand around a moment.
+/// The known truth of an operand around a moment.
 pub(super) fn look(cells: &[Truth], of: Ref, at: Moment) -> (Moment, Moment, Known) {
     let (from, to, known) = cells[of.cell].track.around(at);
     (from, to, known.not_if(of.negated))
 }
 
-/// What an operand newly knows.
+/// The new knowledge of an operand.
 pub(super) fn fresh(cells: &[Truth], of: Ref) -> impl Iterator<Item = Fresh> {
     cells[of.cell].track.fresh.iter().map(move |fresh| Fresh { truth: fresh.truth != of.negated, ..*fresh })
 }

@@ -127,7 +127,7 @@ pub(super) fn first_closing(text: &str) -> Option<char> {
     None
 }
 
-/// The braces of a text and how many are open after each: thousands that close nothing are told with one scan.
+/// The braces of a text and how many are open after each: one scan reports thousands of unmatched braces.
 pub(super) struct Braces(Vec<(usize, usize)>);
 
 impl Braces {

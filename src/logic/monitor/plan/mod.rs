@@ -25,7 +25,7 @@ const LONGEST_HORIZON: u64 = 1 << 40;
 /// Most cells.
 const MOST_CELLS: usize = 1 << 18;
 
-/// What decides a monitor.
+/// The root of a monitor.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Answer {
     /// A formula that does not depend on any state.
@@ -102,7 +102,7 @@ fn later(child: Ref, by: u64) -> Ref {
     }
 }
 
-/// What is known of a cell while the plan is made. Positions are those of a trial.
+/// Properties of a cell while the plan is made. Positions are those of a trial.
 struct Facts {
     place: Place,
     /// First and last needed position.

@@ -118,7 +118,7 @@ struct Builder<'t> {
     /// Results of the present state alone.
     node_slots: Vec<Option<usize>>,
     term_slots: Vec<Option<usize>>,
-    /// What is the same everywhere.
+    /// The constant parts.
     node_constants: Vec<Option<bool>>,
     term_constants: Vec<Option<f64>>,
     known_truths: BTreeMap<(u32, Range), Ref>,

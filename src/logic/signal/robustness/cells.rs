@@ -268,7 +268,7 @@ impl Cells {
         self.cells.iter().map(|cell| cell.bounds[0].len() + cell.bounds[1].len()).sum()
     }
 
-    /// Drops what nobody will look at again.
+    /// Drops values that are never read again.
     fn forget(&mut self) {
         self.needed.fill(Moment::MAX);
         let needed = &mut self.needed;

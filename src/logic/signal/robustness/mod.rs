@@ -19,7 +19,7 @@ use crate::logic::formula::{NodeId, Tree};
 use crate::logic::invalid::Invalid;
 use cells::Cells;
 
-/// What is known of a margin: the least and the most it can be.
+/// Bounds of a margin: its least and its greatest possible value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// The least.
@@ -117,7 +117,7 @@ impl SignalRobustness {
         self.bounds
     }
 
-    /// What is known of the robustness.
+    /// The bounds of the robustness.
     pub fn bounds(&self) -> Bounds {
         self.bounds
     }
