@@ -5,7 +5,7 @@ use super::cell::{Cell, Item, Reading};
 use super::estimate::LARGEST_ROUND;
 use super::executor::{Executor, Job};
 use super::fault::Fault;
-use super::forecast::{self, Glimpse};
+use super::forecast::{self, PilotStatistics};
 use super::outcome::Stop;
 use super::pilot::Pilot;
 use super::procedure::{outcome, value};
@@ -148,17 +148,17 @@ impl<'s> CompareSampling<'s> {
             .min(budget.max_trials);
         let one = |job: &Job<'_>| Pilot::run(job, Item::run(0, size), executor, budget);
         let sides = [one(&self.jobs[0])?, one(&self.jobs[1])?];
-        let mut glimpse = Glimpse::default();
+        let mut statistics = PilotStatistics::default();
         for (a, b) in sides[0].seen().zip(sides[1].seen()) {
             if let (Some(a), Some(b)) = (self.score(&a[0]), self.score(&b[0])) {
-                glimpse.add(a - b);
+                statistics.add(a - b);
             }
         }
         let seconds: f64 =
             (0..2).map(|side| sides[side].seconds_per_trial(self.jobs[side].subject.most_steps())).sum();
         let width = self.range.map_or(1.0, |(low, high)| high - low);
         let pairs = match self.within {
-            Some(within) => forecast::compare(&glimpse, width, within, self.delta),
+            Some(within) => forecast::compare(&statistics, width, within, self.delta),
             None => Likely::exactly(methods::PLANNED_TRIALS),
         }
         .map(|n| n.min(budget.max_trials));

@@ -8,7 +8,7 @@ use super::budget::Budget;
 use super::cell::{Cell, Item, Reading};
 use super::executor::{Cells, Executor, Job};
 use super::fault::Fault;
-use super::forecast::{self, Glimpse};
+use super::forecast::{self, PilotStatistics};
 use super::outcome::Stop;
 use super::pilot::{self, Pilot};
 use super::procedure::Procedure;
@@ -40,7 +40,7 @@ pub(super) struct EstimateEntry<'q> {
     /// What it has consumed.
     pub(super) tally: Tally,
     /// What it has read so far, for forecasts.
-    pub(super) glimpse: Glimpse,
+    pub(super) statistics: PilotStatistics,
     /// Whether it has to know more of its procedure before it can read more.
     pub(super) waits: bool,
     /// Whether it came to a trial in which the model is wrong: it reads no more and has no result.
@@ -135,12 +135,12 @@ impl<'q> EstimateSampling<'q> {
         let pilot = Pilot::run(&self.job, Item::run(0, size), executor, budget)?;
         let mut seconds = pilot.seconds_per_trial(self.job.subject.most_steps());
         let forecast = |entry: &EstimateEntry<'_>| {
-            let mut glimpse = Glimpse::default();
+            let mut statistics = PilotStatistics::default();
             let range = entry.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
             if let Some(place) = self.job.columns.iter().position(|c| *c == entry.column) {
-                pilot.seen().for_each(|row| glimpse.read(&row[place], range));
+                pilot.seen().for_each(|row| statistics.read(&row[place], range));
             }
-            let expected = forecast::inquiry(&entry.query.ask, &entry.procedure, &glimpse);
+            let expected = forecast::entry(&entry.query.ask, &entry.procedure, &statistics);
             let trials = expected.unwrap_or(Likely::exactly(u64::MAX)).map(|n| n.min(budget.max_trials));
             Forecast {
                 query: entry.query.text.clone(),
@@ -297,7 +297,7 @@ impl<'q> EstimateSampling<'q> {
             self.job.reuse(cells);
             if let Some(entry) = self.entries.iter().find(|i| i.is_open()) {
                 let (next, procedure) = (self.next, &entry.procedure);
-                let expected = forecast::inquiry(&entry.query.ask, procedure, &entry.glimpse);
+                let expected = forecast::entry(&entry.query.ask, procedure, &entry.statistics);
                 watch.consumed(&entry.query.text, next, expected.map(|n| n.likely.max(next)));
             }
             if !slow.is_empty() && !budget.must_stop() {
@@ -390,7 +390,7 @@ impl EstimateEntry<'_> {
     /// Counts trials with their indices.
     fn count<'c>(&mut self, trials: impl Iterator<Item = (u64, &'c Cell)> + Clone) {
         if let Some(held) = self.tally.add_truths(&trials) {
-            self.glimpse.count(trials.count() as u64, held);
+            self.statistics.count(trials.count() as u64, held);
             return;
         }
         for (index, cell) in trials {
@@ -401,7 +401,7 @@ impl EstimateEntry<'_> {
                 let beyond = if *at_least { value > *threshold } else { value < *threshold };
                 self.tally.side(index, beyond || (*or_equal && value == *threshold));
             }
-            self.glimpse.read(cell, self.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY)));
+            self.statistics.read(cell, self.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY)));
         }
     }
 

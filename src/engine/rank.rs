@@ -7,7 +7,7 @@ use super::budget::Budget;
 use super::cell::{Item, Reading};
 use super::executor::{Cells, Executor, Job};
 use super::fault::Fault;
-use super::forecast::{self, Glimpse};
+use super::forecast::{self, PilotStatistics};
 use super::outcome::Stop;
 use super::pilot::Pilot;
 use super::procedure::{outcome, value};
@@ -209,30 +209,30 @@ impl<'s> RankSampling<'s> {
         let pilot = Pilot::run(&self.job, round.items, executor, budget)?;
         let arms = self.setup.deviations.len();
         let range = self.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
-        let mut glimpses = vec![Glimpse::default(); arms];
+        let mut statistics = vec![PilotStatistics::default(); arms];
         let mut readings: Vec<Vec<Option<f64>>> = vec![Vec::new(); arms];
         for (share, places) in round.shares.iter().zip(&round.places) {
             for row in places.iter().map(|&place| pilot.cells.row(place)) {
-                let mut one = Glimpse::default();
+                let mut one = PilotStatistics::default();
                 if let Some([cell, ..]) = row {
-                    glimpses[share.arm].read(cell, range);
+                    statistics[share.arm].read(cell, range);
                     one.read(cell, range);
                 }
                 readings[share.arm].push(one.only());
             }
         }
         let leader =
-            (0..arms).max_by(|a, b| glimpses[*a].mean().total_cmp(&glimpses[*b].mean())).unwrap_or(0);
-        let differences: Vec<Glimpse> = (0..arms)
+            (0..arms).max_by(|a, b| statistics[*a].mean().total_cmp(&statistics[*b].mean())).unwrap_or(0);
+        let differences: Vec<PilotStatistics> = (0..arms)
             .map(|arm| {
-                let mut glimpse = Glimpse::default();
+                let mut statistics = PilotStatistics::default();
                 let pairs = readings[leader].iter().zip(&readings[arm]);
-                pairs.filter_map(|(a, b)| a.zip(*b)).for_each(|(a, b)| glimpse.add(a - b));
-                glimpse
+                pairs.filter_map(|(a, b)| a.zip(*b)).for_each(|(a, b)| statistics.add(a - b));
+                statistics
             })
             .collect();
         let most = (arms as u64).saturating_mul(budget.max_trials);
-        let trials = forecast::race(&glimpses, &differences, self.scale(), self.setup.rule);
+        let trials = forecast::rank(&statistics, &differences, self.scale(), self.setup.rule);
         let trials = trials.map(|n| n.max(pilot.items.len() as u64).min(most));
         let seconds = pilot.seconds_per_trial(self.job.subject.most_steps());
         self.ahead = pilot.is_complete().then_some(pilot);

@@ -8,7 +8,7 @@ use super::estimate::{Advance, EstimateEntry, EstimateSampling};
 use super::executor::Executor;
 use super::fault::Fault;
 use super::flaw::Flaw;
-use super::forecast::Glimpse;
+use super::forecast::PilotStatistics;
 use super::outcome::{Failure, QueryResult, Run, Stop};
 use super::placement::all_placeable;
 use super::procedure::Procedure;
@@ -367,7 +367,7 @@ impl<'a> Session<'a> {
             range: range(measure),
             procedure: Procedure::new(&query.ask, self.call.seed)?,
             tally: Tally::default(),
-            glimpse: Glimpse::default(),
+            statistics: PilotStatistics::default(),
             waits: false,
             lost: false,
             stop: None,
