@@ -11,8 +11,8 @@ use super::fault::Fault;
 use super::forecast::{self, PilotStatistics};
 use super::outcome::Stop;
 use super::pilot::{self, Pilot};
+use super::prepared::PreparedWorld;
 use super::procedure::Procedure;
-use super::subject::Subject;
 use super::tally::Tally;
 use super::watch::{Forecast, Likely, Watch};
 use crate::base::math;
@@ -31,7 +31,7 @@ pub(super) const LARGEST_ROUND: u64 = 16_384;
 pub(super) struct EstimateEntry<'q> {
     /// The query.
     pub(super) query: &'q Query,
-    /// Column of the subject.
+    /// Column of the prepared world.
     pub(super) column: usize,
     /// Range of an expectation.
     pub(super) range: Option<(f64, f64)>,
@@ -51,7 +51,7 @@ pub(super) struct EstimateEntry<'q> {
     pub(super) seconds: f64,
 }
 
-/// Checks and estimates of one subject on their way.
+/// Checks and estimates of one prepared world on their way.
 pub(super) struct EstimateSampling<'q> {
     job: Job<'q>,
     /// The queries.
@@ -97,9 +97,9 @@ impl EstimateEntry<'_> {
 }
 
 impl<'q> EstimateSampling<'q> {
-    /// An estimate of some entries about one subject.
-    pub(super) fn new(subject: &'q Subject, entries: Vec<EstimateEntry<'q>>, seed: u64) -> Self {
-        let job = Job::new(subject, columns(&entries), seed);
+    /// An estimate of some entries about one prepared world.
+    pub(super) fn new(prepared: &'q PreparedWorld, entries: Vec<EstimateEntry<'q>>, seed: u64) -> Self {
+        let job = Job::new(prepared, columns(&entries), seed);
         Self { job, entries, ahead: None, next: 0, spent: 0.0 }
     }
 
@@ -108,7 +108,7 @@ impl<'q> EstimateSampling<'q> {
         let (slow, rest) =
             std::mem::take(&mut self.entries).into_iter().partition(|i| slow.contains(&i.column));
         self.entries = rest;
-        Self { next: self.next, spent: self.spent, ..Self::new(self.job.subject, slow, self.job.seed) }
+        Self { next: self.next, spent: self.spent, ..Self::new(self.job.prepared, slow, self.job.seed) }
     }
 
     /// Leaves out some entries, and their places.
@@ -118,9 +118,9 @@ impl<'q> EstimateSampling<'q> {
         self.entries.retain(kept);
     }
 
-    /// The subject.
-    pub(super) fn subject(&self) -> &'q Subject {
-        self.job.subject
+    /// The prepared world.
+    pub(super) fn prepared(&self) -> &'q PreparedWorld {
+        self.job.prepared
     }
 
     /// Runs the first trials, and forecasts from them what each entry is likely to take.
@@ -133,7 +133,7 @@ impl<'q> EstimateSampling<'q> {
         // As many on every machine, whatever a round would be.
         let size = Pilot::size(width).min(most(&self.entries, 0, budget).max(1)).min(budget.max_trials);
         let pilot = Pilot::run(&self.job, Item::run(0, size), executor, budget)?;
-        let mut seconds = pilot.seconds_per_trial(self.job.subject.most_steps());
+        let mut seconds = pilot.seconds_per_trial(self.job.prepared.most_steps());
         let forecast = |entry: &EstimateEntry<'_>| {
             let mut statistics = PilotStatistics::default();
             let range = entry.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
@@ -289,7 +289,7 @@ impl<'q> EstimateSampling<'q> {
             };
             if let Err(item) = self.read(&items, &cells, started, budget) {
                 self.entries.iter_mut().filter(|i| i.is_open()).for_each(|i| i.lost = true);
-                let fault = super::trial::fault(self.job.subject, item, self.job.seed);
+                let fault = super::trial::fault(self.job.prepared, item, self.job.seed);
                 return Ok(Advance::Faulty(FaultyTrial { index: item.index, fault }));
             }
             self.next += cells.ready().min(items.len()) as u64;
