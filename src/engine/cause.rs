@@ -69,7 +69,7 @@ pub(super) fn unresolved(
                 _ => String::new(),
             };
         }
-        if budget.is_late() || run.next().is_err() {
+        if budget.is_late() || run.next_state().is_err() {
             return String::new();
         }
     }
@@ -242,7 +242,7 @@ fn in_continuous_time(prepared: &PreparedWorld, column: usize, run: &mut Run<'_>
         let time = words::quantity(now.seconds, "s");
         let reading = match monitor.jump(now, atoms, signals) {
             Some(reading) => reading,
-            None if run.next().is_ok() => continue,
+            None if run.next_state().is_ok() => continue,
             None => monitor.finish(),
         };
         return match reading {

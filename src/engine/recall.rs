@@ -62,7 +62,7 @@ pub(super) fn decision(
         }
         past.see(now.seconds, atoms, signals);
         kept.offer(jumps, || (state.clone(), past.clone()));
-        match run.next() {
+        match run.next_state() {
             Ok(_) => {}
             Err(End::Horizon) => {
                 monitor.finish();
@@ -77,7 +77,7 @@ pub(super) fn decision(
     let slack = 1e-15 * horizon;
     let (_, (state, past)) = kept.last(|_, (_, past)| past.last <= at + slack)?;
     let (mut run, mut past) = (Run::from_state(&prepared.program, state), Past { at: at + slack, ..past });
-    while let Ok(state) = run.next() {
+    while let Ok(state) = run.next_state() {
         view.look(state, &mut seen);
         let (atoms, signals) = view.of(state, &mut seen, 0);
         if !past.see(state.clocks.instant(0).seconds, atoms, signals) {

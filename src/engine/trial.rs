@@ -11,7 +11,7 @@ use crate::kernel::{End, Run, State, process};
 pub(super) fn fault(prepared: &PreparedWorld, item: Item, seed: u64) -> Fault {
     let Ok((mut run, _)) = Run::of(&prepared.program, item.address(seed)) else { return Fault::Unsuitable };
     let end = loop {
-        if let Err(end) = run.next() {
+        if let Err(end) = run.next_state() {
             break end;
         }
     };

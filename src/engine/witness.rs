@@ -112,7 +112,7 @@ fn witness(
         if budget.is_late() {
             return None;
         }
-        if run.next().is_err() {
+        if run.next_state().is_err() {
             break;
         }
     }
@@ -121,7 +121,7 @@ fn witness(
         let (_, state) = kept.last(|number, _| number <= tick.0)?;
         let mut run = Run::from_state(program, state);
         while run.state().ticks[0] < tick.0 {
-            run.next().ok()?;
+            run.next_state().ok()?;
         }
         Some(run.state().clone())
     };
