@@ -14,7 +14,7 @@
 use smc::base::lanes::{LANES, Mask};
 use smc::base::random::TrialKey;
 use smc::compile::{Files, Input, compile};
-use smc::engine::Subject;
+use smc::engine::PreparedWorld;
 use smc::kernel::{Layout, Readings, Scratch, State, dynamics, start};
 use smc::logic::Monitor;
 use smc::syntax::parse::{parse_properties, parse_scenario};
@@ -50,7 +50,7 @@ fn main() {
         (include_str!("../models/corridor.scn"), include_str!("../properties/corridor.bltl"));
     let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with("--")).collect();
     let is_wanted = |name: &str| words.is_empty() || words.iter().any(|word| name.contains(word.as_str()));
-    if let Some(corridor) = subject(model, asked).filter(|_| is_wanted("corridor")) {
+    if let Some(corridor) = prepared(model, asked).filter(|_| is_wanted("corridor")) {
         println!("corridor, 18 agents, per step of eight lanes:");
         let all: Vec<usize> = (0..corridor.columns.len()).collect();
         measure(&corridor, &all, (500, 40), clock);
@@ -63,7 +63,7 @@ fn main() {
         let crowd = CROWD.replace("PEOPLE", &people.to_string()).replace("SIDE", &side.to_string());
         println!("{people} people, per step of one trial:");
         for (name, question) in EVERYBODY {
-            if let Some(crowd) = subject(&crowd, question).filter(|_| is_wanted(name)) {
+            if let Some(crowd) = prepared(&crowd, question).filter(|_| is_wanted(name)) {
                 print!("{name}: ");
                 measure(&crowd, &[0], (100, rounds), clock);
             }
@@ -71,7 +71,7 @@ fn main() {
     }
 }
 
-fn subject(scenario: &str, properties: &str) -> Option<Subject> {
+fn prepared(scenario: &str, properties: &str) -> Option<PreparedWorld> {
     let scenario = Source::new(SourceId(0), "watched.scn", scenario);
     let properties = Source::new(SourceId(1), "watched.bltl", properties);
     let (model, _) = parse_scenario(&scenario);
@@ -85,7 +85,7 @@ fn subject(scenario: &str, properties: &str) -> Option<Subject> {
         println!("this does not compile: {diagnostics:?}");
         return None;
     };
-    Some(Subject::new(&study.worlds[0]))
+    Some(PreparedWorld::new(&study.worlds[0]))
 }
 
 /// Seconds that a look at the clock takes: the least of many.
@@ -100,15 +100,15 @@ fn clock() -> f64 {
     looks.fold(f64::INFINITY, f64::min)
 }
 
-fn measure(subject: &Subject, columns: &[usize], (steps, rounds): (usize, u64), clock: f64) {
-    let code = subject.code(columns);
+fn measure(prepared: &PreparedWorld, columns: &[usize], (steps, rounds): (usize, u64), clock: f64) {
+    let code = prepared.code(columns);
     let (mut moving, mut watching, mut deciding) = (f64::INFINITY, f64::INFINITY, f64::INFINITY);
     for round in 0..rounds {
-        let program = &subject.program;
+        let program = &prepared.program;
         let mut state = State::new(program.layout, program.scenario.agents.len());
         let mut scratch = Scratch::new();
         let mut readings = Readings::default();
-        let mut monitors: Vec<Monitor> = columns.iter().filter_map(|c| subject.monitor(*c).ok()).collect();
+        let mut monitors: Vec<Monitor> = columns.iter().filter_map(|c| prepared.monitor(*c).ok()).collect();
         let lanes = match program.layout {
             Layout::Trials => LANES,
             Layout::Agents => 1,

@@ -21,10 +21,10 @@ fn end(text: &str, trial: u64) -> (usize, End) {
     let (mut run, _) = Run::of(&program, key(trial).into()).unwrap();
     let mut states = 0;
     loop {
-        match run.next() {
+        match run.next_state() {
             Ok(_) => states += 1,
             Err(end) => {
-                assert_eq!(run.next().map(|_| ()), Err(end), "a trial that has ended stays so");
+                assert_eq!(run.next_state().map(|_| ()), Err(end), "a trial that has ended stays so");
                 return (states, end);
             }
         }
@@ -59,7 +59,7 @@ fn a_trial_continues_from_each_of_its_states() {
         let (mut run, _) = Run::of(&program, key(3).into()).unwrap();
         let mut states = vec![run.state().clone()];
         while states.len() < 25
-            && let Ok(state) = run.next()
+            && let Ok(state) = run.next_state()
         {
             states.push(state.clone());
         }
@@ -67,7 +67,7 @@ fn a_trial_continues_from_each_of_its_states() {
         for from in [0, 7] {
             let mut run = Run::from_state(&program, states[from].clone());
             for later in &states[from + 1..] {
-                assert!(run.next().unwrap() == later);
+                assert!(run.next_state().unwrap() == later);
             }
         }
     }
@@ -83,7 +83,7 @@ fn a_path_is_its_trial_up_to_where_the_key_changes() {
         let states = |address: Address<'_>| {
             let (mut run, _) = Run::of(&program, address).unwrap();
             let mut seen = Vec::new();
-            while let Ok(state) = run.next() {
+            while let Ok(state) = run.next_state() {
                 let time = if text == queue { state.clocks.now[0] } else { state.ticks[0] as f64 };
                 seen.push((time, state.variables[0].0[0]));
             }
@@ -111,7 +111,7 @@ fn an_earlier_horizon_ends_a_trial_there() {
     let mut run = Run::new(&program).until(half);
     run.start(key(0).into()).unwrap();
     let mut last = 0.0;
-    while let Ok(state) = run.next() {
+    while let Ok(state) = run.next_state() {
         last = state.clocks.now[0];
     }
     assert!(last > 25.0 && last <= clock.seconds(half));

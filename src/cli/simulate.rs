@@ -107,7 +107,7 @@ impl<'p> Walk<'p> {
                 }
                 continue;
             }
-            match self.run.next() {
+            match self.run.next_state() {
                 Ok(_) => since += 1,
                 Err(end) => {
                     self.note(end);

@@ -10,8 +10,8 @@ use super::executor::Executor;
 use super::fault::Fault;
 use super::method;
 use super::outcome::{Certificate, Certified, Counts, Kind, QueryResult, Shows, Stop, Verdict, Witness};
+use super::prepared::PreparedWorld;
 use super::rank::RankSampling;
-use super::subject::Subject;
 use super::tables;
 use super::tally::Tally;
 use super::watch::Watch;
@@ -42,7 +42,7 @@ fn between(result: &QueryResult, error: f64) -> Certificate {
 /// The first of the unresolved trials of a result.
 pub(super) struct First<'s> {
     /// Where it was run.
-    pub(super) subject: &'s Subject,
+    pub(super) prepared: &'s PreparedWorld,
     /// What was asked of it.
     pub(super) column: usize,
     /// The trial.
@@ -89,11 +89,11 @@ impl Answers<'_> {
 
     /// The results of an estimate that has stopped.
     pub(super) fn estimate(&self, estimate: EstimateSampling<'_>) -> Result<Vec<QueryResult>, Fault> {
-        let subject = estimate.subject();
-        estimate.entries.into_iter().map(|entry| self.entry(subject, entry)).collect()
+        let prepared = estimate.prepared();
+        estimate.entries.into_iter().map(|entry| self.entry(prepared, entry)).collect()
     }
 
-    fn entry(&self, subject: &Subject, mut entry: EstimateEntry<'_>) -> Result<QueryResult, Fault> {
+    fn entry(&self, prepared: &PreparedWorld, mut entry: EstimateEntry<'_>) -> Result<QueryResult, Fault> {
         let query = entry.query;
         let counts = entry.tally.counts;
         let (measure, kind) = match &query.ask {
@@ -108,7 +108,7 @@ impl Answers<'_> {
         result.stopped_by = stop;
         result.replay = self.replay(query, MAX_TRIALS, counts.trials);
         result.elapsed_s = entry.seconds;
-        let subject_words = measured_words(query, measure, entry.tally.clipped);
+        let measured = measured_words(query, measure, entry.tally.clipped);
         let mut beside = match query.ask {
             Ask::Check { beside, .. } => beside,
             _ => 0.0,
@@ -122,13 +122,13 @@ impl Answers<'_> {
             result.high = interval.high;
             result.interval = words::interval(coverage, error);
             // Only a time that does not come lies beyond the horizon; a distance to nobody is infinite.
-            let time = match subject.columns[measure.target.column] {
-                Root::Metric(term) => waits(&subject.tree, term),
+            let time = match prepared.columns[measure.target.column] {
+                Root::Metric(term) => waits(&prepared.tree, term),
                 Root::Formula(_) | Root::Robustness(..) => false,
             };
             if matches!(measure.kind, MeasureKind::Quantile { .. }) && interval.high == f64::INFINITY && time
             {
-                result.censored = Some(subject.program.scenario.clock.seconds(subject.horizon));
+                result.censored = Some(prepared.program.scenario.clock.seconds(prepared.horizon));
             }
             if kind == Kind::Estimate {
                 let claim = match (result.censored, interval.low.is_infinite(), interval.high.is_infinite()) {
@@ -145,8 +145,7 @@ impl Answers<'_> {
                     _ => format!("in {}", words::ends(interval.low, interval.high, &result.unit)),
                 };
                 if says_something(&query.ask, interval.low, interval.high) {
-                    result.certifies =
-                        format!("{subject_words} {claim}, error at most {}", words::error(error));
+                    result.certifies = format!("{measured} {claim}, error at most {}", words::error(error));
                     result.certificate = Some(between(&result, error));
                 }
                 let fixed = coverage == Coverage::FixedSize;
@@ -177,10 +176,10 @@ impl Answers<'_> {
             };
             result.certifies = match entry.procedure.statement() {
                 Some(statement) => words::quantile(&query.said, *threshold, &statement)
-                    .unwrap_or_else(|| words::statement(&subject_words, &statement, &result.unit)),
+                    .unwrap_or_else(|| words::statement(&measured, &statement, &result.unit)),
                 None if !says_something(&query.ask, result.low, result.high) => String::new(),
                 None => format!(
-                    "{subject_words} in {}, error at most {}",
+                    "{measured} in {}, error at most {}",
                     words::ends(result.low, result.high, &result.unit),
                     words::error(beside)
                 ),
@@ -192,18 +191,18 @@ impl Answers<'_> {
                 );
             }
         }
-        let cut = was_cut(subject, measure.target.column, &entry.tally);
+        let cut = was_cut(prepared, measure.target.column, &entry.tally);
         let known = counts.unresolved < counts.trials && !cut;
         result.distribution = entry.procedure.distribution().filter(|_| known);
-        Self::tell(&mut result, subject, &entry.tally, measure.target.column);
-        self.note_shrunk(&mut result, &[(subject, &entry.tally)]);
-        self.lament_one(&mut result, subject, &entry.tally, measure.target.column);
+        Self::tell(&mut result, prepared, &entry.tally, measure.target.column);
+        self.note_shrunk(&mut result, &[(prepared, &entry.tally)]);
+        self.lament_one(&mut result, prepared, &entry.tally, measure.target.column);
         let picks = match (&measure.kind, kind) {
             (MeasureKind::Probability, _) | (_, Kind::Check) => witness::sides(&entry.tally),
             _ if cut => Vec::new(),
             _ => witness::extremes(&entry.tally),
         };
-        result.witnesses = self.witnesses(&result, subject, measure.target.column, None, &picks);
+        result.witnesses = self.witnesses(&result, prepared, measure.target.column, None, &picks);
         Ok(result)
     }
 
@@ -211,13 +210,13 @@ impl Answers<'_> {
     pub(super) fn witnesses(
         &self,
         result: &QueryResult,
-        subject: &Subject,
+        prepared: &PreparedWorld,
         column: usize,
         advice: Option<(usize, usize)>,
         picks: &[(Shows, u64)],
     ) -> Vec<Witness> {
         witness::find(
-            subject,
+            prepared,
             column,
             advice,
             picks,
@@ -228,12 +227,12 @@ impl Answers<'_> {
     }
 
     /// Counts, and what they warn of.
-    pub(super) fn tell(result: &mut QueryResult, subject: &Subject, tally: &Tally, column: usize) {
+    pub(super) fn tell(result: &mut QueryResult, prepared: &PreparedWorld, tally: &Tally, column: usize) {
         result.counts = tally.counts;
         result.steps = tally.steps;
         result.clipped = tally.clipped;
         result.shrunk = tally.shrunk;
-        let Ok(implications) = subject.implications(column) else { return };
+        let Ok(implications) = prepared.implications(column) else { return };
         // Of a trial that is not resolved nobody knows what the rest of it would have been.
         let resolved = tally.counts.trials - tally.counts.unresolved;
         let trials = match (resolved, tally.counts.unresolved) {
@@ -266,11 +265,11 @@ impl Answers<'_> {
     }
 
     /// Says which bodies were made smaller in the first trial in which any was.
-    pub(super) fn note_shrunk(&self, result: &mut QueryResult, tallies: &[(&Subject, &Tally)]) {
-        let mut found = tallies.iter().filter_map(|(subject, tally)| Some((subject, tally.first_shrunk?)));
-        if let Some((subject, index)) = found.next() {
+    pub(super) fn note_shrunk(&self, result: &mut QueryResult, tallies: &[(&PreparedWorld, &Tally)]) {
+        let mut found = tallies.iter().filter_map(|(prepared, tally)| Some((prepared, tally.first_shrunk?)));
+        if let Some((prepared, index)) = found.next() {
             let key = TrialKey { seed: self.call.seed, index, branch: 0 };
-            result.warnings.push(cause::smaller(&subject.program, key, result.shrunk));
+            result.warnings.push(cause::smaller(&prepared.program, key, result.shrunk));
         }
     }
 
@@ -278,13 +277,13 @@ impl Answers<'_> {
     pub(super) fn lament_one(
         &self,
         result: &mut QueryResult,
-        subject: &Subject,
+        prepared: &PreparedWorld,
         tally: &Tally,
         column: usize,
     ) {
         let settings = result.settings.clone();
         let item = |index| Item { advice: None, index };
-        let first = tally.first[2].map(|index| First { subject, column, item: item(index), settings });
+        let first = tally.first[2].map(|index| First { prepared, column, item: item(index), settings });
         self.lament(result, tally.counts.unresolved, first.as_ref());
     }
 
@@ -304,10 +303,10 @@ impl Answers<'_> {
         };
         let shown = first.map_or(String::new(), |first| {
             let why =
-                cause::unresolved(first.subject, first.column, first.item, (self.call.seed, self.budget));
+                cause::unresolved(first.prepared, first.column, first.item, (self.call.seed, self.budget));
             let index = first.item.index;
             let mut command = self.call.line.simulate(&first.settings, self.call.seed, index);
-            if let Some(label) = witness::label(first.subject, first.item.advice) {
+            if let Some(label) = witness::label(first.prepared, first.item.advice) {
                 command.push_str(&format!(" --move '{label}'"));
             }
             let why = if why.is_empty() { why } else { format!("{why}; ") };
@@ -328,8 +327,8 @@ impl Answers<'_> {
         let Ask::Compare { first, second, settings, delta, .. } = &query.ask else {
             return Err(Fault::Unsuitable);
         };
-        let subjects = [compare.subject(0), compare.subject(1)];
-        let subject = subjects[0];
+        let worlds = [compare.prepared(0), compare.prepared(1)];
+        let prepared = worlds[0];
         let Some(gap) = compare.run(executor, (self.budget, share), watch)? else { return Ok(None) };
         let mut result = self.blank(query, Kind::Compare);
         let unit = unit(first);
@@ -344,13 +343,13 @@ impl Answers<'_> {
         result.stopped_by = gap.stop;
         result.replay = self.replay(query, MAX_TRIALS, gap.pairs);
         let joined = total(&gap.sides);
-        Self::tell(&mut result, subject, &joined, first.target.column);
-        self.note_shrunk(&mut result, &[(subjects[0], &gap.sides[0]), (subjects[1], &gap.sides[1])]);
+        Self::tell(&mut result, prepared, &joined, first.target.column);
+        self.note_shrunk(&mut result, &[(worlds[0], &gap.sides[0]), (worlds[1], &gap.sides[1])]);
         let lost = (0..2).find_map(|side| {
             let index = gap.sides[side].first[2]?;
             let settings = result.settings.iter().chain(&settings[side]).cloned().collect();
-            let (subject, column) = (subjects[side], [first, second][side].target.column);
-            Some(First { subject, column, item: Item { advice: None, index }, settings })
+            let (prepared, column) = (worlds[side], [first, second][side].target.column);
+            Some(First { prepared, column, item: Item { advice: None, index }, settings })
         });
         self.lament(&mut result, joined.counts.unresolved, lost.as_ref());
         let label = |settings: &[(String, String)]| {
@@ -389,20 +388,20 @@ impl Answers<'_> {
         let delta = ranking.value("delta");
         let Some(ranked) = rank.run(executor, (self.budget, share), watch)? else { return Ok(None) };
         let setup = rank.setup();
-        let subject = setup.subject;
-        let declared = &subject.program.scenario.moves[*moves];
+        let prepared = setup.prepared;
+        let declared = &prepared.program.scenario.moves[*moves];
         let mut result = self.blank(query, Kind::Rank);
         result.method = method::of(&query.ask, None);
         result.unit = unit(measure);
         result.stopped_by = ranked.stop;
         let joined = total(&ranked.tallies);
         result.replay = self.replay(query, "--total-trials", joined.counts.trials);
-        Self::tell(&mut result, subject, &joined, measure.target.column);
-        let tallies: Vec<_> = ranked.tallies.iter().map(|tally| (subject, tally)).collect();
+        Self::tell(&mut result, prepared, &joined, measure.target.column);
+        let tallies: Vec<_> = ranked.tallies.iter().map(|tally| (prepared, tally)).collect();
         self.note_shrunk(&mut result, &tallies);
         let lost = ranked.tallies.iter().enumerate().find_map(|(arm, tally)| {
             let item = Item { advice: Some((*moves, arm)), index: tally.first[2]? };
-            Some(First { subject, column: measure.target.column, item, settings: result.settings.clone() })
+            Some(First { prepared, column: measure.target.column, item, settings: result.settings.clone() })
         });
         self.lament(&mut result, joined.counts.unresolved, lost.as_ref());
         let labels: Vec<&str> = declared.options.iter().map(|(label, _)| label.as_str()).collect();
@@ -428,10 +427,10 @@ impl Answers<'_> {
             let tally = &ranked.tallies[arm];
             let picks = match measure.kind {
                 MeasureKind::Probability => witness::sides(tally),
-                _ if was_cut(subject, setup.column, tally) => Vec::new(),
+                _ if was_cut(prepared, setup.column, tally) => Vec::new(),
                 _ => witness::extremes(tally),
             };
-            result.witnesses = self.witnesses(&result, subject, setup.column, Some((*moves, arm)), &picks);
+            result.witnesses = self.witnesses(&result, prepared, setup.column, Some((*moves, arm)), &picks);
         }
         result.rank = Some(listed);
         result.elapsed_s = rank.spent;
@@ -440,8 +439,8 @@ impl Answers<'_> {
 }
 
 /// Whether trials ended where a robustness left its range: of those no more is known than that.
-fn was_cut(subject: &Subject, column: usize, tally: &Tally) -> bool {
-    tally.clipped > 0 && matches!(subject.columns[column], Root::Robustness(_, Sought::Clipped(..)))
+fn was_cut(prepared: &PreparedWorld, column: usize, tally: &Tally) -> bool {
+    tally.clipped > 0 && matches!(prepared.columns[column], Root::Robustness(_, Sought::Clipped(..)))
 }
 
 /// What a number can be: between 0 and 1, or in the declared range.

@@ -4,7 +4,7 @@ use super::budget::Budget;
 use super::culprits::{NAMED, Search};
 use super::decider::{self, Decider};
 use super::grounds::{copies, each, grounds};
-use super::subject::Subject;
+use super::prepared::PreparedWorld;
 use super::words;
 use crate::base::tick::{Clock, Tick};
 use crate::compile::study;
@@ -50,7 +50,12 @@ impl Record {
 
 impl Record {
     /// Calls `look` with the record in the form that `logic` reads.
-    fn read<T>(&self, subject: &Subject, budget: &Budget, look: impl FnOnce(&Recording<'_>) -> T) -> T {
+    fn read<T>(
+        &self,
+        prepared: &PreparedWorld,
+        budget: &Budget,
+        look: impl FnOnce(&Recording<'_>) -> T,
+    ) -> T {
         let (atoms, signals) = self.width;
         let place = |width: usize, at: u64, one: u32| at as usize * width + one as usize;
         let atoms =
@@ -62,8 +67,8 @@ impl Record {
             atoms: &atoms,
             signals: &signals,
             seen: self.states as u64,
-            horizon: subject.horizon,
-            clock: subject.program.scenario.clock,
+            horizon: prepared.horizon,
+            clock: prepared.program.scenario.clock,
             stop: &|| budget.is_late(),
         })
     }
@@ -74,17 +79,17 @@ pub(super) type Said = (String, Option<Decider>);
 
 /// What decided the truth of a formula in a trial; no words where nothing in particular did.
 pub(super) fn truth(
-    subject: &Subject,
+    prepared: &PreparedWorld,
     root: NodeId,
     (record, budget): (&Record, &Budget),
     state_at: impl Fn(Tick) -> Option<State>,
 ) -> Said {
-    record.read(subject, budget, |recording| {
-        let Ok(explanation) = explain(&subject.tree, root, recording) else { return Said::default() };
+    record.read(prepared, budget, |recording| {
+        let Ok(explanation) = explain(&prepared.tree, root, recording) else { return Said::default() };
         // Of those who are not there nothing is to be said, unless there is nobody else.
         let absent = |reason: &&Reason| {
-            let Node::Atom(atom) = subject.tree.nodes[reason.leaf.0 as usize] else { return false };
-            !reason.value && matches!(subject.atoms()[atom.0 as usize], Bool::Present(_))
+            let Node::Atom(atom) = prepared.tree.nodes[reason.leaf.0 as usize] else { return false };
+            !reason.value && matches!(prepared.atoms()[atom.0 as usize], Bool::Present(_))
         };
         // The last reason in time is the one that closed the case.
         let said: Vec<&Reason> = explanation.reasons.iter().filter(|reason| !absent(reason)).collect();
@@ -92,8 +97,8 @@ pub(super) fn truth(
         // Another of the same time closed it with it; of more than two the last stands for all. That someone has the left
         // side of an implication goes without saying where the whole is told.
         let goes_without = |reason: &Reason| {
-            let Node::Atom(atom) = subject.tree.nodes[reason.leaf.0 as usize] else { return false };
-            reason.value && subject.texts.cases.contains(&atom.0)
+            let Node::Atom(atom) = prepared.tree.nodes[reason.leaf.0 as usize] else { return false };
+            reason.value && prepared.texts.cases.contains(&atom.0)
         };
         let of_then = |last: &Reason| {
             let then = said.iter().copied().filter(|one| (one.to, one.from) == (last.to, last.from));
@@ -104,13 +109,13 @@ pub(super) fn truth(
                 ("no agent of the quantified set was present".to_owned(), None)
             }
             None if explanation.reasons.len() == 1 => {
-                closing(subject, &explanation.reasons[0], recording, &state_at)
+                closing(prepared, &explanation.reasons[0], recording, &state_at)
             }
             Some(reason) => {
                 let then = of_then(reason);
                 let told = if then.len() <= 2 { then } else { vec![reason] };
                 let (mut list, deciders): (Vec<String>, Vec<Option<Decider>>) =
-                    told.into_iter().map(|one| closing(subject, one, recording, &state_at)).unzip();
+                    told.into_iter().map(|one| closing(prepared, one, recording, &state_at)).unzip();
                 list.dedup();
                 (list.join("; "), deciders.into_iter().flatten().next())
             }
@@ -124,16 +129,16 @@ pub(super) fn truth(
 
 /// Where the value of a metric in a trial comes from, in words, and since when it was so.
 pub(super) fn number(
-    subject: &Subject,
+    prepared: &PreparedWorld,
     root: TermId,
     (value, unit): (f64, &str),
     (record, budget): (&Record, &Budget),
     state_at: impl Fn(Tick) -> Option<State>,
 ) -> (Option<Tick>, String) {
-    record.read(subject, budget, |recording| {
-        let (_, found) = sources(&subject.tree, root, Tick(0), recording);
+    record.read(prepared, budget, |recording| {
+        let (_, found) = sources(&prepared.tree, root, Tick(0), recording);
         let never =
-            value == f64::INFINITY && matches!(subject.tree.terms[root.0 as usize], Term::TimeUntil(_));
+            value == f64::INFINITY && matches!(prepared.tree.terms[root.0 as usize], Term::TimeUntil(_));
         let text = if never { "not within the horizon".to_owned() } else { words::brief(value, unit) };
         let is_beyond =
             |source: &Source| matches!(source, Source::Signal { value, .. } if !value.is_finite());
@@ -148,16 +153,16 @@ pub(super) fn number(
                 (None, text)
             }
             [Source::Formula(reason)] => {
-                let (closing, _) = closing(subject, reason, recording, &state_at);
+                let (closing, _) = closing(prepared, reason, recording, &state_at);
                 (Some(reason.to), format!("{text}, when {closing}"))
             }
             [Source::Signal { at, .. }] => {
-                let from = origin(subject, &found[0], false, (&state_at, recording.stop));
+                let from = origin(prepared, &found[0], false, (&state_at, recording.stop));
                 (Some(*at), format!("{text}, {from}"))
             }
             [] => (None, text),
             several => {
-                let told = |source: &Source| full(subject, source, recording, &state_at);
+                let told = |source: &Source| full(prepared, source, recording, &state_at);
                 let list: Vec<String> =
                     several.iter().map(told).filter(|said| !said.is_empty()).take(NAMED).collect();
                 (None, format!("{text}: {}", list.join(" and ")))
@@ -168,18 +173,18 @@ pub(super) fn number(
 
 /// Which condition has the margin that the robustness of a formula is in a trial, and when.
 pub(super) fn margin(
-    subject: &Subject,
+    prepared: &PreparedWorld,
     root: NodeId,
     (value, unit): (Option<f64>, &str),
     (record, budget): (&Record, &Budget),
     state_at: impl Fn(Tick) -> Option<State>,
 ) -> (Option<Tick>, String) {
-    record.read(subject, budget, |recording| {
-        let Some(found) = critical(&subject.tree, root, recording) else {
+    record.read(prepared, budget, |recording| {
+        let Some(found) = critical(&prepared.tree, root, recording) else {
             return (None, value.map_or(String::new(), |value| words::brief(value, unit)));
         };
         // All conditions have the unit of the margin, which a probability of it has not.
-        let condition = subject.texts.comparisons.get(&found.leaf.0);
+        let condition = prepared.texts.comparisons.get(&found.leaf.0);
         let own = condition.map_or(String::new(), |(_, dimension)| dimension.to_string());
         let unit = if unit.is_empty() { own.as_str() } else { unit };
         let mut said = format!("margin {}", words::brief(value.unwrap_or(found.margin), unit));
@@ -187,19 +192,19 @@ pub(super) fn margin(
             said = format!("{said}, of `{text}`");
         }
         if let (Some(state), Node::Compare(_, x, y)) =
-            (state_at(found.at), &subject.tree.nodes[found.leaf.0 as usize])
+            (state_at(found.at), &prepared.tree.nodes[found.leaf.0 as usize])
         {
-            let mut search = Search::of(subject, &state, recording.stop);
+            let mut search = Search::of(prepared, &state, recording.stop);
             for side in [x, y] {
-                if let Term::Signal(signal) = &subject.tree.terms[side.0 as usize] {
-                    search.extremum(&subject.signals()[signal.0 as usize]);
+                if let Term::Signal(signal) = &prepared.tree.terms[side.0 as usize] {
+                    search.extremum(&prepared.signals()[signal.0 as usize]);
                 }
             }
             if search.is_empty() {
-                spoken_of(&mut search, subject, found.leaf);
+                spoken_of(&mut search, prepared, found.leaf);
             }
             let named = search.named();
-            said.push_str(&names(subject, &named, Some(&state)));
+            said.push_str(&names(prepared, &named, Some(&state)));
         }
         (Some(found.at), said)
     })
@@ -207,62 +212,62 @@ pub(super) fn margin(
 
 /// A state that gave a number its value; `full` says the value and the moment too.
 fn origin(
-    subject: &Subject,
+    prepared: &PreparedWorld,
     source: &Source,
     full: bool,
     (state_at, stop): (&impl Fn(Tick) -> Option<State>, &dyn Fn() -> bool),
 ) -> String {
     let Source::Signal { signal, at, value } = source else { return String::new() };
-    let Some((text, dimension)) = subject.texts.signals.get(signal.0 as usize) else { return String::new() };
+    let Some((text, dimension)) = prepared.texts.signals.get(signal.0 as usize) else { return String::new() };
     let mut said = if full {
-        format!("`{text}` is {} at {}", words::brief(*value, &dimension.to_string()), moment(subject, *at))
+        format!("`{text}` is {} at {}", words::brief(*value, &dimension.to_string()), moment(prepared, *at))
     } else {
         format!("`{text}`")
     };
     if let Some(state) = state_at(*at) {
-        let mut search = Search::of(subject, &state, stop);
-        let signal = &subject.signals()[signal.0 as usize];
+        let mut search = Search::of(prepared, &state, stop);
+        let signal = &prepared.signals()[signal.0 as usize];
         search.extremum(signal);
         if search.is_empty() {
             search.name_all_in(signal);
         }
         search.name_members(text, |tell| signal.mentions(tell));
-        said.push_str(&names(subject, &search.named(), Some(&state)));
+        said.push_str(&names(prepared, &search.named(), Some(&state)));
     }
     said
 }
 
 /// One of several sources of a number, with its moment.
 fn full(
-    subject: &Subject,
+    prepared: &PreparedWorld,
     source: &Source,
     recording: &Recording<'_>,
     state_at: &impl Fn(Tick) -> Option<State>,
 ) -> String {
     match source {
         Source::Formula(reason) => {
-            let (closing, _) = closing(subject, reason, recording, state_at);
-            format!("{closing} at {}", moment(subject, reason.to))
+            let (closing, _) = closing(prepared, reason, recording, state_at);
+            format!("{closing} at {}", moment(prepared, reason.to))
         }
-        signal @ Source::Signal { .. } => origin(subject, signal, true, (state_at, recording.stop)),
+        signal @ Source::Signal { .. } => origin(prepared, signal, true, (state_at, recording.stop)),
     }
 }
 
-fn moment(subject: &Subject, at: Tick) -> String {
-    match subject.program.scenario.clock {
+fn moment(prepared: &PreparedWorld, at: Tick) -> String {
+    match prepared.program.scenario.clock {
         Clock::Steps => format!("step {}", at.0),
         clock => format!("{} s", words::number(clock.seconds(at))),
     }
 }
 
 /// `: crowd[3], user`, or nothing; people of sources by the number of their arrival, as in the state.
-fn names(subject: &Subject, who: &[AgentId], state: Option<&State>) -> String {
-    let names: Vec<String> = who.iter().filter_map(|id| name_of(subject, *id, state)).collect();
+fn names(prepared: &PreparedWorld, who: &[AgentId], state: Option<&State>) -> String {
+    let names: Vec<String> = who.iter().filter_map(|id| name_of(prepared, *id, state)).collect();
     if names.is_empty() { String::new() } else { format!(": {}", names.join(", ")) }
 }
 
-fn name_of(subject: &Subject, id: AgentId, state: Option<&State>) -> Option<String> {
-    let scenario: &Scenario = &subject.program.scenario;
+fn name_of(prepared: &PreparedWorld, id: AgentId, state: Option<&State>) -> Option<String> {
+    let scenario: &Scenario = &prepared.program.scenario;
     let agent = scenario.agents.get(id.0 as usize)?;
     let arrival = state.and_then(|state| state.queues.arrival(&scenario.sources, id, 0));
     Some(arrival.unwrap_or_else(|| agent.name.clone()))
@@ -270,57 +275,57 @@ fn name_of(subject: &Subject, id: AgentId, state: Option<&State>) -> Option<Stri
 
 /// A reason in words.
 fn closing(
-    subject: &Subject,
+    prepared: &PreparedWorld,
     reason: &Reason,
     recording: &Recording<'_>,
     state_at: &impl Fn(Tick) -> Option<State>,
 ) -> Said {
     let word = words::truth(reason.value);
-    match &subject.tree.nodes[reason.leaf.0 as usize] {
-        Node::Atom(atom) if let Bool::Present(Who::Agent(id)) = &subject.atoms()[atom.0 as usize] => {
-            let name = subject.program.scenario.agents.get(id.0 as usize).map_or("", |agent| &agent.name);
+    match &prepared.tree.nodes[reason.leaf.0 as usize] {
+        Node::Atom(atom) if let Bool::Present(Who::Agent(id)) = &prepared.atoms()[atom.0 as usize] => {
+            let name = prepared.program.scenario.agents.get(id.0 as usize).map_or("", |agent| &agent.name);
             (format!("{name} is {}present", if reason.value { "" } else { "not " }), None)
         }
         Node::Atom(atom) => {
-            let Some(text) = subject.texts.atoms.get(atom.0 as usize) else { return Said::default() };
-            let condition = &subject.atoms()[atom.0 as usize];
+            let Some(text) = prepared.texts.atoms.get(atom.0 as usize) else { return Said::default() };
+            let condition = &prepared.atoms()[atom.0 as usize];
             let stop = recording.stop;
-            if let Some((part, state)) = subject.texts.parts.get(&atom.0).zip(state_at(reason.to))
-                && let Some(because) = because((subject, stop), (part, text), reason.value, &state)
+            if let Some((part, state)) = prepared.texts.parts.get(&atom.0).zip(state_at(reason.to))
+                && let Some(because) = because((prepared, stop), (part, text), reason.value, &state)
             {
                 return because;
             }
             let state = state_at(reason.to);
             if let Some(state) = &state {
-                let mut search = Search::of(subject, state, stop);
+                let mut search = Search::of(prepared, state, stop);
                 search.walk(condition, reason.value);
                 search.name_members(text, |tell| condition.mentions(tell));
-                let (named, decider) = decided(subject, search, state);
+                let (named, decider) = decided(prepared, search, state);
                 if !named.is_empty() {
                     return (format!("`{text}` {word}{named}"), decider);
                 }
             }
             let of = |state: &State| {
-                let asked = Search::of(subject, state, stop);
-                copies(&subject.program.scenario, (condition, reason.value), false, &asked)
+                let asked = Search::of(prepared, state, stop);
+                copies(&prepared.program.scenario, (condition, reason.value), false, &asked)
             };
             let copies = state.as_ref().map_or_else(Vec::new, of);
             let colon = if copies.is_empty() { "" } else { ": " };
             (format!("`{text}` {word}{colon}{}", copies.join(", ")), None)
         }
         Node::Compare(..) => {
-            let Some((text, _)) = subject.texts.comparisons.get(&reason.leaf.0) else {
+            let Some((text, _)) = prepared.texts.comparisons.get(&reason.leaf.0) else {
                 return Said::default();
             };
-            let found = sides(&subject.tree, reason.leaf, reason.to, recording);
-            let told = |source: &Source| full(subject, source, recording, state_at);
+            let found = sides(&prepared.tree, reason.leaf, reason.to, recording);
+            let told = |source: &Source| full(prepared, source, recording, state_at);
             let list: Vec<String> =
                 found.iter().map(told).filter(|said| !said.is_empty()).take(NAMED).collect();
             if list.is_empty() {
                 let Some(state) = state_at(reason.to) else { return (format!("`{text}` {word}"), None) };
-                let mut search = Search::of(subject, &state, recording.stop);
-                spoken_of(&mut search, subject, reason.leaf);
-                let (named, decider) = decided(subject, search, &state);
+                let mut search = Search::of(prepared, &state, recording.stop);
+                spoken_of(&mut search, prepared, reason.leaf);
+                let (named, decider) = decided(prepared, search, &state);
                 return (format!("`{text}` {word}{named}"), decider);
             }
             (format!("`{text}` {word}: {}", list.join(" and ")), None)
@@ -331,35 +336,35 @@ fn closing(
 
 /// A condition that is made of others in words, with those of them that decide in a state and the agents in these.
 fn because(
-    (subject, stop): (&Subject, &dyn Fn() -> bool),
+    (prepared, stop): (&PreparedWorld, &dyn Fn() -> bool),
     (part, whole): (&study::Part, &str),
     truth: bool,
     state: &State,
 ) -> Option<Said> {
-    let found = grounds(part, truth, &Search::of(subject, state, stop))?;
-    let mut search = Search::of(subject, state, stop);
+    let found = grounds(part, truth, &Search::of(prepared, state, stop))?;
+    let mut search = Search::of(prepared, state, stop);
     let (mut said, mut owners): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
     let people = |at: usize, who: Who| {
         let id = match who {
             Who::Agent(id) => Some(id),
             Who::Running(of) => found[at].given.get(of as usize).copied(),
         };
-        id.and_then(|id| name_of(subject, id, Some(state)))
+        id.and_then(|id| name_of(prepared, id, Some(state)))
     };
     let parts: Vec<&study::Part> = found.iter().map(|ground| ground.part).collect();
-    let texts = subject.texts.words(&parts, &people)?;
+    let texts = prepared.texts.words(&parts, &people)?;
     for (ground, text) in found.iter().zip(&texts) {
         let condition = ground.condition();
         ground.given.iter().for_each(|id| search.name(*id));
         search.walk(&condition, ground.truth);
         search.name_members(text, |tell| condition.mentions(tell));
-        let asked = Search::of(subject, state, stop);
+        let asked = Search::of(prepared, state, stop);
         let is_part = !std::ptr::eq(ground.part, part);
-        owners.extend(copies(&subject.program.scenario, (&condition, ground.truth), is_part, &asked));
+        owners.extend(copies(&prepared.program.scenario, (&condition, ground.truth), is_part, &asked));
         said.push(words::condition((text, ground.truth)));
     }
     let owners = each(owners);
-    let (mut named, decider) = decided(subject, search, state);
+    let (mut named, decider) = decided(prepared, search, state);
     if named.is_empty() && !owners.is_empty() {
         named = format!(": {}", owners.join(", "));
     }
@@ -367,26 +372,26 @@ fn because(
 }
 
 /// The agents who are there of whom a comparison of numbers over time speaks one by one.
-fn spoken_of(search: &mut Search<'_>, subject: &Subject, leaf: NodeId) {
-    let Node::Compare(_, x, y) = subject.tree.nodes[leaf.0 as usize] else { return };
+fn spoken_of(search: &mut Search<'_>, prepared: &PreparedWorld, leaf: NodeId) {
+    let Node::Compare(_, x, y) = prepared.tree.nodes[leaf.0 as usize] else { return };
     for side in [x, y] {
-        let (_, signals) = leaves(&subject.tree, &[Part::Term(side)]).unwrap_or_default();
+        let (_, signals) = leaves(&prepared.tree, &[Part::Term(side)]).unwrap_or_default();
         for signal in signals {
-            search.name_all_in(&subject.signals()[signal.0 as usize]);
+            search.name_all_in(&prepared.signals()[signal.0 as usize]);
         }
     }
 }
 
 /// Who was found, in words: the first with its place and the number that was compared.
-fn decided(subject: &Subject, search: Search<'_>, state: &State) -> Said {
-    let name = |id| name_of(subject, id, Some(state));
-    let decider = decider::decider(&search, &subject.program.scenario, name);
+fn decided(prepared: &PreparedWorld, search: Search<'_>, state: &State) -> Said {
+    let name = |id| name_of(prepared, id, Some(state));
+    let decider = decider::decider(&search, &prepared.program.scenario, name);
     let named = search.named();
     let said = match &decider {
         Some(decider) => {
             decider::written(decider, &named.iter().filter_map(|id| name(*id)).collect::<Vec<_>>())
         }
-        None => names(subject, &named, Some(state)),
+        None => names(prepared, &named, Some(state)),
     };
     (said, decider)
 }

@@ -3,7 +3,7 @@
 use super::budget::Budget;
 use super::cell::{Item, Reading};
 use super::observer::SignalObserver;
-use super::subject::Subject;
+use super::prepared::PreparedWorld;
 use super::words;
 use crate::base::lanes::Mask;
 use crate::base::random::TrialKey;
@@ -21,21 +21,21 @@ const JUMPS_BETWEEN_LOOKS: u64 = 1 << 12;
 
 /// What stopped a trial before a column was decided, and what helps against it; empty where nothing did.
 pub(super) fn unresolved(
-    subject: &Subject,
+    prepared: &PreparedWorld,
     column: usize,
     item: Item,
     (seed, budget): (u64, &Budget),
 ) -> String {
-    let program = &subject.program;
+    let program = &prepared.program;
     let scenario = &program.scenario;
     let mut run = match Run::of(program, item.address(seed)) {
         Ok((run, _)) => run,
         Err(fault) => return format!("cannot start: {}", no_start(scenario, fault)),
     };
     if scenario.clock.is_jumps() {
-        return in_continuous_time(subject, column, &mut run, budget);
+        return in_continuous_time(prepared, column, &mut run, budget);
     }
-    let Ok(mut group) = subject.group(&[column]) else { return String::new() };
+    let Ok(mut group) = prepared.group(&[column]) else { return String::new() };
     group.start(0);
     let mut missing = None;
     loop {
@@ -51,10 +51,10 @@ pub(super) fn unresolved(
         }
         // As for a worker: only where something is looked at in this state that has no value.
         let lost = group.read(&run).has(0);
-        let absent = absent(subject, column, state, &group.readings).map(|name| (name, time.clone()));
+        let absent = absent(prepared, column, state, &group.readings).map(|name| (name, time.clone()));
         missing = missing.or_else(|| absent.clone());
         if lost {
-            return nobody(subject, column, state, &time);
+            return nobody(prepared, column, state, &time);
         }
         let observer = &mut group.observers[0];
         observer.observe(Mask::lane(0), &group.readings);
@@ -69,7 +69,7 @@ pub(super) fn unresolved(
                 _ => String::new(),
             };
         }
-        if budget.is_late() || run.next().is_err() {
+        if budget.is_late() || run.next_state().is_err() {
             return String::new();
         }
     }
@@ -179,13 +179,13 @@ pub fn no_start(scenario: &Scenario, fault: start::Fault) -> String {
 }
 
 /// Somebody who has not come yet, and of whom a number is asked that is none for it.
-fn absent(subject: &Subject, column: usize, state: &State, readings: &Readings) -> Option<String> {
-    let (mut found, scenario) = (None, &subject.program.scenario);
-    for k in subject.signals_of(column) {
+fn absent(prepared: &PreparedWorld, column: usize, state: &State, readings: &Readings) -> Option<String> {
+    let (mut found, scenario) = (None, &prepared.program.scenario);
+    for k in prepared.signals_of(column) {
         if readings.signals.get(k).is_none_or(|signal| !signal.0[0].is_nan()) {
             continue;
         }
-        subject.signals()[k].mentions(&mut |agent| {
+        prepared.signals()[k].mentions(&mut |agent| {
             // Who has left is where they left.
             let mut sources = scenario.sources.iter().zip(&state.queues.entered);
             let is_to_come = sources.any(|(source, entered)| {
@@ -200,23 +200,23 @@ fn absent(subject: &Subject, column: usize, state: &State, readings: &Readings) 
 }
 
 /// A mean or a middle of nobody: in which condition or number of those that a column looks at now.
-fn nobody(subject: &Subject, column: usize, state: &State, time: &str) -> String {
-    let Ok(needs) = subject.needs(&[column]) else { return String::new() };
+fn nobody(prepared: &PreparedWorld, column: usize, state: &State, time: &str) -> String {
+    let Ok(needs) = prepared.needs(&[column]) else { return String::new() };
     let tick = state.ticks[0];
-    let scenario = &subject.program.scenario;
+    let scenario = &prepared.program.scenario;
     let lost = |code: &Code| {
         let mut readings = Readings::default();
-        code.run(&subject.program, state, &mut readings);
+        code.run(&prepared.program, state, &mut readings);
         readings.unresolved.has(0)
     };
-    let atoms = subject.atoms_of(column).into_iter().filter(|k| needs.atom(*k, tick)).find_map(|k| {
-        let code = Code::compile(scenario, std::slice::from_ref(&subject.atoms()[k]), &[]);
-        lost(&code).then(|| subject.texts.atoms.get(k).cloned())?
+    let atoms = prepared.atoms_of(column).into_iter().filter(|k| needs.atom(*k, tick)).find_map(|k| {
+        let code = Code::compile(scenario, std::slice::from_ref(&prepared.atoms()[k]), &[]);
+        lost(&code).then(|| prepared.texts.atoms.get(k).cloned())?
     });
     let text = atoms.or_else(|| {
-        subject.signals_of(column).into_iter().filter(|k| needs.signal(*k, tick)).find_map(|k| {
-            let code = Code::compile(scenario, &[], std::slice::from_ref(&subject.signals()[k]));
-            lost(&code).then(|| subject.texts.signals.get(k).map(|(text, _)| text.clone()))?
+        prepared.signals_of(column).into_iter().filter(|k| needs.signal(*k, tick)).find_map(|k| {
+            let code = Code::compile(scenario, &[], std::slice::from_ref(&prepared.signals()[k]));
+            lost(&code).then(|| prepared.texts.signals.get(k).map(|(text, _)| text.clone()))?
         })
     });
     let of = text.map_or(String::new(), |text| format!(" in `{text}`"));
@@ -226,11 +226,11 @@ fn nobody(subject: &Subject, column: usize, state: &State, time: &str) -> String
 }
 
 /// In continuous time only what has to be remembered, and the number of jumps, can leave a trial unresolved.
-fn in_continuous_time(subject: &Subject, column: usize, run: &mut Run<'_>, budget: &Budget) -> String {
-    let view = subject.view(&[column]);
-    let Ok(mut monitor) = SignalObserver::of(subject, column) else { return String::new() };
+fn in_continuous_time(prepared: &PreparedWorld, column: usize, run: &mut Run<'_>, budget: &Budget) -> String {
+    let view = prepared.view(&[column]);
+    let Ok(mut monitor) = SignalObserver::of(prepared, column) else { return String::new() };
     let mut seen = ViewReadings::default();
-    let enough = subject.most_jumps.min(subject.jumps_again);
+    let enough = prepared.most_jumps.min(prepared.jumps_again);
     while run.state().clocks.jumps[0] < enough {
         let state = run.state();
         if state.clocks.jumps[0].is_multiple_of(JUMPS_BETWEEN_LOOKS) && budget.is_late() {
@@ -242,7 +242,7 @@ fn in_continuous_time(subject: &Subject, column: usize, run: &mut Run<'_>, budge
         let time = words::quantity(now.seconds, "s");
         let reading = match monitor.jump(now, atoms, signals) {
             Some(reading) => reading,
-            None if run.next().is_ok() => continue,
+            None if run.next_state().is_ok() => continue,
             None => monitor.finish(),
         };
         return match reading {
@@ -257,8 +257,8 @@ fn in_continuous_time(subject: &Subject, column: usize, run: &mut Run<'_>, budge
     }
     let state = run.state();
     let time = words::quantity(state.clocks.now[0], "s");
-    let busiest = busiest(&subject.program, state);
-    let said = if enough < subject.most_jumps {
+    let busiest = busiest(&prepared.program, state);
+    let said = if enough < prepared.most_jumps {
         "the cause was not found in the part that was run again"
     } else {
         "the trial has too many jumps"

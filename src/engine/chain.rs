@@ -7,7 +7,7 @@
 
 use super::budget::Budget;
 use super::cell::{Block, Cell, Reading};
-use super::subject::Subject;
+use super::prepared::PreparedWorld;
 use crate::base::lanes::Lanes;
 use crate::compile::study::Root;
 use crate::kernel::State;
@@ -35,14 +35,14 @@ struct Sorts {
 impl Sorts {
     /// What the states that trials may visit are for some columns; `sort` says so for one of them and what is observed.
     fn of(
-        subject: &Subject,
+        prepared: &PreparedWorld,
         columns: &[usize],
         space: &Space,
         mut sort: impl FnMut(usize, &[bool], &[f64]) -> Sort,
     ) -> Vec<Self> {
-        let view = subject.view(columns);
-        let mut state = State::new(subject.program.layout, 0);
-        state.variables = vec![Lanes::ZERO; subject.program.scenario.processes.variables.len()];
+        let view = prepared.view(columns);
+        let mut state = State::new(prepared.program.layout, 0);
+        state.variables = vec![Lanes::ZERO; prepared.program.scenario.processes.variables.len()];
         let mut seen = ViewReadings::default();
         let mut all = vec![Self::default(); space.states()];
         for &place in space.reachable() {
@@ -67,8 +67,8 @@ impl Sorts {
 }
 
 /// Whether a runner of a chain may take these columns.
-fn fits(subject: &Subject, columns: &[usize]) -> bool {
-    (1..=MOST_COLUMNS).contains(&columns.len()) && subject.reads_variables_only(columns)
+fn fits(prepared: &PreparedWorld, columns: &[usize]) -> bool {
+    (1..=MOST_COLUMNS).contains(&columns.len()) && prepared.reads_variables_only(columns)
 }
 
 /// The classes of states, to find quickly where something may be decided: some goal is reached, some column stops,
@@ -103,17 +103,17 @@ struct AtTick {
 }
 
 impl StepChain {
-    /// A runner for some columns of a subject, if it is made for them.
-    pub(super) fn of(subject: &Subject, columns: &[usize]) -> Option<Self> {
-        let chain = subject.program.processes.chain().filter(|_| fits(subject, columns))?;
-        let clock = subject.program.scenario.clock;
+    /// A runner for some columns of a prepared world, if it is made for them.
+    pub(super) fn of(prepared: &PreparedWorld, columns: &[usize]) -> Option<Self> {
+        let chain = prepared.program.processes.chain().filter(|_| fits(prepared, columns))?;
+        let clock = prepared.program.scenario.clock;
         let flat = |column: &usize| {
-            let Root::Formula(root) = subject.columns[*column] else { return None };
-            Flat::of(&subject.tree, root, subject.horizon, clock)
+            let Root::Formula(root) = prepared.columns[*column] else { return None };
+            Flat::of(&prepared.tree, root, prepared.horizon, clock)
         };
         let flats = columns.iter().map(flat).collect::<Option<Vec<Flat>>>()?;
-        let sort = |k: usize, atoms: &[bool], signals: &[f64]| flats[k].sort(&subject.tree, atoms, signals);
-        let mut sorts = Sorts::of(subject, columns, &chain.space, sort);
+        let sort = |k: usize, atoms: &[bool], signals: &[f64]| flats[k].sort(&prepared.tree, atoms, signals);
+        let mut sorts = Sorts::of(prepared, columns, &chain.space, sort);
         for &state in chain.space.reachable() {
             sorts[state as usize].stop |= if chain.is_still(state) { STILL } else { 0 };
         }
@@ -135,8 +135,14 @@ impl StepChain {
     }
 
     /// Runs the trials of a block; the budget may say stop, then unfinished ones are dropped.
-    pub(super) fn run(&mut self, subject: &Subject, seed: u64, block: &mut Block<'_>, budget: &Budget) {
-        let Some(chain) = subject.program.processes.chain() else { return };
+    pub(super) fn run(
+        &mut self,
+        prepared: &PreparedWorld,
+        seed: u64,
+        block: &mut Block<'_>,
+        budget: &Budget,
+    ) {
+        let Some(chain) = prepared.program.processes.chain() else { return };
         let trials = self
             .trials
             .take()
@@ -230,19 +236,25 @@ pub(super) struct JumpChain {
 }
 
 impl JumpChain {
-    /// A runner for some columns of a subject, if it is made for them.
-    pub(super) fn of(subject: &Subject, columns: &[usize]) -> Option<Self> {
-        let chain = subject.program.processes.embedded().filter(|_| fits(subject, columns))?;
-        let glance = |column: &usize| subject.signal_monitor(*column).ok()?.glance();
+    /// A runner for some columns of a prepared world, if it is made for them.
+    pub(super) fn of(prepared: &PreparedWorld, columns: &[usize]) -> Option<Self> {
+        let chain = prepared.program.processes.embedded().filter(|_| fits(prepared, columns))?;
+        let glance = |column: &usize| prepared.signal_monitor(*column).ok()?.glance();
         let mut glances = columns.iter().map(glance).collect::<Option<Vec<Glance>>>()?;
         let sort = |k: usize, atoms: &[bool], signals: &[f64]| glances[k].sort(atoms, signals);
-        let sorts = Sorts::of(subject, columns, &chain.space, sort);
+        let sorts = Sorts::of(prepared, columns, &chain.space, sort);
         Some(Self { glances, sorts, trials: None, open: Vec::new(), rounds: 0, steps: 0 })
     }
 
     /// Runs the trials of a block; the budget may say stop, then unfinished ones are dropped.
-    pub(super) fn run(&mut self, subject: &Subject, seed: u64, block: &mut Block<'_>, budget: &Budget) {
-        let Some(chain) = subject.program.processes.embedded() else { return };
+    pub(super) fn run(
+        &mut self,
+        prepared: &PreparedWorld,
+        seed: u64,
+        block: &mut Block<'_>,
+        budget: &Budget,
+    ) {
+        let Some(chain) = prepared.program.processes.embedded() else { return };
         let trials = self
             .trials
             .take()
@@ -263,7 +275,7 @@ impl JumpChain {
             }
             self.rounds += 1;
             let before = trials.jumps();
-            let exhausted = before + 1 >= subject.most_jumps;
+            let exhausted = before + 1 >= prepared.most_jumps;
             let mut kept = 0;
             let (open, sorts, glances) = (&mut self.open[..], &self.sorts[..], &self.glances[..]);
             self.steps += chain.jump(trials, |place, stay| {

@@ -3,7 +3,7 @@
 use super::batch::Monitors;
 use super::cell::{Cell, Reading};
 use super::observer::SignalObserver;
-use super::subject::{ColumnGroup, Subject};
+use super::prepared::{ColumnGroup, PreparedWorld};
 use crate::base::lanes::{LANES, Mask};
 use crate::kernel::Run;
 use crate::kernel::process::{View, ViewReadings};
@@ -83,10 +83,10 @@ pub(super) struct StepColumns {
 }
 
 impl StepColumns {
-    /// Monitors of some columns of a subject.
-    pub(super) fn new(subject: &Subject, columns: &[usize]) -> Result<Self, Invalid> {
+    /// Monitors of some columns of a prepared world.
+    pub(super) fn new(prepared: &PreparedWorld, columns: &[usize]) -> Result<Self, Invalid> {
         let settled = vec![Mask::NONE; columns.len()];
-        Ok(Self { groups: subject.groups(columns)?, settled, rows: Rows::new(columns.len()) })
+        Ok(Self { groups: prepared.groups(columns)?, settled, rows: Rows::new(columns.len()) })
     }
 
     /// What has been finished since this was asked last.
@@ -187,16 +187,16 @@ pub(super) struct EventColumns {
 }
 
 impl EventColumns {
-    /// Monitors of some columns of a subject.
-    pub(super) fn new(subject: &Subject, columns: &[usize]) -> Result<Self, Invalid> {
+    /// Monitors of some columns of a prepared world.
+    pub(super) fn new(prepared: &PreparedWorld, columns: &[usize]) -> Result<Self, Invalid> {
         let one: Vec<SignalObserver> =
-            columns.iter().map(|&column| SignalObserver::of(subject, column)).collect::<Result<_, _>>()?;
+            columns.iter().map(|&column| SignalObserver::of(prepared, column)).collect::<Result<_, _>>()?;
         Ok(Self {
-            view: subject.view(columns),
+            view: prepared.view(columns),
             seen: ViewReadings::default(),
             monitors: (0..LANES).flat_map(|_| one.iter().cloned()).collect(),
             rows: Rows::new(columns.len()),
-            most: subject.most_jumps,
+            most: prepared.most_jumps,
         })
     }
 

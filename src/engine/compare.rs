@@ -5,11 +5,11 @@ use super::cell::{Cell, Item, Reading};
 use super::estimate::LARGEST_ROUND;
 use super::executor::{Executor, Job};
 use super::fault::Fault;
-use super::forecast::{self, Glimpse};
+use super::forecast::{self, PilotStatistics};
 use super::outcome::Stop;
 use super::pilot::Pilot;
+use super::prepared::PreparedWorld;
 use super::procedure::{outcome, value};
-use super::subject::Subject;
 use super::tally::Tally;
 use super::watch::{Forecast, Likely, Watch};
 use crate::compile::methods;
@@ -44,10 +44,10 @@ pub(super) struct Gap {
     pub(super) unresolved: u64,
 }
 
-/// Two sides of a comparison: subject and column of each.
+/// Two sides of a comparison: prepared world and column of each.
 pub(super) struct Sides<'s> {
-    /// The subjects.
-    pub(super) subjects: [&'s Subject; 2],
+    /// The prepared worlds.
+    pub(super) worlds: [&'s PreparedWorld; 2],
     /// Their columns.
     pub(super) columns: [usize; 2],
 }
@@ -117,7 +117,7 @@ impl<'s> CompareSampling<'s> {
                 })
             }
         };
-        let jobs = [0, 1].map(|side| Job::new(sides.subjects[side], vec![sides.columns[side]], seed));
+        let jobs = [0, 1].map(|side| Job::new(sides.worlds[side], vec![sides.columns[side]], seed));
         let tallies = Default::default();
         Ok(Self { query, jobs, procedure, range, within, delta, ahead: None, tallies, means, spent: 0.0 })
     }
@@ -127,9 +127,9 @@ impl<'s> CompareSampling<'s> {
         self.query
     }
 
-    /// The subject of a side.
-    pub(super) fn subject(&self, side: usize) -> &'s Subject {
-        self.jobs[side].subject
+    /// The prepared world of a side.
+    pub(super) fn prepared(&self, side: usize) -> &'s PreparedWorld {
+        self.jobs[side].prepared
     }
 
     /// Whether no pair was read yet.
@@ -148,17 +148,17 @@ impl<'s> CompareSampling<'s> {
             .min(budget.max_trials);
         let one = |job: &Job<'_>| Pilot::run(job, Item::run(0, size), executor, budget);
         let sides = [one(&self.jobs[0])?, one(&self.jobs[1])?];
-        let mut glimpse = Glimpse::default();
+        let mut statistics = PilotStatistics::default();
         for (a, b) in sides[0].seen().zip(sides[1].seen()) {
             if let (Some(a), Some(b)) = (self.score(&a[0]), self.score(&b[0])) {
-                glimpse.add(a - b);
+                statistics.add(a - b);
             }
         }
         let seconds: f64 =
-            (0..2).map(|side| sides[side].seconds_per_trial(self.jobs[side].subject.most_steps())).sum();
+            (0..2).map(|side| sides[side].seconds_per_trial(self.jobs[side].prepared.most_steps())).sum();
         let width = self.range.map_or(1.0, |(low, high)| high - low);
         let pairs = match self.within {
-            Some(within) => forecast::compare(&glimpse, width, within, self.delta),
+            Some(within) => forecast::compare(&statistics, width, within, self.delta),
             None => Likely::exactly(methods::PLANNED_TRIALS),
         }
         .map(|n| n.min(budget.max_trials));
@@ -223,7 +223,7 @@ impl<'s> CompareSampling<'s> {
                 let (a, b): (&Cell, &Cell) = (&a[0], &b[0]);
                 for (job, cell) in self.jobs.iter().zip([a, b]) {
                     if cell.reading == Reading::Faulty {
-                        return Err(super::trial::fault(job.subject, *item, job.seed));
+                        return Err(super::trial::fault(job.prepared, *item, job.seed));
                     }
                 }
                 for (side, cell) in [a, b].into_iter().enumerate() {

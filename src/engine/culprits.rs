@@ -2,7 +2,7 @@
 
 use super::grounds::Asked;
 use super::instance::{instantiate_bool, instantiate_num};
-use super::subject::Subject;
+use super::prepared::PreparedWorld;
 use crate::kernel::{Code, Readings, State};
 use crate::model::{AgentId, Bool, Num, Scenario, Set, Who};
 
@@ -14,7 +14,7 @@ const AT_ONCE: usize = 4096;
 
 /// Looks for them in a state.
 pub(super) struct Search<'s> {
-    subject: &'s Subject,
+    prepared: &'s PreparedWorld,
     state: &'s State,
     /// Whether the time is over.
     stop: &'s dyn Fn() -> bool,
@@ -31,9 +31,9 @@ pub(super) struct Search<'s> {
 
 impl<'s> Search<'s> {
     /// Nobody found yet.
-    pub(super) fn of(subject: &'s Subject, state: &'s State, stop: &'s dyn Fn() -> bool) -> Self {
+    pub(super) fn of(prepared: &'s PreparedWorld, state: &'s State, stop: &'s dyn Fn() -> bool) -> Self {
         Self {
-            subject,
+            prepared,
             state,
             stop,
             found: Vec::new(),
@@ -67,9 +67,9 @@ impl<'s> Search<'s> {
 
     /// What some numbers are in this state.
     pub(super) fn values(&self, nums: &[Num]) -> Vec<f64> {
-        let code = Code::compile(&self.subject.program.scenario, &[], nums);
+        let code = Code::compile(&self.prepared.program.scenario, &[], nums);
         let mut readings = Readings::default();
-        code.run(&self.subject.program, self.state, &mut readings);
+        code.run(&self.prepared.program, self.state, &mut readings);
         readings.signals.iter().map(|lanes| lanes.0[0]).collect()
     }
 
@@ -91,10 +91,10 @@ impl<'s> Search<'s> {
 
     /// Which of some conditions hold: asked at once, so that who is near whom is sought once.
     fn which(&self, atoms: &[Bool]) -> Vec<bool> {
-        let scenario: &Scenario = &self.subject.program.scenario;
+        let scenario: &Scenario = &self.prepared.program.scenario;
         let code = Code::compile(scenario, atoms, &[]);
         let mut readings = Readings::default();
-        code.run(&self.subject.program, self.state, &mut readings);
+        code.run(&self.prepared.program, self.state, &mut readings);
         readings.atoms.iter().map(|mask| mask.has(0)).collect()
     }
 
@@ -122,8 +122,8 @@ impl<'s> Search<'s> {
     /// Names the members of sets that are spoken of by a name that they share, as `a` in `forall a in crowd`: those
     /// whose own names do not stand in the text.
     pub(super) fn name_members(&mut self, text: &str, mentions: impl FnOnce(&mut dyn FnMut(AgentId))) {
-        let subject = self.subject;
-        let agents = &subject.program.scenario.agents;
+        let prepared = self.prepared;
+        let agents = &prepared.program.scenario.agents;
         mentions(&mut |id| {
             let hidden = |name: &str| name.ends_with(']') && !text.contains(name);
             if self.found.len() < NAMED && agents.get(id.0 as usize).is_some_and(|a| hidden(&a.name)) {
@@ -217,7 +217,7 @@ impl<'s> Search<'s> {
                 let id = *id;
                 self.name(id);
                 if truth {
-                    let all = (0..self.subject.program.scenario.agents.len() as u32).map(AgentId);
+                    let all = (0..self.prepared.program.scenario.agents.len() as u32).map(AgentId);
                     let others: Vec<AgentId> = all.filter(|other| *other != id).collect();
                     let touches = |other| Bool::Touching(Who::Agent(id), Who::Agent(other));
                     for (other, _) in self.those(&others, true, touches) {

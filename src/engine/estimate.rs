@@ -8,11 +8,11 @@ use super::budget::Budget;
 use super::cell::{Cell, Item, Reading};
 use super::executor::{Cells, Executor, Job};
 use super::fault::Fault;
-use super::forecast::{self, Glimpse};
+use super::forecast::{self, PilotStatistics};
 use super::outcome::Stop;
 use super::pilot::{self, Pilot};
+use super::prepared::PreparedWorld;
 use super::procedure::Procedure;
-use super::subject::Subject;
 use super::tally::Tally;
 use super::watch::{Forecast, Likely, Watch};
 use crate::base::math;
@@ -31,7 +31,7 @@ pub(super) const LARGEST_ROUND: u64 = 16_384;
 pub(super) struct EstimateEntry<'q> {
     /// The query.
     pub(super) query: &'q Query,
-    /// Column of the subject.
+    /// Column of the prepared world.
     pub(super) column: usize,
     /// Range of an expectation.
     pub(super) range: Option<(f64, f64)>,
@@ -40,7 +40,7 @@ pub(super) struct EstimateEntry<'q> {
     /// What it has consumed.
     pub(super) tally: Tally,
     /// What it has read so far, for forecasts.
-    pub(super) glimpse: Glimpse,
+    pub(super) statistics: PilotStatistics,
     /// Whether it has to know more of its procedure before it can read more.
     pub(super) waits: bool,
     /// Whether it came to a trial in which the model is wrong: it reads no more and has no result.
@@ -51,7 +51,7 @@ pub(super) struct EstimateEntry<'q> {
     pub(super) seconds: f64,
 }
 
-/// Checks and estimates of one subject on their way.
+/// Checks and estimates of one prepared world on their way.
 pub(super) struct EstimateSampling<'q> {
     job: Job<'q>,
     /// The queries.
@@ -97,9 +97,9 @@ impl EstimateEntry<'_> {
 }
 
 impl<'q> EstimateSampling<'q> {
-    /// An estimate of some entries about one subject.
-    pub(super) fn new(subject: &'q Subject, entries: Vec<EstimateEntry<'q>>, seed: u64) -> Self {
-        let job = Job::new(subject, columns(&entries), seed);
+    /// An estimate of some entries about one prepared world.
+    pub(super) fn new(prepared: &'q PreparedWorld, entries: Vec<EstimateEntry<'q>>, seed: u64) -> Self {
+        let job = Job::new(prepared, columns(&entries), seed);
         Self { job, entries, ahead: None, next: 0, spent: 0.0 }
     }
 
@@ -108,7 +108,7 @@ impl<'q> EstimateSampling<'q> {
         let (slow, rest) =
             std::mem::take(&mut self.entries).into_iter().partition(|i| slow.contains(&i.column));
         self.entries = rest;
-        Self { next: self.next, spent: self.spent, ..Self::new(self.job.subject, slow, self.job.seed) }
+        Self { next: self.next, spent: self.spent, ..Self::new(self.job.prepared, slow, self.job.seed) }
     }
 
     /// Leaves out some entries, and their places.
@@ -118,9 +118,9 @@ impl<'q> EstimateSampling<'q> {
         self.entries.retain(kept);
     }
 
-    /// The subject.
-    pub(super) fn subject(&self) -> &'q Subject {
-        self.job.subject
+    /// The prepared world.
+    pub(super) fn prepared(&self) -> &'q PreparedWorld {
+        self.job.prepared
     }
 
     /// Runs the first trials, and forecasts from them what each entry is likely to take.
@@ -133,14 +133,14 @@ impl<'q> EstimateSampling<'q> {
         // As many on every machine, whatever a round would be.
         let size = Pilot::size(width).min(most(&self.entries, 0, budget).max(1)).min(budget.max_trials);
         let pilot = Pilot::run(&self.job, Item::run(0, size), executor, budget)?;
-        let mut seconds = pilot.seconds_per_trial(self.job.subject.most_steps());
+        let mut seconds = pilot.seconds_per_trial(self.job.prepared.most_steps());
         let forecast = |entry: &EstimateEntry<'_>| {
-            let mut glimpse = Glimpse::default();
+            let mut statistics = PilotStatistics::default();
             let range = entry.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
             if let Some(place) = self.job.columns.iter().position(|c| *c == entry.column) {
-                pilot.seen().for_each(|row| glimpse.read(&row[place], range));
+                pilot.seen().for_each(|row| statistics.read(&row[place], range));
             }
-            let expected = forecast::inquiry(&entry.query.ask, &entry.procedure, &glimpse);
+            let expected = forecast::entry(&entry.query.ask, &entry.procedure, &statistics);
             let trials = expected.unwrap_or(Likely::exactly(u64::MAX)).map(|n| n.min(budget.max_trials));
             Forecast {
                 query: entry.query.text.clone(),
@@ -289,7 +289,7 @@ impl<'q> EstimateSampling<'q> {
             };
             if let Err(item) = self.read(&items, &cells, started, budget) {
                 self.entries.iter_mut().filter(|i| i.is_open()).for_each(|i| i.lost = true);
-                let fault = super::trial::fault(self.job.subject, item, self.job.seed);
+                let fault = super::trial::fault(self.job.prepared, item, self.job.seed);
                 return Ok(Advance::Faulty(FaultyTrial { index: item.index, fault }));
             }
             self.next += cells.ready().min(items.len()) as u64;
@@ -297,7 +297,7 @@ impl<'q> EstimateSampling<'q> {
             self.job.reuse(cells);
             if let Some(entry) = self.entries.iter().find(|i| i.is_open()) {
                 let (next, procedure) = (self.next, &entry.procedure);
-                let expected = forecast::inquiry(&entry.query.ask, procedure, &entry.glimpse);
+                let expected = forecast::entry(&entry.query.ask, procedure, &entry.statistics);
                 watch.consumed(&entry.query.text, next, expected.map(|n| n.likely.max(next)));
             }
             if !slow.is_empty() && !budget.must_stop() {
@@ -390,7 +390,7 @@ impl EstimateEntry<'_> {
     /// Counts trials with their indices.
     fn count<'c>(&mut self, trials: impl Iterator<Item = (u64, &'c Cell)> + Clone) {
         if let Some(held) = self.tally.add_truths(&trials) {
-            self.glimpse.count(trials.count() as u64, held);
+            self.statistics.count(trials.count() as u64, held);
             return;
         }
         for (index, cell) in trials {
@@ -401,7 +401,7 @@ impl EstimateEntry<'_> {
                 let beyond = if *at_least { value > *threshold } else { value < *threshold };
                 self.tally.side(index, beyond || (*or_equal && value == *threshold));
             }
-            self.glimpse.read(cell, self.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY)));
+            self.statistics.read(cell, self.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY)));
         }
     }
 

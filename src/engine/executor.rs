@@ -6,8 +6,8 @@
 use super::budget::Budget;
 use super::cell::{Block, Cell, Item};
 use super::columns::Finished;
+use super::prepared::PreparedWorld;
 use super::runner::Runner;
-use super::subject::Subject;
 use crate::base::lanes::LANES;
 use crate::logic::Invalid;
 use std::sync::Mutex;
@@ -106,7 +106,7 @@ impl Cells {
 
 /// Runs rounds of trials.
 pub trait Executor: Sync {
-    /// Runs the items of a round for some columns of a subject.
+    /// Runs the items of a round for some columns of a prepared world.
     fn run(&self, job: &Job<'_>, items: &[Item], budget: &Budget) -> Result<Cells, Invalid>;
 
     /// How many trials run side by side.
@@ -116,10 +116,10 @@ pub trait Executor: Sync {
     fn everywhere(&self, work: &(dyn Fn() + Sync));
 }
 
-/// A subject, the columns that are observed, and the workers that are warm.
+/// A prepared world, the columns that are observed, and the workers that are warm.
 pub struct Job<'s> {
-    /// The subject.
-    pub subject: &'s Subject,
+    /// The prepared world.
+    pub prepared: &'s PreparedWorld,
     /// The columns.
     pub columns: Vec<usize>,
     /// Seed of all random numbers.
@@ -133,9 +133,9 @@ pub struct Job<'s> {
 
 impl<'s> Job<'s> {
     /// A job without workers yet.
-    pub fn new(subject: &'s Subject, columns: Vec<usize>, seed: u64) -> Self {
+    pub fn new(prepared: &'s PreparedWorld, columns: Vec<usize>, seed: u64) -> Self {
         let (workers, room) = (Mutex::default(), Mutex::default());
-        Self { subject, columns, seed, workers, room, steps: AtomicU64::new(0) }
+        Self { prepared, columns, seed, workers, room, steps: AtomicU64::new(0) }
     }
 
     /// Goes on with other columns.
@@ -162,7 +162,7 @@ impl<'s> Job<'s> {
 
     /// How many trials a worker runs side by side.
     pub(super) fn lanes(&self) -> usize {
-        match self.subject.program.layout {
+        match self.prepared.program.layout {
             crate::kernel::Layout::Trials => LANES,
             crate::kernel::Layout::Agents => 1,
         }
@@ -172,7 +172,7 @@ impl<'s> Job<'s> {
         let warm = self.workers.lock().ok().and_then(|mut list| list.pop());
         match warm {
             Some(worker) if worker.serves(&self.columns) => Ok(worker),
-            _ => Runner::new(self.subject, &self.columns),
+            _ => Runner::new(self.prepared, &self.columns),
         }
     }
 
@@ -257,15 +257,15 @@ impl Executor for Threads {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::chain::tests::subject;
+    use crate::engine::chain::tests::prepared;
     use std::time::Duration;
 
     #[test]
     fn a_trial_that_is_cut_hands_over_what_it_has_decided() {
         let model =
             "horizon = 10 steps\nprocess c { var x = false\n  when !x -> 0.5: x = true | 0.5: { } }\n";
-        let subject = subject(model, &["F<=#0 !c.x".to_owned(), "F c.x".to_owned()]);
-        let job = Job::new(&subject, vec![0, 1], 1);
+        let prepared = prepared(model, &["F<=#0 !c.x".to_owned(), "F c.x".to_owned()]);
+        let job = Job::new(&prepared, vec![0, 1], 1);
         let threads = Threads::new(Some(1)).unwrap();
         let cut = |timeout| {
             let budget = Budget::new(u64::MAX, timeout);

@@ -19,7 +19,7 @@ const STEPS: u32 = 24;
 
 /// First readings of a column.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Glimpse {
+pub(super) struct PilotStatistics {
     /// Trials.
     trials: f64,
     /// Sum of the readings; a truth value reads as 0 or 1.
@@ -31,7 +31,7 @@ pub(super) struct Glimpse {
     held: u64,
 }
 
-impl Glimpse {
+impl PilotStatistics {
     /// Adds a number.
     pub(super) fn add(&mut self, x: f64) {
         if x.is_finite() {
@@ -113,7 +113,7 @@ impl Glimpse {
 }
 
 /// Trials that a check or estimate takes: with what the first of them say, and with what the truth may be as well.
-pub(super) fn inquiry(ask: &Ask, procedure: &Procedure, glimpse: &Glimpse) -> Option<Likely> {
+pub(super) fn entry(ask: &Ask, procedure: &Procedure, statistics: &PilotStatistics) -> Option<Likely> {
     let limit = procedure.limit();
     let (measure, chosen, theta) = match ask {
         Ask::Check { measure, test, threshold, .. } => (measure, test, *threshold),
@@ -128,8 +128,8 @@ pub(super) fn inquiry(ask: &Ask, procedure: &Procedure, glimpse: &Glimpse) -> Op
         MeasureKind::Probability | MeasureKind::Quantile { .. } => 1.0,
     };
     let trials = |guess: Guess| (forecast.trials)(&chosen.values, &Guess { theta, range, ..guess });
-    let likely = trials(glimpse.guess(0.1 * range));
-    let all = glimpse.guesses(0.1 * range).into_iter().map(trials);
+    let likely = trials(statistics.guess(0.1 * range));
+    let all = statistics.guesses(0.1 * range).into_iter().map(trials);
     let (least, most) =
         all.fold((likely, likely), |(least, most), n| (math::at_most(n, least), math::at_least(n, most)));
     let whole = |n: f64| (math::at_most(n, 1e18) as u64).clamp(1, limit.unwrap_or(u64::MAX).max(1));
@@ -143,37 +143,37 @@ const fn guess(share: f64, mean: f64, variance: f64) -> Guess {
     Guess { share, mean, variance, theta: f64::NAN, range: 1.0 }
 }
 
-/// Pairs that a comparison is likely to take; `glimpse` is that of the differences.
-pub(super) fn compare(glimpse: &Glimpse, range: f64, epsilon: f64, delta: f64) -> Likely {
+/// Pairs that a comparison is likely to take; `statistics` is that of the differences.
+pub(super) fn compare(statistics: &PilotStatistics, range: f64, epsilon: f64, delta: f64) -> Likely {
     let least = 0.1 * range;
     let of = |guess: Guess| until_narrow(guess.variance, 2.0 * range, epsilon, delta);
-    let likely = of(glimpse.guess(least));
-    let all = glimpse.guesses(least).into_iter().map(of);
+    let likely = of(statistics.guess(least));
+    let all = statistics.guesses(least).into_iter().map(of);
     let (fewest, most) = all.fold((likely, likely), |(a, b), n| (math::at_most(n, a), math::at_least(n, b)));
     let whole = |n: f64| math::at_most(n, 1e18) as u64;
     Likely { least: whole(0.4 * fewest), likely: whole(likely), most: whole(2.0 * most) }
 }
 
-/// Trials that a ranking is likely to take, of all options together; `glimpses` are those of the options,
+/// Trials that a ranking is likely to take, of all options together; `statistics` are those of the options,
 /// `differences` those of each option to the one that leads, `scale` the range of the score.
-pub(super) fn race(
-    glimpses: &[Glimpse],
-    differences: &[Glimpse],
+pub(super) fn rank(
+    statistics: &[PilotStatistics],
+    differences: &[PilotStatistics],
     scale: f64,
     (epsilon, delta, ranking): (f64, f64, Ranking),
 ) -> Likely {
-    let arms = glimpses.len().max(2) as f64;
+    let arms = statistics.len().max(2) as f64;
     if ranking == Ranking::Okamoto {
         let each = stats::okamoto::size(epsilon / scale, delta / arms);
         return Likely::exactly((arms as u64).saturating_mul(each));
     }
     let level = ln(arms / delta);
-    let best = glimpses.iter().map(Glimpse::mean).fold(f64::NEG_INFINITY, f64::max);
-    let of = |(one, difference): (&Glimpse, &Glimpse)| {
+    let best = statistics.iter().map(PilotStatistics::mean).fold(f64::NEG_INFINITY, f64::max);
+    let of = |(one, difference): (&PilotStatistics, &PilotStatistics)| {
         let gap = (best - one.mean()).max(epsilon);
         2.0 * difference.variance(0.1 * scale) * level / (gap * gap) + scale * level / gap
     };
-    let likely = math::at_most(glimpses.iter().zip(differences).map(of).sum::<f64>(), 1e17);
+    let likely = math::at_most(statistics.iter().zip(differences).map(of).sum::<f64>(), 1e17);
     // Who leads is not sure yet, and how far the others are behind.
     Likely { least: (0.1 * likely) as u64, likely: likely as u64, most: (4.0 * likely) as u64 }
 }
@@ -186,13 +186,13 @@ mod tests {
     #[test]
     fn a_ranking_of_equals_costs_the_most() {
         let with = |share: f64| {
-            let mut glimpse = Glimpse::default();
-            (0..32).for_each(|k| glimpse.add(f64::from(u8::from(f64::from(k) < 32.0 * share))));
-            glimpse
+            let mut statistics = PilotStatistics::default();
+            (0..32).for_each(|k| statistics.add(f64::from(u8::from(f64::from(k) < 32.0 * share))));
+            statistics
         };
         let rule = (0.02, 0.05, Ranking::Betting(Allocation::AllFailing));
-        let level = race(&[with(0.5), with(0.5)], &[with(0.0), with(0.5)], 1.0, rule);
-        let apart = race(&[with(0.9), with(0.1)], &[with(0.0), with(0.8)], 1.0, rule);
+        let level = rank(&[with(0.5), with(0.5)], &[with(0.0), with(0.5)], 1.0, rule);
+        let apart = rank(&[with(0.9), with(0.1)], &[with(0.0), with(0.8)], 1.0, rule);
         assert!(level.likely > 5 * apart.likely, "{level:?} {apart:?}");
     }
 }

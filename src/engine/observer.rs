@@ -2,7 +2,7 @@
 //! in continuous time.
 
 use super::cell::Reading;
-use super::subject::Subject;
+use super::prepared::PreparedWorld;
 use crate::base::instant::Instant;
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::compile::study::{Root, Sought};
@@ -121,11 +121,11 @@ pub(super) enum SignalObserver {
 }
 
 impl SignalObserver {
-    /// Of a column of a subject.
-    pub(super) fn of(subject: &Subject, column: usize) -> Result<Self, Invalid> {
-        Ok(match subject.columns[column] {
-            Root::Robustness(_, sought) => Self::Robustness(subject.signal_robustness(column)?, sought),
-            Root::Formula(_) | Root::Metric(_) => Self::Plain(subject.signal_monitor(column)?),
+    /// Of a column of a prepared world.
+    pub(super) fn of(prepared: &PreparedWorld, column: usize) -> Result<Self, Invalid> {
+        Ok(match prepared.columns[column] {
+            Root::Robustness(_, sought) => Self::Robustness(prepared.signal_robustness(column)?, sought),
+            Root::Formula(_) | Root::Metric(_) => Self::Plain(prepared.signal_monitor(column)?),
         })
     }
 

@@ -7,11 +7,11 @@ use super::budget::Budget;
 use super::cell::{Item, Reading};
 use super::executor::{Cells, Executor, Job};
 use super::fault::Fault;
-use super::forecast::{self, Glimpse};
+use super::forecast::{self, PilotStatistics};
 use super::outcome::Stop;
 use super::pilot::Pilot;
+use super::prepared::PreparedWorld;
 use super::procedure::{outcome, value};
-use super::subject::Subject;
 use super::tally::Tally;
 use super::watch::{Forecast, Watch};
 use crate::compile::study::{MeasureKind, Query};
@@ -47,8 +47,8 @@ pub(super) struct RankOutcome {
 
 /// What is ranked.
 pub(super) struct RankSetup<'s> {
-    /// The subject.
-    pub(super) subject: &'s Subject,
+    /// The prepared world.
+    pub(super) prepared: &'s PreparedWorld,
     /// Index of the moves declaration.
     pub(super) moves: usize,
     /// Departure of each option from the direct way.
@@ -152,7 +152,7 @@ impl<'s> RankSampling<'s> {
             MeasureKind::Expectation { range, .. } => Some(*range),
             _ => None,
         };
-        let job = Job::new(setup.subject, vec![setup.column], seed);
+        let job = Job::new(setup.prepared, vec![setup.column], seed);
         let arms = setup.deviations.len();
         let means = match range {
             Some((low, high)) => (0..arms)
@@ -209,32 +209,32 @@ impl<'s> RankSampling<'s> {
         let pilot = Pilot::run(&self.job, round.items, executor, budget)?;
         let arms = self.setup.deviations.len();
         let range = self.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
-        let mut glimpses = vec![Glimpse::default(); arms];
+        let mut statistics = vec![PilotStatistics::default(); arms];
         let mut readings: Vec<Vec<Option<f64>>> = vec![Vec::new(); arms];
         for (share, places) in round.shares.iter().zip(&round.places) {
             for row in places.iter().map(|&place| pilot.cells.row(place)) {
-                let mut one = Glimpse::default();
+                let mut one = PilotStatistics::default();
                 if let Some([cell, ..]) = row {
-                    glimpses[share.arm].read(cell, range);
+                    statistics[share.arm].read(cell, range);
                     one.read(cell, range);
                 }
                 readings[share.arm].push(one.only());
             }
         }
         let leader =
-            (0..arms).max_by(|a, b| glimpses[*a].mean().total_cmp(&glimpses[*b].mean())).unwrap_or(0);
-        let differences: Vec<Glimpse> = (0..arms)
+            (0..arms).max_by(|a, b| statistics[*a].mean().total_cmp(&statistics[*b].mean())).unwrap_or(0);
+        let differences: Vec<PilotStatistics> = (0..arms)
             .map(|arm| {
-                let mut glimpse = Glimpse::default();
+                let mut statistics = PilotStatistics::default();
                 let pairs = readings[leader].iter().zip(&readings[arm]);
-                pairs.filter_map(|(a, b)| a.zip(*b)).for_each(|(a, b)| glimpse.add(a - b));
-                glimpse
+                pairs.filter_map(|(a, b)| a.zip(*b)).for_each(|(a, b)| statistics.add(a - b));
+                statistics
             })
             .collect();
         let most = (arms as u64).saturating_mul(budget.max_trials);
-        let trials = forecast::race(&glimpses, &differences, self.scale(), self.setup.rule);
+        let trials = forecast::rank(&statistics, &differences, self.scale(), self.setup.rule);
         let trials = trials.map(|n| n.max(pilot.items.len() as u64).min(most));
-        let seconds = pilot.seconds_per_trial(self.job.subject.most_steps());
+        let seconds = pilot.seconds_per_trial(self.job.prepared.most_steps());
         self.ahead = pilot.is_complete().then_some(pilot);
         self.spent = self.ahead.as_ref().map_or(0.0, |ahead| ahead.seconds);
         Ok(Forecast {
@@ -329,7 +329,7 @@ impl<'s> RankSampling<'s> {
                     Some(row) if !broken => {
                         let item = round.items[place];
                         if row[0].reading == Reading::Faulty {
-                            return Err(super::trial::fault(self.setup.subject, item, self.job.seed));
+                            return Err(super::trial::fault(self.setup.prepared, item, self.job.seed));
                         }
                         self.tallies[share.arm].add(item.index, &row[0], self.range);
                         if let Some(mean) = self.means.get_mut(share.arm) {

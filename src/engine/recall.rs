@@ -5,7 +5,7 @@ use super::answer::waits;
 use super::budget::Budget;
 use super::checkpoints::Checkpoints;
 use super::grounds::{Asked, copies, each, grounds};
-use super::subject::Subject;
+use super::prepared::PreparedWorld;
 use super::words;
 use crate::base::random::TrialKey;
 use crate::compile::study::{Part, Root};
@@ -27,27 +27,27 @@ const MOST_KEPT: usize = 64;
 /// When a trial was decided, s, the value of a metric, SI, and what decided it; in words, empty where it was time
 /// alone. `unit` is that of a metric. None where the time is over.
 pub(super) fn decision(
-    subject: &Subject,
+    prepared: &PreparedWorld,
     column: usize,
     (index, seed): (u64, u64),
     unit: &str,
     budget: &Budget,
 ) -> Option<(f64, Option<f64>, String)> {
-    let (tree, clock) = (&subject.tree, subject.program.scenario.clock);
-    let used = match subject.columns[column] {
-        Root::Formula(root) => match open_atoms(tree, root, subject.horizon, clock).ok()? {
+    let (tree, clock) = (&prepared.tree, prepared.program.scenario.clock);
+    let used = match prepared.columns[column] {
+        Root::Formula(root) => match open_atoms(tree, root, prepared.horizon, clock).ok()? {
             Some(atoms) => atoms.into_iter().map(|atom| atom.0 as usize).collect(),
             None => return Some((0.0, None, "its value does not depend on the trial".to_owned())),
         },
-        _ => subject.atoms_of(column),
+        _ => prepared.atoms_of(column),
     };
-    let parts = parts(subject, &used);
-    let view = subject.view_beside(column, &parts);
+    let parts = parts(prepared, &used);
+    let view = prepared.view_beside(column, &parts);
     let mut past = Past { at: f64::INFINITY, parts, ..Past::default() };
     // A monitor knows only later that an earlier moment decided: from what is kept, that moment is made again.
     let mut kept: Checkpoints<(State, Past)> = Checkpoints::new(MOST_KEPT);
-    let mut monitor = subject.signal_monitor(column).ok()?;
-    let (mut run, _) = Run::of(&subject.program, TrialKey { seed, index, branch: 0 }.into()).ok()?;
+    let mut monitor = prepared.signal_monitor(column).ok()?;
+    let (mut run, _) = Run::of(&prepared.program, TrialKey { seed, index, branch: 0 }.into()).ok()?;
     let mut seen = ViewReadings::default();
     for jumps in 0.. {
         if jumps % CLOCK_EVERY == CLOCK_EVERY - 1 && budget.is_late() {
@@ -62,7 +62,7 @@ pub(super) fn decision(
         }
         past.see(now.seconds, atoms, signals);
         kept.offer(jumps, || (state.clone(), past.clone()));
-        match run.next() {
+        match run.next_state() {
             Ok(_) => {}
             Err(End::Horizon) => {
                 monitor.finish();
@@ -72,12 +72,12 @@ pub(super) fn decision(
         }
     }
     let at = monitor.decided_at();
-    let horizon = clock.seconds(subject.horizon);
+    let horizon = clock.seconds(prepared.horizon);
     // Monitors round times of jumps by less than this, some units in the last place.
     let slack = 1e-15 * horizon;
     let (_, (state, past)) = kept.last(|_, (_, past)| past.last <= at + slack)?;
-    let (mut run, mut past) = (Run::from_state(&subject.program, state), Past { at: at + slack, ..past });
-    while let Ok(state) = run.next() {
+    let (mut run, mut past) = (Run::from_state(&prepared.program, state), Past { at: at + slack, ..past });
+    while let Ok(state) = run.next_state() {
         view.look(state, &mut seen);
         let (atoms, signals) = view.of(state, &mut seen, 0);
         if !past.see(state.clocks.instant(0).seconds, atoms, signals) {
@@ -87,17 +87,17 @@ pub(super) fn decision(
     // The time of the row that shows it.
     let at = if (at - past.last).abs() <= slack { past.last } else { at };
     // Only a time that does not come lies beyond the horizon, and that is known only there.
-    let is_time = matches!(subject.columns[column], Root::Metric(term) if waits(&subject.tree, term))
+    let is_time = matches!(prepared.columns[column], Root::Metric(term) if waits(&prepared.tree, term))
         && horizon - at <= slack;
     // What changed then closed the case; else it was that nothing changed any more.
     let changed =
         |k: &usize| past.atoms.get(*k).is_some_and(|(_, since)| since.is_some_and(|s| at - s <= slack));
     let closing: Vec<usize> = used.iter().copied().filter(changed).collect();
     let what = match (closing.as_slice(), monitor.reading()) {
-        ([], Some(Reading::Truth(_))) => past.lasting(subject, column, &used),
+        ([], Some(Reading::Truth(_))) => past.lasting(prepared, column, &used),
         ([], _) if used.len() != 1 => String::new(),
-        ([], _) => past.named(subject, &used),
-        (closing, _) => past.named(subject, closing),
+        ([], _) => past.named(prepared, &used),
+        (closing, _) => past.named(prepared, closing),
     };
     match monitor.reading() {
         Some(Reading::Value(value)) if value == f64::INFINITY && is_time => {
@@ -143,8 +143,8 @@ struct Past {
 }
 
 /// What the atoms of a column are made of, each once: conditions that join no others.
-fn parts(subject: &Subject, used: &[usize]) -> Vec<Bool> {
-    let mut open: Vec<&Bool> = used.iter().rev().filter_map(|k| subject.atoms().get(*k)).collect();
+fn parts(prepared: &PreparedWorld, used: &[usize]) -> Vec<Bool> {
+    let mut open: Vec<&Bool> = used.iter().rev().filter_map(|k| prepared.atoms().get(*k)).collect();
     let mut found: Vec<Bool> = Vec::new();
     while let Some(condition) = open.pop() {
         match condition {
@@ -229,23 +229,23 @@ impl Past {
     /// for what began at `since`.
     fn because(
         &self,
-        subject: &Subject,
+        prepared: &PreparedWorld,
         atom: usize,
         (truth, lasting): (bool, Told),
     ) -> Option<(Vec<String>, String)> {
         if self.parts.is_empty() {
             return None;
         }
-        let scenario = &subject.program.scenario;
-        let text = subject.texts.atoms.get(atom)?;
+        let scenario = &prepared.program.scenario;
+        let text = prepared.texts.atoms.get(atom)?;
         let mut owners: Vec<String> = Vec::new();
         let mut said: Vec<String> = Vec::new();
-        match subject.texts.parts.get(&(atom as u32)) {
-            None => owners = copies(scenario, (subject.atoms().get(atom)?, truth), false, self),
+        match prepared.texts.parts.get(&(atom as u32)) {
+            None => owners = copies(scenario, (prepared.atoms().get(atom)?, truth), false, self),
             Some(part) => {
                 let found = grounds(part, truth, self)?;
                 let parts: Vec<&Part> = found.iter().map(|ground| ground.part).collect();
-                let texts = subject.texts.words(&parts, &|_, _| None)?;
+                let texts = prepared.texts.words(&parts, &|_, _| None)?;
                 for (ground, words) in found.iter().zip(texts) {
                     let condition = ground.condition();
                     let is_part = !std::ptr::eq(ground.part, Arc::as_ptr(part));
@@ -274,18 +274,18 @@ impl Past {
     }
 
     /// Atoms and their truth.
-    fn named(&self, subject: &Subject, atoms: &[usize]) -> String {
+    fn named(&self, prepared: &PreparedWorld, atoms: &[usize]) -> String {
         let word = |k: &usize| {
-            let text = subject.texts.atoms.get(*k).map_or("", String::as_str);
+            let text = prepared.texts.atoms.get(*k).map_or("", String::as_str);
             let holds = self.atoms.get(*k).is_some_and(|(holds, _)| *holds);
-            let (said, names) = self.because(subject, *k, (holds, Told::Now)).unwrap_or_default();
+            let (said, names) = self.because(prepared, *k, (holds, Told::Now)).unwrap_or_default();
             words::because((text, holds), &said) + &names
         };
         atoms.iter().take(NAMED).map(word).collect::<Vec<_>>().join(", ")
     }
 
     /// How long the atoms have been as they are, those that changed last first; where there are none, the signals.
-    fn lasting(&self, subject: &Subject, column: usize, atoms: &[usize]) -> String {
+    fn lasting(&self, prepared: &PreparedWorld, column: usize, atoms: &[usize]) -> String {
         let mut known: Vec<(usize, bool, Option<f64>)> = atoms
             .iter()
             .filter_map(|&k| self.atoms.get(k).map(|&(holds, since)| (k, holds, since)))
@@ -295,19 +295,19 @@ impl Past {
         let mut said: Vec<String> = known
             .iter()
             .map(|(k, holds, since)| {
-                let text = subject.texts.atoms.get(*k).map_or("", String::as_str);
+                let text = prepared.texts.atoms.get(*k).map_or("", String::as_str);
                 let (because, _) =
-                    self.because(subject, *k, (*holds, Told::Lasting(*since))).unwrap_or_default();
+                    self.because(prepared, *k, (*holds, Told::Lasting(*since))).unwrap_or_default();
                 let said = lasted(text, *holds, *since);
                 if because.is_empty() { said } else { format!("{said} because {}", because.join(" and ")) }
             })
             .collect();
         if said.is_empty() {
             let value = |k: usize| {
-                let (text, dimension) = subject.texts.signals.get(k)?;
+                let (text, dimension) = prepared.texts.signals.get(k)?;
                 Some(format!("`{text}` is {}", words::brief(*self.signals.get(k)?, &dimension.to_string())))
             };
-            said = subject.signals_of(column).into_iter().filter_map(value).collect();
+            said = prepared.signals_of(column).into_iter().filter_map(value).collect();
         }
         said.truncate(NAMED);
         said.join(", ")

@@ -5,12 +5,12 @@ use super::budget::Budget;
 use super::cell::{Block, Item};
 use super::chain::{JumpChain, StepChain};
 use super::columns::{EventColumns, Finished, StepColumns};
-use super::subject::Subject;
+use super::prepared::PreparedWorld;
 use crate::logic::Invalid;
 
 /// Runs trials one after the other.
 pub(super) struct Runner<'s> {
-    subject: &'s Subject,
+    prepared: &'s PreparedWorld,
     columns: Vec<usize>,
     kind: RunnerKind<'s>,
 }
@@ -27,27 +27,27 @@ enum RunnerKind<'s> {
 }
 
 impl<'s> Runner<'s> {
-    /// A worker for some columns of a subject.
-    pub(super) fn new(subject: &'s Subject, columns: &[usize]) -> Result<Self, Invalid> {
-        let kind = if let Some(chain) = StepChain::of(subject, columns) {
+    /// A worker for some columns of a prepared world.
+    pub(super) fn new(prepared: &'s PreparedWorld, columns: &[usize]) -> Result<Self, Invalid> {
+        let kind = if let Some(chain) = StepChain::of(prepared, columns) {
             RunnerKind::StepChain(Box::new(chain))
-        } else if let Some(chain) = JumpChain::of(subject, columns) {
+        } else if let Some(chain) = JumpChain::of(prepared, columns) {
             RunnerKind::JumpChain(Box::new(chain))
         } else {
-            return Self::general(subject, columns);
+            return Self::general(prepared, columns);
         };
-        Ok(Self { subject, columns: columns.to_vec(), kind })
+        Ok(Self { prepared, columns: columns.to_vec(), kind })
     }
 
     /// A worker that runs trials of every kind.
-    pub(super) fn general(subject: &'s Subject, columns: &[usize]) -> Result<Self, Invalid> {
-        let program = &subject.program;
+    pub(super) fn general(prepared: &'s PreparedWorld, columns: &[usize]) -> Result<Self, Invalid> {
+        let program = &prepared.program;
         let kind = if program.scenario.clock.is_jumps() {
-            RunnerKind::Events(Box::new(Batch::new(program, EventColumns::new(subject, columns)?)))
+            RunnerKind::Events(Box::new(Batch::new(program, EventColumns::new(prepared, columns)?)))
         } else {
-            RunnerKind::Steps(Box::new(Batch::new(program, StepColumns::new(subject, columns)?)))
+            RunnerKind::Steps(Box::new(Batch::new(program, StepColumns::new(prepared, columns)?)))
         };
-        Ok(Self { subject, columns: columns.to_vec(), kind })
+        Ok(Self { prepared, columns: columns.to_vec(), kind })
     }
 
     /// Whether it observes just these columns.
@@ -88,8 +88,8 @@ impl<'s> Runner<'s> {
     /// Runs the trials of a block, if it takes blocks; the budget may say stop, then unfinished ones are dropped.
     pub(super) fn run_block(&mut self, seed: u64, block: &mut Block<'_>, budget: &Budget) {
         match &mut self.kind {
-            RunnerKind::StepChain(chain) => chain.run(self.subject, seed, block, budget),
-            RunnerKind::JumpChain(chain) => chain.run(self.subject, seed, block, budget),
+            RunnerKind::StepChain(chain) => chain.run(self.prepared, seed, block, budget),
+            RunnerKind::JumpChain(chain) => chain.run(self.prepared, seed, block, budget),
             RunnerKind::Steps(_) | RunnerKind::Events(_) => {}
         }
     }

@@ -8,13 +8,13 @@ use super::estimate::{Advance, EstimateEntry, EstimateSampling};
 use super::executor::Executor;
 use super::fault::Fault;
 use super::flaw::Flaw;
-use super::forecast::Glimpse;
+use super::forecast::PilotStatistics;
 use super::outcome::{Failure, QueryResult, Run, Stop};
 use super::placement::all_placeable;
+use super::prepared::PreparedWorld;
 use super::procedure::Procedure;
 use super::rank::{RankSampling, RankSetup};
 use super::splitting::Question;
-use super::subject::Subject;
 use super::tally::Tally;
 use super::watch::{CallForecast, Forecast, Watch};
 use crate::compile::study::{Ask, Measure, MeasureKind, Query, Study};
@@ -37,8 +37,8 @@ pub fn run(
     watch: &dyn Watch,
 ) -> Result<Run, Fault> {
     let asked = asked(study, call);
-    let subjects = subjects(study, &asked, call)?;
-    let session = Session { call, budget, subjects: &subjects };
+    let worlds = prepare(study, &asked, call)?;
+    let session = Session { call, budget, worlds: &worlds };
     let mut groups = session.groups(&asked)?;
     watch.samples();
     if let Some(total) = forecast_groups(&mut groups, executor, budget)? {
@@ -155,8 +155,8 @@ pub fn forecast(
     budget: &Budget,
 ) -> Result<CallForecast, Fault> {
     let asked = asked(study, call);
-    let subjects = subjects(study, &asked, call)?;
-    let session = Session { call, budget, subjects: &subjects };
+    let worlds = prepare(study, &asked, call)?;
+    let session = Session { call, budget, worlds: &worlds };
     let mut groups = session.groups(&asked)?;
     Ok(forecast_groups(&mut groups, executor, budget)?.unwrap_or_default())
 }
@@ -166,17 +166,17 @@ fn asked<'s>(study: &'s Study, call: &Call<'_>) -> Vec<&'s Query> {
 }
 
 /// The worlds that are asked about, made ready.
-fn subjects(study: &Study, asked: &[&Query], call: &Call<'_>) -> Result<Vec<Option<Subject>>, Fault> {
+fn prepare(study: &Study, asked: &[&Query], call: &Call<'_>) -> Result<Vec<Option<PreparedWorld>>, Fault> {
     all_placeable(study, asked)?;
-    let mut subjects: Vec<Option<Subject>> = study.worlds.iter().map(|_| None).collect();
+    let mut made: Vec<Option<PreparedWorld>> = study.worlds.iter().map(|_| None).collect();
     for query in asked {
         for world in worlds(&query.ask) {
-            if subjects[world].is_none() {
-                subjects[world] = Subject::of(study, world, call.seed, call.drivers);
+            if made[world].is_none() {
+                made[world] = PreparedWorld::of(study, world, call.seed, call.drivers);
             }
         }
     }
-    Ok(subjects)
+    Ok(made)
 }
 
 /// Runs the pilot of each group. With a deadline there is nothing to forecast, and no time to spend on it.
@@ -294,12 +294,12 @@ fn flaw(fault: Fault) -> Result<Box<Flaw>, Fault> {
 struct Session<'a> {
     call: &'a Call<'a>,
     budget: &'a Budget,
-    subjects: &'a [Option<Subject>],
+    worlds: &'a [Option<PreparedWorld>],
 }
 
 impl<'a> Session<'a> {
-    fn subject(&self, world: usize) -> Result<&'a Subject, Fault> {
-        self.subjects.get(world).and_then(Option::as_ref).ok_or(Fault::Unsuitable)
+    fn prepared(&self, world: usize) -> Result<&'a PreparedWorld, Fault> {
+        self.worlds.get(world).and_then(Option::as_ref).ok_or(Fault::Unsuitable)
     }
 
     /// The queries in groups, in the order in which the first of each was written.
@@ -315,10 +315,10 @@ impl<'a> Session<'a> {
             }
             let (places, sampling) = match &query.ask {
                 Ask::Estimate { measure, estimator, level: Some(level) } => {
-                    let subject = self.subject(measure.target.world)?;
+                    let prepared = self.prepared(measure.target.world)?;
                     let columns = [measure.target.column, *level];
                     let rule = splitting::Rule::of(estimator).ok_or(Fault::Unsuitable)?;
-                    let question = Question::new(query, subject, columns, rule, self.call.seed);
+                    let question = Question::new(query, prepared, columns, rule, self.call.seed);
                     (vec![at], Sampling::Split(question))
                 }
                 Ask::Check { measure, .. } | Ask::Estimate { measure, .. } => {
@@ -341,7 +341,7 @@ impl<'a> Session<'a> {
                     (
                         together,
                         Sampling::Estimate(EstimateSampling::new(
-                            self.subject(world)?,
+                            self.prepared(world)?,
                             entries,
                             self.call.seed,
                         )),
@@ -367,7 +367,7 @@ impl<'a> Session<'a> {
             range: range(measure),
             procedure: Procedure::new(&query.ask, self.call.seed)?,
             tally: Tally::default(),
-            glimpse: Glimpse::default(),
+            statistics: PilotStatistics::default(),
             waits: false,
             lost: false,
             stop: None,
@@ -383,7 +383,7 @@ impl<'a> Session<'a> {
             return Err(Fault::Unsuitable);
         };
         let sides = Sides {
-            subjects: [self.subject(first.target.world)?, self.subject(second.target.world)?],
+            worlds: [self.prepared(first.target.world)?, self.prepared(second.target.world)?],
             columns: [first.target.column, second.target.column],
         };
         CompareSampling::new(query, &sides, &first.kind, (*within, *delta), self.call.seed)
@@ -397,10 +397,10 @@ impl<'a> Session<'a> {
             return Err(Fault::Unsuitable);
         };
         let Make::Ranking(kind) = ranking.spec.make else { return Err(Fault::Unsuitable) };
-        let subject = self.subject(measure.target.world)?;
-        let declared = &subject.program.scenario.moves[*moves];
+        let prepared = self.prepared(measure.target.world)?;
+        let declared = &prepared.program.scenario.moves[*moves];
         let setup = RankSetup {
-            subject,
+            prepared,
             moves: *moves,
             deviations: declared.options.iter().map(|(_, m)| m.deviation()).collect(),
             column: measure.target.column,

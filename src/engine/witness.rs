@@ -8,8 +8,8 @@ use super::cell::Reading;
 use super::checkpoints::Checkpoints;
 use super::observer::Observer;
 use super::outcome::{Shows, Witness};
+use super::prepared::PreparedWorld;
 use super::recall;
-use super::subject::Subject;
 use super::tally::Tally;
 use crate::base::lanes::Mask;
 use crate::base::random::TrialKey;
@@ -32,7 +32,7 @@ pub(super) fn extremes(tally: &Tally) -> Vec<(Shows, u64)> {
 
 /// The witnesses of a column: `picks` names the trials, and what they are witnesses of.
 pub(super) fn find(
-    subject: &Subject,
+    prepared: &PreparedWorld,
     column: usize,
     advice: Option<(usize, usize)>,
     picks: &[(Shows, u64)],
@@ -40,18 +40,18 @@ pub(super) fn find(
     settings: &[(String, String)],
     unit: &str,
 ) -> Vec<Witness> {
-    let one = |pick: &(Shows, u64)| witness(subject, column, advice, *pick, (call, budget), settings, unit);
+    let one = |pick: &(Shows, u64)| witness(prepared, column, advice, *pick, (call, budget), settings, unit);
     picks.iter().filter_map(one).collect()
 }
 
 /// The name of a suggested move, as `smc simulate` takes it.
-pub(super) fn label(subject: &Subject, advice: Option<(usize, usize)>) -> Option<String> {
-    subject.program.scenario.move_name(advice?)
+pub(super) fn label(prepared: &PreparedWorld, advice: Option<(usize, usize)>) -> Option<String> {
+    prepared.program.scenario.move_name(advice?)
 }
 
 /// Runs one trial again and says what decided it; `dimension` is the unit of a metric. None where the time is over.
 fn witness(
-    subject: &Subject,
+    prepared: &PreparedWorld,
     column: usize,
     advice: Option<(usize, usize)>,
     (shows, trial): (Shows, u64),
@@ -59,22 +59,22 @@ fn witness(
     settings: &[(String, String)],
     dimension: &str,
 ) -> Option<Witness> {
-    let program = &subject.program;
+    let program = &prepared.program;
     let unit = if program.scenario.clock == Clock::Steps { "steps" } else { "s" };
     let mut command = call.line.simulate(settings, call.seed, trial);
-    if let Some(label) = label(subject, advice) {
+    if let Some(label) = label(prepared, advice) {
         command.push_str(&format!(" --move '{label}'"));
     }
     if program.scenario.clock.is_jumps() {
-        let (time, value, what) = recall::decision(subject, column, (trial, call.seed), dimension, budget)?;
+        let (time, value, what) = recall::decision(prepared, column, (trial, call.seed), dimension, budget)?;
         return Some(Witness { shows, trial, value, time, unit, what, decider: None, command });
     }
-    let mut group = subject.group(&[column]).ok()?;
+    let mut group = prepared.group(&[column]).ok()?;
     // Where a robustness leaves its range a trial ends; here it is shown what it is, if the trial goes on so long.
     let mut clipped = None;
     if let Observer::Robustness(_, sought @ Sought::Clipped(..)) = &mut group.observers[0] {
         *sought = Sought::Value;
-        clipped = subject.observer(column).ok();
+        clipped = prepared.observer(column).ok();
     }
     // When it left its range.
     let mut left = None;
@@ -112,7 +112,7 @@ fn witness(
         if budget.is_late() {
             return None;
         }
-        if run.next().is_err() {
+        if run.next_state().is_err() {
             break;
         }
     }
@@ -121,13 +121,13 @@ fn witness(
         let (_, state) = kept.last(|number, _| number <= tick.0)?;
         let mut run = Run::from_state(program, state);
         while run.state().ticks[0] < tick.0 {
-            run.next().ok()?;
+            run.next_state().ok()?;
         }
         Some(run.state().clone())
     };
     let now = Tick(run.state().ticks[0]);
     let mut decider = None;
-    let (value, at, what) = match (subject.columns[column], observer) {
+    let (value, at, what) = match (prepared.columns[column], observer) {
         (Root::Formula(_), Observer::Formula(monitor)) if record.is_full() => {
             (None, Tick(monitor.decided_at()[0]), String::new())
         }
@@ -135,7 +135,7 @@ fn witness(
             (Some(monitor.value().0[0]), Tick(monitor.decided_at()[0]), String::new())
         }
         (Root::Formula(root), Observer::Formula(monitor)) => {
-            let (what, by) = blame::truth(subject, root, (&record, budget), state_at);
+            let (what, by) = blame::truth(prepared, root, (&record, budget), state_at);
             decider = by;
             (None, Tick(monitor.decided_at()[0]), what)
         }
@@ -149,13 +149,13 @@ fn witness(
                 let what = String::new();
                 return Some(Witness { shows, trial, value, time, unit, what, decider: None, command });
             }
-            let (at, what) = blame::margin(subject, root, (value, dimension), (&record, budget), state_at);
+            let (at, what) = blame::margin(prepared, root, (value, dimension), (&record, budget), state_at);
             (value, at.unwrap_or(now), what)
         }
         (Root::Metric(root), Observer::Metric(monitor)) => {
             // The monitor may know the value before the last state of a window.
             let value = monitor.value().0[0];
-            let (at, what) = blame::number(subject, root, (value, dimension), (&record, budget), state_at);
+            let (at, what) = blame::number(prepared, root, (value, dimension), (&record, budget), state_at);
             (Some(value), at.unwrap_or(Tick(monitor.decided_at()[0])), what)
         }
         _ => return None,

@@ -184,14 +184,14 @@ pub(super) fn because((text, value): (&str, bool), grounds: &[String]) -> String
 }
 
 /// What a test certifies.
-pub(super) fn statement(subject: &str, statement: &Statement, unit: &str) -> String {
+pub(super) fn statement(prepared: &str, statement: &Statement, unit: &str) -> String {
     let claim = match statement.claim {
-        Claim::Above(bound) => format!("{subject} > {}", quantity(bound, unit)),
-        Claim::AtLeast(bound) => format!("{subject} >= {}", quantity(bound, unit)),
-        Claim::Below(bound) => format!("{subject} < {}", quantity(bound, unit)),
-        Claim::AtMost(bound) => format!("{subject} <= {}", quantity(bound, unit)),
+        Claim::Above(bound) => format!("{prepared} > {}", quantity(bound, unit)),
+        Claim::AtLeast(bound) => format!("{prepared} >= {}", quantity(bound, unit)),
+        Claim::Below(bound) => format!("{prepared} < {}", quantity(bound, unit)),
+        Claim::AtMost(bound) => format!("{prepared} <= {}", quantity(bound, unit)),
         Claim::Between(low, high) => {
-            format!("{} < {subject} < {}", quantity(low, unit), quantity(high, unit))
+            format!("{} < {prepared} < {}", quantity(low, unit), quantity(high, unit))
         }
     };
     format!("{claim}, error at most {}", self::error(statement.error))

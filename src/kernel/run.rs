@@ -242,7 +242,7 @@ impl<'p> Run<'p> {
     ///
     /// # Errors
     /// When the trial has ended.
-    pub fn next(&mut self) -> Result<&State, End> {
+    pub fn next_state(&mut self) -> Result<&State, End> {
         if let Some(end) = self.end(0) {
             return Err(end);
         }

@@ -66,7 +66,7 @@ impl Iterator for Trial {
             return None;
         }
         if std::mem::replace(&mut self.begun, true)
-            && let Err(end) = self.run.next()
+            && let Err(end) = self.run.next_state()
         {
             self.end = Some(end);
             return None;

@@ -12,7 +12,7 @@ use smc::base::lanes::{LANES, Mask};
 use smc::base::random::TrialKey;
 use smc::compile::Study;
 use smc::compile::study::World;
-use smc::engine::Subject;
+use smc::engine::PreparedWorld;
 use smc::engine::outcome::Run;
 use smc::kernel::{Readings, Scratch, State, dynamics, start};
 
@@ -29,28 +29,28 @@ pub(crate) struct Shown {
 
 /// Runs trials to the horizon, with monitors of all columns.
 pub(crate) fn shown(world: &World, seed: u64, trials: u64) -> Vec<Shown> {
-    let subject = Subject::new(world);
+    let prepared = PreparedWorld::new(world);
     let columns: Vec<usize> = (0..world.columns.len()).collect();
-    let code = subject.code(&columns);
+    let code = prepared.code(&columns);
     let mut out = Vec::new();
-    let mut monitors: Vec<_> = columns.iter().map(|&c| subject.monitor(c).unwrap()).collect();
+    let mut monitors: Vec<_> = columns.iter().map(|&c| prepared.monitor(c).unwrap()).collect();
     for first in (0..trials).step_by(LANES) {
-        let mut state = State::new(subject.program.layout, 0);
+        let mut state = State::new(prepared.program.layout, 0);
         let (mut scratch, mut readings) = (Scratch::new(), Readings::default());
         for lane in 0..LANES {
             let key = TrialKey { seed, index: first + lane as u64, branch: 0 };
-            start::load(&subject.program, &mut state, lane, key, None).unwrap();
+            start::load(&prepared.program, &mut state, lane, key, None).unwrap();
             for monitor in &mut monitors {
                 monitor.start(lane);
             }
         }
         let mut traces = vec![Vec::new(); LANES];
-        for tick in 0..=subject.horizon.0 {
+        for tick in 0..=prepared.horizon.0 {
             if tick > 0 {
-                dynamics::step(&subject.program, &mut state, &mut scratch);
+                dynamics::step(&prepared.program, &mut state, &mut scratch);
             }
             assert!(state.faulty.is_empty());
-            code.run(&subject.program, &state, &mut readings);
+            code.run(&prepared.program, &state, &mut readings);
             for monitor in &mut monitors {
                 monitor.observe(Mask::ALL, &readings.atoms, &readings.signals);
             }

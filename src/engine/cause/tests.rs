@@ -17,7 +17,7 @@ process blinker[2] { var on = false
  when on at 1500 /s -> on = false }
 "#;
 
-fn subject(question: &str) -> Subject {
+fn prepared(question: &str) -> PreparedWorld {
     let sources = [Source::new(SourceId(0), "m.scn", RESTLESS), Source::new(SourceId(1), "p.bltl", question)];
     let (scenario, _) = parse_scenario(&sources[0]);
     let (properties, _) = parse_properties(&sources[1]);
@@ -29,15 +29,15 @@ fn subject(question: &str) -> Subject {
         settings: &[],
     };
     let (study, faults) = compile(&input);
-    Subject::new(&study.unwrap_or_else(|| panic!("{faults:?}")).worlds[0])
+    PreparedWorld::new(&study.unwrap_or_else(|| panic!("{faults:?}")).worlds[0])
 }
 
 #[test]
 fn a_trial_of_too_many_jumps_is_unresolved_and_the_process_is_named() {
-    let mut subject = subject("estimate P(F (calm.n == 9)) within 0.1\n");
-    assert_eq!(subject.most_jumps, 1 << 26);
-    subject.most_jumps = 500;
-    let mut runner = Runner::general(&subject, &[0]).unwrap();
+    let mut prepared = prepared("estimate P(F (calm.n == 9)) within 0.1\n");
+    assert_eq!(prepared.most_jumps, 1 << 26);
+    prepared.most_jumps = 500;
+    let mut runner = Runner::general(&prepared, &[0]).unwrap();
     let mut items = Item::run(0, 3).into_iter().enumerate();
     let finished = runner.run(7, &mut || items.next(), &Budget::new(u64::MAX, None));
     assert_eq!(finished.cells.len(), 3);
@@ -45,18 +45,18 @@ fn a_trial_of_too_many_jumps_is_unresolved_and_the_process_is_named() {
         assert_eq!((cell.reading, cell.steps), (Reading::Unresolved, 500));
     }
     let item = Item { index: 0, advice: None };
-    let words = unresolved(&subject, 0, item, (7, &Budget::new(u64::MAX, None)));
+    let words = unresolved(&prepared, 0, item, (7, &Budget::new(u64::MAX, None)));
     assert!(
         words.contains("too many jumps: 500 jumps by 0.") && words.contains("most of them of `blinker["),
         "{words}"
     );
     assert!(words.contains("at a rate of 1500 /s"), "{words}");
     // Not so many are made again.
-    (subject.most_jumps, subject.jumps_again) = (900, 400);
-    let words = unresolved(&subject, 0, item, (7, &Budget::new(u64::MAX, None)));
+    (prepared.most_jumps, prepared.jumps_again) = (900, 400);
+    let words = unresolved(&prepared, 0, item, (7, &Budget::new(u64::MAX, None)));
     assert!(words.contains("run again: 400 jumps by 0.") && words.contains("of `blinker["), "{words}");
-    subject.jumps_again = 1 << 20;
+    prepared.jumps_again = 1 << 20;
     // Enough jumps: no cause is reported.
-    subject.most_jumps = 100_000;
-    assert_eq!(unresolved(&subject, 0, item, (7, &Budget::new(u64::MAX, None))), "");
+    prepared.most_jumps = 100_000;
+    assert_eq!(unresolved(&prepared, 0, item, (7, &Budget::new(u64::MAX, None))), "");
 }

@@ -8,8 +8,8 @@ use crate::syntax::parse::{parse_properties, parse_scenario};
 use crate::syntax::source::{Source, SourceId};
 use proptest::prelude::*;
 
-/// The subject of a scenario with one question for each formula, and the columns of the questions.
-pub(in crate::engine) fn subject(scenario: &str, formulas: &[String]) -> Subject {
+/// The prepared world of a scenario with one question for each formula, and the columns of the questions.
+pub(in crate::engine) fn prepared(scenario: &str, formulas: &[String]) -> PreparedWorld {
     let questions: Vec<String> = formulas.iter().map(|f| format!("estimate P({f}) within 0.1\n")).collect();
     let sources =
         [Source::new(SourceId(0), "m.scn", scenario), Source::new(SourceId(1), "p.bltl", questions.concat())];
@@ -23,13 +23,13 @@ pub(in crate::engine) fn subject(scenario: &str, formulas: &[String]) -> Subject
         settings: &[],
     };
     let (study, faults) = compile(&input);
-    Subject::new(&study.unwrap_or_else(|| panic!("{faults:?}")).worlds[0])
+    PreparedWorld::new(&study.unwrap_or_else(|| panic!("{faults:?}")).worlds[0])
 }
 
 /// The cells of the trials, in order, and the steps or jumps made: by the general batch, or by a chain in blocks of so many
 /// trials.
 fn cells(
-    subject: &Subject,
+    prepared: &PreparedWorld,
     columns: &[usize],
     (from, seed): (u64, u64),
     count: u64,
@@ -39,7 +39,7 @@ fn cells(
     let items = Item::run(from, count);
     let width = columns.len();
     let mut out = vec![Cell::BLANK; items.len() * width];
-    let mut runner = Runner::new(subject, columns).unwrap();
+    let mut runner = Runner::new(prepared, columns).unwrap();
     if let Some(size) = size {
         assert!(runner.takes_blocks());
         for (items, cells) in items.chunks(size).zip(out.chunks_mut(size * width)) {
@@ -48,7 +48,7 @@ fn cells(
             assert!(finished.iter().all(|finished| *finished));
         }
     } else {
-        runner = Runner::general(subject, columns).unwrap();
+        runner = Runner::general(prepared, columns).unwrap();
         let mut list = items.iter().copied().enumerate();
         let finished = runner.run(seed, &mut || list.next(), &budget);
         for (k, place) in finished.places.iter().enumerate() {
@@ -61,17 +61,17 @@ fn cells(
 
 /// Whether a chain takes the question about a formula.
 fn fits(scenario: &str, formula: &str) -> bool {
-    Runner::new(&subject(scenario, &[formula.to_owned()]), &[0]).unwrap().takes_blocks()
+    Runner::new(&prepared(scenario, &[formula.to_owned()]), &[0]).unwrap().takes_blocks()
 }
 
-/// The columns of a subject that a chain takes have the same cells in it, in blocks of any size.
-fn same(subject: &Subject, (from, seed): (u64, u64)) -> Result<(), TestCaseError> {
-    let takes = |column: &usize| Runner::new(subject, &[*column]).unwrap().takes_blocks();
-    let columns: Vec<usize> = (0..subject.columns.len()).filter(takes).collect();
+/// The columns of a prepared world that a chain takes have the same cells in it, in blocks of any size.
+fn same(prepared: &PreparedWorld, (from, seed): (u64, u64)) -> Result<(), TestCaseError> {
+    let takes = |column: &usize| Runner::new(prepared, &[*column]).unwrap().takes_blocks();
+    let columns: Vec<usize> = (0..prepared.columns.len()).filter(takes).collect();
     prop_assume!(!columns.is_empty());
-    let general = cells(subject, &columns, (from, seed), 21, None);
+    let general = cells(prepared, &columns, (from, seed), 21, None);
     for size in [21, 8, 3] {
-        prop_assert_eq!(&cells(subject, &columns, (from, seed), 21, Some(size)), &general);
+        prop_assert_eq!(&cells(prepared, &columns, (from, seed), 21, Some(size)), &general);
     }
     Ok(())
 }
@@ -171,8 +171,8 @@ proptest! {
         seed in any::<u64>(),
     ) {
         let processes = steps("a", "b", &a) + &steps("b", "a", &b);
-        let subject = subject(&format!("scenario \"t\"\nhorizon = 12 steps\n{processes}"), &formulas);
-        same(&subject, (from, seed))?;
+        let prepared = prepared(&format!("scenario \"t\"\nhorizon = 12 steps\n{processes}"), &formulas);
+        same(&prepared, (from, seed))?;
     }
 
     #[test]
@@ -183,9 +183,9 @@ proptest! {
         seed in any::<u64>(),
         most in prop_oneof![Just(6u64), Just(1 << 20)],
     ) {
-        let mut subject = subject(&rates(&commands), &formulas);
-        subject.most_jumps = most;
-        same(&subject, (from, seed))?;
+        let mut prepared = prepared(&rates(&commands), &formulas);
+        prepared.most_jumps = most;
+        same(&prepared, (from, seed))?;
     }
 }
 
@@ -232,11 +232,11 @@ fn one_small_process_with_rates_takes_the_chain_and_others_do_not() {
 }
 
 /// The cells in one block are those of the general batch, with the plainest vectors of the machine too.
-fn same_in_one_block(mut subject: Subject, columns: &[usize], count: u64) -> Vec<Cell> {
-    let general = cells(&subject, columns, (0, 3), count, None);
-    assert_eq!(cells(&subject, columns, (0, 3), count, Some(1024)), general);
-    subject.program.processes = subject.program.processes.clone().at_baseline();
-    assert_eq!(cells(&subject, columns, (0, 3), count, Some(1024)), general);
+fn same_in_one_block(mut prepared: PreparedWorld, columns: &[usize], count: u64) -> Vec<Cell> {
+    let general = cells(&prepared, columns, (0, 3), count, None);
+    assert_eq!(cells(&prepared, columns, (0, 3), count, Some(1024)), general);
+    prepared.program.processes = prepared.program.processes.clone().at_baseline();
+    assert_eq!(cells(&prepared, columns, (0, 3), count, Some(1024)), general);
     general.0
 }
 
@@ -245,8 +245,8 @@ fn a_state_that_is_never_left_decides_at_its_tick() {
     // After two heads nothing happens any more; windows end before and after that.
     let formulas = ["F[#3, #7] c.s == 2", "F c.s == 3", "G<=#6 (c.s < 3)", "(c.s < 3) U[#8, #9] (c.s == 2)"];
     let scenario = COIN.replace("0 .. 2", "0 .. 3");
-    let subject = subject(&scenario, &formulas.map(str::to_owned));
-    let cells = same_in_one_block(subject, &[0, 1, 2, 3], 300);
+    let prepared = prepared(&scenario, &formulas.map(str::to_owned));
+    let cells = same_in_one_block(prepared, &[0, 1, 2, 3], 300);
     let ticks = |column: usize| cells.iter().skip(column).step_by(4).map(|cell| cell.steps).max();
     assert_eq!([0, 1, 2, 3].map(ticks), [Some(7), Some(9), Some(6), Some(9)]);
 }
@@ -254,15 +254,15 @@ fn a_state_that_is_never_left_decides_at_its_tick() {
 #[test]
 fn a_long_block_is_a_block_of_its_trials() {
     let formulas = ["F<=5 s q.n == 3", "(q.n < 3) U[1 s, 4 s] (q.n == 1)"].map(str::to_owned);
-    let cells = same_in_one_block(subject(QUEUE, &formulas), &[0, 1], 2000);
+    let cells = same_in_one_block(prepared(QUEUE, &formulas), &[0, 1], 2000);
     assert!(cells.iter().any(|cell| cell.reading == Reading::Truth(false)));
 }
 
 #[test]
 fn a_chain_stops_at_the_end_of_its_budget() {
     for (scenario, formula) in [(COIN, "F c.s == 2"), (QUEUE, "F q.n == 3")] {
-        let subject = subject(scenario, &[formula.to_owned()]);
-        let mut runner = Runner::new(&subject, &[0]).unwrap();
+        let prepared = prepared(scenario, &[formula.to_owned()]);
+        let mut runner = Runner::new(&prepared, &[0]).unwrap();
         let items = Item::run(0, 100);
         let (mut cells, mut finished) = (vec![Cell::BLANK; 100], vec![false; 100]);
         let mut run = |budget: &Budget| {

@@ -71,7 +71,7 @@ impl Ranks {
 
 impl Executor for Ranks {
     fn run(&self, job: &Job<'_>, items: &[Item], budget: &Budget) -> Result<Cells, Invalid> {
-        let (Some(world), Ok(mut queue)) = (job.subject.number, self.queue.lock()) else {
+        let (Some(world), Ok(mut queue)) = (job.prepared.number, self.queue.lock()) else {
             return self.threads.run(job, items, budget);
         };
         let mut round = Round::new(world, job, items);

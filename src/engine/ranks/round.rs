@@ -9,7 +9,7 @@ use std::sync::atomic::Ordering;
 pub(super) struct Round<'r, 's> {
     /// Number of the world.
     pub(super) world: usize,
-    /// Subject and columns.
+    /// Prepared world and columns.
     pub(super) job: &'r Job<'s>,
     /// The trials.
     pub(super) items: &'r [Item],

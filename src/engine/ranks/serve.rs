@@ -5,7 +5,7 @@ use crate::base::bytes::Malformed;
 use crate::compile::Study;
 use crate::engine::budget::Budget;
 use crate::engine::executor::{Executor, Job, Threads};
-use crate::engine::subject::Subject;
+use crate::engine::prepared::PreparedWorld;
 use crate::kernel::driver::straight;
 use std::cell::OnceCell;
 use std::io::{self, Read, Write};
@@ -106,8 +106,8 @@ pub fn serve(
     };
     drop(greeting);
     say(&Reply::Ready { version, print: own })?;
-    let subjects: Vec<OnceCell<Subject>> = study.worlds.iter().map(|_| OnceCell::new()).collect();
-    let mut worker = Worker { study: &study, subjects: &subjects, jobs: Vec::new(), threads };
+    let worlds: Vec<OnceCell<PreparedWorld>> = study.worlds.iter().map(|_| OnceCell::new()).collect();
+    let mut worker = Worker { study: &study, worlds: &worlds, jobs: Vec::new(), threads };
     for task in inbox {
         match task {
             Task::Lease(lease, budget) => say(&worker.run(&lease, &budget)?)?,
@@ -152,7 +152,7 @@ fn listen(mut from: Box<dyn Read + Send>, tasks: &mpsc::Sender<Task>) {
 /// Jobs at hand.
 struct Worker<'s> {
     study: &'s Study,
-    subjects: &'s [OnceCell<Subject>],
+    worlds: &'s [OnceCell<PreparedWorld>],
     /// Those used last, the latest at the end.
     jobs: Vec<Job<'s>>,
     threads: Threads,
@@ -199,20 +199,20 @@ impl<'s> Worker<'s> {
             return Err(Malformed("unknown advice"));
         }
         let warm = self.jobs.iter().position(|job| {
-            let same = job.subject.number == Some(lease.world) && job.seed == lease.seed;
+            let same = job.prepared.number == Some(lease.world) && job.seed == lease.seed;
             same && job.columns == lease.columns
         });
         if let Some(warm) = warm {
             return Ok(self.jobs.remove(warm));
         }
-        let subject = match self.subjects[lease.world].get() {
-            Some(subject) => subject,
+        let prepared = match self.worlds[lease.world].get() {
+            Some(prepared) => prepared,
             None => {
-                let subject = Subject::of(self.study, lease.world, lease.seed, &straight)
+                let prepared = PreparedWorld::of(self.study, lease.world, lease.seed, &straight)
                     .ok_or(Malformed("unknown world"))?;
-                self.subjects[lease.world].get_or_init(|| subject)
+                self.worlds[lease.world].get_or_init(|| prepared)
             }
         };
-        Ok(Job::new(subject, lease.columns.clone(), lease.seed))
+        Ok(Job::new(prepared, lease.columns.clone(), lease.seed))
     }
 }

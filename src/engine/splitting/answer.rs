@@ -29,16 +29,16 @@ impl Answers<'_> {
         watch: &dyn Watch,
     ) -> Result<QueryResult, Fault> {
         let started = self.budget.elapsed();
-        let Question { query, subject, column, rule, .. } = *question;
+        let Question { query, prepared, column, rule, .. } = *question;
         let found = run(question, executor, share, watch)?;
         let mut result = self.blank(query, Kind::Estimate);
         result.method = method::of(&query.ask, None);
         result.stopped_by = found.stop;
         let counts = found.plain.counts;
         result.replay = self.replay(query, "--max-trials", counts.trials + found.paths);
-        Self::tell(&mut result, subject, &found.plain, column);
-        self.note_shrunk(&mut result, &[(subject, &found.plain)]);
-        self.lament_one(&mut result, subject, &found.plain, column);
+        Self::tell(&mut result, prepared, &found.plain, column);
+        self.note_shrunk(&mut result, &[(prepared, &found.plain)]);
+        self.lament_one(&mut result, prepared, &found.plain, column);
         let name = words::decided(&query.said);
         // From above the only statement that holds without a condition is that of the plain trials.
         result.certifies = format!(
@@ -71,7 +71,7 @@ impl Answers<'_> {
         });
         state(&mut result, &found, rule.delta);
         let picks = witness::sides(&found.plain);
-        result.witnesses = self.witnesses(&result, subject, column, None, &picks);
+        result.witnesses = self.witnesses(&result, prepared, column, None, &picks);
         result.elapsed_s = self.budget.elapsed() - started;
         Ok(result)
     }

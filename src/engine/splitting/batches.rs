@@ -6,7 +6,7 @@ use crate::engine::batch::Batch;
 use crate::engine::budget::Budget;
 use crate::engine::executor::Executor;
 use crate::engine::fault::Fault;
-use crate::engine::subject::Subject;
+use crate::engine::prepared::PreparedWorld;
 use crate::kernel::Address;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -17,28 +17,28 @@ enum PathBatch<'s> {
     Events(Box<Batch<'s, EventPaths<'s>>>),
 }
 
-/// Batches that are warm, for one formula of a subject.
+/// Batches that are warm, for one formula of a prepared world.
 pub(super) struct Batches<'s> {
-    subject: &'s Subject,
+    prepared: &'s PreparedWorld,
     /// Column of the formula, and of the robustness that is its level.
     columns: [usize; 2],
     warm: Mutex<Vec<PathBatch<'s>>>,
 }
 
 impl<'s> Batches<'s> {
-    pub(super) const fn new(subject: &'s Subject, columns: [usize; 2]) -> Self {
-        Self { subject, columns, warm: Mutex::new(Vec::new()) }
+    pub(super) const fn new(prepared: &'s PreparedWorld, columns: [usize; 2]) -> Self {
+        Self { prepared, columns, warm: Mutex::new(Vec::new()) }
     }
 
     fn batch(&self) -> Result<PathBatch<'s>, Fault> {
         if let Some(warm) = self.warm.lock().ok().and_then(|mut list| list.pop()) {
             return Ok(warm);
         }
-        let program = &self.subject.program;
+        let program = &self.prepared.program;
         Ok(if program.scenario.clock.is_jumps() {
-            PathBatch::Events(Box::new(Batch::new(program, EventPaths::new(self.subject, self.columns)?)))
+            PathBatch::Events(Box::new(Batch::new(program, EventPaths::new(self.prepared, self.columns)?)))
         } else {
-            PathBatch::Steps(Box::new(Batch::new(program, StepPaths::new(self.subject, self.columns)?)))
+            PathBatch::Steps(Box::new(Batch::new(program, StepPaths::new(self.prepared, self.columns)?)))
         })
     }
 

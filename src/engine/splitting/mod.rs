@@ -12,7 +12,7 @@ use super::executor::{Executor, Job};
 use super::fault::Fault;
 use super::outcome::Stop;
 use super::pilot::Pilot;
-use super::subject::Subject;
+use super::prepared::PreparedWorld;
 use super::tally::Tally;
 use super::watch::{Forecast, Likely, Watch};
 use crate::base::random::TrialKey;
@@ -59,7 +59,7 @@ pub(super) struct Found {
 /// What is asked.
 pub(super) struct Question<'s> {
     query: &'s Query,
-    subject: &'s Subject,
+    prepared: &'s PreparedWorld,
     column: usize,
     /// Column of the level.
     level: usize,
@@ -68,24 +68,24 @@ pub(super) struct Question<'s> {
 }
 
 impl<'s> Question<'s> {
-    /// About the probability of a column of a subject, with the column of its level.
+    /// About the probability of a column of a prepared world, with the column of its level.
     pub(super) const fn new(
         query: &'s Query,
-        subject: &'s Subject,
+        prepared: &'s PreparedWorld,
         [column, level]: [usize; 2],
         rule: Rule,
         seed: u64,
     ) -> Self {
-        Self { query, subject, column, level, rule, seed }
+        Self { query, prepared, column, level, rule, seed }
     }
 
     /// Runs a few plain trials, and forecasts from them what all is likely to take.
     pub(super) fn run_pilot(&self, executor: &dyn Executor, budget: &Budget) -> Result<Forecast, Fault> {
-        let job = Job::new(self.subject, vec![self.column], self.seed);
+        let job = Job::new(self.prepared, vec![self.column], self.seed);
         let width = executor.width(&job) as u64;
         let few = width.min(self.rule.plain).min(budget.max_trials);
         let pilot = Pilot::run(&job, Item::run(0, few), executor, budget)?;
-        let seconds = pilot.seconds_per_trial(self.subject.most_steps());
+        let seconds = pilot.seconds_per_trial(self.prepared.most_steps());
         // How many levels there will be is not known: from none to those of eight decades, and likely those of two.
         let started = self.rule.runs.saturating_mul(self.rule.replicas);
         let paths = Likely { least: 1, likely: DECADES, most: MOST_DECADES };
@@ -164,7 +164,7 @@ fn run(
     if stop.is_some() {
         return Ok(found);
     }
-    let batches = Batches::new(question.subject, [question.column, question.level]);
+    let batches = Batches::new(question.prepared, [question.column, question.level]);
     let reading = |lost_reaches: bool, found: &mut Found| -> Result<Option<Spread>, Fault> {
         runs(question, found, &mut |runs, found| {
             advance(&batches, runs, lost_reaches, question, found, executor, budget, watch)
@@ -223,7 +223,7 @@ fn plainly(
     budget: &Budget,
     watch: &dyn Watch,
 ) -> Result<(Tally, Option<Stop>), Fault> {
-    let job = Job::new(question.subject, vec![question.column], question.seed);
+    let job = Job::new(question.prepared, vec![question.column], question.seed);
     let mut tally = Tally::default();
     let planned = question.rule.plain;
     let most = planned.min(budget.max_trials);
@@ -237,7 +237,7 @@ fn plainly(
         for (item, row) in items.iter().zip(cells.rows()) {
             let Some(row) = row else { return Ok((tally, halted(budget).or(Some(Stop::Deadline)))) };
             if row[0].reading == Reading::Faulty {
-                return Err(super::trial::fault(question.subject, *item, question.seed));
+                return Err(super::trial::fault(question.prepared, *item, question.seed));
             }
             tally.add(item.index, &row[0], None);
         }

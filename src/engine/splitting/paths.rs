@@ -6,7 +6,7 @@ use crate::engine::batch::Monitors;
 use crate::engine::cell::Reading;
 use crate::engine::fault::Fault;
 use crate::engine::observer::Observer;
-use crate::engine::subject::{ColumnGroup, Subject};
+use crate::engine::prepared::{ColumnGroup, PreparedWorld};
 use crate::engine::trial::flaw;
 use crate::kernel::process::{View, ViewReadings};
 use crate::kernel::{End, Run};
@@ -42,14 +42,14 @@ pub(super) type Ended = Vec<(usize, Result<PathResult, Fault>)>;
 
 /// The paths of all lanes, and those that ended.
 struct Paths<'s> {
-    subject: &'s Subject,
+    prepared: &'s PreparedWorld,
     lanes: [PathResult; LANES],
     ended: Ended,
 }
 
 impl<'s> Paths<'s> {
-    fn new(subject: &'s Subject) -> Self {
-        Self { subject, lanes: Default::default(), ended: Vec::new() }
+    fn new(prepared: &'s PreparedWorld) -> Self {
+        Self { prepared, lanes: Default::default(), ended: Vec::new() }
     }
 
     fn start(&mut self, lane: usize) {
@@ -59,7 +59,7 @@ impl<'s> Paths<'s> {
     fn finish(&mut self, place: usize, lane: usize, run: &Run<'_>) {
         let result = match run.end(lane) {
             Some(End::Faulty(fault)) => {
-                Err(flaw(self.subject, fault, (run.state(), lane), "in a path of splitting".to_owned()))
+                Err(flaw(self.prepared, fault, (run.state(), lane), "in a path of splitting".to_owned()))
             }
             _ => Ok(std::mem::take(&mut self.lanes[lane])),
         };
@@ -85,8 +85,8 @@ pub(super) struct StepPaths<'s> {
 
 impl<'s> StepPaths<'s> {
     /// For a column that is a formula, and one that is the robustness that is its level.
-    pub(super) fn new(subject: &'s Subject, columns: [usize; 2]) -> Result<Self, Invalid> {
-        Ok(Self { group: subject.group(&columns)?, paths: Paths::new(subject) })
+    pub(super) fn new(prepared: &'s PreparedWorld, columns: [usize; 2]) -> Result<Self, Invalid> {
+        Ok(Self { group: prepared.group(&columns)?, paths: Paths::new(prepared) })
     }
 
     /// The paths that ended since this was asked last.
@@ -159,15 +159,15 @@ pub(super) struct EventPaths<'s> {
 
 impl<'s> EventPaths<'s> {
     /// For a column that is a formula, and one that is the robustness that is its level.
-    pub(super) fn new(subject: &'s Subject, columns: [usize; 2]) -> Result<Self, Invalid> {
+    pub(super) fn new(prepared: &'s PreparedWorld, columns: [usize; 2]) -> Result<Self, Invalid> {
         let [formula, level] = columns;
         Ok(Self {
-            view: subject.view(&columns),
+            view: prepared.view(&columns),
             seen: ViewReadings::default(),
-            formulas: vec![subject.signal_monitor(formula)?; LANES],
-            levels: vec![subject.signal_robustness(level)?.closely(); LANES],
+            formulas: vec![prepared.signal_monitor(formula)?; LANES],
+            levels: vec![prepared.signal_robustness(level)?.closely(); LANES],
             since: [0.0; LANES],
-            paths: Paths::new(subject),
+            paths: Paths::new(prepared),
         })
     }
 
@@ -203,7 +203,7 @@ impl<'s> EventPaths<'s> {
         path.lost = match reading {
             Some(logic::Reading::Truth(_)) => false,
             Some(_) => true,
-            None => level.is_overfull() || jumps >= self.paths.subject.most_jumps,
+            None => level.is_overfull() || jumps >= self.paths.prepared.most_jumps,
         };
         (path.steps, path.ended, self.since[lane]) = (jumps, next.to_bits(), next);
         reading.is_some() || path.lost

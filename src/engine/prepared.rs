@@ -19,7 +19,7 @@ const MOST_JUMPS: u64 = 1 << 26;
 const JUMPS_AGAIN: u64 = 1 << 24;
 
 /// A world made ready to run.
-pub struct Subject {
+pub struct PreparedWorld {
     /// Number of the world in its study, by which other processes find it; `None` where it is of no study.
     pub number: Option<usize>,
     /// The program of the kernel.
@@ -42,7 +42,7 @@ pub struct Subject {
     signals: Vec<Num>,
 }
 
-/// Code and monitors for some columns of a subject. Columns whose atoms can lack a value stand alone, so
+/// Code and monitors for some columns of a prepared world. Columns whose atoms can lack a value stand alone, so
 /// that the outcome of one never depends on which others are observed.
 pub(super) struct ColumnGroup {
     /// Code that reads the atoms and signals of these columns, and what it read last.
@@ -92,7 +92,7 @@ fn join(a: Mask, b: Mask) -> Mask {
     a | b
 }
 
-impl Subject {
+impl PreparedWorld {
     /// Makes a world of a study ready, with the drivers of a run; `None` beyond the last one.
     pub fn of(study: &Study, number: usize, seed: u64, drivers: &MakeDrivers) -> Option<Self> {
         let world = study.worlds.get(number)?;
