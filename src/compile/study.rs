@@ -288,6 +288,18 @@ pub enum Ask {
     },
 }
 
+impl Ask {
+    /// The worlds that are asked about.
+    pub fn worlds(&self) -> Vec<usize> {
+        match self {
+            Self::Check { measure, .. } | Self::Estimate { measure, .. } | Self::Rank { measure, .. } => {
+                vec![measure.target.world]
+            }
+            Self::Compare { first, second, .. } => vec![first.target.world, second.target.world],
+        }
+    }
+}
+
 /// A number of the distribution of traces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measure {

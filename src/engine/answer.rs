@@ -19,7 +19,6 @@ use super::witness;
 use super::words;
 use crate::base::random::TrialKey;
 use crate::compile::study::{Ask, Measure, MeasureKind, Query, Root, Sought};
-use crate::logic::{Term, TermId, Tree};
 use crate::stats::{Coverage, Decision, Statement};
 
 /// The option that ends queries after so many trials.
@@ -123,7 +122,7 @@ impl Answers<'_> {
             result.interval = words::interval(coverage, error);
             // Only a time that does not come lies beyond the horizon; a distance to nobody is infinite.
             let time = match prepared.columns[measure.target.column] {
-                Root::Metric(term) => waits(&prepared.tree, term),
+                Root::Metric(term) => prepared.tree.is_time_until(term),
                 Root::Formula(_) | Root::Robustness(..) => false,
             };
             if matches!(measure.kind, MeasureKind::Quantile { .. }) && interval.high == f64::INFINITY && time
@@ -491,14 +490,4 @@ fn total(tallies: &[Tally]) -> Tally {
         sum.triggered |= tally.triggered;
     }
     sum
-}
-
-/// Whether a number is a time until something, or made of one.
-pub(super) fn waits(tree: &Tree, term: TermId) -> bool {
-    match &tree.terms[term.0 as usize] {
-        Term::TimeUntil(_) => true,
-        Term::Constant(_) | Term::Signal(_) => false,
-        Term::Combine(_, a, b) => waits(tree, *a) || waits(tree, *b),
-        Term::Abs(a) | Term::Window(_, _, a) | Term::Later(_, a) | Term::AtEnd(a) => waits(tree, *a),
-    }
 }

@@ -1,9 +1,11 @@
 //! What can go wrong in the engine.
 
 use super::flaw::Flaw;
-use super::session::MOST_VALUES;
 use crate::syntax::source::Span;
 use thiserror::Error;
+
+/// Most values of metrics that are kept at once: their distribution is reported.
+pub(super) const MOST_VALUES: u64 = 1 << 28;
 
 /// What so many values take, GB.
 fn gigabytes(values: u64) -> f64 {

@@ -1,7 +1,6 @@
 //! Whether everybody can be placed, as far as areas tell: known before anything is drawn.
 
 use super::fault::Fault;
-use super::session::worlds;
 use crate::compile::Starts;
 use crate::compile::study::{Query, Study, World};
 use crate::kernel::start;
@@ -15,7 +14,7 @@ pub fn placeable(world: &World) -> Result<(), Fault> {
 
 /// Whether everybody in the worlds that some queries ask about can be placed; all places where not are told at once.
 pub(super) fn all_placeable(study: &Study, asked: &[&Query]) -> Result<(), Fault> {
-    let mut asked: Vec<usize> = asked.iter().flat_map(|query| worlds(&query.ask)).collect();
+    let mut asked: Vec<usize> = asked.iter().flat_map(|query| query.ask.worlds()).collect();
     asked.sort_unstable();
     asked.dedup();
     let worlds = asked.into_iter().filter_map(|world| study.worlds.get(world));

@@ -1,7 +1,6 @@
 //! What decided a trial in continuous time: it is run again to see when it was decided, and what changed there, or how long it
 //! had been as it was.
 
-use super::answer::waits;
 use super::budget::Budget;
 use super::checkpoints::Checkpoints;
 use super::grounds::{Asked, copies, each, grounds};
@@ -87,7 +86,7 @@ pub(super) fn decision(
     // The time of the row that shows it.
     let at = if (at - past.last).abs() <= slack { past.last } else { at };
     // Only a time that does not come lies beyond the horizon, and that is known only there.
-    let is_time = matches!(prepared.columns[column], Root::Metric(term) if waits(&prepared.tree, term))
+    let is_time = matches!(prepared.columns[column], Root::Metric(term) if prepared.tree.is_time_until(term))
         && horizon - at <= slack;
     // What changed then closed the case; else it was that nothing changed any more.
     let changed =

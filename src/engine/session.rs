@@ -6,7 +6,7 @@ use super::call::Call;
 use super::compare::{CompareSampling, Sides};
 use super::estimate::{Advance, EstimateEntry, EstimateSampling};
 use super::executor::Executor;
-use super::fault::Fault;
+use super::fault::{Fault, MOST_VALUES};
 use super::flaw::Flaw;
 use super::forecast::PilotStatistics;
 use super::outcome::{Failure, QueryResult, Run, Stop};
@@ -25,8 +25,6 @@ use std::collections::{BTreeMap, VecDeque};
 
 /// A query gets no larger part of the time than one of so many for its first trial.
 const FEW_PARTS: usize = 8;
-/// Most values of metrics that are kept at once: their distribution is reported.
-pub(super) const MOST_VALUES: u64 = 1 << 28;
 
 /// Runs a study.
 pub fn run(
@@ -170,7 +168,7 @@ fn prepare(study: &Study, asked: &[&Query], call: &Call<'_>) -> Result<Vec<Optio
     all_placeable(study, asked)?;
     let mut made: Vec<Option<PreparedWorld>> = study.worlds.iter().map(|_| None).collect();
     for query in asked {
-        for world in worlds(&query.ask) {
+        for world in query.ask.worlds() {
             if made[world].is_none() {
                 made[world] = PreparedWorld::of(study, world, call.seed, call.drivers);
             }
@@ -234,15 +232,6 @@ enum Sampling<'q> {
     Compare(CompareSampling<'q>),
     Rank(RankSampling<'q>),
     Split(Question<'q>),
-}
-
-pub(super) fn worlds(ask: &Ask) -> Vec<usize> {
-    match ask {
-        Ask::Check { measure, .. } | Ask::Estimate { measure, .. } | Ask::Rank { measure, .. } => {
-            vec![measure.target.world]
-        }
-        Ask::Compare { first, second, .. } => vec![first.target.world, second.target.world],
-    }
 }
 
 fn estimated(ask: &Ask) -> Option<usize> {

@@ -229,6 +229,18 @@ pub struct Tree {
 }
 
 impl Tree {
+    /// Whether a number is a time until something, or made of one.
+    pub fn is_time_until(&self, term: TermId) -> bool {
+        match &self.terms[term.0 as usize] {
+            Term::TimeUntil(_) => true,
+            Term::Constant(_) | Term::Signal(_) => false,
+            Term::Combine(_, a, b) => self.is_time_until(*a) || self.is_time_until(*b),
+            Term::Abs(a) | Term::Window(_, _, a) | Term::Later(_, a) | Term::AtEnd(a) => {
+                self.is_time_until(*a)
+            }
+        }
+    }
+
     /// Adds a formula node.
     pub fn node(&mut self, node: Node) -> NodeId {
         self.nodes.push(node);
