@@ -4,12 +4,13 @@
 //! own, in the strong three-valued logic of Kleene: `false & unresolved` is false, and an `if` asks only
 //! the branch it takes. So a guard as in `count(..) > 0 & mean(..) > 1` does what it says.
 
+mod functions;
+
 use super::lists::Lists;
 use super::node::{Crowd, Graph, Id, Join, Measure, Node, Reading};
 use super::span;
 use crate::model::{
-    AgentId, Arithmetic, Axis, Bool, Collective, Comparison, Field, Fold, Num, Place, Scenario, Separation,
-    Set, Who,
+    AgentId, Arithmetic, Axis, Bool, Comparison, Field, Fold, Num, Place, Scenario, Set, Who,
 };
 use std::sync::Arc;
 
@@ -128,17 +129,6 @@ impl<'a> Lowering<'a> {
         self.graph.enter(Node::Combine(Arithmetic::Subtract, first, rb))
     }
 
-    /// Gap between a body and the nearest barrier, if there is any.
-    fn gap_to_scene(&mut self, who: Who) -> Option<Id> {
-        if self.scenario.scene.barriers.is_empty() {
-            return None;
-        }
-        let x = self.of(Reading::X, who);
-        let y = self.of(Reading::Y, who);
-        let (distance, radius) = (self.graph.enter(Node::ToScene(x, y)), self.radius(who));
-        Some(self.graph.enter(Node::Combine(Arithmetic::Subtract, distance, radius)))
-    }
-
     /// A number.
     pub(super) fn number(&mut self, number: &Num) -> Value {
         match number {
@@ -182,19 +172,6 @@ impl<'a> Lowering<'a> {
                     self.both(not, open)
                 });
                 Value { id, open: self.either([c.open, on_a, on_b]) }
-            }
-        }
-    }
-
-    /// A number of a set.
-    fn of_set(&mut self, collective: Collective, set: &Set) -> Value {
-        match collective {
-            Collective::MeanVelocity(Axis::X) => self.mean(Reading::Field(Field::VelocityX), set),
-            Collective::MeanVelocity(Axis::Y) => self.mean(Reading::Field(Field::VelocityY), set),
-            Collective::Spread => {
-                let (x, y) = self.point(&Place::Centroid(set.clone()));
-                let crowd = self.crowd(set);
-                Value { id: self.graph.enter(Node::Spread(crowd, x.id, y.id)), open: x.open }
             }
         }
     }
@@ -321,25 +298,6 @@ impl<'a> Lowering<'a> {
                 Value { id, open: self.either([ax.open, ay.open, bx.open, by.open]) }
             }
         }
-    }
-
-    /// How far others are from an agent.
-    fn separation(&mut self, separation: Separation, who: Who) -> Id {
-        match separation {
-            Separation::Clearance => self.clearance(who),
-        }
-    }
-
-    /// A body that has left has no gap: infinite.
-    fn clearance(&mut self, who: Who) -> Id {
-        let crowd = self.others(who);
-        let mut gap = self.graph.enter(Node::Nearest(who, crowd, Measure::GapFixedFirst));
-        if let Some(walls) = self.gap_to_scene(who) {
-            gap = self.graph.enter(Node::Combine(Arithmetic::Min, gap, walls));
-        }
-        let present = self.graph.enter(Node::Present(who));
-        let infinite = self.graph.constant(f64::INFINITY);
-        self.graph.enter(Node::Select(present, gap, infinite))
     }
 
     /// A truth value.

@@ -1,0 +1,51 @@
+//! The built-in functions that are composed of several values: how far others are, numbers of a set. Those that are read
+//! off the state in one go are in `code/crowd.rs`.
+
+use super::{Id, Lowering, Value};
+use crate::kernel::code::node::{Measure, Node, Reading};
+use crate::model::{Arithmetic, Axis, Collective, Field, Place, Separation, Set, Who};
+
+impl Lowering<'_> {
+    /// A number of a set.
+    pub(super) fn of_set(&mut self, collective: Collective, set: &Set) -> Value {
+        match collective {
+            Collective::MeanVelocity(Axis::X) => self.mean(Reading::Field(Field::VelocityX), set),
+            Collective::MeanVelocity(Axis::Y) => self.mean(Reading::Field(Field::VelocityY), set),
+            Collective::Spread => {
+                let (x, y) = self.point(&Place::Centroid(set.clone()));
+                let crowd = self.crowd(set);
+                Value { id: self.graph.enter(Node::Spread(crowd, x.id, y.id)), open: x.open }
+            }
+        }
+    }
+
+    /// How far others are from an agent.
+    pub(super) fn separation(&mut self, separation: Separation, who: Who) -> Id {
+        match separation {
+            Separation::Clearance => self.clearance(who),
+        }
+    }
+
+    /// A body that has left has no gap: infinite.
+    fn clearance(&mut self, who: Who) -> Id {
+        let crowd = self.others(who);
+        let mut gap = self.graph.enter(Node::Nearest(who, crowd, Measure::GapFixedFirst));
+        if let Some(walls) = self.gap_to_scene(who) {
+            gap = self.graph.enter(Node::Combine(Arithmetic::Min, gap, walls));
+        }
+        let present = self.graph.enter(Node::Present(who));
+        let infinite = self.graph.constant(f64::INFINITY);
+        self.graph.enter(Node::Select(present, gap, infinite))
+    }
+
+    /// Gap between a body and the nearest barrier, if there is any.
+    pub(super) fn gap_to_scene(&mut self, who: Who) -> Option<Id> {
+        if self.scenario.scene.barriers.is_empty() {
+            return None;
+        }
+        let x = self.of(Reading::X, who);
+        let y = self.of(Reading::Y, who);
+        let (distance, radius) = (self.graph.enter(Node::ToScene(x, y)), self.radius(who));
+        Some(self.graph.enter(Node::Combine(Arithmetic::Subtract, distance, radius)))
+    }
+}
