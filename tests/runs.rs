@@ -33,18 +33,16 @@ fn end(text: &str, trial: u64) -> (usize, End) {
 
 #[test]
 fn a_trial_ends_for_one_reason() {
-    let steps =
-        "scenario \"t\"\nhorizon = 9 steps\nprocess p { var n: 0 .. 4 = 0\n when true -> n = n + 1 }\n";
+    let steps = "scenario \"t\"\nhorizon = 9 steps\nprocess p { var n: 0 .. 4 = 0\n var r: real = 0\n when true -> { n = n + 1; r = r + 1 } }\n";
     // The step in which a variable leaves its range leads to no state.
     assert_eq!(end(steps, 0), (4, End::Faulty(Fault::Range { variable: 0, value: 5.0 })));
     assert_eq!(end(&steps.replace("when true", "when n < 4"), 0), (9, End::Horizon));
-    let jumps =
-        "scenario \"t\"\nhorizon = 9 s\nprocess p { var n: 0 .. 4 = 0\n when true after 1 s -> n = n + 1 }\n";
+    let jumps = "scenario \"t\"\nhorizon = 9 s\nprocess p { var n: 0 .. 4 = 0\n var r: real = 0\n when true after 1 s -> { n = n + 1; r = r + 1 } }\n";
     assert_eq!(end(jumps, 0), (4, End::Faulty(Fault::Range { variable: 0, value: 5.0 })));
     assert_eq!(end(&jumps.replace("when true", "when n < 4"), 0), (4, End::Horizon));
-    let door = "scenario \"t\"\nhorizon = 9 s\nstep = 0.1 s\nkind person: sfm preset helbing2000 { noise = 0 m/s }\n\
+    let door = "scenario \"t\"\nhorizon = 9 s\nstep = 0.05 s\nkind person: sfm preset helbing2000 { noise = 0 m/s }\n\
                 source door: person { at = (0, 0) velocity = (1, 0) m/s every = 2 s limit = 2 route = (50, 0) }\n";
-    assert!(matches!(end(door, 0), (30..=80, End::Full)), "{:?}", end(door, 0));
+    assert!(matches!(end(door, 0), (60..=160, End::Full)), "{:?}", end(door, 0));
     let busy = "scenario \"t\"\nhorizon = 9 s\nstep = 1 s\nprocess p { var on = false\n when true at 100000000 /s -> on = !on }\n";
     assert_eq!(end(busy, 0), (1, End::Diverged));
 }
