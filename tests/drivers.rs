@@ -51,9 +51,9 @@ fn agent(k: u32, at: Vec2, noise: f64) -> Agent {
     }
 }
 
-fn scenario(agents: Vec<Agent>, walls: Vec<Segment>) -> Scenario {
+fn scenario(agents: Vec<Agent>, walls: &[Segment]) -> Scenario {
     let region = Region { name: "end".to_owned(), shape: Shape::rectangle(p(10.0, -1.0), p(12.0, 1.0)) };
-    let barrier = Barrier { name: String::new(), obstacle: Obstacle::Wall(walls.clone()) };
+    let barrier = Barrier { name: String::new(), obstacle: Obstacle::Wall(walls.to_vec()) };
     Scenario {
         title: String::new(),
         clock: Clock::Stepped(Decimal::parse("0.04").unwrap()),
@@ -163,7 +163,7 @@ fn key(index: u64) -> TrialKey {
 fn one(plan: Plan, layout: Layout) -> (Run, Arc<Listed>) {
     let driver = Listed::new(vec![plan]);
     let drivers = Drivers::new(3).with([AgentId(0)], driver.clone());
-    let run = Run::new(scenario(vec![agent(0, p(0.0, 0.0), 0.0)], Vec::new()), drivers, layout);
+    let run = Run::new(scenario(vec![agent(0, p(0.0, 0.0), 0.0)], &[]), drivers, layout);
     (run.load(0, 0, None), driver)
 }
 
@@ -209,7 +209,7 @@ fn the_plan_waits_for_someone_far_behind_and_asks_when_left() {
             ended = k;
         }
     }
-    assert!(f64::from(ended) * DT > 6.28 + 0.12, "at the end at {} s", f64::from(ended) * DT);
+    assert!(f64::from(ended) * DT > 6.4, "at the end at {} s", f64::from(ended) * DT);
     assert!((run.at(0) - p(6.0, 0.0)).norm() < 0.02);
     assert!(!driver.occasions().contains(&Occasion::Left), "it was never 1 m away");
     run.state.motion.y[0].0[0] += 1.5;
@@ -235,7 +235,7 @@ fn forces_do_not_move_someone_who_steps_but_others_give_way() {
         let mut standing = agent(1, p(3.0, 0.02), 0.0);
         standing.route = Route::Legs { legs: Vec::new(), then_leave: false };
         let drivers = Drivers::new(3).with([AgentId(0)], Listed::new(vec![on()]));
-        let two = scenario(vec![agent(0, p(0.0, 0.0), 0.3), standing], Vec::new());
+        let two = scenario(vec![agent(0, p(0.0, 0.0), 0.3), standing], &[]);
         let mut run = Run::new(two, drivers, layout).load(0, 0, None);
         let mut nearest = f64::INFINITY;
         for k in 1..=200 {
@@ -261,8 +261,8 @@ fn one_step_begins_when_the_one_before_it_ends() {
     };
     let driver = Listed::new((0..8).map(|k| pace(0.7 * f64::from(k))).collect());
     let drivers = Drivers::new(3).with([AgentId(0)], driver.clone());
-    let mut run = Run::new(scenario(vec![agent(0, p(0.0, 0.0), 0.0)], Vec::new()), drivers, Layout::Trials)
-        .load(0, 0, None);
+    let mut run =
+        Run::new(scenario(vec![agent(0, p(0.0, 0.0), 0.0)], &[]), drivers, Layout::Trials).load(0, 0, None);
     for k in 1..=100 {
         run.step();
         assert!((run.at(0).x - f64::from(k) * DT).abs() < 1e-9, "{} after {k} steps", run.at(0).x);
@@ -286,7 +286,7 @@ fn a_way_leads_around_a_wall_and_is_passed_in_sight_of_what_follows() {
         let driver = Listed::new(plans.clone());
         let drivers = Drivers::new(3).with([AgentId(0)], driver.clone());
         let agents = vec![agent(0, p(0.0, -1.0), 0.0)];
-        let mut run = Run::new(scenario(agents, vec![wall]), drivers, layout).load(0, 0, None);
+        let mut run = Run::new(scenario(agents, &[wall]), drivers, layout).load(0, 0, None);
         let mut nearest = f64::INFINITY;
         for _ in 0..400 {
             run.step();
@@ -306,7 +306,7 @@ fn a_point_out_of_sight_is_asked_about_twice_a_second() {
     let driver = Listed::new(vec![Plan::Way([p(5.0, 0.0)].into())]);
     let drivers = Drivers::new(3).with([AgentId(0)], driver.clone());
     let agents = vec![agent(0, p(0.0, 0.0), 0.0)];
-    let mut run = Run::new(scenario(agents, vec![wall]), drivers, Layout::Trials).load(0, 0, None);
+    let mut run = Run::new(scenario(agents, &[wall]), drivers, Layout::Trials).load(0, 0, None);
     for _ in 0..250 {
         run.step();
     }
@@ -320,7 +320,7 @@ fn a_driver_is_asked_again_after_a_stand_a_leg_and_advice() {
     let driver = Listed::new(vec![Plan::Stand(1.0), Plan::Straight]);
     let drivers = Drivers::new(3).with([AgentId(0)], driver.clone());
     let agents = vec![agent(0, p(0.0, 0.0), 0.0)];
-    let mut run = Run::new(scenario(agents.clone(), Vec::new()), drivers, Layout::Trials).load(0, 0, None);
+    let mut run = Run::new(scenario(agents.clone(), &[]), drivers, Layout::Trials).load(0, 0, None);
     for _ in 0..25 {
         assert_eq!(run.at(0), p(0.0, 0.0));
         run.step();
@@ -334,7 +334,7 @@ fn a_driver_is_asked_again_after_a_stand_a_leg_and_advice() {
     // Advised to stop for a second: the plan begins then.
     let driver = Listed::new(vec![Plan::Follow(there(), LIMITS), Plan::Follow(there(), LIMITS)]);
     let drivers = Drivers::new(3).with([AgentId(0)], driver.clone());
-    let mut run = Run::new(scenario(agents, Vec::new()), drivers, Layout::Trials).load(0, 0, Some((0, 0)));
+    let mut run = Run::new(scenario(agents, &[]), drivers, Layout::Trials).load(0, 0, Some((0, 0)));
     for _ in 0..25 {
         run.step();
         assert_eq!(run.at(0), p(0.0, 0.0));
@@ -358,7 +358,7 @@ fn plans_of_one_lane_do_not_touch_another() {
             .with([AgentId(1)], Listed::new(vec![Plan::Follow(there(), LIMITS)]))
             .with([AgentId(3)], Listed::new(vec![Plan::Way([p(4.0, -2.0)].into())]))
     };
-    let scene = || scenario(agents(), vec![Segment::new(p(7.0, -3.0), p(7.0, -1.0))]);
+    let scene = || scenario(agents(), &[Segment::new(p(7.0, -3.0), p(7.0, -1.0))]);
     let mut together = Run::new(scene(), drivers(), Layout::Trials);
     for lane in 0..LANES {
         together = together.load(lane, lane as u64, None);
