@@ -66,6 +66,7 @@ fn ours(study: &Study) -> (f64, f64) {
         simulate: String::new(),
         only: Vec::new(),
         place: &|_| (String::new(), 0),
+        drivers: &smc::kernel::driver::straight,
         file: String::new(),
     };
     let threads = Threads::new(Some(1)).expect("one thread");

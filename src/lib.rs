@@ -38,6 +38,7 @@
 //!     simulate: "smc simulate walk.scn".into(),
 //!     only: vec![],
 //!     place: &|span| (property.name.clone(), property.line_column(span.start).0),
+//!     drivers: &smc::kernel::driver::straight,
 //!     file: "walk.scn".into(),
 //! };
 //! let threads = Threads::new(Some(1)).unwrap();

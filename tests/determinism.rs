@@ -126,6 +126,7 @@ fn call() -> Call<'static> {
         simulate: "smc simulate a.scn".to_owned(),
         only: Vec::new(),
         place: &|_| (String::new(), 0),
+        drivers: &smc::kernel::driver::straight,
         file: String::new(),
     }
 }

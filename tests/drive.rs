@@ -6,7 +6,7 @@ use smc::base::lanes::{LANES, Lanes, Mask};
 use smc::base::math;
 use smc::base::random::TrialKey;
 use smc::base::tick::{Clock, Tick};
-use smc::kernel::drive::steer;
+use smc::kernel::driver::steer;
 use smc::kernel::start::load;
 use smc::kernel::{Layout, Program, Scratch, State, refresh};
 use smc::model::{
@@ -110,7 +110,7 @@ fn walk(program: &Program, state: &mut State) {
     for lane in state.occupied.iter() {
         state.ticks[lane] += 1;
     }
-    steer(program, state);
+    steer(&program.drive, state);
 }
 
 fn at(state: &State) -> Vec2 {
@@ -183,7 +183,7 @@ fn a_point_passed_by_within_two_metres_counts_and_farther_away_does_not() {
         for x in [3.9, 4.1] {
             state.motion.x[0].0[0] = x;
             state.motion.y[0].0[0] = offset;
-            steer(&program, &mut state);
+            steer(&program.drive, &mut state);
             let to_via = (p(4.0, 0.0) - at(&state)).normalize();
             let still = (heading(&state) - to_via).norm() < 1e-9;
             assert_eq!(still, x < 4.0 || !passed, "{x} {offset}");
@@ -197,7 +197,7 @@ fn a_point_as_last_goal_is_not_passed_by() {
     let mut state = begin(&program, None);
     for (x, speed) in [(3.4, 1.25), (3.6, 0.0), (4.4, 0.0), (4.6, 1.25)] {
         state.motion.x[0].0[0] = x;
-        steer(&program, &mut state);
+        steer(&program.drive, &mut state);
         assert_eq!(drive(&state), speed, "{x}");
     }
     assert_eq!(heading(&state).x, -1.0);

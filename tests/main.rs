@@ -16,6 +16,7 @@ mod determinism;
 mod diagnostics;
 mod drift;
 mod drive;
+mod drivers;
 mod dynamics;
 mod expressions;
 mod floors;

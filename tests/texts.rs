@@ -38,6 +38,7 @@ pub(crate) fn answered(study: &Study, seed: u64, threads: usize, most: u64) -> R
         simulate: "smc simulate model.scn".to_owned(),
         only: Vec::new(),
         place: &|_| (String::new(), 0),
+        drivers: &smc::kernel::driver::straight,
         file: String::new(),
     };
     let budget = Budget::new(most, None);

@@ -14,6 +14,7 @@ use crate::compile::nearest::nearest;
 use crate::engine::budget::DEFAULT_TRIALS;
 use crate::engine::outcome::{Failure, Finding, Run};
 use crate::engine::{Budget, Call, Fault, Outlook, Ranks, Threads, forecast, run as run_study};
+use crate::kernel::driver::straight;
 use crate::report::{self, ExitCode as Exit, Format, Palette};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -76,6 +77,7 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
         simulate: command("simulate", arguments, false),
         only,
         place: &place,
+        drivers: &straight,
         file: arguments.model.scenario.clone(),
     };
     if arguments.forecast {

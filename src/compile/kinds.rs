@@ -191,7 +191,10 @@ impl Elaborator<'_> {
                 .hint("set them, or start from a preset: `kind adult: sfm preset helbing2000 { … }`");
             return self.report(error);
         }
-        // A parameter that the kind does not have is 0 or its default.
-        Ok(Body::new(kind.base, |parameter| kind.law(parameter).unwrap_or(Law::Constant(0.0))))
+        Ok(Body::new(kind.base, |parameter| {
+            // A parameter that the kind does not have: 0 where it may be.
+            let neutral = if parameter.allows(0.0) { 0.0 } else { 1.0 };
+            kind.law(parameter).unwrap_or(Law::Constant(neutral))
+        }))
     }
 }

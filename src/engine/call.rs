@@ -1,5 +1,7 @@
 //! What the command line adds to a study, and the calls that show what was found.
 
+use crate::kernel::driver::MakeDrivers;
+
 /// What the command line adds to a study.
 pub struct Call<'c> {
     /// Seed of all random numbers.
@@ -14,6 +16,8 @@ pub struct Call<'c> {
     pub only: Vec<usize>,
     /// File and line of a span, for reports.
     pub place: &'c (dyn Fn(crate::syntax::source::Span) -> (String, usize) + Sync),
+    /// Makes the drivers of the agents of a world. Trials that ranks run have only those that are built in.
+    pub drivers: &'c MakeDrivers,
     /// Name for reports where the scenario has no title.
     pub file: String,
 }

@@ -35,7 +35,7 @@ pub fn run(
     watch: &dyn Watch,
 ) -> Result<Run, Fault> {
     let asked = asked(study, call);
-    let subjects = subjects(study, &asked)?;
+    let subjects = subjects(study, &asked, call)?;
     let session = Session { call, budget, subjects: &subjects };
     let mut groups = session.groups(&asked)?;
     watch.samples();
@@ -153,7 +153,7 @@ pub fn forecast(
     budget: &Budget,
 ) -> Result<Outlook, Fault> {
     let asked = asked(study, call);
-    let subjects = subjects(study, &asked)?;
+    let subjects = subjects(study, &asked, call)?;
     let session = Session { call, budget, subjects: &subjects };
     let mut groups = session.groups(&asked)?;
     Ok(outlook(&mut groups, executor, budget)?.unwrap_or_default())
@@ -164,13 +164,13 @@ fn asked<'s>(study: &'s Study, call: &Call<'_>) -> Vec<&'s Query> {
 }
 
 /// The worlds that are asked about, made ready.
-fn subjects(study: &Study, asked: &[&Query]) -> Result<Vec<Option<Subject>>, Fault> {
+fn subjects(study: &Study, asked: &[&Query], call: &Call<'_>) -> Result<Vec<Option<Subject>>, Fault> {
     all_placeable(study, asked)?;
     let mut subjects: Vec<Option<Subject>> = study.worlds.iter().map(|_| None).collect();
     for query in asked {
         for world in worlds(&query.ask) {
             if subjects[world].is_none() {
-                subjects[world] = Subject::of(study, world);
+                subjects[world] = Subject::of(study, world, call.seed, call.drivers);
             }
         }
     }

@@ -4,6 +4,7 @@ use super::observer::Observer;
 use crate::base::lanes::{LANES, Mask};
 use crate::base::tick::{Clock, Tick};
 use crate::compile::study::{Origins, Root, Study, Texts, World};
+use crate::kernel::driver::{Drivers, MakeDrivers};
 use crate::kernel::process::View;
 use crate::kernel::{Code, Program, Readings};
 use crate::logic::{
@@ -82,18 +83,23 @@ fn join(a: Mask, b: Mask) -> Mask {
 }
 
 impl Subject {
-    /// Makes a world of a study ready; `None` beyond the last one.
-    pub fn of(study: &Study, number: usize) -> Option<Self> {
-        Some(Self { number: Some(number), ..Self::new(study.worlds.get(number)?) })
+    /// Makes a world of a study ready, with the drivers of a run; `None` beyond the last one.
+    pub fn of(study: &Study, number: usize, seed: u64, drivers: &MakeDrivers) -> Option<Self> {
+        let world = study.worlds.get(number)?;
+        Some(Self { number: Some(number), ..Self::driven(world, drivers(&world.scenario, seed)) })
     }
 
-    /// Makes a world ready.
+    /// Makes a world ready in which all agents head straight for their goals.
     pub fn new(world: &World) -> Self {
+        Self::driven(world, Drivers::default())
+    }
+
+    fn driven(world: &World, drivers: Drivers) -> Self {
         let scenario = world.scenario.clone();
         Self {
             number: None,
             horizon: scenario.horizon,
-            program: Program::new(scenario),
+            program: Program::driven(scenario, drivers),
             tree: world.tree.clone(),
             columns: world.columns.iter().map(|c| c.root).collect(),
             texts: world.texts.clone(),

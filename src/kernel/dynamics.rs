@@ -11,7 +11,7 @@
 //!    `v <- v0 e + (v - v0 e) c + s sqrt(1 - c^2) xi` with c = exp(-dt/tau), s the stationary standard
 //!    deviation, xi two standard normal numbers: relaxation and variance are exact for every dt;
 //! 4. half a drift as in 2;
-//! 5. the driver looks at the new positions (`drive::steer`). Where that turns the direction of someone's leg, the
+//! 5. the driver looks at the new positions (`driver::steer`). Where that turns the direction of someone's leg, the
 //!    velocity is changed by half of `v0 (1 - c)` times the turn: the step was driven along the mean of both directions
 //!    (unless they are more than a right angle apart: then it led past the aim);
 //! 6. the slow force `F(x_{n+1})`, and half a kick by it.
@@ -24,21 +24,21 @@ use super::behaviour;
 use super::cells::Cells;
 use super::close::Close;
 use super::contact::Contacts;
-use super::drive;
+use super::driver;
 use super::lanewise::Lanewise;
 use super::noise::{Draws, word_of};
 use super::process;
 use super::program::Program;
 use super::social::Sum;
+use super::start;
 use super::state::{Layout, Slot, State};
 use super::vector::{Doubles, Part, Words, parts};
 use crate::base::lanes::{LANES, Lanes, Mask};
-use crate::base::math;
 use crate::base::random::TrialKey;
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
 
-use crate::model::{Parameter, TOP_SPEED};
+use crate::model::TOP_SPEED;
 
 /// Room to work, and what can be kept from one step to the next of one batch. It holds no part of the state, and a fresh
 /// one after `refresh` changes no bit.
@@ -114,7 +114,7 @@ pub fn refresh(program: &Program, state: &mut State, scratch: &mut Scratch, lane
     let dt = program.dt;
     for block in 0..state.motion.x.len() {
         for lane in state.layout.slots_of(lanes).iter() {
-            prepare(state, dt, Slot { block, lane });
+            state.prepare(Slot { block, lane }, dt);
         }
     }
     scratch.lanewise.forget();
@@ -122,15 +122,6 @@ pub fn refresh(program: &Program, state: &mut State, scratch: &mut Scratch, lane
         find_forces(simd, program, state, scratch);
         keep_forces(simd, state, scratch, state.layout.slots_of(lanes));
     });
-}
-
-/// Works out what follows from the parameters of a slot.
-pub(super) fn prepare(state: &mut State, dt: f64, Slot { block, lane }: Slot) {
-    let decay = math::exp(-dt / state.bodies[Parameter::Tau][block].0[lane]);
-    state.bodies.decay[block].0[lane] = decay;
-    state.bodies.kick[block].0[lane] =
-        state.bodies[Parameter::Noise][block].0[lane] * (1.0 - decay * decay).sqrt();
-    state.bodies.push[block].0[lane] = 0.5 * dt / state.bodies[Parameter::Mass][block].0[lane];
 }
 
 /// One step of all occupied lanes.
@@ -147,16 +138,17 @@ pub fn step(program: &Program, state: &mut State, scratch: &mut Scratch) {
     for lane in state.occupied.iter() {
         state.ticks[lane] += 1;
     }
-    if program.behaviours.turn(program, state, &scratch.behaviours) {
+    driver::arrive(state, &scratch.moving);
+    if program.behaviours.turn((&program.drive, &program.parameters), state, &scratch.behaviours) {
         scratch.lanewise.forget();
     }
-    drive::steer_at(scratch.level, program, state);
+    driver::steer_at(scratch.level, &program.drive, state);
     // Who comes to a place that is left in this step has not made it.
     for (moving, &here) in scratch.moving.iter_mut().zip(&state.present) {
         *moving &= here;
     }
     // Who comes in has other radii and ranges than who had the place before.
-    if program.arrivals.step(program, state) {
+    if start::step(program, state) {
         scratch.lanewise.forget();
     }
     dispatch!(scratch.level, simd => finish(simd, program, state, scratch));

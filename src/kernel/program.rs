@@ -1,11 +1,14 @@
 //! A scenario made ready to run: everything that is the same in every trial.
 
 use super::behaviour::Behaviours;
-use super::drive::Drive;
+use super::close::Close;
+use super::code::{Code, Readings};
+use super::driver::{Drive, Drivers};
 use super::forces::Forces;
+use super::parameters::Parameters;
 use super::process::Processes;
 use super::start::{Arrivals, Starts};
-use super::state::Layout;
+use super::state::{Layout, State};
 use crate::model::Scenario;
 use std::sync::Arc;
 
@@ -25,8 +28,10 @@ pub struct Program {
     pub dt: f64,
     /// What the forces need.
     pub forces: Forces,
-    /// The routes.
+    /// The routes and drivers.
     pub drive: Drive,
+    /// The laws of the parameters of bodies.
+    pub parameters: Parameters,
     /// The placements.
     pub starts: Starts,
     /// The processes.
@@ -38,16 +43,41 @@ pub struct Program {
 }
 
 impl Program {
-    /// Prepares a scenario.
+    /// Prepares a scenario whose agents head straight for the goals of their routes.
     pub fn new(scenario: Arc<Scenario>) -> Self {
+        Self::driven(scenario, Drivers::default())
+    }
+
+    /// Prepares a scenario with the drivers of a run.
+    pub fn driven(scenario: Arc<Scenario>, drivers: Drivers) -> Self {
         let layout = if scenario.agents.len() <= LARGEST_IN_LANES { Layout::Trials } else { Layout::Agents };
         let dt = scenario.clock.step_seconds();
         let forces = Forces::new(&scenario, dt);
-        let mut drive = Drive::new(&scenario);
+        let mut drive = Drive::new(&scenario, drivers);
+        let parameters = Parameters::new(&scenario);
         let starts = Starts::new(&scenario);
         let processes = Processes::new(&scenario);
         let arrivals = Arrivals::new(&scenario);
         let behaviours = Behaviours::new(&scenario, &mut drive);
-        Self { scenario, layout, dt, forces, drive, starts, processes, arrivals, behaviours }
+        Self { scenario, layout, dt, forces, drive, parameters, starts, processes, arrivals, behaviours }
+    }
+}
+
+impl Code {
+    /// Reads all lanes of a state. Values of lanes without a trial mean nothing; in `Layout::Agents` every
+    /// lane has the value of the only trial.
+    pub fn run(&self, program: &Program, state: &State, readings: &mut Readings) {
+        self.read(program.layout, state, readings);
+    }
+
+    /// The same, with what the kernel found out about who is close to whom in this state: the same bits, sooner.
+    pub fn run_close(
+        &self,
+        program: &Program,
+        state: &State,
+        close: Option<Close<'_>>,
+        readings: &mut Readings,
+    ) {
+        self.read_close(program.layout, (state, close), readings);
     }
 }

@@ -6,6 +6,7 @@ use crate::compile::Study;
 use crate::engine::budget::Budget;
 use crate::engine::executor::{Executor, Job, Threads};
 use crate::engine::subject::Subject;
+use crate::kernel::driver::straight;
 use std::cell::OnceCell;
 use std::io::{self, Read, Write};
 use std::sync::atomic::Ordering;
@@ -207,8 +208,8 @@ impl<'s> Bench<'s> {
         let subject = match self.subjects[lease.world].get() {
             Some(subject) => subject,
             None => {
-                let subject =
-                    Subject::of(self.study, lease.world).ok_or(Malformed("there is no such world"))?;
+                let subject = Subject::of(self.study, lease.world, lease.seed, &straight)
+                    .ok_or(Malformed("there is no such world"))?;
                 self.subjects[lease.world].get_or_init(|| subject)
             }
         };

@@ -1,9 +1,9 @@
 //! What a behaviour does, made ready: laws to draw from, stages of routes.
 
-use crate::kernel::drive::Drive;
+use crate::kernel::driver::Drive;
 use crate::model::law::Ready;
 use crate::model::process::are_weights;
-use crate::model::{self, Num, Parameter, Scenario};
+use crate::model::{self, Num, Parameter};
 
 /// What a behaviour does.
 #[derive(Clone, Debug)]
@@ -50,12 +50,7 @@ pub(super) enum Trigger {
 
 impl Conduct {
     /// Makes what a declared behaviour does ready; its routes are added to those of `drive`.
-    pub(super) fn new(
-        scenario: &Scenario,
-        declared: &model::Behaviour,
-        conduct: &model::Conduct,
-        drive: &mut Drive,
-    ) -> Self {
+    pub(super) fn new(declared: &model::Behaviour, conduct: &model::Conduct, drive: &mut Drive) -> Self {
         let mut delays = 0;
         let modes = conduct
             .states
@@ -90,7 +85,7 @@ impl Conduct {
                     route: mode
                         .route
                         .as_ref()
-                        .map(|route| drive.detour(scenario, route, &format!("{}.{name}", declared.name))),
+                        .map(|route| drive.detour(route, &format!("{}.{name}", declared.name))),
                     exits,
                 }
             })

@@ -11,11 +11,9 @@
 mod conduct;
 
 use super::code::{Code, Readings};
-use super::drive;
-use super::dynamics;
+use super::driver::{self, Drive};
 use super::fault::Fault;
-use super::program::Program;
-use super::start;
+use super::parameters::Parameters;
 use super::state::route::Halt;
 use super::state::{ActiveModes, Layout, OWN_ROUTE, Slot, State};
 use crate::base::lanes::{LANES, Lanes, Mask};
@@ -81,7 +79,7 @@ impl Machine {
 
 impl Behaviours {
     /// Prepares the behaviours of a scenario; the routes of their states are added to those of `drive`.
-    pub fn new(scenario: &Scenario, drive: &mut drive::Drive) -> Self {
+    pub fn new(scenario: &Scenario, drive: &mut Drive) -> Self {
         let all = &scenario.behaviours;
         if all.attached.is_empty() {
             return Self::default();
@@ -94,7 +92,7 @@ impl Behaviours {
             let conduct = at.unwrap_or_else(|| {
                 known.push(&one.conduct);
                 let declared = &all.declared[one.behaviour.0 as usize];
-                let conduct = Conduct::new(scenario, declared, &one.conduct, drive);
+                let conduct = Conduct::new(declared, &one.conduct, drive);
                 let most = &mut out.most[one.behaviour.0 as usize];
                 *most = conduct.modes.iter().map(|mode| mode.changes.len()).fold(*most, usize::max);
                 out.conducts.push(conduct);
@@ -130,18 +128,18 @@ impl Behaviours {
     }
 
     /// Whether an agent follows a move that is suggested at the start of a trial: if all of its behaviours do.
-    pub(super) fn heeds(&self, program: &Program, key: TrialKey, agent: usize) -> bool {
+    pub(super) fn heeds(&self, initial: &[f64], key: TrialKey, agent: usize) -> bool {
         self.machines_of(agent).all(|at| {
             let machine = &self.machines[at];
             let advice = &self.conducts[machine.conduct as usize].advice;
             let uniform = || Stream::of(key, machine.entity, Purpose::Decision).uniform(0);
             // Weights that are none are refused when they are compiled.
-            advice.is_empty() || pick(advice, &program.processes.initial, uniform).unwrap_or(true)
+            advice.is_empty() || pick(advice, initial, uniform).unwrap_or(true)
         })
     }
 
     /// Puts an agent who has just been placed into the first states of its behaviours.
-    pub(super) fn begin(&self, program: &Program, state: &mut State, agent: usize, lane: usize) {
+    pub(super) fn begin(&self, with: (&Drive, &Parameters), state: &mut State, agent: usize, lane: usize) {
         if self.is_empty() {
             return;
         }
@@ -166,7 +164,7 @@ impl Behaviours {
             let machine = &self.machines[at];
             state.behaviours.entered[machine.behaviour as usize][slot.block][slot.lane] = 0;
             if !self.conducts[machine.conduct as usize].modes.is_empty() {
-                self.enter(program, state, at, slot, 0);
+                self.enter(with.0, state, at, slot, 0);
             }
         }
         let changed = self.machines_of(agent).any(|at| {
@@ -174,7 +172,7 @@ impl Behaviours {
             conduct.modes.first().is_some_and(conduct::Mode::changes_something)
         });
         if changed {
-            self.apply(program, state, (agent, lane), true, |_| true);
+            self.apply(with, state, (agent, lane), true, |_| true);
         }
     }
 
@@ -276,13 +274,13 @@ impl Behaviours {
 
     /// Enters the states that were decided on; to be called with the ticks and positions after the step. Whether
     /// the range of some force changed.
-    pub(super) fn turn(&self, program: &Program, state: &mut State, scratch: &Scratch) -> bool {
+    pub(super) fn turn(&self, with: (&Drive, &Parameters), state: &mut State, scratch: &Scratch) -> bool {
         for &Turn { machine: at, lane, mode } in &scratch.turns {
             let machine = &self.machines[at as usize];
             let trial = state.layout.trial_of(lane);
             if !state.faulty.has(trial) {
                 let slot = state.slot(machine.agent as usize, trial);
-                self.enter(program, state, at as usize, slot, mode);
+                self.enter(with.0, state, at as usize, slot, mode);
             }
         }
         let mut ranges = false;
@@ -293,14 +291,14 @@ impl Behaviours {
             let changing = |at: usize| scratch.changing[at].has(lane);
             let first = self.machines_of(agent).find(|&at| changing(at));
             if first == Some(at as usize) && !state.faulty.has(trial) {
-                ranges |= self.apply(program, state, (agent, trial), false, changing);
+                ranges |= self.apply(with, state, (agent, trial), false, changing);
             }
         }
         ranges
     }
 
     /// Enters a state: the times at which it may end are drawn.
-    fn enter(&self, program: &Program, state: &mut State, at: usize, slot: Slot, mode: u32) {
+    fn enter(&self, drive: &Drive, state: &mut State, at: usize, slot: Slot, mode: u32) {
         let machine = &self.machines[at];
         let conduct = &self.conducts[machine.conduct as usize];
         let trial = state.layout.trial_of(slot.lane);
@@ -322,7 +320,7 @@ impl Behaviours {
                 }
             }
         }
-        standing.due[behaviour][block].0[lane] = now + steps_over(shortest, program.dt);
+        standing.due[behaviour][block].0[lane] = now + steps_over(shortest, drive.dt);
         standing.exit[behaviour][block][lane] = chosen;
     }
 
@@ -330,7 +328,7 @@ impl Behaviours {
     /// `turned` is computed; what others set stays as it was. `comes`: who has just been placed. Whether a range changed.
     fn apply(
         &self,
-        program: &Program,
+        (drive, parameters): (&Drive, &Parameters),
         state: &mut State,
         (agent, trial): (usize, usize),
         comes: bool,
@@ -340,7 +338,7 @@ impl Behaviours {
         // Replicas of a trial go on under other keys: what was drawn stays.
         let key = state.behaviours.own_keys[slot.block][slot.lane];
         let who = (AgentId(agent as u32), state.queues.later(agent, trial));
-        let Some(own) = start::own_parameters(program, key, who) else { return false };
+        let Some(own) = parameters.own(who, key) else { return false };
         let mut values = own;
         let mut known: Vec<f64> = state.variables.iter().map(|lanes| lanes.0[trial]).collect();
         known.extend(own);
@@ -377,16 +375,16 @@ impl Behaviours {
             }
         }
         let ranges = state.bodies.put(slot, &values, Parameter::changeable());
-        dynamics::prepare(state, program.dt, slot);
+        state.prepare(slot, drive.dt);
         let (present, home) = state.behaviours.detours[slot.block][slot.lane];
         if route == present {
-            drive::renew(program, state, slot);
+            driver::renew(drive, state, slot);
             return ranges;
         }
-        let home = if present == OWN_ROUTE { drive::halt(program, state, slot) } else { home };
+        let home = if present == OWN_ROUTE { driver::halt(drive, state, slot) } else { home };
         state.behaviours.detours[slot.block][slot.lane] = (route, home);
         let (from, round) = if route == OWN_ROUTE { (home, 0) } else { (Halt::before(route), round) };
-        drive::divert(program, state, slot, (from, round), comes);
+        driver::divert(drive, state, slot, (from, round), comes);
         ranges
     }
 }

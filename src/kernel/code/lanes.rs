@@ -11,13 +11,13 @@ pub(crate) type Truth<S> = mask64x8<S>;
 
 /// One bit of each lane.
 #[inline(always)]
-pub(super) fn narrow<S: Simd>(truth: Truth<S>) -> Mask {
+pub(in crate::kernel) fn narrow<S: Simd>(truth: Truth<S>) -> Mask {
     Mask(truth.to_bitmask() as u8)
 }
 
 /// A truth value from one bit of each lane.
 #[inline(always)]
-pub(super) fn widen<S: Simd>(simd: S, mask: Mask) -> Truth<S> {
+pub(in crate::kernel) fn widen<S: Simd>(simd: S, mask: Mask) -> Truth<S> {
     Truth::<S>::from_bitmask(simd, u64::from(mask.0))
 }
 

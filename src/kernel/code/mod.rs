@@ -22,7 +22,6 @@ mod span;
 mod vicinity;
 
 use super::close::Close;
-use super::program::Program;
 use super::state::{Layout, State};
 use crate::base::lanes::{Lanes, Mask};
 use crate::base::tick::Clock;
@@ -125,29 +124,12 @@ impl Code {
         }
     }
 
-    /// Reads all lanes of a state. Values of lanes without a trial mean nothing; in `Layout::Agents` every
-    /// lane has the value of the only trial.
-    pub fn run(&self, program: &Program, state: &State, readings: &mut Readings) {
-        self.read(program.layout, state, readings);
-    }
-
-    /// The same, with what the kernel found out about who is close to whom in this state: the same bits, sooner.
-    pub fn run_close(
-        &self,
-        program: &Program,
-        state: &State,
-        close: Option<Close<'_>>,
-        readings: &mut Readings,
-    ) {
-        self.read_close(program.layout, (state, close), readings);
-    }
-
     /// Reads all lanes of a state in this layout.
     pub(super) fn read(&self, layout: Layout, state: &State, readings: &mut Readings) {
         self.read_close(layout, (state, None), readings);
     }
 
-    fn read_close(
+    pub(super) fn read_close(
         &self,
         layout: Layout,
         (state, close): (&State, Option<Close<'_>>),

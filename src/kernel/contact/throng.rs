@@ -89,6 +89,9 @@ impl Throng {
             let (Some(a), Some(b)) = (self.body(state, i, lane), self.body(state, j, lane)) else { continue };
             self.unite(a, b);
             let (one, other) = (&self.bodies[a as usize], &self.bodies[b as usize]);
+            if one.inverse + other.inverse == 0.0 {
+                continue;
+            }
             // The constants of a pair are the means of the two bodies'. Two bodies of several persons do
             // not compress each other and have their own friction constant.
             let (k1, k2) = match program.forces.friction(i as usize, j as usize) {
@@ -104,6 +107,9 @@ impl Throng {
         for &(i, face) in &candidates.walls {
             let Some(a) = self.body(state, i, lane) else { continue };
             let Body { radius: distance, k1, k2, inverse, .. } = self.bodies[a as usize];
+            if inverse == 0.0 {
+                continue;
+            }
             self.walls.push(Touch { a, b: face, cluster: 0, distance, k1, k2, inverse });
         }
         self.find_clusters();
@@ -125,6 +131,9 @@ impl Throng {
         if !state.present[slot.block].has(slot.lane) {
             return None;
         }
+        // One that moves by itself does not yield.
+        let mass = state.bodies[Parameter::Mass][slot.block].0[slot.lane];
+        let inverse = if state.plans.is_stepped(slot) { 0.0 } else { 1.0 / mass };
         let index = self.bodies.len() as u32;
         self.index[agent as usize] = index;
         self.bodies.push(Body {
@@ -132,7 +141,7 @@ impl Throng {
             radius: state.bodies[Parameter::Radius][slot.block].0[slot.lane],
             k1: state.bodies[Parameter::K1][slot.block].0[slot.lane],
             k2: state.bodies[Parameter::K2][slot.block].0[slot.lane],
-            inverse: 1.0 / state.bodies[Parameter::Mass][slot.block].0[slot.lane],
+            inverse,
             parent: index,
             cluster: 0,
             turn: 0,

@@ -15,11 +15,8 @@ const HIGHS: [i64; 3] = [4, 1, 9];
 
 /// A scenario of one person with this speed and noise, three whole variables, and what a behaviour changes.
 fn scenario(speed: Law, noise: Law, changes: Vec<(Parameter, Amount)>) -> Scenario {
-    let body = Body::new(Kind::Sfm, |parameter| match parameter {
-        Parameter::Speed => speed.clone(),
-        Parameter::Noise => noise.clone(),
-        _ => Law::Constant(0.0),
-    });
+    let mut body = Body::new(Kind::Sfm, |_| Law::Constant(0.0));
+    (body[Parameter::Speed], body[Parameter::Noise]) = (speed, noise);
     let agent = Agent {
         name: "me".to_owned(),
         entity: 1,

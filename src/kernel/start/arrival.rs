@@ -8,39 +8,33 @@
 //! they touch nobody who is present and no barrier. Without a free place they wait, those behind them too, and try
 //! again at each state.
 
-use super::enter;
-use super::placement::{ATTEMPTS, Ground};
-use super::sampler::Sampler;
-use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::random::{Purpose, Stream, TrialKey};
-use crate::kernel::process::delay::after;
-use crate::kernel::program::Program;
-use crate::kernel::state::{Layout, State};
+use crate::kernel::state::State;
 use crate::model::law::Ready;
-use crate::model::{AgentId, Bool, Num, Parameter, Position, Scenario, Timing};
+use crate::model::{AgentId, Bool, Num, Position, Scenario, Timing};
 
 /// The share of a step within which a time after a state still counts as at it: rounding of sums.
-const SLACK: f64 = 1e-6;
+pub(super) const SLACK: f64 = 1e-6;
 
 /// One source.
 #[derive(Clone, Debug)]
-struct Door {
+pub(super) struct Door {
     entity: u32,
     every: Ready,
-    members: Vec<AgentId>,
+    pub(super) members: Vec<AgentId>,
     /// Most arrivals.
-    most: u32,
+    pub(super) most: u32,
 }
 
 /// The sources of a scenario.
 #[derive(Clone, Debug, Default)]
 pub struct Arrivals {
-    doors: Vec<Door>,
+    pub(super) doors: Vec<Door>,
     /// Per agent, whether it comes from a source; empty without sources.
     comes: Vec<bool>,
     /// Whether places are used once, because the scenario speaks of single ones.
-    once: bool,
+    pub(super) once: bool,
 }
 
 impl Arrivals {
@@ -137,90 +131,11 @@ impl Arrivals {
             }
         }
     }
-
-    /// Lets in who comes at time 0.
-    pub(super) fn open(&self, program: &Program, state: &mut State, lane: usize) {
-        let now = SLACK * program.dt;
-        for source in 0..self.doors.len() {
-            if state.queues.next[source].0[lane] <= now {
-                self.arrive(program, state, source, lane, now);
-            }
-        }
-    }
-
-    /// Lets in who has arrived; to be called with the ticks and positions after a step. Whether somebody came in.
-    pub(in crate::kernel) fn step(&self, program: &Program, state: &mut State) -> bool {
-        let mut came = false;
-        for source in 0..self.doors.len() {
-            for lane in state.occupied.iter() {
-                let now = (state.ticks[lane] as f64 + SLACK) * program.dt;
-                let due = state.queues.next[source].0[lane] <= now;
-                if due || state.queues.entered[source][lane] < state.queues.arrived[source][lane] {
-                    came |= self.arrive(program, state, source, lane, now);
-                }
-            }
-        }
-        came
-    }
-
-    fn arrive(&self, program: &Program, state: &mut State, source: usize, lane: usize, now: f64) -> bool {
-        let mut came = false;
-        let door = &self.doors[source];
-        let key = state.keys[lane];
-        while state.queues.next[source].0[lane] <= now {
-            let arrived = &mut state.queues.arrived[source][lane];
-            let most = if self.once { door.members.len() as u32 } else { door.most };
-            if *arrived >= most {
-                state.queues.full |= Mask::lane(lane);
-                state.queues.which[lane] = source as u32;
-                return came;
-            }
-            *arrived += 1;
-            let next = &mut state.queues.next[source].0[lane];
-            *next = after(*next, door.interval(key, *arrived), program.scenario.clock);
-        }
-        while state.queues.entered[source][lane] < state.queues.arrived[source][lane] {
-            let number = state.queues.entered[source][lane];
-            let Some(place) = door.place(state, lane, number) else {
-                state.queues.full |= Mask::lane(lane);
-                state.queues.which[lane] = source as u32;
-                return came;
-            };
-            let (member, later) = (door.members[place], number - place as u32);
-            let agent = &program.scenario.agents[member.0 as usize];
-            let entity = agent.entity + later;
-            let laws = program.starts.laws(member.0 as usize);
-            let Ok(body) = laws.draw(member, agent, entity, key) else {
-                // Nobody can move like that; such laws are refused when they are compiled.
-                state.diverged |= Mask::lane(lane);
-                return came;
-            };
-            let tries = state.queues.tries[source][lane];
-            let Some(at) =
-                free_place(program, state, lane, (member, entity), body[Parameter::Radius as usize], tries)
-            else {
-                state.queues.tries[source][lane] += 1;
-                return came;
-            };
-            state.queues.tries[source][lane] = 0;
-            state.queues.entered[source][lane] += 1;
-            state.queues.later[member.0 as usize][lane] = later;
-            if later > 0 && !state.queues.reused.has(lane) {
-                state.queues.reused |= Mask::lane(lane);
-                state.queues.which[lane] = source as u32;
-            }
-            enter(program, state, member.0 as usize, lane, &body, at, None);
-            let slot = state.slot(member.0 as usize, lane);
-            crate::kernel::dynamics::prepare(state, program.dt, slot);
-            came = true;
-        }
-        came
-    }
 }
 
 impl Door {
     /// The place for arrival `number`, counted from 0: its own, or once all have been taken the first that is free.
-    fn place(&self, state: &State, lane: usize, number: u32) -> Option<usize> {
+    pub(super) fn place(&self, state: &State, lane: usize, number: u32) -> Option<usize> {
         let number = number as usize;
         if number < self.members.len() {
             return Some(number);
@@ -232,7 +147,7 @@ impl Door {
     }
 
     /// Time between arrival `number` and the one before it, s.
-    fn interval(&self, key: TrialKey, number: u32) -> f64 {
+    pub(super) fn interval(&self, key: TrialKey, number: u32) -> f64 {
         self.every.draw(Stream::of(key, self.entity, Purpose::Arrival).uniform(number))
     }
 }
@@ -244,73 +159,4 @@ fn leave_empty(state: &mut State, agent: usize, lane: usize) {
     state.driving.clear(slot);
     state.bodies.clear(slot);
     state.present[slot.block] &= !Mask::lane(slot.lane);
-}
-
-/// A place for an agent that touches nobody, in the `tries`-th attempt to come in. Near somebody who is not there
-/// is no place yet.
-fn free_place(
-    program: &Program,
-    state: &State,
-    lane: usize,
-    (member, entity): (AgentId, u32),
-    radius: f64,
-    tries: u32,
-) -> Option<Vec2> {
-    let agent = &program.scenario.agents[member.0 as usize];
-    let around;
-    let sampler = match &agent.start.position {
-        Position::Point(point) => {
-            let free = is_free(program, &all_present(state, lane), *point, radius);
-            return free.then_some(*point);
-        }
-        Position::Within(_) => program.starts.sampler(member.0 as usize)?,
-        Position::Near { agent, within } => {
-            let slot = state.slot(agent.0 as usize, lane);
-            if !state.present[slot.block].has(slot.lane) {
-                return None;
-            }
-            let centre =
-                Vec2::new(state.motion.x[slot.block].0[slot.lane], state.motion.y[slot.block].0[slot.lane]);
-            around = Sampler::Disc { centre, radius: *within };
-            &around
-        }
-    };
-    let stream = Stream::of(state.keys[lane], entity, Purpose::Placement);
-    let others = all_present(state, lane);
-    for attempt in 0..ATTEMPTS {
-        let draw = tries.wrapping_mul(ATTEMPTS).wrapping_add(attempt);
-        let point = sampler.point(stream.uniform_pair(draw))?;
-        if is_free(program, &others, point, radius) {
-            return Some(point);
-        }
-    }
-    None
-}
-
-/// Places and radii of all who are present.
-fn all_present(state: &State, lane: usize) -> Vec<(f64, f64, f64)> {
-    let mut out = Vec::new();
-    for block in 0..state.motion.x.len() {
-        let slots = match state.layout {
-            Layout::Trials => Mask::lane(lane),
-            Layout::Agents => Mask::ALL,
-        };
-        for slot in (state.present[block] & slots).iter() {
-            out.push((
-                state.motion.x[block].0[slot],
-                state.motion.y[block].0[slot],
-                state.bodies[Parameter::Radius][block].0[slot],
-            ));
-        }
-    }
-    out
-}
-
-fn is_free(program: &Program, others: &[(f64, f64, f64)], p: Vec2, radius: f64) -> bool {
-    let apart = |&(x, y, r): &(f64, f64, f64)| {
-        let (dx, dy, touch) = (p.x - x, p.y - y, radius + r);
-        dx * dx + dy * dy >= touch * touch
-    };
-    let ground = Ground::of(&program.scenario.scene, &program.starts);
-    others.iter().all(apart) && ground.near(p, radius).all(|barrier| barrier.distance(p) >= radius)
 }

@@ -1,16 +1,14 @@
 //! Where everyone starts: points first, then at random without overlaps.
 
 use super::arrival::Arrivals;
-use super::body::Laws;
 use super::crowd::Crowd;
+use super::outcome::{Fault, Loaded, Overlapped, Shrunk};
 use super::relaxation::{self, Room};
 use super::sampler::Sampler;
-use super::{Fault, Loaded, Overlapped, Shrunk};
 use crate::base::geometry::{Bounds, Shape, Vec2};
 use crate::base::random::{Purpose, Stream, TrialKey};
 use crate::kernel::nearby::Nearby;
-use crate::model::{AgentId, Barrier, BarrierId, Body, Obstacle, Position, Scenario, Scene};
-use std::sync::Arc;
+use crate::model::{AgentId, Barrier, BarrierId, Obstacle, Position, Scenario, Scene};
 
 /// How often a free place is sought by chance.
 pub(super) const ATTEMPTS: u32 = 96;
@@ -46,10 +44,6 @@ pub struct Starts {
     /// The order of placement.
     order: Vec<u32>,
     barriers: Barriers,
-    /// Laws of the bodies, equal ones once.
-    laws: Vec<Laws>,
-    /// Whose laws are which.
-    laws_of: Vec<u32>,
 }
 
 impl Starts {
@@ -57,17 +51,6 @@ impl Starts {
     pub fn new(scenario: &Scenario) -> Self {
         let mut out = Self::default();
         let mut shapes: Vec<&Shape> = Vec::new();
-        let mut bodies: Vec<&Arc<Body>> = Vec::new();
-        for agent in &scenario.agents {
-            // Members of one declaration share their body.
-            let known = bodies.iter().rposition(|known| Arc::ptr_eq(known, &agent.body));
-            let index = known.unwrap_or_else(|| {
-                bodies.push(&agent.body);
-                out.laws.push(Laws::new(&agent.body));
-                bodies.len() - 1
-            });
-            out.laws_of.push(index as u32);
-        }
         for agent in &scenario.agents {
             out.sampler_of.push(match &agent.start.position {
                 Position::Within(shape) => {
@@ -98,11 +81,6 @@ impl Starts {
     pub(super) fn sampler(&self, agent: usize) -> Option<&Sampler> {
         let index = self.sampler_of.get(agent).copied().flatten()?;
         self.samplers.get(index as usize)
-    }
-
-    /// The laws of an agent's body.
-    pub(super) fn laws(&self, agent: usize) -> &Laws {
-        &self.laws[self.laws_of[agent] as usize]
     }
 }
 

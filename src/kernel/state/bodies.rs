@@ -1,6 +1,7 @@
 //! The parameters of all agents and what follows from them: part of the state.
 
 use crate::base::lanes::Lanes;
+use crate::base::math;
 use crate::kernel::layout::Slot;
 use crate::model::Parameter;
 use crate::model::parameter::{Range, Role};
@@ -29,6 +30,16 @@ impl Bodies {
             kick: all(0.0),
             push: all(0.0),
         }
+    }
+
+    /// Works out what follows from the parameters of a slot for steps of `dt` seconds.
+    pub(super) fn prepare(&mut self, Slot { block, lane }: Slot, dt: f64, by_itself: bool) {
+        let of = |parameter| self[parameter][block].0[lane];
+        let decay = math::exp(-dt / of(Parameter::Tau));
+        let kick = of(Parameter::Noise) * (1.0 - decay * decay).sqrt();
+        let push = 0.5 * dt / of(Parameter::Mass);
+        let found = if by_itself { (1.0, 0.0, 0.0) } else { (decay, kick, push) };
+        (self.decay[block].0[lane], self.kick[block].0[lane], self.push[block].0[lane]) = found;
     }
 
     /// Puts the values of some parameters, in the order of [`Parameter::ALL`], into a slot. Whether the reach of a force

@@ -10,6 +10,7 @@ mod bodies;
 mod clocks;
 mod driving;
 mod motion;
+pub(super) mod plans;
 mod queues;
 pub(super) mod route;
 
@@ -19,6 +20,7 @@ pub use bodies::Bodies;
 pub use clocks::Clocks;
 pub use driving::Driving;
 pub use motion::Motion;
+pub use plans::Plans;
 pub use queues::Queues;
 pub use route::{Routes, Way};
 
@@ -52,6 +54,8 @@ pub struct State {
     pub driving: Driving,
     /// Where they are on their routes.
     pub route: Routes,
+    /// The plans that those with a driver follow.
+    pub plans: Plans,
     /// States of their behaviours.
     pub behaviours: ActiveModes,
     /// Arrivals of the sources.
@@ -83,6 +87,7 @@ impl State {
             bodies: Bodies::new(blocks),
             driving: Driving::new(blocks),
             route: Routes::new(blocks),
+            plans: Plans::default(),
             behaviours: ActiveModes::default(),
             queues: Queues::default(),
             variables: Vec::new(),
@@ -90,6 +95,12 @@ impl State {
             faulty: Mask::NONE,
             faults: [None; LANES],
         }
+    }
+
+    /// Works out what follows from the parameters of a slot for steps of `dt` seconds. No driving, noise or force changes the
+    /// velocity of an agent that moves by itself.
+    pub(super) fn prepare(&mut self, slot: Slot, dt: f64) {
+        self.bodies.prepare(slot, dt, self.plans.is_stepped(slot));
     }
 
     /// Where agent `agent` of the trial in lane `lane` is kept.

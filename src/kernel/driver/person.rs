@@ -1,13 +1,14 @@
 //! One agent of one trial on its way: begin, next leg, advice, pauses. The plain counterpart of the vector
 //! code in `lanes`, which hands over to it whenever something happens.
 
-use super::stage::{Stage, Target};
+use super::stage::{Drive, Stage, Target};
 use crate::base::geometry::{Vec2, rotated};
+use crate::base::lanes::Mask;
 use crate::base::random::{Purpose, Stream, TrialKey};
 use crate::base::tick::steps_over;
 use crate::kernel::code::ground::Ground;
 use crate::kernel::code::lanes::Vector;
-use crate::kernel::program::Program;
+use crate::kernel::plan::Occasion;
 use crate::kernel::state::route::Halt;
 use crate::kernel::state::{Slot, State, Way};
 use crate::model::{Move, Parameter, Start};
@@ -32,7 +33,7 @@ pub(super) fn unit(v: Vec2) -> Option<Vec2> {
 }
 
 /// The way to where a body heads for: the nearest point of the target at least its radius inside, if there is room.
-fn way_to(target: &Target, at: Vec2, radius: f64) -> Option<Vec2> {
+pub(super) fn way_to(target: &Target, at: Vec2, radius: f64) -> Option<Vec2> {
     match target {
         Target::Rectangle(bounds) => {
             // In the same order as the vector code, so that both have the same bits.
@@ -90,7 +91,7 @@ fn reached(stage: &Stage, at: Vec2, radius: f64, origin: Vec2) -> bool {
 
 /// One slot of a state.
 pub(super) struct Person<'a> {
-    program: &'a Program,
+    drive: &'a Drive,
     state: &'a mut State,
     agent: usize,
     block: usize,
@@ -99,17 +100,18 @@ pub(super) struct Person<'a> {
 }
 
 impl<'a> Person<'a> {
-    pub(super) fn new(program: &'a Program, state: &'a mut State, block: usize, lane: usize) -> Self {
-        let agent = state.layout.agent_of(Slot { block, lane });
+    pub(super) fn new(drive: &'a Drive, state: &'a mut State, slot: Slot) -> Self {
+        let agent = state.layout.agent_of(slot);
+        let Slot { block, lane } = slot;
         let way = state.route.way(block, lane);
-        Self { program, state, agent, block, lane, way }
+        Self { drive, state, agent, block, lane, way }
     }
 
-    fn at(&self) -> Vec2 {
+    pub(super) fn at(&self) -> Vec2 {
         Vec2::new(self.state.motion.x[self.block].0[self.lane], self.state.motion.y[self.block].0[self.lane])
     }
 
-    fn radius(&self) -> f64 {
+    pub(super) fn radius(&self) -> f64 {
         self.state.bodies[Parameter::Radius][self.block].0[self.lane]
     }
 
@@ -132,7 +134,7 @@ impl<'a> Person<'a> {
         self.state.ticks[self.state.layout.trial_of(self.lane)]
     }
 
-    fn drive(&mut self, direction: Option<Vec2>, speed: f64) {
+    fn set(&mut self, direction: Option<Vec2>, speed: f64) {
         if let Some(e) = direction {
             self.state.driving.ex[self.block].0[self.lane] = e.x;
             self.state.driving.ey[self.block].0[self.lane] = e.y;
@@ -148,14 +150,14 @@ impl<'a> Person<'a> {
     fn enter(&mut self, stage: u32) {
         self.way.stage = stage;
         self.way.origin = self.at();
-        let stage = &self.program.drive.stages[stage as usize];
+        let stage = &self.drive.stages[stage as usize];
         if let Target::Pause(law) = &stage.target {
             let later = self.state.queues.later(self.agent, self.state.layout.trial_of(self.lane));
-            let entity = self.program.scenario.agents[self.agent].entity + later;
+            let entity = self.drive.scenario.agents[self.agent].entity + later;
             let stream = Stream::of(self.key(), entity, Purpose::Pause);
             let uniform = stream.uniform(stage.leg.wrapping_add(self.way.round.wrapping_mul(ROUND)));
             // A negative time or NaN is no pause; one that never ends is cut at the end of all ticks.
-            let ticks = steps_over(law.draw(uniform), self.program.dt) as u64;
+            let ticks = steps_over(law.draw(uniform), self.drive.dt) as u64;
             self.way.until = self.tick().saturating_add(ticks);
         }
     }
@@ -163,7 +165,7 @@ impl<'a> Person<'a> {
     /// Goes on to the stage that holds now; whether the agent leaves.
     fn proceed(&mut self) -> bool {
         loop {
-            let stage = &self.program.drive.stages[self.way.stage as usize];
+            let stage = &self.drive.stages[self.way.stage as usize];
             let done = match stage.target {
                 Target::Pause(_) => self.tick() >= self.way.until,
                 _ => reached(stage, self.at(), self.radius(), self.way.origin),
@@ -175,39 +177,64 @@ impl<'a> Person<'a> {
                 return stage.leaves;
             }
             self.enter(self.way.stage + 1);
+            self.ask(Occasion::Leg);
         }
+    }
+
+    /// Where its stage leads.
+    pub(super) fn target(&self) -> &'a Target {
+        &self.drive.stages[self.way.stage as usize].target
+    }
+
+    /// Number of the next point of its way.
+    pub(super) fn point(&self) -> usize {
+        self.state.plans.held(Slot { block: self.block, lane: self.lane }).point
+    }
+
+    /// Whether the agent is inside the last goal.
+    pub(super) fn has_arrived(&self) -> bool {
+        let stage = &self.drive.stages[self.way.stage as usize];
+        stage.last && reached(stage, self.at(), self.radius(), self.way.origin)
     }
 
     /// Sets the driving direction and speed that the route wants now.
     fn head(&mut self) {
-        let stage = &self.program.drive.stages[self.way.stage as usize];
+        let stage = &self.drive.stages[self.way.stage as usize];
         if matches!(stage.target, Target::Onward) {
             let (direction, moves) = self.way.onward;
             let speed = if moves { self.speed() } else { 0.0 };
-            self.drive(moves.then_some(direction), speed);
+            self.set(moves.then_some(direction), speed);
             return;
         }
-        let at = self.at();
-        let arrived = stage.last && reached(stage, at, self.radius(), self.way.origin);
-        match way_to(&stage.target, at, self.radius()) {
-            Some(way) if !arrived => {
+        let way = way_to(&stage.target, self.at(), self.radius());
+        match way {
+            Some(way) if !self.has_arrived() => {
                 let speed = self.speed();
-                self.drive(unit(way), speed);
+                self.set(unit(way), speed);
             }
-            _ => self.drive(None, 0.0),
+            _ => self.set(None, 0.0),
         }
     }
 
-    /// Sets driving direction and speed, under advice or not.
+    /// The driver, if there is one, is to be asked.
+    fn ask(&mut self, occasion: Occasion) {
+        if self.drive.drivers.of(self.agent).is_some() {
+            self.state.plans.ask(Slot { block: self.block, lane: self.lane }, occasion);
+        }
+    }
+
+    /// Sets driving direction and speed, under advice or not; on a plan these are set elsewhere.
     fn follow(&mut self) {
         if self.way.advised_until > 0 && self.tick() >= self.way.advised_until {
             self.way.advised_until = 0;
+            self.ask(Occasion::Diverted);
         }
+        let led = self.state.plans.led(self.block).has(self.lane);
         if self.way.advised_until > 0 {
             let direction = unit(self.way.advice);
             let speed = if direction.is_some() { self.speed() } else { 0.0 };
-            self.drive(direction, speed);
-        } else {
+            self.set(direction, speed);
+        } else if !led {
             self.head();
         }
     }
@@ -217,16 +244,16 @@ impl<'a> Person<'a> {
         let moving = unit(start.velocity);
         let speed = start.velocity.norm();
         self.way = Way::default();
-        let first = self.program.drive.first[self.agent];
+        let first = self.drive.first[self.agent];
         self.enter(first);
         // The first goal, past the pauses before it.
-        let stages = &self.program.drive.stages[first as usize..];
+        let stages = &self.drive.stages[first as usize..];
         let towards = stages
             .iter()
             .take(stages.iter().position(|stage| stage.last).map_or(0, |last| last + 1))
             .find_map(|stage| way_to(&stage.target, self.at(), self.radius()))
             .and_then(unit);
-        let onward = matches!(self.program.drive.stages[first as usize].target, Target::Onward);
+        let onward = matches!(self.drive.stages[first as usize].target, Target::Onward);
         if onward && moving.is_some() {
             // Who goes on as recorded has the recorded speed as driving speed.
             self.state.bodies[Parameter::Speed][self.block].0[self.lane] = speed;
@@ -235,7 +262,7 @@ impl<'a> Person<'a> {
         // felt alike all around.
         let direction = towards.or(moving.filter(|_| onward)).unwrap_or_else(Vec2::zeros);
         self.way.onward = (direction, moving.is_some());
-        self.drive(Some(direction), 0.0);
+        self.set(Some(direction), 0.0);
         // Who starts at a goal goes on to the next; nobody leaves before the first step.
         self.proceed();
         if let Some((advice, ticks)) = advice
@@ -258,6 +285,7 @@ impl<'a> Person<'a> {
     pub(super) fn divert(mut self, from: Halt, round: u32, comes: bool) {
         self.way.round = round;
         self.enter(from.stage);
+        self.ask(Occasion::Diverted);
         if let Some(left) = from.left {
             self.way.until = self.tick().saturating_add(left);
         }
@@ -270,7 +298,7 @@ impl<'a> Person<'a> {
         }
     }
 
-    /// Takes over a speed that has changed.
+    /// Takes over a speed or a plan that has changed.
     pub(super) fn renew(mut self) {
         self.follow();
         self.keep();
@@ -279,10 +307,13 @@ impl<'a> Person<'a> {
     /// Does whatever is due at the present position and tick.
     pub(super) fn step(mut self) {
         if self.proceed() {
-            let (block, slot) = (self.block, crate::base::lanes::Mask::lane(self.lane));
-            self.drive(None, 0.0);
-            self.state.present[block] &= !slot;
+            self.set(None, 0.0);
+            self.state.present[self.block] &= !Mask::lane(self.lane);
+            self.state.plans.clear(Slot { block: self.block, lane: self.lane });
         } else {
+            if self.state.plans.on_way(self.block).has(self.lane) && self.has_arrived() {
+                self.state.plans.end(Slot { block: self.block, lane: self.lane });
+            }
             self.follow();
         }
         self.keep();

@@ -4,7 +4,7 @@
 use super::person::PASSING;
 use super::stage::{Stage, Target};
 use crate::base::lanes::{Lanes, Mask};
-use crate::kernel::code::lanes::{Truth, Vector};
+use crate::kernel::code::lanes::{Truth, Vector, narrow, widen};
 use crate::kernel::state::State;
 use crate::kernel::state::route::Party;
 use crate::model::Parameter;
@@ -24,7 +24,7 @@ pub(super) fn steer<S: Simd>(
     if slots.is_empty() {
         return Mask::NONE;
     }
-    let now = (state.layout, &state.ticks);
+    let over = state.route.advice_over(block, slots, (state.layout, &state.ticks));
     let (x, y, radius) = (
         load(simd, block, &state.motion.x),
         load(simd, block, &state.motion.y),
@@ -62,9 +62,9 @@ pub(super) fn steer<S: Simd>(
             (dx, dy, ground.contains(x, y))
         }
         // Nothing that a step changes: who goes on, rests or waits has been told once.
-        Target::Onward | Target::Rest => return state.route.advice_over(block, slots, now),
+        Target::Onward | Target::Rest => return over,
         Target::Pause(_) => {
-            return state.route.advice_over(block, slots, now) | state.route.pause_over(block, slots, now);
+            return over | state.route.pause_over(block, slots, (state.layout, &state.ticks));
         }
     };
     let square = dx * dx + dy * dy;
@@ -73,35 +73,47 @@ pub(super) fn steer<S: Simd>(
     // Without a direction the last one stays.
     let turns = square.simd_gt(Vector::splat(simd, super::person::NO_LENGTH))
         & square.simd_lt(Vector::splat(simd, f64::INFINITY));
-    let advised = state.route.advised[block];
-    let walking = Truth::<S>::from_bitmask(simd, u64::from((slots & !advised).0));
+    // Those under advice, or on a plan, are steered elsewhere.
+    let led = state.route.advised[block] | state.plans.led(block);
+    let walking = widen(simd, slots & !led);
     let (ex, ey) = (load(simd, block, &state.driving.ex), load(simd, block, &state.driving.ey));
     let drive = load(simd, block, &state.driving.speed);
     let speed = load(simd, block, &state.bodies[Parameter::Speed]);
     let turning = walking & turns & !reached;
-    let (new_x, new_y) = (turning.select(dx * inverse, ex), turning.select(dy * inverse, ey));
+    turn(simd, state, block, (turning.select(dx * inverse, ex), turning.select(dy * inverse, ey)));
+    let wanted = reached.select(Vector::splat(simd, 0.0), speed);
+    walking.select(wanted, drive).store_slice(&mut state.driving.speed[block].0);
+    let done = narrow(reached);
+    let stays = stage.last && !stage.leaves;
+    // Whoever stays at a goal ends the way of points that led there.
+    over | slots & if stays { done & state.plans.on_way(block) } else { done }
+}
+
+/// Turns the driving directions of a block. The step just made was driven along the direction at its beginning: half of what
+/// the driving force would have been more along the present one is added. Nothing where a step leads past the aim. The
+/// difference is +0 where a leg, a rest or advice ended, and changes no bit.
+#[inline(always)]
+pub(super) fn turn<S: Simd>(
+    simd: S,
+    state: &mut State,
+    block: usize,
+    (new_x, new_y): (Vector<S>, Vector<S>),
+) {
+    let (ex, ey) = (load(simd, block, &state.driving.ex), load(simd, block, &state.driving.ey));
+    let drive = load(simd, block, &state.driving.speed);
     new_x.store_slice(&mut state.driving.ex[block].0);
     new_y.store_slice(&mut state.driving.ey[block].0);
-    // The step just made was driven along the direction at its beginning: half of what the driving force would have
-    // been more along the present one. Nothing where a step leads past the aim. The difference is +0 where a leg, a
-    // rest or advice ended, and changes no bit.
     let (zero, one) = (Vector::splat(simd, 0.0), Vector::splat(simd, 1.0));
     let rest = Vector::splat(simd, 0.5) * (one - load(simd, block, &state.bodies.decay)) * drive;
     let rest = (ex * new_x + ey * new_y).simd_gt(zero).select(rest, zero);
     let (vx, vy) = (load(simd, block, &state.motion.vx), load(simd, block, &state.motion.vy));
     (vx - rest * (ex - new_x)).store_slice(&mut state.motion.vx[block].0);
     (vy - rest * (ey - new_y)).store_slice(&mut state.motion.vy[block].0);
-    let wanted = reached.select(Vector::splat(simd, 0.0), speed);
-    walking.select(wanted, drive).store_slice(&mut state.driving.speed[block].0);
-    let done = Mask(reached.to_bitmask() as u8);
-    let stays = stage.last && !stage.leaves;
-    state.route.advice_over(block, slots, (state.layout, &state.ticks))
-        | slots & if stays { Mask::NONE } else { done }
 }
 
 /// A field of a block.
 #[inline(always)]
-fn load<S: Simd>(simd: S, block: usize, field: &[Lanes]) -> Vector<S> {
+pub(super) fn load<S: Simd>(simd: S, block: usize, field: &[Lanes]) -> Vector<S> {
     Vector::from_slice(simd, &field[block].0)
 }
 

@@ -1,9 +1,12 @@
 //! Routes as tables of stages: what every trial needs to know of them, worked out once.
 
+use super::drivers::Drivers;
+use super::sight::Sight;
 use crate::base::geometry::{Bounds, Shape, Vec2};
 use crate::base::random::name_hash;
 use crate::kernel::code::ground::{Ground, upright};
 use crate::model::{Goal, Law, Leg, Route, Scenario};
+use std::sync::Arc;
 
 /// Where a stage leads.
 #[derive(Clone, Debug)]
@@ -33,6 +36,9 @@ pub(super) enum Target {
 #[derive(Clone, Debug)]
 pub(super) struct Stage {
     pub(super) target: Target,
+    /// Its route, and which leg of that it is.
+    pub(super) route: u32,
+    pub(super) at: usize,
     /// Number of the leg in its route; addresses the draw of a pause.
     pub(super) leg: u32,
     /// Whether nothing comes after it.
@@ -41,9 +47,17 @@ pub(super) struct Stage {
     pub(super) leaves: bool,
 }
 
-/// All routes of a scenario.
-#[derive(Clone, Debug, Default)]
+/// All routes of a scenario, and the drivers of a run.
+#[derive(Clone, Debug)]
 pub struct Drive {
+    pub(super) scenario: Arc<Scenario>,
+    /// Length of a step, s.
+    pub(in crate::kernel) dt: f64,
+    pub(super) drivers: Drivers,
+    /// What hides points of ways; of no barrier without drivers.
+    pub(super) sight: Sight,
+    /// The routes that stages belong to.
+    pub(super) routes: Vec<Route>,
     pub(super) stages: Vec<Stage>,
     /// First stage of each agent.
     pub(super) first: Vec<u32>,
@@ -64,11 +78,12 @@ fn target(scenario: &Scenario, leg: &Leg) -> Target {
     }
 }
 
-/// The stages of a route; its legs count from `from`.
-fn stages(scenario: &Scenario, route: &Route, from: u32) -> Vec<Stage> {
+/// The stages of a route, the `number`-th of all; its legs count from `from`.
+fn stages(scenario: &Scenario, route: &Route, from: u32, number: u32) -> Vec<Stage> {
+    let stage = |target, (route, at), leg, (last, leaves)| Stage { target, route, at, leg, last, leaves };
     let (legs, leaves) = match route {
         Route::Onward => {
-            return vec![Stage { target: Target::Onward, leg: 0, last: true, leaves: false }];
+            return vec![stage(Target::Onward, (number, 0), 0, (true, false))];
         }
         Route::Legs { legs, then_leave } => (legs.as_slice(), *then_leave),
     };
@@ -80,16 +95,11 @@ fn stages(scenario: &Scenario, route: &Route, from: u32) -> Vec<Stage> {
         .enumerate()
         .map(|(k, leg)| {
             let last = k + 1 == used.len();
-            Stage {
-                target: target(scenario, leg),
-                leg: from.wrapping_add(k as u32),
-                last,
-                leaves: last && leaves,
-            }
+            stage(target(scenario, leg), (number, k), from.wrapping_add(k as u32), (last, last && leaves))
         })
         .collect();
     if stages.is_empty() {
-        stages.push(Stage { target: Target::Rest, leg: 0, last: true, leaves: false });
+        stages.push(stage(Target::Rest, (number, 0), 0, (true, false)));
     }
     stages
 }
@@ -97,17 +107,20 @@ fn stages(scenario: &Scenario, route: &Route, from: u32) -> Vec<Stage> {
 impl Drive {
     /// Works out the routes. Neighbours in the list of agents with the same route share its stages, so
     /// that a crowd is steered as one.
-    pub fn new(scenario: &Scenario) -> Self {
-        let mut out = Self::default();
+    pub fn new(scenario: &Arc<Scenario>, drivers: Drivers) -> Self {
+        let sight = if drivers.is_empty() { Sight::default() } else { Sight::new(&scenario.scene) };
+        let mut out = Self {
+            scenario: Arc::clone(scenario),
+            dt: scenario.clock.step_seconds(),
+            drivers,
+            sight,
+            routes: Vec::new(),
+            stages: Vec::new(),
+            first: Vec::new(),
+        };
         for (k, agent) in scenario.agents.iter().enumerate() {
             let same = k.checked_sub(1).filter(|&before| scenario.agents[before].route == agent.route);
-            let first = if let Some(before) = same {
-                out.first[before]
-            } else {
-                let first = out.stages.len() as u32;
-                out.stages.extend(stages(scenario, &agent.route, 0));
-                first
-            };
+            let first = if let Some(before) = same { out.first[before] } else { out.add(&agent.route, 0) };
             out.first.push(first);
         }
         out
@@ -115,9 +128,15 @@ impl Drive {
 
     /// Adds a route that a state of a behaviour demands; its first stage. Its legs have numbers of their own: they
     /// follow from the name of the state, so that nothing declared elsewhere moves them.
-    pub(in crate::kernel) fn detour(&mut self, scenario: &Scenario, route: &Route, name: &str) -> u32 {
+    pub(in crate::kernel) fn detour(&mut self, route: &Route, name: &str) -> u32 {
+        self.add(route, name_hash(name) as u32)
+    }
+
+    fn add(&mut self, route: &Route, from: u32) -> u32 {
         let first = self.stages.len() as u32;
-        self.stages.extend(stages(scenario, route, name_hash(name) as u32));
+        let number = self.routes.len() as u32;
+        self.stages.extend(stages(&self.scenario, route, from, number));
+        self.routes.push(route.clone());
         first
     }
 }

@@ -1,0 +1,89 @@
+//! What a driver is told.
+
+use crate::base::geometry::Vec2;
+use crate::base::lanes::Lanes;
+use crate::base::random::TrialKey;
+use crate::kernel::plan::{Occasion, Plan};
+use crate::kernel::state::{Slot, State};
+use crate::model::{AgentId, Goal, Leg, Parameter, Scenario};
+
+/// What a driver is told when it is asked. Lengths are in m, times in s, velocities in m/s.
+#[derive(Clone, Copy, Debug)]
+pub struct Situation<'a> {
+    /// Why it is asked.
+    pub occasion: Occasion,
+    /// The agent.
+    pub agent: AgentId,
+    /// Stable number of the person; addresses its random numbers.
+    pub entity: u32,
+    /// The trial.
+    pub key: TrialKey,
+    /// How often the driver of this person was asked before; numbers of draws may follow from it.
+    pub asked: u32,
+    /// Time of the state.
+    pub time: f64,
+    /// How much later the plan begins: what is left of a trajectory that ends within the next step, else 0.
+    pub after: f64,
+    /// Where the agent is when the plan begins.
+    pub position: Vec2,
+    /// Its velocity then.
+    pub velocity: Vec2,
+    /// The legs of its route that are left, the present one first; none if it has no goals.
+    pub legs: &'a [Leg],
+    /// Whether it departs at the end of them.
+    pub then_leave: bool,
+    /// Under advice: the direction, zero for a stop.
+    pub advice: Option<Vec2>,
+    /// The plan that there is.
+    pub plan: &'a Plan,
+    /// The scenario.
+    pub scenario: &'a Scenario,
+    pub(super) state: &'a State,
+    pub(super) slot: Slot,
+}
+
+/// Another agent in the scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Other {
+    /// Which.
+    pub agent: AgentId,
+    /// Its position, m.
+    pub position: Vec2,
+    /// Its velocity, m/s; of one that moves by itself, that of its present or next step.
+    pub velocity: Vec2,
+    /// Its radius, m.
+    pub radius: f64,
+}
+
+impl<'a> Situation<'a> {
+    /// The goal of the present leg; none in a pause, or without goals.
+    pub fn goal(&self) -> Option<&'a Goal> {
+        match self.legs.first() {
+            Some(Leg::To(goal)) => Some(goal),
+            _ => None,
+        }
+    }
+
+    /// A parameter of the agent at present, SI units.
+    pub fn parameter(&self, parameter: Parameter) -> f64 {
+        self.state.bodies[parameter][self.slot.block].0[self.slot.lane]
+    }
+
+    /// All other agents that are in the scene of this trial, by number.
+    pub fn others(&self) -> impl Iterator<Item = Other> + '_ {
+        let (state, own) = (self.state, self.agent);
+        let trial = state.layout.trial_of(self.slot.lane);
+        (0..state.agents).map(move |agent| (agent, state.slot(agent, trial))).filter_map(
+            move |(agent, slot)| {
+                let here = state.present[slot.block].has(slot.lane) && agent != own.0 as usize;
+                let of = |field: &[Lanes]| field[slot.block].0[slot.lane];
+                here.then(|| Other {
+                    agent: AgentId(agent as u32),
+                    position: Vec2::new(of(&state.motion.x), of(&state.motion.y)),
+                    velocity: Vec2::new(of(&state.motion.vx), of(&state.motion.vy)),
+                    radius: of(&state.bodies[Parameter::Radius]),
+                })
+            },
+        )
+    }
+}

@@ -1,0 +1,59 @@
+//! Plans: what a driver answers when it is asked where an agent goes. Following them is the kernel's own (`driver`).
+
+mod trajectory;
+
+pub(super) use trajectory::Piece;
+pub use trajectory::{Sample, Trajectory};
+
+use crate::base::geometry::Vec2;
+use std::sync::Arc;
+
+/// Where an agent goes until its driver is asked again. Times count from the moment at which the plan begins.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Plan {
+    /// The plan that there is goes on.
+    Keep,
+    /// Straight to the goal of the leg, as without a driver; in a pause and at the last goal the agent stands.
+    #[default]
+    Straight,
+    /// Stands for so many seconds (infinite: for good). Then the driver is asked again.
+    Stand(f64),
+    /// Heads for each of these points in turn, m, and then for the goal of the leg. A point is passed near it, or across the
+    /// line through it, once the next one is in sight. A point out of sight is asked about every 0.5 s.
+    Way(Arc<[Vec2]>),
+    /// Is driven along a trajectory by its driving velocity; all forces act on it.
+    Follow(Arc<Trajectory>, Limits),
+    /// Is moved along a trajectory by itself: no force moves it. Others feel it as a body with its velocity, which in
+    /// contact does not yield. The trajectory begins where the agent is.
+    Step(Arc<Trajectory>),
+}
+
+/// How an agent is driven along a trajectory: at plan time `t` with `v(t) + tau a(t)`, which compensates the relaxation, and
+/// a correction towards `p(t)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Largest correction, m/s; it is the distance from `p(t)` over 1 s.
+    pub correction: f64,
+    /// Farther than this from `p(t)`, m, the time of the plan stands still.
+    pub lag: f64,
+    /// Farther than this from `p(t)`, m, the driver is asked for another plan, at most every 0.5 s.
+    pub leave: f64,
+}
+
+/// Why a driver is asked.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Occasion {
+    /// A trial begins.
+    #[default]
+    Begins,
+    /// The agent comes in by a source.
+    Enters,
+    /// A leg of the route is finished: the next one begins.
+    Leg,
+    /// A behaviour changed the route, or advice ended.
+    Diverted,
+    /// The agent is farther from its plan than the plan allows, or the next point of a way is out of sight.
+    Left,
+    /// The plan ends within the next step; the new plan begins when it does.
+    Ended,
+}
