@@ -485,13 +485,9 @@ impl<'a> Elaborator<'a> {
                     Typed::Num(num, _) if num.is_drawn() => "is drawn in each trial",
                     _ => "changes during a trial",
                 };
-                let error = Diagnostic::error(
-                    Code::E0304,
-                    expr.span,
-                    "the value must be known before a trial starts",
-                )
-                .label(format!("{} that {when}", found.noun()));
-                self.report(error)
+                let said = "the value must be known before a trial starts";
+                let error = Diagnostic::error(Code::E0304, expr.span, said);
+                self.report(error.label(format!("{} that {when}", found.noun())))
             }
             found => self.mismatch(expr.span, "a number", &found),
         }

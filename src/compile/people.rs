@@ -108,13 +108,9 @@ impl<'a> Elaborator<'a> {
             }
             (Some(count), None) => self.count(count),
             (Some(count), Some(_)) => {
-                let error = Diagnostic::error(
-                    Code::E0402,
-                    count.span,
-                    "the recording determines the number of agents",
-                )
-                .hint("remove the number in brackets");
-                self.report(error)
+                let said = "the recording determines the number of agents";
+                let error = Diagnostic::error(Code::E0402, count.span, said);
+                self.report(error.hint("remove the number in brackets"))
             }
             (None, None) if decl.plural => {
                 let error = Diagnostic::error(
@@ -311,11 +307,10 @@ impl<'a> Elaborator<'a> {
     pub(super) fn count(&mut self, expr: &Expr) -> Lowered<usize> {
         let number = self.number_of(expr, Dimension::NONE, &Locals::default())?;
         match number.as_whole() {
-            Some(n) if n < 0 => self.report(Diagnostic::error(
-                Code::E0402,
-                expr.span,
-                format!("the number of agents cannot be negative (got {n})"),
-            )),
+            Some(n) if n < 0 => {
+                let said = format!("the number of agents cannot be negative (got {n})");
+                self.report(Diagnostic::error(Code::E0402, expr.span, said))
+            }
             Some(n) if n as usize <= MOST_AGENTS => Ok(n as usize),
             Some(n) => self.report(Diagnostic::error(
                 Code::E0402,
@@ -405,10 +400,8 @@ impl<'a> Elaborator<'a> {
             ("the agent is declared later".to_owned(), hint)
         } else {
             // All others that stand before are known.
-            (
-                format!("agents from source `{name}` are not present at the start"),
-                "start near an agent, or at a place",
-            )
+            let said = format!("agents from source `{name}` are not present at the start");
+            (said, "start near an agent, or at a place")
         };
         self.report(Diagnostic::error(Code::E0403, agent.span, title).hint(hint))
     }
