@@ -382,7 +382,7 @@ fn a_rank_with_another_model_is_refused() {
     Arc::make_mut(&mut other.worlds[0].scenario).horizon.0 += 1;
     let refused = head(&study, vec![rank(&study, 1, u64::MAX), rank(&other, 2, u64::MAX)]).err().unwrap();
     assert!(matches!(&refused, Fault::Rank { rank: 2, .. }), "{refused}");
-    assert!(refused.to_string().contains("another model"), "{refused}");
+    assert!(refused.to_string().contains("its model differs"), "{refused}");
     // Nor is one that says the same of another version.
     let change = |number, message: &mut Vec<u8>| message[6] ^= u8::from(number == 0);
     let refused = head(&study, vec![relayed(&study, change)]).err().unwrap();

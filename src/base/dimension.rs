@@ -19,6 +19,8 @@ impl Dimension {
     pub const TIME: Self = Self([0, 0, 1, 0, 0]);
     /// m/s
     pub const SPEED: Self = Self([0, 1, -1, 0, 0]);
+    /// 1/s
+    pub const RATE: Self = Self([0, 0, -1, 0, 0]);
     /// N
     pub const FORCE: Self = Self([1, 1, -2, 0, 0]);
     /// kg/s^2
@@ -105,6 +107,7 @@ pub fn describe(dimension: Dimension) -> String {
         Dimension::ANGLE => "an angle",
         Dimension::STEPS => "a number of steps",
         Dimension::DENSITY => "a density",
+        Dimension::RATE => "a rate",
         _ => "a quantity",
     };
     format!("{name} ({dimension})")

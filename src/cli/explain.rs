@@ -31,8 +31,8 @@ pub(super) fn run(arguments: &Explain, colors: Colors) -> Exit {
     let hint = nearest(&wanted.trim().to_ascii_uppercase(), Code::ALL.iter().map(|code| code.name()))
         .or_else(|| nearest(wanted.trim(), PROCEDURES.iter().map(|one| one.name).chain(BuiltIn::names())));
     let hint = hint.map_or_else(
-        || "`smc explain` lists all".to_owned(),
-        |near| format!("did you mean {near}? `smc explain` lists all"),
+        || "`smc explain` lists all names".to_owned(),
+        |near| format!("did you mean {near}? `smc explain` lists all names"),
     );
     let said = format!("unknown code, procedure or function `{wanted}`");
     complaint::tell(&complaint::argument(said, hint), &[], colors);

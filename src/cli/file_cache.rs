@@ -124,7 +124,7 @@ mod tests {
         assert_eq!(cache.open("a", || Err("from the disk".to_owned())), Ok(vec![1]));
         assert_eq!(
             cache.open("b", || Err("from the disk".to_owned())),
-            Err("`b` was not handed over".to_owned())
+            Err("`b` was not sent by the main process".to_owned())
         );
     }
 

@@ -225,7 +225,7 @@ impl Elaborator<'_> {
             return Ok(value);
         }
         let (name, noun) = (argument.name, argument.kind.noun());
-        let said = format!("`{name}` is {value}, but is {noun} from {low} to {high}");
+        let said = format!("`{name}` must be {noun} from {low} to {high} (got {value})");
         let error = Diagnostic::error(Code::E0604, span, said);
         self.report(hangs_on.into_iter().fold(error, Diagnostic::hanging_on))
     }

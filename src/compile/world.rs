@@ -70,7 +70,7 @@ impl<'a> Elaborator<'a> {
             };
             let reserved = match (&meaning, name.name.as_str()) {
                 (Meaning::Kind(_), name) => Kind::named(name)
-                    .map(|kind| format!("`{}` is {}, from which kinds start", kind.name(), kind.meaning())),
+                    .map(|kind| format!("`{}` is the name of {}", kind.name(), kind.meaning())),
                 (_, "self") => Some("`self` is the agent that has a behaviour".to_owned()),
                 _ => None,
             };

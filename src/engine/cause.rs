@@ -47,7 +47,7 @@ pub(super) fn unresolved(
             return format!("{reason} (at {time})");
         }
         if run.end(0) == Some(End::Diverged) {
-            return format!("it diverged at {time}: {}", divergence(program, state));
+            return format!("diverged at {time}: {}", divergence(program, state));
         }
         // As for a worker: only where something is looked at in this state that has no value.
         let lost = group.read(&run).has(0);

@@ -227,7 +227,9 @@ impl Parameter {
             Range::Share if high > 1.0 => Some(format!("`{name}` must be between 0 and 1{truncate}")),
             _ if low > *limit => {
                 let unit = self.unit();
-                Some(format!("a `{name}` of more than {limit} {unit} is nobody's: every trial would diverge"))
+                Some(format!(
+                    "`{name}` exceeds {limit} {unit}, the limit for a person; every trial would diverge"
+                ))
             }
             _ => None,
         }

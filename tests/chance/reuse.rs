@@ -54,7 +54,7 @@ fn with_too_few_places_for_those_at_once_a_trial_is_unresolved() {
     let run = answered(&study, 0, 1, 1_000);
     assert_eq!(run.results[0].counts.unresolved, 3);
     let warning = &run.results[0].warnings[0];
-    assert!(warning.contains("more than 5 people") && warning.contains("`doors`"), "{warning}");
+    assert!(warning.contains("more than 5 agents") && warning.contains("`doors`"), "{warning}");
 }
 
 #[test]

@@ -117,7 +117,7 @@ fn a_wrong_call_has_a_code_and_a_hint() {
         (&["fmt", "a.txt"], "E0705", "--language"),
         (&["fmt", "none.scn"], "E0701", "relative"),
         (&["fmt", "-", "-"], "E0701", "relative"),
-        (&["explain", "E9999"], "E0705", "lists all codes"),
+        (&["explain", "E9999"], "E0705", "lists all names"),
         (&["drift", "none.csv", "--before", "0.9", "--after", "0.8"], "E0701", "relative"),
         (&["drift", "a.scn", "--before", "0.9", "--after", "0.8"], "E0707", "0 or 1"),
         (&["drift", "a.scn", "--before", "0.9", "--after", "0.9"], "E0705", "--before"),

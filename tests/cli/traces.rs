@@ -386,7 +386,7 @@ fn show_tells_of_behaviours_and_sources() {
     let place = Place::new(&[("a.scn", include_str!("../../models/distracted.scn"))]);
     let said = place.call(&["show", "a.scn"]);
     for line in [
-        "People: 13",
+        "Agents: 13",
         "        on advice: 0.8: follow | 0.2: ignore",
         "        attentive: after exponential(8 s) -> looking",
         "        looking: speed = 0.5 * speed; attention = 0.3; after uniform(2 s, 5 s) -> attentive",

@@ -53,7 +53,7 @@ impl Elaborator<'_> {
             let error = Diagnostic::error(
                 Code::E0404,
                 expr.span,
-                format!("`{}` is a distribution, and is no part of an expression", function.name),
+                format!("the distribution `{}` cannot be part of an expression", function.name),
             )
             .hint("use it as the value of a field or of `after`; it may have a factor: `poisson(4) * (1 s / 3)`");
             return self.report(error);

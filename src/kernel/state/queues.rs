@@ -36,8 +36,9 @@ impl Queues {
     pub fn overrun(&self, sources: &[Source], lane: usize) -> Option<String> {
         let source = sources.get(self.which[lane] as usize).filter(|_| self.full.has(lane))?;
         let (count, name) = (source.members.len(), &source.name);
-        let words = if self.reused.has(lane) { "are there at once from" } else { "came by" };
-        Some(format!("more than {count} people {words} `{name}`; a larger `limit` in it keeps room for them"))
+        let words =
+            if self.reused.has(lane) { "are present at once from source" } else { "arrived by source" };
+        Some(format!("more than {count} agents {words} `{name}`; write a larger `limit`"))
     }
 
     /// Why a question that follows single people has no answer in the trial of a lane, if that is the reason.
@@ -45,8 +46,8 @@ impl Queues {
         let source = sources.get(self.which[lane] as usize).filter(|_| self.reused.has(lane))?;
         let (count, name) = (source.members.len(), &source.name);
         Some(format!(
-            "more than {} came by `{name}`, and this follows single ones of them; a larger `limit` keeps a place for each",
-            if count == 1 { "1 person".to_owned() } else { format!("{count} people") }
+            "more than {} arrived by source `{name}`, and the formula follows single agents of it; write a larger `limit`",
+            if count == 1 { "1 agent".to_owned() } else { format!("{count} agents") }
         ))
     }
 
