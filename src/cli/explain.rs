@@ -43,20 +43,27 @@ pub(super) fn run(arguments: &Explain, colors: Colors) -> Exit {
 fn function(built_in: &BuiltIn) -> Option<String> {
     let (_, manual) = MANUAL.split_once("\n## Properties\n")?;
     let (call, name) = (format!("`{}(", built_in.name), format!("`{}`", built_in.name));
-    let row = |place: usize| {
+    // A table has a column of units, or none.
+    let row = |is_call: bool| {
         manual.lines().filter(|line| line.starts_with("| `")).find_map(|line| {
-            let cells: Vec<&str> = line.trim_matches('|').splitn(3, " | ").map(str::trim).collect();
-            let [calls, unit, value] = cells[..] else { return None };
+            let cells: Vec<&str> = line.trim_matches('|').split('|').map(str::trim).collect();
+            let (calls, unit, value) = match cells[..] {
+                [calls, value] => (calls, "", value),
+                [calls, unit, value] => (calls, unit, value),
+                _ => return None,
+            };
             let unit = if unit.is_empty() { String::new() } else { format!(" ({unit})") };
-            cells[place].contains(&call).then(|| format!("{}{unit}\n\n{value}\n", calls.replace('`', "")))
+            let place = if is_call { calls } else { value };
+            place.contains(&call).then(|| format!("{}{unit}\n\n{value}\n", calls.replace('`', "")))
         })
     };
     let paragraph = || {
-        let texts = manual.split("\n\n").filter(|text| !text.starts_with(['|', '`', '#']));
+        let is_text = |text: &&str| !text.starts_with(['|', '#']) && !text.starts_with("```");
+        let texts = manual.split("\n\n").filter(is_text);
         let found = texts.into_iter().find(|text| text.contains(&call) || text.contains(&name))?;
         Some(format!("{}\n\n{found}\n", built_in.name))
     };
-    row(0).or_else(|| row(2)).or_else(paragraph)
+    row(true).or_else(|| row(false)).or_else(paragraph)
 }
 
 fn finish(text: &str, colors: Colors) -> Exit {
