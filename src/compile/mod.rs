@@ -32,6 +32,7 @@ mod observed;
 mod people;
 mod phrase;
 mod places;
+mod positions;
 pub mod presets;
 mod process;
 mod queries;
