@@ -42,6 +42,7 @@ pub mod library;
 pub mod logic;
 pub mod model;
 pub mod report;
+pub mod route;
 pub mod stats;
 pub mod syntax;
 

@@ -15,7 +15,8 @@ use crate::engine::outcome::{Failure, Finding, Run};
 use crate::engine::{
     Budget, Call, CallForecast, CommandLine, Fault, Ranks, Threads, forecast, run as run_study,
 };
-use crate::kernel::driver::straight;
+use crate::model::Scenario;
+use crate::route::Ways;
 use crate::library;
 use crate::report::{self, ExitCode as Exit, Format, Palette};
 use crate::syntax::codes::Code;
@@ -38,7 +39,7 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     }
     complaint::diagnose(&inputs, colors);
     let overwritten = output::guard(arguments.report.as_deref(), &paths).err();
-    let reporter = Reporter {
+    let mut reporter = Reporter {
         arguments,
         colors,
         deadline: deadline.clone(),
@@ -56,6 +57,12 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
         Ok(only) => only,
         Err(error) => return reporter.refuse(error),
     };
+    let ways = Ways::default();
+    let doubts = library::survey(study, &only, &ways);
+    if library::is_refused(&doubts) {
+        return reporter.refuse_for(&doubts);
+    }
+    reporter.warn(&doubts);
     if arguments.threads == Some(0) {
         return reporter.refuse(complaint::argument(
             "`--threads` must be positive (got 0)",
@@ -75,7 +82,8 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     };
     drop(cache);
     let place = |span: Span| locate(&inputs.sources, span);
-    let call = Call { seed: arguments.seed, line: line(arguments), only, place: &place, drivers: &straight };
+    let drivers = move |scenario: &Scenario, seed: u64| ways.drivers(scenario, seed);
+    let call = Call { seed: arguments.seed, line: line(arguments), only, place: &place, drivers: &drivers };
     if arguments.forecast {
         deadline.enter(Phase::Sampling);
         return match forecast(study, &call, pool.executor(), &budget) {
@@ -172,6 +180,14 @@ impl Reporter<'_> {
         self.findings.extend(inputs::findings(errors, self.sources));
         self.errors += errors.len();
         self.refused()
+    }
+
+    /// Warnings that are known before the first trial.
+    fn warn(&mut self, warnings: &[Diagnostic]) {
+        if !warnings.is_empty() {
+            complaint::tell_all(warnings, self.sources, self.colors);
+            self.findings.extend(inputs::findings(warnings, self.sources));
+        }
     }
 
     /// The inputs are wrong; standard error has said how.

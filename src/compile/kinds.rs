@@ -5,7 +5,7 @@ use super::laws::value_span;
 use super::presets::{PRESETS, law};
 use super::symbols::{Meaning, unknown};
 use crate::model::{self, Body, Law, Parameter};
-use crate::syntax::ast::{Field, Ident, KindDecl};
+use crate::syntax::ast::{Expr, ExprKind, Field, Ident, KindDecl, Value};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use std::collections::BTreeMap;
@@ -15,9 +15,15 @@ use std::collections::BTreeMap;
 pub(super) struct Kind {
     /// The kind of the language from which it starts.
     pub(super) base: model::Kind,
+    /// Whether it goes straight for its goals whatever is in the way.
+    straight: bool,
     /// A law for each parameter.
     laws: [Option<Law>; Parameter::COUNT],
 }
+
+/// The field that says how an agent finds its way, and its values; the first one is the default.
+const WAYFINDING: &str = "wayfinding";
+const WAYS: [&str; 2] = ["shortest", "straight"];
 
 /// Some law of a parameter.
 fn any_law(parameter: Parameter) -> Option<Law> {
@@ -119,7 +125,7 @@ impl Elaborator<'_> {
         let base = kind.as_ref().map(|kind| kind.base).unwrap_or_default();
         let rest = self.parameters(&decl.body, kind.as_mut().ok(), &Locals::default());
         for field in rest {
-            let known = Parameter::of_kind(base).map(Parameter::name);
+            let known = Parameter::of_kind(base).map(Parameter::name).chain([WAYFINDING]);
             let error = unknown("parameter", &field.name.name, field.name.span, Code::E0207, known);
             self.note(error);
             self.look_at(&field.value, &Locals::default());
@@ -147,6 +153,12 @@ impl Elaborator<'_> {
                 )
                 .related(first.name.span, "first set here");
                 self.note(error);
+                continue;
+            }
+            if field.name.name == WAYFINDING {
+                if let (Some(straight), Some(kind)) = (self.goes_straight(&field.value), &mut kind) {
+                    kind.straight = straight;
+                }
                 continue;
             }
             let known = match &kind {
@@ -191,10 +203,29 @@ impl Elaborator<'_> {
                 .hint("set the values, or start from a preset: `kind adult: sfm preset helbing2000 { … }`");
             return self.report(error);
         }
-        Ok(Body::new(kind.base, |parameter| {
+        let mut body = Body::new(kind.base, |parameter| {
             // A parameter that the kind does not have: 0 where it may be.
             let neutral = if parameter.allows(0.0) { 0.0 } else { 1.0 };
             kind.law(parameter).unwrap_or(Law::Constant(neutral))
-        }))
+        });
+        body.finds_ways = !kind.straight;
+        Ok(body)
+    }
+
+    /// The value of the field that says how an agent finds its way.
+    fn goes_straight(&mut self, value: &Value) -> Option<bool> {
+        let name = match value {
+            Value::Plain(Expr { kind: ExprKind::Name(name), .. }) => Some(name.as_str()),
+            _ => None,
+        };
+        let known = name.and_then(|name| WAYS.iter().position(|way| *way == name));
+        if known.is_none() {
+            let said = "`wayfinding` must be `shortest` or `straight`";
+            let error = Diagnostic::error(Code::E0305, value_span(value), said)
+                .hint("write `wayfinding = straight` for agents that go straight for their goals whatever is in the way");
+            self.note(error);
+            self.given_up = true;
+        }
+        known.map(|at| at == 1)
     }
 }

@@ -194,7 +194,7 @@ impl Answers<'_> {
         let known = counts.unresolved < counts.trials && !cut;
         result.distribution = entry.procedure.distribution().filter(|_| known);
         Self::tell(&mut result, prepared, &entry.tally, measure.target.column);
-        self.note_shrunk(&mut result, &[(prepared, &entry.tally)]);
+        self.note_odd(&mut result, &[(prepared, &entry.tally)]);
         self.lament_one(&mut result, prepared, &entry.tally, measure.target.column);
         let picks = match (&measure.kind, kind) {
             (MeasureKind::Probability, _) | (_, Kind::Check) => witness::sides(&entry.tally),
@@ -230,7 +230,8 @@ impl Answers<'_> {
         result.counts = tally.counts;
         result.steps = tally.steps;
         result.clipped = tally.clipped;
-        result.shrunk = tally.shrunk;
+        result.shrunk = tally.shrunk.trials;
+        result.no_way = tally.no_way.trials;
         let Ok(implications) = prepared.implications(column) else { return };
         // Of a trial that is not resolved nobody knows what the rest of it would have been.
         let resolved = tally.counts.trials - tally.counts.unresolved;
@@ -263,12 +264,18 @@ impl Answers<'_> {
         }
     }
 
-    /// Says which bodies were made smaller in the first trial in which any was.
-    pub(super) fn note_shrunk(&self, result: &mut QueryResult, tallies: &[(&PreparedWorld, &Tally)]) {
-        let mut found = tallies.iter().filter_map(|(prepared, tally)| Some((prepared, tally.first_shrunk?)));
-        if let Some((prepared, index)) = found.next() {
-            let key = TrialKey { seed: self.call.seed, index, branch: 0 };
+    /// Says which bodies were made smaller in the first trial in which any was, and who had no way in the first in which
+    /// anybody had none.
+    pub(super) fn note_odd(&self, result: &mut QueryResult, tallies: &[(&PreparedWorld, &Tally)]) {
+        let first = |of: &dyn Fn(&Tally) -> Option<u64>| {
+            let mut found = tallies.iter().filter_map(|(prepared, tally)| Some((*prepared, of(tally)?)));
+            found.next().map(|(prepared, index)| (prepared, TrialKey { seed: self.call.seed, index, branch: 0 }))
+        };
+        if let Some((prepared, key)) = first(&|tally| tally.shrunk.first) {
             result.warnings.push(cause::smaller(&prepared.program, key, result.shrunk));
+        }
+        if let Some((prepared, key)) = first(&|tally| tally.no_way.first) {
+            result.warnings.push(cause::stranded(&prepared.program, key, result.no_way));
         }
     }
 
@@ -343,7 +350,7 @@ impl Answers<'_> {
         result.replay = self.replay(query, MAX_TRIALS, gap.pairs);
         let joined = total(&gap.sides);
         Self::tell(&mut result, prepared, &joined, first.target.column);
-        self.note_shrunk(&mut result, &[(worlds[0], &gap.sides[0]), (worlds[1], &gap.sides[1])]);
+        self.note_odd(&mut result, &[(worlds[0], &gap.sides[0]), (worlds[1], &gap.sides[1])]);
         let lost = (0..2).find_map(|side| {
             let index = gap.sides[side].first[2]?;
             let settings = result.settings.iter().chain(&settings[side]).cloned().collect();
@@ -397,7 +404,7 @@ impl Answers<'_> {
         result.replay = self.replay(query, "--total-trials", joined.counts.trials);
         Self::tell(&mut result, prepared, &joined, measure.target.column);
         let tallies: Vec<_> = ranked.tallies.iter().map(|tally| (prepared, tally)).collect();
-        self.note_shrunk(&mut result, &tallies);
+        self.note_odd(&mut result, &tallies);
         let lost = ranked.tallies.iter().enumerate().find_map(|(arm, tally)| {
             let item = Item { advice: Some((*moves, arm)), index: tally.first[2]? };
             Some(First { prepared, column: measure.target.column, item, settings: result.settings.clone() })
@@ -486,7 +493,8 @@ fn total(tallies: &[Tally]) -> Tally {
         sum.counts.unresolved += tally.counts.unresolved;
         sum.steps += tally.steps;
         sum.clipped += tally.clipped;
-        sum.shrunk += tally.shrunk;
+        sum.shrunk.trials += tally.shrunk.trials;
+        sum.no_way.trials += tally.no_way.trials;
         sum.triggered |= tally.triggered;
     }
     sum

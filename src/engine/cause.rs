@@ -5,7 +5,7 @@ use super::cell::{Item, Reading};
 use super::observer::SignalObserver;
 use super::prepared::PreparedWorld;
 use super::words;
-use crate::base::lanes::Mask;
+use crate::base::lanes::{Lanes, Mask};
 use crate::base::random::TrialKey;
 use crate::base::tick::Tick;
 use crate::kernel::process::{self, ViewReadings};
@@ -143,6 +143,32 @@ pub fn smaller(program: &Program, key: TrialKey, trials: u64) -> String {
         "radii of bodies that overlapped at the start were reduced in {trials}; in trial {}: {}",
         key.index,
         said.join(", ")
+    )
+}
+
+/// Who has no way to a goal in a trial, where that happens in some number of trials.
+pub fn stranded(program: &Program, key: TrialKey, trials: u64) -> String {
+    let trials = if trials == 1 { "1 trial".to_owned() } else { format!("{trials} trials") };
+    let in_trials = format!("somebody had no way to a goal in {trials}");
+    let Ok((mut run, _)) = Run::of(program, key.into()) else { return in_trials };
+    while run.state().no_way.is_empty() {
+        if run.next_state().is_err() {
+            return in_trials;
+        }
+    }
+    let state = run.state();
+    let scenario = &program.scenario;
+    let who = (0..scenario.agents.len()).find(|&agent| state.plans.is_stranded(state.slot(agent, 0)));
+    let Some(agent) = who else { return in_trials };
+    let slot = state.slot(agent, 0);
+    let at = |field: &[Lanes]| field[slot.block].0[slot.lane];
+    format!(
+        "{in_trials}; in trial {}, `{}` at ({}, {}) m at {}",
+        key.index,
+        scenario.agents[agent].name,
+        words::number((at(&state.motion.x) * 100.0).round() / 100.0),
+        words::number((at(&state.motion.y) * 100.0).round() / 100.0),
+        moment(scenario, state.ticks[0]),
     )
 }
 

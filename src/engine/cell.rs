@@ -27,12 +27,14 @@ pub struct Cell {
     pub triggered: u64,
     /// Whether radii were shrunk to part people who overlap at the start.
     pub shrunk: bool,
+    /// Whether somebody had no way to a goal.
+    pub no_way: bool,
 }
 
 impl Cell {
     /// What is known before the first state.
     pub(super) const BLANK: Self =
-        Self { reading: Reading::Unresolved, steps: 0, triggered: 0, shrunk: false };
+        Self { reading: Reading::Unresolved, steps: 0, triggered: 0, shrunk: false, no_way: false };
     /// Not decided when its trial was cut.
     pub(super) const OPEN: Self = Self { steps: u64::MAX, ..Self::BLANK };
 

@@ -134,6 +134,7 @@ impl Monitors for StepColumns {
                     let cell = &mut self.rows.row(lane)[place];
                     (cell.reading, cell.steps) = (reading, state.ticks[lane]);
                     cell.triggered = observer.triggered(lane);
+                    cell.no_way = state.no_way.has(lane);
                 }
             }
         }
@@ -150,6 +151,7 @@ impl Monitors for StepColumns {
                 let cell = &mut self.rows.row(lane)[column];
                 // What its monitors saw before the trial ended counts.
                 (cell.steps, cell.triggered) = (state.ticks[lane], observer.triggered(lane));
+                cell.no_way = state.no_way.has(lane);
                 if state.faulty.has(lane) {
                     cell.reading = Reading::Faulty;
                 }
@@ -229,7 +231,7 @@ impl EventColumns {
                 (_, true) => monitor.jump(now, atoms, signals).unwrap_or(Reading::Faulty),
                 (false, false) => monitor.finish(),
             };
-            *cell = Cell { reading, steps: jumps, triggered: monitor.triggered(), shrunk: false };
+            *cell = Cell { reading, steps: jumps, triggered: monitor.triggered(), ..Cell::BLANK };
             self.rows.open[lane] -= 1;
         }
     }

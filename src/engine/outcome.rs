@@ -135,6 +135,8 @@ pub struct QueryResult {
     pub distribution: Option<Distribution>,
     /// Trials in which radii were shrunk to part people who overlap at the start.
     pub shrunk: u64,
+    /// Trials in which somebody had no way to a goal.
+    pub no_way: u64,
     /// Details of an estimate by splitting.
     pub rare: Option<Rare>,
 }
@@ -175,6 +177,7 @@ impl QueryResult {
             rank: None,
             distribution: None,
             shrunk: 0,
+            no_way: 0,
             rare: None,
         }
     }

@@ -3,6 +3,22 @@
 use super::cell::{Cell, Reading};
 use super::outcome::Counts;
 
+/// Trials of which something is noted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Noted {
+    /// How many.
+    pub(super) trials: u64,
+    /// Index of the first of them.
+    pub(super) first: Option<u64>,
+}
+
+impl Noted {
+    fn note(&mut self, index: u64) {
+        self.trials += 1;
+        self.first.get_or_insert(index);
+    }
+}
+
 /// Consumed trials of one query.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tally {
@@ -13,9 +29,9 @@ pub(super) struct Tally {
     /// Values outside the declared range.
     pub(super) clipped: u64,
     /// Trials in which radii were shrunk.
-    pub(super) shrunk: u64,
-    /// Index of the first of these.
-    pub(super) first_shrunk: Option<u64>,
+    pub(super) shrunk: Noted,
+    /// Trials in which somebody had no way to a goal.
+    pub(super) no_way: Noted,
     /// Implications that were triggered in some trial.
     pub(super) triggered: u64,
     /// Index of the first trial that passes, of the first that fails, and of the first that is unresolved.
@@ -41,13 +57,13 @@ impl Tally {
             return None;
         }
         let (mut all, mut truths, mut held) = (0, 0, 0);
-        let (mut steps, mut shrunk, mut triggered) = (0, 0, 0);
+        let (mut steps, mut noted, mut triggered) = (0, false, 0);
         for (_, cell) in trials.clone() {
             all += 1;
             truths += u64::from(matches!(cell.reading, Reading::Truth(_)));
             held += u64::from(cell.reading == Reading::Truth(true));
             steps += cell.steps;
-            shrunk += u64::from(cell.shrunk);
+            noted |= cell.shrunk | cell.no_way;
             triggered |= cell.triggered;
         }
         if truths < all {
@@ -57,10 +73,9 @@ impl Tally {
         self.counts.successes += held;
         self.counts.failures += all - held;
         self.steps += steps;
-        self.shrunk += shrunk;
         self.triggered |= triggered;
-        if shrunk > 0 && self.first_shrunk.is_none() {
-            self.first_shrunk = trials.clone().find(|(_, cell)| cell.shrunk).map(|(index, _)| index);
+        if noted {
+            trials.clone().for_each(|(index, cell)| self.note(index, cell));
         }
         for (first, truth) in self.first.iter_mut().zip([true, false]) {
             if first.is_none() {
@@ -71,15 +86,21 @@ impl Tally {
         Some(held)
     }
 
+    fn note(&mut self, index: u64, cell: &Cell) {
+        if cell.shrunk {
+            self.shrunk.note(index);
+        }
+        if cell.no_way {
+            self.no_way.note(index);
+        }
+    }
+
     /// Counts a trial; `range` is that of an expectation.
     #[inline]
     pub(super) fn add(&mut self, index: u64, cell: &Cell, range: Option<(f64, f64)>) {
         self.counts.trials += 1;
         self.steps += cell.steps;
-        if cell.shrunk {
-            self.shrunk += 1;
-            self.first_shrunk.get_or_insert(index);
-        }
+        self.note(index, cell);
         self.triggered |= cell.triggered;
         let place = match cell.reading {
             Reading::Truth(true) => {
@@ -120,6 +141,7 @@ mod tests {
             steps: 10 + k,
             triggered: 1 << k,
             shrunk: k.is_multiple_of(4),
+            no_way: k == 6,
         };
         let cells: Vec<Cell> = (0..9).map(cell).collect();
         let trials = |from: usize, to: usize| (from as u64..).zip(&cells[from..to]);

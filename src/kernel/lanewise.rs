@@ -9,7 +9,7 @@ use super::contact::Contacts;
 use super::force::pair::{Block, Pair, PairTerm, Sum};
 use super::force::walls::{self, AtWalls};
 use super::force::{Forces, with_pair_terms};
-use super::nearby::amply_around;
+use crate::base::geometry::amply_around;
 use super::state::State;
 use super::vector::{Doubles, Part, larger, parts};
 use crate::base::geometry::{Bounds, Vec2};

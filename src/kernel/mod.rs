@@ -16,7 +16,7 @@ pub mod force;
 mod lanewise;
 pub mod layout;
 mod near;
-mod nearby;
+
 pub mod noise;
 mod pace;
 mod parameters;

@@ -11,6 +11,7 @@ mod options;
 mod refusal;
 mod report;
 mod trial;
+mod ways;
 
 pub use diagnostics::Diagnostics;
 pub use front::{Folder, Inputs, Names, load};
@@ -19,3 +20,4 @@ pub use options::{Options, chosen};
 pub use refusal::{of_model, refusal, refusals};
 pub use report::Report;
 pub use trial::{AgentState, Snapshot, Trial};
+pub use ways::{is_refused, survey};

@@ -6,13 +6,15 @@ use super::options::Options;
 use super::refusal::{refusal, refusals};
 use super::report::Report;
 use super::trial::Trial;
+use super::ways::{is_refused, survey};
 use crate::base::random::TrialKey;
 use crate::compile::Study;
 use crate::engine::outcome::Run;
 use crate::engine::{Call, CommandLine, Nobody, no_start, placeable, run};
-use crate::kernel::driver::{Drivers, MakeDrivers, straight};
+use crate::kernel::driver::{Drivers, MakeDrivers};
 use crate::kernel::{Address, Program};
 use crate::model::Scenario;
+use crate::route::{Ways, drivers};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
@@ -69,7 +71,7 @@ impl Draft {
         let scenario = scenario.ok_or_else(|| Diagnostics::new(Vec::new(), sources.clone()))?;
         let world = study.worlds.len() - 1;
         placeable(&study.worlds[world]).map_err(|fault| Diagnostics::new(vec![refusal(&fault)], sources))?;
-        Ok(Model { draft: self, scenario, warnings, drivers: Arc::new(straight) })
+        Ok(Model { draft: self, scenario, warnings, drivers: None })
     }
 
     /// Compiles the scenario, perhaps with a property file.
@@ -115,7 +117,8 @@ pub struct Model {
     draft: Draft,
     scenario: Arc<Scenario>,
     warnings: Diagnostics,
-    drivers: Arc<MakeOwn>,
+    /// None where all agents find their way.
+    drivers: Option<Arc<MakeOwn>>,
 }
 
 /// Makes the drivers of a run.
@@ -146,10 +149,10 @@ impl Model {
     }
 
     /// Gives agents drivers of their own: `make` is called with the scenario and the seed of a run, and says which agents
-    /// have which driver. All others head straight for the goals of their routes.
+    /// have which driver instead of finding the shortest ways. All others head straight for the goals of their routes.
     #[must_use]
     pub fn driven(self, make: impl Fn(&Scenario, u64) -> Drivers + Send + Sync + 'static) -> Self {
-        Self { drivers: Arc::new(make), ..self }
+        Self { drivers: Some(Arc::new(make)), ..self }
     }
 
     /// What the scenario says, without its language.
@@ -183,12 +186,22 @@ impl Model {
             settings: self.draft.assignments(),
             data: Vec::new(),
         };
-        let drivers: &MakeDrivers = &*self.drivers;
+        let ways = Ways::default();
+        let doubts = if self.drivers.is_none() { survey(&study, &only, &ways) } else { Vec::new() };
+        if is_refused(&doubts) {
+            return Err(wrong(doubts));
+        }
+        let find = move |scenario: &Scenario, seed: u64| ways.drivers(scenario, seed);
+        let drivers: &MakeDrivers = match &self.drivers {
+            Some(make) => &**make,
+            None => &find,
+        };
         let call = Call { seed: options.seed, line, only, place: &place, drivers };
         let threads = options.executor().map_err(|fault| wrong(vec![refusal(&fault)]))?;
         let outcome = run(&study, &call, &threads, &options.budget(), &Nobody);
         let run: Run = outcome.map_err(|fault| wrong(refusals(&fault)))?;
-        Ok(Report::new(run, warnings))
+        let all = warnings.iter().cloned().chain(doubts).collect();
+        Ok(Report::new(run, Diagnostics::new(all, sources.clone())))
     }
 
     /// A trial, state by state: the same that a check with this seed reads under this index.
@@ -196,7 +209,7 @@ impl Model {
     /// # Errors
     /// Where the trial cannot start: people find no place.
     pub fn trial(&self, seed: u64, index: u64) -> Result<Trial, Diagnostics> {
-        let program = Program::driven(self.scenario.clone(), (self.drivers)(&self.scenario, seed));
+        let program = Program::driven(self.scenario.clone(), self.drivers.as_ref().map_or_else(|| drivers(&self.scenario, seed), |make| make(&self.scenario, seed)));
         let key = TrialKey { seed, index, branch: 0 };
         Trial::new(program, Address::from(key)).map_err(|fault| {
             let reason = no_start(&self.scenario, fault);

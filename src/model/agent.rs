@@ -35,13 +35,15 @@ pub struct Agent {
 pub struct Body {
     /// Its kind.
     pub kind: Kind,
+    /// Whether it finds its way around barriers; else it goes straight for its goals.
+    pub finds_ways: bool,
     laws: [Law; Parameter::COUNT],
 }
 
 impl Body {
-    /// Of a kind, with these laws.
+    /// Of a kind, with these laws; it finds its way.
     pub fn new(kind: Kind, law: impl FnMut(Parameter) -> Law) -> Self {
-        Self { kind, laws: Parameter::ALL.map(law) }
+        Self { kind, finds_ways: true, laws: Parameter::ALL.map(law) }
     }
 }
 

@@ -16,6 +16,7 @@ pub mod parameter;
 pub mod process;
 pub mod scenario;
 pub mod scene;
+pub mod sight;
 pub mod source;
 
 pub use agent::{Agent, AgentId, Body, Goal, Group, Leg, Particle, Position, Route, Start};
@@ -30,4 +31,5 @@ pub use parameter::{PARAMETERS, Parameter, TOP_SPEED};
 pub use process::{Branch, Command, Domain, Process, Processes, Timing, Variable};
 pub use scenario::Scenario;
 pub use scene::{Barrier, BarrierId, Obstacle, Region, RegionId, Scene};
+pub use sight::{Piece, Sight};
 pub use source::Source;

@@ -1,6 +1,6 @@
 //! A whole scenario.
 
-use super::agent::{Agent, Group};
+use super::agent::{Agent, Group, Route};
 use super::behaviour::Behaviours;
 use super::moves::Moves;
 use super::process::Processes;
@@ -34,6 +34,12 @@ pub struct Scenario {
 }
 
 impl Scenario {
+    /// All routes that somebody may take: own ones, and those of behaviours.
+    pub fn routes(&self) -> impl Iterator<Item = &Route> {
+        let modes = self.behaviours.attached.iter().flat_map(|one| &one.conduct.states);
+        self.agents.iter().map(|agent| &agent.route).chain(modes.filter_map(|mode| mode.route.as_ref()))
+    }
+
     /// The name by which an option of a declaration of moves is chosen: its own, `stop`, or with whose it is, `user: stop`,
     /// where several people have one of that name.
     pub fn move_name(&self, (declaration, option): (usize, usize)) -> Option<String> {

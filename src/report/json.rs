@@ -96,6 +96,9 @@ fn result(result: &QueryResult) -> Value {
     }
     put("clipped", json!(result.clipped));
     put("shrunk", json!(result.shrunk));
+    if result.no_way > 0 {
+        put("no_way", json!(result.no_way));
+    }
     put("steps", json!(result.steps));
     put("stopped_by", json!(result.stopped_by.name()));
     if let Some(shortfall) = result.shortfall() {

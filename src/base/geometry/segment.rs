@@ -38,6 +38,15 @@ impl Segment {
         (p - self.nearest(p)).norm()
     }
 
+    /// Distance between the two segments, 0 where they meet.
+    pub fn distance_to(&self, other: &Self) -> f64 {
+        if self.meets(other) {
+            return 0.0;
+        }
+        let ends = self.distance(other.a).min(self.distance(other.b));
+        ends.min(other.distance(self.a)).min(other.distance(self.b))
+    }
+
     /// Whether the two segments have a point in common.
     pub fn meets(&self, other: &Self) -> bool {
         let turn = |a, b, c| cross(b - a, c - a);

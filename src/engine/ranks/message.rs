@@ -288,6 +288,8 @@ impl Reply {
 const SHRUNK: u8 = 8;
 /// Set in the first byte of a cell where implications were triggered.
 const TRIGGERED: u8 = 16;
+/// Set in the first byte of a cell where somebody had no way.
+const NO_WAY: u8 = 32;
 
 impl Answer {
     fn write(&self, to: &mut Encoder) {
@@ -305,7 +307,8 @@ impl Answer {
                 Reading::Faulty => 4,
             };
             let shrunk = if cell.shrunk { SHRUNK } else { 0 };
-            to.byte(reading | shrunk | if cell.triggered == 0 { 0 } else { TRIGGERED });
+            let no_way = if cell.no_way { NO_WAY } else { 0 };
+            to.byte(reading | shrunk | no_way | if cell.triggered == 0 { 0 } else { TRIGGERED });
             to.whole(cell.steps);
             if cell.triggered != 0 {
                 to.whole(cell.triggered);
@@ -329,7 +332,7 @@ impl Answer {
         let mut cells = Vec::with_capacity(count);
         for _ in 0..count {
             let first = from.byte()?;
-            if first >= 2 * TRIGGERED {
+            if first >= 2 * NO_WAY {
                 return Err(Malformed("a cell has an unknown kind"));
             }
             let steps = from.whole()?;
@@ -342,7 +345,8 @@ impl Answer {
                 4 => Reading::Faulty,
                 _ => return Err(Malformed("a cell has an unknown kind")),
             };
-            cells.push(Cell { reading, steps, triggered, shrunk: first & SHRUNK != 0 });
+            let (shrunk, no_way) = (first & SHRUNK != 0, first & NO_WAY != 0);
+            cells.push(Cell { reading, steps, triggered, shrunk, no_way });
         }
         Ok(Self { number, seconds, steps, finished, cells })
     }
@@ -377,8 +381,14 @@ mod tests {
             Just(Reading::Unresolved),
             Just(Reading::Faulty),
         ];
-        let cell = (reading, any::<u64>(), prop_oneof![Just(0), any::<u64>()], any::<bool>())
-            .prop_map(|(reading, steps, triggered, shrunk)| Cell { reading, steps, triggered, shrunk });
+        let cell = (reading, any::<u64>(), prop_oneof![Just(0), any::<u64>()], any::<[bool; 2]>())
+            .prop_map(|(reading, steps, triggered, [shrunk, no_way])| Cell {
+                reading,
+                steps,
+                triggered,
+                shrunk,
+                no_way,
+            });
         let answer = (any::<u64>(), 0.0..1e9, any::<u64>(), any::<Vec<bool>>(), vec(cell, 0..40)).prop_map(
             |(number, seconds, steps, finished, cells)| {
                 Reply::Answer(Answer { number, seconds, steps, finished, cells })

@@ -6,7 +6,7 @@ use crate::compile::Study;
 use crate::engine::budget::Budget;
 use crate::engine::executor::{Executor, Job, Threads};
 use crate::engine::prepared::PreparedWorld;
-use crate::kernel::driver::straight;
+use crate::route::drivers;
 use std::cell::OnceCell;
 use std::io::{self, Read, Write};
 use std::sync::atomic::Ordering;
@@ -208,7 +208,7 @@ impl<'s> Worker<'s> {
         let prepared = match self.worlds[lease.world].get() {
             Some(prepared) => prepared,
             None => {
-                let prepared = PreparedWorld::of(self.study, lease.world, lease.seed, &straight)
+                let prepared = PreparedWorld::of(self.study, lease.world, lease.seed, &drivers)
                     .ok_or(Malformed("unknown world"))?;
                 self.worlds[lease.world].get_or_init(|| prepared)
             }

@@ -37,7 +37,7 @@ impl Answers<'_> {
         let counts = found.plain.counts;
         result.replay = self.replay(query, "--max-trials", counts.trials + found.paths);
         Self::tell(&mut result, prepared, &found.plain, column);
-        self.note_shrunk(&mut result, &[(prepared, &found.plain)]);
+        self.note_odd(&mut result, &[(prepared, &found.plain)]);
         self.lament_one(&mut result, prepared, &found.plain, column);
         let name = words::decided(&query.said);
         // From above the only statement that holds without a condition is that of the plain trials.

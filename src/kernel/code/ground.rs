@@ -91,6 +91,11 @@ pub(crate) fn upright(polygon: &Polygon) -> Option<Bounds> {
 }
 
 impl Ground {
+    /// The middle of its bounds; none of a wall without pieces.
+    pub(crate) fn middle(&self) -> Option<Vec2> {
+        self.bounds.map(|bounds| 0.5 * (bounds.low + bounds.high))
+    }
+
     fn polygon(polygon: &Polygon) -> Form {
         let mut rings = vec![polygon.outline.len()];
         for hole in &polygon.holes {

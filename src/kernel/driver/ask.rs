@@ -87,7 +87,13 @@ fn take_over(drive: &Drive, state: &mut State, slot: Slot, plan: Plan, after: f6
     course.fresh |= here;
     course.time.0[lane] = -after;
     match &plan {
-        Plan::Keep | Plan::Straight => {}
+        Plan::Keep => {}
+        Plan::Straight => course.watched |= here,
+        Plan::NoWay => {
+            course.stands |= here;
+            course.stranded |= here;
+            course.next_ask.0[lane] = f64::INFINITY;
+        }
         Plan::Stand(seconds) => {
             course.stands |= here;
             course.next_ask.0[lane] = tick + steps_over(*seconds, drive.dt);
@@ -109,6 +115,9 @@ fn take_over(drive: &Drive, state: &mut State, slot: Slot, plan: Plan, after: f6
             course.stepped |= here;
             course.set_piece(lane, &trajectory.piece(drive.dt - after));
         }
+    }
+    if plan == Plan::NoWay {
+        state.no_way |= Mask::lane(state.layout.trial_of(lane));
     }
     let held = state.plans.held_mut(slot);
     (held.plan, held.point) = (plan, 0);

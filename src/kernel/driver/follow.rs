@@ -43,7 +43,15 @@ pub(super) fn go_on(level: Level, drive: &Drive, state: &mut State) -> Vec<Mask>
     let blocks = state.plans.courses.len();
     let active: Vec<Mask> = state.present[..blocks].iter().map(|&here| here & occupied).collect();
     for (block, &active) in active.iter().enumerate() {
-        state.plans.courses[block].fresh = Mask::NONE;
+        let course = &mut state.plans.courses[block];
+        course.fresh = Mask::NONE;
+        let watched = active & course.watched & !state.route.advised[block];
+        let is_due = |&lane: &usize| {
+            state.ticks[state.layout.trial_of(lane)] as f64 >= course.next_ask.0[lane]
+        };
+        for lane in watched.iter().filter(is_due).fold(Mask::NONE, |all, lane| all | Mask::lane(lane)).iter() {
+            event(drive, state, Slot { block, lane });
+        }
         let led = active & state.plans.led(block);
         if !led.is_empty() {
             let events = dispatch!(level, simd => advance(simd, drive, state, block, led));
@@ -225,35 +233,53 @@ fn event(drive: &Drive, state: &mut State, slot: Slot) {
             }
         }
         Plan::Stand(_) => state.plans.ask(slot, Occasion::Ended),
-        Plan::Keep | Plan::Straight => {}
+        Plan::Straight => {
+            if is_due && is_hidden(drive, state, slot) {
+                state.plans.ask(slot, Occasion::Left);
+            }
+        }
+        Plan::Keep | Plan::NoWay => {}
     }
 }
 
-/// On a way of points: passes the present one where the next is in sight; looks for it if that is due.
+/// Whether the goal of someone who goes straight is out of sight.
+fn is_hidden(drive: &Drive, state: &mut State, slot: Slot) -> bool {
+    let person = Person::new(drive, state, slot);
+    let (at, radius) = (person.at(), person.radius());
+    way_to(person.target(), at, radius).is_some_and(|way| !drive.sight.is_clear(at, at + way, radius))
+}
+
+/// On a way of points: passes the present one where the next is in sight, and at times any point before one in sight; looks
+/// for the present one if that is due.
 fn pass(drive: &Drive, state: &mut State, slot: Slot, points: &[Vec2], is_due: bool) {
     let Slot { block, lane } = slot;
     let person = Person::new(drive, state, slot);
     let (at, radius) = (person.at(), person.radius());
-    let leg = || way_to(person.target(), at, radius).map_or(at, |way| at + way);
-    let point = person.point();
-    let goal = points[point];
-    let next = points.get(point + 1).copied();
-    let target = next.unwrap_or_else(leg);
+    let leg = way_to(person.target(), at, radius).map_or(at, |way| at + way);
+    let first = person.point();
     let course = &state.plans.courses[block];
     let start = Vec2::new(course.start_x.0[lane], course.start_y.0[lane]);
-    let (d, along) = (goal - at, goal - start);
+    let (d, along) = (points[first] - at, points[first] - start);
     let square = d.x * d.x + d.y * d.y;
     let passes = d.x * along.x + d.y * along.y <= 0.0 && square <= PASSING * PASSING;
-    if (square <= radius * radius * 4.0 || passes) && drive.sight.is_free(at, target) {
-        state.plans.held_mut(slot).point = point + 1;
-        if let Some(next) = next {
-            state.plans.courses[block].set_goal(lane, next, at);
-            state.plans.courses[block].fresh |= Mask::lane(lane);
-        } else {
-            state.plans.end(slot);
-            Person::new(drive, state, slot).renew();
+    let is_clear = |to: Vec2| drive.sight.is_clear(at, to, radius);
+    let mut point = first;
+    if square <= radius * radius * 4.0 || passes || is_due {
+        while point < points.len() && is_clear(points.get(point + 1).copied().unwrap_or(leg)) {
+            point += 1;
         }
-    } else if is_due && !drive.sight.is_free(at, goal) {
-        state.plans.ask(slot, Occasion::Left);
+    }
+    if let Some(next) = points.get(point) {
+        if point > first {
+            state.plans.held_mut(slot).point = point;
+            state.plans.courses[block].set_goal(lane, *next, at);
+            state.plans.courses[block].fresh |= Mask::lane(lane);
+        } else if is_due && !is_clear(points[first]) {
+            state.plans.ask(slot, Occasion::Left);
+        }
+    } else {
+        state.plans.end(slot);
+        state.plans.watch(slot);
+        Person::new(drive, state, slot).renew();
     }
 }

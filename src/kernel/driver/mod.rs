@@ -15,7 +15,6 @@ mod drivers;
 mod follow;
 mod lanes;
 mod person;
-mod sight;
 mod situation;
 mod stage;
 

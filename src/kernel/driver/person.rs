@@ -176,9 +176,23 @@ impl<'a> Person<'a> {
             if stage.last {
                 return stage.leaves;
             }
+            if stage.open && !self.sees_next() {
+                return false;
+            }
             self.enter(self.way.stage + 1);
             self.ask(Occasion::Leg);
         }
+    }
+
+    /// Whether the goal of the next stage is in sight; always for who goes straight whatever is in the way, or along a
+    /// trajectory.
+    fn sees_next(&self) -> bool {
+        let slot = Slot { block: self.block, lane: self.lane };
+        let (at, radius) = (self.at(), self.radius());
+        let next = &self.drive.stages[self.way.stage as usize + 1].target;
+        self.drive.drivers.of(self.agent).is_none()
+            || self.state.plans.has_trajectory(slot)
+            || way_to(next, at, radius).is_none_or(|way| self.drive.sight.is_clear(at, at + way, radius))
     }
 
     /// Where its stage leads.
@@ -206,8 +220,10 @@ impl<'a> Person<'a> {
             self.set(moves.then_some(direction), speed);
             return;
         }
-        let way = way_to(&stage.target, self.at(), self.radius());
-        match way {
+        // Who is at the goal and does not see the next one goes on to its middle, from where it is in sight.
+        let middle = stage.target.middle().filter(|_| stage.open && reached(stage, self.at(), self.radius(), self.way.origin));
+        let way = middle.map(|middle| middle - self.at());
+        match way.or_else(|| way_to(&stage.target, self.at(), self.radius())) {
             Some(way) if !self.has_arrived() => {
                 let speed = self.speed();
                 self.set(unit(way), speed);

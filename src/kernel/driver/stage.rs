@@ -1,12 +1,15 @@
 //! Routes as tables of stages: what every trial needs to know of them, worked out once.
 
 use super::drivers::Drivers;
-use super::sight::Sight;
+use super::person::way_to;
 use crate::base::geometry::{Bounds, Shape, Vec2};
 use crate::base::random::name_hash;
 use crate::kernel::code::ground::{Ground, upright};
-use crate::model::{Goal, Law, Leg, Route, Scenario};
+use crate::model::{Goal, Law, Leg, Route, Scenario, Sight};
 use std::sync::Arc;
+
+/// A body that fits wherever a line does, m.
+const NARROW: f64 = 1e-3;
 
 /// Where a stage leads.
 #[derive(Clone, Debug)]
@@ -32,6 +35,19 @@ pub(super) enum Target {
     Rest,
 }
 
+impl Target {
+    /// The middle of a goal; none of what is no goal.
+    pub(super) fn middle(&self) -> Option<Vec2> {
+        match self {
+            Self::Rectangle(bounds) => Some(0.5 * (bounds.low + bounds.high)),
+            Self::Disc { centre, .. } => Some(*centre),
+            Self::Point(point) => Some(*point),
+            Self::Form(ground) => ground.middle(),
+            Self::Pause(_) | Self::Onward | Self::Rest => None,
+        }
+    }
+}
+
 /// One leg of a route.
 #[derive(Clone, Debug)]
 pub(super) struct Stage {
@@ -45,6 +61,8 @@ pub(super) struct Stage {
     pub(super) last: bool,
     /// Whether an agent departs at its end.
     pub(super) leaves: bool,
+    /// Whether the goal that follows is in sight from the middle of this one: then it must be in sight for who goes on.
+    pub(super) open: bool,
 }
 
 /// All routes of a scenario, and the drivers of a run.
@@ -80,7 +98,9 @@ fn target(scenario: &Scenario, leg: &Leg) -> Target {
 
 /// The stages of a route, the `number`-th of all; its legs count from `from`.
 fn stages(scenario: &Scenario, route: &Route, from: u32, number: u32) -> Vec<Stage> {
-    let stage = |target, (route, at), leg, (last, leaves)| Stage { target, route, at, leg, last, leaves };
+    let stage = |target, (route, at), leg, (last, leaves)| {
+        Stage { target, route, at, leg, last, leaves, open: false }
+    };
     let (legs, leaves) = match route {
         Route::Onward => {
             return vec![stage(Target::Onward, (number, 0), 0, (true, false))];
@@ -136,6 +156,12 @@ impl Drive {
         let first = self.stages.len() as u32;
         let number = self.routes.len() as u32;
         self.stages.extend(stages(&self.scenario, route, from, number));
+        for k in first as usize + 1..self.stages.len() {
+            let middle = self.stages[k - 1].target.middle();
+            let ahead = middle.and_then(|middle| Some((middle, way_to(&self.stages[k].target, middle, 0.0)?)));
+            self.stages[k - 1].open =
+                ahead.is_some_and(|(middle, way)| self.sight.is_clear(middle, middle + way, NARROW));
+        }
         self.routes.push(route.clone());
         first
     }

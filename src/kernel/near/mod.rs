@@ -7,7 +7,7 @@ mod grid;
 
 pub(super) use grid::{Extent, FARTHEST, Grid, low_bits, most};
 
-use super::nearby::amply_around;
+use crate::base::geometry::amply_around;
 use super::state::State;
 use super::vector::parts;
 use crate::base::geometry::Vec2;

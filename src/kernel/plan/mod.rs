@@ -13,13 +13,17 @@ use std::sync::Arc;
 pub enum Plan {
     /// The plan that there is goes on.
     Keep,
-    /// Straight to the goal of the leg, as without a driver; in a pause and at the last goal the agent stands.
+    /// Straight to the goal of the leg, as without a driver; in a pause and at the last goal the agent stands. Where the goal is
+    /// out of sight, the driver is asked again, at most every 0.5 s.
     #[default]
     Straight,
     /// Stands for so many seconds (infinite: for good). Then the driver is asked again.
     Stand(f64),
+    /// No way leads to the goal: stands, and the trial is counted as one in which somebody has no way.
+    NoWay,
     /// Heads for each of these points in turn, m, and then for the goal of the leg. A point is passed near it, or across the
-    /// line through it, once the next one is in sight. A point out of sight is asked about every 0.5 s.
+    /// line through it, once the next one is in sight; every 0.5 s points before one in sight are skipped, and a point out of
+    /// sight is asked about. In sight is what a body with the radius of the agent can go to straight.
     Way(Arc<[Vec2]>),
     /// Is driven along a trajectory by its driving velocity; all forces act on it.
     Follow(Arc<Trajectory>, Limits),
@@ -52,7 +56,7 @@ pub enum Occasion {
     Leg,
     /// A behaviour changed the route, or advice ended.
     Diverted,
-    /// The agent is farther from its plan than the plan allows, or the next point of a way is out of sight.
+    /// The agent is farther from its plan than the plan allows, or the next point of a way, or the goal of a straight one, is out of sight.
     Left,
     /// The plan ends within the next step; the new plan begins when it does.
     Ended,

@@ -2,7 +2,7 @@
 
 use super::arrival::Arrivals;
 use crate::base::geometry::{Bounds, Shape, Vec2};
-use crate::kernel::nearby::Nearby;
+use crate::base::geometry::Nearby;
 use crate::model::{AgentId, Barrier, Law, Obstacle, Parameter, Position, Scenario};
 use std::f64::consts::PI;
 

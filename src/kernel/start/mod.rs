@@ -83,6 +83,7 @@ fn begin(program: &Program, state: &mut State, lane: usize, key: TrialKey) {
     state.ticks[lane] = 0;
     state.occupied |= Mask::lane(lane);
     state.diverged &= !Mask::lane(lane);
+    state.no_way &= !Mask::lane(lane);
     program.processes.load(state, lane);
     program.arrivals.load(state, lane, key);
 }

@@ -43,6 +43,8 @@ pub struct State {
     pub occupied: Mask,
     /// Lanes whose trial diverged: a number that is none, or a speed no human reaches.
     pub diverged: Mask,
+    /// Lanes in whose trial somebody has had no way to a goal.
+    pub no_way: Mask,
 
     /// Slots whose agent is in the scene.
     pub present: Vec<Mask>,
@@ -82,6 +84,7 @@ impl State {
             ticks: [0; LANES],
             occupied: Mask::NONE,
             diverged: Mask::NONE,
+            no_way: Mask::NONE,
             present: vec![Mask::NONE; blocks],
             motion: Motion::new(blocks),
             bodies: Bodies::new(blocks),

@@ -33,6 +33,10 @@ pub(in crate::kernel) struct Course {
     pub(in crate::kernel) driven: Mask,
     /// Slots that are moved along a trajectory.
     pub(in crate::kernel) stepped: Mask,
+    /// Slots that go straight to their goal as long as it is in sight.
+    pub(in crate::kernel) watched: Mask,
+    /// Slots to whose goal no way leads.
+    pub(in crate::kernel) stranded: Mask,
     /// Slots that stand.
     pub(in crate::kernel) stands: Mask,
     /// Slots whose driver is to be asked.
@@ -111,6 +115,11 @@ impl Plans {
         self.courses.get(slot.block).is_some_and(|course| course.stepped.has(slot.lane))
     }
 
+    /// Whether the agent in a slot goes along a trajectory.
+    pub(in crate::kernel) fn has_trajectory(&self, slot: Slot) -> bool {
+        self.courses.get(slot.block).is_some_and(|course| (course.driven | course.stepped).has(slot.lane))
+    }
+
     pub(in crate::kernel) fn held(&self, slot: Slot) -> &Held {
         &self.held[slot.block][slot.lane]
     }
@@ -128,8 +137,8 @@ impl Plans {
     /// Takes the plan of a slot away.
     pub(in crate::kernel) fn clear(&mut self, slot: Slot) {
         if let Some(course) = self.courses.get_mut(slot.block) {
-            let Course { way, driven, stepped, stands, asks, fresh, late, .. } = course;
-            for mask in [way, driven, stepped, stands, asks, fresh, late] {
+            let Course { way, driven, stepped, watched, stranded, stands, asks, fresh, late, .. } = course;
+            for mask in [way, driven, stepped, watched, stranded, stands, asks, fresh, late] {
                 *mask &= !Mask::lane(slot.lane);
             }
             *self.held_mut(slot) = Held::default();
@@ -138,11 +147,21 @@ impl Plans {
 
     /// Ends the plan of a slot: the agent heads straight for its goal.
     pub(in crate::kernel) fn end(&mut self, slot: Slot) {
-        let Course { way, driven, stepped, stands, late, .. } = &mut self.courses[slot.block];
-        for mask in [way, driven, stepped, stands, late] {
+        let Course { way, driven, stepped, watched, stranded, stands, late, .. } = &mut self.courses[slot.block];
+        for mask in [way, driven, stepped, watched, stranded, stands, late] {
             *mask &= !Mask::lane(slot.lane);
         }
         self.held_mut(slot).plan = Plan::Straight;
+    }
+
+    /// A slot goes straight to its goal as long as that is in sight.
+    pub(in crate::kernel) fn watch(&mut self, slot: Slot) {
+        self.courses[slot.block].watched |= Mask::lane(slot.lane);
+    }
+
+    /// Whether the agent in a slot has no way to its goal.
+    pub fn is_stranded(&self, slot: Slot) -> bool {
+        self.courses.get(slot.block).is_some_and(|course| course.stranded.has(slot.lane))
     }
 
     /// The driver of a slot is to be asked; of several occasions the first counts.

@@ -3,7 +3,7 @@
 use super::face::Form;
 use super::{Face, Joint, ON, Surface};
 use crate::base::geometry::{Bounds, Segment, Vec2, cross};
-use crate::kernel::nearby::Nearby;
+use crate::base::geometry::Nearby;
 
 /// What two rectangles share, a little larger; `None` where they are apart.
 fn overlap(a: &Bounds, b: &Bounds) -> Option<Bounds> {

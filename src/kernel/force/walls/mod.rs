@@ -31,7 +31,7 @@ use crate::base::geometry::{Bounds, Shape, Vec2};
 use crate::base::lanes::{Lanes, Mask};
 use crate::kernel::barrier::Surface;
 use crate::kernel::edges::squared_distance;
-use crate::kernel::nearby::Nearby;
+use crate::base::geometry::Nearby;
 use crate::kernel::state::State;
 use crate::kernel::vector::{Doubles, Part, Truths, larger, smaller};
 use crate::model::{Barrier, Obstacle, Parameter};

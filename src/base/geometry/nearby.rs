@@ -4,7 +4,7 @@
 //! surfaces whose rectangles meet a given one, and perhaps some more, in ascending order; whoever asks looks
 //! closely at each. So it changes no bit whether a surface was found here or in a look at all of them.
 
-use crate::base::geometry::{Bounds, Vec2};
+use super::{Bounds, Segment, Vec2};
 use std::borrow::Cow;
 
 /// Up to so many surfaces, a look at each is as fast.
@@ -15,7 +15,7 @@ const MOST_ENTRIES: usize = 64;
 
 /// Squares of the plane and the surfaces that reach into each.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Nearby {
+pub struct Nearby {
     all: Vec<u32>,
     /// `None` where all are looked at.
     squares: Option<Squares>,
@@ -35,18 +35,18 @@ struct Squares {
 
 impl Nearby {
     /// For surfaces inside these rectangles.
-    pub(super) fn new(bounds: &[Bounds]) -> Self {
+    pub fn new(bounds: &[Bounds]) -> Self {
         let squares = if bounds.len() > FEW { Squares::new(bounds) } else { None };
         Self { all: (0..bounds.len() as u32).collect(), squares }
     }
 
     /// Side of a square, m; `None` where all surfaces are always near.
-    pub(super) fn side(&self) -> Option<f64> {
+    pub fn side(&self) -> Option<f64> {
         self.squares.as_ref().map(|squares| 1.0 / squares.per_side)
     }
 
     /// Whether a rectangle holds all surfaces.
-    pub(super) fn is_within(&self, around: &Bounds) -> bool {
+    pub fn is_within(&self, around: &Bounds) -> bool {
         self.squares.as_ref().is_none_or(|squares| {
             let (low, high) = (squares.low, squares.high);
             around.low.x <= low.x
@@ -57,7 +57,7 @@ impl Nearby {
     }
 
     /// The surfaces that may be nearer than `reach` to a place, ascending; amply, whatever rounding does.
-    pub(super) fn within(&self, p: Vec2, reach: f64) -> Cow<'_, [u32]> {
+    pub fn within(&self, p: Vec2, reach: f64) -> Cow<'_, [u32]> {
         let mut room = Vec::new();
         if self.squares.is_some() {
             self.find(&amply_around(p, reach), &mut room);
@@ -67,7 +67,7 @@ impl Nearby {
     }
 
     /// The surfaces that may meet a rectangle, ascending. `room` is overwritten.
-    pub(super) fn find<'a>(&'a self, around: &Bounds, room: &'a mut Vec<u32>) -> &'a [u32] {
+    pub fn find<'a>(&'a self, around: &Bounds, room: &'a mut Vec<u32>) -> &'a [u32] {
         let Some(squares) = &self.squares else { return &self.all };
         room.clear();
         let columns = squares.columns(around.low.x, around.high.x);
@@ -91,9 +91,34 @@ impl Nearby {
 }
 
 /// A square of twice `reach` around a place, and more than rounding can do.
-pub(super) fn amply_around(p: Vec2, reach: f64) -> Bounds {
+pub fn amply_around(p: Vec2, reach: f64) -> Bounds {
     let reach = Vec2::repeat(reach + 1e-9 * (reach + p.x.abs() + p.y.abs()));
     Bounds { low: p - reach, high: p + reach }
+}
+
+impl Nearby {
+    /// Whether something is true of a surface that may be nearer than `reach` to a line; some are asked about repeatedly.
+    pub fn any_along(&self, line: &Segment, reach: f64, mut is_true: impl FnMut(u32) -> bool) -> bool {
+        let Some(squares) = &self.squares else { return self.all.iter().any(|&k| is_true(k)) };
+        let slack = |v: f64| reach + 1e-9 * (reach + v.abs());
+        let (low, high) = if line.a.y <= line.b.y { (line.a, line.b) } else { (line.b, line.a) };
+        let (bottom, top) = (low.y - slack(low.y), high.y + slack(high.y));
+        let rise = high.y - low.y;
+        for row in squares.rows(bottom, top) {
+            // The part of the line that is near this row.
+            let (from, to) = squares.span(row);
+            let share = |y: f64| if rise > 0.0 { ((y - low.y) / rise).clamp(0.0, 1.0) } else { 0.0 };
+            let reached = if rise > 0.0 { (share(from - slack(from)), share(to + slack(to))) } else { (0.0, 1.0) };
+            let x = |share: f64| low.x + (high.x - low.x) * share;
+            let (left, right) = (x(reached.0).min(x(reached.1)), x(reached.0).max(x(reached.1)));
+            for column in squares.columns(left - slack(left), right + slack(right)) {
+                if squares.at(row, column).iter().any(|&k| is_true(k)) {
+                    return true;
+                }
+            }
+        }
+        false
+    }
 }
 
 impl Squares {
@@ -164,6 +189,13 @@ impl Squares {
 
     fn rows_of(&self, b: &Bounds) -> std::ops::Range<usize> {
         self.rows(b.low.y, b.high.y)
+    }
+
+    /// The coordinates between which a row lies; without end at the rim, where all that lies beyond is counted.
+    fn span(&self, row: usize) -> (f64, f64) {
+        let at = |row: usize| self.low.y + row as f64 / self.per_side;
+        let low = if row == 0 { f64::NEG_INFINITY } else { at(row) };
+        (low, if row + 1 == self.rows { f64::INFINITY } else { at(row + 1) })
     }
 
     /// How long the lists of some squares of a row are together.

@@ -1,0 +1,48 @@
+//! What is wrong with the ways of agents, as diagnostics, before the first trial.
+
+use crate::compile::Study;
+use crate::compile::study::World;
+use crate::route::{Doubt, Ways};
+use crate::syntax::codes::Code;
+use crate::syntax::diagnostic::{Diagnostic, Severity};
+use std::collections::BTreeSet;
+
+/// The errors and warnings about the ways in the worlds that some queries ask about; all queries where none is named.
+pub fn survey(study: &Study, only: &[usize], ways: &Ways) -> Vec<Diagnostic> {
+    let asked = study.queries.iter().filter(|query| only.is_empty() || only.contains(&query.index));
+    let worlds: BTreeSet<usize> = asked.flat_map(|query| query.ask.worlds()).collect();
+    let mut found: Vec<Diagnostic> = Vec::new();
+    for world in worlds.into_iter().filter_map(|world| study.worlds.get(world)) {
+        for one in ways.doubts(&world.scenario).iter().map(|doubt| diagnostic(world, doubt)) {
+            // Worlds may be alike.
+            let place = |one: &Diagnostic| one.place.as_ref().map(|place| place.span);
+            if !found.iter().any(|known| known.code == one.code && place(known) == place(&one)) {
+                found.push(one);
+            }
+        }
+    }
+    found
+}
+
+/// Whether one of them is an error.
+pub fn is_refused(found: &[Diagnostic]) -> bool {
+    found.iter().any(|one| one.severity == Severity::Error)
+}
+
+fn diagnostic(world: &World, doubt: &Doubt) -> Diagnostic {
+    let place = world.place_of(doubt.agent);
+    if doubt.impossible {
+        let error = match place {
+            Some(span) => Diagnostic::error(Code::E0803, span, doubt.said.as_str()),
+            None => Diagnostic::placeless(Code::E0803, doubt.said.as_str()),
+        };
+        return error.hint(
+            "move the goal or the start, open the barrier, or write `wayfinding = straight` in the kind to go straight whatever is in the way",
+        );
+    }
+    let warning = match place {
+        Some(span) => Diagnostic::warning(Code::W0802, span, doubt.said.as_str()),
+        None => Diagnostic { severity: Severity::Warning, ..Diagnostic::placeless(Code::W0802, doubt.said.as_str()) },
+    };
+    warning.hint("agents without a way stand still; see `smc explain W0802`")
+}

@@ -1,0 +1,128 @@
+//! Straight lines among the barriers of a scene: whether a body can go along one.
+
+use super::scene::{Obstacle, Scene};
+use crate::base::geometry::{Bounds, Nearby, Segment, Shape, Vec2, amply_around};
+
+/// What rounding may take from a distance, m.
+pub const ROUNDING: f64 = 1e-9;
+
+/// A piece of a barrier's surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Piece {
+    /// A straight edge.
+    Edge(Segment),
+    /// The rim of a disc.
+    Disc {
+        /// Its centre.
+        centre: Vec2,
+        /// Its radius, m.
+        radius: f64,
+    },
+}
+
+impl Piece {
+    /// Distance from a point to it, m; within a disc as at its rim.
+    pub fn distance(&self, p: Vec2) -> f64 {
+        match self {
+            Self::Edge(edge) => edge.distance(p),
+            Self::Disc { centre, radius } => ((p - centre).norm() - radius).max(0.0),
+        }
+    }
+
+    /// Distance from a line to it, m.
+    pub fn distance_to(&self, line: &Segment) -> f64 {
+        match self {
+            Self::Edge(edge) => edge.distance_to(line),
+            Self::Disc { centre, radius } => (line.distance(*centre) - radius).max(0.0),
+        }
+    }
+
+    fn bounds(&self) -> Bounds {
+        match self {
+            Self::Edge(edge) => Bounds { low: edge.a.inf(&edge.b), high: edge.a.sup(&edge.b) },
+            Self::Disc { centre, radius } => {
+                let reach = Vec2::repeat(*radius);
+                Bounds { low: centre - reach, high: centre + reach }
+            }
+        }
+    }
+}
+
+/// Walls and rims of obstacles of a scene.
+#[derive(Clone, Debug, Default)]
+pub struct Sight {
+    pieces: Vec<Piece>,
+    nearby: Nearby,
+}
+
+impl Sight {
+    /// Of a scene.
+    pub fn new(scene: &Scene) -> Self {
+        let mut pieces = Vec::new();
+        for barrier in &scene.barriers {
+            match &barrier.obstacle {
+                Obstacle::Wall(segments) => pieces.extend(segments.iter().copied().map(Piece::Edge)),
+                Obstacle::Solid(Shape::Polygon(polygon)) => pieces.extend(polygon.segments().map(Piece::Edge)),
+                Obstacle::Solid(Shape::Circle { centre, radius }) => {
+                    pieces.push(Piece::Disc { centre: *centre, radius: *radius });
+                }
+            }
+        }
+        let bounds: Vec<Bounds> = pieces.iter().map(Piece::bounds).collect();
+        Self { pieces, nearby: Nearby::new(&bounds) }
+    }
+
+    /// Its pieces.
+    pub fn pieces(&self) -> &[Piece] {
+        &self.pieces
+    }
+
+    /// The pieces that may be nearer than `reach` to a place, and perhaps others.
+    pub fn near(&self, p: Vec2, reach: f64) -> Vec<Piece> {
+        let mut room = Vec::new();
+        let found = self.nearby.find(&amply_around(p, reach), &mut room);
+        found.iter().map(|&k| self.pieces[k as usize]).collect()
+    }
+
+    /// Whether something is true of a piece that may be nearer than `reach` to a line.
+    pub fn any_along(&self, line: &Segment, reach: f64, mut is_true: impl FnMut(&Piece) -> bool) -> bool {
+        self.nearby.any_along(line, reach, |k| is_true(&self.pieces[k as usize]))
+    }
+
+    /// Whether the middle of a body of radius `reach`, m, can go straight from one place to another. Where an end is nearer to
+    /// a barrier than that, the line need only keep the distance of this end.
+    pub fn is_clear(&self, from: Vec2, to: Vec2, reach: f64) -> bool {
+        let line = Segment::new(from, to);
+        !self.any_along(&line, reach, |piece| {
+            let distance = piece.distance_to(&line);
+            distance < reach - ROUNDING
+                && distance < piece.distance(from).min(piece.distance(to)) - ROUNDING
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Barrier;
+
+    #[test]
+    fn a_line_is_clear_if_a_body_fits_along_it() {
+        let p = |x: f64, y: f64| Vec2::new(x, y);
+        let wall = |a, b| Obstacle::Wall(vec![Segment::new(a, b)]);
+        // A door of 1 m, and a pillar behind it.
+        let pillar = Obstacle::Solid(Shape::Circle { centre: p(3.0, 0.0), radius: 0.5 });
+        let obstacles = [wall(p(0.0, 0.5), p(0.0, 9.0)), wall(p(0.0, -0.5), p(0.0, -9.0)), pillar];
+        let barriers = obstacles.map(|obstacle| Barrier { name: String::new(), obstacle }).to_vec();
+        let sight = Sight::new(&Scene { barriers, ..Scene::default() });
+        assert!(sight.is_clear(p(-2.0, 0.0), p(2.0, 0.0), 0.5));
+        assert!(!sight.is_clear(p(-2.0, 0.0), p(2.0, 0.0), 0.51));
+        assert!(sight.is_clear(p(-2.0, 0.0), p(2.0, 0.2), 0.25));
+        assert!(!sight.is_clear(p(-2.0, 0.0), p(6.0, 0.0), 0.1));
+        assert!(sight.is_clear(p(1.0, 0.75), p(6.0, 0.75), 0.25));
+        // Somebody at a wall may go along it and away from it, not through it.
+        assert!(sight.is_clear(p(-0.1, 2.0), p(-0.1, 5.0), 0.25));
+        assert!(sight.is_clear(p(-0.1, 2.0), p(-3.0, 5.0), 0.25));
+        assert!(!sight.is_clear(p(-0.1, 2.0), p(0.1, 2.0), 0.25));
+    }
+}

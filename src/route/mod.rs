@@ -1,0 +1,23 @@
+//! Floor 3: ways around barriers, and the driver of agents that find their way.
+//!
+//! Ways are exact: the shortest ones of a disc with the radius of the body (`network`). All that depends on the scene and the
+//! goal alone is made once a run (`atlas`); a look-up joins the place of an agent to it (`way`).
+
+mod atlas;
+mod cells;
+mod circle;
+mod field;
+mod goal;
+mod network;
+mod rim;
+mod survey;
+mod tangent;
+mod way;
+#[cfg(test)]
+mod tests;
+mod wayfinder;
+
+pub use atlas::Atlas;
+pub use way::{Bend, ShortestWay};
+pub use survey::Doubt;
+pub use wayfinder::{Ways, drivers};

@@ -1,0 +1,180 @@
+//! What is wrong or doubtful with the ways of a scenario, before the first trial: goals that nobody can reach from any place
+//! of a start, and those that only some can.
+
+use super::atlas::Atlas;
+use super::wayfinder::is_drawn;
+use crate::base::geometry::{Shape, Vec2};
+use crate::model::{Agent, AgentId, Goal, Leg, Obstacle, Parameter, Position, Route, Scenario, Scene};
+
+/// A start or goal is looked at in so many rows of so many places; and in more where none of these has a way.
+const ROWS: u32 = 8;
+const MORE_ROWS: u32 = 40;
+
+/// The share of drawn radii that is looked at.
+const WIDEST: f64 = 0.999;
+
+/// Something about the ways of some agents.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Doubt {
+    /// The first of them.
+    pub agent: AgentId,
+    /// Whether no trial can have a way.
+    pub impossible: bool,
+    /// In words.
+    pub said: String,
+}
+
+/// Places of a shape: rows of a grid, and a point inside.
+fn places(shape: &Shape, rows: u32) -> Vec<Vec2> {
+    let bounds = shape.bounds();
+    let size = bounds.high - bounds.low;
+    let share = |k: u32| (f64::from(k) + 0.5) / f64::from(rows);
+    let grid = (0..rows).flat_map(|row| (0..rows).map(move |column| (share(column), share(row))));
+    let at = |(x, y): (f64, f64)| bounds.low + Vec2::new(size.x * x, size.y * y);
+    let inside = grid.map(at).filter(|p| shape.contains(*p));
+    std::iter::once(shape.inner_point()).chain(inside).collect()
+}
+
+/// Where a leg may begin.
+enum Origin<'s> {
+    Point(Vec2),
+    Shape(&'s Shape),
+}
+
+impl Origin<'_> {
+    /// Its places outside of obstacles.
+    fn places(&self, scene: &Scene, rows: u32) -> Vec<Vec2> {
+        let all = match self {
+            Self::Point(point) => vec![*point],
+            Self::Shape(shape) => places(shape, rows),
+        };
+        let free = all.iter().copied().filter(|p| inside(scene, *p).is_none()).collect::<Vec<_>>();
+        if free.is_empty() { all } else { free }
+    }
+}
+
+/// The solid obstacle in which a place lies.
+fn inside(scene: &Scene, p: Vec2) -> Option<String> {
+    let mut barriers = scene.barriers.iter();
+    let found = barriers.find(|b| matches!(b.obstacle, Obstacle::Solid(_)) && b.obstacle.distance(p) < 0.0)?;
+    Some(found.phrase())
+}
+
+fn number(v: f64) -> f64 {
+    (v * 100.0).round() / 100.0
+}
+
+/// What a goal is called.
+fn goal_name(scene: &Scene, goal: &Goal) -> String {
+    match goal {
+        Goal::Region(id) => format!("`{}`", scene.regions[id.0 as usize].name),
+        Goal::Point(p) => format!("({}, {}) m", number(p.x), number(p.y)),
+    }
+}
+
+/// What is doubtful about the ways of some agents of a scenario.
+pub(super) fn doubts(atlas: &Atlas, scenario: &Scenario, agents: &[AgentId]) -> Vec<Doubt> {
+    let agent = |id: AgentId| &scenario.agents[id.0 as usize];
+    let alike = |a: &Agent, b: &Agent| {
+        a.start.position == b.start.position && a.route == b.route && a.body == b.body && a.particle == b.particle
+    };
+    let mut out = Vec::new();
+    let mut rest = agents;
+    while let Some((&first, others)) = rest.split_first() {
+        let count = others.iter().take_while(|id| alike(agent(first), agent(**id))).count();
+        rest = &others[count..];
+        let who = match count {
+            0 => format!("`{}`", agent(first).name),
+            _ => format!("`{}` and {count} more", agent(first).name),
+        };
+        of_agent(atlas, scenario, (first, &who), &mut out);
+    }
+    out
+}
+
+fn of_agent(atlas: &Atlas, scenario: &Scenario, (id, who): (AgentId, &str), out: &mut Vec<Doubt>) {
+    let scene = &scenario.scene;
+    let agent = &scenario.agents[id.0 as usize];
+    let Route::Legs { legs, .. } = &agent.route else { return };
+    let law = &agent.body[Parameter::Radius];
+    let factor = agent.particle.map_or(1.0, |particle| particle.radius_factor);
+    let radius = |of: f64| Atlas::class((of * factor).max(0.01), is_drawn(agent));
+    let (least, most) = (radius(law.bounds().0), radius(law.draw(WIDEST)));
+    let mut origin = match &agent.start.position {
+        Position::Point(point) => Some((Origin::Point(*point), "its start".to_owned())),
+        Position::Within(shape) => Some((Origin::Shape(shape), "its start".to_owned())),
+        Position::Near { .. } => None,
+    };
+    for goal in legs.iter().filter_map(|leg| if let Leg::To(goal) = leg { Some(goal) } else { None }) {
+        let name = goal_name(scene, goal);
+        if let Some((from, from_name)) = &origin {
+            let with_way = |rows: u32, radius: f64| {
+                let places = from.places(scene, rows);
+                let count = places.iter().filter(|p| atlas.way(**p, goal, radius).is_some()).count();
+                (count, places.len())
+            };
+            let mut doubt = |impossible, said| out.push(Doubt { agent: id, impossible, said });
+            let (some, all) = with_way(ROWS, least);
+            if some == 0 && (all == 1 || with_way(MORE_ROWS, least).0 == 0) {
+                let why = into(scene, goal).map_or_else(
+                    || {
+                        let enclosed = enclosing(scene, from, least, atlas, goal);
+                        enclosed.map_or(String::new(), |barrier| format!("; {barrier} is in between"))
+                    },
+                    |obstacle| format!(": it lies inside {obstacle}"),
+                );
+                doubt(true, format!("no way leads {who} from {from_name} to {name}{why}"));
+                return;
+            }
+            if some < all {
+                doubt(false, format!("no way leads {who} to {name} from {} of {all} places of {from_name}", all - some));
+            } else if most > least && with_way(ROWS, most).0 < all {
+                let wide = number(most);
+                doubt(false, format!("a way of {who} to {name} is too narrow for bodies with a radius of {wide} m"));
+            }
+            if let Goal::Point(p) = goal
+                && let Some(distance) = nearest(scene, *p).filter(|distance| *distance < least)
+            {
+                let (near, radius) = (number(distance), number(least));
+                doubt(
+                    false,
+                    format!("{name}, a goal of {who}, is {near} m from a barrier, nearer than a radius of {radius} m"),
+                );
+            }
+        }
+        origin = match goal {
+            Goal::Point(point) => Some((Origin::Point(*point), name)),
+            Goal::Region(region) => Some((Origin::Shape(&scene.regions[region.0 as usize].shape), name)),
+        };
+    }
+}
+
+/// Distance from a place to the nearest barrier, m.
+fn nearest(scene: &Scene, p: Vec2) -> Option<f64> {
+    scene.barriers.iter().map(|barrier| barrier.obstacle.distance(p)).reduce(f64::min)
+}
+
+/// The obstacle in which all of a goal lies.
+fn into(scene: &Scene, goal: &Goal) -> Option<String> {
+    let places = match goal {
+        Goal::Point(point) => vec![*point],
+        Goal::Region(id) => places(&scene.regions[id.0 as usize].shape, ROWS),
+    };
+    let found: Vec<Option<String>> = places.iter().map(|p| inside(scene, *p)).collect();
+    if found.iter().all(Option::is_some) { found.into_iter().next().flatten() } else { None }
+}
+
+/// A barrier that the straight way from a start to a goal meets.
+fn enclosing(scene: &Scene, from: &Origin<'_>, radius: f64, atlas: &Atlas, goal: &Goal) -> Option<String> {
+    let start = *from.places(scene, 1).first()?;
+    let end = match goal {
+        Goal::Point(point) => *point,
+        Goal::Region(id) => scene.regions.get(id.0 as usize)?.shape.inner_point(),
+    };
+    // Of barriers without a name nothing is said.
+    let meets = |barrier: &&crate::model::Barrier| {
+        let alone = Scene { barriers: vec![(*barrier).clone()], ..Scene::default() };
+        !barrier.name.is_empty() && !crate::model::Sight::new(&alone).is_clear(start, end, radius)
+    };
+    atlas.scene().barriers.iter().find(meets).map(crate::model::Barrier::phrase)
+}

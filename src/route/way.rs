@@ -1,0 +1,145 @@
+//! Shortest ways: from a place to a goal.
+
+use super::circle::direction;
+use super::field::{Field, Onward};
+use super::network::Network;
+use super::tangent::{Turn, from_point};
+use crate::base::geometry::Vec2;
+
+/// On an arc a body heads for points at most so far apart, rad.
+const STEP: f64 = std::f64::consts::FRAC_PI_4;
+
+/// An arc of a way around a circle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bend {
+    /// Centre of the circle, m.
+    pub centre: Vec2,
+    /// Its radius, m.
+    pub radius: f64,
+    /// Angle at which the arc begins, rad.
+    pub from: f64,
+    /// How far it turns, rad; positive to the left.
+    pub turn: f64,
+}
+
+/// A shortest way.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShortestWay {
+    /// Its length, m.
+    pub length: f64,
+    /// The arcs on it; straight lines join them.
+    pub bends: Vec<Bend>,
+    /// Where it ends, m.
+    pub end: Vec2,
+    /// Whether it leads straight to the nearest place of the goal.
+    pub is_straight: bool,
+}
+
+impl Bend {
+    /// The places at which it begins and ends.
+    pub fn ends(&self) -> [Vec2; 2] {
+        [self.from, self.from + self.turn].map(|angle| self.centre + direction(angle) * self.radius)
+    }
+
+    /// Corners of a polyline that stays outside of the circle: the tangents at places of the arc meet there.
+    fn corners(&self) -> impl Iterator<Item = Vec2> + '_ {
+        let count = (self.turn.abs() / STEP).ceil().max(1.0);
+        let step = self.turn / count;
+        // 1 / cos(step / 2)
+        let stretch = 1.0 / direction(0.5 * step).x;
+        (0..count as u32).map(move |k| {
+            let angle = self.from + (f64::from(k) + 0.5) * step;
+            self.centre + direction(angle) * (self.radius * stretch)
+        })
+    }
+}
+
+impl ShortestWay {
+    /// Points to head for one after the other; the last one is the end.
+    pub fn points(&self) -> Vec<Vec2> {
+        self.bends.iter().flat_map(Bend::corners).chain([self.end]).collect()
+    }
+}
+
+/// A first piece of a way: straight to the goal, or to a place on a track.
+#[derive(Clone, Copy)]
+struct FirstPiece {
+    length: f64,
+    to: Vec2,
+    then: Option<(u32, f64)>,
+}
+
+impl Network {
+    /// The shortest way from a place to the goal of a field; `None` if there is none.
+    pub(super) fn way(&self, field: &Field, p: Vec2) -> Option<ShortestWay> {
+        if field.entry.holds(p) {
+            return Some(ShortestWay { length: 0.0, bends: Vec::new(), end: p, is_straight: true });
+        }
+        let mut options: Vec<FirstPiece> = Vec::new();
+        let direct = |(to, length)| FirstPiece { length, to, then: None };
+        options.extend(field.entry.nearest(p).map(direct));
+        let nearest = options.iter().copied().reduce(|a, b| if b.length < a.length { b } else { a })?;
+        // Nothing is shorter than the straight way to the nearest place.
+        if self.sight.is_clear(p, nearest.to, self.reach) {
+            return Some(ShortestWay { length: nearest.length, bends: Vec::new(), end: nearest.to, is_straight: true });
+        }
+        for &circle in self.cells.seen(p, &self.circles, &self.sight) {
+            for turn in Turn::BOTH {
+                let Some((touch, to, length)) = from_point(p, &self.circles[circle as usize], turn) else {
+                    continue;
+                };
+                let Some((track, at)) = self.place(circle as usize, turn, touch) else { continue };
+                if let Some((rest, _)) = field.from(self, track, at) {
+                    options.push(FirstPiece { length: length + rest, to, then: Some((track, at)) });
+                }
+            }
+        }
+        // The shortest of those whose first piece is clear. The first of several that are equally short.
+        loop {
+            let best = (0..options.len()).reduce(|a, b| if options[b].length < options[a].length { b } else { a })?;
+            let option = options.remove(best);
+            if self.sight.is_clear(p, option.to, self.reach) {
+                return match option.then {
+                    Some((track, at)) => self.follow(field, option.length, (track, at)),
+                    None => Some(ShortestWay { length: option.length, bends: Vec::new(), end: option.to, is_straight: false }),
+                };
+            }
+        }
+    }
+
+    /// The arcs of the way that begins at a place on a track.
+    fn follow(&self, field: &Field, length: f64, (mut track, mut at): (u32, f64)) -> Option<ShortestWay> {
+        let mut bends = Vec::new();
+        let mut entered = at;
+        let mut onward = field.from(self, track, at)?.1;
+        // A way passes no station twice.
+        for _ in 0..=2 * self.stations.len() + 1 {
+            let line = &self.tracks[track as usize];
+            let circle = &self.circles[line.circle as usize];
+            let bend = |to: f64| {
+                let turn = line.ahead(entered, to).unwrap_or(0.0);
+                let (centre, radius) = (circle.centre, circle.radius);
+                Bend { centre, radius, from: line.angle(entered), turn: line.turn.sign() * turn }
+            };
+            match onward {
+                Onward::Goal(k) => {
+                    let departure = &field.departures[k as usize];
+                    bends.push(bend(departure.at));
+                    return Some(ShortestWay { length, bends, end: departure.end, is_straight: false });
+                }
+                Onward::Station(k) => {
+                    let station = self.stations[k as usize];
+                    if station.track == track {
+                        at = station.at;
+                    } else {
+                        // The line from where the way is now.
+                        bends.push(bend(at));
+                        (track, at, entered) = (station.track, station.at, station.at);
+                    }
+                    onward = field.onward(k)?;
+                }
+            }
+        }
+        None
+    }
+}
