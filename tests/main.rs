@@ -51,3 +51,4 @@ mod texts;
 mod tracks;
 mod verdicts;
 mod walls;
+mod ways;

@@ -219,6 +219,21 @@ pub(super) struct Show {
     pub(super) model: Model,
     /// Property files (`.bltl`).
     pub(super) properties: Vec<String>,
+    /// `text` describes the scenario, `svg` draws its plan with the shortest ways.
+    #[arg(long, value_enum, default_value_t = ShowFormat::Text)]
+    pub(super) format: ShowFormat,
+    /// File to write instead of standard output.
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
+}
+
+/// Formats of `smc show`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum ShowFormat {
+    /// For people.
+    Text,
+    /// The plan of the scene.
+    Svg,
 }
 
 /// `smc fmt`

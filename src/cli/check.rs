@@ -15,10 +15,10 @@ use crate::engine::outcome::{Failure, Finding, Run};
 use crate::engine::{
     Budget, Call, CallForecast, CommandLine, Fault, Ranks, Threads, forecast, run as run_study,
 };
-use crate::model::Scenario;
-use crate::route::Ways;
 use crate::library;
+use crate::model::Scenario;
 use crate::report::{self, ExitCode as Exit, Format, Palette};
+use crate::route::Ways;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};

@@ -14,11 +14,11 @@ use crate::data::table::{
     write_states_json_lines,
 };
 use crate::engine::{divergence, no_start, placeable, smaller};
-use crate::route::drivers;
 use crate::kernel::{Address, End, Program, Run, Slot, State};
 use crate::library;
 use crate::model::{AgentId, Domain, Parameter, Scenario};
 use crate::report::ExitCode as Exit;
+use crate::route::drivers;
 use std::io::{BufWriter, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

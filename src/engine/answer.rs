@@ -269,7 +269,9 @@ impl Answers<'_> {
     pub(super) fn note_odd(&self, result: &mut QueryResult, tallies: &[(&PreparedWorld, &Tally)]) {
         let first = |of: &dyn Fn(&Tally) -> Option<u64>| {
             let mut found = tallies.iter().filter_map(|(prepared, tally)| Some((*prepared, of(tally)?)));
-            found.next().map(|(prepared, index)| (prepared, TrialKey { seed: self.call.seed, index, branch: 0 }))
+            found
+                .next()
+                .map(|(prepared, index)| (prepared, TrialKey { seed: self.call.seed, index, branch: 0 }))
         };
         if let Some((prepared, key)) = first(&|tally| tally.shrunk.first) {
             result.warnings.push(cause::smaller(&prepared.program, key, result.shrunk));

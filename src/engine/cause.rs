@@ -147,7 +147,7 @@ pub fn smaller(program: &Program, key: TrialKey, trials: u64) -> String {
 }
 
 /// Who has no way to a goal in a trial, where that happens in some number of trials.
-pub fn stranded(program: &Program, key: TrialKey, trials: u64) -> String {
+pub(super) fn stranded(program: &Program, key: TrialKey, trials: u64) -> String {
     let trials = if trials == 1 { "1 trial".to_owned() } else { format!("{trials} trials") };
     let in_trials = format!("somebody had no way to a goal in {trials}");
     let Ok((mut run, _)) = Run::of(program, key.into()) else { return in_trials };

@@ -209,7 +209,12 @@ impl Model {
     /// # Errors
     /// Where the trial cannot start: people find no place.
     pub fn trial(&self, seed: u64, index: u64) -> Result<Trial, Diagnostics> {
-        let program = Program::driven(self.scenario.clone(), self.drivers.as_ref().map_or_else(|| drivers(&self.scenario, seed), |make| make(&self.scenario, seed)));
+        let program = Program::driven(
+            self.scenario.clone(),
+            self.drivers
+                .as_ref()
+                .map_or_else(|| drivers(&self.scenario, seed), |make| make(&self.scenario, seed)),
+        );
         let key = TrialKey { seed, index, branch: 0 };
         Trial::new(program, Address::from(key)).map_err(|fault| {
             let reason = no_start(&self.scenario, fault);

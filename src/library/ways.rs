@@ -42,7 +42,10 @@ fn diagnostic(world: &World, doubt: &Doubt) -> Diagnostic {
     }
     let warning = match place {
         Some(span) => Diagnostic::warning(Code::W0802, span, doubt.said.as_str()),
-        None => Diagnostic { severity: Severity::Warning, ..Diagnostic::placeless(Code::W0802, doubt.said.as_str()) },
+        None => Diagnostic {
+            severity: Severity::Warning,
+            ..Diagnostic::placeless(Code::W0802, doubt.said.as_str())
+        },
     };
     warning.hint("agents without a way stand still; see `smc explain W0802`")
 }

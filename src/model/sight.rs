@@ -62,7 +62,9 @@ impl Sight {
         for barrier in &scene.barriers {
             match &barrier.obstacle {
                 Obstacle::Wall(segments) => pieces.extend(segments.iter().copied().map(Piece::Edge)),
-                Obstacle::Solid(Shape::Polygon(polygon)) => pieces.extend(polygon.segments().map(Piece::Edge)),
+                Obstacle::Solid(Shape::Polygon(polygon)) => {
+                    pieces.extend(polygon.segments().map(Piece::Edge))
+                }
                 Obstacle::Solid(Shape::Circle { centre, radius }) => {
                     pieces.push(Piece::Disc { centre: *centre, radius: *radius });
                 }
@@ -95,8 +97,7 @@ impl Sight {
         let line = Segment::new(from, to);
         !self.any_along(&line, reach, |piece| {
             let distance = piece.distance_to(&line);
-            distance < reach - ROUNDING
-                && distance < piece.distance(from).min(piece.distance(to)) - ROUNDING
+            distance < reach - ROUNDING && distance < piece.distance(from).min(piece.distance(to)) - ROUNDING
         })
     }
 }

@@ -5,6 +5,7 @@
 //! interval, all counts, why sampling stopped, and the command that gives the result again.
 
 pub mod behaviours;
+mod escape;
 mod exit;
 pub mod forecast;
 pub mod github;
@@ -15,6 +16,7 @@ pub mod model;
 pub mod number;
 pub mod palette;
 mod phrase;
+pub mod svg;
 pub mod text;
 
 pub use exit::{ExitCode, exit_code};

@@ -120,7 +120,8 @@ fn arcs(sight: &Sight, centre: Vec2, radius: f64, reach: f64) -> Vec<Arc> {
     if count == 0 {
         return if is_free(0.0) { vec![Arc::new(0.0, TAU)] } else { Vec::new() };
     }
-    let extent = |k: usize| if k + 1 < count { angles[k + 1] - angles[k] } else { angles[0] + TAU - angles[k] };
+    let extent =
+        |k: usize| if k + 1 < count { angles[k + 1] - angles[k] } else { angles[0] + TAU - angles[k] };
     let free: Vec<bool> = (0..count).map(|k| is_free(angles[k] + 0.5 * extent(k))).collect();
     let Some(blocked) = free.iter().position(|free| !free) else { return vec![Arc::new(0.0, TAU)] };
     let mut out = Vec::new();

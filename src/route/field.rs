@@ -37,8 +37,13 @@ impl Field {
             *range = if range.1 == 0 { (k as u32, k as u32 + 1) } else { (range.0, k as u32 + 1) };
         }
         let count = network.stations.len();
-        let mut field =
-            Self { entry, departures, of_track, lengths: vec![f64::INFINITY; count], onward: vec![None; count] };
+        let mut field = Self {
+            entry,
+            departures,
+            of_track,
+            lengths: vec![f64::INFINITY; count],
+            onward: vec![None; count],
+        };
         field.spread(network);
         field
     }

@@ -12,12 +12,12 @@ mod network;
 mod rim;
 mod survey;
 mod tangent;
-mod way;
 #[cfg(test)]
 mod tests;
+mod way;
 mod wayfinder;
 
 pub use atlas::Atlas;
-pub use way::{Bend, ShortestWay};
 pub use survey::Doubt;
+pub use way::{Bend, ShortestWay};
 pub use wayfinder::{Ways, drivers};

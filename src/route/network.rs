@@ -50,11 +50,7 @@ impl Track {
     pub(super) fn ahead(&self, from: f64, to: f64) -> Option<f64> {
         let far = to - from;
         // Where two lines touch at one place, rounding does not say which is first.
-        if far >= -1e-9 {
-            Some(far.max(0.0))
-        } else {
-            self.is_full.then(|| far + self.extent)
-        }
+        if far >= -1e-9 { Some(far.max(0.0)) } else { self.is_full.then(|| far + self.extent) }
     }
 
     /// The first station at a place or behind it, as an index into the list, and how far it is, rad.
@@ -150,7 +146,8 @@ impl Network {
         };
         for (leave, arrive) in [(leave, arrive), (back(arrive), back(leave))] {
             let k = self.stations.len() as u32;
-            let station = |(track, at), mate, leaves| Station { track, at, mate, leaves, length: line.length };
+            let station =
+                |(track, at), mate, leaves| Station { track, at, mate, leaves, length: line.length };
             self.stations.push(station(leave, k + 1, true));
             self.stations.push(station(arrive, k, false));
         }

@@ -56,7 +56,8 @@ impl Origin<'_> {
 /// The solid obstacle in which a place lies.
 fn inside(scene: &Scene, p: Vec2) -> Option<String> {
     let mut barriers = scene.barriers.iter();
-    let found = barriers.find(|b| matches!(b.obstacle, Obstacle::Solid(_)) && b.obstacle.distance(p) < 0.0)?;
+    let found =
+        barriers.find(|b| matches!(b.obstacle, Obstacle::Solid(_)) && b.obstacle.distance(p) < 0.0)?;
     Some(found.phrase())
 }
 
@@ -76,7 +77,10 @@ fn goal_name(scene: &Scene, goal: &Goal) -> String {
 pub(super) fn doubts(atlas: &Atlas, scenario: &Scenario, agents: &[AgentId]) -> Vec<Doubt> {
     let agent = |id: AgentId| &scenario.agents[id.0 as usize];
     let alike = |a: &Agent, b: &Agent| {
-        a.start.position == b.start.position && a.route == b.route && a.body == b.body && a.particle == b.particle
+        a.start.position == b.start.position
+            && a.route == b.route
+            && a.body == b.body
+            && a.particle == b.particle
     };
     let mut out = Vec::new();
     let mut rest = agents;
@@ -127,10 +131,19 @@ fn of_agent(atlas: &Atlas, scenario: &Scenario, (id, who): (AgentId, &str), out:
                 return;
             }
             if some < all {
-                doubt(false, format!("no way leads {who} to {name} from {} of {all} places of {from_name}", all - some));
+                doubt(
+                    false,
+                    format!(
+                        "no way leads {who} to {name} from {} of {all} places of {from_name}",
+                        all - some
+                    ),
+                );
             } else if most > least && with_way(ROWS, most).0 < all {
                 let wide = number(most);
-                doubt(false, format!("a way of {who} to {name} is too narrow for bodies with a radius of {wide} m"));
+                doubt(
+                    false,
+                    format!("a way of {who} to {name} is too narrow for bodies with a radius of {wide} m"),
+                );
             }
             if let Goal::Point(p) = goal
                 && let Some(distance) = nearest(scene, *p).filter(|distance| *distance < least)
@@ -138,7 +151,9 @@ fn of_agent(atlas: &Atlas, scenario: &Scenario, (id, who): (AgentId, &str), out:
                 let (near, radius) = (number(distance), number(least));
                 doubt(
                     false,
-                    format!("{name}, a goal of {who}, is {near} m from a barrier, nearer than a radius of {radius} m"),
+                    format!(
+                        "{name}, a goal of {who}, is {near} m from a barrier, nearer than a radius of {radius} m"
+                    ),
                 );
             }
         }

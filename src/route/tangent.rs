@@ -89,7 +89,8 @@ mod tests {
 
     #[test]
     fn lines_touch_both_circles_and_go_on_in_their_sense() {
-        let circle = |x: f64, y: f64, radius: f64| Circle { centre: Vec2::new(x, y), radius, arcs: Vec::new() };
+        let circle =
+            |x: f64, y: f64, radius: f64| Circle { centre: Vec2::new(x, y), radius, arcs: Vec::new() };
         let (a, b) = (circle(0.0, 0.0, 1.0), circle(5.0, 2.0, 0.5));
         for (turn_a, turn_b) in Turn::BOTH.into_iter().flat_map(|t| Turn::BOTH.map(|u| (t, u))) {
             let found = between((&a, turn_a), (&b, turn_b)).unwrap();

@@ -79,7 +79,9 @@ fn scene(stream: &Stream, number: u32) -> Vec<Barrier> {
             let at = p(draw(4 * k, -4.0, 4.0), draw(4 * k + 1, -3.0, 3.0));
             let size = p(draw(4 * k + 2, -2.0, 2.0), draw(4 * k + 3, -2.0, 2.0));
             match k {
-                0 | 1 => wall(&[(at.x, at.y), (at.x + size.x, at.y + size.y), (at.x - size.y, at.y + size.x)]),
+                0 | 1 => {
+                    wall(&[(at.x, at.y), (at.x + size.x, at.y + size.y), (at.x - size.y, at.y + size.x)])
+                }
                 2 => wall(&[(at.x, at.y), (at.x + 2.0 * size.x, at.y + 2.0 * size.y)]),
                 3 => solid(Shape::Polygon(Polygon::rectangle(at, at + size))),
                 _ => solid(Shape::Circle { centre: at, radius: 0.3 + 0.4 * size.x.abs() }),
@@ -123,9 +125,16 @@ fn direction(a: (Vec2, f64), b: (Vec2, f64)) -> Option<f64> {
     Some(angle)
 }
 
-/// A band around circles in order, with the senses in which it turns: its length, if it turns as it should and is free.
-fn band(path: &[(Vec2, f64)], is_free: &dyn Fn(Vec2) -> bool) -> Option<f64> {
-    let mut length = 0.0;
+/// A band around circles in order, with the senses in which it turns.
+struct Band {
+    length: f64,
+    /// Straight pieces, and arcs as many short ones.
+    places: Vec<Vec2>,
+}
+
+/// The band that is pulled tight; none where it does not turn as it should.
+fn band(path: &[(Vec2, f64)]) -> Option<Band> {
+    let (mut length, mut places) = (0.0, Vec::new());
     let mut before: Option<f64> = None;
     let touch = |(centre, radius): (Vec2, f64), angle: f64| centre + p(angle.sin(), -angle.cos()) * radius;
     for pair in path.windows(2) {
@@ -133,80 +142,81 @@ fn band(path: &[(Vec2, f64)], is_free: &dyn Fn(Vec2) -> bool) -> Option<f64> {
         if let Some(before) = before {
             let (sign, radius) = (pair[0].1.signum(), pair[0].1.abs());
             let turn = (sign * (angle - before)).rem_euclid(TAU);
-            // Nobody turns by more than half a circle around something, as far as it is of use.
+            // Nobody turns by more than three quarters of a circle around something, as far as it is of use.
             if turn > 1.5 * PI {
                 return None;
             }
             length += turn * radius;
-            for k in 0..=40 {
-                let at = before + sign * turn * f64::from(k) / 40.0;
-                if !is_free(touch(pair[0], at)) {
-                    return None;
-                }
-            }
+            places.extend((0..=40).map(|k| touch(pair[0], before + sign * turn * f64::from(k) / 40.0)));
         }
         let (from, to) = (touch(pair[0], angle), touch(pair[1], angle));
         let steps = ((to - from).norm() / 0.01).ceil().max(1.0);
-        for k in 0..=steps as u32 {
-            if !is_free(from + (to - from) * (f64::from(k) / steps)) {
-                return None;
-            }
-        }
+        places.extend((0..=steps as u32).map(|k| from + (to - from) * (f64::from(k) / steps)));
         length += (to - from).norm();
         before = Some(angle);
     }
-    Some(length)
+    Some(Band { length, places })
 }
 
-/// The shortest band that turns around at most `most` circles.
-fn shortest(pins: &[(Vec2, f64)], ends: [Vec2; 2], most: usize, is_free: &dyn Fn(Vec2) -> bool) -> Option<f64> {
-    let mut best: Option<f64> = None;
-    let mut orders: Vec<Vec<(Vec2, f64)>> = vec![vec![]];
-    for _ in 0..=most {
-        for order in &orders {
-            let path = [vec![(ends[0], 0.0)], order.clone(), vec![(ends[1], 0.0)]].concat();
-            let polyline: f64 = path.windows(2).map(|w| ((w[1].0 - w[0].0).norm() - w[0].1.abs() - w[1].1.abs()).max(0.0)).sum();
-            if best.is_none_or(|best| polyline < best)
-                && let Some(length) = band(&path, is_free)
-            {
-                best = Some(best.map_or(length, |best: f64| best.min(length)));
-            }
-        }
-        let longer = orders.iter().flat_map(|order| {
-            let unused = pins.iter().filter(|pin| order.iter().all(|(centre, _)| centre != &pin.0));
-            let turned = unused.flat_map(|(centre, radius)| [(*centre, *radius), (*centre, -radius)]);
-            turned.map(|pin| [order.clone(), vec![pin]].concat()).collect::<Vec<_>>()
-        });
-        orders = longer.collect();
-    }
-    best
+/// The length of the shortest band that turns around at most two circles.
+fn shortest(pins: &[(Vec2, f64)], ends: [Vec2; 2], is_free: &dyn Fn(Vec2) -> bool) -> Option<f64> {
+    let turned = || pins.iter().flat_map(|(centre, radius)| [(*centre, *radius), (*centre, -radius)]);
+    let ones = turned().map(|a| vec![a]);
+    let twos = turned().flat_map(|a| turned().filter(move |b| a.0 != b.0).map(move |b| vec![a, b]));
+    let orders = std::iter::once(vec![]).chain(ones).chain(twos);
+    let path = |order: Vec<(Vec2, f64)>| [vec![(ends[0], 0.0)], order, vec![(ends[1], 0.0)]].concat();
+    let mut bands: Vec<Band> = orders.filter_map(|order| band(&path(order))).collect();
+    bands.sort_by(|a, b| a.length.total_cmp(&b.length));
+    bands.iter().find(|band| band.places.iter().all(|q| is_free(*q))).map(|band| band.length)
 }
 
 #[test]
 fn ways_are_as_short_as_those_of_the_oracle() {
+    compare(0..60);
+}
+
+/// About a minute with optimisation.
+#[test]
+#[ignore = "long"]
+fn ways_are_as_short_in_a_thousand_scenes() {
+    compare(0..1000);
+}
+
+fn compare(scenes: std::ops::Range<u32>) {
+    let all = scenes.len();
     let stream = Stream::of(TrialKey { seed: 7, index: 0, branch: 0 }, 1, Purpose::Placement);
     let (mut compared, mut bent, mut none) = (0, 0, 0);
-    for number in 0..SCENES {
+    for number in scenes {
         let barriers = scene(&stream, number);
-        let inside = |q: Vec2| barriers.iter().any(|b| matches!(b.obstacle, Obstacle::Solid(_)) && b.obstacle.distance(q) < 0.0);
-        let sight = Sight::new(&Scene { barriers: barriers.clone(), ..Scene::default() });
-        let is_free = |q: Vec2| {
-            sight.pieces().iter().all(|piece| piece.distance(q) >= RADIUS - 1e-7) && !inside(q)
+        let inside = |q: Vec2| {
+            barriers.iter().any(|b| matches!(b.obstacle, Obstacle::Solid(_)) && b.obstacle.distance(q) < 0.0)
         };
+        let sight = Sight::new(&Scene { barriers: barriers.clone(), ..Scene::default() });
+        let is_free =
+            |q: Vec2| sight.pieces().iter().all(|piece| piece.distance(q) >= RADIUS - 1e-7) && !inside(q);
         let ends = [p(-6.0, 0.0), p(6.0, 0.3)];
+        if !ends.into_iter().all(is_free) {
+            continue;
+        }
         let found = atlas(barriers.clone(), None).way(ends[0], &Goal::Point(ends[1]), RADIUS);
-        let wanted = shortest(&pins(&sight), ends, 2, &is_free);
+        let wanted = shortest(&pins(&sight), ends, &is_free);
         match (found, wanted) {
             (Some(way), Some(wanted)) => {
                 // A band around three circles may be shorter still.
                 assert!(way.length <= wanted + 1e-9, "scene {number}: {} and {wanted}", way.length);
                 if way.bends.len() <= 2 {
-                    assert!((way.length - wanted).abs() < 1e-9, "scene {number}: {way:?} and {wanted} {barriers:?}");
+                    assert!(
+                        (way.length - wanted).abs() < 1e-9,
+                        "scene {number}: {way:?} and {wanted} {barriers:?}"
+                    );
                     compared += 1;
                     bent += usize::from(!way.bends.is_empty());
                 }
                 let points = [vec![ends[0]], way.points()].concat();
-                assert!(points.windows(2).all(|w| sight.is_clear(w[0], w[1], RADIUS - 1e-7)), "scene {number}");
+                assert!(
+                    points.windows(2).all(|w| sight.is_clear(w[0], w[1], RADIUS - 1e-7)),
+                    "scene {number}"
+                );
             }
             (Some(way), None) => assert!(way.bends.len() > 2, "scene {number}: {way:?}"),
             (None, wanted) => {
@@ -215,8 +225,5 @@ fn ways_are_as_short_as_those_of_the_oracle() {
             }
         }
     }
-    println!("{compared} {bent} {none}");
-    assert!(compared > SCENES as usize * 8 / 10 && bent > SCENES as usize / 4, "{compared} {bent} {none}");
+    assert!(compared > all / 2 && bent > all / 5, "{compared} {bent} {none} of {all}");
 }
-
-const SCENES: u32 = 1000;

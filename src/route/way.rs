@@ -36,9 +36,9 @@ pub struct ShortestWay {
 }
 
 impl Bend {
-    /// The places at which it begins and ends.
-    pub fn ends(&self) -> [Vec2; 2] {
-        [self.from, self.from + self.turn].map(|angle| self.centre + direction(angle) * self.radius)
+    /// The place after a share of it, m.
+    pub fn at(&self, share: f64) -> Vec2 {
+        self.centre + direction(self.from + share * self.turn) * self.radius
     }
 
     /// Corners of a polyline that stays outside of the circle: the tangents at places of the arc meet there.
@@ -81,7 +81,12 @@ impl Network {
         let nearest = options.iter().copied().reduce(|a, b| if b.length < a.length { b } else { a })?;
         // Nothing is shorter than the straight way to the nearest place.
         if self.sight.is_clear(p, nearest.to, self.reach) {
-            return Some(ShortestWay { length: nearest.length, bends: Vec::new(), end: nearest.to, is_straight: true });
+            return Some(ShortestWay {
+                length: nearest.length,
+                bends: Vec::new(),
+                end: nearest.to,
+                is_straight: true,
+            });
         }
         for &circle in self.cells.seen(p, &self.circles, &self.sight) {
             for turn in Turn::BOTH {
@@ -96,12 +101,18 @@ impl Network {
         }
         // The shortest of those whose first piece is clear. The first of several that are equally short.
         loop {
-            let best = (0..options.len()).reduce(|a, b| if options[b].length < options[a].length { b } else { a })?;
+            let best = (0..options.len())
+                .reduce(|a, b| if options[b].length < options[a].length { b } else { a })?;
             let option = options.remove(best);
             if self.sight.is_clear(p, option.to, self.reach) {
                 return match option.then {
                     Some((track, at)) => self.follow(field, option.length, (track, at)),
-                    None => Some(ShortestWay { length: option.length, bends: Vec::new(), end: option.to, is_straight: false }),
+                    None => Some(ShortestWay {
+                        length: option.length,
+                        bends: Vec::new(),
+                        end: option.to,
+                        is_straight: false,
+                    }),
                 };
             }
         }

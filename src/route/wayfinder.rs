@@ -49,7 +49,11 @@ impl Ways {
     /// What is wrong or doubtful with the ways of a scenario, before the first trial.
     pub fn doubts(&self, scenario: &Scenario) -> Vec<Doubt> {
         let agents = finders(scenario);
-        if agents.is_empty() { Vec::new() } else { survey::doubts(&self.atlas(&scenario.scene), scenario, &agents) }
+        if agents.is_empty() {
+            Vec::new()
+        } else {
+            survey::doubts(&self.atlas(&scenario.scene), scenario, &agents)
+        }
     }
 }
 

@@ -1,13 +1,13 @@
 //! Geometry of the plane, in metres.
 
-pub mod polygon;
 mod nearby;
+pub mod polygon;
 pub mod segment;
 pub mod shape;
 mod sweep;
 
-pub(crate) use polygon::meeting_edges;
 pub use nearby::{Nearby, amply_around};
+pub(crate) use polygon::meeting_edges;
 pub use polygon::{HoleFault, Polygon};
 pub use segment::Segment;
 pub use shape::{Bounds, Shape};

@@ -108,7 +108,8 @@ impl Nearby {
             // The part of the line that is near this row.
             let (from, to) = squares.span(row);
             let share = |y: f64| if rise > 0.0 { ((y - low.y) / rise).clamp(0.0, 1.0) } else { 0.0 };
-            let reached = if rise > 0.0 { (share(from - slack(from)), share(to + slack(to))) } else { (0.0, 1.0) };
+            let reached =
+                if rise > 0.0 { (share(from - slack(from)), share(to + slack(to))) } else { (0.0, 1.0) };
             let x = |share: f64| low.x + (high.x - low.x) * share;
             let (left, right) = (x(reached.0).min(x(reached.1)), x(reached.0).max(x(reached.1)));
             for column in squares.columns(left - slack(left), right + slack(right)) {

@@ -381,14 +381,15 @@ mod tests {
             Just(Reading::Unresolved),
             Just(Reading::Faulty),
         ];
-        let cell = (reading, any::<u64>(), prop_oneof![Just(0), any::<u64>()], any::<[bool; 2]>())
-            .prop_map(|(reading, steps, triggered, [shrunk, no_way])| Cell {
+        let cell = (reading, any::<u64>(), prop_oneof![Just(0), any::<u64>()], any::<[bool; 2]>()).prop_map(
+            |(reading, steps, triggered, [shrunk, no_way])| Cell {
                 reading,
                 steps,
                 triggered,
                 shrunk,
                 no_way,
-            });
+            },
+        );
         let answer = (any::<u64>(), 0.0..1e9, any::<u64>(), any::<Vec<bool>>(), vec(cell, 0..40)).prop_map(
             |(number, seconds, steps, finished, cells)| {
                 Reply::Answer(Answer { number, seconds, steps, finished, cells })

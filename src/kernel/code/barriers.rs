@@ -7,8 +7,8 @@
 use super::ground::Ground;
 use super::lanes::Vector;
 use crate::base::geometry::{Bounds, Vec2};
-use crate::base::lanes::LANES;
 use crate::base::geometry::{Nearby, amply_around};
+use crate::base::lanes::LANES;
 use crate::model::Scene;
 use fearless_simd::{Simd, prelude::*};
 

@@ -46,10 +46,10 @@ pub(super) fn go_on(level: Level, drive: &Drive, state: &mut State) -> Vec<Mask>
         let course = &mut state.plans.courses[block];
         course.fresh = Mask::NONE;
         let watched = active & course.watched & !state.route.advised[block];
-        let is_due = |&lane: &usize| {
-            state.ticks[state.layout.trial_of(lane)] as f64 >= course.next_ask.0[lane]
-        };
-        for lane in watched.iter().filter(is_due).fold(Mask::NONE, |all, lane| all | Mask::lane(lane)).iter() {
+        let is_due =
+            |&lane: &usize| state.ticks[state.layout.trial_of(lane)] as f64 >= course.next_ask.0[lane];
+        for lane in watched.iter().filter(is_due).fold(Mask::NONE, |all, lane| all | Mask::lane(lane)).iter()
+        {
             event(drive, state, Slot { block, lane });
         }
         let led = active & state.plans.led(block);

@@ -221,7 +221,10 @@ impl<'a> Person<'a> {
             return;
         }
         // Who is at the goal and does not see the next one goes on to its middle, from where it is in sight.
-        let middle = stage.target.middle().filter(|_| stage.open && reached(stage, self.at(), self.radius(), self.way.origin));
+        let middle = stage
+            .target
+            .middle()
+            .filter(|_| stage.open && reached(stage, self.at(), self.radius(), self.way.origin));
         let way = middle.map(|middle| middle - self.at());
         match way.or_else(|| way_to(&stage.target, self.at(), self.radius())) {
             Some(way) if !self.has_arrived() => {

@@ -98,8 +98,14 @@ fn target(scenario: &Scenario, leg: &Leg) -> Target {
 
 /// The stages of a route, the `number`-th of all; its legs count from `from`.
 fn stages(scenario: &Scenario, route: &Route, from: u32, number: u32) -> Vec<Stage> {
-    let stage = |target, (route, at), leg, (last, leaves)| {
-        Stage { target, route, at, leg, last, leaves, open: false }
+    let stage = |target, (route, at), leg, (last, leaves)| Stage {
+        target,
+        route,
+        at,
+        leg,
+        last,
+        leaves,
+        open: false,
     };
     let (legs, leaves) = match route {
         Route::Onward => {
@@ -158,7 +164,8 @@ impl Drive {
         self.stages.extend(stages(&self.scenario, route, from, number));
         for k in first as usize + 1..self.stages.len() {
             let middle = self.stages[k - 1].target.middle();
-            let ahead = middle.and_then(|middle| Some((middle, way_to(&self.stages[k].target, middle, 0.0)?)));
+            let ahead =
+                middle.and_then(|middle| Some((middle, way_to(&self.stages[k].target, middle, 0.0)?)));
             self.stages[k - 1].open =
                 ahead.is_some_and(|(middle, way)| self.sight.is_clear(middle, middle + way, NARROW));
         }

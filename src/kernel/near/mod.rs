@@ -7,10 +7,10 @@ mod grid;
 
 pub(super) use grid::{Extent, FARTHEST, Grid, low_bits, most};
 
-use crate::base::geometry::amply_around;
 use super::state::State;
 use super::vector::parts;
 use crate::base::geometry::Vec2;
+use crate::base::geometry::amply_around;
 use crate::base::lanes::{LANES, Lanes};
 use crate::model::Parameter;
 use fearless_simd::{Level, Simd, dispatch};

@@ -1,8 +1,8 @@
 //! Placements that no trial can make: more bodies than fit into a shape.
 
 use super::arrival::Arrivals;
-use crate::base::geometry::{Bounds, Shape, Vec2};
 use crate::base::geometry::Nearby;
+use crate::base::geometry::{Bounds, Shape, Vec2};
 use crate::model::{AgentId, Barrier, Law, Obstacle, Parameter, Position, Scenario};
 use std::f64::consts::PI;
 

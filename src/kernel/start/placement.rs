@@ -5,9 +5,9 @@ use super::crowd::Crowd;
 use super::outcome::{Fault, Loaded, Overlapped, Shrunk};
 use super::relaxation::{self, Room};
 use super::sampler::Sampler;
+use crate::base::geometry::Nearby;
 use crate::base::geometry::{Bounds, Shape, Vec2};
 use crate::base::random::{Purpose, Stream, TrialKey};
-use crate::base::geometry::Nearby;
 use crate::model::{AgentId, Barrier, BarrierId, Obstacle, Position, Scenario, Scene};
 
 /// How often a free place is sought by chance.

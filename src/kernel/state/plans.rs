@@ -147,7 +147,8 @@ impl Plans {
 
     /// Ends the plan of a slot: the agent heads straight for its goal.
     pub(in crate::kernel) fn end(&mut self, slot: Slot) {
-        let Course { way, driven, stepped, watched, stranded, stands, late, .. } = &mut self.courses[slot.block];
+        let Course { way, driven, stepped, watched, stranded, stands, late, .. } =
+            &mut self.courses[slot.block];
         for mask in [way, driven, stepped, watched, stranded, stands, late] {
             *mask &= !Mask::lane(slot.lane);
         }

@@ -1,7 +1,7 @@
 //! A chart of intervals in SVG: one row per number, a dot for the estimate and a bar from end to end.
 
-use super::escape::escape;
 use crate::engine::outcome::Interval;
+use crate::report::escape::escape;
 use crate::report::number::plain;
 use std::fmt::Write as _;
 

@@ -1,15 +1,14 @@
 //! A report as one HTML page: no script, no font, no file beside it.
 
 mod chart;
-mod escape;
 mod histogram;
 
 use super::number::{count, counted, duration};
 use super::phrase::{certified, endless, one_line, settings};
 use super::text;
 use crate::engine::outcome::{Interval, QueryResult, Run, Shortfall, Status, Verdict, Witness};
+use crate::report::escape::escape;
 use chart::{Mark, Tone};
-use escape::escape;
 use std::fmt::Write as _;
 
 const STYLE: &str = include_str!("style.css");

@@ -2,8 +2,8 @@
 
 use super::face::Form;
 use super::{Face, Joint, ON, Surface};
-use crate::base::geometry::{Bounds, Segment, Vec2, cross};
 use crate::base::geometry::Nearby;
+use crate::base::geometry::{Bounds, Segment, Vec2, cross};
 
 /// What two rectangles share, a little larger; `None` where they are apart.
 fn overlap(a: &Bounds, b: &Bounds) -> Option<Bounds> {

@@ -27,11 +27,11 @@ mod tests;
 
 use super::pair::AgentsInLanes;
 use super::social::{decay, is_in_reach};
+use crate::base::geometry::Nearby;
 use crate::base::geometry::{Bounds, Shape, Vec2};
 use crate::base::lanes::{Lanes, Mask};
 use crate::kernel::barrier::Surface;
 use crate::kernel::edges::squared_distance;
-use crate::base::geometry::Nearby;
 use crate::kernel::state::State;
 use crate::kernel::vector::{Doubles, Part, Truths, larger, smaller};
 use crate::model::{Barrier, Obstacle, Parameter};

@@ -1,7 +1,7 @@
 //! Texts inside markup.
 
 /// A text inside HTML or SVG. Control characters, which neither may hold, become blanks.
-pub(super) fn escape(text: &str) -> String {
+pub(in crate::report) fn escape(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for c in text.chars() {
         match c {

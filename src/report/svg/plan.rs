@@ -1,0 +1,121 @@
+//! The plan of a scenario: barriers, regions, starts, and the shortest ways from the starts through all goals.
+
+use super::{Drawing, Ink};
+use crate::base::geometry::{Bounds, Vec2};
+use crate::model::{Agent, Goal, Leg, Obstacle, Parameter, Position, Route, Scenario};
+use crate::report::number::plain;
+use crate::route::{Atlas, Bend};
+
+/// Points of a drawn arc are at most so far apart, rad.
+const STEP: f64 = 0.1;
+
+/// The middle of a start; none of a start near somebody.
+fn start(agent: &Agent) -> Option<Vec2> {
+    match &agent.start.position {
+        Position::Point(point) => Some(*point),
+        Position::Within(shape) => Some(shape.inner_point()),
+        Position::Near { .. } => None,
+    }
+}
+
+/// The way of an agent from the middle of its start through all goals: its points and its length, m.
+fn way(atlas: &Atlas, agent: &Agent) -> Option<(Vec<Vec2>, f64)> {
+    let Route::Legs { legs, .. } = &agent.route else { return None };
+    let radius = agent.body[Parameter::Radius].draw(0.5);
+    let mut points = vec![start(agent)?];
+    let mut length = 0.0;
+    for leg in legs {
+        let Leg::To(goal) = leg else { continue };
+        let from = *points.last()?;
+        if agent.body.finds_ways {
+            let way = atlas.way(from, goal, radius)?;
+            points.extend(way.bends.iter().flat_map(along));
+            points.push(way.end);
+            length += way.length;
+        } else {
+            let to = match goal {
+                Goal::Point(point) => *point,
+                Goal::Region(id) => atlas.scene().regions[id.0 as usize].shape.nearest(from),
+            };
+            points.push(to);
+            length += (to - from).norm();
+        }
+    }
+    (points.len() > 1).then_some((points, length))
+}
+
+/// Points along an arc.
+fn along(bend: &Bend) -> Vec<Vec2> {
+    let count = (bend.turn.abs() / STEP).ceil().max(1.0);
+    (0..=count as u32).map(|k| bend.at(f64::from(k) / count)).collect()
+}
+
+/// The plan of a scenario as SVG.
+pub fn draw(scenario: &Scenario) -> String {
+    let atlas = Atlas::new(scenario.scene.clone());
+    let scene = &scenario.scene;
+    // People who start and go alike are drawn once.
+    let mut shown: Vec<&Agent> = Vec::new();
+    for agent in &scenario.agents {
+        if shown.last().is_none_or(|last| last.start != agent.start || last.route != agent.route) {
+            shown.push(agent);
+        }
+    }
+    let ways: Vec<(Vec<Vec2>, f64)> = shown.iter().filter_map(|agent| way(&atlas, agent)).collect();
+    let shapes = scene.regions.iter().map(|region| region.shape.bounds());
+    let starts = shown.iter().filter_map(|agent| match &agent.start.position {
+        Position::Within(shape) => Some(shape.bounds()),
+        _ => None,
+    });
+    let barriers = scene.barriers.iter().filter_map(|barrier| match &barrier.obstacle {
+        Obstacle::Wall(segments) => Bounds::around(segments.iter().flat_map(|s| [s.a, s.b])),
+        Obstacle::Solid(shape) => Some(shape.bounds()),
+    });
+    let corners = shapes.chain(starts).chain(barriers).flat_map(|b| [b.low, b.high]);
+    let points = scene.points.iter().map(|(_, point)| *point);
+    let all = corners.chain(points).chain(ways.iter().flat_map(|(points, _)| points.iter().copied()));
+    let bounds = Bounds::around(all).unwrap_or(Bounds { low: Vec2::zeros(), high: Vec2::new(1.0, 1.0) });
+    let mut drawing = Drawing::new(bounds);
+    for region in &scene.regions {
+        drawing.shape(&region.shape, Ink::Region);
+    }
+    for agent in &shown {
+        match &agent.start.position {
+            Position::Within(shape) => drawing.shape(shape, Ink::Start),
+            Position::Point(point) => drawing.dot(*point, Ink::Start),
+            Position::Near { .. } => {}
+        }
+    }
+    for barrier in &scene.barriers {
+        match &barrier.obstacle {
+            Obstacle::Wall(segments) => segments.iter().for_each(|s| drawing.line(&[s.a, s.b], Ink::Barrier)),
+            Obstacle::Solid(shape) => drawing.shape(shape, Ink::Barrier),
+        }
+    }
+    for (points, length) in &ways {
+        drawing.line(points, Ink::Way);
+        drawing.text(middle(points), &format!("{} m", plain((length * 10.0).round() / 10.0)));
+    }
+    for region in &scene.regions {
+        drawing.text(region.shape.inner_point(), &region.name);
+    }
+    for (name, at) in &scene.points {
+        drawing.dot(*at, Ink::Region);
+        drawing.text(*at, name);
+    }
+    drawing.finish(if scenario.title.is_empty() { "plan" } else { &scenario.title })
+}
+
+/// The place half-way along a line.
+fn middle(points: &[Vec2]) -> Vec2 {
+    let total: f64 = points.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
+    let mut left = 0.5 * total;
+    for w in points.windows(2) {
+        let length = (w[1] - w[0]).norm();
+        if left <= length && length > 0.0 {
+            return w[0] + (w[1] - w[0]) * (left / length);
+        }
+        left -= length;
+    }
+    points[0]
+}
