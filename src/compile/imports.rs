@@ -252,7 +252,11 @@ impl Elaborator<'_> {
     /// A drawing that cannot lie where its coordinates say.
     fn misplaced<T>(&mut self, import: &Import<'_>, fault: Fault) -> Lowered<T> {
         let span = import.path.span;
+        let is_local = import.fields.iter().any(|field| field.name.name == "projection");
         let unit_hint = |this: &Self, fits: Option<&str>| match fits {
+            _ if is_local => {
+                "leave out `projection` for coordinates in metres, or select fewer features".into()
+            }
             Some(unit) => format!("the unit that fits is {unit}: `{}`", this.rewritten(import, "unit", unit)),
             None => "set `unit` to the unit of the drawing, or select fewer features".to_owned(),
         };

@@ -53,22 +53,32 @@ impl Opening {
         let is_near = [a, b].iter().all(|end| cross(self.along, *end).abs() <= reach);
         (is_parallel && is_near).then(|| (a.dot(&self.along), b.dot(&self.along)))
     }
+
+    /// Where a piece that runs in another direction meets the line.
+    fn meeting(&self, piece: &Segment) -> Option<f64> {
+        let (a, b) = (piece.a - self.at, piece.b - self.at);
+        let (left, right) = (cross(self.along, a), cross(self.along, b));
+        let is_across = (left - right).abs() > SLANT * piece.length();
+        let meets = left * right < 0.0 || left.abs() <= ONE_LINE || right.abs() <= ONE_LINE;
+        let share = (left / (left - right)).clamp(0.0, 1.0);
+        (is_across && meets).then(|| (a + (b - a) * share).dot(&self.along))
+    }
 }
 
 /// Opens walls at doors; what each door has opened. All doors are seen before any wall is opened, so two at one place
 /// do what one does.
 ///
 /// A door opens the pieces of walls within [`REACH`] that run in the direction of the nearest one. Where it would pass
-/// the end of its wall it is moved along it.
+/// the end of its wall, or another wall that meets it, it is moved along it.
 pub fn open_doors(walls: &mut [&mut Vec<Segment>], doors: &[Door]) -> Vec<Opened> {
     let (mut openings, mut found) = (Vec::new(), Vec::new());
     for door in doors {
-        let pieces = || walls.iter().flat_map(|wall| wall.iter());
-        let Some(mut opening) = line(door, pieces()) else {
+        let pieces = walls.iter().flat_map(|wall| wall.iter());
+        let Some(mut opening) = line(door, pieces.clone()) else {
             found.push(Opened::Nothing);
             continue;
         };
-        let (low, high) = run(&opening, pieces());
+        let (low, high) = run(&opening, pieces);
         let half = 0.5 * door.width;
         let is_short = high - low < door.width - ONE_LINE;
         (opening.low, opening.high) = if high - low <= door.width {
@@ -110,11 +120,11 @@ fn line<'p>(door: &Door, pieces: impl Iterator<Item = &'p Segment>) -> Option<Op
     Some(Opening { at, along, low: 0.0, high: 0.0 })
 }
 
-/// How far the wall of an opening goes on without a gap.
-fn run<'p>(opening: &Opening, pieces: impl Iterator<Item = &'p Segment>) -> (f64, f64) {
+/// How far the wall of an opening goes on without a gap and without another wall that meets it.
+fn run<'p>(opening: &Opening, pieces: impl Iterator<Item = &'p Segment> + Clone) -> (f64, f64) {
     let sorted = |(a, b): (f64, f64)| if a < b { (a, b) } else { (b, a) };
     let mut stretches: Vec<_> =
-        pieces.filter_map(|piece| opening.stretch(piece, ONE_LINE)).map(sorted).collect();
+        pieces.clone().filter_map(|piece| opening.stretch(piece, ONE_LINE)).map(sorted).collect();
     stretches.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut runs: Vec<(f64, f64)> = Vec::new();
     for (low, high) in stretches {
@@ -124,7 +134,16 @@ fn run<'p>(opening: &Opening, pieces: impl Iterator<Item = &'p Segment>) -> (f64
         }
     }
     let distance = |(low, high): &(f64, f64)| if *low > 0.0 { *low } else { (-high).max(0.0) };
-    runs.into_iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or((0.0, 0.0))
+    let nearest = runs.into_iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let (mut low, mut high) = nearest.unwrap_or((0.0, 0.0));
+    for t in pieces.filter_map(|piece| opening.meeting(piece)) {
+        if t < -ONE_LINE && t > low {
+            low = t;
+        } else if t > ONE_LINE && t < high {
+            high = t;
+        }
+    }
+    (low, high)
 }
 
 /// What openings leave of a piece.

@@ -12,8 +12,8 @@ const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
 /// A drawing that is larger is no building, m.
 const LARGEST: f64 = 2e4;
-/// A drawing in a unit of its own that is smaller is no building, m.
-const SMALLEST: f64 = 1.0;
+/// Several features, or one, of a drawing in a unit of its own that are smaller are no building, m.
+const SMALLEST: [f64; 2] = [1.0, 0.2];
 /// A drawing whose coordinates reach less far is in degrees.
 const DEGREES: f64 = 0.05;
 /// A wider door is no door, m.
@@ -121,8 +121,9 @@ impl Placement {
         }
         let Some(after) = bounds(features) else { return Ok(()) };
         let size = reach(&after);
-        let is_small = matches!(self, Self::Plane { is_stated: true, .. }) && size < SMALLEST;
-        if size > LARGEST || is_small && features.len() > 1 {
+        let smallest = SMALLEST[usize::from(features.len() == 1)];
+        let is_small = matches!(self, Self::Plane { is_stated: true, .. }) && 0.0 < size && size < smallest;
+        if size > LARGEST || is_small {
             let fits = fitting(size / self.unit(), 2.0, 2e3);
             return Err(Fault::Extent { size, fits });
         }
