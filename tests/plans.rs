@@ -1,4 +1,4 @@
-//! Floor plans: what drawings in GeoJSON, WKT and DXF become, and what is said of bad ones.
+//! Floor plans: what drawings in `GeoJSON`, WKT and DXF become, and what is said of bad ones.
 
 use crate::program::Place;
 use smc::Draft;
@@ -72,19 +72,20 @@ fn centimetres(scene: &Scene) -> Vec<[i64; 4]> {
 
 /// All points of a grid that a disc of this radius reaches from a point, as multiples of 0.1 m.
 fn reached(scene: &Scene, from: Vec2, radius: f64, low: Vec2, high: Vec2) -> BTreeSet<(i32, i32)> {
-    let pieces: Vec<&Segment> = pieces(scene).collect();
     let cell = |p: Vec2| ((10.0 * p.x).round() as i32, (10.0 * p.y).round() as i32);
     let at = |(x, y): (i32, i32)| Vec2::new(f64::from(x), f64::from(y)) * 0.1;
-    let is_free = |p: Vec2| {
-        p.x >= low.x
-            && p.y >= low.y
-            && p.x <= high.x
-            && p.y <= high.y
-            && pieces.iter().all(|piece| piece.distance(p) > radius)
-    };
+    let mut taken = BTreeSet::new();
+    for piece in pieces(scene) {
+        let (from, to) = (piece.a.inf(&piece.b), piece.a.sup(&piece.b));
+        let (from, to) = (cell(from - Vec2::repeat(radius)), cell(to + Vec2::repeat(radius)));
+        let around = (from.0..=to.0).flat_map(|x| (from.1..=to.1).map(move |y| (x, y)));
+        taken.extend(around.filter(|cell| piece.distance(at(*cell)) <= radius));
+    }
+    let (low, high) = (cell(low), cell(high));
     let (mut found, mut open) = (BTreeSet::new(), vec![cell(from)]);
     while let Some((x, y)) = open.pop() {
-        if is_free(at((x, y))) && found.insert((x, y)) {
+        let is_near = (low.0..=high.0).contains(&x) && (low.1..=high.1).contains(&y);
+        if is_near && !taken.contains(&(x, y)) && found.insert((x, y)) {
             open.extend([(x + 1, y), (x - 1, y), (x, y + 1), (x, y - 1)]);
         }
     }

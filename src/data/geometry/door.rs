@@ -68,7 +68,7 @@ impl Opening {
 /// Opens walls at doors; what each door has opened. All doors are seen before any wall is opened, so two at one place
 /// do what one does.
 ///
-/// A door opens the pieces of walls within [`REACH`] that run in the direction of the nearest one. Where it would pass
+/// A door opens the pieces of walls within 0.5 m that run in the direction of the nearest one. Where it would pass
 /// the end of its wall, or another wall that meets it, it is moved along it.
 pub fn open_doors(walls: &mut [&mut Vec<Segment>], doors: &[Door]) -> Vec<Opened> {
     let (mut openings, mut found) = (Vec::new(), Vec::new());

@@ -17,10 +17,11 @@ pub enum Format {
 impl Format {
     /// The format of a file of this name.
     pub fn of(path: &str) -> Self {
-        let name = path.to_ascii_lowercase();
-        if name.ends_with(".dxf") {
+        let end = path.rsplit_once('.').map_or("", |(_, end)| end);
+        let is = |format: &str| end.eq_ignore_ascii_case(format);
+        if is("dxf") {
             Self::Dxf
-        } else if name.ends_with(".wkt") {
+        } else if is("wkt") {
             Self::Wkt
         } else {
             Self::GeoJson

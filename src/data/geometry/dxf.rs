@@ -241,7 +241,7 @@ impl<'t> Record<'_, 't> {
                 points
             }
         };
-        points.iter_mut().for_each(|p| *p = seen(*p));
+        points = points.into_iter().map(seen).collect();
         points.dedup();
         if points.len() < 2 { Ok(None) } else { feature::line(points).map(Some) }
     }

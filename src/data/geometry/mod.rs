@@ -1,8 +1,8 @@
 //! Plane geometry from `GeoJSON` (RFC 7946), WKT (OGC 06-103r4) and DXF, and what a floor plan makes of it.
 //!
-//! All formats take the same steps: a reader gives features and drops those that are not selected ([`read`]); their
-//! coordinates become metres of the scene ([`placement`]); their roles make barriers and doors of them ([`plan`]);
-//! walls that nearly meet are joined ([`snap`](snap())); doors open the walls beside them ([`door`]). A third coordinate
+//! All formats take the same steps: a reader gives features and drops those that are not selected (`read`); their
+//! coordinates become metres of the scene (`placement`); their roles make barriers and doors of them (`plan`);
+//! walls that nearly meet are joined (`snap`); doors open the walls beside them (`door`). A third coordinate
 //! is dropped. Geometries of several parts become several features of one name.
 
 pub mod door;

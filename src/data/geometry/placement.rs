@@ -106,7 +106,9 @@ impl Placement {
                 if !is_stated && has_lines && reach(&before) < DEGREES {
                     return Err(Fault::Degrees);
                 }
-                features.iter_mut().for_each(|feature| feature.shape.map(|p| p * unit - origin, unit));
+                for feature in features.iter_mut() {
+                    feature.shape.map(|p| p * unit - origin, unit);
+                }
             }
             Self::Local(middle) => {
                 let is_degrees = |p: Vec2| p.x.abs() <= 180.0 && p.y.abs() < 90.0;
@@ -114,9 +116,9 @@ impl Placement {
                     return Err(Fault::NoDegrees(wrong));
                 }
                 let scale = metres_per_degree(middle.y);
-                features
-                    .iter_mut()
-                    .for_each(|feature| feature.shape.map(|p| (p - middle).component_mul(&scale), 1.0));
+                for feature in features.iter_mut() {
+                    feature.shape.map(|p| (p - middle).component_mul(&scale), 1.0);
+                }
             }
         }
         let Some(after) = bounds(features) else { return Ok(()) };

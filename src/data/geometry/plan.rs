@@ -36,7 +36,7 @@ pub struct Plan {
 ///
 /// # Errors
 /// Doors that are no points or lines, or whose width is no length.
-pub fn plan(features: Vec<Feature>, unit: f64, walkable: bool) -> Result<Plan, Vec<GeometryError>> {
+pub fn plan(features: &[Feature], unit: f64, walkable: bool) -> Result<Plan, Vec<GeometryError>> {
     let roles: Vec<Role> = features.iter().map(|feature| role(feature, walkable)).collect();
     let halls: Vec<(usize, Bounds, &Polygon)> = features
         .iter()
