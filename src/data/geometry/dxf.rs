@@ -343,13 +343,13 @@ mod tests {
     #[test]
     fn what_is_wrong_has_a_line() {
         let said = |entities: &str| read(entities).unwrap_err()[0].to_string();
-        assert_eq!(said("0 LINE 8 W 10 0 20 0"), "line 13: LINE has no end (group code 11)");
+        assert_eq!(said("0 LINE 8 W 10 0 20 0"), "line 15: LINE has no end (group code 11)");
         assert_eq!(
             said("0 LINE 8 W 10 zero 20 0 11 1 21 1"),
-            "line 13: LINE has `zero` on line 18 instead of a number"
+            "line 15: LINE has `zero` on line 20 instead of a number"
         );
-        assert_eq!(said("0 CIRCLE 8 W 10 0 20 0 40 -1"), "line 13: CIRCLE needs a positive radius (got -1)");
-        assert_eq!(said("x"), "line 13: the text is not DXF: expected a group code, found `x`");
+        assert_eq!(said("0 CIRCLE 8 W 10 0 20 0 40 -1"), "line 15: CIRCLE needs a positive radius (got -1)");
+        assert_eq!(said("x"), "line 15: the text is not DXF: expected a group code, found `x`");
         let other = read_dxf("{}", None, &mut |_, _| true).unwrap_err()[0].to_string();
         assert_eq!(other, "line 1: the text is not DXF: expected a group code, found `{}`");
     }
