@@ -32,6 +32,7 @@ mod mistakes;
 mod mutants;
 mod mutation;
 mod nesting;
+mod plans;
 mod processes;
 mod program;
 mod queries;

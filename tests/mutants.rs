@@ -17,7 +17,8 @@ macro_rules! pair {
 }
 
 /// Pairs of scenario and properties; the recording of the hotel is not read, so that its names stay unknown.
-const PAIRS: [(&str, &str); 13] = [
+const PAIRS: [(&str, &str); 14] = [
+    pair!("building"),
     pair!("corridor"),
     pair!("crowds"),
     pair!("die"),

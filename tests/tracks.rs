@@ -5,7 +5,9 @@
 
 use proptest::prelude::*;
 use smc::base::geometry::Vec2;
-use smc::data::geometry::{Geometry, PropertyValue, read_geojson, read_wkt};
+use smc::data::geometry::{
+    Geometry, Placement, PropertyValue, open_doors, plan, read_dxf, read_geojson, read_wkt,
+};
 use smc::data::tracks::{Recording, read_eth_biwi, read_groups};
 use std::io::Write as _;
 use std::path::PathBuf;
@@ -131,6 +133,7 @@ proptest! {
     fn readers_survive_any_bytes(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
         let text = String::from_utf8_lossy(&bytes);
         let _ = (read_eth_biwi(&text), read_groups(&text), read_geojson(&text), read_wkt(&text));
+        let _ = read_dxf(&text, None, &mut |_, _| true);
     }
 
     #[test]
@@ -167,4 +170,73 @@ proptest! {
             prop_assert!(errors.iter().all(|e| e.line.is_some_and(|line| line <= text.lines().count())));
         }
     }
+
+    #[test]
+    fn shuffled_drawings_are_survived(
+        parts in prop::collection::vec(
+            prop::sample::select(vec!["0 LINE", "0 LWPOLYLINE", "0 POLYLINE", "0 VERTEX", "0 SEQEND", "0 ARC",
+                "0 CIRCLE", "0 INSERT", "0 ENDSEC", "0 SECTION", "2 ENTITIES", "8 A", "10 0", "20 0", "11 3e11",
+                "21 -5", "40 2", "40 1e300", "42 1", "42 -1e-9", "50 90", "51 1e9", "70 1", "230 -1", "67 1", "x"]),
+            0..40),
+        unit in prop::option::of(1e-3..10.0),
+    ) {
+        let text = format!("0 SECTION 2 ENTITIES {}", parts.join(" ")).replace(' ', "\n");
+        match read_dxf(&text, unit, &mut |_, _| true) {
+            Ok(drawing) => planned(drawing.features),
+            Err(errors) => {
+                prop_assert!(!errors.is_empty());
+                prop_assert!(errors.iter().all(|e| e.line.is_some_and(|line| line <= text.lines().count())));
+            }
+        }
+    }
+
+    #[test]
+    fn shuffled_rooms_and_doors_are_survived(
+        parts in prop::collection::vec(
+            (prop::sample::select(vec!["room", "corridor", "area", "wall", "door", "level"]),
+             prop::collection::vec((0_i8..6, 0_i8..6), 1..6)), 0..12)
+    ) {
+        let feature = |(kind, corners): &(&str, Vec<(i8, i8)>)| {
+            let points: Vec<String> = corners.iter().map(|(x, y)| format!("[{x},{y}]")).collect();
+            let (form, at) = match (*kind, points.len()) {
+                (_, 1) => ("Point", points[0].clone()),
+                ("door", _) | (_, 2) => ("LineString", format!("[{}]", points.join(","))),
+                _ => ("Polygon", format!("[[{},{}]]", points.join(","), points[0])),
+            };
+            format!("{{\"type\":\"Feature\",\"properties\":{{\"indoor\":\"{kind}\",\"width\":2}},\
+                     \"geometry\":{{\"type\":\"{form}\",\"coordinates\":{at}}}}}")
+        };
+        for part in &parts {
+            // Each alone, so that one bad outline does not hide the others.
+            if let Ok(features) = read_geojson(&feature(part)) {
+                planned(features);
+            }
+        }
+        let good: Vec<_> =
+            parts.iter().filter_map(|part| read_geojson(&feature(part)).ok()).flatten().collect();
+        planned(good);
+    }
+}
+
+/// Walls and doors of features: nothing that is no number, and no wall becomes longer by a door.
+fn planned(mut features: Vec<smc::data::geometry::Feature>) {
+    let placement = Placement::Plane { unit: 1.0, origin: Vec2::zeros(), is_stated: true };
+    let _ = placement.place(&mut features);
+    let Ok(plan) = plan(&features, 1.0, false) else { return };
+    let mut walls: Vec<Vec<smc::base::geometry::Segment>> = plan
+        .barriers
+        .into_iter()
+        .filter_map(|(_, form)| match form {
+            smc::data::geometry::Form::Wall(pieces) => Some(pieces),
+            smc::data::geometry::Form::Solid(_) => None,
+        })
+        .collect();
+    let length = |walls: &[Vec<smc::base::geometry::Segment>]| {
+        walls.iter().flatten().map(smc::base::geometry::Segment::length).sum::<f64>()
+    };
+    let before = length(&walls);
+    let opened = open_doors(&mut walls.iter_mut().collect::<Vec<_>>(), &plan.doors);
+    let after = length(&walls);
+    assert_eq!(opened.len(), plan.doors.len());
+    assert!(after.is_finite() && after <= before * (1.0 + 1e-9), "{before} {after}");
 }

@@ -2,12 +2,24 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use smc::data::geometry::{read_geojson, read_wkt};
+use smc::data::geometry::{Placement, open_doors, plan, read_dxf, read_geojson, read_wkt};
+use smc::base::geometry::Vec2;
 use smc::data::tracks::{read_eth_biwi, read_groups};
 
 fuzz_target!(|text: &str| {
     let _ = read_eth_biwi(text);
     let _ = read_groups(text);
-    let _ = read_geojson(text);
-    let _ = read_wkt(text);
+    let drawing = read_dxf(text, None, &mut |_, _| true).map(|drawing| drawing.features);
+    for features in [read_geojson(text), read_wkt(text), drawing] {
+        for walkable in [false, true] {
+            let Ok(mut features) = features.clone() else { continue };
+            let _ = Placement::Plane { unit: 1.0, origin: Vec2::zeros(), is_stated: false }.place(&mut features);
+            let Ok(plan) = plan(&features, 1.0, walkable) else { continue };
+            let mut walls: Vec<_> = plan.barriers.into_iter().filter_map(|(_, form)| match form {
+                smc::data::geometry::Form::Wall(pieces) => Some(pieces),
+                smc::data::geometry::Form::Solid(_) => None,
+            }).collect();
+            let _ = open_doors(&mut walls.iter_mut().collect::<Vec<_>>(), &plan.doors);
+        }
+    }
 });

@@ -1,6 +1,8 @@
 //! Files that a scenario names. They are opened by the command line; here they are bytes.
 
 use crate::syntax::ast::{Item, ScenarioFile, SceneItem};
+use crate::syntax::codes::Code;
+use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use std::collections::BTreeMap;
 
@@ -30,6 +32,12 @@ pub fn requests(file: &ScenarioFile) -> Vec<Request> {
         }
     }
     found
+}
+
+/// A file that could not be opened.
+pub(super) fn missing(span: Span, reason: &str) -> Diagnostic {
+    Diagnostic::error(Code::E0701, span, reason.to_owned())
+        .hint("files are searched beside the scenario, then in each `--data DIR`")
 }
 
 /// The contents of the files that were asked for, or why there are none.

@@ -60,6 +60,23 @@ pub(super) fn names(filter: &Expr) -> Box<dyn Iterator<Item = (&str, Span)> + '_
     }
 }
 
+/// The texts that a filter compares a property with, and where.
+pub(super) fn texts<'f>(
+    filter: &'f Expr,
+    property: &'f str,
+) -> Box<dyn Iterator<Item = (&'f str, Span)> + 'f> {
+    match &filter.kind {
+        ExprKind::Unary(_, inner) => texts(inner, property),
+        ExprKind::Binary(_, a, b) => match (&a.kind, &b.kind) {
+            (ExprKind::Name(name), ExprKind::Text(text)) if name == property => {
+                Box::new(std::iter::once((text.as_str(), b.span)))
+            }
+            _ => Box::new(texts(a, property).chain(texts(b, property))),
+        },
+        _ => Box::new(std::iter::empty()),
+    }
+}
+
 fn side(expr: &Expr, feature: Described<'_>) -> Result<Side, Diagnostic> {
     match &expr.kind {
         ExprKind::Text(text) => Ok(Side::Text(text.clone())),

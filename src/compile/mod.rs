@@ -18,6 +18,7 @@ mod families;
 mod files;
 mod filter;
 mod findings;
+mod imports;
 mod interned;
 mod kinds;
 mod laws;

@@ -144,30 +144,36 @@ impl Elaborator<'_> {
                 continue;
             }
             let comes = people.coming.contains(&id);
-            let wrong = match &agent.start.position {
-                Position::Point(p) => {
-                    let key = ((p.x / ONE_POINT).round() as i64, (p.y / ONE_POINT).round() as i64);
-                    let first = if comes { id } else { *points.entry(key).or_insert(id) };
-                    self.beside_barriers(agent, *p, comes, &barriers, span).or_else(|| {
-                        let other = &people.agents[first.0 as usize];
-                        (first != id && other.name != agent.name)
-                            .then(|| together(other, agent, written(&people.places, first), span))
-                    })
-                }
-                // All of a declaration start alike.
-                Position::Within(_) | Position::Near { .. } if id != first_of(&people.places, id) => None,
-                Position::Within(shape) => without_room(agent, shape, &barriers, span),
-                Position::Near { agent: anchor, within } => {
-                    let other = &people.agents[anchor.0 as usize];
-                    too_near(agent, other, *within, span).or_else(|| match other.start.position {
-                        Position::Point(centre) => {
-                            let disc = Shape::Circle { centre, radius: *within };
-                            without_room(agent, &disc, &barriers, span)
+            let wrong =
+                match &agent.start.position {
+                    Position::Point(p) => {
+                        let key = ((p.x / ONE_POINT).round() as i64, (p.y / ONE_POINT).round() as i64);
+                        let first = if comes { id } else { *points.entry(key).or_insert(id) };
+                        self.beside_barriers(agent, *p, comes, &barriers, span).or_else(|| {
+                            let other = &people.agents[first.0 as usize];
+                            (first != id && other.name != agent.name)
+                                .then(|| together(other, agent, written(&people.places, first), span))
+                        })
+                    }
+                    // All of a declaration start alike.
+                    Position::Within(_) | Position::Near { .. } if id != first_of(&people.places, id) => None,
+                    Position::Within(shape) => without_room(agent, shape, &barriers, span).map(|error| {
+                        match self.walkable_hint(shape.inner_point()) {
+                            Some(hint) => error.hint(hint),
+                            None => error,
                         }
-                        _ => None,
-                    })
-                }
-            };
+                    }),
+                    Position::Near { agent: anchor, within } => {
+                        let other = &people.agents[anchor.0 as usize];
+                        too_near(agent, other, *within, span).or_else(|| match other.start.position {
+                            Position::Point(centre) => {
+                                let disc = Shape::Circle { centre, radius: *within };
+                                without_room(agent, &disc, &barriers, span)
+                            }
+                            _ => None,
+                        })
+                    }
+                };
             if let Position::Near { agent: anchor, within } = agent.start.position
                 && !comes
             {
@@ -202,8 +208,8 @@ impl Elaborator<'_> {
         };
         let called = barrier.phrase();
         let error = if distance <= ONE_POINT {
-            Diagnostic::error(Code::E0409, span, format!("`{name}` starts {place} {called}"))
-                .hint("move the start or the barrier")
+            let hint = self.walkable_hint(p).unwrap_or_else(|| "move the start or the barrier".into());
+            Diagnostic::error(Code::E0409, span, format!("`{name}` starts {place} {called}")).hint(hint)
         } else if comes && distance < radius {
             let text = format!(
                 "agents of `{name}` have no room to arrive here: {called} is {distance:.3} m away, and their radius is at least {radius:.3} m"

@@ -3,8 +3,8 @@
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::files::Files;
+use super::files::missing;
 use super::places;
-use super::scenery::missing;
 use super::symbols::{Meaning, unknown};
 use crate::data::tracks::{LineError, Observation, Recording, read_eth_biwi};
 use crate::model::Law;

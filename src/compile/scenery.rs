@@ -1,29 +1,19 @@
-//! The scene: walls, obstacles, regions, imports.
+//! The scene: walls, obstacles, regions.
 
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::files::Files;
-use super::filter;
-use super::laws::value_span;
+use super::imports::Import;
 use super::lower::DISTRIBUTIONS;
 use super::number::Number;
 use super::symbols::Meaning;
 use super::typed::Typed;
 use crate::base::geometry::{Polygon, Segment, Shape, Vec2, coordinate_fault};
-use crate::data::geometry::{self, Feature, Geometry, PropertyValue, Select, read_wkt, select_geojson};
 use crate::model::{Barrier, BarrierId, BuiltIn, Obstacle, Region, RegionId};
-use crate::syntax::ast::{Expr, ExprKind, Field, Ident, SceneItem, ShapeExpr, Text, Value};
+use crate::syntax::ast::{Expr, ExprKind, Ident, SceneItem, ShapeExpr};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
-use std::collections::BTreeSet;
-
-/// Walls that miss each other by less than this distance are reported, m.
-const NEAR_MISS: f64 = 0.05;
-/// Within at most so many metres walls are joined.
-const WIDEST_SNAP: f64 = 1.0;
-/// Most names of properties that a warning lists.
-const MOST_NAMES: usize = 8;
 
 impl<'a> Elaborator<'a> {
     /// Declares the names of a scene. Regions and barriers get their numbers in order of writing; barriers of
@@ -56,6 +46,7 @@ impl<'a> Elaborator<'a> {
 
     /// Settles the shapes of a scene; `next` is the number of its first barrier.
     pub(super) fn settle_scene(&mut self, items: &'a [SceneItem], files: &Files, next: &mut usize) {
+        let mut imports = Vec::new();
         for item in items {
             match item {
                 SceneItem::Region { name, shape } => {
@@ -85,12 +76,12 @@ impl<'a> Elaborator<'a> {
                     Ok(at) => self.scene.points.push((name.name.clone(), at)),
                     Err(Reported) => self.doubt(0, &name.name),
                 },
-                SceneItem::Import { path, filter, fields, .. } => {
-                    let snap = self.snap(fields);
-                    self.import(path, filter.as_ref(), snap, files);
+                SceneItem::Import { path, walkable, filter, fields, .. } => {
+                    imports.push(Import { path, walkable: *walkable, filter: filter.as_ref(), fields });
                 }
             }
         }
+        self.import_all(&imports, files);
     }
 
     /// The shape of a region, settled when it is first needed.
@@ -274,189 +265,4 @@ impl<'a> Elaborator<'a> {
             }
         }
     }
-
-    /// Within how many metres the walls of an import are joined; 0 unless it says so.
-    fn snap(&mut self, fields: &[Field]) -> Lowered<f64> {
-        let mut snap = Ok(0.0);
-        for (k, field) in fields.iter().enumerate() {
-            let (name, at) = (&field.name, value_span(&field.value));
-            snap = if name.name != "snap" {
-                let known = std::iter::once("snap");
-                self.report(super::symbols::unknown("field", &name.name, name.span, Code::E0207, known))
-            } else if k > 0 {
-                self.report(Diagnostic::error(Code::E0202, name.span, "`snap` is set twice"))
-            } else if let Value::Plain(expr) = &field.value {
-                match self.number_of(expr, Dimension::LENGTH, &Locals::default()).map(|number| number.value) {
-                    Ok(value) if !(0.0 < value && value <= WIDEST_SNAP) => {
-                        let text =
-                            format!("`snap` must be positive and at most {WIDEST_SNAP} m (got {value} m)");
-                        self.report(Diagnostic::error(Code::E0405, at, text))
-                    }
-                    value => value,
-                }
-            } else {
-                self.report(Diagnostic::error(Code::E0305, at, "expected a length such as `5 cm`"))
-            };
-        }
-        snap
-    }
-
-    /// Joins the walls of an import that nearly touch, or reports them.
-    fn join_walls(&mut self, path: &Text, first: usize, snap: f64) {
-        let imported = &mut self.scene.barriers[first..];
-        let edges: Vec<Segment> = imported
-            .iter()
-            .filter_map(|barrier| match &barrier.obstacle {
-                Obstacle::Solid(Shape::Polygon(polygon)) => Some(polygon.segments()),
-                _ => None,
-            })
-            .flatten()
-            .collect();
-        let mut walls: Vec<&mut Vec<Segment>> = imported
-            .iter_mut()
-            .filter_map(|barrier| match &mut barrier.obstacle {
-                Obstacle::Wall(pieces) => Some(pieces),
-                Obstacle::Solid(_) => None,
-            })
-            .collect();
-        let lines: Vec<Vec<Segment>> = walls.iter().map(|pieces| (**pieces).clone()).collect();
-        if snap > 0.0 {
-            for (pieces, joined) in walls.iter_mut().zip(geometry::snap(&lines, &edges, snap)) {
-                **pieces = joined;
-            }
-            let imported = self.scene.barriers.split_off(first);
-            let whole = imported.into_iter().filter(|one| one.obstacle != Obstacle::Wall(Vec::new()));
-            self.scene.barriers.extend(whole);
-        } else if let Some(slips) = geometry::slips(&lines, &edges, NEAR_MISS) {
-            let counted = |count: usize, one: &str, many: &str| match count {
-                0 => None,
-                1 => Some(format!("1 {one}")),
-                count => Some(format!("{count} {many}")),
-            };
-            let ends = counted(
-                slips.ends,
-                "end of a wall that misses another wall by less than 5 cm",
-                "ends of walls that miss another wall by less than 5 cm",
-            );
-            let twice = counted(slips.doubled, "wall drawn twice", "walls drawn twice");
-            let what: Vec<String> = ends.into_iter().chain(twice).collect();
-            let warning =
-                Diagnostic::warning(Code::W0702, path.span, format!("the file has {}", what.join(" and ")))
-                    .label(format!("for example at ({:.3}, {:.3})", slips.place.x, slips.place.y));
-            let text = self.text(path.span);
-            self.note(
-                warning.hint(format!("write `import {text} {{ snap = 5 cm }}` to join and merge them")),
-            );
-        }
-    }
-
-    fn import(&mut self, path: &Text, filter: Option<&Expr>, snap: Lowered<f64>, files: &Files) {
-        let (mut total, mut wrong) = (0, None);
-        let mut known: BTreeSet<String> = BTreeSet::new();
-        let mut unknown: Vec<(&str, Span)> = filter.into_iter().flat_map(filter::names).collect();
-        unknown.retain(|(name, _)| *name != "name");
-        let mut select = |name: &str, properties: &[(String, PropertyValue)]| {
-            total += 1;
-            unknown.retain(|(name, _)| !properties.iter().any(|(known, _)| known == name));
-            if known.len() < MOST_NAMES {
-                known.extend(properties.iter().map(|(name, _)| name.clone()));
-            }
-            match filter.map(|f| filter::selects(f, (name, properties))) {
-                Some(Err(error)) => {
-                    wrong = Some(error);
-                    false
-                }
-                Some(Ok(selected)) => selected,
-                None => true,
-            }
-        };
-        let features = self.features(path, files, &mut select);
-        if let Some(error) = wrong {
-            return self.note(error);
-        }
-        let Ok(features) = features else { return };
-        // A property that no feature has equals nothing, and differs from everything; it is reported below.
-        let all_known = unknown.is_empty() || known.is_empty();
-        for (name, span) in unknown.into_iter().filter(|_| !all_known) {
-            let known = known.iter().map(String::as_str).chain(["name"]);
-            self.note(super::symbols::unknown("property", name, span, Code::E0201, known));
-        }
-        let before = self.scene.barriers.len();
-        let points = features.iter().filter(|f| matches!(f.shape, Geometry::Point(_))).count();
-        for feature in features {
-            let obstacle = match feature.shape {
-                Geometry::Polygon(polygon) => Obstacle::Solid(Shape::Polygon(polygon)),
-                Geometry::Line(points) => {
-                    Obstacle::Wall(points.windows(2).map(|pair| Segment::new(pair[0], pair[1])).collect())
-                }
-                Geometry::Point(_) => continue,
-            };
-            self.scene.barriers.push(Barrier { name: feature.name, obstacle });
-        }
-        let taken = self.scene.barriers.len() - before;
-        if let Ok(snap) = snap {
-            self.join_walls(path, before, snap);
-        }
-        if taken == 0 && all_known {
-            let have = if total == 1 { "1 feature".to_owned() } else { format!("{total} features") };
-            let warning = Diagnostic::warning(
-                Code::W0401,
-                path.span,
-                format!("the import adds nothing: the file has {have}"),
-            );
-            let names: Vec<String> = known.iter().take(MOST_NAMES).map(|name| format!("`{name}`")).collect();
-            self.note(warning.hint(if points > 0 {
-                "polygons become obstacles and lines become walls; points are ignored".to_owned()
-            } else if total == 0 {
-                "polygons become obstacles and lines become walls".to_owned()
-            } else if names.is_empty() {
-                "the filter after `where` compares properties of features, but these features have none"
-                    .to_owned()
-            } else {
-                format!(
-                    "the filter after `where` matches no feature; their properties are {}",
-                    names.join(", ")
-                )
-            }));
-        }
-    }
-
-    /// The features of a file that are selected. Filters come first: what is wrong with the others does not matter.
-    fn features(&mut self, path: &Text, files: &Files, select: &mut Select<'_>) -> Lowered<Vec<Feature>> {
-        let bytes = match files.get(&path.value) {
-            Ok(bytes) => bytes,
-            Err(reason) => return self.report(missing(path.span, &reason)),
-        };
-        let Ok(text) = std::str::from_utf8(bytes) else {
-            return self.report(Diagnostic::error(Code::E0704, path.span, "the file is not UTF-8 text"));
-        };
-        if text.trim().is_empty() {
-            return self.report(Diagnostic::error(Code::E0704, path.span, "the file is empty"));
-        }
-        let wkt = path.value.to_ascii_lowercase().ends_with(".wkt");
-        // Well-known text has no properties, so that a filter takes all of it or nothing.
-        let read = if !wkt {
-            select_geojson(text, select)
-        } else if select("", &[]) {
-            read_wkt(text)
-        } else {
-            Ok(Vec::new())
-        };
-        match read {
-            Ok(features) => Ok(features),
-            Err(errors) => {
-                let shown: Vec<String> = errors.iter().take(5).map(ToString::to_string).collect();
-                let error =
-                    Diagnostic::error(Code::E0704, path.span, "the geometry in the file cannot be read")
-                        .label(shown.join("; "));
-                self.report(error)
-            }
-        }
-    }
-}
-
-/// A file that could not be opened.
-pub(super) fn missing(span: Span, reason: &str) -> Diagnostic {
-    Diagnostic::error(Code::E0701, span, reason.to_owned())
-        .hint("files are searched beside the scenario, then in each `--data DIR`")
 }

@@ -8,6 +8,7 @@ use crate::model::{AgentId, Bool, Num, Scenario, Set};
 use crate::stats::Chosen;
 use crate::syntax::source::{Source, Span};
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Everything a call asks.
@@ -64,6 +65,8 @@ pub struct Origins {
     pub variables: Vec<Span>,
     /// The behaviours, in the order of their declaration.
     pub behaviours: Vec<Span>,
+    /// The imports that gave barriers: the numbers of these, and the file name.
+    pub imports: Vec<(Range<usize>, Span)>,
 }
 
 /// How what is observed was written.

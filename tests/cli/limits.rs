@@ -11,7 +11,7 @@ const ASK: &str = "check P(F<=1 s contact(user)) >= 0.5\n";
 fn parallel() -> String {
     let line = |k: u32| {
         let shift = f64::from(k) * 0.1;
-        format!("LINESTRING (-9000 {}, 9000 {})\n", shift - 8000.0, shift + 10_000.0)
+        format!("LINESTRING (-9000 {}, 9000 {})\n", shift - 6000.0, shift + 10_000.0)
     };
     (0..30_000).map(line).collect()
 }

@@ -20,6 +20,10 @@ pub(super) fn pairs() -> Vec<Pair> {
     let mut pairs = Vec::new();
     for entry in std::fs::read_dir("models").unwrap() {
         let path = entry.unwrap().path();
+        // Floor plans are beside the models.
+        if path.extension().is_none_or(|end| end != "scn") {
+            continue;
+        }
         let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
         let texts = [
             std::fs::read_to_string(&path).unwrap(),

@@ -1,11 +1,16 @@
-//! Features: a shape with a name and properties.
+//! Features: a shape with a name and properties, as every format gives them.
 
 use super::ring;
-use crate::base::geometry::{Polygon, Vec2, coordinate_fault};
+use crate::base::geometry::{Polygon, Vec2};
+
+/// Largest coordinate that a file may hold, in its own unit: millimetres of a country, and more.
+const LARGEST: f64 = 1e12;
 
 /// A shape and what is said of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Feature {
+    /// Where it is in the file.
+    pub place: FilePlace,
     /// Its property `name`, else its id, else empty.
     pub name: String,
     /// Its properties in the order of the file.
@@ -18,6 +23,33 @@ impl Feature {
     /// A property by its name.
     pub fn property(&self, name: &str) -> Option<&PropertyValue> {
         self.properties.iter().find(|(key, _)| key == name).map(|(_, value)| value)
+    }
+
+    /// A property that is a text.
+    pub fn text(&self, name: &str) -> Option<&str> {
+        match self.property(name) {
+            Some(PropertyValue::Text(text)) => Some(text),
+            _ => None,
+        }
+    }
+}
+
+/// Where a feature is in its file, as far as the format has places.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct FilePlace {
+    /// Line of the file from 1, where known.
+    pub line: Option<usize>,
+    /// Column of that line from 1, where known.
+    pub column: Option<usize>,
+    /// Which feature, from 1, and its name if it has one.
+    pub feature: Option<String>,
+}
+
+impl FilePlace {
+    /// An error at this place.
+    pub fn error(&self, message: impl Into<String>) -> GeometryError {
+        let Self { line, column, feature } = self.clone();
+        GeometryError { line, column, feature, message: message.into() }
     }
 }
 
@@ -39,7 +71,7 @@ pub enum PropertyValue {
     Other(String),
 }
 
-/// A shape of one part, in metres.
+/// A shape of one part.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Geometry {
     /// A point.
@@ -48,6 +80,43 @@ pub enum Geometry {
     Line(Vec<Vec2>),
     /// A polygon with simple rings and its holes inside.
     Polygon(Polygon),
+    /// A disc.
+    Circle {
+        /// Its centre.
+        centre: Vec2,
+        /// Its radius, positive.
+        radius: f64,
+    },
+}
+
+impl Geometry {
+    /// Its corners; of a disc those of the square around it.
+    pub fn corners(&self) -> Vec<Vec2> {
+        match self {
+            Self::Point(p) => vec![*p],
+            Self::Line(points) => points.clone(),
+            Self::Polygon(polygon) => polygon.outline.clone(),
+            Self::Circle { centre, radius } => {
+                vec![centre - Vec2::repeat(*radius), centre + Vec2::repeat(*radius)]
+            }
+        }
+    }
+
+    /// Moves its points and stretches the radius of a disc.
+    pub fn map(&mut self, point: impl Fn(Vec2) -> Vec2, stretch: f64) {
+        let move_all = |points: &mut Vec<Vec2>| points.iter_mut().for_each(|p| *p = point(*p));
+        match self {
+            Self::Point(p) => *p = point(*p),
+            Self::Line(points) => move_all(points),
+            Self::Polygon(polygon) => {
+                std::iter::once(&mut polygon.outline).chain(&mut polygon.holes).for_each(move_all);
+            }
+            Self::Circle { centre, radius } => {
+                *centre = point(*centre);
+                *radius *= stretch;
+            }
+        }
+    }
 }
 
 /// An error of a geometry.
@@ -112,7 +181,11 @@ pub(super) fn polygon(rings: Vec<Vec<Vec2>>) -> Result<Geometry, String> {
 }
 
 fn in_reach(points: &[Vec2]) -> Result<(), String> {
-    points.iter().find_map(|p| coordinate_fault(*p)).map_or(Ok(()), Err)
+    let is_far = |x: &f64| x.is_nan() || x.abs() > LARGEST;
+    match points.iter().flat_map(|p| [p.x, p.y]).find(is_far) {
+        Some(far) => Err(format!("a coordinate must lie between -1e12 and 1e12 (got {far:e})")),
+        None => Ok(()),
+    }
 }
 
 #[cfg(test)]
@@ -140,11 +213,9 @@ mod tests {
         assert_eq!(fault(vec![square(0.0, 1.0), square(0.5, 0.5)]), "hole 1 has fewer than three corners");
         let mut bad = square(0.0, 1.0);
         bad[2].x = f64::NAN;
-        assert_eq!(fault(vec![bad]), "a coordinate must lie between -1e6 m and 1e6 m (got NaN m)");
+        assert_eq!(fault(vec![bad]), "a coordinate must lie between -1e12 and 1e12 (got NaN)");
         assert!(line(vec![Vec2::zeros(), Vec2::zeros()]).is_err());
         assert!(point(Vec2::new(f64::INFINITY, 0.0)).is_err());
-        assert!(point(Vec2::new(-1e6, 1e6)).is_ok());
-        let far = point(Vec2::new(500_000.0, 5_400_000.0)).unwrap_err();
-        assert_eq!(far, "a coordinate must lie between -1e6 m and 1e6 m (got 5.4e6 m)");
+        assert!(point(Vec2::new(-1e12, 1e12)).is_ok());
     }
 }

@@ -1,6 +1,6 @@
 //! Reader of `GeoJSON` (RFC 7946): a feature collection, one feature, or one geometry.
 
-use super::feature::{self, Feature, Geometry, GeometryError, PropertyValue, Select};
+use super::feature::{self, Feature, FilePlace, Geometry, GeometryError, PropertyValue, Select};
 use crate::base::geometry::Vec2;
 use geojson::feature::Id;
 use geojson::{GeoJson, GeometryValue, JsonValue, Position};
@@ -28,8 +28,15 @@ pub fn select_geojson(text: &str, select: &mut Select<'_>) -> Result<Vec<Feature
     };
     let (mut found, mut errors) = (Vec::new(), Vec::new());
     for (k, one) in features.into_iter().enumerate() {
-        let properties: Vec<_> =
-            one.properties.into_iter().flatten().map(|(key, value)| (key, property(value))).collect();
+        // IMDF (OGC 20-094) writes the type of a feature beside its properties.
+        let kind = one.foreign_members.into_iter().flatten().filter(|(key, _)| key == "feature_type");
+        let properties: Vec<_> = one
+            .properties
+            .into_iter()
+            .flatten()
+            .chain(kind)
+            .map(|(key, value)| (key, property(value)))
+            .collect();
         let name = properties
             .iter()
             .find_map(|(key, value)| match value {
@@ -47,19 +54,18 @@ pub fn select_geojson(text: &str, select: &mut Select<'_>) -> Result<Vec<Feature
         if !select(&name, &properties) {
             continue;
         }
+        let number = k + 1;
+        let feature =
+            if name.is_empty() { format!("feature {number}") } else { format!("feature {number} `{name}`") };
+        let place = FilePlace { feature: Some(feature), ..FilePlace::default() };
         flatten(geometry.value, &mut |shape| match shape {
-            Ok(shape) => {
-                found.push(Feature { name: name.clone(), properties: properties.clone(), shape });
-            }
-            Err(message) => {
-                let number = k + 1;
-                let feature = if name.is_empty() {
-                    format!("feature {number}")
-                } else {
-                    format!("feature {number} `{name}`")
-                };
-                errors.push(GeometryError { line: None, column: None, feature: Some(feature), message });
-            }
+            Ok(shape) => found.push(Feature {
+                place: place.clone(),
+                name: name.clone(),
+                properties: properties.clone(),
+                shape,
+            }),
+            Err(message) => errors.push(place.error(message)),
         });
     }
     if errors.is_empty() { Ok(found) } else { Err(errors) }

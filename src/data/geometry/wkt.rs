@@ -1,7 +1,7 @@
 //! Reader of well-known text (OGC 06-103r4, section 7): any number of geometries, one after another,
 //! parted by blanks, line ends, commas or semicolons. Coordinates after the second are dropped.
 
-use super::feature::{self, Feature, Geometry, GeometryError};
+use super::feature::{self, Feature, FilePlace, Geometry, GeometryError};
 use crate::base::geometry::Vec2;
 use wkt::Wkt;
 use wkt::types::{Coord, LineString, Polygon};
@@ -31,10 +31,8 @@ const WORDS: [&str; 11] = [
 pub fn read_wkt(text: &str) -> Result<Vec<Feature>, Vec<GeometryError>> {
     let (mut found, mut errors) = (Vec::new(), Vec::new());
     for piece in pieces(text) {
-        let mut fail = |message: String| {
-            let (line, column) = (Some(piece.line), Some(piece.column));
-            errors.push(GeometryError { line, column, feature: None, message });
-        };
+        let place = FilePlace { line: Some(piece.line), column: Some(piece.column), feature: None };
+        let mut fail = |message: String| errors.push(place.error(message));
         if piece.depth > DEEPEST {
             fail(format!("parentheses are nested deeper than {DEEPEST}"));
             continue;
@@ -45,17 +43,18 @@ pub fn read_wkt(text: &str) -> Result<Vec<Feature>, Vec<GeometryError>> {
                     let word = words(&piece.text[at..]).next().map_or("", |(_, word)| word);
                     let (line, column) = after((piece.line, piece.column), &piece.text[..at]);
                     let message = format!("the text is not WKT: `{word}` is not a number");
-                    errors.push(GeometryError {
-                        line: Some(line),
-                        column: Some(column),
-                        feature: None,
-                        message,
-                    });
+                    let (line, column) = (Some(line), Some(column));
+                    errors.push(GeometryError { line, column, feature: None, message });
                 }
                 None => fail(format!("the text is not WKT: {}", lower_case_start(message))),
             },
             Ok(shape) => flatten(&shape, &mut |part| match part {
-                Ok(shape) => found.push(Feature { name: String::new(), properties: Vec::new(), shape }),
+                Ok(shape) => found.push(Feature {
+                    place: place.clone(),
+                    name: String::new(),
+                    properties: Vec::new(),
+                    shape,
+                }),
                 Err(message) => fail(message),
             }),
         }
@@ -215,7 +214,7 @@ mod tests {
         assert_eq!(errors[0].message, "the text is not WKT: `oops` is not a number");
         assert_eq!(errors[3].message, "the text is not WKT: `x` is not a number");
         assert_eq!(errors[1].message, "the outline has fewer than three corners");
-        assert_eq!(errors[2].message, "a coordinate must lie between -1e6 m and 1e6 m (got inf m)");
+        assert_eq!(errors[2].message, "a coordinate must lie between -1e12 and 1e12 (got inf)");
     }
 
     #[test]

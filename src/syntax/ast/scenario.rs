@@ -122,9 +122,11 @@ pub enum SceneItem {
     Import {
         /// File.
         path: Text,
+        /// Whether its polygons are where agents move: `as walkable`.
+        walkable: bool,
         /// Which features: comparisons of their properties with texts and numbers, joined by `&`, `|`, `!`.
         filter: Option<Expr>,
-        /// How it is taken: `{ snap = 5 cm }`.
+        /// How it is read: `{ snap = 5 cm }`.
         fields: Vec<Field>,
         /// Where.
         span: Span,

@@ -43,7 +43,7 @@ const NAMED: [(&str, &[&str]); 22] = [
 /// Keywords of queries, which are followed by a measure.
 const ASKING: [&str; 3] = ["check", "estimate", "compare"];
 /// Words that end what they stand in, though they are keywords.
-const LAST: [&str; 5] = ["choose", "end", "leave", "particle", "stop"];
+const LAST: [&str; 6] = ["choose", "end", "leave", "particle", "stop", "walkable"];
 
 /// How surely an item of a block begins at a byte, if at all. The part of the block is known by its rule.
 pub(super) fn at(part: Rule, text: &str, at: usize) -> Option<Anchor> {

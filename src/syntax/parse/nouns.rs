@@ -65,6 +65,7 @@ pub(super) fn keyword(rule: Rule) -> Option<&'static str> {
         Rule::kw_uniform => "uniform",
         Rule::kw_var => "var",
         Rule::kw_wait => "wait",
+        Rule::kw_walkable => "walkable",
         Rule::kw_wall => "wall",
         Rule::kw_when => "when",
         Rule::kw_where => "where",
@@ -167,7 +168,7 @@ pub(super) fn words(rule: Rule) -> &'static [&'static str] {
         Rule::body | Rule::recorded => &["from"],
         Rule::with => &["with"],
         Rule::preset => &["preset"],
-        Rule::particle => &["as"],
+        Rule::particle | Rule::walkable => &["as"],
         Rule::only => &["id"],
         Rule::except => &["except"],
         Rule::then_leave => &["then"],
@@ -249,7 +250,8 @@ pub(super) fn noun(rule: Rule) -> Option<(u8, String)> {
         | Rule::delay
         | Rule::moment
         | Rule::measure_range
-        | Rule::particle => (8, format!("`{}`", words(rule).first()?)),
+        | Rule::particle
+        | Rule::walkable => (8, format!("`{}`", words(rule).first()?)),
         _ => return None,
     })
 }

@@ -24,11 +24,12 @@ impl Builder<'_> {
         let mut parts = Parts::of(pair);
         if rule == Rule::import {
             let path = self.quoted(&parts.part(Rule::text)?);
+            let walkable = parts.part(Rule::walkable).is_some();
             let filter = match parts.part(Rule::expr) {
                 Some(filter) => Some(self.expr(filter)?),
                 None => None,
             };
-            return Some(SceneItem::Import { path, filter, fields: self.body(parts), span });
+            return Some(SceneItem::Import { path, walkable, filter, fields: self.body(parts), span });
         }
         let name = parts.part(Rule::name).map(|name| self.declared(&name));
         match rule {

@@ -1,0 +1,182 @@
+//! Drawings of imports: files are read, filtered and moved to their places.
+
+use super::fields::Import;
+use crate::compile::elaborator::{Elaborator, Lowered};
+use crate::compile::files::{Files, missing};
+use crate::compile::filter;
+use crate::compile::symbols::unknown;
+use crate::data::geometry::{self, Drawing, Fault, Format, Geometry, GeometryError, PropertyValue};
+use crate::syntax::codes::Code;
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+use std::borrow::Cow;
+use std::collections::BTreeSet;
+
+/// Most names of properties that a warning lists.
+const MOST_NAMES: usize = 8;
+/// Most features that a message names.
+const MOST_NAMED: usize = 5;
+impl Elaborator<'_> {
+    /// A drawing that cannot lie where its coordinates say.
+    pub(super) fn misplaced<T>(&mut self, import: &Import<'_>, fault: Fault) -> Lowered<T> {
+        let span = import.path.span;
+        let is_local = import.fields.iter().any(|field| field.name.name == "projection");
+        let unit_hint = |this: &Self, fits: Option<&str>| match fits {
+            _ if is_local => {
+                "leave out `projection` for coordinates in metres, or select fewer features".into()
+            }
+            Some(unit) => format!("the unit that fits is {unit}: `{}`", this.rewritten(import, "unit", unit)),
+            None => "set `unit` to the unit of the drawing, or select fewer features".to_owned(),
+        };
+        let error = match fault {
+            Fault::Degrees => {
+                let error = Diagnostic::error(
+                    Code::E0712,
+                    span,
+                    "the coordinates are degrees, or all of the file lies within 5 cm",
+                );
+                let local = self.rewritten(import, "projection", "local");
+                error.hint(format!("write `{local}` for degrees, or set `unit`"))
+            }
+            Fault::NoDegrees(p) => {
+                let text = format!("({}, {}) is not a longitude and a latitude in degrees", p.x, p.y);
+                Diagnostic::error(Code::E0712, span, text)
+                    .hint("leave out `projection` for coordinates in metres")
+            }
+            Fault::Extent { size, fits } => {
+                let text = if size < 1.0 {
+                    format!("the drawing is only {size:.3} m wide")
+                } else {
+                    format!("the drawing is {:.0} km wide", size / 1e3)
+                };
+                Diagnostic::error(Code::E0711, span, text).hint(unit_hint(self, fits))
+            }
+            Fault::Door { width, fits } => {
+                let text = format!("the narrowest door is {width:.0} m wide");
+                Diagnostic::error(Code::E0711, span, text).hint(unit_hint(self, fits))
+            }
+            Fault::Far(origin) => {
+                let text = "the drawing is more than 100 km from the origin of its coordinates";
+                let origin = self.rewritten(import, "origin", &format!("({}, {})", origin.x, origin.y));
+                Diagnostic::error(Code::E0710, span, text)
+                    .hint(format!("move it to the origin of the scene: `{origin}`"))
+            }
+        };
+        self.report(error)
+    }
+
+    /// The drawing in a file. Filters come first: what is wrong with features that are not selected does not matter.
+    pub(super) fn drawing(
+        &mut self,
+        import: &Import<'_>,
+        format: Format,
+        unit: Option<f64>,
+        files: &Files,
+    ) -> Lowered<Drawing> {
+        let (path, span) = (import.path, import.path.span);
+        let (mut total, mut wrong) = (0, None);
+        let mut known: BTreeSet<String> = BTreeSet::new();
+        let mut strange: Vec<(&str, Span)> = import.filter.into_iter().flat_map(filter::names).collect();
+        strange.retain(|(name, _)| *name != "name");
+        let mut select = |name: &str, properties: &[(String, PropertyValue)]| {
+            total += 1;
+            strange.retain(|(name, _)| !properties.iter().any(|(known, _)| known == name));
+            if known.len() < MOST_NAMES {
+                known.extend(properties.iter().map(|(name, _)| name.clone()));
+            }
+            match import.filter.map(|f| filter::selects(f, (name, properties))) {
+                Some(Err(error)) => {
+                    wrong = Some(error);
+                    false
+                }
+                Some(Ok(selected)) => selected,
+                None => true,
+            }
+        };
+        let text = match files.get(&path.value) {
+            Ok(bytes) => text_of(bytes, format),
+            Err(reason) => return self.report(missing(span, &reason)),
+        };
+        let text = match text {
+            Ok(text) if text.trim().is_empty() => Err("the file is empty"),
+            text => text,
+        };
+        let text = match text {
+            Ok(text) => text,
+            Err(fault) => return self.report(Diagnostic::error(Code::E0704, span, fault)),
+        };
+        let read = geometry::read(format, &text, unit, &mut select);
+        if let Some(error) = wrong {
+            return self.report(error);
+        }
+        let drawing = match read {
+            Ok(drawing) => drawing,
+            Err(errors) => return self.report(unreadable(span, &errors)),
+        };
+        for (layer, at) in import.filter.into_iter().flat_map(|f| filter::texts(f, "layer")) {
+            if !drawing.layers.is_empty() && !drawing.layers.contains(layer) {
+                let known = drawing.layers.iter().map(String::as_str);
+                let error = unknown("layer", layer, at, Code::E0201, known);
+                let names: Vec<String> = drawing.layers.iter().take(MOST_NAMES).cloned().collect();
+                return self.report(error.label(format!("the drawing has {}", names.join(", "))));
+            }
+        }
+        // A property that no feature has equals nothing, and differs from everything.
+        let all_known = strange.is_empty() || known.is_empty();
+        for (name, at) in strange.into_iter().filter(|_| !all_known) {
+            let known = known.iter().map(String::as_str).chain(["name"]);
+            self.note(unknown("property", name, at, Code::E0201, known));
+        }
+        let used = |shape: &Geometry| !matches!(shape, Geometry::Point(_));
+        let is_used = |feature: &geometry::Feature| {
+            used(&feature.shape) || geometry::indoor::role(feature, false) == geometry::indoor::Role::Door
+        };
+        if all_known && !drawing.features.iter().any(is_used) && drawing.skipped.is_empty() {
+            let have = if total == 1 { "1 feature".to_owned() } else { format!("{total} features") };
+            let text = format!("the import adds nothing: the file has {have}");
+            let warning = Diagnostic::warning(Code::W0401, span, text);
+            let names: Vec<String> = known.iter().take(MOST_NAMES).map(|name| format!("`{name}`")).collect();
+            self.note(warning.hint(if !drawing.features.is_empty() {
+                "polygons become obstacles and lines become walls; points are ignored".to_owned()
+            } else if total == 0 {
+                "polygons become obstacles and lines become walls".to_owned()
+            } else if names.is_empty() {
+                "the filter after `where` compares properties of features, but these features have none"
+                    .to_owned()
+            } else {
+                format!(
+                    "the filter after `where` matches no feature; their properties are {}",
+                    names.join(", ")
+                )
+            }));
+        }
+        Ok(drawing)
+    }
+}
+
+/// The text in the bytes of a file. Older DXF is written in the code page of its author, most often Latin-1.
+fn text_of(bytes: &[u8], format: Format) -> Result<Cow<'_, str>, &'static str> {
+    match std::str::from_utf8(bytes) {
+        _ if bytes.starts_with(b"AutoCAD Binary DXF") => {
+            Err("the drawing is a binary DXF; save it as a DXF in text (ASCII)")
+        }
+        Ok(text) => Ok(text.into()),
+        Err(_) if format == Format::Dxf => Ok(bytes.iter().map(|byte| char::from(*byte)).collect()),
+        Err(_) => Err("the file is not UTF-8 text"),
+    }
+}
+
+/// Errors of a geometry.
+pub(super) fn unreadable(span: Span, errors: &[GeometryError]) -> Diagnostic {
+    let errors: Vec<String> = errors.iter().map(ToString::to_string).collect();
+    Diagnostic::error(Code::E0704, span, "the geometry in the file cannot be read").label(shown(&errors))
+}
+
+/// The first of some sentences.
+pub(super) fn shown(sentences: &[String]) -> String {
+    let mut text = sentences[..sentences.len().min(MOST_NAMED)].join("; ");
+    if sentences.len() > MOST_NAMED {
+        text += "; …";
+    }
+    text
+}

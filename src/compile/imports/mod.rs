@@ -1,0 +1,202 @@
+//! Imports: the walls, obstacles and doors of files become barriers of the scene.
+
+mod drawing;
+mod fields;
+
+pub(super) use fields::Import;
+
+use super::elaborator::{Elaborator, Lowered};
+use super::files::Files;
+use crate::base::geometry::{Segment, Shape, Vec2};
+use crate::data::geometry::{self, Door, Form, Format, Opened, Placement, placement::middle, plan::TOUCHING};
+use crate::model::{Barrier, Obstacle};
+use crate::syntax::codes::Code;
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+use drawing::{shown, unreadable};
+
+/// Walls that miss each other by less than this distance are reported; walls of a DXF drawing are joined, m.
+const NEAR_MISS: f64 = 0.05;
+impl Elaborator<'_> {
+    /// Imports all files of a scene. Doors open the walls of all of them.
+    pub(super) fn import_all(&mut self, imports: &[Import<'_>], files: &Files) {
+        let (first, mut middle) = (self.scene.barriers.len(), None);
+        let mut found: Vec<(Span, Vec<Door>)> = Vec::new();
+        for import in imports {
+            let start = self.scene.barriers.len();
+            if let Ok(doors) = self.import(import, files, &mut middle) {
+                found.push((import.path.span, doors));
+            }
+            self.origins.imports.push((start..self.scene.barriers.len(), import.path.span));
+        }
+        let doors: Vec<Door> = found.iter().flat_map(|(_, doors)| doors.iter().cloned()).collect();
+        let mut walls = walls(&mut self.scene.barriers[first..]);
+        let mut opened = geometry::open_doors(&mut walls, &doors).into_iter();
+        for (span, doors) in found {
+            let faults: Vec<String> =
+                doors
+                    .iter()
+                    .zip(opened.by_ref())
+                    .filter_map(|(door, opened)| match opened {
+                        Opened::Whole => None,
+                        Opened::Part(part) => Some(
+                            door.place
+                                .error(format!("its wall has {part:.2} m for a door of {:.2} m", door.width)),
+                        ),
+                        Opened::Nothing => Some(door.place.error(format!(
+                            "no wall is within 0.5 m of ({:.2}, {:.2})",
+                            door.at.x, door.at.y
+                        ))),
+                    })
+                    .map(|fault| fault.to_string())
+                    .collect();
+            if !faults.is_empty() {
+                let text = match faults.len() {
+                    1 => "a door does not open its whole width".to_owned(),
+                    count => format!("{count} doors do not open their whole width"),
+                };
+                let warning = Diagnostic::warning(Code::W0703, span, text).label(shown(&faults));
+                self.note(warning.hint("a door opens the walls that pass within 0.5 m of it"));
+            }
+        }
+    }
+
+    /// Imports one file; its doors. `middle` is the middle of the first file in degrees, which several share.
+    fn import(
+        &mut self,
+        import: &Import<'_>,
+        files: &Files,
+        middle_of_first: &mut Option<Vec2>,
+    ) -> Lowered<Vec<Door>> {
+        let span = import.path.span;
+        let format = Format::of(&import.path.value);
+        let fields = self.import_fields(import)?;
+        let mut drawing = self.drawing(import, format, fields.unit, files)?;
+        let placement = if fields.is_local {
+            if fields.origin.is_none() && middle_of_first.is_none() {
+                *middle_of_first = middle(&drawing.features);
+            }
+            Placement::Local(fields.origin.or(*middle_of_first).unwrap_or_default())
+        } else {
+            let is_stated = format == Format::Dxf || fields.unit.is_some() || fields.origin.is_some();
+            let unit = match drawing.unit.or(fields.unit) {
+                None if format == Format::Dxf => {
+                    let error =
+                        Diagnostic::error(Code::E0711, span, "the drawing does not state its unit of length");
+                    let written = self.rewritten(import, "unit", "1 mm");
+                    return self.report(error.hint(format!("write the unit, for example `{written}`")));
+                }
+                unit => unit.unwrap_or(1.0),
+            };
+            Placement::Plane { unit, origin: fields.origin.unwrap_or_default(), is_stated }
+        };
+        if let Err(fault) = placement.place(&mut drawing.features) {
+            return self.misplaced(import, fault);
+        }
+        let plan = match geometry::plan(&drawing.features, placement.unit(), import.walkable) {
+            Ok(plan) => plan,
+            Err(errors) => return self.report(unreadable(span, &errors)),
+        };
+        if let Err(fault) = placement.check_doors(plan.doors.iter().map(|door| door.width)) {
+            return self.misplaced(import, fault);
+        }
+        if !drawing.skipped.is_empty() {
+            let counts: Vec<String> =
+                drawing.skipped.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
+            let text = format!("the drawing has entities that are not imported: {}", counts.join(", "));
+            let warning = Diagnostic::warning(Code::W0704, span, text);
+            self.note(warning.hint("explode blocks and convert curves to polylines, or select other layers"));
+        }
+        let first = self.scene.barriers.len();
+        self.scene.barriers.extend(plan.barriers.into_iter().map(|(name, form)| {
+            let obstacle = match form {
+                Form::Wall(pieces) => Obstacle::Wall(pieces),
+                Form::Solid(shape) => Obstacle::Solid(shape),
+            };
+            Barrier { name, obstacle }
+        }));
+        let implied = match format {
+            Format::Dxf => Some(NEAR_MISS),
+            _ => plan.has_spaces.then_some(TOUCHING),
+        };
+        self.join_walls(import, first, fields.snap, implied);
+        Ok(plan.doors)
+    }
+
+    /// Joins the walls of an import that nearly touch, or reports them. `implied` is the distance of an import without
+    /// `snap`, if it has one; what is joined there by more than rounding is reported, too.
+    fn join_walls(&mut self, import: &Import<'_>, first: usize, snap: Option<f64>, implied: Option<f64>) {
+        let imported = &mut self.scene.barriers[first..];
+        let edges: Vec<Segment> = imported
+            .iter()
+            .filter_map(|barrier| match &barrier.obstacle {
+                Obstacle::Solid(Shape::Polygon(polygon)) => Some(polygon.segments()),
+                _ => None,
+            })
+            .flatten()
+            .collect();
+        let mut walls = walls(imported);
+        let mut lines: Vec<Vec<Segment>> = walls.iter().map(|pieces| (**pieces).clone()).collect();
+        let is_reported = implied.is_some_and(|implied| implied > TOUCHING) && snap.is_none();
+        let before = if is_reported { geometry::slips(&lines, &edges, NEAR_MISS) } else { None };
+        if let Some(snap) = snap.or(implied) {
+            lines = geometry::snap(&lines, &edges, snap);
+            for (pieces, joined) in walls.iter_mut().zip(&lines) {
+                (*pieces).clone_from(joined);
+            }
+            let imported = self.scene.barriers.split_off(first);
+            let whole = imported.into_iter().filter(|one| one.obstacle != Obstacle::Wall(Vec::new()));
+            self.scene.barriers.extend(whole);
+        }
+        let slips = match (snap, before) {
+            (Some(_), _) => None,
+            (None, before) if is_reported => before,
+            _ => geometry::slips(&lines, &edges, NEAR_MISS),
+        };
+        let Some(slips) = slips else { return };
+        let counted = |count: usize, one: &str, many: &str| match count {
+            0 => None,
+            1 => Some(format!("1 {one}")),
+            count => Some(format!("{count} {many}")),
+        };
+        let ends = counted(
+            slips.ends,
+            "end of a wall that misses another wall by less than 5 cm",
+            "ends of walls that miss another wall by less than 5 cm",
+        );
+        let twice = counted(slips.doubled, "wall drawn twice", "walls drawn twice");
+        let what: Vec<String> = ends.into_iter().chain(twice).collect();
+        let warning = Diagnostic::warning(
+            Code::W0702,
+            import.path.span,
+            format!("the file has {}", what.join(" and ")),
+        )
+        .label(format!("for example at ({:.3}, {:.3})", slips.place.x, slips.place.y));
+        let written = self.rewritten(import, "snap", "5 cm");
+        self.note(warning.hint(if is_reported {
+            format!("they were joined and merged; write `{written}` to accept this, or a smaller `snap`")
+        } else {
+            format!("write `{written}` to join and merge them")
+        }));
+    }
+
+    /// The hint for a point inside an imported polygon that may be where agents move.
+    pub(super) fn walkable_hint(&self, p: Vec2) -> Option<String> {
+        let (_, span) = self.origins.imports.iter().find(|(range, _)| {
+            self.scene.barriers[range.clone()].iter().any(|barrier| {
+                matches!(&barrier.obstacle, Obstacle::Solid(Shape::Polygon(polygon)) if polygon.contains(p))
+            })
+        })?;
+        let path = self.text(*span);
+        Some(format!("polygons are obstacles; if agents move inside them, write `import {path} as walkable`"))
+    }
+}
+
+/// The walls among barriers.
+fn walls(barriers: &mut [Barrier]) -> Vec<&mut Vec<Segment>> {
+    let wall = |barrier| match barrier {
+        &mut Barrier { obstacle: Obstacle::Wall(ref mut pieces), .. } => Some(pieces),
+        _ => None,
+    };
+    barriers.iter_mut().filter_map(wall).collect()
+}
