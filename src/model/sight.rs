@@ -29,6 +29,18 @@ impl Piece {
         }
     }
 
+    /// The point of it nearest to a point; of a disc, its centre where the point lies within.
+    pub fn nearest(&self, p: Vec2) -> Vec2 {
+        match self {
+            Self::Edge(edge) => edge.nearest(p),
+            Self::Disc { centre, radius } => {
+                let away = p - centre;
+                let distance = away.norm();
+                if distance > *radius { centre + away * (radius / distance) } else { *centre }
+            }
+        }
+    }
+
     /// Distance from a line to it, m.
     pub fn distance_to(&self, line: &Segment) -> f64 {
         match self {

@@ -71,6 +71,18 @@ fn a_disc_is_passed_on_the_shorter_side_and_a_place_within_reach_is_left() {
     assert!(pressed.length > 4.1 && pressed.length < way.length, "{pressed:?}");
 }
 
+#[test]
+fn from_a_place_at_a_wall_a_way_begins_with_a_step_aside() {
+    // Beside the door of a wall, nearer to it than the radius.
+    let atlas = atlas(vec![wall(&[(0.0, 0.6), (0.0, 9.0)]), wall(&[(0.0, -0.6), (0.0, -9.0)])], None);
+    let goal = Goal::Point(p(5.0, 0.0));
+    for (x, y) in [(-0.24, 1.0), (-0.1, 3.0), (-0.249, 0.7), (-0.24, -1.0)] {
+        let way = atlas.way(p(x, y), &goal, RADIUS).unwrap_or_else(|| panic!("none from ({x}, {y})"));
+        let free = atlas.way(p(-RADIUS, y), &goal, RADIUS).unwrap();
+        assert!((way.length - free.length - (RADIUS + x)).abs() < 1e-6, "({x}, {y})");
+    }
+}
+
 /// A scene of a few walls, boxes and discs from a stream of random numbers.
 fn scene(stream: &Stream, number: u32) -> Vec<Barrier> {
     let draw = |k: u32, low: f64, high: f64| low + (high - low) * stream.uniform(number * 64 + k);

@@ -5,6 +5,10 @@ use super::field::{Field, Onward};
 use super::network::Network;
 use super::tangent::{Turn, from_point};
 use crate::base::geometry::Vec2;
+use crate::model::sight::ROUNDING;
+
+/// Most barriers from which somebody steps aside one after the other.
+const STEPS_ASIDE: usize = 16;
 
 /// On an arc a body heads for points at most so far apart, rad.
 const STEP: f64 = std::f64::consts::FRAC_PI_4;
@@ -88,14 +92,15 @@ impl Network {
                 is_straight: true,
             });
         }
-        for &circle in self.cells.seen(p, &self.circles, &self.sight) {
+        let (free, aside) = self.free(p);
+        for &circle in self.cells.seen(free, &self.circles, &self.sight) {
             for turn in Turn::BOTH {
-                let Some((touch, to, length)) = from_point(p, &self.circles[circle as usize], turn) else {
+                let Some((touch, to, length)) = from_point(free, &self.circles[circle as usize], turn) else {
                     continue;
                 };
                 let Some((track, at)) = self.place(circle as usize, turn, touch) else { continue };
                 if let Some((rest, _)) = field.from(self, track, at) {
-                    options.push(FirstPiece { length: length + rest, to, then: Some((track, at)) });
+                    options.push(FirstPiece { length: aside + length + rest, to, then: Some((track, at)) });
                 }
             }
         }
@@ -104,7 +109,8 @@ impl Network {
             let best = (0..options.len())
                 .reduce(|a, b| if options[b].length < options[a].length { b } else { a })?;
             let option = options.remove(best);
-            if self.sight.is_clear(p, option.to, self.reach) {
+            let from = if option.then.is_some() { free } else { p };
+            if self.sight.is_clear(from, option.to, self.reach) {
                 return match option.then {
                     Some((track, at)) => self.follow(field, option.length, (track, at)),
                     None => Some(ShortestWay {
@@ -116,6 +122,27 @@ impl Network {
                 };
             }
         }
+    }
+
+    /// Where somebody who is pressed against barriers steps first, so that the body is free, and how far that is, m. In a gap that is
+    /// too narrow, the place itself.
+    fn free(&self, p: Vec2) -> (Vec2, f64) {
+        let mut q = p;
+        for _ in 0..STEPS_ASIDE {
+            let near = self.sight.near(q, self.reach);
+            let nearest = near.iter().map(|piece| (piece.distance(q), piece));
+            let pressed = nearest.filter(|(distance, _)| *distance < self.reach - ROUNDING);
+            let Some((distance, piece)) = pressed.reduce(|a, b| if b.0 < a.0 { b } else { a }) else {
+                let is_clear = self.sight.is_clear(p, q, self.reach);
+                return if is_clear { (q, (q - p).norm()) } else { (p, 0.0) };
+            };
+            let away = q - piece.nearest(q);
+            if away.norm() <= ROUNDING {
+                break;
+            }
+            q += away.normalize() * (self.reach - distance + ROUNDING);
+        }
+        (p, 0.0)
     }
 
     /// The arcs of the way that begins at a place on a track.
