@@ -129,7 +129,7 @@ impl<'a> Compiler<'a> {
             .input
             .settings
             .iter()
-            .filter(|s| matches!(s.value, super::settings::SettingValue::Sweep(..)))
+            .filter(|s| !s.values.is_single())
             .map(|s| s.name.as_str())
             .collect();
         if self.input.settings.is_empty() || self.sites[plain].elaborator.failed() {
@@ -144,7 +144,7 @@ impl<'a> Compiler<'a> {
             self.next_index = 0;
             let base = self.site(point.clone());
             self.bases.insert(base);
-            let set = self.input.settings.iter().map(|setting| (setting.name.clone(), setting.ends()));
+            let set = self.input.settings.iter().map(|setting| (setting.name.clone(), setting.values.ends()));
             // What is wrong is noted in that world.
             let _ = self.check_ranges(base, set.collect());
             if number == 0 {
@@ -342,7 +342,7 @@ impl<'a> Compiler<'a> {
         let locals = Locals::of(scope);
         let text = self.sites[site].elaborator.text(query.span);
         // What a query sets itself takes the place of what a sweep sets.
-        let swept = settings.iter().filter(|(name, _)| own.iter().all(|(mine, _)| mine != name));
+        let swept = settings.iter().filter(|(name, _)| !query.sets(name));
         let settings: Vec<_> = swept.cloned().chain(own.iter().cloned()).collect();
         match &query.kind {
             QueryKind::Check { measure, relation, threshold } => {
@@ -404,10 +404,10 @@ impl<'a> Compiler<'a> {
                 let said = self.sites[one].elaborator.said(measure, None);
                 self.push(query.span, (text, said), settings, property_name(measure), ask, unbounded, one);
             }
-            QueryKind::Rank { what, agent, measure } => {
-                let (ask, unbounded) = self.rank(site, what, agent, measure, clauses, family, scope)?;
-                let said = self.sites[site].elaborator.said(measure, None);
-                self.push(query.span, (text, said), settings, property_name(measure), ask, unbounded, site);
+            QueryKind::Rank { of, measure } => {
+                let (ask, unbounded, one) = self.rank(site, of, measure, clauses, family, scope)?;
+                let said = self.sites[one].elaborator.said(measure, None);
+                self.push(query.span, (text, said), settings, property_name(measure), ask, unbounded, one);
             }
         }
         Ok(())
@@ -427,6 +427,10 @@ impl<'a> Compiler<'a> {
         let horizon = unbounded.then(|| elaborator.duration(elaborator.horizon.0));
         let index = self.next_index;
         self.next_index += 1;
+        // What a query sets itself may leave nothing of a sweep: then it is asked once.
+        if self.queries.iter().any(|known| known.index == index && known.ask == ask) {
+            return;
+        }
         self.queries.push(Query { index, name, text, said, span, settings, point: Vec::new(), ask, horizon });
     }
 

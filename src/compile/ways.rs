@@ -7,8 +7,8 @@ use super::people::People;
 use super::symbols::Meaning;
 use super::typed::Typed;
 use crate::base::tick::Tick;
-use crate::model::{Goal, Leg, Move, Moves, Route, Who};
-use crate::syntax::ast::{self, Expr, MoveOption, MovesDecl, Value};
+use crate::model::{AgentId, Goal, Leg, Move, Moves, Route, Who};
+use crate::syntax::ast::{self, Expr, Item, MoveOption, MovesDecl, ScenarioFile, Value};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -90,9 +90,10 @@ impl<'a> Elaborator<'a> {
         let typed = self.lower(&name, &Locals::default());
         let duration = self.time(&decl.duration, &Locals::default());
         let mut options: Vec<(String, Move)> = Vec::new();
+        let mut routes: Vec<Route> = Vec::new();
         let mut failed = false;
         for option in &decl.options {
-            failed |= self.option(option, &mut options).is_err();
+            failed |= self.option(option, &mut options, &mut routes).is_err();
         }
         let typed = typed?;
         if matches!(typed, Typed::Agents { .. }) {
@@ -127,11 +128,48 @@ impl<'a> Elaborator<'a> {
         if people.agents.get(agent.0 as usize).is_none() {
             return Err(super::elaborator::Reported);
         }
-        Ok(Moves { agent, duration, options })
+        Ok(Moves { agent, duration, options, routes })
     }
 
-    fn option(&mut self, option: &MoveOption, options: &mut Vec<(String, Move)>) -> Lowered<()> {
+    /// The agents that leave after a move, by the names that are written.
+    pub(super) fn leave_by_moves(&mut self, file: &ScenarioFile) {
+        let leaves = |option: &MoveOption| {
+            matches!(option, MoveOption::Route { route: Value::Route(route), .. } if route.then_leave.is_some())
+        };
+        for item in &file.items {
+            if let Item::Moves(decl) = item
+                && decl.options.iter().any(leaves)
+                && let Some(agent) = self.agent_names.iter().position(|name| *name == decl.agent.name)
+            {
+                self.may_be_absent(AgentId(agent as u32));
+            }
+        }
+    }
+
+    fn option(
+        &mut self,
+        option: &MoveOption,
+        options: &mut Vec<(String, Move)>,
+        routes: &mut Vec<Route>,
+    ) -> Lowered<()> {
         match option {
+            MoveOption::Route { name, route: written, span } => {
+                let label = format!("route {}", name.name);
+                let route = self.route(written, &Locals::default())?;
+                let goes = matches!(&route, Route::Legs { legs, .. } if legs.iter().any(|leg| matches!(leg, Leg::To(_))));
+                if !goes {
+                    let error = Diagnostic::error(Code::E0406, value_span(written), format!("`{label}` has no goal"))
+                        .hint(format!("write for example `{label} = (9, 3) -> exit`"));
+                    return self.report(error);
+                }
+                if options.iter().any(|(known, _)| *known == label) {
+                    let error = Diagnostic::error(Code::E0406, *span, format!("`{label}` is listed twice"));
+                    return self.report(error.hint("give one of them another name"));
+                }
+                options.push((label, Move::Route(routes.len())));
+                routes.push(route);
+                Ok(())
+            }
             MoveOption::Stop(span) => {
                 if options.iter().any(|(_, m)| *m == Move::Stop) {
                     return self.report(Diagnostic::error(Code::E0406, *span, "`stop` is listed twice"));
@@ -186,7 +224,7 @@ impl<'a> Elaborator<'a> {
                 let turns = (angle - known) / std::f64::consts::TAU;
                 (turns - turns.round()).abs() < 1e-9
             }
-            Move::Stop => false,
+            Move::Stop | Move::Route(_) => false,
         };
         if let Some((known, _)) = options.iter().find(|(_, option)| same(option)) {
             let text = if *known == label {

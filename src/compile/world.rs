@@ -185,6 +185,7 @@ impl<'a> Elaborator<'a> {
                 _ => {}
             }
         }
+        self.leave_by_moves(file);
         let mut sources = Vec::new();
         for item in &file.items {
             if let Item::Source(decl) = item {

@@ -249,6 +249,12 @@ pub struct Chosen {
     pub values: Vec<f64>,
 }
 
+impl PartialEq for Chosen {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self.spec, other.spec) && self.values == other.values
+    }
+}
+
 impl Chosen {
     /// Arguments with their values.
     pub fn numbers(&self) -> impl Iterator<Item = (Argument, f64)> {
