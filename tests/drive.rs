@@ -271,9 +271,15 @@ fn without_a_route_one_goes_on_and_who_stands_keeps_standing() {
 
 fn with_moves(agent: Agent) -> Program {
     let mut scenario = scenario(vec![agent]);
-    let other = Moves { agent: AgentId(0), duration: Tick(5), options: vec![("stop".into(), Move::Stop)], routes: Vec::new() };
+    let other = Moves {
+        agent: AgentId(0),
+        duration: Tick(5),
+        options: vec![("stop".into(), Move::Stop)],
+        routes: Vec::new(),
+    };
     let options = vec![("stop".into(), Move::Stop), ("left".into(), Move::Heading(0.5))];
-    scenario.moves = vec![other, Moves { agent: AgentId(0), duration: Tick(100), options, routes: Vec::new() }];
+    scenario.moves =
+        vec![other, Moves { agent: AgentId(0), duration: Tick(100), options, routes: Vec::new() }];
     Program::new(Arc::new(scenario))
 }
 

@@ -35,6 +35,7 @@ mod nesting;
 mod processes;
 mod program;
 mod queries;
+mod rankings;
 mod refusals;
 mod replay;
 mod reports;

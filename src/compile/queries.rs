@@ -125,13 +125,8 @@ impl<'a> Compiler<'a> {
         // Sweep points are computed in the plain world, which also checks what no query uses.
         let plain = self.site(BTreeMap::new());
         let mut points = self.points(plain);
-        let swept: Vec<&str> = self
-            .input
-            .settings
-            .iter()
-            .filter(|s| !s.values.is_single())
-            .map(|s| s.name.as_str())
-            .collect();
+        let swept: Vec<&str> =
+            self.input.settings.iter().filter(|s| !s.values.is_single()).map(|s| s.name.as_str()).collect();
         if self.input.settings.is_empty() || self.sites[plain].elaborator.failed() {
             points.truncate(1);
         } else {

@@ -52,7 +52,8 @@ impl<'a> Compiler<'a> {
                 let candidates = self.combinations(site, list, clauses, scope);
                 let elaborator = &self.sites[site].elaborator;
                 let (before, failures) = (elaborator.diagnostics.len(), elaborator.failures());
-                let worlds = candidates.as_ref().map_or(vec![site], |all| all.iter().map(|c| c.world).collect());
+                let worlds =
+                    candidates.as_ref().map_or(vec![site], |all| all.iter().map(|c| c.world).collect());
                 let (measured, sketches): (Vec<_>, Vec<_>) =
                     worlds.into_iter().map(|world| self.measured(world, measure, scope)).unzip();
                 if candidates.is_err() {
@@ -92,7 +93,8 @@ impl<'a> Compiler<'a> {
         for (other, candidate) in each().zip(&candidates) {
             if matches!(first.kind, MeasureKind::Expectation { .. }) && other.kind != first.kind {
                 let settings = [candidates[0].settings.clone(), candidate.settings.clone()];
-                let error = unlike(measure, "all options of a ranking need", [&first.kind, &other.kind], &settings);
+                let error =
+                    unlike(measure, "all options of a ranking need", [&first.kind, &other.kind], &settings);
                 return self.sites[site].elaborator.report(error);
             }
         }
@@ -112,13 +114,7 @@ impl<'a> Compiler<'a> {
     }
 
     /// The options of moves.
-    fn moves(
-        &mut self,
-        site: usize,
-        what: &Ident,
-        agent: &Expr,
-        locals: &Locals,
-    ) -> Lowered<Vec<Candidate>> {
+    fn moves(&mut self, site: usize, what: &Ident, agent: &Expr, locals: &Locals) -> Lowered<Vec<Candidate>> {
         let elaborator = &mut self.sites[site].elaborator;
         let wanted = if what.name == "moves" {
             Ok(())
@@ -170,7 +166,8 @@ impl<'a> Compiler<'a> {
                 continue;
             }
             let locals = Locals::of(scope);
-            let Ok(numbers) = elaborator.values((&name.name, name.span), values, MOST_OPTIONS, &locals) else {
+            let Ok(numbers) = elaborator.values((&name.name, name.span), values, MOST_OPTIONS, &locals)
+            else {
                 failed = true;
                 continue;
             };
@@ -199,7 +196,8 @@ impl<'a> Compiler<'a> {
             let set: Vec<_> = point.keys().filter_map(ends).collect();
             let world = self.site(point);
             failed |= self.check_ranges(world, set).is_err();
-            let texts: Vec<String> = settings.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+            let texts: Vec<String> =
+                settings.iter().map(|(name, value)| format!("{name} = {value}")).collect();
             let label = texts.join(", ");
             candidates.push(Candidate { world, label, settings, advice: None, deviation: k as f64 });
         }
@@ -234,7 +232,9 @@ impl<'a> Compiler<'a> {
                 let said = format!("the values of `{}` make no difference", name.name);
                 let error = Diagnostic::error(Code::E0606, name.span, said);
                 return self.sites[site].elaborator.report(
-                    error.hint("rank a parameter on which the scenario or the measure depends for these values"),
+                    error.hint(
+                        "rank a parameter on which the scenario or the measure depends for these values",
+                    ),
                 );
             }
         }

@@ -196,7 +196,8 @@ impl<'a> Elaborator<'a> {
             if let Some(first) = numbers[..k].iter().position(|known| known.value == number.value) {
                 let said = format!("the value `{}` is listed twice", self.text(value.span));
                 let error = Diagnostic::error(Code::E0405, value.span, said);
-                return self.report(error.related(list[first].span, "first listed here").hint("remove one of them"));
+                return self
+                    .report(error.related(list[first].span, "first listed here").hint("remove one of them"));
             }
         }
         if list.len() > most { self.too_many(at, most) } else { Ok(numbers) }

@@ -99,17 +99,18 @@ impl Compiler<'_> {
                 let asks =
                     words.next().is_some_and(|first| ASKING.contains(&first) && text.starts_with(first));
                 let of_one_world = !text.starts_with("rank") || text.contains("moves");
-                asks && of_one_world && words.all(|word| word != "under") && !sets(text) && !parts.goes_on(*lost)
+                asks && of_one_world
+                    && words.all(|word| word != "under")
+                    && !sets(text)
+                    && !parts.goes_on(*lost)
             })
         })
     }
 
     /// Notes which world a query asks about; a comparison, and a ranking of values, has some of its own.
     pub(super) fn note_asked(&mut self, query: &Query, world: usize) {
-        let has_own = matches!(
-            query.kind,
-            QueryKind::Compare { .. } | QueryKind::Rank { of: Ranked::Values(_), .. }
-        );
+        let has_own =
+            matches!(query.kind, QueryKind::Compare { .. } | QueryKind::Rank { of: Ranked::Values(_), .. });
         if !has_own {
             self.asked.push((query.span, world));
         }

@@ -84,8 +84,38 @@ impl<'a> Elaborator<'a> {
         }
     }
 
+    /// The moves of a scenario; each agent has one list of them.
+    pub(super) fn all_moves(&mut self, file: &'a ScenarioFile, people: &People) -> Vec<Moves> {
+        let mut moves: Vec<Moves> = Vec::new();
+        let mut declared: Vec<Span> = Vec::new();
+        for item in &file.items {
+            if let Item::Moves(decl) = item {
+                let Ok(one) = self.moves(decl, people) else {
+                    self.advised = None;
+                    continue;
+                };
+                if let Some(advised) = &mut self.advised {
+                    advised.insert(one.agent);
+                }
+                if let Some(first) = moves.iter().position(|m| m.agent == one.agent) {
+                    let error = Diagnostic::error(
+                        Code::E0406,
+                        decl.agent.span,
+                        format!("the moves of `{}` are declared twice", decl.agent.name),
+                    )
+                    .related(declared[first], "first declared here")
+                    .hint("write all options in one list");
+                    self.note(error);
+                }
+                moves.push(one);
+                declared.push(decl.agent.span);
+            }
+        }
+        moves
+    }
+
     /// `moves user for 2 s { … }`
-    pub(super) fn moves(&mut self, decl: &'a MovesDecl, people: &People) -> Lowered<Moves> {
+    fn moves(&mut self, decl: &'a MovesDecl, people: &People) -> Lowered<Moves> {
         let name = Expr { kind: ast::ExprKind::Name(decl.agent.name.clone()), span: decl.agent.span };
         let typed = self.lower(&name, &Locals::default());
         let duration = self.time(&decl.duration, &Locals::default());
@@ -133,9 +163,7 @@ impl<'a> Elaborator<'a> {
 
     /// The agents that leave after a move, by the names that are written.
     pub(super) fn leave_by_moves(&mut self, file: &ScenarioFile) {
-        let leaves = |option: &MoveOption| {
-            matches!(option, MoveOption::Route { route: Value::Route(route), .. } if route.then_leave.is_some())
-        };
+        let leaves = |option: &MoveOption| matches!(option, MoveOption::Route { route: Value::Route(route), .. } if route.then_leave.is_some());
         for item in &file.items {
             if let Item::Moves(decl) = item
                 && decl.options.iter().any(leaves)
@@ -158,8 +186,9 @@ impl<'a> Elaborator<'a> {
                 let route = self.route(written, &Locals::default())?;
                 let goes = matches!(&route, Route::Legs { legs, .. } if legs.iter().any(|leg| matches!(leg, Leg::To(_))));
                 if !goes {
-                    let error = Diagnostic::error(Code::E0406, value_span(written), format!("`{label}` has no goal"))
-                        .hint(format!("write for example `{label} = (9, 3) -> exit`"));
+                    let error =
+                        Diagnostic::error(Code::E0406, value_span(written), format!("`{label}` has no goal"))
+                            .hint(format!("write for example `{label} = (9, 3) -> exit`"));
                     return self.report(error);
                 }
                 if options.iter().any(|(known, _)| *known == label) {

@@ -201,28 +201,20 @@ impl Answers<'_> {
             _ if cut => Vec::new(),
             _ => witness::extremes(&entry.tally),
         };
-        result.witnesses = self.witnesses(&result, prepared, measure.target.column, None, &picks);
+        result.witnesses = self.witnesses(&result, prepared, measure.target.column, &picks);
         Ok(result)
     }
 
-    /// The witnesses of a result.
+    /// The witnesses of a result in whose world nobody was advised.
     pub(super) fn witnesses(
         &self,
         result: &QueryResult,
         prepared: &PreparedWorld,
         column: usize,
-        advice: Option<(usize, usize)>,
         picks: &[(Shows, u64)],
     ) -> Vec<Witness> {
-        witness::find(
-            prepared,
-            column,
-            advice,
-            picks,
-            (self.call, self.budget),
-            &result.settings,
-            &result.unit,
-        )
+        let calls = (self.call, self.budget);
+        witness::find(prepared, column, None, picks, calls, &result.settings, &result.unit)
     }
 
     /// Counts, and what they warn of.

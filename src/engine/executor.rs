@@ -110,7 +110,7 @@ pub trait Executor: Sync {
     fn run(&self, job: &Job<'_>, items: &[Item], budget: &Budget) -> Result<Cells, Invalid>;
 
     /// Runs rounds of several jobs, the first of them first.
-    fn run_all<'s>(&self, parts: &[(&Job<'s>, Vec<Item>)], budget: &Budget) -> Result<Vec<Cells>, Invalid> {
+    fn run_all(&self, parts: &[(&Job<'_>, Vec<Item>)], budget: &Budget) -> Result<Vec<Cells>, Invalid> {
         parts.iter().map(|(job, items)| self.run(job, items, budget)).collect()
     }
 
@@ -220,8 +220,8 @@ impl Executor for Threads {
         Ok(self.run_parts(&[(job, items)], budget)?.pop().unwrap_or_default())
     }
 
-    fn run_all<'s>(&self, parts: &[(&Job<'s>, Vec<Item>)], budget: &Budget) -> Result<Vec<Cells>, Invalid> {
-        let parts: Vec<(&Job<'s>, &[Item])> =
+    fn run_all(&self, parts: &[(&Job<'_>, Vec<Item>)], budget: &Budget) -> Result<Vec<Cells>, Invalid> {
+        let parts: Vec<(&Job<'_>, &[Item])> =
             parts.iter().map(|(job, items)| (*job, items.as_slice())).collect();
         self.run_parts(&parts, budget)
     }
@@ -229,7 +229,7 @@ impl Executor for Threads {
 
 impl Threads {
     /// Runs rounds of several jobs. A thread that finds nothing left of one goes on to the next.
-    fn run_parts<'s>(&self, parts: &[(&Job<'s>, &[Item])], budget: &Budget) -> Result<Vec<Cells>, Invalid> {
+    fn run_parts(&self, parts: &[(&Job<'_>, &[Item])], budget: &Budget) -> Result<Vec<Cells>, Invalid> {
         let mut rounds: Vec<Cells> =
             parts.iter().map(|(job, items)| job.cells(items.len(), budget.has_deadline())).collect();
         let threads = self.pool.current_num_threads();
@@ -249,13 +249,14 @@ impl Threads {
         let work = || -> Result<Vec<Finished>, Invalid> {
             let is_due = |k: usize| k == 0 || !budget.must_stop();
             let tasks = tasks.iter().enumerate();
-            tasks.map(|(k, task)| if is_due(k) { task.work(budget) } else { Ok(Finished::default()) }).collect()
+            tasks
+                .map(|(k, task)| if is_due(k) { task.work(budget) } else { Ok(Finished::default()) })
+                .collect()
         };
         let results: Vec<Result<Vec<Finished>, Invalid>> = if workers == 1 {
             vec![work()]
         } else {
-            self.pool
-                .broadcast(|context| if context.index() < workers { work() } else { Ok(Vec::new()) })
+            self.pool.broadcast(|context| if context.index() < workers { work() } else { Ok(Vec::new()) })
         };
         drop(tasks);
         for result in results {

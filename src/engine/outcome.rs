@@ -382,7 +382,7 @@ pub struct Ranking {
 /// One option of a ranking.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RankedOption {
-    /// Its name: `heading 15 deg`, `lane = 2 m`.
+    /// Its name.
     pub label: String,
     /// Values of ranked parameters, as written.
     pub settings: Vec<(String, String)>,

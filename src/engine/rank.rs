@@ -244,7 +244,9 @@ impl<'s> RankSampling<'s> {
         };
         let jobs: Vec<(&Job<'s>, Vec<Item>)> = parts.iter().map(of_part).collect();
         let mut all = Cells::new(items.len(), 1);
-        for (((job, _), places), cells) in jobs.iter().zip(parts.values()).zip(executor.run_all(&jobs, budget)?) {
+        for (((job, _), places), cells) in
+            jobs.iter().zip(parts.values()).zip(executor.run_all(&jobs, budget)?)
+        {
             for (place, row) in places.iter().zip(cells.rows()) {
                 row.inspect(|row| all.put(*place, row));
             }

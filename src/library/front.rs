@@ -234,8 +234,11 @@ impl Reader<'_> {
                 let by = by.trim();
                 let decades = by.strip_prefix("log").filter(|rest| !rest.starts_with(continues_name));
                 let step = decades.unwrap_or(by);
-                let parts =
-                    (self.expression(&label, from), self.expression(&label, to), self.expression(&label, step));
+                let parts = (
+                    self.expression(&label, from),
+                    self.expression(&label, to),
+                    self.expression(&label, step),
+                );
                 Values::Range { from: parts.0?, to: parts.1?, by: parts.2?, log: decades.is_some() }
             }
         };

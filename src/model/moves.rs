@@ -21,7 +21,8 @@ impl Moves {
     /// writing stands for it.
     pub fn deviations(&self) -> Vec<f64> {
         let all = self.options.iter().enumerate();
-        all.map(|(k, (_, option))| if self.routes.is_empty() { option.deviation() } else { k as f64 }).collect()
+        all.map(|(k, (_, option))| if self.routes.is_empty() { option.deviation() } else { k as f64 })
+            .collect()
     }
 }
 

@@ -113,8 +113,11 @@ impl Builder<'_> {
         }
         let mut ends = list.into_iter();
         let (Some(from), Some(to)) = (ends.next(), ends.next()) else {
-            let error =
-                Diagnostic::error(code::UNEXPECTED, name.span, format!("no value of `{}` is listed", name.name));
+            let error = Diagnostic::error(
+                code::UNEXPECTED,
+                name.span,
+                format!("no value of `{}` is listed", name.name),
+            );
             self.say(error.hint("write values or a range: `1, 2, 4` or `1 .. 3 by 0.5`"));
             return None;
         };
