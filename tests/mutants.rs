@@ -17,7 +17,7 @@ macro_rules! pair {
 }
 
 /// Pairs of scenario and properties; the recording of the hotel is not read, so that its names stay unknown.
-const PAIRS: [(&str, &str); 13] = [
+const PAIRS: [(&str, &str); 14] = [
     pair!("corridor"),
     pair!("crowds"),
     pair!("die"),
@@ -30,6 +30,7 @@ const PAIRS: [(&str, &str); 13] = [
     pair!("robot"),
     pair!("sensors"),
     pair!("tandem"),
+    pair!("ward"),
     (include_str!("refused/base.scn"), include_str!("../properties/corridor.bltl")),
 ];
 

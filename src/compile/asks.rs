@@ -205,5 +205,5 @@ pub(super) fn unlike(
     let (first, second) = (side(kinds[0], &settings[0]), side(kinds[1], &settings[1]));
     let place = measure.range.as_ref().map_or(measure.span, |(low, high)| low.span.to(high.span));
     Diagnostic::error(Code::E0605, place, format!("{need} the same range ({first}, {second})"))
-        .hint("write a range that is valid for both sides and depends on none of the parameters that differ")
+        .hint("write a range that depends on none of the parameters that differ")
 }

@@ -1,6 +1,7 @@
 //! Rankings: their options, each of which is a world and perhaps a move in it, their score and their procedure.
 
 use super::asks::unlike;
+use super::consequences::IDLE;
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::families::Allowance;
 use super::measures::{Observed, Sketch, What};
@@ -229,7 +230,7 @@ impl<'a> Compiler<'a> {
                 }
             }
             if !differs {
-                let said = format!("the values of `{}` make no difference", name.name);
+                let said = format!("the values of `{}` {IDLE}", name.name);
                 let error = Diagnostic::error(Code::E0606, name.span, said);
                 return self.sites[site].elaborator.report(
                     error.hint(

@@ -134,13 +134,13 @@ impl<'a> Elaborator<'a> {
         most: usize,
         locals: &Locals,
     ) -> Lowered<Vec<Number>> {
+        let Ok((default, _)) = self.param(name, at) else {
+            // Their values are unknown; their errors are reported.
+            return self.lower_all(values.parts(), locals).and(Err(Reported));
+        };
         let (from, to, by, log) = match values {
             Values::List(list) => return self.listed((name, at), list, most, locals),
             Values::Range { from, to, by, log } => (from, to, by, *log),
-        };
-        let Ok((default, _)) = self.param(name, at) else {
-            // Their values are unknown; their errors are reported.
-            return self.lower_all([from, to, by], locals).and(Err(Reported));
         };
         let step = self.number(by, locals);
         let ends = (self.setting(name, from, locals), self.setting(name, to, locals));

@@ -149,6 +149,14 @@ impl Values {
         }
     }
 
+    /// All that is written.
+    pub fn parts(&self) -> Vec<&Expr> {
+        match self {
+            Self::List(list) => list.iter().collect(),
+            Self::Range { from, to, by, .. } => vec![from, to, by],
+        }
+    }
+
     /// Whether there is one value and no list of them.
     pub fn is_single(&self) -> bool {
         matches!(self, Self::List(list) if list.len() == 1)

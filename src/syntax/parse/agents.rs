@@ -119,7 +119,7 @@ impl Builder<'_> {
                 let agent = self.expr(parts.part(Rule::operand_of)?)?;
                 Some(Value::Near { agent, within: self.expr(parts.part(Rule::arith)?)? })
             }
-            Rule::route => self.route(pair).map(Value::Route),
+            Rule::route | Rule::move_route => self.route(pair).map(Value::Route),
             Rule::truncated => {
                 let (law, low, high) = self.truncated(pair)?;
                 Some(Value::Truncated { law, low, high })

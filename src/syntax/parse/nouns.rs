@@ -211,7 +211,8 @@ pub(super) fn noun(rule: Rule) -> Option<(u8, String)> {
         | Rule::binder
         | Rule::value
         | Rule::leg
-        | Rule::route => (0, "a number, a name or `(`".to_owned()),
+        | Rule::route
+        | Rule::move_route => (0, "a number, a name or `(`".to_owned()),
         Rule::place | Rule::outline | Rule::paren => (0, "a point".to_owned()),
         Rule::set => (0, "a set".to_owned()),
         Rule::bound => (2, "a bound".to_owned()),
