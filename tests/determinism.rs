@@ -44,6 +44,7 @@ rank moves of user by P(near) within 0.1
 rank moves of user by P(near) within 0.1 by one_challenger()
 rank moves of user by P(near) by okamoto(epsilon = 0.3, delta = 0.2)
 rank moves of user by E(min<=1 s (clearance(user))) in -1 m .. 6 m within 0.3 m
+rank density in 0.1 /m^2, 0.2 /m^2, 0.4 /m^2 by P(near) within 0.1
 ";
 
 fn study(model: &str, queries: &str) -> (Study, Vec<Source>) {

@@ -271,9 +271,15 @@ fn without_a_route_one_goes_on_and_who_stands_keeps_standing() {
 
 fn with_moves(agent: Agent) -> Program {
     let mut scenario = scenario(vec![agent]);
-    let other = Moves { agent: AgentId(0), duration: Tick(5), options: vec![("stop".into(), Move::Stop)] };
+    let other = Moves {
+        agent: AgentId(0),
+        duration: Tick(5),
+        options: vec![("stop".into(), Move::Stop)],
+        routes: Vec::new(),
+    };
     let options = vec![("stop".into(), Move::Stop), ("left".into(), Move::Heading(0.5))];
-    scenario.moves = vec![other, Moves { agent: AgentId(0), duration: Tick(100), options }];
+    scenario.moves =
+        vec![other, Moves { agent: AgentId(0), duration: Tick(100), options, routes: Vec::new() }];
     Program::new(Arc::new(scenario))
 }
 
@@ -345,7 +351,7 @@ fn lanes_do_not_see_one_another() {
     ];
     let mut scenario = scenario(agents);
     let options = vec![("left".into(), Move::Heading(0.5))];
-    scenario.moves = vec![Moves { agent: AgentId(0), duration: Tick(30), options }];
+    scenario.moves = vec![Moves { agent: AgentId(0), duration: Tick(30), options, routes: Vec::new() }];
     let program = Program::new(Arc::new(scenario));
     let mut together = State::new(program.layout, 4);
     // Lanes start at different times and with different advice.

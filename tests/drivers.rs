@@ -69,6 +69,7 @@ fn scenario(agents: Vec<Agent>, walls: &[Segment]) -> Scenario {
             agent: AgentId(0),
             duration: Tick(25),
             options: vec![("stop".to_owned(), Move::Stop)],
+            routes: Vec::new(),
         }],
         processes: smc::model::Processes::default(),
         behaviours: smc::model::Behaviours::default(),

@@ -2,7 +2,9 @@
 
 use smc::model::parameter::Range;
 use smc::model::{PARAMETERS, Parameter};
-use smc::syntax::ast::{ExprKind, Item, Leg, PropertyItem, QueryKind, SceneItem, ShapeExpr, Value};
+use smc::syntax::ast::{
+    ExprKind, Item, Leg, PropertyItem, QueryKind, Ranked, SceneItem, ShapeExpr, Value, Values,
+};
 use smc::syntax::parse::{parse_properties, parse_scenario};
 use smc::syntax::print::{format_properties, format_scenario};
 use smc::syntax::render::render;
@@ -189,14 +191,15 @@ fn queries_and_clauses() {
          check E(x at end) in 0 m .. 3 m < 2 m confidence 99 % within 0.1 m\n\
          estimate P(a), E(b at 5 s) in 0 .. 5, Q(0.5, time_until(p)) confidence 95 % by default_one\n\
          compare P(safe) under d = 1, e = 2 with d = 2, e = 1 within 0.1\n\
-         rank moves of people[1] by E(x) in 0 .. 1 within 0.02 confidence 95 %",
+         rank moves of people[1] by E(x) in 0 .. 1 within 0.02 confidence 95 %\n\
+         rank a in 1 m .. 3 m by 0.5 m, b in 1, f(2, 1), c in P .. E by log 2 by P(x) by okamoto(epsilon = 0.1)",
     );
-    assert_eq!(items.len(), 8);
+    assert_eq!(items.len(), 9);
     let queries: Vec<_> = items
         .iter()
         .filter_map(|item| if let PropertyItem::Query(query) = item { Some(query) } else { None })
         .collect();
-    assert_eq!(queries.len(), 5);
+    assert_eq!(queries.len(), 6);
     assert_eq!(queries[0].clauses.under.len(), 2);
     assert_eq!(queries[0].clauses.by.as_ref().unwrap().arguments.len(), 2);
     assert!(queries[1].clauses.within.is_some() && queries[1].clauses.confidence.is_some());
@@ -204,7 +207,18 @@ fn queries_and_clauses() {
     assert!(
         matches!(&queries[3].kind, QueryKind::Compare { first, second, .. } if first.len() == 2 && second.len() == 2)
     );
-    assert!(matches!(&queries[4].kind, QueryKind::Rank { what, .. } if what.name == "moves"));
+    assert!(
+        matches!(&queries[4].kind, QueryKind::Rank { of: Ranked::Moves { what, .. }, .. } if what.name == "moves")
+    );
+    let QueryKind::Rank { of: Ranked::Values(list), .. } = &queries[5].kind else {
+        panic!("{:?}", queries[5])
+    };
+    let names: Vec<&str> = list.iter().map(|(name, _)| name.name.as_str()).collect();
+    assert_eq!(names, ["a", "b", "c"]);
+    assert!(matches!(&list[0].1, Values::Range { log: false, .. }));
+    assert!(matches!(&list[1].1, Values::List(values) if values.len() == 2));
+    assert!(matches!(&list[2].1, Values::Range { log: true, .. }));
+    assert!(queries[5].clauses.by.is_some());
 }
 
 #[test]

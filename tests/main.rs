@@ -36,6 +36,7 @@ mod plans;
 mod processes;
 mod program;
 mod queries;
+mod rankings;
 mod refusals;
 mod replay;
 mod reports;

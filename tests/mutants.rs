@@ -17,7 +17,7 @@ macro_rules! pair {
 }
 
 /// Pairs of scenario and properties; the recording of the hotel is not read, so that its names stay unknown.
-const PAIRS: [(&str, &str); 14] = [
+const PAIRS: [(&str, &str); 15] = [
     pair!("building"),
     pair!("corridor"),
     pair!("crowds"),
@@ -31,6 +31,7 @@ const PAIRS: [(&str, &str); 14] = [
     pair!("robot"),
     pair!("sensors"),
     pair!("tandem"),
+    pair!("ward"),
     (include_str!("refused/base.scn"), include_str!("../properties/corridor.bltl")),
 ];
 

@@ -193,8 +193,13 @@ fn compare() -> QueryResult {
 }
 
 fn rank() -> QueryResult {
-    let option =
-        |label: &str, value, counts, status| RankedOption { label: label.into(), value, counts, status };
+    let option = |label: &str, value, counts, status| RankedOption {
+        label: label.into(),
+        settings: Vec::new(),
+        value,
+        counts,
+        status,
+    };
     QueryResult {
         estimate: Some(0.911),
         low: 0.887,

@@ -62,8 +62,8 @@ pub(super) enum Command {
 pub(super) struct Model {
     /// Scenario file (`.scn`), or `-` for standard input.
     pub(super) scenario: String,
-    /// Set a parameter, or sweep it: `density=0.8`, `density=0.1..0.8 by 0.1`. A number without a unit takes that of
-    /// the declared default.
+    /// Set a parameter, or sweep it: `density=0.8`, `density=0.1..0.8 by 0.1`, `n=2,4,8`, `density=0.1..10 by log 3`
+    /// (three values a decade). A number without a unit takes that of the declared default.
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub(super) set: Vec<String>,
     /// Also search this folder for recordings and imports. May be given several times.
@@ -146,7 +146,7 @@ pub(super) struct Simulate {
     /// Number of trials.
     #[arg(long, default_value_t = 1, value_name = "N")]
     pub(super) trials: u64,
-    /// Follow a move, named as in a ranking: `heading 15 deg`, `stop`.
+    /// Follow a move, named as in a ranking: `heading 15 deg`, `stop`, `route left`.
     #[arg(long = "move", value_name = "MOVE")]
     pub(super) advice: Option<String>,
     /// Write only every N-th state.

@@ -1,4 +1,4 @@
-//! Checks, comparisons and rankings: claims, thresholds, tests, sides, options.
+//! Checks and comparisons: claims, thresholds, tests, sides.
 
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::families::Allowance;
@@ -8,17 +8,10 @@ use super::number::Number;
 use super::queries::Compiler;
 use super::study::{Ask, Measure, MeasureKind, Target};
 use super::symbols::ScopeId;
-use crate::model::{AgentId, Who};
 use crate::stats::mean::RUNNING;
-use crate::stats::ranking::Ranking;
-use crate::stats::spec::Make;
 use crate::syntax::ast::{self, BinaryOp, Binding, Clauses, Expr};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
-use crate::syntax::source::Span;
-
-/// Most options of a ranking.
-const MOST_OPTIONS: usize = 4096;
 
 impl<'a> Compiler<'a> {
     /// A check: its claim, threshold and test.
@@ -137,103 +130,15 @@ impl<'a> Compiler<'a> {
         let ((a, unbounded), (b, _)) = (a?, b?);
         comparable?;
         if matches!(a.kind, MeasureKind::Expectation { .. }) && a.kind != b.kind {
-            let error = unlike(measure, [&a.kind, &b.kind], &settings);
+            let error = unlike(measure, "both sides of a comparison need", [&a.kind, &b.kind], &settings);
             return self.sites[site].elaborator.report(error);
         }
         let (within, delta) = clauses?;
         Ok((Ask::Compare { first: a, second: b, settings, within, delta }, unbounded, one))
     }
-
-    /// A ranking: whose moves, by which score.
-    pub(super) fn rank(
-        &mut self,
-        site: usize,
-        what: &ast::Ident,
-        agent: &Expr,
-        measure: &ast::Measure,
-        clauses: &Clauses,
-        family: Option<f64>,
-        scope: ScopeId,
-    ) -> Lowered<(Ask, bool)> {
-        let locals = Locals::of(scope);
-        let (measured, sketch) = self.measured(site, measure, scope);
-        let moves = self.moves(site, what, agent, &locals);
-        let elaborator = &mut self.sites[site].elaborator;
-        let rankable = if sketch.what == What::Quantile {
-            let error = Diagnostic::error(Code::E0607, measure.span, "`rank` accepts only `P(…)` and `E(…)`");
-            elaborator.report(error)
-        } else {
-            Ok(())
-        };
-        // In which unit a loss would be is not known then.
-        let known = if rankable.is_ok() { sketch } else { Sketch { dimension: None, ..sketch } };
-        let allowance = Allowance { family, claims: 1 };
-        let procedure = elaborator.ranking(clauses, (known, measure.span), allowance, &locals);
-        if let (Ok(Make::Ranking(Ranking::Okamoto)), What::Expectation, Some(method)) =
-            (procedure.as_ref().map(|chosen| chosen.spec.make), sketch.what, &clauses.by)
-        {
-            let error = Diagnostic::error(Code::E0607, method.span, "`okamoto` ranks only by `P(…)`").hint(
-                "remove `by okamoto`: the default procedure also ranks by `E(…)`, and needs fewer trials",
-            );
-            return elaborator.report(error);
-        }
-        rankable?;
-        let ((measure, unbounded), moves, ranking) = (measured?, moves?, procedure?);
-        Ok((Ask::Rank { moves, measure, ranking }, unbounded))
-    }
-
-    /// The number of the moves that are ranked.
-    fn moves(&mut self, site: usize, what: &ast::Ident, agent: &Expr, locals: &Locals) -> Lowered<usize> {
-        let elaborator = &mut self.sites[site].elaborator;
-        let wanted = if what.name == "moves" {
-            Ok(())
-        } else {
-            let error =
-                Diagnostic::error(Code::E0606, what.span, format!("`{}` cannot be ranked", what.name))
-                    .hint("write `rank moves of …`");
-            elaborator.report(error)
-        };
-        let typed = elaborator.lower(agent, locals)?;
-        let Who::Agent(id) = elaborator.as_agent(typed, agent.span)? else { return Err(Reported) };
-        wanted?;
-        let advised = &self.sites[site].elaborator.advised;
-        // If some moves have errors, their agents are unknown.
-        if advised.as_ref().is_some_and(|advised| !advised.contains(&id)) {
-            return self.sites[site].elaborator.without_moves(id, agent.span);
-        }
-        let Some(scenario) = &self.sites[site].scenario else { return Err(Reported) };
-        let Some(moves) = scenario.moves.iter().position(|m| m.agent == id) else { return Err(Reported) };
-        let options = scenario.moves[moves].options.len();
-        if options > MOST_OPTIONS {
-            let said = format!("a ranking has at most {MOST_OPTIONS} options (got {options})");
-            return self.sites[site].elaborator.report(Diagnostic::error(Code::E0606, agent.span, said));
-        }
-        Ok(moves)
-    }
 }
 
 impl Elaborator<'_> {
-    /// Reports that an agent has no moves.
-    fn without_moves<T>(&mut self, id: AgentId, at: Span) -> Lowered<T> {
-        // One that could not be declared was reported.
-        let Some(name) = self.agent_names.get(id.0 as usize).filter(|_| !self.undeclared.contains(&id))
-        else {
-            return Err(Reported);
-        };
-        let name = name.clone();
-        // Moves are those of somebody who has a name alone.
-        let (alone, first) = if name.contains('[') {
-            ("robot", "moves belong to one agent, declared as `agent robot: …`; ")
-        } else {
-            (name.as_str(), "")
-        };
-        let hint = format!(
-            "{first}write for example `moves {alone} for 2 s {{ heading from -60 deg to 60 deg by 15 deg  stop }}`"
-        );
-        let said = format!("the scenario declares no moves for `{name}`");
-        self.report(Diagnostic::error(Code::E0606, at, said).hint(hint))
-    }
-
     /// The threshold of a measure: a number in its unit, between 0 and 1 if it is a probability and within the range
     /// of an expectation.
     fn threshold(
@@ -278,9 +183,10 @@ impl Elaborator<'_> {
     }
 }
 
-/// The error of a comparison whose sides have ranges, or units, of their own.
-fn unlike(
+/// The error of a comparison or ranking of which two sides have ranges, or units, of their own.
+pub(super) fn unlike(
     measure: &ast::Measure,
+    need: &str,
     kinds: [&MeasureKind; 2],
     settings: &[Vec<(String, String)>; 2],
 ) -> Diagnostic {
@@ -298,10 +204,6 @@ fn unlike(
     };
     let (first, second) = (side(kinds[0], &settings[0]), side(kinds[1], &settings[1]));
     let place = measure.range.as_ref().map_or(measure.span, |(low, high)| low.span.to(high.span));
-    Diagnostic::error(
-        Code::E0605,
-        place,
-        format!("both sides of a comparison need the same range ({first}, {second})"),
-    )
-    .hint("write a range that is valid for both sides and depends on none of the parameters that differ")
+    Diagnostic::error(Code::E0605, place, format!("{need} the same range ({first}, {second})"))
+        .hint("write a range that depends on none of the parameters that differ")
 }

@@ -125,13 +125,8 @@ impl<'a> Compiler<'a> {
         // Sweep points are computed in the plain world, which also checks what no query uses.
         let plain = self.site(BTreeMap::new());
         let mut points = self.points(plain);
-        let swept: Vec<&str> = self
-            .input
-            .settings
-            .iter()
-            .filter(|s| matches!(s.value, super::settings::SettingValue::Sweep(..)))
-            .map(|s| s.name.as_str())
-            .collect();
+        let swept: Vec<&str> =
+            self.input.settings.iter().filter(|s| !s.values.is_single()).map(|s| s.name.as_str()).collect();
         if self.input.settings.is_empty() || self.sites[plain].elaborator.failed() {
             points.truncate(1);
         } else {
@@ -144,7 +139,7 @@ impl<'a> Compiler<'a> {
             self.next_index = 0;
             let base = self.site(point.clone());
             self.bases.insert(base);
-            let set = self.input.settings.iter().map(|setting| (setting.name.clone(), setting.ends()));
+            let set = self.input.settings.iter().map(|setting| (setting.name.clone(), setting.values.ends()));
             // What is wrong is noted in that world.
             let _ = self.check_ranges(base, set.collect());
             if number == 0 {
@@ -342,7 +337,7 @@ impl<'a> Compiler<'a> {
         let locals = Locals::of(scope);
         let text = self.sites[site].elaborator.text(query.span);
         // What a query sets itself takes the place of what a sweep sets.
-        let swept = settings.iter().filter(|(name, _)| own.iter().all(|(mine, _)| mine != name));
+        let swept = settings.iter().filter(|(name, _)| !query.sets(name));
         let settings: Vec<_> = swept.cloned().chain(own.iter().cloned()).collect();
         match &query.kind {
             QueryKind::Check { measure, relation, threshold } => {
@@ -404,10 +399,10 @@ impl<'a> Compiler<'a> {
                 let said = self.sites[one].elaborator.said(measure, None);
                 self.push(query.span, (text, said), settings, property_name(measure), ask, unbounded, one);
             }
-            QueryKind::Rank { what, agent, measure } => {
-                let (ask, unbounded) = self.rank(site, what, agent, measure, clauses, family, scope)?;
-                let said = self.sites[site].elaborator.said(measure, None);
-                self.push(query.span, (text, said), settings, property_name(measure), ask, unbounded, site);
+            QueryKind::Rank { of, measure } => {
+                let (ask, unbounded, one) = self.rank(site, of, measure, clauses, family, scope)?;
+                let said = self.sites[one].elaborator.said(measure, None);
+                self.push(query.span, (text, said), settings, property_name(measure), ask, unbounded, one);
             }
         }
         Ok(())
@@ -427,6 +422,10 @@ impl<'a> Compiler<'a> {
         let horizon = unbounded.then(|| elaborator.duration(elaborator.horizon.0));
         let index = self.next_index;
         self.next_index += 1;
+        // What a query sets itself may leave nothing of a sweep: then it is asked once.
+        if self.queries.iter().any(|known| known.index == index && known.ask == ask) {
+            return;
+        }
         self.queries.push(Query { index, name, text, said, span, settings, point: Vec::new(), ask, horizon });
     }
 

@@ -1,11 +1,12 @@
 //! Values of parameters from outside: `--set name=value`, sweeps, `under`.
 
-use super::dimension::{self, Dimension};
+use super::dimension::{self, Dimension, Unit};
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::number::Number;
 use super::symbols::{Meaning, unknown};
 use crate::base::decimal::Decimal;
-use crate::syntax::ast::{Expr, ExprKind, UnitExpr};
+use crate::base::math;
+use crate::syntax::ast::{Expr, ExprKind, UnitExpr, Values};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -18,27 +19,7 @@ pub struct Setting {
     /// Where the value stands, for messages.
     pub span: Span,
     /// Its value or values.
-    pub value: SettingValue,
-}
-
-/// One value or several.
-#[derive(Clone, Debug, PartialEq)]
-#[allow(clippy::large_enum_variant, reason = "there are as many as `--set` options in a call")]
-pub enum SettingValue {
-    /// One.
-    One(Expr),
-    /// From, to, by: ends included.
-    Sweep(Expr, Expr, Expr),
-}
-
-impl Setting {
-    /// Where its least and its greatest value stand.
-    pub(super) fn ends(&self) -> (Span, Span) {
-        match &self.value {
-            SettingValue::One(value) => (value.span, value.span),
-            SettingValue::Sweep(from, to, _) => (from.span, to.span),
-        }
-    }
+    pub values: Values,
 }
 
 /// Most points of a sweep, and most combinations of several.
@@ -145,57 +126,125 @@ impl<'a> Elaborator<'a> {
         Ok(())
     }
 
-    /// The points of a sweep.
-    pub(super) fn points(&mut self, setting: &Setting) -> Lowered<Vec<Number>> {
-        let locals = Locals::of(0);
-        match &setting.value {
-            SettingValue::One(value) => Ok(vec![self.setting(&setting.name, value, &locals)?]),
-            SettingValue::Sweep(from, to, by) => {
-                let Ok((default, _)) = self.param(&setting.name, setting.span) else {
-                    // Their values are unknown; their errors are reported.
-                    return self.lower_all([from, to, by], &locals).and(Err(Reported));
-                };
-                let step = self.number(by, &locals);
-                let ends =
-                    (self.setting(&setting.name, from, &locals), self.setting(&setting.name, to, &locals));
-                let (first, last, step) = (ends.0?, ends.1?, step?);
-                let unit = Self::unit_of_default(default).and_then(|unit| dimension::resolve(unit).ok());
-                if !step.dimension.is_none() && step.dimension != first.dimension {
-                    return self.wrong_dimension(by.span, first.dimension, step.dimension);
-                }
-                let step = match unit {
-                    // A share without its sign is what it is, as a value is.
-                    Some(unit) if step.dimension.is_none() && !unit.dimension.is_none() => {
-                        step.times(Number::literal(Decimal::ONE, &unit)).unwrap_or(step)
-                    }
-                    _ => Number { dimension: first.dimension, ..step },
-                };
-                if step.value <= 0.0 || last.value < first.value {
-                    let error = Diagnostic::error(
-                        Code::E0405,
-                        if step.value <= 0.0 { by.span } else { to.span },
-                        "a sweep must go up from its first to its last value by a positive step",
-                    );
-                    return self.report(error);
-                }
-                let count = ((last.value - first.value) / step.value + 1e-9).floor();
-                if count >= MOST_POINTS as f64 {
-                    return self.report(Diagnostic::error(
-                        Code::E0405,
-                        setting.span,
-                        format!("a sweep has at most {MOST_POINTS} points"),
-                    ));
-                }
-                // Each from the first: steps that are no decimals would add up their rounding, and leave the range.
-                let point = |k: i64| {
-                    let way = step.times(Number::whole(k)).map_or(first, |way| first.plus(way));
-                    // Where the last one is meant it is that one, whatever rounding made of the step.
-                    let is_last = (last.value - way.value).abs() <= 1e-9 * step.value;
-                    if is_last { last } else { way }
-                };
-                Ok((0..=count as i64).map(point).collect())
+    /// The values of a parameter, without one that is listed twice. `most` of them are allowed.
+    pub(super) fn values(
+        &mut self,
+        (name, at): (&str, Span),
+        values: &Values,
+        most: usize,
+        locals: &Locals,
+    ) -> Lowered<Vec<Number>> {
+        let Ok((default, _)) = self.param(name, at) else {
+            // Their values are unknown; their errors are reported.
+            return self.lower_all(values.parts(), locals).and(Err(Reported));
+        };
+        let (from, to, by, log) = match values {
+            Values::List(list) => return self.listed((name, at), list, most, locals),
+            Values::Range { from, to, by, log } => (from, to, by, *log),
+        };
+        let step = self.number(by, locals);
+        let ends = (self.setting(name, from, locals), self.setting(name, to, locals));
+        let (first, last, step) = (ends.0?, ends.1?, step?);
+        let unit = Self::unit_of_default(default).and_then(|unit| dimension::resolve(unit).ok());
+        if log {
+            let places = [from.span, to.span, by.span];
+            return self.decades([first, last, step], places, unit.as_ref(), (at, most));
+        }
+        if !step.dimension.is_none() && step.dimension != first.dimension {
+            return self.wrong_dimension(by.span, first.dimension, step.dimension);
+        }
+        let step = match unit {
+            // A share without its sign is what it is, as a value is.
+            Some(unit) if step.dimension.is_none() && !unit.dimension.is_none() => {
+                step.times(Number::literal(Decimal::ONE, &unit)).unwrap_or(step)
+            }
+            _ => Number { dimension: first.dimension, ..step },
+        };
+        if step.value <= 0.0 || last.value < first.value {
+            let error = Diagnostic::error(
+                Code::E0405,
+                if step.value <= 0.0 { by.span } else { to.span },
+                "the values must go up from the first to the last by a positive step",
+            );
+            return self.report(error);
+        }
+        let count = ((last.value - first.value) / step.value + 1e-9).floor();
+        if count >= most as f64 {
+            return self.too_many(at, most);
+        }
+        // Each from the first: steps that are no decimals would add up their rounding, and leave the range.
+        let point = |k: i64| {
+            let way = step.times(Number::whole(k)).map_or(first, |way| first.plus(way));
+            // Where the last one is meant it is that one, whatever rounding made of the step.
+            let is_last = (last.value - way.value).abs() <= 1e-9 * step.value;
+            if is_last { last } else { way }
+        };
+        Ok((0..=count as i64).map(point).collect())
+    }
+
+    /// Values one by one.
+    fn listed(
+        &mut self,
+        (name, at): (&str, Span),
+        list: &[Expr],
+        most: usize,
+        locals: &Locals,
+    ) -> Lowered<Vec<Number>> {
+        let all: Vec<Lowered<Number>> = list.iter().map(|value| self.setting(name, value, locals)).collect();
+        let numbers: Vec<Number> = all.into_iter().collect::<Lowered<_>>()?;
+        for (k, (number, value)) in numbers.iter().zip(list).enumerate() {
+            if let Some(first) = numbers[..k].iter().position(|known| known.value == number.value) {
+                let said = format!("the value `{}` is listed twice", self.text(value.span));
+                let error = Diagnostic::error(Code::E0405, value.span, said);
+                return self
+                    .report(error.related(list[first].span, "first listed here").hint("remove one of them"));
             }
         }
+        if list.len() > most { self.too_many(at, most) } else { Ok(numbers) }
+    }
+
+    /// Values of which each is the same factor larger than the one before, `count` in a decade; with six digits in the
+    /// unit of the default, so that they can be written.
+    fn decades(
+        &mut self,
+        [first, last, count]: [Number; 3],
+        [from, to, by]: [Span; 3],
+        unit: Option<&Unit>,
+        (at, most): (Span, usize),
+    ) -> Lowered<Vec<Number>> {
+        let error = if first.value <= 0.0 {
+            Some((from, "the first of values by decades must be positive"))
+        } else if last.value < first.value {
+            Some((to, "the values must go up from the first to the last"))
+        } else if !count.dimension.is_none() || count.as_whole().is_none_or(|count| count < 1) {
+            Some((by, "the number of values a decade must be whole and positive"))
+        } else {
+            None
+        };
+        if let Some((at, said)) = error {
+            return self.report(Diagnostic::error(Code::E0405, at, said));
+        }
+        let factor = math::ln(10.0) / count.value;
+        let steps = (math::ln(last.value / first.value) / factor + 1e-9).floor();
+        if steps >= most as f64 {
+            return self.too_many(at, most);
+        }
+        let point = |k: usize| {
+            let value = first.value * math::exp(factor * k as f64);
+            let written = format!("{:.5e}", value / unit.map_or(1.0, |unit| unit.size));
+            let number = match (Decimal::parse(&written), unit) {
+                (Some(written), Some(unit)) => Number::literal(written, unit),
+                (Some(written), None) => Number::exact(written, first.dimension),
+                (None, _) => Number::rounded(value, first.dimension),
+            };
+            let is = |end: Number| (end.value - value).abs() <= 1e-9 * end.value;
+            [first, last].into_iter().find(|end| is(*end)).unwrap_or(number)
+        };
+        Ok((0..=steps as usize).map(point).collect())
+    }
+
+    fn too_many<T>(&mut self, at: Span, most: usize) -> Lowered<T> {
+        self.report(Diagnostic::error(Code::E0405, at, format!("at most {most} values are allowed")))
     }
 
     /// A value in the unit in which the default is written.

@@ -6,7 +6,7 @@ use super::places;
 use super::queries::Compiler;
 use super::study::Ask;
 use crate::model::{AgentId, Behaviours, Processes, Scenario, Source};
-use crate::syntax::ast::{PropertyFile, PropertyItem, Query, QueryKind};
+use crate::syntax::ast::{PropertyFile, PropertyItem, Query, QueryKind, Ranked};
 use crate::syntax::codes::Code;
 use crate::syntax::parse::{continues_name, starts_name};
 use crate::syntax::source::{SourceId, Span};
@@ -65,10 +65,8 @@ impl Compiler<'_> {
         let is_cut = |span: Span| self.sites.iter().any(|site| site.elaborator.is_cut(span));
         let is_whole = |span: Span| !is_cut(span) && !parts.goes_on(span);
         for query in &self.queries {
-            if let Ask::Compare { first, second, .. } = &query.ask
-                && is_whole(query.span)
-            {
-                worlds.extend([first.target.world, second.target.world]);
+            if matches!(query.ask, Ask::Compare { .. } | Ask::Rank { .. }) && is_whole(query.span) {
+                worlds.extend(query.ask.worlds());
             }
         }
         worlds.extend(self.asked.iter().filter(|(span, _)| is_whole(*span)).map(|(_, world)| *world));
@@ -100,14 +98,20 @@ impl Compiler<'_> {
                     text.split(|c: char| !continues_name(c)).filter(|word| word.starts_with(starts_name));
                 let asks =
                     words.next().is_some_and(|first| ASKING.contains(&first) && text.starts_with(first));
-                asks && words.all(|word| word != "under") && !sets(text) && !parts.goes_on(*lost)
+                let of_one_world = !text.starts_with("rank") || text.contains("moves");
+                asks && of_one_world
+                    && words.all(|word| word != "under")
+                    && !sets(text)
+                    && !parts.goes_on(*lost)
             })
         })
     }
 
-    /// Notes which world a query asks about; a comparison has two of its own.
+    /// Notes which world a query asks about; a comparison, and a ranking of values, has some of its own.
     pub(super) fn note_asked(&mut self, query: &Query, world: usize) {
-        if !matches!(query.kind, QueryKind::Compare { .. }) {
+        let has_own =
+            matches!(query.kind, QueryKind::Compare { .. } | QueryKind::Rank { of: Ranked::Values(_), .. });
+        if !has_own {
             self.asked.push((query.span, world));
         }
     }

@@ -241,7 +241,7 @@ impl std::fmt::Display for Event {
 }
 
 /// What is asked.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Ask {
     /// Is a measure above or below a threshold?
     Check {
@@ -280,11 +280,11 @@ pub enum Ask {
         /// Error probability.
         delta: f64,
     },
-    /// Which move is best?
+    /// Which option is best?
     Rank {
-        /// Index into `Scenario::moves`.
-        moves: usize,
-        /// The score of an option.
+        /// The options, in order of writing.
+        options: Vec<RankOption>,
+        /// The score of the first option; that of another is read from its own world.
         measure: Measure,
         /// The procedure; `epsilon` is the loss that does not matter.
         ranking: Chosen,
@@ -295,12 +295,26 @@ impl Ask {
     /// The worlds that are asked about.
     pub fn worlds(&self) -> Vec<usize> {
         match self {
-            Self::Check { measure, .. } | Self::Estimate { measure, .. } | Self::Rank { measure, .. } => {
-                vec![measure.target.world]
-            }
+            Self::Check { measure, .. } | Self::Estimate { measure, .. } => vec![measure.target.world],
+            Self::Rank { options, .. } => options.iter().map(|option| option.target.world).collect(),
             Self::Compare { first, second, .. } => vec![first.target.world, second.target.world],
         }
     }
+}
+
+/// An option of a ranking: a world, and a move in it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RankOption {
+    /// Its name: `heading 15 deg`, `lane = 2 m`.
+    pub label: String,
+    /// Values of parameters that hold for it alone.
+    pub settings: Vec<(String, String)>,
+    /// Its world, and the column of its score there.
+    pub target: Target,
+    /// The declaration of moves and its option that is followed, if any.
+    pub advice: Option<(usize, usize)>,
+    /// Of options that all carry the certificate, the one with the least number is chosen.
+    pub deviation: f64,
 }
 
 /// A number of the distribution of traces.

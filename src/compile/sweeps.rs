@@ -1,5 +1,6 @@
 //! The points of a call: every combination of the values that `--set` names.
 
+use super::elaborator::{Locals, Lowered};
 use super::number::Number;
 use super::queries::Compiler;
 use super::settings::{MOST_POINTS, Setting};
@@ -17,11 +18,11 @@ impl Compiler<'_> {
                 let error =
                     Diagnostic::error(Code::E0210, setting.span, format!("`{}` is set twice", setting.name));
                 self.sites[plain].elaborator.note(error);
-                let _ = self.sites[plain].elaborator.points(setting);
+                let _ = self.set_values(plain, setting);
                 continue;
             }
             seen.push(setting);
-            let Ok(values) = self.sites[plain].elaborator.points(setting) else { continue };
+            let Ok(values) = self.set_values(plain, setting) else { continue };
             let combinations = points.len().saturating_mul(values.len());
             if combinations > MOST_POINTS {
                 let error = Diagnostic::error(
@@ -46,5 +47,10 @@ impl Compiler<'_> {
                 .collect();
         }
         points
+    }
+
+    fn set_values(&mut self, plain: usize, setting: &Setting) -> Lowered<Vec<Number>> {
+        let name = (setting.name.as_str(), setting.span);
+        self.sites[plain].elaborator.values(name, &setting.values, MOST_POINTS, &Locals::of(0))
     }
 }

@@ -7,8 +7,8 @@ use super::people::People;
 use super::symbols::Meaning;
 use super::typed::Typed;
 use crate::base::tick::Tick;
-use crate::model::{Goal, Leg, Move, Moves, Route, Who};
-use crate::syntax::ast::{self, Expr, MoveOption, MovesDecl, Value};
+use crate::model::{AgentId, Goal, Leg, Move, Moves, Route, Who};
+use crate::syntax::ast::{self, Expr, Item, MoveOption, MovesDecl, ScenarioFile, Value};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -84,15 +84,46 @@ impl<'a> Elaborator<'a> {
         }
     }
 
+    /// The moves of a scenario; each agent has one list of them.
+    pub(super) fn all_moves(&mut self, file: &'a ScenarioFile, people: &People) -> Vec<Moves> {
+        let mut moves: Vec<Moves> = Vec::new();
+        let mut declared: Vec<Span> = Vec::new();
+        for item in &file.items {
+            if let Item::Moves(decl) = item {
+                let Ok(one) = self.moves(decl, people) else {
+                    self.advised = None;
+                    continue;
+                };
+                if let Some(advised) = &mut self.advised {
+                    advised.insert(one.agent);
+                }
+                if let Some(first) = moves.iter().position(|m| m.agent == one.agent) {
+                    let error = Diagnostic::error(
+                        Code::E0406,
+                        decl.agent.span,
+                        format!("the moves of `{}` are declared twice", decl.agent.name),
+                    )
+                    .related(declared[first], "first declared here")
+                    .hint("write all options in one list");
+                    self.note(error);
+                }
+                moves.push(one);
+                declared.push(decl.agent.span);
+            }
+        }
+        moves
+    }
+
     /// `moves user for 2 s { … }`
-    pub(super) fn moves(&mut self, decl: &'a MovesDecl, people: &People) -> Lowered<Moves> {
+    fn moves(&mut self, decl: &'a MovesDecl, people: &People) -> Lowered<Moves> {
         let name = Expr { kind: ast::ExprKind::Name(decl.agent.name.clone()), span: decl.agent.span };
         let typed = self.lower(&name, &Locals::default());
         let duration = self.time(&decl.duration, &Locals::default());
         let mut options: Vec<(String, Move)> = Vec::new();
+        let mut routes: Vec<Route> = Vec::new();
         let mut failed = false;
         for option in &decl.options {
-            failed |= self.option(option, &mut options).is_err();
+            failed |= self.option(option, &mut options, &mut routes).is_err();
         }
         let typed = typed?;
         if matches!(typed, Typed::Agents { .. }) {
@@ -127,11 +158,47 @@ impl<'a> Elaborator<'a> {
         if people.agents.get(agent.0 as usize).is_none() {
             return Err(super::elaborator::Reported);
         }
-        Ok(Moves { agent, duration, options })
+        Ok(Moves { agent, duration, options, routes })
     }
 
-    fn option(&mut self, option: &MoveOption, options: &mut Vec<(String, Move)>) -> Lowered<()> {
+    /// The agents that leave after a move, by the names that are written.
+    pub(super) fn leave_by_moves(&mut self, file: &ScenarioFile) {
+        let leaves = |option: &MoveOption| matches!(option, MoveOption::Route { route: Value::Route(route), .. } if route.then_leave.is_some());
+        for item in &file.items {
+            if let Item::Moves(decl) = item
+                && decl.options.iter().any(leaves)
+                && let Some(agent) = self.agent_names.iter().position(|name| *name == decl.agent.name)
+            {
+                self.may_be_absent(AgentId(agent as u32));
+            }
+        }
+    }
+
+    fn option(
+        &mut self,
+        option: &MoveOption,
+        options: &mut Vec<(String, Move)>,
+        routes: &mut Vec<Route>,
+    ) -> Lowered<()> {
         match option {
+            MoveOption::Route { name, route: written, span } => {
+                let label = format!("route {}", name.name);
+                let route = self.route(written, &Locals::default())?;
+                let goes = matches!(&route, Route::Legs { legs, .. } if legs.iter().any(|leg| matches!(leg, Leg::To(_))));
+                if !goes {
+                    let error =
+                        Diagnostic::error(Code::E0406, value_span(written), format!("`{label}` has no goal"))
+                            .hint(format!("write for example `{label} = (9, 3) -> exit`"));
+                    return self.report(error);
+                }
+                if options.iter().any(|(known, _)| *known == label) {
+                    let error = Diagnostic::error(Code::E0406, *span, format!("`{label}` is listed twice"));
+                    return self.report(error.hint("give one of them another name"));
+                }
+                options.push((label, Move::Route(routes.len())));
+                routes.push(route);
+                Ok(())
+            }
             MoveOption::Stop(span) => {
                 if options.iter().any(|(_, m)| *m == Move::Stop) {
                     return self.report(Diagnostic::error(Code::E0406, *span, "`stop` is listed twice"));
@@ -186,7 +253,7 @@ impl<'a> Elaborator<'a> {
                 let turns = (angle - known) / std::f64::consts::TAU;
                 (turns - turns.round()).abs() < 1e-9
             }
-            Move::Stop => false,
+            Move::Stop | Move::Route(_) => false,
         };
         if let Some((known, _)) = options.iter().find(|(_, option)| same(option)) {
             let text = if *known == label {

@@ -12,7 +12,7 @@ use super::symbols::Meaning;
 use super::told::{self, Told};
 use crate::base::decimal::Decimal;
 use crate::base::tick::{Clock, Tick};
-use crate::model::{BehaviourId, BuiltIn, Kind, Moves, Scenario};
+use crate::model::{BehaviourId, BuiltIn, Kind, Scenario};
 use crate::syntax::ast::{Expr, ExprKind, Ident, Item, PropertyFile, PropertyItem, ScenarioFile};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -185,6 +185,7 @@ impl<'a> Elaborator<'a> {
                 _ => {}
             }
         }
+        self.leave_by_moves(file);
         let mut sources = Vec::new();
         for item in &file.items {
             if let Item::Source(decl) = item {
@@ -194,31 +195,7 @@ impl<'a> Elaborator<'a> {
         let count = variables.len();
         let processes = self.settle_commands(variables, &mut people);
         let behaviours = self.settle_behaviours(&mut people, count);
-        let mut moves: Vec<Moves> = Vec::new();
-        let mut declared: Vec<Span> = Vec::new();
-        for item in &file.items {
-            if let Item::Moves(decl) = item {
-                let Ok(one) = self.moves(decl, &people) else {
-                    self.advised = None;
-                    continue;
-                };
-                if let Some(advised) = &mut self.advised {
-                    advised.insert(one.agent);
-                }
-                if let Some(first) = moves.iter().position(|m| m.agent == one.agent) {
-                    let error = Diagnostic::error(
-                        Code::E0406,
-                        decl.agent.span,
-                        format!("the moves of `{}` are declared twice", decl.agent.name),
-                    )
-                    .related(declared[first], "first declared here")
-                    .hint("write all options in one list");
-                    self.note(error);
-                }
-                moves.push(one);
-                declared.push(decl.agent.span);
-            }
-        }
+        let moves = self.all_moves(file, &people);
         self.check_unused(file);
         self.check_titles(file);
         self.check_places(&people);

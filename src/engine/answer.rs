@@ -201,28 +201,20 @@ impl Answers<'_> {
             _ if cut => Vec::new(),
             _ => witness::extremes(&entry.tally),
         };
-        result.witnesses = self.witnesses(&result, prepared, measure.target.column, None, &picks);
+        result.witnesses = self.witnesses(&result, prepared, measure.target.column, &picks);
         Ok(result)
     }
 
-    /// The witnesses of a result.
+    /// The witnesses of a result in whose world nobody was advised.
     pub(super) fn witnesses(
         &self,
         result: &QueryResult,
         prepared: &PreparedWorld,
         column: usize,
-        advice: Option<(usize, usize)>,
         picks: &[(Shows, u64)],
     ) -> Vec<Witness> {
-        witness::find(
-            prepared,
-            column,
-            advice,
-            picks,
-            (self.call, self.budget),
-            &result.settings,
-            &result.unit,
-        )
+        let calls = (self.call, self.budget);
+        witness::find(prepared, column, None, picks, calls, &result.settings, &result.unit)
     }
 
     /// Counts, and what they warn of.
@@ -390,30 +382,32 @@ impl Answers<'_> {
         watch: &dyn Watch,
     ) -> Result<Option<QueryResult>, Fault> {
         let query = rank.query();
-        let Ask::Rank { moves, measure, ranking } = &query.ask else {
+        let Ask::Rank { options, measure, ranking } = &query.ask else {
             return Err(Fault::Unsuitable);
         };
         let delta = ranking.value("delta");
         let Some(ranked) = rank.run(executor, (self.budget, share), watch)? else { return Ok(None) };
         let setup = rank.setup();
-        let prepared = setup.prepared;
-        let declared = &prepared.program.scenario.moves[*moves];
         let mut result = self.blank(query, Kind::Rank);
         result.method = method::of(&query.ask, None);
         result.unit = unit(measure);
         result.stopped_by = ranked.stop;
         let joined = total(&ranked.tallies);
         result.replay = self.replay(query, "--total-trials", joined.counts.trials);
-        Self::tell(&mut result, prepared, &joined, measure.target.column);
-        let tallies: Vec<_> = ranked.tallies.iter().map(|tally| (prepared, tally)).collect();
+        Self::tell(&mut result, setup.worlds[0], &joined, measure.target.column);
+        let tallies: Vec<_> = setup.worlds.iter().copied().zip(&ranked.tallies).collect();
         self.note_odd(&mut result, &tallies);
+        // Of several values of a parameter the last one holds: that of the option.
+        let settings = |arm: usize| [result.settings.as_slice(), &options[arm].settings].concat();
         let lost = ranked.tallies.iter().enumerate().find_map(|(arm, tally)| {
-            let item = Item { advice: Some((*moves, arm)), index: tally.first[2]? };
-            Some(First { prepared, column: measure.target.column, item, settings: result.settings.clone() })
+            let item = setup.item(arm, tally.first[2]?);
+            let column = options[arm].target.column;
+            Some(First { prepared: setup.worlds[arm], column, item, settings: settings(arm) })
         });
+        let arm = ranked.choice.arm;
+        let (own, prepared, column) = (settings(arm), setup.worlds[arm], options[arm].target.column);
         self.lament(&mut result, joined.counts.unresolved, lost.as_ref());
-        let labels: Vec<&str> = declared.options.iter().map(|(label, _)| label.as_str()).collect();
-        let listed = tables::ranked(&ranked, &labels);
+        let listed = tables::ranked(&ranked, options);
         let score = measured_words(query, measure, joined.clipped);
         if let Some(choice) = &listed.choice {
             if listed.gap < ranked.scale {
@@ -431,14 +425,15 @@ impl Answers<'_> {
             result.high = chosen.high;
             result.interval =
                 format!("{}, all options jointly", words::interval(Coverage::TimeUniform, delta));
-            let arm = ranked.choice.arm;
             let tally = &ranked.tallies[arm];
             let picks = match measure.kind {
                 MeasureKind::Probability => witness::sides(tally),
-                _ if was_cut(prepared, setup.column, tally) => Vec::new(),
+                _ if was_cut(prepared, column, tally) => Vec::new(),
                 _ => witness::extremes(tally),
             };
-            result.witnesses = self.witnesses(&result, prepared, setup.column, Some((*moves, arm)), &picks);
+            let calls = (self.call, self.budget);
+            result.witnesses =
+                witness::find(prepared, column, options[arm].advice, &picks, calls, &own, &result.unit);
         }
         result.rank = Some(listed);
         result.elapsed_s = rank.spent;

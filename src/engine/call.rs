@@ -1,6 +1,7 @@
 //! What a call adds to a study, and the command lines that show what was found.
 
 use crate::kernel::driver::MakeDrivers;
+use crate::syntax::parse::split_values;
 use crate::syntax::source::Span;
 
 /// What a call adds to a study.
@@ -24,7 +25,7 @@ pub struct CommandLine {
     pub scenario: String,
     /// Property files.
     pub properties: Vec<String>,
-    /// Values of `--set`: `density=0.8`, or a sweep, `density=0.1..0.8 by 0.1`.
+    /// Values of `--set`: `density=0.8`, or a sweep, `density=0.1..0.8 by 0.1`, `n=2,4,8`.
     pub settings: Vec<String>,
     /// Values of `--data`.
     pub data: Vec<String>,
@@ -76,7 +77,7 @@ impl CommandLine {
 
 /// A trial, or a query, belongs to one setting: the value of a sweep is named with it.
 fn is_sweep(set: &str) -> bool {
-    set.contains("..")
+    set.contains("..") || split_values(set).len() > 1
 }
 
 fn parameter(set: &str) -> &str {

@@ -11,7 +11,7 @@ use super::runner::Runner;
 use crate::base::lanes::LANES;
 use crate::logic::Invalid;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 
 /// Most trials of a block: enough that a few long ones among them cost little, few enough to stay near the core.
 const LARGEST_BLOCK: usize = 1024;
@@ -108,6 +108,11 @@ impl Cells {
 pub trait Executor: Sync {
     /// Runs the items of a round for some columns of a prepared world.
     fn run(&self, job: &Job<'_>, items: &[Item], budget: &Budget) -> Result<Cells, Invalid>;
+
+    /// Runs rounds of several jobs, the first of them first.
+    fn run_all(&self, parts: &[(&Job<'_>, Vec<Item>)], budget: &Budget) -> Result<Vec<Cells>, Invalid> {
+        parts.iter().map(|(job, items)| self.run(job, items, budget)).collect()
+    }
 
     /// How many trials run side by side.
     fn width(&self, job: &Job<'_>) -> usize;
@@ -212,45 +217,92 @@ impl Executor for Threads {
     }
 
     fn run(&self, job: &Job<'_>, items: &[Item], budget: &Budget) -> Result<Cells, Invalid> {
-        let next = AtomicUsize::new(0);
-        let mut cells = job.cells(items.len(), budget.has_deadline());
+        Ok(self.run_parts(&[(job, items)], budget)?.pop().unwrap_or_default())
+    }
+
+    fn run_all(&self, parts: &[(&Job<'_>, Vec<Item>)], budget: &Budget) -> Result<Vec<Cells>, Invalid> {
+        let parts: Vec<(&Job<'_>, &[Item])> =
+            parts.iter().map(|(job, items)| (*job, items.as_slice())).collect();
+        self.run_parts(&parts, budget)
+    }
+}
+
+impl Threads {
+    /// Runs rounds of several jobs. A thread that finds nothing left of one goes on to the next.
+    fn run_parts(&self, parts: &[(&Job<'_>, &[Item])], budget: &Budget) -> Result<Vec<Cells>, Invalid> {
+        let mut rounds: Vec<Cells> =
+            parts.iter().map(|(job, items)| job.cells(items.len(), budget.has_deadline())).collect();
         let threads = self.pool.current_num_threads();
         // No more workers than there is work for.
-        let workers = threads.min(items.len().div_ceil(job.lanes())).max(1);
-        let size = items.len().div_ceil(workers).next_multiple_of(LANES).clamp(LANES, LARGEST_BLOCK);
-        let blocks = Mutex::new(cells.blocks(items, size));
-        let work = || -> Result<Finished, Invalid> {
-            let mut worker = job.worker()?;
-            while worker.takes_blocks() {
-                let Some(mut block) = blocks.lock().ok().and_then(|mut blocks| blocks.next()) else { break };
-                worker.run_block(job.seed, &mut block, budget);
-            }
-            let mut take = || {
-                let place = next.fetch_add(1, Ordering::Relaxed);
-                items.get(place).map(|item| (place, *item))
-            };
-            let finished = worker.run(job.seed, &mut take, budget);
-            job.keep(worker);
-            Ok(finished)
+        let most = |job: &Job<'_>, items: &[Item]| items.len().div_ceil(job.lanes());
+        let workers = parts.iter().map(|(job, items)| most(job, items)).sum::<usize>().clamp(1, threads);
+        let tasks: Vec<Task<'_, '_, _>> = parts
+            .iter()
+            .zip(&mut rounds)
+            .map(|(&(job, items), cells)| {
+                let own = most(job, items).clamp(1, threads);
+                let size = items.len().div_ceil(own).next_multiple_of(LANES).clamp(LANES, LARGEST_BLOCK);
+                let blocks = Mutex::new(cells.blocks(items, size));
+                Task { job, items, next: AtomicUsize::new(0), blocks, over: AtomicBool::new(false) }
+            })
+            .collect();
+        let work = || -> Result<Vec<Finished>, Invalid> {
+            let is_due = |k: usize| k == 0 || !budget.must_stop();
+            let tasks = tasks.iter().enumerate();
+            tasks
+                .map(|(k, task)| if is_due(k) { task.work(budget) } else { Ok(Finished::default()) })
+                .collect()
         };
-        let results: Vec<Result<Finished, Invalid>> = if workers == 1 {
+        let results: Vec<Result<Vec<Finished>, Invalid>> = if workers == 1 {
             vec![work()]
         } else {
-            self.pool
-                .broadcast(|context| if context.index() < workers { work() } else { Ok(Finished::default()) })
+            self.pool.broadcast(|context| if context.index() < workers { work() } else { Ok(Vec::new()) })
         };
-        let width = job.columns.len();
-        drop(blocks);
+        drop(tasks);
         for result in results {
-            let finished = result?;
-            for (k, place) in finished.places.iter().enumerate() {
-                cells.put(*place, &finished.cells[k * width..][..width]);
-            }
-            for (place, row) in &finished.cut {
-                cells.put_cut(*place, row);
+            for ((cells, finished), (job, _)) in rounds.iter_mut().zip(result?).zip(parts) {
+                let width = job.columns.len();
+                for (k, place) in finished.places.iter().enumerate() {
+                    cells.put(*place, &finished.cells[k * width..][..width]);
+                }
+                for (place, row) in &finished.cut {
+                    cells.put_cut(*place, row);
+                }
             }
         }
-        Ok(cells)
+        Ok(rounds)
+    }
+}
+
+/// The round of a job on its way.
+struct Task<'p, 's, B> {
+    job: &'p Job<'s>,
+    items: &'p [Item],
+    next: AtomicUsize,
+    blocks: Mutex<B>,
+    /// Whether nothing of it is left to take.
+    over: AtomicBool,
+}
+
+impl<'p, B: Iterator<Item = Block<'p>>> Task<'p, '_, B> {
+    /// Runs what is left, on one thread.
+    fn work(&self, budget: &Budget) -> Result<Finished, Invalid> {
+        if self.over.load(Ordering::Relaxed) {
+            return Ok(Finished::default());
+        }
+        let mut worker = self.job.worker()?;
+        while worker.takes_blocks() {
+            let Some(mut block) = self.blocks.lock().ok().and_then(|mut blocks| blocks.next()) else { break };
+            worker.run_block(self.job.seed, &mut block, budget);
+        }
+        let mut take = || {
+            let place = self.next.fetch_add(1, Ordering::Relaxed);
+            self.items.get(place).map(|item| (place, *item))
+        };
+        let finished = worker.run(self.job.seed, &mut take, budget);
+        self.job.keep(worker);
+        self.over.store(true, Ordering::Relaxed);
+        Ok(finished)
     }
 }
 

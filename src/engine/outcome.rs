@@ -192,7 +192,7 @@ pub enum Kind {
     Estimate,
     /// The difference of a quantity under two settings.
     Compare,
-    /// The best of several moves or paths.
+    /// The best of several moves or values.
     Rank,
 }
 
@@ -385,8 +385,10 @@ pub struct Ranking {
 /// One option of a ranking.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RankedOption {
-    /// Its name: `heading 15 deg`.
+    /// Its name.
     pub label: String,
+    /// Values of ranked parameters, as written.
+    pub settings: Vec<(String, String)>,
     /// Its score.
     pub value: Interval,
     /// Its trials.

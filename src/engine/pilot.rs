@@ -66,11 +66,21 @@ impl Pilot {
         executor: &dyn Executor,
         budget: &Budget,
     ) -> Result<Self, Fault> {
-        let before = (budget.elapsed(), job.steps.load(Ordering::Relaxed));
-        let cells = executor.run(job, &items, &budget.ahead(LONGEST))?;
+        let steps = || job.steps.load(Ordering::Relaxed);
+        Self::of(items, &steps, budget, |items, ahead| Ok(executor.run(job, items, ahead)?))
+    }
+
+    /// The same of items that `run` runs; `steps` tells how many steps were made so far.
+    pub(super) fn of(
+        items: Vec<Item>,
+        steps: &dyn Fn() -> u64,
+        budget: &Budget,
+        run: impl FnOnce(&[Item], &Budget) -> Result<Cells, Fault>,
+    ) -> Result<Self, Fault> {
+        let before = (budget.elapsed(), steps());
+        let cells = run(&items, &budget.ahead(LONGEST))?;
         let seconds = budget.elapsed() - before.0;
-        let steps = job.steps.load(Ordering::Relaxed) - before.1;
-        Ok(Self { items, cells, seconds, steps })
+        Ok(Self { items, cells, seconds, steps: steps() - before.1 })
     }
 
     /// Whether all of them finished.

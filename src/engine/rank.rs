@@ -1,7 +1,7 @@
-//! Rankings: which option of some moves has the best score, with a joint guarantee.
+//! Rankings: which option has the best score, with a joint guarantee. An option is a world and perhaps a move in it.
 //!
-//! All options share the random numbers of a trial (common random numbers): the option is not part of the
-//! address of a draw. Given-Wilson et al. 2017, Algorithm 1, is `by okamoto`.
+//! All options share the random numbers of a trial (common random numbers): neither moves nor values of parameters
+//! are part of the address of a draw. Given-Wilson et al. 2017, Algorithm 1, is `by okamoto`.
 
 use super::budget::Budget;
 use super::cell::{Item, Reading};
@@ -14,9 +14,12 @@ use super::prepared::PreparedWorld;
 use super::procedure::{outcome, value};
 use super::tally::Tally;
 use super::watch::{Forecast, Watch};
-use crate::compile::study::{MeasureKind, Query};
+use crate::base::lanes::LANES;
+use crate::compile::study::{MeasureKind, Query, RankOption, Target};
 use crate::stats::ranking::{Booleans, Choice, Each, Race, Ranking, Scores, Share};
 use crate::stats::{self, Mean, Outcome};
+use std::collections::BTreeMap;
+use std::sync::atomic::Ordering;
 
 /// Trials an option gets in a round: traces of crowds are slow.
 pub(super) const WORD: u64 = 32;
@@ -47,24 +50,27 @@ pub(super) struct RankOutcome {
 
 /// What is ranked.
 pub(super) struct RankSetup<'s> {
-    /// The prepared world.
-    pub(super) prepared: &'s PreparedWorld,
-    /// Index of the moves declaration.
-    pub(super) moves: usize,
-    /// Departure of each option from the direct way.
-    pub(super) deviations: Vec<f64>,
-    /// Column of the score.
-    pub(super) column: usize,
+    /// The options, in order of writing.
+    pub(super) options: &'s [RankOption],
+    /// The prepared world of each.
+    pub(super) worlds: Vec<&'s PreparedWorld>,
     /// Kind of the score.
     pub(super) kind: MeasureKind,
     /// Loss that does not matter, error, procedure.
     pub(super) rule: (f64, f64, Ranking),
 }
 
+impl RankSetup<'_> {
+    /// A trial of an option.
+    pub(super) fn item(&self, arm: usize, index: u64) -> Item {
+        Item { advice: self.options[arm].advice, index }
+    }
+}
+
 impl Procedure {
     fn new(setup: &RankSetup<'_>) -> Result<Self, Fault> {
         let (epsilon, delta, ranking) = setup.rule;
-        let arms = setup.deviations.len();
+        let arms = setup.options.len();
         Ok(match (&setup.kind, ranking) {
             (MeasureKind::Probability, Ranking::Okamoto) => {
                 Self::Each(Each::new(arms, epsilon, delta, 8 * WORD)?)
@@ -124,7 +130,10 @@ impl Procedure {
 pub(super) struct RankSampling<'s> {
     query: &'s Query,
     setup: RankSetup<'s>,
-    job: Job<'s>,
+    /// Jobs, each of all options that are read from one column of one world.
+    jobs: Vec<Job<'s>>,
+    /// The job of each option.
+    job_of: Vec<usize>,
     procedure: Procedure,
     range: Option<(f64, f64)>,
     ahead: Option<Pilot>,
@@ -140,6 +149,8 @@ pub(super) struct RankSampling<'s> {
 struct Round {
     shares: Vec<Share>,
     items: Vec<Item>,
+    /// Of each item its option, and how many trials of it precede in the round.
+    of: Vec<(usize, u64)>,
     places: Vec<Vec<usize>>,
     cut: bool,
 }
@@ -152,8 +163,17 @@ impl<'s> RankSampling<'s> {
             MeasureKind::Expectation { range, .. } => Some(*range),
             _ => None,
         };
-        let job = Job::new(setup.prepared, vec![setup.column], seed);
-        let arms = setup.deviations.len();
+        let arms = setup.options.len();
+        let mut targets: Vec<Target> = Vec::new();
+        let (mut jobs, mut job_of) = (Vec::new(), Vec::with_capacity(arms));
+        for (option, prepared) in setup.options.iter().zip(&setup.worlds) {
+            let known = targets.iter().position(|target| *target == option.target);
+            job_of.push(known.unwrap_or(targets.len()));
+            if known.is_none() {
+                targets.push(option.target);
+                jobs.push(Job::new(prepared, vec![option.target.column], seed));
+            }
+        }
         let means = match range {
             Some((low, high)) => (0..arms)
                 .map(|_| Mean::running(low, high, setup.rule.1 / arms as f64))
@@ -161,7 +181,7 @@ impl<'s> RankSampling<'s> {
             None => Vec::new(),
         };
         let tallies = vec![Tally::default(); arms];
-        Ok(Self { query, setup, job, procedure, range, ahead: None, tallies, means, spent: 0.0 })
+        Ok(Self { query, setup, jobs, job_of, procedure, range, ahead: None, tallies, means, spent: 0.0 })
     }
 
     /// The query.
@@ -189,25 +209,60 @@ impl<'s> RankSampling<'s> {
         let shares = self.procedure.next_round();
         let cut = shares.iter().any(|share| share.to > budget);
         let most = shares.iter().map(|share| share.to - share.from).max().unwrap_or(0);
-        let mut items: Vec<Item> = Vec::new();
+        let (mut items, mut of): (Vec<Item>, Vec<(usize, u64)>) = Default::default();
         let mut places: Vec<Vec<usize>> = vec![Vec::new(); shares.len()];
         for step in 0..most {
             for (share, places) in shares.iter().zip(&mut places) {
                 if share.from + step < share.to.min(budget) {
                     places.push(items.len());
-                    items
-                        .push(Item { advice: Some((self.setup.moves, share.arm)), index: share.from + step });
+                    items.push(self.setup.item(share.arm, share.from + step));
+                    of.push((share.arm, step));
                 }
             }
         }
-        Round { shares, items, places, cut }
+        Round { shares, items, of, places, cut }
+    }
+
+    /// Runs the first items of a round. With a deadline all jobs advance side by side, too.
+    fn sample(
+        &self,
+        of: &[(usize, u64)],
+        items: &[Item],
+        executor: &dyn Executor,
+        budget: &Budget,
+    ) -> Result<Cells, Fault> {
+        if let [job] = self.jobs.as_slice() {
+            return Ok(executor.run(job, items, budget)?);
+        }
+        let slice = if budget.has_deadline() { LANES as u64 } else { WORD };
+        let mut parts: BTreeMap<(u64, usize), Vec<usize>> = BTreeMap::new();
+        for (place, (arm, step)) in of.iter().take(items.len()).enumerate() {
+            parts.entry((step / slice, self.job_of[*arm])).or_default().push(place);
+        }
+        let of_part = |((_, job), places): (&(u64, usize), &Vec<usize>)| {
+            (&self.jobs[*job], places.iter().map(|place| items[*place]).collect())
+        };
+        let jobs: Vec<(&Job<'s>, Vec<Item>)> = parts.iter().map(of_part).collect();
+        let mut all = Cells::new(items.len(), 1);
+        for (((job, _), places), cells) in
+            jobs.iter().zip(parts.values()).zip(executor.run_all(&jobs, budget)?)
+        {
+            for (place, row) in places.iter().zip(cells.rows()) {
+                row.inspect(|row| all.put(*place, row));
+            }
+            job.reuse(cells);
+        }
+        Ok(all)
     }
 
     /// Runs the first round, and forecasts from it what the ranking is likely to take.
     pub(super) fn run_pilot(&mut self, executor: &dyn Executor, budget: &Budget) -> Result<Forecast, Fault> {
         let round = self.round(budget.max_trials);
-        let pilot = Pilot::run(&self.job, round.items, executor, budget)?;
-        let arms = self.setup.deviations.len();
+        let steps = || self.jobs.iter().map(|job| job.steps.load(Ordering::Relaxed)).sum();
+        let pilot = Pilot::of(round.items, &steps, budget, |items, ahead| {
+            self.sample(&round.of, items, executor, ahead)
+        })?;
+        let arms = self.setup.options.len();
         let range = self.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
         let mut statistics = vec![PilotStatistics::default(); arms];
         let mut readings: Vec<Vec<Option<f64>>> = vec![Vec::new(); arms];
@@ -234,7 +289,8 @@ impl<'s> RankSampling<'s> {
         let most = (arms as u64).saturating_mul(budget.max_trials);
         let trials = forecast::rank(&statistics, &differences, self.scale(), self.setup.rule);
         let trials = trials.map(|n| n.max(pilot.items.len() as u64).min(most));
-        let seconds = pilot.seconds_per_trial(self.job.prepared.most_steps());
+        let most_steps = self.setup.worlds.iter().map(|prepared| prepared.most_steps()).max().flatten();
+        let seconds = pilot.seconds_per_trial(most_steps);
         self.ahead = pilot.is_complete().then_some(pilot);
         self.spent = self.ahead.as_ref().map_or(0.0, |ahead| ahead.seconds);
         Ok(Forecast {
@@ -253,7 +309,7 @@ impl<'s> RankSampling<'s> {
         (budget, share): (&Budget, &Budget),
         watch: &dyn Watch,
     ) -> Result<Option<RankOutcome>, Fault> {
-        let arms = self.setup.deviations.len();
+        let arms = self.setup.options.len();
         // Each option's interval is one of as many that hold jointly.
         let delta = self.setup.rule.1 / arms as f64;
         let (started, spent) = (budget.elapsed(), self.spent);
@@ -278,7 +334,7 @@ impl<'s> RankSampling<'s> {
             let wanted = round.items.len().min(usize::try_from(left).unwrap_or(usize::MAX));
             let rows = match self.ahead.take() {
                 Some(ahead) => ahead.cells,
-                None => executor.run(&self.job, &round.items[..wanted], share)?,
+                None => self.sample(&round.of, &round.items[..wanted], executor, share)?,
             };
             // What follows an unfinished trial is not looked at, so that their number says which they are.
             let prefix = (0..wanted).take_while(|place| rows.row(*place).is_some()).count();
@@ -296,7 +352,8 @@ impl<'s> RankSampling<'s> {
         };
         self.spent = spent + budget.elapsed() - started;
         let (tallies, means) = (std::mem::take(&mut self.tallies), std::mem::take(&mut self.means));
-        let choice = self.procedure.choice(&self.setup.deviations);
+        let deviations: Vec<f64> = self.setup.options.iter().map(|option| option.deviation).collect();
+        let choice = self.procedure.choice(&deviations);
         let values = (0..arms)
             .map(|arm| match means.get(arm) {
                 Some(mean) => {
@@ -329,7 +386,8 @@ impl<'s> RankSampling<'s> {
                     Some(row) if !broken => {
                         let item = round.items[place];
                         if row[0].reading == Reading::Faulty {
-                            return Err(super::trial::fault(self.setup.prepared, item, self.job.seed));
+                            let prepared = self.setup.worlds[share.arm];
+                            return Err(super::trial::fault(prepared, item, self.jobs[0].seed));
                         }
                         self.tallies[share.arm].add(item.index, &row[0], self.range);
                         if let Some(mean) = self.means.get_mut(share.arm) {

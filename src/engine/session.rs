@@ -382,17 +382,14 @@ impl<'a> Session<'a> {
     where
         'a: 'q,
     {
-        let Ask::Rank { moves, measure, ranking } = &query.ask else {
+        let Ask::Rank { options, measure, ranking } = &query.ask else {
             return Err(Fault::Unsuitable);
         };
         let Make::Ranking(kind) = ranking.spec.make else { return Err(Fault::Unsuitable) };
-        let prepared = self.prepared(measure.target.world)?;
-        let declared = &prepared.program.scenario.moves[*moves];
+        let worlds = options.iter().map(|option| self.prepared(option.target.world));
         let setup = RankSetup {
-            prepared,
-            moves: *moves,
-            deviations: declared.options.iter().map(|(_, m)| m.deviation()).collect(),
-            column: measure.target.column,
+            options,
+            worlds: worlds.collect::<Result<_, _>>()?,
             kind: measure.kind.clone(),
             rule: (ranking.value("epsilon"), ranking.value("delta"), kind),
         };

@@ -4,6 +4,7 @@ use super::compare::Gap;
 use super::outcome::{Comparison, Counts, Interval, RankedOption, Ranking, Side, Status};
 use super::procedure;
 use super::rank::RankOutcome;
+use crate::compile::study::RankOption;
 
 /// Both sides of a comparison and their difference, with intervals.
 pub(super) fn sides(compare: &Gap, labels: &[String; 2], delta: f64) -> Comparison {
@@ -45,17 +46,17 @@ pub(super) fn sides(compare: &Gap, labels: &[String; 2], delta: f64) -> Comparis
 }
 
 /// The options of a ranking, the choice first, then by score.
-pub(super) fn ranked(ranked: &RankOutcome, labels: &[&str]) -> Ranking {
+pub(super) fn ranked(ranked: &RankOutcome, options: &[RankOption]) -> Ranking {
     let choice = &ranked.choice;
     // One of several is chosen for what it did in trials; the only one there is needs none.
     let told = |tally: &super::tally::Tally| tally.counts.trials > tally.counts.unresolved;
     let chosen = ranked.finished || ranked.tallies.iter().any(told);
-    let mut order: Vec<usize> = (0..labels.len()).collect();
+    let mut order: Vec<usize> = (0..options.len()).collect();
     // Those without trials have no value, and come last.
     let key = |arm: usize| (arm != choice.arm, ranked.tallies[arm].counts.trials == 0);
     let value = |arm: usize| if key(arm).1 { 0.0 } else { -ranked.values[arm].0 };
     order.sort_by(|&a, &b| key(a).cmp(&key(b)).then(value(a).total_cmp(&value(b))).then(a.cmp(&b)));
-    let options: Vec<RankedOption> = order
+    let listed: Vec<RankedOption> = order
         .iter()
         .map(|&arm| {
             let (estimate, interval) = ranked.values[arm];
@@ -72,7 +73,8 @@ pub(super) fn ranked(ranked: &RankOutcome, labels: &[&str]) -> Ranking {
                 Status::Beaten
             };
             RankedOption {
-                label: labels[arm].to_owned(),
+                label: options[arm].label.clone(),
+                settings: options[arm].settings.clone(),
                 value: Interval { estimate, low: interval.low, high: interval.high },
                 counts: ranked.tallies[arm].counts,
                 status,
@@ -80,6 +82,6 @@ pub(super) fn ranked(ranked: &RankOutcome, labels: &[&str]) -> Ranking {
         })
         .collect();
     let gap = if chosen { choice.gap * ranked.scale } else { f64::INFINITY };
-    let tied = options.iter().any(|option| option.status == Status::Tied);
-    Ranking { choice: chosen.then(|| labels[choice.arm].to_owned()), gap, tied, options }
+    let tied = listed.iter().any(|option| option.status == Status::Tied);
+    Ranking { choice: chosen.then(|| options[choice.arm].label.clone()), gap, tied, options: listed }
 }

@@ -3,12 +3,14 @@
 
 use super::refusal::refusal;
 use crate::base::fingerprint::Fingerprint;
-use crate::compile::{Files, Input, Setting, SettingValue, Starts, Study, examine, own_errors, requests};
+use crate::compile::{Files, Input, Setting, Starts, Study, examine, own_errors, requests};
 use crate::engine::overfull_starts;
-use crate::syntax::ast::{Expr, Item, PropertyItem, ScenarioFile};
+use crate::syntax::ast::{Expr, Item, PropertyItem, ScenarioFile, Values};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
-use crate::syntax::parse::{continues_name, decode, parse_properties, parse_scenario, parse_value};
+use crate::syntax::parse::{
+    continues_name, decode, parse_properties, parse_scenario, parse_value, split_values,
+};
 use crate::syntax::source::{Source, SourceId, Span};
 use std::collections::BTreeMap;
 
@@ -45,7 +47,7 @@ pub struct Names<'a> {
     pub scenario: &'a str,
     /// Property files.
     pub properties: &'a [String],
-    /// Values of parameters: `density=0.8 /m^2`, or a sweep, `density=0.1..0.8 by 0.1`.
+    /// Values of parameters: `density=0.8 /m^2`, or a sweep: `density=0.1..0.8 by 0.1`, `n=2,4,8`.
     pub settings: &'a [String],
 }
 
@@ -205,7 +207,7 @@ impl Reader<'_> {
         }
     }
 
-    /// `name=value` or `name=from..to by step`
+    /// `name=value`, `name=2,4,8`, `name=from..to by step` or `name=0.1..10 by log 3`
     fn setting(&mut self, text: &str) -> Option<Setting> {
         let named = text.split_once('=').filter(|(name, _)| !name.trim().is_empty());
         let Some((name, value)) = named else {
@@ -217,7 +219,10 @@ impl Reader<'_> {
         let (name, value) = (name.trim(), value.trim());
         let label = format!("--set {name}");
         let value = match value.split_once("..") {
-            None => SettingValue::One(self.expression(&label, value)?),
+            None => {
+                let parts = split_values(value).into_iter().map(|part| self.expression(&label, part));
+                Values::List(parts.collect::<Vec<_>>().into_iter().collect::<Option<_>>()?)
+            }
             Some((from, rest)) => {
                 let Some((to, by)) = rest.split_once(" by ") else {
                     let error =
@@ -226,16 +231,19 @@ impl Reader<'_> {
                     self.report(error);
                     return None;
                 };
-                let parts =
-                    (self.expression(&label, from), self.expression(&label, to), self.expression(&label, by));
-                SettingValue::Sweep(parts.0?, parts.1?, parts.2?)
+                let by = by.trim();
+                let decades = by.strip_prefix("log").filter(|rest| !rest.starts_with(continues_name));
+                let step = decades.unwrap_or(by);
+                let parts = (
+                    self.expression(&label, from),
+                    self.expression(&label, to),
+                    self.expression(&label, step),
+                );
+                Values::Range { from: parts.0?, to: parts.1?, by: parts.2?, log: decades.is_some() }
             }
         };
-        let span = match &value {
-            SettingValue::One(expr) => expr.span,
-            SettingValue::Sweep(from, ..) => from.span,
-        };
-        Some(Setting { name: name.to_owned(), span, value })
+        let (span, _) = value.ends();
+        Some(Setting { name: name.to_owned(), span, values: value })
     }
 }
 

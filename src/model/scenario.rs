@@ -34,10 +34,12 @@ pub struct Scenario {
 }
 
 impl Scenario {
-    /// All routes that somebody may take: own ones, and those of behaviours.
+    /// All routes that somebody may take: own ones, those of behaviours, and those among moves.
     pub fn routes(&self) -> impl Iterator<Item = &Route> {
         let modes = self.behaviours.attached.iter().flat_map(|one| &one.conduct.states);
-        self.agents.iter().map(|agent| &agent.route).chain(modes.filter_map(|mode| mode.route.as_ref()))
+        let named = self.moves.iter().flat_map(|moves| &moves.routes);
+        let own = self.agents.iter().map(|agent| &agent.route);
+        own.chain(modes.filter_map(|mode| mode.route.as_ref())).chain(named)
     }
 
     /// The name by which an option of a declaration of moves is chosen: its own, `stop`, or with whose it is, `user: stop`,

@@ -69,8 +69,6 @@ fn finding(finding: &Finding) -> Value {
 }
 
 fn result(result: &QueryResult) -> Value {
-    let settings: Map<String, Value> =
-        result.settings.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
     let mut object = Map::new();
     let mut put = |key: &str, value: Value| object.insert(key.to_owned(), value);
     put("index", json!(result.index));
@@ -78,7 +76,7 @@ fn result(result: &QueryResult) -> Value {
     put("query", json!(result.query));
     put("file", json!(result.file));
     put("line", json!(result.line));
-    put("settings", Value::Object(settings));
+    put("settings", settings(&result.settings));
     put("kind", json!(result.kind.name()));
     put("verdict", json!(result.verdict.map(crate::engine::outcome::Verdict::name)));
     put("certifies", json!(result.certifies));
@@ -116,6 +114,9 @@ fn result(result: &QueryResult) -> Value {
         let options = options.iter().map(|option| {
             let mut object = numbered("option", &option.label, &option.value, &option.counts);
             object.insert("status".into(), json!(option.status.name()));
+            if !option.settings.is_empty() {
+                object.insert("settings".into(), settings(&option.settings));
+            }
             Value::Object(object)
         });
         put("options", options.collect());
@@ -131,6 +132,10 @@ fn result(result: &QueryResult) -> Value {
     put("replay", json!(result.replay));
     put("elapsed_s", json!(result.elapsed_s));
     Value::Object(object)
+}
+
+fn settings(settings: &[(String, String)]) -> Value {
+    settings.iter().map(|(name, value)| (name.clone(), json!(value))).collect()
 }
 
 fn method(method: &Method) -> Value {

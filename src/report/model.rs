@@ -9,7 +9,9 @@ use crate::compile::methods::PLANNED_TRIALS;
 use crate::compile::study::{Ask, MeasureKind, Study, World};
 use crate::engine::at_most;
 use crate::model::parameter::Shown;
-use crate::model::{Agent, AgentId, Family, Goal, Law, Leg, Obstacle, Parameter, Position, Route, Scenario};
+use crate::model::{
+    Agent, AgentId, Family, Goal, Law, Leg, Move, Obstacle, Parameter, Position, Route, Scenario,
+};
 use crate::stats::Chosen;
 use std::fmt::Write;
 
@@ -154,7 +156,14 @@ fn people(out: &mut String, world: &World) {
         );
     }
     for moves in &scenario.moves {
-        let labels: Vec<&str> = moves.options.iter().map(|(label, _)| label.as_str()).collect();
+        let told = |(label, option): &(String, Move)| match option {
+            Move::Route(number) => moves
+                .routes
+                .get(*number)
+                .map_or_else(String::new, |route| format!("{label} ({})", way(scenario, route))),
+            Move::Heading(_) | Move::Stop => label.clone(),
+        };
+        let labels: Vec<String> = moves.options.iter().map(told).collect();
         let _ = writeln!(
             out,
             "\nMoves of {} for {} s: {}",

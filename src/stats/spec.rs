@@ -249,6 +249,13 @@ pub struct Chosen {
     pub values: Vec<f64>,
 }
 
+impl PartialEq for Chosen {
+    fn eq(&self, other: &Self) -> bool {
+        let name = |chosen: &Self| (chosen.spec.name, chosen.spec.reported);
+        name(self) == name(other) && self.values == other.values
+    }
+}
+
 impl Chosen {
     /// Arguments with their values.
     pub fn numbers(&self) -> impl Iterator<Item = (Argument, f64)> {

@@ -5,7 +5,7 @@ mod calls;
 mod errors;
 mod escapes;
 mod forecasts;
-mod formats;
+pub(crate) mod formats;
 mod inputs;
 mod limits;
 mod outputs;

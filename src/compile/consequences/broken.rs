@@ -224,7 +224,7 @@ impl<'i> Broken<'i> {
         let source = span.source;
         let (first, rest) = leading_word(text);
         let (second, _) = leading_word(rest);
-        self.moves |= ["moves", "heading", "stop"].iter().any(|word| has_word(text, word));
+        self.moves |= ["moves", "heading", "route", "stop"].iter().any(|word| has_word(text, word));
         self.scenery |= SCENERY.contains(&first);
         let times = !TIMELESS.contains(&first) || TIMES.iter().any(|word| has_word(text, word));
         self.clock |= source == SourceId(0) && times;

@@ -30,6 +30,8 @@ const DIMENSION: Code = Code::E0303;
 const EARLY: Code = Code::E0205;
 /// The end of the title of an error about a circular definition.
 pub(super) const CIRCULAR: &str = "depends on itself";
+/// The end of the title of an error about a ranked parameter that nothing uses.
+pub(super) const IDLE: &str = "make no difference";
 /// Codes of unknown names, reported once.
 pub(super) const UNKNOWN: [Code; 4] = [Code::E0201, Code::E0203, Code::E0208, Code::E0210];
 /// Most further places that are marked.
@@ -39,7 +41,11 @@ const MOST_MARKS: usize = 3;
 pub fn own_errors(found: Vec<Diagnostic>, said: &[Diagnostic], input: &Input<'_>) -> Vec<Diagnostic> {
     let broken = Broken::of(said, input);
     let fails = |all: &[Diagnostic]| all.iter().any(|one| one.severity == Severity::Error);
-    let own: Vec<Diagnostic> = found.iter().filter(|one| broken.is_own(one)).cloned().collect();
+    // Values surely make no difference only where nothing else is wrong.
+    let is_idle = |one: &&Diagnostic| one.title.ends_with(IDLE);
+    let is_torn = fails(said) || found.iter().any(|one| one.severity == Severity::Error && !is_idle(&one));
+    let is_own = |one: &&Diagnostic| broken.is_own(one) && !(is_torn && is_idle(one));
+    let own: Vec<Diagnostic> = found.iter().filter(is_own).cloned().collect();
     let own = once_a_name(at_declarations(less_what_follows(own, input.sources), input), input.sources);
     // Nothing is refused without a word.
     if fails(&found) && !fails(&own) && !fails(said) { found } else { own }

@@ -14,8 +14,8 @@ use std::sync::{Arc, Mutex, Weak, mpsc};
 use std::time::{Duration, Instant};
 use thiserror::Error;
 
-/// Jobs whose workers are kept warm.
-const WARM: usize = 4;
+/// Jobs whose workers are kept warm: a ranking of values has one for each option.
+const WARM: usize = 16;
 
 /// Why a rank ended early.
 #[derive(Debug, Error)]

@@ -71,7 +71,7 @@ impl Answers<'_> {
         });
         state(&mut result, &found, rule.delta);
         let picks = witness::sides(&found.plain);
-        result.witnesses = self.witnesses(&result, prepared, column, None, &picks);
+        result.witnesses = self.witnesses(&result, prepared, column, &picks);
         result.elapsed_s = self.budget.elapsed() - started;
         Ok(result)
     }

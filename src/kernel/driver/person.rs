@@ -263,7 +263,11 @@ impl<'a> Person<'a> {
         let moving = unit(start.velocity);
         let speed = start.velocity.norm();
         self.way = Way::default();
-        let first = self.drive.first[self.agent];
+        let own = self.drive.first[self.agent];
+        let first = match advice {
+            Some((Move::Route(number), _)) => self.drive.named(self.agent, number).unwrap_or(own),
+            _ => own,
+        };
         self.enter(first);
         // The first goal, past the pauses before it.
         let stages = &self.drive.stages[first as usize..];
@@ -272,7 +276,7 @@ impl<'a> Person<'a> {
             .take(stages.iter().position(|stage| stage.last).map_or(0, |last| last + 1))
             .find_map(|stage| way_to(&stage.target, self.at(), self.radius()))
             .and_then(unit);
-        let onward = matches!(self.drive.stages[first as usize].target, Target::Onward);
+        let onward = matches!(self.drive.stages[own as usize].target, Target::Onward);
         if onward && moving.is_some() {
             // Who goes on as recorded has the recorded speed as driving speed.
             self.state.bodies[Parameter::Speed][self.block].0[self.lane] = speed;
@@ -284,15 +288,13 @@ impl<'a> Person<'a> {
         self.set(Some(direction), 0.0);
         // Who starts at a goal goes on to the next; nobody leaves before the first step.
         self.proceed();
-        if let Some((advice, ticks)) = advice
+        if let Some((advice @ (Move::Heading(_) | Move::Stop), ticks)) = advice
             && ticks > 0
         {
             self.head();
             let ahead = unit(self.direction()).or(moving).unwrap_or(EAST);
-            self.way.advice = match advice {
-                Move::Heading(angle) => rotated(ahead, angle),
-                Move::Stop => Vec2::zeros(),
-            };
+            self.way.advice =
+                if let Move::Heading(angle) = advice { rotated(ahead, angle) } else { Vec2::zeros() };
             self.way.advised_until = self.tick().saturating_add(ticks);
         }
         self.follow();

@@ -5,7 +5,7 @@ use super::person::way_to;
 use crate::base::geometry::{Bounds, Shape, Vec2};
 use crate::base::random::name_hash;
 use crate::kernel::code::ground::{Ground, upright};
-use crate::model::{Goal, Law, Leg, Route, Scenario, Sight};
+use crate::model::{AgentId, Goal, Law, Leg, Move, Route, Scenario, Sight};
 use std::sync::Arc;
 
 /// A body that fits wherever a line does, m.
@@ -79,6 +79,8 @@ pub struct Drive {
     pub(super) stages: Vec<Stage>,
     /// First stage of each agent.
     pub(super) first: Vec<u32>,
+    /// First stages of the routes that are moves of an agent.
+    named: Vec<(AgentId, Vec<u32>)>,
 }
 
 fn target(scenario: &Scenario, leg: &Leg) -> Target {
@@ -143,17 +145,30 @@ impl Drive {
             routes: Vec::new(),
             stages: Vec::new(),
             first: Vec::new(),
+            named: Vec::new(),
         };
         for (k, agent) in scenario.agents.iter().enumerate() {
             let same = k.checked_sub(1).filter(|&before| scenario.agents[before].route == agent.route);
             let first = if let Some(before) = same { out.first[before] } else { out.add(&agent.route, 0) };
             out.first.push(first);
         }
+        for moves in &scenario.moves {
+            let is_route = |option: &&(String, Move)| matches!(option.1, Move::Route(_));
+            let names = moves.options.iter().filter(is_route).map(|(label, _)| label);
+            let stages = names.zip(&moves.routes).map(|(name, route)| out.detour(route, name)).collect();
+            out.named.push((moves.agent, stages));
+        }
         out
     }
 
-    /// Adds a route that a state of a behaviour demands; its first stage. Its legs have numbers of their own: they
-    /// follow from the name of the state, so that nothing declared elsewhere moves them.
+    /// First stage of a route that is a move of an agent.
+    pub(super) fn named(&self, agent: usize, number: usize) -> Option<u32> {
+        let mut own = self.named.iter().filter(|(whose, _)| whose.0 as usize == agent);
+        own.find_map(|(_, stages)| stages.get(number).copied())
+    }
+
+    /// Adds a route that a state of a behaviour or a move demands; its first stage. Its legs have numbers of their own:
+    /// they follow from its name, so that nothing declared elsewhere moves them.
     pub(in crate::kernel) fn detour(&mut self, route: &Route, name: &str) -> u32 {
         self.add(route, name_hash(name) as u32)
     }

@@ -104,11 +104,15 @@ impl Drawing {
     /// A text whose middle is at a place, m.
     pub fn text(&mut self, p: Vec2, text: &str) {
         let (x, y) = self.at(p);
-        let _ = writeln!(
-            self.body,
-            "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\" dominant-baseline=\"middle\" paint-order=\"stroke\" stroke=\"#ffffff\" stroke-width=\"3\">{}</text>",
-            escape(text)
-        );
+        // A white rim below the letters, drawn first: not every program knows `paint-order`.
+        for rim in [" stroke=\"#ffffff\" stroke-width=\"3\"", ""] {
+            let _ = writeln!(
+                self.body,
+                "<text x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\"{rim}>{}</text>",
+                y + 4.0,
+                escape(text)
+            );
+        }
     }
 
     /// The picture, with axes and a scale bar.

@@ -59,6 +59,19 @@ pub struct Query {
     pub span: Span,
 }
 
+impl Query {
+    /// Whether it gives a parameter a value in all its worlds, whatever a call sets.
+    pub fn sets(&self, name: &str) -> bool {
+        let among = |bindings: &[Binding]| bindings.iter().any(|binding| binding.name.name == name);
+        let by_kind = match &self.kind {
+            QueryKind::Compare { first, second, .. } => among(first) && among(second),
+            QueryKind::Rank { of: Ranked::Values(list), .. } => list.iter().any(|(own, _)| own.name == name),
+            _ => false,
+        };
+        by_kind || among(&self.clauses.under)
+    }
+}
+
 /// The kinds of queries.
 #[derive(Clone, Debug, PartialEq)]
 pub enum QueryKind {
@@ -84,13 +97,70 @@ pub enum QueryKind {
     },
     /// `rank moves of user by P(safe)`
     Rank {
+        /// The options.
+        of: Ranked,
+        /// The score.
+        measure: Measure,
+    },
+}
+
+/// The options of a ranking.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ranked {
+    /// `moves of user`
+    Moves {
         /// `moves`; compilation refuses any other word.
         what: Ident,
         /// Whose.
         agent: Expr,
-        /// The score.
-        measure: Measure,
     },
+    /// `lane in 1 m .. 3 m by 0.5 m, speed in 0.8 m/s, 1.2 m/s`: all combinations.
+    Values(Vec<(Ident, Values)>),
+}
+
+/// Values of a parameter.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant, reason = "a call has few")]
+pub enum Values {
+    /// One by one.
+    List(Vec<Expr>),
+    /// From, to, by: ends included. With `log`, so many values a decade.
+    Range {
+        /// First.
+        from: Expr,
+        /// Last.
+        to: Expr,
+        /// Apart, or a number of values a decade.
+        by: Expr,
+        /// Whether each is the same factor larger than the one before.
+        log: bool,
+    },
+}
+
+impl Values {
+    /// Where the least and the greatest stand, as far as that is known.
+    pub fn ends(&self) -> (Span, Span) {
+        match self {
+            Self::List(list) => {
+                let place = |expr: Option<&Expr>| expr.map_or(Span::default(), |expr| expr.span);
+                (place(list.first()), place(list.last()))
+            }
+            Self::Range { from, to, .. } => (from.span, to.span),
+        }
+    }
+
+    /// All that is written.
+    pub fn parts(&self) -> Vec<&Expr> {
+        match self {
+            Self::List(list) => list.iter().collect(),
+            Self::Range { from, to, by, .. } => vec![from, to, by],
+        }
+    }
+
+    /// Whether there is one value and no list of them.
+    pub fn is_single(&self) -> bool {
+        matches!(self, Self::List(list) if list.len() == 1)
+    }
 }
 
 /// `name = value` of a `under` clause.

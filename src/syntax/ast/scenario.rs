@@ -315,6 +315,15 @@ pub enum MoveOption {
     },
     /// `heading 15 deg`
     Heading(Expr),
+    /// `route left = (4, 1) -> exit`
+    Route {
+        /// Its name.
+        name: Ident,
+        /// The route.
+        route: Value,
+        /// Where.
+        span: Span,
+    },
     /// `stop`
     Stop(Span),
 }

@@ -119,7 +119,7 @@ impl Builder<'_> {
                 let agent = self.expr(parts.part(Rule::operand_of)?)?;
                 Some(Value::Near { agent, within: self.expr(parts.part(Rule::arith)?)? })
             }
-            Rule::route => self.route(pair).map(Value::Route),
+            Rule::route | Rule::move_route => self.route(pair).map(Value::Route),
             Rule::truncated => {
                 let (law, low, high) = self.truncated(pair)?;
                 Some(Value::Truncated { law, low, high })
@@ -143,13 +143,17 @@ impl Builder<'_> {
                 route.then_leave = Some(self.span(&part));
                 continue;
             }
-            let leg = part.into_inner().next()?;
-            route.legs.push(if leg.as_rule() == Rule::wait {
-                Leg::Wait(Box::new(self.value(Parts::of(leg).next()?)?))
-            } else {
-                Leg::Goal(self.expr(leg)?)
-            });
+            route.legs.push(self.leg(part.into_inner().next()?)?);
         }
         Some(route)
+    }
+
+    /// `exit`, `wait 5 s`
+    pub(super) fn leg(&mut self, leg: Pair<'_>) -> Option<Leg> {
+        Some(if leg.as_rule() == Rule::wait {
+            Leg::Wait(Box::new(self.value(Parts::of(leg).next()?)?))
+        } else {
+            Leg::Goal(self.expr(leg)?)
+        })
     }
 }

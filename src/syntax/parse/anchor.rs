@@ -32,7 +32,7 @@ const NAMED: [(&str, &[&str]); 22] = [
     ("point", &[":"]),
     ("process", &["{", "["]),
     ("property", &["="]),
-    ("rank", &["of"]),
+    ("rank", &["of", "in"]),
     ("region", &[":"]),
     ("source", &[":"]),
     ("state", &["{"]),
@@ -101,7 +101,9 @@ pub(super) fn at(part: Rule, text: &str, at: usize) -> Option<Anchor> {
         },
         Rule::field | Rule::bad_field => sets(word, name),
         Rule::state_item | Rule::bad_state_item => sets(word, name) || matches!(word, "after" | "when"),
-        Rule::move_option | Rule::bad_move => matches!(word, "heading" | "stop"),
+        Rule::move_option | Rule::bad_move => {
+            matches!(word, "heading" | "stop") || word == "route" && sets(name, mark)
+        }
         Rule::process_item | Rule::bad_process_item => matches!(word, "when" | "choose"),
         _ => false,
     };

@@ -114,6 +114,16 @@ fn mended<T>(
     if count(&said) <= count(&plain.1) { (built, said) } else { plain }
 }
 
+/// The parts of a text that are separated by commas outside brackets.
+pub fn split_values(text: &str) -> Vec<&str> {
+    let mut depth = 0i32;
+    let outside = |c: char| {
+        depth += i32::from(matches!(c, '(' | '[')) - i32::from(matches!(c, ')' | ']'));
+        c == ',' && depth == 0
+    };
+    text.split(outside).collect()
+}
+
 /// Parses one value, such as the right side of `--set name=value`.
 pub fn parse_value(source: &Source) -> Result<Expr, Vec<Diagnostic>> {
     let (value, diagnostics) = parse(source, &source.text, Rule::value_file, |builder, file| {

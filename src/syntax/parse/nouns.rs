@@ -37,6 +37,7 @@ pub(super) fn keyword(rule: Rule) -> Option<&'static str> {
         Rule::kw_label => "label",
         Rule::kw_leave => "leave",
         Rule::kw_let => "let",
+        Rule::kw_log => "log",
         Rule::kw_moves => "moves",
         Rule::kw_near => "near",
         Rule::kw_obstacle => "obstacle",
@@ -53,6 +54,7 @@ pub(super) fn keyword(rule: Rule) -> Option<&'static str> {
         Rule::kw_rank => "rank",
         Rule::kw_rect => "rect",
         Rule::kw_region => "region",
+        Rule::kw_route => "route",
         Rule::kw_scenario => "scenario",
         Rule::kw_scene => "scene",
         Rule::kw_source => "source",
@@ -163,7 +165,7 @@ pub(super) fn words(rule: Rule) -> &'static [&'static str] {
         Rule::process_item | Rule::process_item_end => &["var", "let", "label", "when", "choose"],
         Rule::behaviour_item | Rule::behaviour_item_end => &["state", "on", "let"],
         Rule::state_item | Rule::state_item_end | Rule::transition => &["after", "when"],
-        Rule::move_option | Rule::move_end => &["heading", "stop"],
+        Rule::move_option | Rule::move_end => &["heading", "route", "stop"],
         Rule::clause => &["within", "confidence", "by", "under"],
         Rule::body | Rule::recorded => &["from"],
         Rule::with => &["with"],
@@ -210,7 +212,8 @@ pub(super) fn noun(rule: Rule) -> Option<(u8, String)> {
         | Rule::binder
         | Rule::value
         | Rule::leg
-        | Rule::route => (0, "a number, a name or `(`".to_owned()),
+        | Rule::route
+        | Rule::move_route => (0, "a number, a name or `(`".to_owned()),
         Rule::place | Rule::outline | Rule::paren => (0, "a point".to_owned()),
         Rule::set => (0, "a set".to_owned()),
         Rule::bound => (2, "a bound".to_owned()),

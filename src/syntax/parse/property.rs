@@ -4,8 +4,8 @@ use super::builder::{Builder, Pair, Parts};
 use super::code;
 use super::grammar::Rule;
 use crate::syntax::ast::{
-    BinaryOp, Binding, Clauses, Expr, ExprKind, Measure, MeasureKind, Method, Moment, PropertyFile,
-    PropertyItem, Query, QueryKind,
+    BinaryOp, Binding, Clauses, Expr, ExprKind, Ident, Measure, MeasureKind, Method, Moment, PropertyFile,
+    PropertyItem, Query, QueryKind, Ranked, Values,
 };
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -73,13 +73,61 @@ impl Builder<'_> {
                 second: self.bindings(parts.part(Rule::bindings)?)?,
             },
             _ => QueryKind::Rank {
-                what: self.ident(&parts.part(Rule::name)?),
-                agent: self.expr(parts.part(Rule::set)?)?,
+                of: self.options(&mut parts)?,
                 measure: self.measure(parts.part(Rule::measure)?)?,
             },
         };
         let clauses = self.clauses(parts)?;
         Some(Query { kind, clauses, span })
+    }
+
+    /// What a ranking chooses from.
+    fn options(&mut self, parts: &mut Parts<'_>) -> Option<Ranked> {
+        if let Some(what) = parts.part(Rule::name) {
+            return Some(Ranked::Moves {
+                what: self.ident(&what),
+                agent: self.expr(parts.part(Rule::set)?)?,
+            });
+        }
+        let mut list = Vec::new();
+        while let Some(ranked) = parts.part(Rule::ranked) {
+            let mut parts = Parts::of(ranked);
+            let name = self.ident(&parts.part(Rule::ident)?);
+            let values = self.values(&name, parts.next()?)?;
+            list.push((name, values));
+        }
+        Some(Ranked::Values(list))
+    }
+
+    fn values(&mut self, name: &Ident, pair: Pair<'_>) -> Option<Values> {
+        let span = self.span(&pair);
+        let text = self.source.slice(span).trim_end().to_owned();
+        let log = pair.clone().into_inner().any(|part| part.as_rule() == Rule::kw_log);
+        let rule = pair.as_rule();
+        let mut list = Vec::new();
+        for part in Parts::of(pair) {
+            list.push(self.expr(part)?);
+        }
+        if rule == Rule::value_list {
+            return Some(Values::List(list));
+        }
+        let mut ends = list.into_iter();
+        let (Some(from), Some(to)) = (ends.next(), ends.next()) else {
+            let error = Diagnostic::error(
+                code::UNEXPECTED,
+                name.span,
+                format!("no value of `{}` is listed", name.name),
+            );
+            self.say(error.hint("write values or a range: `1, 2, 4` or `1 .. 3 by 0.5`"));
+            return None;
+        };
+        let Some(by) = ends.next() else {
+            let place = from.span.to(to.span);
+            let error = Diagnostic::error(code::UNEXPECTED, place, "the range has no step");
+            self.say(error.hint(format!("write it before the measure: `{text} by … by P(…)`")));
+            return None;
+        };
+        Some(Values::Range { from, to, by, log })
     }
 
     /// The only measure of a query that takes one.

@@ -2,7 +2,7 @@
 
 use super::builder::{Builder, Pair, Parts};
 use super::grammar::Rule;
-use crate::syntax::ast::{Item, LetDecl, MoveOption, MovesDecl, ScenarioFile};
+use crate::syntax::ast::{Item, LetDecl, MoveOption, MovesDecl, Route, ScenarioFile, Value};
 
 impl Builder<'_> {
     pub(super) fn scenario_file(&mut self, file: Pair<'_>) -> ScenarioFile {
@@ -109,6 +109,16 @@ impl Builder<'_> {
                 let to = self.expr(parts.part(Rule::arith)?)?;
                 let by = self.expr(parts.part(Rule::arith)?)?;
                 Some(MoveOption::Headings { from, to, by, span })
+            }
+            Rule::named_route => {
+                let mut parts = Parts::of(pair);
+                let name = self.ident(&parts.part(Rule::name)?);
+                let route = parts.next()?;
+                let route = match route.as_rule() {
+                    Rule::wait => Value::Route(Route { legs: vec![self.leg(route)?], then_leave: None }),
+                    _ => self.value(route)?,
+                };
+                Some(MoveOption::Route { name, route, span })
             }
             Rule::heading => Some(MoveOption::Heading(self.expr(Parts::of(pair).part(Rule::arith)?)?)),
             _ => Some(MoveOption::Stop(span)),

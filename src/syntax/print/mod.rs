@@ -59,6 +59,10 @@ mod tests {
             "property p = G<=10 s (forall a in others(user): gap(a) > 0.1 m & !q & -x^2 < - -3) U[1 s, 2 s] r\n"
         );
         assert_eq!(properties("let a=2 m ^2*1 / 2"), "let a = 2 m ^ 2 * 1/2\n");
+        assert_eq!(
+            properties("rank a in 1 m..3 m by 1 m ,b in 1,2 ,c in 1 .. 9 by log 3 by P(x)within 0.1"),
+            "rank a in 1 m .. 3 m by 1 m, b in 1, 2, c in 1 .. 9 by log 3 by P(x) within 0.1\n"
+        );
         assert_eq!(properties("let a=3 kg /( m  s )/ 2 s"), "let a = 3 kg/(m s) / 2 s\n");
     }
 
@@ -67,6 +71,10 @@ mod tests {
         assert_eq!(scenario("kind a:b{x=1 y=2}"), "kind a: b { x = 1; y = 2 }\n");
         assert_eq!(scenario("kind a:b{x=1\nyy=2}"), "kind a: b {\n  x  = 1\n  yy = 2\n}\n");
         assert_eq!(scenario("scene{}"), "scene {}\n");
+        assert_eq!(
+            scenario("moves a for 2 s{route b=(1,2)->c then leave\nroute long=c\nstop}"),
+            "moves a for 2 s {\n  route b    = (1, 2) -> c then leave\n  route long = c\n  stop\n}\n"
+        );
         let import = "scene {\n  import \"a.json\" where level == 2 { snap = 5 cm }\n  region a: rect (0, 0) .. (1, 1)\n}\n";
         assert_eq!(scenario(import), import);
         assert_eq!(

@@ -53,6 +53,7 @@ fn aligns(rule: Rule) -> bool {
             | Rule::let_decl
             | Rule::property
             | Rule::tracks
+            | Rule::named_route
     )
 }
 
