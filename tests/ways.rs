@@ -106,7 +106,9 @@ fn nothing_is_looked_for_where_nothing_can_stand_in_the_way() {
 #[test]
 fn goals_that_nobody_can_reach_are_refused_before_the_first_trial() {
     let refused = |rest: &str| {
-        let error = model(rest).check("estimate P(F<=1 s (me.x > 100))", &Options::default()).unwrap_err();
+        let error = model(rest)
+            .check("estimate P(F<=1 s (x(position(me)) > 100 m))", &Options::default())
+            .unwrap_err();
         error.to_string()
     };
     let found = [
@@ -122,14 +124,19 @@ fn goals_that_nobody_can_reach_are_refused_before_the_first_trial() {
     // Straight on through whatever is in the way is legal.
     let straight =
         model("{ wayfinding = straight  radius = 0.7 m }\nagent me: person { at = (2, 9)  route = outside }");
-    assert!(straight.check("estimate P(F<=1 s (me.x > 100))", &Options::default().max_trials(8)).is_ok());
+    assert!(
+        straight
+            .check("estimate P(F<=1 s (x(position(me)) > 100 m))", &Options::default().max_trials(8))
+            .is_ok()
+    );
 }
 
 #[test]
 fn starts_and_goals_that_only_luck_serves_are_named() {
     let warned = |rest: &str| {
-        let report =
-            model(rest).check("estimate P(F<=1 s (me.x > 100))", &Options::default().max_trials(8)).unwrap();
+        let report = model(rest)
+            .check("estimate P(F<=1 s (x(position(me)) > 100 m))", &Options::default().max_trials(8))
+            .unwrap();
         report.warnings().to_string()
     };
     let found = [

@@ -246,7 +246,7 @@ fn event(drive: &Drive, state: &mut State, slot: Slot) {
 fn is_hidden(drive: &Drive, state: &mut State, slot: Slot) -> bool {
     let person = Person::new(drive, state, slot);
     let (at, radius) = (person.at(), person.radius());
-    way_to(person.target(), at, radius).is_some_and(|way| !drive.sight.is_clear(at, at + way, radius))
+    way_to(person.target(), at, radius).is_some_and(|way| !drive.sees(at, at + way, radius))
 }
 
 /// On a way of points: passes the present one where the next is in sight, and at times any point before one in sight; looks
@@ -262,7 +262,7 @@ fn pass(drive: &Drive, state: &mut State, slot: Slot, points: &[Vec2], is_due: b
     let (d, along) = (points[first] - at, points[first] - start);
     let square = d.x * d.x + d.y * d.y;
     let passes = d.x * along.x + d.y * along.y <= 0.0 && square <= PASSING * PASSING;
-    let is_clear = |to: Vec2| drive.sight.is_clear(at, to, radius);
+    let is_clear = |to: Vec2| drive.sees(at, to, radius);
     let mut point = first;
     if square <= radius * radius * 4.0 || passes || is_due {
         while point < points.len() && is_clear(points.get(point + 1).copied().unwrap_or(leg)) {

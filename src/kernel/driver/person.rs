@@ -192,7 +192,7 @@ impl<'a> Person<'a> {
         let next = &self.drive.stages[self.way.stage as usize + 1].target;
         self.drive.drivers.of(self.agent).is_none()
             || self.state.plans.has_trajectory(slot)
-            || way_to(next, at, radius).is_none_or(|way| self.drive.sight.is_clear(at, at + way, radius))
+            || way_to(next, at, radius).is_none_or(|way| self.drive.sees(at, at + way, radius))
     }
 
     /// Where its stage leads.

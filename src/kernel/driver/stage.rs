@@ -167,6 +167,12 @@ impl Drive {
         own.find_map(|(_, stages)| stages.get(number).copied())
     }
 
+    /// Whether a place is in sight of somebody of a radius, m: half of the body passes. Whoever turns around a corner in a crowd
+    /// is never quite on the line that touches it.
+    pub(super) fn sees(&self, from: Vec2, to: Vec2, radius: f64) -> bool {
+        self.sight.is_clear(from, to, 0.5 * radius)
+    }
+
     /// Adds a route that a state of a behaviour or a move demands; its first stage. Its legs have numbers of their own:
     /// they follow from its name, so that nothing declared elsewhere moves them.
     pub(in crate::kernel) fn detour(&mut self, route: &Route, name: &str) -> u32 {

@@ -23,7 +23,7 @@ pub enum Plan {
     NoWay,
     /// Heads for each of these points in turn, m, and then for the goal of the leg. A point is passed near it, or across the
     /// line through it, once the next one is in sight; every 0.5 s points before one in sight are skipped, and a point out of
-    /// sight is asked about. In sight is what a body with the radius of the agent can go to straight.
+    /// sight is asked about. In sight is what a body of half the radius can go to straight.
     Way(Arc<[Vec2]>),
     /// Is driven along a trajectory by its driving velocity; all forces act on it.
     Follow(Arc<Trajectory>, Limits),
