@@ -1,6 +1,8 @@
 //! Ways in a building of 500 walls: what the network of shortest ways costs once, what one look-up costs, and what finding
 //! ways adds to a step of ten thousand agents. `cargo bench --bench ways`.
 
+#![allow(clippy::disallowed_methods, reason = "this measures time")]
+
 use smc::base::geometry::Vec2;
 use smc::base::random::{Purpose, Stream, TrialKey};
 use smc::kernel::driver::Drivers;

@@ -17,13 +17,15 @@ macro_rules! pair {
 }
 
 /// Pairs of scenario and properties; the recording of the hotel is not read, so that its names stay unknown.
-const PAIRS: [(&str, &str); 15] = [
+const PAIRS: [(&str, &str); 17] = [
     pair!("building"),
+    pair!("corner"),
     pair!("corridor"),
     pair!("crowds"),
     pair!("die"),
     pair!("distracted"),
     pair!("epidemic"),
+    pair!("exits"),
     pair!("hotel"),
     pair!("leader"),
     pair!("overflow"),

@@ -13,7 +13,7 @@ scene {
 kind person: sfm preset helbing2000";
 
 fn model(rest: &str) -> Model {
-    let text = format!("horizon = 40 s\nstep = 0.04 s\n{ROOM} {rest}");
+    let text = format!("horizon = 80 s\nstep = 0.04 s\n{ROOM} {rest}");
     Model::parse(&text).unwrap_or_else(|errors| panic!("{errors}"))
 }
 
@@ -56,7 +56,7 @@ fn a_leg_counts_only_with_the_next_goal_in_sight() {
             "{{ noise = 0.05 m/s {wayfinding} }}
             agents crowd[30]: person {{ at = uniform in rect (1, 1) .. (9, 9)  route = (10.4, 5) -> outside then leave }}"
         );
-        one(&model(&rest), "estimate P(F<=40 s (count(a in crowd) == 0)) within 0.1").estimate.unwrap()
+        one(&model(&rest), "estimate P(F<=80 s (count(a in crowd) == 0)) within 0.1").estimate.unwrap()
     };
     assert!(crowd("") > 0.95, "{}", crowd(""));
     assert!(crowd("wayfinding = straight") < 0.9, "the old rule leaves some of them in the room");
@@ -144,7 +144,7 @@ fn starts_and_goals_that_only_luck_serves_are_named() {
             "{ }\nagent me: person { at = uniform in rect (6, 1) .. (14, 9)  route = (5, 5) }\nscene { wall (10, 4.4) -- (10, 5.6) }",
         ),
         warned("{ radius = uniform(0.2 m, 0.8 m) }\nagent me: person { at = (2, 9)  route = outside }"),
-        warned("{ }\nagent me: person { at = (2, 9)  route = (9.9, 2) }"),
+        warned("{ }\nagent me: person { at = (2, 9)  route = (9.9, 2) -> outside }"),
     ];
     insta::assert_snapshot!(found.join("\n"));
 }
@@ -156,10 +156,16 @@ fn trials_without_a_way_are_counted_and_the_first_is_named() {
         scene {{ wall (10, 4.4) -- (10, 5.6) }}
         agent me: person {{ at = uniform in rect (6, 1) .. (14, 9)  route = (5, 5) }}"
     );
-    let model = Draft::new("locked.scn", text).parse().unwrap();
-    let result = one(&model, "estimate P(F<=4 s (distance(me, (5, 5)) < 0.6 m)) by fixed(n = 64)");
+    let model = Draft::new("locked.scn", text.clone()).parse().unwrap();
+    let result = one(&model, "estimate P(F<=4 s (distance(me, (5, 5)) < 0.6 m)) by fixed(trials = 64)");
     assert!((16..48).contains(&result.no_way), "{}", result.no_way);
     assert_eq!(result.counts.trials, 64);
+    let place = crate::program::Place::new(&[
+        ("locked.scn", text.as_str()),
+        ("near.bltl", "estimate P(F<=4 s (distance(me, (5, 5)) < 0.6 m)) by fixed(trials = 64)"),
+    ]);
+    let said = place.call(&["check", "locked.scn", "near.bltl", "--format", "json"]).json();
+    assert_eq!(said["results"][0]["no_way"], result.no_way);
     assert!(
         result.warnings.iter().any(|w| w.starts_with("somebody had no way to a goal in ")),
         "{:?}",

@@ -75,7 +75,7 @@ impl Sight {
             match &barrier.obstacle {
                 Obstacle::Wall(segments) => pieces.extend(segments.iter().copied().map(Piece::Edge)),
                 Obstacle::Solid(Shape::Polygon(polygon)) => {
-                    pieces.extend(polygon.segments().map(Piece::Edge))
+                    pieces.extend(polygon.segments().map(Piece::Edge));
                 }
                 Obstacle::Solid(Shape::Circle { centre, radius }) => {
                     pieces.push(Piece::Disc { centre: *centre, radius: *radius });

@@ -50,7 +50,7 @@ impl Track {
     pub(super) fn ahead(&self, from: f64, to: f64) -> Option<f64> {
         let far = to - from;
         // Where two lines touch at one place, rounding does not say which is first.
-        if far >= -1e-9 { Some(far.max(0.0)) } else { self.is_full.then(|| far + self.extent) }
+        if far >= -1e-9 { Some(far.max(0.0)) } else { self.is_full.then_some(far + self.extent) }
     }
 
     /// The first station at a place or behind it, as an index into the list, and how far it is, rad.

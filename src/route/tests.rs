@@ -3,6 +3,7 @@
 
 use super::Atlas;
 use crate::base::geometry::{Polygon, Segment, Shape, Vec2};
+use crate::base::math::{atan2, sin_cos};
 use crate::base::random::{Purpose, Stream, TrialKey};
 use crate::model::{Barrier, Goal, Obstacle, Piece, Region, RegionId, Scene, Sight};
 use std::f64::consts::{PI, TAU};
@@ -34,7 +35,7 @@ fn around_the_end_of_a_wall() {
     // Two tangents to the circle of the radius around the end, and the arc between them.
     let far = (16.0_f64 + 9.0).sqrt();
     let tangent = (far * far - RADIUS * RADIUS).sqrt();
-    let arc = 2.0 * PI - 2.0 * (RADIUS / far).acos() - 2.0 * (4.0_f64).atan2(3.0);
+    let arc = 2.0 * PI - 2.0 * atan2(tangent, RADIUS) - 2.0 * atan2(4.0, 3.0);
     assert!((way.length - (2.0 * tangent + RADIUS * arc)).abs() < 1e-9, "{way:?}");
     assert_eq!(way.bends.len(), 1);
     assert!(way.bends[0].turn < 0.0);
@@ -126,10 +127,10 @@ fn direction(a: (Vec2, f64), b: (Vec2, f64)) -> Option<f64> {
     if between.norm() <= (b.1 - a.1).abs() {
         return None;
     }
-    let mut angle = between.y.atan2(between.x);
+    let mut angle = atan2(between.y, between.x);
     for _ in 0..60 {
         // The part of `between` across the direction is the difference of the radii.
-        let (sin, cos) = angle.sin_cos();
+        let (sin, cos) = sin_cos(angle);
         let across = between.y * cos - between.x * sin - (b.1 - a.1);
         let slope = -(between.y * sin + between.x * cos);
         angle -= across / slope;
@@ -148,7 +149,10 @@ struct Band {
 fn band(path: &[(Vec2, f64)]) -> Option<Band> {
     let (mut length, mut places) = (0.0, Vec::new());
     let mut before: Option<f64> = None;
-    let touch = |(centre, radius): (Vec2, f64), angle: f64| centre + p(angle.sin(), -angle.cos()) * radius;
+    let touch = |(centre, radius): (Vec2, f64), angle: f64| {
+        let (sin, cos) = sin_cos(angle);
+        centre + p(sin, -cos) * radius
+    };
     for pair in path.windows(2) {
         let angle = direction(pair[0], pair[1])?;
         if let Some(before) = before {
