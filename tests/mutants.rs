@@ -17,11 +17,12 @@ macro_rules! pair {
 }
 
 /// Pairs of scenario and properties; the recording of the hotel is not read, so that its names stay unknown.
-const PAIRS: [(&str, &str); 17] = [
+const PAIRS: [(&str, &str); 18] = [
     pair!("building"),
     pair!("corner"),
     pair!("corridor"),
     pair!("crowds"),
+    pair!("detour"),
     pair!("die"),
     pair!("distracted"),
     pair!("epidemic"),
