@@ -1,7 +1,7 @@
 //! Straight lines among the barriers of a scene: whether a body can go along one.
 
 use super::scene::{Obstacle, Scene};
-use crate::base::geometry::{Bounds, Nearby, Segment, Shape, Vec2, amply_around};
+use crate::base::geometry::{Bounds, Nearby, Segment, Shape, Vec2, amply_around, cross};
 
 /// What rounding may take from a distance, m.
 pub const ROUNDING: f64 = 1e-9;
@@ -107,7 +107,15 @@ impl Sight {
     /// a barrier than that, the line need only keep the distance of this end.
     pub fn is_clear(&self, from: Vec2, to: Vec2, reach: f64) -> bool {
         let line = Segment::new(from, to);
+        let (along, least) = (to - from, (to - from).norm() * reach);
         !self.any_along(&line, reach, |piece| {
+            // Most pieces lie on one side of the line, beyond its reach.
+            if let Piece::Edge(edge) = piece {
+                let (a, b) = (cross(along, edge.a - from), cross(along, edge.b - from));
+                if (a > least && b > least) || (a < -least && b < -least) {
+                    return false;
+                }
+            }
             let distance = piece.distance_to(&line);
             distance < reach - ROUNDING && distance < piece.distance(from).min(piece.distance(to)) - ROUNDING
         })
