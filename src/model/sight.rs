@@ -106,19 +106,36 @@ impl Sight {
     /// Whether the middle of a body of radius `reach`, m, can go straight from one place to another. Where an end is nearer to
     /// a barrier than that, the line need only keep the distance of this end.
     pub fn is_clear(&self, from: Vec2, to: Vec2, reach: f64) -> bool {
-        let line = Segment::new(from, to);
-        let (along, least) = (to - from, (to - from).norm() * reach);
-        !self.any_along(&line, reach, |piece| {
-            // Most pieces lie on one side of the line, beyond its reach.
-            if let Piece::Edge(edge) = piece {
-                let (a, b) = (cross(along, edge.a - from), cross(along, edge.b - from));
-                if (a > least && b > least) || (a < -least && b < -least) {
-                    return false;
-                }
+        self.blocker((from, to), reach, None).is_none()
+    }
+
+    /// A piece that is in the way of such a body, by its number. One that is `likely` is looked at first.
+    pub fn blocker(&self, (from, to): (Vec2, Vec2), reach: f64, likely: Option<u32>) -> Option<u32> {
+        if likely.is_some_and(|k| self.blocks(k, (from, to), reach)) {
+            return likely;
+        }
+        let mut found = None;
+        self.nearby.any_along(&Segment::new(from, to), reach, |k| {
+            found = Some(k).filter(|k| self.blocks(*k, (from, to), reach));
+            found.is_some()
+        });
+        found
+    }
+
+    /// Whether this piece is in the way of such a body.
+    pub fn blocks(&self, k: u32, (from, to): (Vec2, Vec2), reach: f64) -> bool {
+        let Some(piece) = self.pieces.get(k as usize) else { return false };
+        let (along, line) = (to - from, Segment::new(from, to));
+        // Most pieces lie on one side of the line, beyond its reach.
+        if let Piece::Edge(edge) = piece {
+            let (a, b) = (cross(along, edge.a - from), cross(along, edge.b - from));
+            let square = along.norm_squared() * reach * reach;
+            if a * b > 0.0 && a * a > square && b * b > square {
+                return false;
             }
-            let distance = piece.distance_to(&line);
-            distance < reach - ROUNDING && distance < piece.distance(from).min(piece.distance(to)) - ROUNDING
-        })
+        }
+        let distance = piece.distance_to(&line);
+        distance < reach - ROUNDING && distance < piece.distance(from).min(piece.distance(to)) - ROUNDING
     }
 }
 

@@ -12,13 +12,56 @@ const SIDE: f64 = 1.0;
 /// Most cells in a row or column.
 const MOST: f64 = 200.0;
 
+/// Sides of a block of cells, whose circles are found first.
+const BLOCK: f64 = 4.0;
+
+/// Squares of the plane, and the circles that may be in sight from each.
 #[derive(Debug, Default)]
-pub(super) struct Cells {
+struct Grid {
     low: Vec2,
     side: f64,
     columns: usize,
     lists: Vec<OnceLock<Vec<u32>>>,
-    /// For places outside of the grid.
+}
+
+impl Grid {
+    fn new(bounds: &Bounds, side: f64) -> Self {
+        let size = bounds.high - bounds.low;
+        let (columns, rows) = ((size.x / side) as usize + 1, (size.y / side) as usize + 1);
+        let lists = (0..columns * rows).map(|_| OnceLock::new()).collect();
+        Self { low: bounds.low, side, columns, lists }
+    }
+
+    /// The square of a place.
+    fn square(&self, p: Vec2) -> Option<usize> {
+        let at = (p - self.low) / self.side;
+        let is_inside = at.x >= 0.0 && at.y >= 0.0 && (at.x as usize) < self.columns;
+        let square = is_inside.then(|| at.y as usize * self.columns + at.x as usize)?;
+        (square < self.lists.len()).then_some(square)
+    }
+
+    /// The circles that may be in sight from a square; those among `known`.
+    fn seen<'k>(
+        &self,
+        square: usize,
+        (circles, sight): (&[Circle], &Sight),
+        known: impl FnOnce() -> &'k [u32],
+    ) -> &[u32] {
+        self.lists[square].get_or_init(|| {
+            let at = Vec2::new((square % self.columns) as f64, (square / self.columns) as f64);
+            let low = self.low + at * self.side;
+            let cell = Bounds { low, high: low + Vec2::repeat(self.side) };
+            let in_sight = |&k: &u32| !is_hidden(&cell, &circles[k as usize], sight);
+            known().iter().copied().filter(in_sight).collect()
+        })
+    }
+}
+
+#[derive(Debug, Default)]
+pub(super) struct Cells {
+    cells: Grid,
+    blocks: Grid,
+    /// For places outside of the grids.
     all: Vec<u32>,
 }
 
@@ -30,25 +73,23 @@ impl Cells {
         };
         let size = bounds.high - bounds.low;
         let side = SIDE.max(size.x / MOST).max(size.y / MOST);
-        let (columns, rows) = ((size.x / side) as usize + 1, (size.y / side) as usize + 1);
-        let lists = (0..columns * rows).map(|_| OnceLock::new()).collect();
-        Self { low: bounds.low, side, columns, lists, all }
+        Self { cells: Grid::new(&bounds, side), blocks: Grid::new(&bounds, BLOCK * side), all }
     }
 
-    /// The circles that may be in sight from a place, and perhaps others; ascending.
-    pub(super) fn seen(&self, p: Vec2, circles: &[Circle], sight: &Sight) -> &[u32] {
-        let at = (p - self.low) / self.side;
-        if !(at.x >= 0.0 && at.y >= 0.0 && (at.x as usize) < self.columns) {
-            return &self.all;
-        }
-        let (column, row) = (at.x as usize, at.y as usize);
-        let Some(list) = self.lists.get(row * self.columns + column) else { return &self.all };
-        list.get_or_init(|| {
-            let low = self.low + Vec2::new(column as f64, row as f64) * self.side;
-            let cell = Bounds { low, high: low + Vec2::repeat(self.side) };
-            let in_sight = |&k: &u32| !is_hidden(&cell, &circles[k as usize], sight);
-            self.all.iter().copied().filter(in_sight).collect()
-        })
+    /// How many cells there are.
+    pub(super) fn count(&self) -> usize {
+        self.cells.lists.len()
+    }
+
+    /// The cell of a place, and the circles that may be in sight from it, and perhaps others; ascending.
+    pub(super) fn seen(&self, p: Vec2, circles: &[Circle], sight: &Sight) -> (Option<usize>, &[u32]) {
+        let Some(cell) = self.cells.square(p) else { return (None, &self.all) };
+        let middle = Vec2::new((cell % self.cells.columns) as f64, (cell / self.cells.columns) as f64);
+        let middle = self.cells.low + (middle + Vec2::repeat(0.5)) * self.cells.side;
+        let scene = (circles, sight);
+        let block = || self.blocks.square(middle);
+        let known = || block().map_or(&self.all[..], |block| self.blocks.seen(block, scene, || &self.all));
+        (Some(cell), self.cells.seen(cell, scene, known))
     }
 }
 

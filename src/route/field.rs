@@ -2,8 +2,10 @@
 
 use super::goal::{Departure, Entry};
 use super::network::Network;
+use super::tangent::Turn;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 /// How a way goes on from a place on a track.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,6 +27,10 @@ pub(super) struct Field {
     lengths: Vec<f64>,
     /// How it goes on; of a station that is left by its line, the mate.
     onward: Vec<Option<Onward>>,
+    /// For each circle, less than or as long as any way that turns around it to the left and to the right, m.
+    least: Vec<[f64; 2]>,
+    /// For each cell, around which circle and in which sense a way from it began last; no result depends on it.
+    hints: Vec<AtomicU32>,
 }
 
 impl Field {
@@ -43,8 +49,11 @@ impl Field {
             of_track,
             lengths: vec![f64::INFINITY; count],
             onward: vec![None; count],
+            least: vec![[f64::INFINITY; 2]; network.circles.len()],
+            hints: (0..network.cells.count()).map(|_| AtomicU32::new(u32::MAX)).collect(),
         };
         field.spread(network);
+        field.bound(network);
         field
     }
 
@@ -89,6 +98,36 @@ impl Field {
                     reach(from, length + turn * radius, Onward::Station(at));
                 }
             }
+        }
+    }
+
+    fn bound(&mut self, network: &Network) {
+        let departures = self.departures.iter().map(|departure| (departure.track, departure.length));
+        let stations =
+            network.stations.iter().zip(&self.lengths).map(|(station, length)| (station.track, *length));
+        for (track, length) in departures.chain(stations) {
+            let track = &network.tracks[track as usize];
+            let least = &mut self.least[track.circle as usize][usize::from(track.turn == Turn::Right)];
+            *least = least.min(length);
+        }
+    }
+
+    /// Less than or as long as any way that turns around a circle in a sense, m; infinite where none does.
+    pub(super) fn least(&self, (circle, turn): (u32, Turn)) -> f64 {
+        self.least[circle as usize][usize::from(turn == Turn::Right)]
+    }
+
+    /// Around which circle and in which sense a way from a cell began last.
+    pub(super) fn hint(&self, cell: Option<usize>) -> Option<(u32, Turn)> {
+        let hint = self.hints.get(cell?)?.load(Relaxed);
+        let turn = if hint % 2 == 0 { Turn::Left } else { Turn::Right };
+        (hint != u32::MAX).then_some((hint / 2, turn))
+    }
+
+    /// Remembers that.
+    pub(super) fn remember(&self, cell: Option<usize>, first: Option<(u32, Turn)>) {
+        if let (Some(place), Some((circle, turn))) = (cell.and_then(|cell| self.hints.get(cell)), first) {
+            place.store(2 * circle + u32::from(turn == Turn::Right), Relaxed);
         }
     }
 

@@ -4,7 +4,7 @@
 use super::atlas::Atlas;
 use super::wayfinder::is_drawn;
 use crate::base::geometry::{Shape, Vec2};
-use crate::model::{Agent, AgentId, Goal, Leg, Obstacle, Parameter, Position, Route, Scenario, Scene};
+use crate::model::{Agent, AgentId, Goal, Leg, Obstacle, Parameter, Position, Route, Scenario, Scene, Sight};
 
 /// A start or goal is looked at in so many rows of so many places; and in more where none of these has a way.
 const ROWS: u32 = 8;
@@ -22,6 +22,8 @@ pub struct Doubt {
     pub impossible: bool,
     /// In words.
     pub said: String,
+    /// The barrier that is in between, by its number, if one is.
+    pub between: Option<usize>,
 }
 
 /// Places of a shape: rows of a grid, and a point inside.
@@ -117,44 +119,37 @@ fn of_agent(atlas: &Atlas, scenario: &Scenario, (id, who): (AgentId, &str), out:
                 let count = places.iter().filter(|p| atlas.way(**p, goal, radius).is_some()).count();
                 (count, places.len())
             };
-            let mut doubt = |impossible, said| out.push(Doubt { agent: id, impossible, said });
+            let mut doubt = |said| out.push(Doubt { agent: id, impossible: false, said, between: None });
             let (some, all) = with_way(ROWS, least);
             if some == 0 && (all == 1 || with_way(MORE_ROWS, least).0 == 0) {
-                let why = into(scene, goal).map_or_else(
-                    || {
-                        let enclosed = enclosing(scene, from, least, atlas, goal);
-                        enclosed.map_or(String::new(), |barrier| format!("; {barrier} is in between"))
-                    },
-                    |obstacle| format!(": it lies inside {obstacle}"),
-                );
-                doubt(true, format!("no way leads {who} from {from_name} to {name}{why}"));
+                let inside = into(scene, goal);
+                let between = if inside.is_none() { enclosing(scene, from, least, goal) } else { None };
+                let named = between.map(|k| &scene.barriers[k]).filter(|barrier| !barrier.name.is_empty());
+                let why = match (inside, named) {
+                    (Some(obstacle), _) => format!(": it lies inside {obstacle}"),
+                    (None, Some(barrier)) => format!("; {} is in between", barrier.phrase()),
+                    (None, None) => String::new(),
+                };
+                let said = format!("no way leads {who} from {from_name} to {name}{why}");
+                out.push(Doubt { agent: id, impossible: true, said, between });
                 return;
             }
             if some < all {
-                doubt(
-                    false,
-                    format!(
-                        "no way leads {who} to {name} from {} of {all} places of {from_name}",
-                        all - some
-                    ),
-                );
+                doubt(format!(
+                    "no way leads {who} to {name} from {} of {all} places of {from_name}",
+                    all - some
+                ));
             } else if most > least && with_way(ROWS, most).0 < all {
                 let wide = number(most);
-                doubt(
-                    false,
-                    format!("a way of {who} to {name} is too narrow for bodies with a radius of {wide} m"),
-                );
+                doubt(format!("a way of {who} to {name} is too narrow for bodies with a radius of {wide} m"));
             }
             if let Goal::Point(p) = goal
                 && let Some(distance) = nearest(scene, *p).filter(|distance| *distance < least)
             {
                 let (near, radius) = (number(distance), number(least));
-                doubt(
-                    false,
-                    format!(
-                        "{name}, a goal of {who}, is {near} m from a barrier, nearer than a radius of {radius} m"
-                    ),
-                );
+                doubt(format!(
+                    "{name}, a goal of {who}, is {near} m from a barrier, nearer than a radius of {radius} m"
+                ));
             }
         }
         origin = match goal {
@@ -179,17 +174,18 @@ fn into(scene: &Scene, goal: &Goal) -> Option<String> {
     if found.iter().all(Option::is_some) { found.into_iter().next().flatten() } else { None }
 }
 
-/// A barrier that the straight way from a start to a goal meets.
-fn enclosing(scene: &Scene, from: &Origin<'_>, radius: f64, atlas: &Atlas, goal: &Goal) -> Option<String> {
+/// A barrier that the straight way from a start to a goal meets; one with a name before others.
+fn enclosing(scene: &Scene, from: &Origin<'_>, radius: f64, goal: &Goal) -> Option<usize> {
     let start = *from.places(scene, 1).first()?;
     let end = match goal {
         Goal::Point(point) => *point,
         Goal::Region(id) => scene.regions.get(id.0 as usize)?.shape.inner_point(),
     };
-    // Of barriers without a name nothing is said.
-    let meets = |barrier: &&crate::model::Barrier| {
-        let alone = Scene { barriers: vec![(*barrier).clone()], ..Scene::default() };
-        !barrier.name.is_empty() && !crate::model::Sight::new(&alone).is_clear(start, end, radius)
+    let meets = |k: &usize| {
+        let alone = Scene { barriers: vec![scene.barriers[*k].clone()], ..Scene::default() };
+        !Sight::new(&alone).is_clear(start, end, radius)
     };
-    atlas.scene().barriers.iter().find(meets).map(crate::model::Barrier::phrase)
+    let met: Vec<usize> = (0..scene.barriers.len()).filter(meets).collect();
+    let named = met.iter().find(|k| !scene.barriers[**k].name.is_empty());
+    named.or(met.first()).copied()
 }

@@ -4,7 +4,7 @@ use super::circle::Circle;
 use crate::base::geometry::Vec2;
 
 /// In which sense a way turns around a circle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd)]
 pub(super) enum Turn {
     /// Counterclockwise.
     Left,

@@ -84,44 +84,56 @@ impl Network {
         options.extend(field.entry.nearest(p).map(direct));
         let nearest = options.iter().copied().reduce(|a, b| if b.length < a.length { b } else { a })?;
         // Nothing is shorter than the straight way to the nearest place.
-        if self.sight.is_clear(p, nearest.to, self.reach) {
-            return Some(ShortestWay {
-                length: nearest.length,
-                bends: Vec::new(),
-                end: nearest.to,
-                is_straight: true,
-            });
+        let mut blocker = self.sight.blocker((p, nearest.to), self.reach, None);
+        if blocker.is_none() {
+            let FirstPiece { length, to: end, .. } = nearest;
+            return Some(ShortestWay { length, bends: Vec::new(), end, is_straight: true });
         }
         let (free, aside) = self.free(p);
-        for &circle in self.cells.seen(free, &self.circles, &self.sight) {
-            for turn in Turn::BOTH {
-                let Some((touch, to, length)) = from_point(free, &self.circles[circle as usize], turn) else {
-                    continue;
-                };
-                let Some((track, at)) = self.place(circle as usize, turn, touch) else { continue };
-                if let Some((rest, _)) = field.from(self, track, at) {
-                    options.push(FirstPiece { length: aside + length + rest, to, then: Some((track, at)) });
+        // Of all ways whose first piece is clear, the shortest; of equally long ones, the straight one or that around the first circle.
+        let mut best: Option<FirstPiece> = None;
+        for option in options {
+            let found = self.sight.blocker((p, option.to), self.reach, blocker);
+            if found.is_none() && best.is_none_or(|best| option.length < best.length) {
+                best = Some(option);
+            }
+            blocker = found.or(blocker);
+        }
+        let mut around = None;
+        let (cell, seen) = self.cells.seen(free, &self.circles, &self.sight);
+        let all = || seen.iter().flat_map(|&circle| Turn::BOTH.map(|turn| (circle, turn)));
+        // The way that was taken from this cell before soon shows how long a way may be.
+        let hint = field.hint(cell);
+        let hinted = all().filter(|first| Some(*first) == hint);
+        for first in hinted.chain(all().filter(|first| Some(*first) != hint)) {
+            let circle = &self.circles[first.0 as usize];
+            let far = ((free - circle.centre).norm() - circle.radius).abs();
+            let least = (aside + far + field.least(first)) * (1.0 - ROUNDING);
+            if least.is_infinite() || best.is_some_and(|best| least > best.length) {
+                continue;
+            }
+            let Some((touch, to, line)) = from_point(free, circle, first.1) else { continue };
+            if blocker.is_some_and(|k| self.sight.blocks(k, (free, to), self.reach)) {
+                continue;
+            }
+            let Some((track, at)) = self.place(first.0 as usize, first.1, touch) else { continue };
+            let Some((rest, _)) = field.from(self, track, at) else { continue };
+            let length = aside + line + rest;
+            let is_better = |best: FirstPiece| (length, Some(first)) < (best.length, around);
+            if best.is_none_or(is_better) {
+                match self.sight.blocker((free, to), self.reach, None) {
+                    Some(found) => blocker = Some(found),
+                    None => {
+                        best = Some(FirstPiece { length, to, then: Some((track, at)) });
+                        around = Some(first);
+                    }
                 }
             }
         }
-        // The shortest of those whose first piece is clear. The first of several that are equally short.
-        loop {
-            let best = (0..options.len())
-                .reduce(|a, b| if options[b].length < options[a].length { b } else { a })?;
-            let option = options.remove(best);
-            let from = if option.then.is_some() { free } else { p };
-            if self.sight.is_clear(from, option.to, self.reach) {
-                return match option.then {
-                    Some((track, at)) => self.follow(field, option.length, (track, at)),
-                    None => Some(ShortestWay {
-                        length: option.length,
-                        bends: Vec::new(),
-                        end: option.to,
-                        is_straight: false,
-                    }),
-                };
-            }
-        }
+        field.remember(cell, around);
+        let FirstPiece { length, to, then } = best?;
+        let straight = || Some(ShortestWay { length, bends: Vec::new(), end: to, is_straight: false });
+        then.map_or_else(straight, |place| self.follow(field, length, place))
     }
 
     /// Where somebody who is pressed against barriers steps first, so that the body is free, and how far that is, m. In a gap that is
