@@ -342,3 +342,17 @@ fn a_filter_and_a_unit_that_fit_say_nothing() {
     assert_eq!((said.code, said.err.as_str()), (Some(0), ""));
     assert!(said.out.contains("wall A-WALL: 1 segment, 5 m"), "{}", said.out);
 }
+
+#[test]
+fn a_drawing_that_encloses_a_start_is_named() {
+    let cell = dxf("6", "0 LWPOLYLINE 8 A 70 1 10 0 20 0 10 4 20 0 10 4 20 3 10 0 20 3");
+    let text = "horizon = 9 s  step = 0.02 s
+kind adult: sfm preset helbing2000
+agent me: adult { at = (2, 1.5)  route = (9, 1.5) }
+scene { import \"cell.dxf\" }
+";
+    let model = Draft::new("a.scn", text).file("cell.dxf", cell).parse().unwrap_or_else(|e| panic!("{e}"));
+    let errors = model.check("check P(F<=5 s (speed(me) > 1 m/s)) >= 0.9", &smc::Options::default());
+    let said = errors.unwrap_err().to_string();
+    assert!(said.contains("E0803") && said.contains("an outline of this file is in between"), "{said}");
+}

@@ -36,6 +36,13 @@ fn diagnostic(world: &World, doubt: &Doubt) -> Diagnostic {
             Some(span) => Diagnostic::error(Code::E0803, span, doubt.said.as_str()),
             None => Diagnostic::placeless(Code::E0803, doubt.said.as_str()),
         };
+        let imports = doubt.between.and_then(|barrier| {
+            world.origins.imports.iter().find(|(range, _)| range.contains(&barrier)).map(|(_, span)| *span)
+        });
+        let error = match imports {
+            Some(span) if place.is_some() => error.related(span, "an outline of this file is in between"),
+            _ => error,
+        };
         return error.hint(
             "move the goal or the start, open the barrier, or write `wayfinding = straight` in the kind to go straight whatever is in the way",
         );
