@@ -12,6 +12,7 @@ mod piece;
 mod rounding;
 mod shape;
 mod shortcut;
+mod taut;
 #[cfg(test)]
 mod tests;
 

@@ -8,6 +8,7 @@ use super::clearance::largest_radius;
 use super::fillet::Corner;
 use super::path::Path;
 use super::piece::Piece;
+use super::taut;
 use crate::base::geometry::{Segment, Vec2};
 use crate::model::Sight;
 use crate::model::sight::ROUNDING;
@@ -32,7 +33,7 @@ pub fn round(points: &[Vec2], corner: f64, reach: f64, sight: &Sight) -> Path {
         };
         let inner = fillets.iter().map(circle);
         let circles = std::iter::once(None).chain(inner).chain([None]).collect();
-        stops = around::replace(&stops, circles, reach, sight);
+        stops = taut::replace(&stops, circles, reach, sight);
         fillets = rounding.fillets(&stops);
     }
     path(&stops, &fillets)
@@ -83,12 +84,12 @@ impl Rounding<'_> {
             let corner = Corner::new(stop.at, before.along, after.along);
             let fits = (before.length * share(k)).min(after.length * share(k + 1)) / corner.tangent();
             let limit = fits.min(self.corner);
-            if stop.around != 0.0 || limit.is_nan() || limit < LEAST_RADIUS {
+            if stop.around != 0.0 || limit.is_nan() || limit <= 0.0 {
                 return Fillet { corner, radius: 0.0, is_blocked: false };
             }
             let radius = largest_radius(&corner, limit, self.reach, self.sight);
-            let is_blocked = radius < LEAST_RADIUS;
-            Fillet { corner, radius: if is_blocked { 0.0 } else { radius }, is_blocked }
+            let is_blocked = radius < limit.min(LEAST_RADIUS);
+            Fillet { corner, radius: if radius < LEAST_RADIUS { 0.0 } else { radius }, is_blocked }
         };
         inner.map(fillet).collect()
     }
