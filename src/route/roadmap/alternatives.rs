@@ -162,5 +162,8 @@ fn closest(a: &Segment, b: &Segment) -> (Vec2, Vec2) {
     }
     let pairs = [(a.nearest(b.a), b.a), (a.nearest(b.b), b.b), (a.a, b.nearest(a.a)), (a.b, b.nearest(a.b))];
     let square = |(p, q): (Vec2, Vec2)| (p - q).norm_squared();
-    pairs.into_iter().reduce(|known, pair| if square(pair) < square(known) { pair } else { known }).unwrap_or(pairs[0])
+    pairs
+        .into_iter()
+        .reduce(|known, pair| if square(pair) < square(known) { pair } else { known })
+        .unwrap_or(pairs[0])
 }

@@ -70,7 +70,8 @@ impl FreeSpace {
     /// Whether the center of a body can be at a place.
     pub fn is_free(&self, p: Vec2) -> bool {
         let place = Segment::new(p, p);
-        let is_near = self.sight.any_along(&place, self.reach, |piece| piece.distance(p) < self.reach - ROUNDING);
+        let is_near =
+            self.sight.any_along(&place, self.reach, |piece| piece.distance(p) < self.reach - ROUNDING);
         !is_near && !self.nearby.within(p, 0.0).iter().any(|&k| self.solids[k as usize].contains(p))
     }
 

@@ -54,7 +54,12 @@ impl VertexGrid {
     }
 
     /// The `count` vertices nearest to a place, nearest first, ties by number: squares of distances, m², and numbers.
-    pub(super) fn nearest<'f>(&self, p: Vec2, count: usize, found: &'f mut Vec<(f64, u32)>) -> &'f [(f64, u32)] {
+    pub(super) fn nearest<'f>(
+        &self,
+        p: Vec2,
+        count: usize,
+        found: &'f mut Vec<(f64, u32)>,
+    ) -> &'f [(f64, u32)] {
         found.clear();
         let (column, row) = self.square(p);
         for ring in 0..self.columns.max(self.rows) {

@@ -6,7 +6,7 @@ use crate::base::geometry::Vec2;
 use crate::base::random::Stream;
 
 /// Tries per sample, on average.
-const TRIES: u64 = 400;
+const TRIES: u64 = 100;
 
 /// A rapidly-exploring random tree.
 #[derive(Clone, Copy, Debug, PartialEq)]
