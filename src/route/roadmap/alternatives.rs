@@ -123,6 +123,12 @@ impl Search<'_> {
         while at != 0 {
             let end = self.states[at as usize];
             let start = self.states[end.before as usize];
+            at = end.before;
+            // Most lines before are too far away, however the parts are cut.
+            let far = (end.place - last.place).norm() - (end.length - start.length) - line.length();
+            if last.length + line.length() - start.length <= NEARLY_CLOSED * far {
+                continue;
+            }
             let (x, y) = closest(&Segment::new(start.place, end.place), &line);
             let part = last.length + (y - last.place).norm() - start.length - (x - start.place).norm();
             if part > NEARLY_CLOSED * (y - x).norm() {
@@ -132,7 +138,6 @@ impl Search<'_> {
                     return true;
                 }
             }
-            at = end.before;
         }
         false
     }

@@ -1,9 +1,9 @@
 //! Where the center of a body can be: places and straight lines that keep a distance from all barriers.
 
 use super::rays::Rays;
-use crate::base::geometry::{Bounds, Nearby, Segment, Shape, Vec2};
+use crate::base::geometry::{Bounds, Nearby, Segment, Shape, Vec2, cross};
 use crate::model::sight::ROUNDING;
-use crate::model::{Obstacle, Scene, Sight};
+use crate::model::{Obstacle, Piece, Scene, Sight};
 
 /// The least distance from barriers, m. A line that only touches a wall is not free, even for a point.
 const LEAST: f64 = 1e-6;
@@ -12,8 +12,8 @@ const LEAST: f64 = 1e-6;
 #[derive(Clone, Debug)]
 pub struct FreeSpace {
     sight: Sight,
-    solids: Vec<Shape>,
-    /// Over the bounds of the solids.
+    /// Solid obstacles and their bounds.
+    solids: Vec<(Bounds, Shape)>,
     nearby: Nearby,
     rays: Rays,
     bounds: Bounds,
@@ -42,7 +42,7 @@ impl FreeSpace {
             bounds: Bounds::around(corners).unwrap_or(origin),
             nearby: Nearby::new(&boxes),
             reach: clearance_total.max(LEAST),
-            solids,
+            solids: boxes.into_iter().zip(solids).collect(),
             sight,
         }
     }
@@ -72,20 +72,25 @@ impl FreeSpace {
         let place = Segment::new(p, p);
         let is_near =
             self.sight.any_along(&place, self.reach, |piece| piece.distance(p) < self.reach - ROUNDING);
-        !is_near && !self.nearby.within(p, 0.0).iter().any(|&k| self.solids[k as usize].contains(p))
+        let is_inside = |k: &u32| {
+            let (bounds, solid) = &self.solids[*k as usize];
+            contains(bounds, p) && solid.contains(p)
+        };
+        !is_near && !self.nearby.within(p, 0.0).iter().any(is_inside)
     }
 
     /// Whether a place is free and inside the bounds.
     pub(super) fn is_vertex(&self, p: Vec2) -> bool {
-        let Bounds { low, high } = self.bounds;
-        let is_inside = low.x <= p.x && p.x <= high.x && low.y <= p.y && p.y <= high.y;
-        is_inside && self.is_free(p)
+        contains(&self.bounds, p) && self.is_free(p)
     }
 
     /// Whether a body can go straight from one place to another. Between free places this is exact: no point of the line is
     /// nearer to a barrier than the distance to keep. An end that is nearer itself sets the distance that the line keeps.
     pub fn is_clear(&self, from: Vec2, to: Vec2) -> bool {
-        self.sight.is_clear(from, to, self.reach)
+        let line = Segment::new(from, to);
+        // The exact test is slow; most lines are far from all surfaces.
+        !self.sight.any_along(&line, self.reach, |piece| may_be_near(piece, &line, self.reach))
+            || self.sight.is_clear(from, to, self.reach)
     }
 
     /// The place in the bounds at two shares of its sides.
@@ -93,4 +98,19 @@ impl FreeSpace {
         let Bounds { low, high } = self.bounds;
         low + (high - low).component_mul(&Vec2::new(x, y))
     }
+}
+
+fn contains(bounds: &Bounds, p: Vec2) -> bool {
+    let Bounds { low, high } = bounds;
+    low.x <= p.x && p.x <= high.x && low.y <= p.y && p.y <= high.y
+}
+
+/// False only if the piece is farther than `reach` from the line.
+fn may_be_near(piece: &Piece, line: &Segment, reach: f64) -> bool {
+    let Piece::Edge(edge) = piece else { return piece.distance_to(line) <= reach };
+    let gap = (line.a.inf(&line.b) - edge.a.sup(&edge.b)).sup(&(edge.a.inf(&edge.b) - line.a.sup(&line.b)));
+    let along = edge.b - edge.a;
+    let (a, b) = (cross(along, line.a - edge.a), cross(along, line.b - edge.a));
+    let is_beside = (a > 0.0) == (b > 0.0) && a.abs().min(b.abs()) > along.norm() * reach;
+    gap.max() <= reach && !is_beside
 }

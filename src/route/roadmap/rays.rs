@@ -117,7 +117,7 @@ fn obstacles(pieces: &[Piece], solids: &[Shape]) -> Vec<usize> {
 }
 
 /// The piece that stands for the set of a piece; halves the way to it.
-pub(super) fn root(parents: &mut [usize], mut k: usize) -> usize {
+fn root(parents: &mut [usize], mut k: usize) -> usize {
     while parents[k] != k {
         parents[k] = parents[parents[k]];
         k = parents[k];
