@@ -14,7 +14,7 @@ const TRIES: u64 = 100;
 const BRIDGE: (f64, f64) = (5.0, 1.0);
 
 /// The first end of a bridge lies at most so far out of the bounds, m. With 1 m the coverage is that of the measurements
-/// that the tests repeat; without a limit, half of the bridges would gather in the corners of the bounds.
+/// that the tests repeat; without a limit, more bridges lie in the corners of the bounds.
 const BEYOND: f64 = 1.0;
 
 /// How samples are spread.
