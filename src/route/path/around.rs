@@ -1,7 +1,7 @@
 //! Polylines that also turn around circles: a stop is a point or a circle, and the legs are common tangents.
 //!
-//! A taut polyline turns at the corners of obstacles, where no fillet is free. There the circle of the body's reach around the
-//! obstacle's corner takes the place of the vertex. An arc of it is never inside of the inflated obstacle.
+//! A taut polyline turns at the corners of obstacles, where no fillet is free. There the circle of the body's reach
+//! around the obstacle's corner takes the place of the vertex. An arc of it is never inside of the inflated obstacle.
 
 use super::clearance::until_disc;
 use super::fillet::Corner;
@@ -62,8 +62,8 @@ pub(super) fn discs(surface: &Surface, reach: f64) -> impl Iterator<Item = (Vec2
     std::iter::once(first).chain(second)
 }
 
-/// The circle that can take the place of a corner whose fillets below a radius of `least`, m, are not free: the nearest one that
-/// blocks them and lies on the inside of the turn.
+/// The circle that can take the place of a corner whose fillets below a radius of `least`, m, are not free: the
+/// nearest one that blocks them and lies on the inside of the turn.
 pub(super) fn circle(corner: &Corner, least: f64, reach: f64, sight: &Sight) -> Option<Stop> {
     let near = sight.near(corner.at, reach + least * corner.tangent());
     let blocks = |&(at, radius): &(Vec2, f64)| {

@@ -1,11 +1,11 @@
 //! The largest fillet of a corner that keeps a distance from barriers, in closed form.
 //!
-//! Fillets of one corner are copies of each other, scaled about the corner. With a radius that grows from 0 they sweep the wedge
-//! between the legs, and the part of the wedge beyond a fillet is convex. A surface inflated by the reach of a body is convex too
-//! (a disc, or a stadium around an edge). So the first fillet that meets it either meets it on a leg, or meets one of its round
-//! ends from outside: |V - C(R)| = R - reach for the end V of an edge, or the centre V of a disc with a reach that is larger by its
-//! radius. In the wedge a is the part of V - B along the bisector, c = cos(delta / 2), t = tan(delta / 2), and h, k are the distances of V
-//! from the legs; then
+//! Fillets of one corner are copies of each other, scaled about the corner. With a radius that grows from 0 they
+//! sweep the wedge between the legs, and the part of the wedge beyond a fillet is convex. A surface inflated by the
+//! reach of a body is convex too (a disc, or a stadium around an edge). So the first fillet that meets it either
+//! meets it on a leg, or meets one of its round ends from outside: |V - C(R)| = R - reach for the end V of an edge,
+//! or the centre V of a disc with a reach that is larger by its radius. In the wedge a is the part of V - B along the
+//! bisector, c = cos(delta / 2), t = tan(delta / 2), and h, k are the distances of V from the legs; then
 //!
 //!   t² R² - 2 (a/c - reach) R + |V - B|² - reach² = 0,  R = ((a/c - reach) + sqrt((h - reach) (k - reach)) / c) / t².
 //!
@@ -16,7 +16,8 @@ use crate::base::geometry::{Segment, Vec2, cross};
 use crate::model::sight::ROUNDING;
 use crate::model::{Piece as Surface, Sight};
 
-/// The largest radius up to `limit`, m, for which fillets keep `reach` from all barriers. It is 0 where the corner itself does not.
+/// The largest radius up to `limit`, m, for which fillets keep `reach` from all barriers. It is 0 where the corner
+/// itself does not.
 pub(super) fn largest_radius(corner: &Corner, limit: f64, reach: f64, sight: &Sight) -> f64 {
     let cut = limit * corner.tangent();
     let ends = [corner.at - corner.before * cut, corner.at + corner.after * cut];
@@ -24,7 +25,9 @@ pub(super) fn largest_radius(corner: &Corner, limit: f64, reach: f64, sight: &Si
         ends.iter().fold((corner.at, corner.at), |(low, high), end| (low.inf(end), high.sup(end)));
     let half = 0.5 * (high - low);
     let near = sight.near(low + half, half.x.max(half.y) + reach);
-    near.iter().fold(limit, |radius, surface| radius.min(until(corner, surface, reach)))
+    // No fillet up to the limit leaves the disc of the tangent length around the corner.
+    let near = near.iter().filter(|surface| surface.distance(corner.at) < cut + reach);
+    near.fold(limit, |radius, surface| radius.min(until(corner, surface, reach)))
 }
 
 /// The radius from which on fillets come nearer than `reach` to a surface, m.
@@ -71,7 +74,8 @@ pub(super) fn until_disc(corner: &Corner, v: Vec2, reach: f64) -> f64 {
     }
 }
 
-/// As [`until`], of the places beside an edge that are within reach. Between the legs the ends of the edge are met before them.
+/// As [`until`], of the places beside an edge that are within reach. Between the legs the ends of the edge are met
+/// before them.
 fn until_band(corner: &Corner, edge: &Segment, reach: f64) -> f64 {
     let length = edge.length();
     if length <= 0.0 {

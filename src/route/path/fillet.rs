@@ -1,6 +1,7 @@
 //! The fillet of one corner: the arc that touches both legs.
 //!
-//! With the turning angle delta and the radius R, the arc leaves both legs at R tan(delta / 2) from the corner and is R delta long.
+//! With the turning angle delta and the radius R, the arc leaves both legs at R tan(delta / 2) from the corner and is
+//! R delta long.
 
 use super::piece::{Piece, angle, left};
 use crate::base::geometry::{Vec2, cross};

@@ -2,7 +2,7 @@
 
 use super::piece::{Piece, Place};
 use crate::base::geometry::Vec2;
-use crate::route::Bend;
+use crate::route::way::Bend;
 
 /// Pieces that are shorter, m, are left out.
 const SHORTEST: f64 = 1e-12;
@@ -25,8 +25,8 @@ impl Path {
         Self { start, pieces: Vec::new(), joints: vec![0.0] }
     }
 
-    /// Of pieces, each of which begins where the one before ends. Pieces without length are left out, except turns. A turn is
-    /// inserted where the direction jumps.
+    /// Of pieces, each of which begins where the one before ends. Pieces without length are left out, except turns. A
+    /// turn is inserted where the direction jumps.
     pub fn new(start: Vec2, pieces: impl IntoIterator<Item = Piece>) -> Self {
         let mut path = Self::empty(start);
         for piece in pieces {
@@ -95,8 +95,8 @@ impl Path {
             .map(|((&a, &b), piece)| (a, b, piece))
     }
 
-    /// The place at a distance along it, m, held between 0 and the length. Where two pieces meet, the later one counts. An empty
-    /// path points along +x.
+    /// The place at a distance along it, m, held between 0 and the length. Where two pieces meet, the later one
+    /// counts. An empty path points along +x.
     pub fn at(&self, along: f64) -> Place {
         let k = self.joints.partition_point(|&joint| joint <= along).max(1) - 1;
         let k = k.min(self.pieces.len().saturating_sub(1));
@@ -111,8 +111,8 @@ impl Path {
         self.at(self.length())
     }
 
-    /// The nearest place of it: its distance along the path and its distance from `p`, m. The first of several that are equally
-    /// near.
+    /// The nearest place of it: its distance along the path and its distance from `p`, m. The first of several that
+    /// are equally near.
     pub fn nearest(&self, p: Vec2) -> (f64, f64) {
         self.nearest_within(p, 0.0, self.length())
     }

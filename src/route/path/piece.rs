@@ -64,8 +64,8 @@ pub(super) fn angle(v: Vec2) -> f64 {
     atan2(v.y, v.x)
 }
 
-/// The angle from one direction to another in the sense of `side` (1 to the left, -1 to the right), rad; at least 0 and below a
-/// full turn.
+/// The angle from one direction to another in the sense of `side` (1 to the left, -1 to the right), rad; at least 0
+/// and below a full turn.
 pub(super) fn swept(from: Vec2, to: Vec2, side: f64) -> f64 {
     let turn = atan2(side * cross(from, to), from.dot(&to));
     if turn < 0.0 { turn + TAU } else { turn }
@@ -90,7 +90,8 @@ impl Piece {
         }
     }
 
-    /// The place at a distance along it, m, held between 0 and its length. A turn has the direction in which the path goes on.
+    /// The place at a distance along it, m, held between 0 and its length. A turn has the direction in which the path
+    /// goes on.
     pub fn at(&self, along: f64) -> Place {
         match *self {
             Self::Line { from, to } => {
@@ -122,8 +123,8 @@ impl Piece {
         self.at(self.length())
     }
 
-    /// The nearest place of the part between two distances along it, `low` <= `high`, m: its distance along the piece and its
-    /// distance from `p`, m. The first of several that are equally near.
+    /// The nearest place of the part between two distances along it, `low` <= `high`, m: its distance along the piece
+    /// and its distance from `p`, m. The first of several that are equally near.
     pub fn nearest_within(&self, p: Vec2, low: f64, high: f64) -> (f64, f64) {
         let apart = |along: f64| (along, (self.at(along).position - p).norm());
         match *self {

@@ -1,7 +1,7 @@
 //! Polylines with rounded corners.
 //!
-//! A fillet takes at most half of a leg that leads to another corner, so corners are independent of each other. It may take all of
-//! the first and of the last leg, and of a leg that touches a circle.
+//! A fillet takes at most half of a leg that leads to another corner, so corners are independent of each other. It
+//! may take all of the first and of the last leg, and of a leg that touches a circle.
 
 use super::around::{self, Leg, Stop};
 use super::clearance::largest_radius;
@@ -18,10 +18,11 @@ pub(super) const LEAST_RADIUS: f64 = 0.05;
 
 /// The path along a polyline, m, whose corners are rounded.
 ///
-/// Each radius is the largest one of at most `corner`, m, for which the arc keeps `reach`, m, from all barriers and fits on its
-/// legs. Where nothing of 0.05 m fits, the path turns around the corner of the barrier that is in the way, if that is free; else it
-/// stops and turns at the vertex. Vertices on a straight line and repeated points are left out. If the polyline keeps `reach` from the barriers, so does
-/// the path, up to 1e-9 m. Without points it is empty and lies at the origin.
+/// Each radius is the largest one of at most `corner`, m, for which the arc keeps `reach`, m, from all barriers and
+/// fits on its legs. Where no radius of 0.05 m is free, the path turns around the corner of the barrier that is in the
+/// way, if that is free; else it stops and turns at the vertex. Vertices on a straight line and repeated points are
+/// left out. If the polyline keeps `reach` from the barriers, so does the path, up to 1e-9 m. Without points it is
+/// empty and lies at the origin.
 pub fn round(points: &[Vec2], corner: f64, reach: f64, sight: &Sight) -> Path {
     let rounding = Rounding { corner, reach, sight };
     let mut stops = tidy(points);

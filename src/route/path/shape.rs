@@ -1,4 +1,5 @@
-//! Paths as text: `L10 A45/7 L10 A60/3 L2` is a line of 10 m, an arc of 45 degrees to the left with a radius of 7 m, and so on.
+//! Paths as text: `L10 A45/7 L10 A60/3 L2` is a line of 10 m, an arc of 45 degrees to the left with a radius of 7 m,
+//! and so on.
 
 use super::path::Path;
 use super::piece::{Piece, left, unit};

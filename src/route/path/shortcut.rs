@@ -7,8 +7,8 @@ const MOST_PASSES: usize = 8;
 
 /// Drops inner vertices of a polyline, m, where the line past them is free and the cost of the polyline falls.
 ///
-/// A pass looks at the vertices in order; it drops the first one that helps and goes on with the next. Passes end when one drops
-/// nothing, after eight at the latest. A cost of NaN counts as no improvement.
+/// A pass looks at the vertices in order; it drops the first one that helps and goes on with the next. Passes end
+/// when one drops nothing, after eight at the latest. A cost of NaN counts as no improvement.
 pub fn shortcut(
     points: &[Vec2],
     is_free: impl Fn(Vec2, Vec2) -> bool,

@@ -1,7 +1,7 @@
 //! Pulls a polyline taut around circles.
 //!
-//! Where circles take the place of vertices, the legs move. A leg that then comes too near to another corner of a barrier gets the
-//! circle around that corner as a further stop; a circle that the taut line leaves is dropped.
+//! Where circles take the place of vertices, the legs move. A leg that then comes too near to another corner of a
+//! barrier gets the circle around that corner as a further stop; a circle that the taut line leaves is dropped.
 
 use super::around::{Leg, Stop, arc, discs};
 use crate::base::geometry::{Segment, cross};
@@ -48,7 +48,8 @@ enum Change {
     Fail(usize),
 }
 
-/// A line around stops. Each has the number of the vertex that it came from; a stop that was inserted, that of its neighbour.
+/// A line around stops. Each has the number of the vertex that it came from; a stop that was inserted, that of its
+/// neighbour.
 struct Line<'a> {
     stops: Vec<(Stop, usize)>,
     reach: f64,
@@ -71,7 +72,9 @@ impl Line<'_> {
                 Change::Fail(origin) => return Some(origin),
             }
         }
-        self.stops.iter().find(|(stop, _)| stop.around != 0.0).map(|(_, origin)| *origin)
+        // It does not settle.
+        let circle = self.stops.iter().find(|(stop, _)| stop.around != 0.0);
+        Some(circle.map_or(0, |(_, origin)| *origin))
     }
 
     /// The vertex of a circle at an end of the leg that leads to stop `k`.
