@@ -6,6 +6,7 @@
 pub mod bytes;
 pub mod decimal;
 pub mod dimension;
+pub mod elliptic;
 pub mod fingerprint;
 pub mod geometry;
 pub mod instant;

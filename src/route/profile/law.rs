@@ -1,0 +1,119 @@
+//! Laws of the speed at a knot.
+
+use super::stretch::Infeasible;
+use crate::base::math::{exp, ln};
+use crate::base::special::normal::normal_tails;
+use crate::base::special::normal_quantile;
+
+/// How a varied profile draws the speed at a knot from the interval of legal speeds there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Law {
+    /// A normal speed, cut to the legal interval.
+    Preferred {
+        /// Its mean before the cut, m/s.
+        speed: f64,
+        /// Its standard deviation before the cut, as a share of the mean.
+        spread: f64,
+    },
+    /// A uniform square of the speed. It gives slow walks: the median takes 1.5 to 2 times the least time.
+    Uniform,
+}
+
+impl Law {
+    /// Whether its numbers make sense.
+    pub(super) fn check(self) -> Result<(), Infeasible> {
+        match self {
+            Self::Preferred { speed, spread }
+                if !(speed > 0.0 && speed.is_finite() && spread >= 0.0 && spread.is_finite()) =>
+            {
+                Err(Infeasible::Law { speed, spread })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// A square of the speed in [low, high], m^2/s^2, from a uniform number.
+    pub(super) fn draw(self, (low, high): (f64, f64), uniform: f64) -> f64 {
+        let square = match self {
+            Self::Uniform => low + uniform * (high - low),
+            Self::Preferred { speed, spread } => {
+                let deviation = speed * spread;
+                let [from, to] = [low, high].map(f64::sqrt);
+                let v = if deviation > 0.0 {
+                    let [from, to] = [from, to].map(|v| (v - speed) / deviation);
+                    speed + deviation * cut_normal(from, to, uniform)
+                } else {
+                    speed.max(from).min(to)
+                };
+                v * v
+            }
+        };
+        square.max(low).min(high)
+    }
+}
+
+/// Below this the distribution function of the normal law leaves the range of doubles.
+const FAR: f64 = -37.0;
+
+/// The quantile of a standard normal number cut to [from, to].
+fn cut_normal(from: f64, to: f64, p: f64) -> f64 {
+    // The lower tail has all its digits, the upper one has not.
+    if from + to > 0.0 {
+        return -cut_normal(-to, -from, 1.0 - p);
+    }
+    if to > FAR {
+        let [below, up_to] = [from, to].map(|z| normal_tails(z).lower());
+        return normal_quantile(below + p * (up_to - below));
+    }
+    // So far out z^2 / 2 is an exponential number within a thousandth.
+    let kept = exp(0.5 * (to - from) * (to + from));
+    -(to * to - 2.0 * ln(kept + p * (1.0 - kept))).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ends of intervals: around the mean, beside it, and far out on both sides.
+    const INTERVALS: [(f64, f64); 7] =
+        [(-1.0, 2.0), (0.5, 0.6), (-9.5, -6.0), (7.0, 20.0), (-3.0, 30.0), (-60.0, -45.0), (50.0, 51.0)];
+
+    /// The integral of the density from `from` to `to` relative to its value at the end next to 0, by Simpson's rule.
+    fn mass(from: f64, to: f64, scale: f64) -> f64 {
+        let n = 20_000;
+        let width = (to - from) / f64::from(n);
+        let density = |k: i32| {
+            let z = from + f64::from(k) * width;
+            exp(0.5 * (scale - z * z))
+        };
+        let inner: f64 = (1..n).map(|k| density(k) * if k % 2 == 1 { 4.0 } else { 2.0 }).sum();
+        (density(0) + inner + density(n)) * width / 3.0
+    }
+
+    #[test]
+    fn cut_normal_is_the_quantile() {
+        for (from, to) in INTERVALS {
+            let nearest = 0f64.max(from).min(to);
+            let scale = nearest * nearest;
+            let all = mass(from, to, scale);
+            for p in [1e-3, 0.1, 0.5, 0.9, 0.999] {
+                let z = cut_normal(from, to, p);
+                let tolerance = if nearest.abs() > -FAR { 1e-3 } else { 1e-7 };
+                assert!((mass(from, z, scale) / all - p).abs() < tolerance, "{from} {to} {p}: {z}");
+            }
+        }
+    }
+
+    #[test]
+    fn draws_stay_inside_and_rise_with_the_number() {
+        let laws = [0.0, 0.01, 0.2, 3.0].map(|spread| Law::Preferred { speed: 1.34, spread });
+        for law in laws.into_iter().chain([Law::Uniform]) {
+            for interval in [(0.0, 0.0), (0.01, 0.02), (1e-12, 2.25), (2.0, 100.0), (1.7, 1.7 + 1e-15)] {
+                let drawn: Vec<f64> =
+                    (0..=100).map(|k| law.draw(interval, (f64::from(k) + 0.5) / 101.0)).collect();
+                assert!(drawn.iter().all(|u| (interval.0..=interval.1).contains(u)), "{law:?} {interval:?}");
+                assert!(drawn.windows(2).all(|w| w[0] <= w[1] + 1e-14 * w[1]), "{law:?} {interval:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,6 @@
+//! Profiles against reference values, a dense integration, and the limits themselves.
+
+mod algorithm;
+mod fastest;
+mod shape;
+mod variety;
