@@ -71,7 +71,7 @@ fn ours(study: &Study) -> (f64, f64) {
     let begun = busy(clock);
     let done = run(study, &call, &threads, &Budget::new(100_000_000, None), &Nobody).expect("it runs");
     let result = &done.results[0];
-    (result.steps as f64 / (busy(clock) - begun), result.estimate.unwrap_or(f64::NAN))
+    (result.consumed.steps as f64 / (busy(clock) - begun), result.estimate.unwrap_or(f64::NAN))
 }
 
 /// The same of a plain loop: steps and whether the formula held.

@@ -12,9 +12,13 @@ fn main() -> Result<(), Diagnostics> {
     let queries = include_str!("../properties/corridor.bltl");
     let report = model.check(queries, &Options::default().seed(1).max_trials(200))?;
     for result in report.results() {
-        let name = result.name.as_deref().unwrap_or(&result.query);
+        let name = result.asked.name.as_deref().unwrap_or(&result.asked.text);
         let verdict = result.verdict.map_or("-", |verdict| verdict.name());
-        println!("{name:<14} {:<8} {verdict:<10} {:>5} trials", result.kind.name(), result.counts.trials);
+        println!(
+            "{name:<14} {:<8} {verdict:<10} {:>5} trials",
+            result.asked.kind.name(),
+            result.consumed.counts.trials
+        );
         if let Some(certificate) = &result.certificate {
             let claim = match &certificate.claim {
                 Certified::Decided(claim) => format!("{claim:?}"),

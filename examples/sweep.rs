@@ -31,7 +31,7 @@ fn main() -> Result<(), Diagnostics> {
         let report = model.with("width", width)?.check(QUERIES, &Options::default())?;
         for result in report.results() {
             let estimate = result.estimate.map_or(String::new(), |estimate| format!("{estimate:.4}"));
-            let trials = result.counts.trials;
+            let trials = result.consumed.counts.trials;
             println!("{width},{estimate},{:.4},{:.4},{trials}", result.low, result.high);
         }
     }

@@ -4,7 +4,7 @@
 use smc::compile::{Files, Input, Study, compile};
 use smc::engine::cell::Item;
 use smc::engine::executor::{Cells, Job};
-use smc::engine::outcome::{Failure, QueryResult, Run};
+use smc::engine::outcome::{CallResult, Failure, QueryResult};
 use smc::engine::ranks::{Connection, serve};
 use smc::engine::{Budget, Call, CommandLine, Executor, Fault, Nobody, Ranks, Threads, run};
 use smc::logic::Invalid;
@@ -137,7 +137,7 @@ fn results(study: &Study, executor: &dyn Executor) -> Vec<QueryResult> {
     whole(study, 11, executor).results
 }
 
-fn whole(study: &Study, seed: u64, executor: &dyn Executor) -> Run {
+fn whole(study: &Study, seed: u64, executor: &dyn Executor) -> CallResult {
     let call = Call { seed, ..call() };
     let mut run = run(study, &call, executor, &Budget::new(2_000, None), &Nobody).unwrap();
     for result in &mut run.results {
@@ -157,7 +157,7 @@ fn t16_neither_threads_nor_rounds_nor_sleep_leave_a_trace() {
         let found = results(&study, &restless);
         assert_eq!(found.len(), plain.len());
         for (found, plain) in found.iter().zip(&plain) {
-            assert_eq!(found, plain, "{threads} threads, rounds of {width}: {}", plain.query);
+            assert_eq!(found, plain, "{threads} threads, rounds of {width}: {}", plain.asked.text);
         }
     }
 }
@@ -194,7 +194,7 @@ fn which_results_an_error_of_the_model_leaves_does_not_depend_on_rounds() {
             let Some(Failure::Model(flaw)) = &found.failure else { panic!("{:?}", found.failure) };
             assert!(flaw.moment.starts_with("trial 29 at "), "{}", flaw.moment);
             // Those that stopped later, in the same round or not, would have come to that trial.
-            let left: Vec<u64> = found.results.iter().map(|result| result.counts.trials).collect();
+            let left: Vec<u64> = found.results.iter().map(|result| result.consumed.counts.trials).collect();
             assert_eq!(left, [10, 1, 2], "{threads} threads, rounds of {width}");
         }
     }
@@ -212,7 +212,8 @@ fn a_proof_lets_nobody_else_read_trials_twice() {
         let (with, without) = (whole(&with, seed, &threads), whole(&without, seed, &threads));
         assert!(with.failure.is_some() && without.failure.is_some(), "seed {seed}");
         let checks = with.results.iter().filter(|result| result.verdict.is_some());
-        let said = |result: &QueryResult| (result.query.clone(), result.verdict, result.counts.trials);
+        let said =
+            |result: &QueryResult| (result.asked.text.clone(), result.verdict, result.consumed.counts.trials);
         let (with, without): (Vec<_>, Vec<_>) =
             (checks.map(said).collect(), without.results.iter().map(said).collect());
         assert!(with.len() > 200, "seed {seed}: {}", with.len());
@@ -251,15 +252,15 @@ fn of_several_faulty_paths_the_same_one_is_told() {
 fn every_result_says_what_it_certifies_and_how_to_get_it_again() {
     let (study, _sources) = study(SMALL, QUERIES);
     for result in results(&study, &Threads::new(Some(2)).unwrap()) {
-        let query = &result.query;
+        let query = &result.asked.text;
         assert!(result.certifies.contains("error at most"), "{query}: {}", result.certifies);
         assert!(!result.interval.is_empty() && !result.method.name.is_empty(), "{query}");
-        assert!(result.counts.trials > 0 && result.estimate.is_some(), "{query}");
+        assert!(result.consumed.counts.trials > 0 && result.estimate.is_some(), "{query}");
         let trials = result.replay.rsplit(' ').next().unwrap().parse::<u64>().unwrap();
         let paths = result.rare.map_or(0, |rare| rare.paths);
         // A comparison counts the trials of both sides, its budget pairs.
         let sides = if result.compare.is_some() { 2 } else { 1 };
-        assert_eq!(sides * trials, result.counts.trials + paths, "{query}: {}", result.replay);
+        assert_eq!(sides * trials, result.consumed.counts.trials + paths, "{query}: {}", result.replay);
         assert!(result.low <= result.estimate.unwrap() && result.estimate.unwrap() <= result.high, "{query}");
     }
 }
@@ -327,7 +328,7 @@ fn t16_neither_ranks_nor_their_loss_leave_a_trace() {
         let found = results(&study, &ranks);
         assert_eq!(found.len(), plain.len());
         for (found, plain) in found.iter().zip(&plain) {
-            assert_eq!(found, plain, "ranks that are lost after {lost:?}: {}", plain.query);
+            assert_eq!(found, plain, "ranks that are lost after {lost:?}: {}", plain.asked.text);
         }
         let (traffic, gone) = (ranks.traffic(), lost.iter().filter(|lost| **lost != never).count());
         assert!(traffic.leases >= 9, "{lost:?}: {traffic:?}, {:?}", ranks.warnings());

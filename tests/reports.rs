@@ -1,13 +1,18 @@
 //! Every report format over one rich run.
 
 use smc::engine::outcome::{
-    Comparison, Counts, Decider, Distribution, Failure, Histogram, Interval, Kind, Method, Quantile,
-    QueryResult, RankedOption, Ranking, Run, Shows, Side, Status, Step, Stop, Verdict, Witness,
+    AskedQuery, CallResult, Comparison, ConsumedTrials, Counts, Decider, Distribution, Failure, Histogram,
+    Interval, Kind, Method, Quantile, QueryResult, RankedOption, Ranking, Shows, Side, Status, Step, Stop,
+    Verdict, Witness,
 };
 use smc::report::{ExitCode, Format, Palette, exit_code, json, render};
 
 fn counts(successes: u64, failures: u64, unresolved: u64) -> Counts {
     Counts { trials: successes + failures + unresolved, successes, failures, unresolved }
+}
+
+fn consumed(counts: Counts) -> ConsumedTrials {
+    ConsumedTrials { counts, steps: 29_117, ..ConsumedTrials::default() }
 }
 
 fn value(estimate: f64, low: f64, high: f64) -> Interval {
@@ -18,14 +23,16 @@ fn method(name: &str, numbers: &[(&str, f64)]) -> Method {
     Method { name: name.into(), numbers: numbers.iter().map(|&(n, v)| (n.to_owned(), v)).collect() }
 }
 
-fn result(index: usize, kind: Kind, query: &str) -> QueryResult {
+fn asked(index: usize, kind: Kind, query: &str) -> AskedQuery {
+    AskedQuery { file: "corridor.bltl".into(), line: 10 + index, ..AskedQuery::new(index, kind, query) }
+}
+
+fn result(asked: AskedQuery) -> QueryResult {
     QueryResult {
-        file: "corridor.bltl".into(),
-        line: 10 + index,
-        replay: format!("smc check corridor.scn corridor.bltl --seed 7 --only {index}"),
+        replay: format!("smc check corridor.scn corridor.bltl --seed 7 --only {}", asked.index),
         elapsed_s: 0.021,
-        steps: 29_117,
-        ..QueryResult::new(index, kind, query)
+        consumed: consumed(Counts::default()),
+        ..QueryResult::new(asked)
     }
 }
 
@@ -33,7 +40,6 @@ fn checks() -> Vec<QueryResult> {
     let safe = "check P(safe) >= 0.5 by sprt(alpha = 0.01,\n    beta = 0.01, indifference = 0.02)";
     vec![
         QueryResult {
-            name: Some("safe".into()),
             verdict: Some(Verdict::Satisfied),
             certifies: "P(safe) > 0.48, error at most 0.01".into(),
             estimate: Some(0.939_393_94),
@@ -44,7 +50,7 @@ fn checks() -> Vec<QueryResult> {
                 "sprt",
                 &[("alpha", 0.01), ("beta", 0.01), ("theta", 0.5), ("indifference", 0.02)],
             ),
-            counts: counts(62, 4, 0),
+            consumed: consumed(counts(62, 4, 0)),
             stopped_by: Stop::Boundary,
             witnesses: vec![Witness {
                 shows: Shows::Fails,
@@ -64,51 +70,57 @@ fn checks() -> Vec<QueryResult> {
                 }),
                 command: "smc simulate corridor.scn --seed 7 --trial 17".into(),
             }],
-            ..result(0, Kind::Check, safe)
+            ..result(AskedQuery { name: Some("safe".into()), ..asked(0, Kind::Check, safe) })
         },
         QueryResult {
-            name: Some("arrives".into()),
             verdict: Some(Verdict::Violated),
             certifies: "P(arrives) < 0.3, error at most 0.01".into(),
-            horizon: Some("30 s".into()),
             estimate: Some(0.0),
             low: 0.0,
             high: 0.066_1,
             interval: "time-uniform, 95 %".into(),
             method: method("mixture", &[("theta", 0.3), ("alpha", 0.01)]),
-            counts: counts(0, 88, 0),
+            consumed: consumed(counts(0, 88, 0)),
             stopped_by: Stop::Boundary,
             warnings: vec!["never true in any trial: is the goal reachable?".into()],
-            ..result(1, Kind::Check, "check P(arrives) >= 0.3")
+            ..result(AskedQuery {
+                name: Some("arrives".into()),
+                horizon: Some("30 s".into()),
+                ..asked(1, Kind::Check, "check P(arrives) >= 0.3")
+            })
         },
         QueryResult {
-            name: Some("brief".into()),
             verdict: Some(Verdict::Undecided),
             estimate: Some(0.900_12),
             low: 0.899_5,
             high: 0.900_7,
             interval: "time-uniform, 95 %".into(),
             method: method("mixture", &[("theta", 0.9), ("alpha", 0.01)]),
-            counts: counts(900_119, 99_876, 5),
+            consumed: consumed(counts(900_119, 99_876, 5)),
             stopped_by: Stop::Cap,
             elapsed_s: 128.4,
-            ..result(2, Kind::Check, "check P(brief) >= 0.9")
+            ..result(AskedQuery {
+                name: Some("brief".into()),
+                ..asked(2, Kind::Check, "check P(brief) >= 0.9")
+            })
         },
     ]
 }
 
 fn estimates() -> Vec<QueryResult> {
     let sweep = |density: &str, successes, failures, estimate, low, high| QueryResult {
-        settings: vec![("density".into(), density.into())],
         certifies: "the interval holds with confidence 95 %".into(),
         estimate: Some(estimate),
         low,
         high,
         interval: "calibrated sequential, 95 %".into(),
         method: method("calibrated", &[("epsilon", 0.01), ("delta", 0.05)]),
-        counts: counts(successes, failures, 0),
+        consumed: consumed(counts(successes, failures, 0)),
         stopped_by: Stop::Width,
-        ..result(3, Kind::Estimate, "estimate P(safe) within 0.01 confidence 95 %")
+        ..result(AskedQuery {
+            settings: vec![("density".into(), density.into())],
+            ..asked(3, Kind::Estimate, "estimate P(safe) within 0.01 confidence 95 %")
+        })
     };
     vec![
         sweep("0.2 /m^2", 2_228, 112, 0.952_1, 0.943_2, 0.961_0),
@@ -121,9 +133,11 @@ fn estimates() -> Vec<QueryResult> {
             interval: "time-uniform, 95 %".into(),
             certifies: "the interval holds with confidence 95 %".into(),
             method: method("betting", &[("delta", 0.05)]),
-            counts: Counts { trials: 1_000, unresolved: 2, ..Counts::default() },
-            clipped: 3,
-            shrunk: 40,
+            consumed: ConsumedTrials {
+                clipped: 3,
+                shrunk: 40,
+                ..consumed(Counts { trials: 1_000, unresolved: 2, ..Counts::default() })
+            },
             warnings: vec![
                 "radii of bodies that overlapped at the start were reduced in 40 trials; in trial 3: `user` at the wall `south` \
                  from a radius of 0.3 m to 0.2 m"
@@ -142,7 +156,7 @@ fn estimates() -> Vec<QueryResult> {
                 empirical: vec![Step { value: -0.2, share: 0.5 }, Step { value: 1.4, share: 1.0 }],
                 band: Some(0.042_95),
             }),
-            ..result(4, Kind::Estimate, "estimate E(min<=10 s (gap(a))) in -0.5 m .. 20 m")
+            ..result(asked(4, Kind::Estimate, "estimate E(min<=10 s (gap(a))) in -0.5 m .. 20 m"))
         },
         QueryResult {
             estimate: Some(f64::INFINITY),
@@ -152,9 +166,8 @@ fn estimates() -> Vec<QueryResult> {
             unit: "s".into(),
             interval: "order statistics, 95 %".into(),
             certifies: "the interval holds with confidence 95 %".into(),
-            horizon: Some("30 s".into()),
             method: method("order-statistics", &[("level", 0.95), ("trials", 1000.0)]),
-            counts: Counts { trials: 1_000, ..Counts::default() },
+            consumed: consumed(Counts { trials: 1_000, ..Counts::default() }),
             distribution: Some(Distribution {
                 histogram: None,
                 quantiles: vec![
@@ -163,7 +176,10 @@ fn estimates() -> Vec<QueryResult> {
                 ],
                 ..Distribution::default()
             }),
-            ..result(5, Kind::Estimate, "estimate Q(0.95, time_until(user in exit))")
+            ..result(AskedQuery {
+                horizon: Some("30 s".into()),
+                ..asked(5, Kind::Estimate, "estimate Q(0.95, time_until(user in exit))")
+            })
         },
     ]
 }
@@ -177,7 +193,7 @@ fn compare() -> QueryResult {
         certifies: "the difference lies in the interval with confidence 95 %".into(),
         interval: "time-uniform, 95 %, common random numbers".into(),
         method: method("paired", &[("delta", 0.05)]),
-        counts: counts(3_293, 906, 1),
+        consumed: consumed(counts(3_293, 906, 1)),
         stopped_by: Stop::Width,
         compare: Some(Comparison {
             first: side("density = 0.2 /m^2", value(0.952, 0.936, 0.965), counts(2_000, 100, 0)),
@@ -188,7 +204,7 @@ fn compare() -> QueryResult {
                 Counts { trials: 2_100, ..counts(780, 73, 1) },
             ),
         }),
-        ..result(6, Kind::Compare, "compare P(safe) under density = 0.2 /m^2 with density = 0.8 /m^2")
+        ..result(asked(6, Kind::Compare, "compare P(safe) under density = 0.2 /m^2 with density = 0.8 /m^2"))
     }
 }
 
@@ -207,7 +223,7 @@ fn rank() -> QueryResult {
         certifies: "heading 15 deg is within 0.02 of the best, confidence 95 %".into(),
         interval: "time-uniform, 95 %, common random numbers".into(),
         method: method("paired-betting", &[("epsilon", 0.02), ("delta", 0.05)]),
-        counts: counts(2_700, 500, 0),
+        consumed: consumed(counts(2_700, 500, 0)),
         stopped_by: Stop::Width,
         rank: Some(Ranking {
             choice: Some("heading 15 deg".into()),
@@ -220,24 +236,24 @@ fn rank() -> QueryResult {
                 option("stop", value(0.0, 0.0, 0.041), counts(0, 128, 0), Status::Beaten),
             ],
         }),
-        ..result(7, Kind::Rank, "rank moves of user by P(safe) within 0.02 confidence 95 %")
+        ..result(asked(7, Kind::Rank, "rank moves of user by P(safe) within 0.02 confidence 95 %"))
     }
 }
 
-fn run() -> Run {
+fn run() -> CallResult {
     let mut results = checks();
     results.extend(estimates());
     results.extend([compare(), rank()]);
-    Run {
+    CallResult {
         scenario: "Corridor with an oncoming crowd".into(),
         seed: 7,
         version: "0.1.0".into(),
-        trials: results.iter().map(|result| result.counts.trials).sum(),
+        trials: results.iter().map(|result| result.consumed.counts.trials).sum(),
         results,
         warnings: vec!["param width is never used".into()],
         replay: "smc check corridor.scn corridor.bltl --seed 7 --set 'density=0.2..0.8 by 0.6'".into(),
         elapsed_s: 130.2,
-        ..Run::default()
+        ..CallResult::default()
     }
 }
 
@@ -259,19 +275,19 @@ fn text_in_colour_says_the_same() {
 
 #[test]
 fn text_of_a_run_that_ended_early() {
-    let mut run = Run { interrupted: true, warnings: vec![], ..run() };
+    let mut run = CallResult { interrupted: true, warnings: vec![], ..run() };
     run.results.truncate(1);
-    run.trials = run.results[0].counts.trials;
+    run.trials = run.results[0].consumed.counts.trials;
     run.results[0].stopped_by = Stop::Interrupt;
     run.failure = Some(Failure::Input("trial 12: two commands of `die` are enabled, s = 3".into()));
     insta::assert_snapshot!(render(&run, Format::Text, Palette::PLAIN));
     assert_eq!(exit_code(&run), ExitCode::Wrong);
-    assert_eq!(exit_code(&Run { failure: None, ..run }).code(), 130);
+    assert_eq!(exit_code(&CallResult { failure: None, ..run }).code(), 130);
 }
 
 #[test]
 fn text_ends_with_the_replay_line_even_without_results() {
-    let empty = Run { replay: "smc check a b".into(), ..Run::default() };
+    let empty = CallResult { replay: "smc check a b".into(), ..CallResult::default() };
     assert_eq!(
         render(&empty, Format::Text, Palette::PLAIN),
         "no results; 0 trials in 0 µs\nreplay: smc check a b\n"
@@ -374,13 +390,15 @@ fn junit() {
 /// A sweep comes point by point, with the queries of all files at each.
 #[test]
 fn junit_has_one_suite_for_each_file_of_a_sweep() {
-    let at = |index: usize, p: &str| QueryResult {
-        file: ["a.bltl", "b.bltl"][index].into(),
-        settings: vec![("p".into(), p.into())],
-        ..result(index, Kind::Estimate, "estimate P(safe)")
+    let at = |index: usize, p: &str| {
+        result(AskedQuery {
+            file: ["a.bltl", "b.bltl"][index].into(),
+            settings: vec![("p".into(), p.into())],
+            ..asked(index, Kind::Estimate, "estimate P(safe)")
+        })
     };
     let results = vec![at(0, "0.2"), at(1, "0.2"), at(0, "0.5"), at(1, "0.5")];
-    let text = render(&Run { results, ..Run::default() }, Format::Junit, Palette::PLAIN);
+    let text = render(&CallResult { results, ..CallResult::default() }, Format::Junit, Palette::PLAIN);
     let suites: Vec<&str> = text.lines().filter(|line| line.contains("<testsuite ")).collect();
     assert_eq!(suites.len(), 2, "{text}");
     for (suite, name) in suites.iter().zip(["a.bltl", "b.bltl"]) {
@@ -395,9 +413,9 @@ fn what_lies_above_a_histogram_has_one_name() {
         let histogram = Histogram { low: 0.0, high: 1.0, counts: vec![1, 2], below: 17, beyond: 349 };
         let results = vec![QueryResult {
             distribution: Some(Distribution { histogram: Some(histogram), ..Distribution::default() }),
-            ..result(0, Kind::Estimate, query)
+            ..result(asked(0, Kind::Estimate, query))
         }];
-        let run = Run { results, ..Run::default() };
+        let run = CallResult { results, ..CallResult::default() };
         for format in [Format::Text, Format::Html] {
             let text = render(&run, format, Palette::PLAIN);
             assert!(text.contains(&format!("349 {word}")), "{text}");
@@ -411,7 +429,7 @@ fn what_lies_above_a_histogram_has_one_name() {
 
 #[test]
 fn junit_is_red_where_the_run_failed() {
-    let failed = Run { failure: Some(Failure::Bug("\u{0}<&>".into())), ..Run::default() };
+    let failed = CallResult { failure: Some(Failure::Bug("\u{0}<&>".into())), ..CallResult::default() };
     let text = render(&failed, Format::Junit, Palette::PLAIN);
     assert!(text.contains("errors=\"1\"") && text.contains("&lt;&amp;&gt;"), "{text}");
 }

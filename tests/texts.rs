@@ -1,7 +1,7 @@
 //! Two texts compiled and run in one go.
 
 use smc::compile::{Files, Input, Study, compile};
-use smc::engine::outcome::Run;
+use smc::engine::outcome::CallResult;
 use smc::engine::{Budget, Call, CommandLine, Nobody, Threads};
 use smc::syntax::diagnostic::Severity;
 use smc::syntax::parse::{parse_properties, parse_scenario};
@@ -30,7 +30,7 @@ pub(crate) fn compiled(scenario: &str, properties: &str) -> Result<Study, String
 }
 
 /// Runs a study with a seed and at most so many trials of a query.
-pub(crate) fn answered(study: &Study, seed: u64, threads: usize, most: u64) -> Run {
+pub(crate) fn answered(study: &Study, seed: u64, threads: usize, most: u64) -> CallResult {
     let call = Call {
         seed,
         line: CommandLine { scenario: "model.scn".to_owned(), ..CommandLine::default() },

@@ -63,7 +63,10 @@ fn a_leg_counts_only_with_the_next_goal_in_sight() {
             agents crowd[100]: person {{ at = uniform in rect (0.3, 0.3) .. (9.7, 9.7)  route = (10, 5) -> behind then leave }}"
         );
         let model = Model::parse(&text).unwrap_or_else(|errors| panic!("{errors}"));
-        one(&model, "estimate P(F<=120 s (count(a in crowd) == 0)) by fixed(trials = 20)").counts.successes
+        one(&model, "estimate P(F<=120 s (count(a in crowd) == 0)) by fixed(trials = 20)")
+            .consumed
+            .counts
+            .successes
     };
     assert_eq!(left(""), 20);
     assert!(left("wayfinding = straight") < 18, "the old rule leaves some of them in the room");
@@ -165,14 +168,14 @@ fn trials_without_a_way_are_counted_and_the_first_is_named() {
     );
     let model = Draft::new("locked.scn", text.clone()).parse().unwrap();
     let result = one(&model, "estimate P(F<=4 s (distance(me, (5, 5)) < 0.6 m)) by fixed(trials = 64)");
-    assert!((16..48).contains(&result.no_way), "{}", result.no_way);
-    assert_eq!(result.counts.trials, 64);
+    assert!((16..48).contains(&result.consumed.no_way), "{}", result.consumed.no_way);
+    assert_eq!(result.consumed.counts.trials, 64);
     let place = crate::program::Place::new(&[
         ("locked.scn", text.as_str()),
         ("near.bltl", "estimate P(F<=4 s (distance(me, (5, 5)) < 0.6 m)) by fixed(trials = 64)"),
     ]);
     let said = place.call(&["check", "locked.scn", "near.bltl", "--format", "json"]).json();
-    assert_eq!(said["results"][0]["no_way"], result.no_way);
+    assert_eq!(said["results"][0]["no_way"], result.consumed.no_way);
     assert!(
         result.warnings.iter().any(|w| w.starts_with("somebody had no way to a goal in ")),
         "{:?}",

@@ -11,7 +11,7 @@ use crate::base::fingerprint::Fingerprint;
 use crate::base::visible::visible;
 use crate::compile::Study;
 use crate::engine::budget::DEFAULT_TRIALS;
-use crate::engine::outcome::{Failure, Finding, Run};
+use crate::engine::outcome::{CallResult, Failure, Finding};
 use crate::engine::{
     Budget, Call, CallForecast, CommandLine, Fault, Ranks, Threads, forecast, run as run_study,
 };
@@ -209,7 +209,7 @@ impl Reporter<'_> {
 
     /// A report of a run that never began, in formats for machines; people have read it already.
     fn hand_out(self, reason: String) -> Exit {
-        let run = Run {
+        let run = CallResult {
             scenario: self.arguments.model.scenario.clone(),
             seed: self.arguments.seed,
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -217,7 +217,7 @@ impl Reporter<'_> {
             diagnostics: self.findings,
             failure: Some(Failure::Input(reason)),
             replay: format!("{} --seed {}", line(self.arguments).check(), self.arguments.seed),
-            ..Run::default()
+            ..CallResult::default()
         };
         if self.arguments.format != OutputFormat::Text
             && let Err(reason) = print(&report::render(&run, format(self.arguments.format), Palette::PLAIN))
@@ -229,14 +229,14 @@ impl Reporter<'_> {
     }
 
     /// Prints the results of a run.
-    fn finish(mut self, run: Run) -> Exit {
+    fn finish(mut self, run: CallResult) -> Exit {
         self.deadline.enter(Phase::Printing);
         let broken = match &run.failure {
             Some(Failure::Model(flaw)) => Some(library::of_model(flaw)),
             _ => None,
         };
         self.findings.extend(inputs::findings(broken.as_slice(), self.sources));
-        let run = Run { inputs: self.prints, diagnostics: self.findings, ..run };
+        let run = CallResult { inputs: self.prints, diagnostics: self.findings, ..run };
         let palette = if self.colors.out { Palette::ANSI } else { Palette::PLAIN };
         let mut exit = report::exit_code(&run);
         if let Err(reason) = print(&report::render(&run, format(self.arguments.format), palette)) {
@@ -252,12 +252,12 @@ impl Reporter<'_> {
 
 /// Reports that a call ended before its first trial, on standard error and in formats for machines.
 fn ender(arguments: &Check, colors: Colors) -> impl Fn(Ended) -> Exit + Clone + Send + 'static {
-    let run = Run {
+    let run = CallResult {
         scenario: arguments.model.scenario.clone(),
         seed: arguments.seed,
         version: env!("CARGO_PKG_VERSION").to_owned(),
         replay: format!("{} --seed {}", line(arguments).check(), arguments.seed),
-        ..Run::default()
+        ..CallResult::default()
     };
     let chosen = arguments.format;
     move |ended| {
@@ -284,11 +284,11 @@ fn ender(arguments: &Check, colors: Colors) -> impl Fn(Ended) -> Exit + Clone + 
 /// A report of a call whose command line cannot be understood, in formats for machines.
 pub(super) fn misused(chosen: OutputFormat, message: &str) {
     let error = Diagnostic::placeless(Code::E0705, message);
-    let run = Run {
+    let run = CallResult {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         diagnostics: inputs::findings(&[error], &[]),
         failure: Some(Failure::Input(message.to_owned())),
-        ..Run::default()
+        ..CallResult::default()
     };
     for_machines(chosen, &run);
 }
@@ -296,10 +296,13 @@ pub(super) fn misused(chosen: OutputFormat, message: &str) {
 /// A report of a call that ended without results, in formats for machines.
 pub(super) fn without_results(chosen: OutputFormat, scenario: String, seed: u64, failure: Failure) {
     let version = env!("CARGO_PKG_VERSION").to_owned();
-    for_machines(chosen, &Run { scenario, seed, version, failure: Some(failure), ..Run::default() });
+    for_machines(
+        chosen,
+        &CallResult { scenario, seed, version, failure: Some(failure), ..CallResult::default() },
+    );
 }
 
-fn for_machines(chosen: OutputFormat, run: &Run) {
+fn for_machines(chosen: OutputFormat, run: &CallResult) {
     if chosen != OutputFormat::Text {
         let _ = print(&report::render(run, format(chosen), Palette::PLAIN));
     }
@@ -315,7 +318,7 @@ const fn format(chosen: OutputFormat) -> Format {
 }
 
 /// Writes the page that was asked for, if one was.
-fn page(path: Option<&Path>, run: &Run, colors: Colors) -> Exit {
+fn page(path: Option<&Path>, run: &CallResult, colors: Colors) -> Exit {
     let Some(path) = path else { return Exit::Success };
     let text = report::render(run, Format::Html, Palette::PLAIN);
     let Err(error) = output::write(path, |out| out.write_all(text.as_bytes())) else { return Exit::Success };

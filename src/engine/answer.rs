@@ -9,7 +9,9 @@ use super::estimate::{EstimateEntry, EstimateSampling};
 use super::executor::Executor;
 use super::fault::Fault;
 use super::method;
-use super::outcome::{Certificate, Certified, Counts, Kind, QueryResult, Shows, Stop, Verdict, Witness};
+use super::outcome::{
+    AskedQuery, Certificate, Certified, Counts, Kind, QueryResult, Shows, Stop, Verdict, Witness,
+};
 use super::prepared::PreparedWorld;
 use super::rank::RankSampling;
 use super::tables;
@@ -63,16 +65,15 @@ impl Answers<'_> {
     pub(super) fn blank(&self, query: &Query, kind: Kind) -> QueryResult {
         let (file, line) = (self.call.place)(query.span);
         let (low, high) = legal(&query.ask);
-        QueryResult {
-            low,
-            high,
+        let asked = AskedQuery {
             name: query.name.clone(),
             file,
             line,
             settings: query.settings.clone(),
             horizon: query.horizon.clone(),
-            ..QueryResult::new(query.index, kind, query.text.clone())
-        }
+            ..AskedQuery::new(query.index, kind, query.text.clone())
+        };
+        QueryResult { low, high, ..QueryResult::new(asked) }
     }
 
     /// The call that stops at the same trial; `limit` is the option that counts them.
@@ -214,16 +215,12 @@ impl Answers<'_> {
         picks: &[(Shows, u64)],
     ) -> Vec<Witness> {
         let calls = (self.call, self.budget);
-        witness::find(prepared, column, None, picks, calls, &result.settings, &result.unit)
+        witness::find(prepared, column, None, picks, calls, &result.asked.settings, &result.unit)
     }
 
     /// Counts, and what they warn of.
     pub(super) fn tell(result: &mut QueryResult, prepared: &PreparedWorld, tally: &Tally, column: usize) {
-        result.counts = tally.counts;
-        result.steps = tally.steps;
-        result.clipped = tally.clipped;
-        result.shrunk = tally.shrunk.trials;
-        result.no_way = tally.no_way.trials;
+        result.consumed = tally.consumed();
         let Ok(implications) = prepared.implications(column) else { return };
         // Of a trial that is not resolved nobody knows what the rest of it would have been.
         let resolved = tally.counts.trials - tally.counts.unresolved;
@@ -266,10 +263,10 @@ impl Answers<'_> {
                 .map(|(prepared, index)| (prepared, TrialKey { seed: self.call.seed, index, branch: 0 }))
         };
         if let Some((prepared, key)) = first(&|tally| tally.shrunk.first) {
-            result.warnings.push(cause::smaller(&prepared.program, key, result.shrunk));
+            result.warnings.push(cause::smaller(&prepared.program, key, result.consumed.shrunk));
         }
         if let Some((prepared, key)) = first(&|tally| tally.no_way.first) {
-            result.warnings.push(cause::stranded(&prepared.program, key, result.no_way));
+            result.warnings.push(cause::stranded(&prepared.program, key, result.consumed.no_way));
         }
     }
 
@@ -281,7 +278,7 @@ impl Answers<'_> {
         tally: &Tally,
         column: usize,
     ) {
-        let settings = result.settings.clone();
+        let settings = result.asked.settings.clone();
         let item = |index| Item { advice: None, index };
         let first = tally.first[2].map(|index| First { prepared, column, item: item(index), settings });
         self.lament(result, tally.counts.unresolved, first.as_ref());
@@ -289,7 +286,7 @@ impl Answers<'_> {
 
     /// Says how many trials are unresolved, why the first of them is, and how to look at it.
     pub(super) fn lament(&self, result: &mut QueryResult, unresolved: u64, first: Option<&First<'_>>) {
-        let counts = Counts { unresolved, ..result.counts };
+        let counts = Counts { unresolved, ..result.consumed.counts };
         if unresolved == 0 {
             return;
         }
@@ -342,12 +339,12 @@ impl Answers<'_> {
         }
         result.stopped_by = gap.stop;
         result.replay = self.replay(query, MAX_TRIALS, gap.pairs);
-        let joined = total(&gap.sides);
+        let joined = Tally::total(&gap.sides);
         Self::tell(&mut result, prepared, &joined, first.target.column);
         self.note_odd(&mut result, &[(worlds[0], &gap.sides[0]), (worlds[1], &gap.sides[1])]);
         let lost = (0..2).find_map(|side| {
             let index = gap.sides[side].first[2]?;
-            let settings = result.settings.iter().chain(&settings[side]).cloned().collect();
+            let settings = result.asked.settings.iter().chain(&settings[side]).cloned().collect();
             let (prepared, column) = (worlds[side], [first, second][side].target.column);
             Some(First { prepared, column, item: Item { advice: None, index }, settings })
         });
@@ -392,13 +389,13 @@ impl Answers<'_> {
         result.method = method::of(&query.ask, None);
         result.unit = unit(measure);
         result.stopped_by = ranked.stop;
-        let joined = total(&ranked.tallies);
+        let joined = Tally::total(&ranked.tallies);
         result.replay = self.replay(query, "--total-trials", joined.counts.trials);
         Self::tell(&mut result, setup.worlds[0], &joined, measure.target.column);
         let tallies: Vec<_> = setup.worlds.iter().copied().zip(&ranked.tallies).collect();
         self.note_odd(&mut result, &tallies);
         // Of several values of a parameter the last one holds: that of the option.
-        let settings = |arm: usize| [result.settings.as_slice(), &options[arm].settings].concat();
+        let settings = |arm: usize| [result.asked.settings.as_slice(), &options[arm].settings].concat();
         let lost = ranked.tallies.iter().enumerate().find_map(|(arm, tally)| {
             let item = setup.item(arm, tally.first[2]?);
             let column = options[arm].target.column;
@@ -479,20 +476,4 @@ fn measured_words(query: &Query, measure: &Measure, clipped: u64) -> String {
             if clipped == 0 { said.clone() } else { words::clipped(said, *range, &dimension.to_string()) }
         }
     }
-}
-
-fn total(tallies: &[Tally]) -> Tally {
-    let mut sum = Tally::default();
-    for tally in tallies {
-        sum.counts.trials += tally.counts.trials;
-        sum.counts.successes += tally.counts.successes;
-        sum.counts.failures += tally.counts.failures;
-        sum.counts.unresolved += tally.counts.unresolved;
-        sum.steps += tally.steps;
-        sum.clipped += tally.clipped;
-        sum.shrunk.trials += tally.shrunk.trials;
-        sum.no_way.trials += tally.no_way.trials;
-        sum.triggered |= tally.triggered;
-    }
-    sum
 }

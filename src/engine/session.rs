@@ -9,7 +9,7 @@ use super::executor::Executor;
 use super::fault::{Fault, MOST_VALUES};
 use super::flaw::Flaw;
 use super::forecast::PilotStatistics;
-use super::outcome::{Failure, QueryResult, Run, Stop};
+use super::outcome::{CallResult, Failure, QueryResult, Stop};
 use super::placement::all_placeable;
 use super::prepared::PreparedWorld;
 use super::procedure::Procedure;
@@ -33,7 +33,7 @@ pub fn run(
     executor: &dyn Executor,
     budget: &Budget,
     watch: &dyn Watch,
-) -> Result<Run, Fault> {
+) -> Result<CallResult, Fault> {
     let asked = asked(study, call);
     let worlds = prepare(study, &asked, call)?;
     let session = Session { call, budget, worlds: &worlds };
@@ -93,7 +93,7 @@ pub fn run(
     watch.finished();
     let trials = consumed(&asked, &results);
     let results: Vec<QueryResult> = results.into_iter().flatten().collect();
-    Ok(Run {
+    Ok(CallResult {
         scenario: if study.title.is_empty() { call.line.scenario.clone() } else { study.title.clone() },
         seed: call.seed,
         version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -114,7 +114,7 @@ fn consumed(asked: &[&Query], results: &[Option<QueryResult>]) -> u64 {
     let mut shared = BTreeMap::new();
     let mut alone = 0;
     for (query, result) in asked.iter().zip(results) {
-        let trials = result.as_ref().map_or(0, |result| result.counts.trials);
+        let trials = result.as_ref().map_or(0, |result| result.consumed.counts.trials);
         match estimated(&query.ask) {
             Some(world) => {
                 let most: &mut u64 = shared.entry(world).or_default();

@@ -1,7 +1,7 @@
 //! What was consumed for one query, besides what its procedure keeps.
 
 use super::cell::{Cell, Reading};
-use super::outcome::Counts;
+use super::outcome::{ConsumedTrials, Counts};
 
 /// Trials of which something is noted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -127,6 +127,34 @@ impl Tally {
             }
         };
         self.first[place].get_or_insert(index);
+    }
+
+    /// The counts that a result shows.
+    pub(super) const fn consumed(&self) -> ConsumedTrials {
+        ConsumedTrials {
+            counts: self.counts,
+            clipped: self.clipped,
+            shrunk: self.shrunk.trials,
+            no_way: self.no_way.trials,
+            steps: self.steps,
+        }
+    }
+
+    /// Sums of several tallies; indices of trials, which belong to one of them, are left out.
+    pub(super) fn total(tallies: &[Self]) -> Self {
+        let mut sum = Self::default();
+        for tally in tallies {
+            sum.counts.trials += tally.counts.trials;
+            sum.counts.successes += tally.counts.successes;
+            sum.counts.failures += tally.counts.failures;
+            sum.counts.unresolved += tally.counts.unresolved;
+            sum.steps += tally.steps;
+            sum.clipped += tally.clipped;
+            sum.shrunk.trials += tally.shrunk.trials;
+            sum.no_way.trials += tally.no_way.trials;
+            sum.triggered |= tally.triggered;
+        }
+        sum
     }
 }
 

@@ -9,7 +9,7 @@ use super::trial::Trial;
 use super::ways::{is_refused, survey};
 use crate::base::random::TrialKey;
 use crate::compile::Study;
-use crate::engine::outcome::Run;
+use crate::engine::outcome::CallResult;
 use crate::engine::{Call, CommandLine, Nobody, no_start, placeable, run};
 use crate::kernel::driver::{Drivers, MakeDrivers};
 use crate::kernel::{Address, Program};
@@ -199,7 +199,7 @@ impl Model {
         let call = Call { seed: options.seed, line, only, place: &place, drivers };
         let threads = options.executor().map_err(|fault| wrong(vec![refusal(&fault)]))?;
         let outcome = run(&study, &call, &threads, &options.budget(), &Nobody);
-        let run: Run = outcome.map_err(|fault| wrong(refusals(&fault)))?;
+        let run: CallResult = outcome.map_err(|fault| wrong(refusals(&fault)))?;
         let all = warnings.iter().cloned().chain(doubts).collect();
         Ok(Report::new(run, Diagnostics::new(all, sources.clone())))
     }

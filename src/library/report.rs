@@ -1,18 +1,18 @@
 //! What a check has found.
 
 use super::diagnostics::Diagnostics;
-use crate::engine::outcome::{QueryResult, Run, Verdict};
+use crate::engine::outcome::{CallResult, QueryResult, Verdict};
 use crate::report::{ExitCode, Format, Palette, exit_code, render};
 
 /// The results of a check.
 #[derive(Clone, Debug)]
 pub struct Report {
-    run: Run,
+    run: CallResult,
     warnings: Diagnostics,
 }
 
 impl Report {
-    pub(super) fn new(run: Run, warnings: Diagnostics) -> Self {
+    pub(super) fn new(run: CallResult, warnings: Diagnostics) -> Self {
         Self { run, warnings }
     }
 
@@ -42,7 +42,7 @@ impl Report {
     }
 
     /// Everything that the run has computed, with what ended it early.
-    pub fn run(&self) -> &Run {
+    pub fn run(&self) -> &CallResult {
         &self.run
     }
 

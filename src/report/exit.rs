@@ -1,6 +1,6 @@
 //! Exit codes of the program.
 
-use crate::engine::outcome::{Failure, Run, Verdict};
+use crate::engine::outcome::{CallResult, Failure, Verdict};
 
 /// The exit code of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,7 +43,7 @@ impl ExitCode {
 }
 
 /// The exit code of a run. Only a `check` can make it 1 or 3, and only another query 4.
-pub fn exit_code(run: &Run) -> ExitCode {
+pub fn exit_code(run: &CallResult) -> ExitCode {
     let start = match &run.failure {
         Some(Failure::Bug(_)) => ExitCode::Bug,
         Some(Failure::Input(_) | Failure::Model(_)) => ExitCode::Wrong,
@@ -64,14 +64,17 @@ pub fn exit_code(run: &Run) -> ExitCode {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::outcome::{Kind, QueryResult, Stop};
+    use crate::engine::outcome::{AskedQuery, Kind, QueryResult, Stop};
 
     fn run(verdicts: &[Option<Verdict>], interrupted: bool, failure: Option<Failure>) -> u8 {
         let results = verdicts
             .iter()
-            .map(|&verdict| QueryResult { verdict, ..QueryResult::new(0, Kind::Check, "check") })
+            .map(|&verdict| QueryResult {
+                verdict,
+                ..QueryResult::new(AskedQuery::new(0, Kind::Check, "check"))
+            })
             .collect();
-        exit_code(&Run { results, interrupted, failure, ..Run::default() }).code()
+        exit_code(&CallResult { results, interrupted, failure, ..CallResult::default() }).code()
     }
 
     #[test]
@@ -85,10 +88,17 @@ mod tests {
         assert_eq!(run(&all[..2], false, None), 3);
         assert_eq!(run(&all[..1], false, None), 0);
         assert_eq!(run(&[None], false, None), 0);
-        let short =
-            |verdict| QueryResult { verdict, stopped_by: Stop::Cap, ..QueryResult::new(0, Kind::Check, "") };
+        let short = |verdict| QueryResult {
+            verdict,
+            stopped_by: Stop::Cap,
+            ..QueryResult::new(AskedQuery::new(0, Kind::Check, ""))
+        };
         let of = |list: &[Option<Verdict>]| {
-            exit_code(&Run { results: list.iter().map(|v| short(*v)).collect(), ..Run::default() }).code()
+            exit_code(&CallResult {
+                results: list.iter().map(|v| short(*v)).collect(),
+                ..CallResult::default()
+            })
+            .code()
         };
         assert_eq!([of(&[None]), of(&[Some(Satisfied), None]), of(&[Some(Undecided), None])], [4, 4, 3]);
     }

@@ -5,17 +5,17 @@
 
 use super::phrase::{certified, one_line, settings};
 use super::{exit_code, text};
-use crate::engine::outcome::{Failure, Finding, QueryResult, Run, Verdict};
+use crate::engine::outcome::{CallResult, Failure, Finding, QueryResult, Verdict};
 use std::fmt::Write as _;
 
 /// The annotations of a run, one a line.
-pub fn render(run: &Run) -> String {
+pub fn render(run: &CallResult) -> String {
     let mut page = String::new();
     for result in &run.results {
-        let at = if result.file.is_empty() || !is_file(&result.file) {
+        let at = if result.asked.file.is_empty() || !is_file(&result.asked.file) {
             String::new()
         } else {
-            format!("file={},line={},", property(&result.file), result.line)
+            format!("file={},line={},", property(&result.asked.file), result.asked.line)
         };
         let mut annotate = |level: &str, title: &str, message: &str| {
             let _ = writeln!(page, "::{level} {at}title={}::{}", property(title), data(message));
@@ -26,7 +26,7 @@ pub fn render(run: &Run) -> String {
             Some(Verdict::Satisfied) | None => {}
         }
         for warning in &result.warnings {
-            annotate("warning", "smc", &format!("{}: {warning}", one_line(&result.query)));
+            annotate("warning", "smc", &format!("{}: {warning}", one_line(&result.asked.text)));
         }
     }
     for finding in &run.diagnostics {
@@ -92,7 +92,7 @@ fn annotation(finding: &Finding) -> String {
 }
 
 fn finding(result: &QueryResult) -> String {
-    let mut said = one_line(&result.query);
+    let mut said = one_line(&result.asked.text);
     let with = settings(result);
     if !with.is_empty() {
         let _ = write!(said, " where {with}");

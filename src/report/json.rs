@@ -6,8 +6,8 @@
 
 use crate::base::random;
 use crate::engine::outcome::{
-    Comparison, Counts, Distribution, Finding, Interval, Method, QueryResult, Ranking, Rare, Run, Shows,
-    Side, Witness,
+    CallResult, Comparison, Counts, Distribution, Finding, Interval, Method, QueryResult, Ranking, Rare,
+    Shows, Side, Witness,
 };
 use serde_json::{Map, Value, json};
 
@@ -15,12 +15,12 @@ use serde_json::{Map, Value, json};
 const LARGEST_WHOLE: f64 = 9_007_199_254_740_992.0;
 
 /// The report of a run, indented, ending with a line end.
-pub fn render(run: &Run) -> String {
+pub fn render(run: &CallResult) -> String {
     format!("{:#}\n", object(run))
 }
 
 /// The report of a run as a JSON value.
-pub fn object(run: &Run) -> Value {
+pub fn object(run: &CallResult) -> Value {
     let inputs: Vec<Value> =
         run.inputs.iter().map(|(file, print)| json!({ "file": file, "hash": print.to_string() })).collect();
     let mut object = json!({
@@ -71,16 +71,16 @@ fn finding(finding: &Finding) -> Value {
 fn result(result: &QueryResult) -> Value {
     let mut object = Map::new();
     let mut put = |key: &str, value: Value| object.insert(key.to_owned(), value);
-    put("index", json!(result.index));
-    put("name", json!(result.name));
-    put("query", json!(result.query));
-    put("file", json!(result.file));
-    put("line", json!(result.line));
-    put("settings", settings(&result.settings));
-    put("kind", json!(result.kind.name()));
+    put("index", json!(result.asked.index));
+    put("name", json!(result.asked.name));
+    put("query", json!(result.asked.text));
+    put("file", json!(result.asked.file));
+    put("line", json!(result.asked.line));
+    put("settings", settings(&result.asked.settings));
+    put("kind", json!(result.asked.kind.name()));
     put("verdict", json!(result.verdict.map(crate::engine::outcome::Verdict::name)));
     put("certifies", json!(result.certifies));
-    put("horizon", json!(result.horizon));
+    put("horizon", json!(result.asked.horizon));
     put("estimate", maybe(result.estimate));
     put("low", number(result.low));
     put("high", number(result.high));
@@ -89,15 +89,15 @@ fn result(result: &QueryResult) -> Value {
     put("unit", json!(result.unit));
     put("interval", json!(result.interval));
     put("method", method(&result.method));
-    for (key, value) in counts(&result.counts) {
+    for (key, value) in counts(&result.consumed.counts) {
         put(&key, value);
     }
-    put("clipped", json!(result.clipped));
-    put("shrunk", json!(result.shrunk));
-    if result.no_way > 0 {
-        put("no_way", json!(result.no_way));
+    put("clipped", json!(result.consumed.clipped));
+    put("shrunk", json!(result.consumed.shrunk));
+    if result.consumed.no_way > 0 {
+        put("no_way", json!(result.consumed.no_way));
     }
-    put("steps", json!(result.steps));
+    put("steps", json!(result.consumed.steps));
     put("stopped_by", json!(result.stopped_by.name()));
     if let Some(shortfall) = result.shortfall() {
         put("shortfall", json!(shortfall.name()));

@@ -6,16 +6,16 @@
 use super::palette::Palette;
 use super::phrase::{certified, one_line, settings};
 use super::text;
-use crate::engine::outcome::{Finding, QueryResult, Run, Verdict};
+use crate::engine::outcome::{CallResult, Finding, QueryResult, Verdict};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use std::time::Duration;
 
 /// The report of a run, ending with a line end.
-pub fn render(run: &Run) -> String {
+pub fn render(run: &CallResult) -> String {
     let mut report = Report::new(format!("smc {}", run.scenario));
     report.set_time(seconds(run.elapsed_s));
-    for file in text::by_query(&run.results).chunk_by(|a, b| a.file == b.file) {
-        let name = file.first().map_or("", |result| result.file.as_str());
+    for file in text::by_query(&run.results).chunk_by(|a, b| a.asked.file == b.asked.file) {
+        let name = file.first().map_or("", |result| result.asked.file.as_str());
         let mut suite = TestSuite::new(if name.is_empty() { run.scenario.as_str() } else { name });
         suite.add_property(("seed", run.seed.to_string().as_str()));
         suite.add_property(("version", run.version.as_str()));
@@ -67,7 +67,7 @@ fn refused(errors: &[&Finding]) -> TestSuite {
     suite
 }
 
-fn case(run: &Run, result: &QueryResult) -> TestCase {
+fn case(run: &CallResult, result: &QueryResult) -> TestCase {
     let statement = match certified(result) {
         empty if empty.is_empty() => "nothing is certified".to_owned(),
         statement => statement,
@@ -82,7 +82,7 @@ fn case(run: &Run, result: &QueryResult) -> TestCase {
         Some(Verdict::Undecided) => bad(NonSuccessKind::Error, "undecided"),
         Some(Verdict::Satisfied) | None => TestCaseStatus::success(),
     };
-    let mut name = one_line(&result.query);
+    let mut name = one_line(&result.asked.text);
     let with = settings(result);
     if !with.is_empty() {
         name = format!("{name} where {with}");

@@ -1,6 +1,6 @@
 //! Floor 7: reports of a run, one file per format.
 //!
-//! A report is a function of a [`Run`]; no clock and no environment. What a verdict must say follows
+//! A report is a function of a [`CallResult`]; no clock and no environment. What a verdict must say follows
 //! `docs/language.md`: the certified statement, the estimate with its interval and the kind of that
 //! interval, all counts, why sampling stopped, and the command that gives the result again.
 
@@ -23,7 +23,7 @@ pub use exit::{ExitCode, exit_code};
 pub use palette::Palette;
 
 use crate::base::visible::{self, visible};
-use crate::engine::outcome::Run;
+use crate::engine::outcome::CallResult;
 
 /// Formats of a report.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -42,7 +42,7 @@ pub enum Format {
 }
 
 /// The report of a run, ending with a line end. Only text uses the palette.
-pub fn render(run: &Run, format: Format, palette: Palette) -> String {
+pub fn render(run: &CallResult, format: Format, palette: Palette) -> String {
     match format {
         Format::Text => painted(&text::render(run, Palette::PLAIN), &text::render(run, palette)),
         Format::Json => json::render(run),
@@ -77,7 +77,8 @@ mod tests {
 
     #[test]
     fn only_the_codes_of_the_palette_reach_a_terminal() {
-        let run = Run { scenario: "\u{1b}[1ma\u{1b}[0m\u{1b}]0;b\u{7}".to_owned(), ..Run::default() };
+        let run =
+            CallResult { scenario: "\u{1b}[1ma\u{1b}[0m\u{1b}]0;b\u{7}".to_owned(), ..CallResult::default() };
         let title = "\\u{1b}[1ma\\u{1b}[0m\\u{1b}]0;b\\u{7}";
         assert!(render(&run, Format::Text, Palette::PLAIN).starts_with(&format!("{title}\n")));
         let colored = render(&run, Format::Text, Palette::ANSI);

@@ -9,20 +9,26 @@ pub(super) fn one_line(query: &str) -> String {
 
 /// `density = 0.2 /m^2, step = 0.02 s`
 pub(super) fn settings(result: &QueryResult) -> String {
-    result.settings.iter().map(|(name, value)| format!("{name} = {value}")).collect::<Vec<_>>().join(", ")
+    result
+        .asked
+        .settings
+        .iter()
+        .map(|(name, value)| format!("{name} = {value}"))
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 /// What values above all numbers are called: a time that does not come lies beyond the horizon, a distance to
 /// nobody is infinite. Where the query names a metric that is declared
 /// elsewhere it cannot be told which, and "infinite" is true of both.
 pub(super) fn endless(result: &QueryResult) -> &'static str {
-    let time = result.censored.is_some() || result.query.contains("time_until");
+    let time = result.censored.is_some() || result.asked.text.contains("time_until");
     if time { "beyond the horizon" } else { "infinite" }
 }
 
 /// The certified statement with the horizon it is conditional on; empty where nothing is certified.
 pub(super) fn certified(result: &QueryResult) -> String {
-    match &result.horizon {
+    match &result.asked.horizon {
         Some(horizon) if !result.certifies.is_empty() => {
             format!("{}, within the horizon of {horizon}", result.certifies)
         }

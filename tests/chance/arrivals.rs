@@ -123,9 +123,9 @@ fn a_trial_in_which_too_many_come_is_unresolved_and_says_why() {
     let run = answered(&study, 0, 1, 1_000);
     let result = &run.results[0];
     // P(more than 32 of a Poisson number with mean 30) is 0.3.
-    let share = result.counts.unresolved as f64 / 200.0;
+    let share = result.consumed.counts.unresolved as f64 / 200.0;
     assert!(near(share, 0.3155, 0.4647, 200.0), "{share}");
-    assert_eq!(result.counts.unresolved + result.counts.failures, 200);
+    assert_eq!(result.consumed.counts.unresolved + result.consumed.counts.failures, 200);
     let warning = &result.warnings[0];
     assert!(
         warning.contains("more than 32 agents arrived by source `doors`; write a larger `limit`"),
@@ -159,6 +159,6 @@ fn who_comes_at_once_is_there_in_the_first_state() {
         "{HEAD}source doors: adult {{ at = uniform in near  every = bernoulli(50 %) * 1 s  route = west  limit = 90 }}"
     );
     let study = compiled(&text, "estimate P(F<=0 s (count(a in doors) >= 1)) by fixed(trials = 400)");
-    let counts = answered(&study, 0, 1, 1_000).results[0].counts;
+    let counts = answered(&study, 0, 1, 1_000).results[0].consumed.counts;
     assert!(near(counts.successes as f64 / 400.0, 0.5, 0.5, 400.0), "{counts:?}");
 }

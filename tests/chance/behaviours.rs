@@ -395,7 +395,7 @@ fn a_condition_may_ask_for_the_state_of_another_behaviour() {
     for whose in ["self", "me", "other"] {
         let query = "estimate P(F<=1.96 s (me.phone == looking)), P(F<=2.1 s (me.phone == looking)) by fixed(trials = 8)";
         let run = answered(&compiled(&text(whose), query), 0, 1, 100);
-        let successes: Vec<u64> = run.results.iter().map(|result| result.counts.successes).collect();
+        let successes: Vec<u64> = run.results.iter().map(|result| result.consumed.counts.successes).collect();
         assert_eq!(successes, [0, 8], "{whose}");
     }
     // Of a behaviour that nobody has it is not known who could ask for what.

@@ -7,7 +7,7 @@ fn share(scenario: &str, formula: &str) -> f64 {
     let study = compiled(scenario, &format!("estimate P({formula}) by fixed(trials = 64)"));
     let run = answered(&study, 1, 1, 1_000);
     assert_eq!(run.failure, None);
-    let counts = &run.results[0].counts;
+    let counts = &run.results[0].consumed.counts;
     assert_eq!(counts.unresolved, 0, "{formula}");
     counts.successes as f64 / counts.trials as f64
 }
@@ -77,7 +77,7 @@ fn the_robustness_has_the_sign_of_the_truth_before_somebody_comes() {
         let ask = format!("estimate E(robustness({formula})) in -100 m .. 100 m by fixed(trials = 16)");
         let run = answered(&compiled(&doors(), &ask), 1, 1, 1_000);
         let estimate = run.results[0].estimate.unwrap();
-        assert_eq!(run.results[0].counts.unresolved, 0, "{formula}");
+        assert_eq!(run.results[0].consumed.counts.unresolved, 0, "{formula}");
         assert!(if positive { estimate > 0.0 } else { estimate < 0.0 }, "{formula}: {estimate}");
         assert_eq!(share(&doors(), formula), f64::from(positive), "{formula}");
     }
@@ -123,9 +123,9 @@ fn a_mean_of_nobody_matters_only_where_it_is_looked_at() {
         "F[4 s, 6 s] (spread(doors) >= 0 m)",
     ] {
         let study = compiled(&text, &format!("estimate P({formula}) by fixed(trials = 8)"));
-        assert_eq!(answered(&study, 1, 1, 1_000).results[0].counts.unresolved, 8, "{formula}");
+        assert_eq!(answered(&study, 1, 1, 1_000).results[0].consumed.counts.unresolved, 8, "{formula}");
     }
     let query = "estimate E(mean(speed(a) for a in doors) at 5.5 s) in 0 m/s .. 3 m/s by fixed(trials = 8)";
     let run = answered(&compiled(&text, query), 1, 1, 1_000);
-    assert_eq!(run.results[0].counts.unresolved, 0);
+    assert_eq!(run.results[0].consumed.counts.unresolved, 0);
 }

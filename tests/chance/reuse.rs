@@ -29,7 +29,7 @@ fn a_source_goes_on_for_an_hour_with_few_places() {
          P(F<=59 min (count(a in doors: F<=1 s (a in west)) >= 1)) by fixed(trials = 3)",
     );
     let run = answered(&study, 0, 1, 1_000);
-    let counts: Vec<_> = run.results.iter().map(|result| result.counts).collect();
+    let counts: Vec<_> = run.results.iter().map(|result| result.consumed.counts).collect();
     // Nine hundred come; never more than twelve at once.
     assert_eq!((counts[0].successes, counts[0].unresolved), (3, 0), "{:?}", run.results[0]);
     assert_eq!((counts[1].successes, counts[1].unresolved), (3, 0));
@@ -52,7 +52,7 @@ fn with_too_few_places_for_those_at_once_a_trial_is_unresolved() {
     let text = doors("2 s", "limit = 5");
     let study = compiled(&text, "estimate P(F (count(a in doors) > 90)) by fixed(trials = 3)");
     let run = answered(&study, 0, 1, 1_000);
-    assert_eq!(run.results[0].counts.unresolved, 3);
+    assert_eq!(run.results[0].consumed.counts.unresolved, 3);
     let warning = &run.results[0].warnings[0];
     assert!(warning.contains("more than 5 agents") && warning.contains("`doors`"), "{warning}");
 }
@@ -195,7 +195,7 @@ fn where_behaviours_speak_of_single_ones_places_are_used_once() {
     let text = text.replace("limit = 12", "limit = 4");
     let study = compiled(&text, "estimate P(F (count(a in doors) > 4)) by fixed(trials = 2)");
     let run = answered(&study, 0, 1, 1_000);
-    assert_eq!(run.results[0].counts.unresolved, 2);
+    assert_eq!(run.results[0].consumed.counts.unresolved, 2);
     assert!(run.results[0].warnings[0].contains("more than 4 agents arrived by source `doors`"));
 }
 
@@ -236,7 +236,7 @@ fn a_comparison_of_what_is_nowhere_resolved_has_no_numbers() {
         let study = compiled(&text, &query);
         let run = answered(&study, 0, 1, 200);
         let result = &run.results[0];
-        assert_eq!(result.counts.unresolved, result.counts.trials, "{measure}");
+        assert_eq!(result.consumed.counts.unresolved, result.consumed.counts.trials, "{measure}");
         assert_eq!(result.estimate, None, "{measure}");
         let sides = result.compare.as_ref().unwrap();
         for side in [&sides.first, &sides.second, &sides.difference] {

@@ -41,7 +41,7 @@ fn what_no_trial_reaches_is_no_error() {
     let first = "horizon = 5 s\nprocess p { var n: 0 .. 1 = 0\n var m: 0 .. 1 = 0\n when n == 0 after 1 s -> n = 1\n\
                  when n == 0 after 2 s -> m = m + 2 }";
     let study = compiled(first, "estimate P(F<=1 s (p.n == 1)) by fixed(trials = 10)").unwrap();
-    assert_eq!(answered(&study, 0, 1).results[0].counts.successes, 10);
+    assert_eq!(answered(&study, 0, 1).results[0].consumed.counts.successes, 10);
 }
 
 #[test]
@@ -100,11 +100,11 @@ fn a_trial_that_is_decided_before_the_error_counts() {
                     when x == 5 at -1 /s * x -> x = 0 }";
     let study = compiled(scenario, "estimate P(F<=4.5 s (p.x == 4)) by fixed(trials = 20)").unwrap();
     let run = answered(&study, 3, 1);
-    assert_eq!((run.failure, run.results[0].counts.successes), (None, 20));
+    assert_eq!((run.failure, run.results[0].consumed.counts.successes), (None, 20));
     // Decided at 4.7 s, and the next jump is the error.
     let study = compiled(scenario, "estimate P(G<=4.7 s (p.x < 5)) by fixed(trials = 20)").unwrap();
     let run = answered(&study, 3, 1);
-    assert_eq!((run.failure, run.results[0].counts.successes), (None, 20));
+    assert_eq!((run.failure, run.results[0].consumed.counts.successes), (None, 20));
     let study = compiled(scenario, "estimate P(G<=5 s (p.x < 5)) by fixed(trials = 20)").unwrap();
     assert!(matches!(answered(&study, 3, 1).failure, Some(Failure::Model(_))));
 }

@@ -98,12 +98,12 @@ check E(max<=10 s (queue.n)) in 0 .. 5 >= 2
     let run = answered(&compiled(QUEUE, queries).unwrap(), 2, 2);
     let half = chain.later(&numbers, 2.5).0[0];
     for (result, exact) in run.results.iter().zip([average, late, end, half, std::f64::consts::LN_2]) {
-        assert!(result.low <= exact && exact <= result.high, "{}: {exact}", result.query);
-        assert!(result.high - result.low < 0.25, "{}", result.query);
+        assert!(result.low <= exact && exact <= result.high, "{}: {exact}", result.asked.text);
+        assert!(result.high - result.low < 0.25, "{}", result.asked.text);
     }
     assert_eq!((run.results[5].high, run.results[5].censored), (f64::INFINITY, Some(10.0)));
     for result in &run.results[6..] {
-        assert_eq!(result.verdict, Some(smc::engine::outcome::Verdict::Satisfied), "{}", result.query);
+        assert_eq!(result.verdict, Some(smc::engine::outcome::Verdict::Satisfied), "{}", result.asked.text);
     }
 }
 

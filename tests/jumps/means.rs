@@ -24,7 +24,7 @@ fn found(scenario: &str, seed: u64) -> Vec<String> {
     let run = answered(&study, seed, 1);
     let result = |r: &smc::engine::outcome::QueryResult| {
         let bits = [r.low, r.high].map(f64::to_bits);
-        format!("{:?} {:?} {bits:?} {}", r.counts, r.estimate.map(f64::to_bits), r.clipped)
+        format!("{:?} {:?} {bits:?} {}", r.consumed.counts, r.estimate.map(f64::to_bits), r.consumed.clipped)
     };
     run.results.iter().map(result).collect()
 }
@@ -79,5 +79,5 @@ fn a_mean_in_steps_lies_between_its_values() {
     }
     let clipped =
         compiled(scenario, "estimate E(mean<=9 (0.1 + 0 * w.x)) in 0.1 .. 0.2 by fixed(trials = 20)");
-    assert_eq!(answered(&clipped.unwrap(), 1, 1).results[0].clipped, 0);
+    assert_eq!(answered(&clipped.unwrap(), 1, 1).results[0].consumed.clipped, 0);
 }

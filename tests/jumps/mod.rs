@@ -14,10 +14,10 @@ mod traces;
 
 pub(crate) use crate::texts::compiled;
 use smc::compile::Study;
-use smc::engine::outcome::Run;
+use smc::engine::outcome::CallResult;
 
 /// Runs a study with a seed.
-pub(crate) fn answered(study: &Study, seed: u64, threads: usize) -> Run {
+pub(crate) fn answered(study: &Study, seed: u64, threads: usize) -> CallResult {
     crate::texts::answered(study, seed, threads, 1_000_000)
 }
 
@@ -27,7 +27,7 @@ pub(crate) fn count(scenario: &str, formula: &str, trials: u64) -> u64 {
     let study = compiled(scenario, &query).unwrap_or_else(|error| panic!("{error}"));
     let run = answered(&study, 5, 1);
     assert_eq!(run.failure, None, "{formula}");
-    let counts = run.results[0].counts;
+    let counts = run.results[0].consumed.counts;
     assert_eq!((counts.trials, counts.unresolved), (trials, 0), "{formula}");
     counts.successes
 }

@@ -246,7 +246,7 @@ proptest! {
             }
         }
         for ((held, formula), result) in held.iter().zip(&formulas).zip(&run.results) {
-            prop_assert_eq!(result.counts.successes, *held, "{} of {}", formula.text(), text);
+            prop_assert_eq!(result.consumed.counts.successes, *held, "{} of {}", formula.text(), text);
         }
     }
 

@@ -55,7 +55,7 @@ fn a_queue_overflows_as_seldom_as_it_must() {
         );
         let (result, rare) = result(OVERFLOW, &query, 1);
         near(&rare, exact);
-        assert!(rare.agrees && result.counts.successes == 0, "{result:?}");
+        assert!(rare.agrees && result.consumed.counts.successes == 0, "{result:?}");
         assert_eq!(result.estimate, rare.estimate);
         assert!(result.certifies.contains("from the plain trials alone"), "{}", result.certifies);
         assert!(

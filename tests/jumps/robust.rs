@@ -26,12 +26,12 @@ fn the_sign_is_the_verdict_trial_by_trial() {
             "estimate P({formula}), P(robustness({formula}) > 0), P(robustness({formula}) >= 0), P(0 > robustness({formula})) by fixed(trials = 400)\n"
         );
         let run = answered(&compiled(QUEUE, &query).unwrap_or_else(|error| panic!("{error}")), 4, 1);
-        let passed: Vec<u64> = run.results.iter().map(|result| result.counts.successes).collect();
+        let passed: Vec<u64> = run.results.iter().map(|result| result.consumed.counts.successes).collect();
         // No margin is zero: n is whole and no bound is.
         assert_eq!((passed[1], passed[2], passed[3]), (passed[0], passed[0], 400 - passed[0]), "{formula}");
         assert!(passed[0] > 0 && passed[0] < 400, "{formula}: {passed:?}");
         // The sign is known exactly when the verdict falls.
-        assert_eq!(run.results[1].steps, run.results[0].steps, "{formula}");
+        assert_eq!(run.results[1].consumed.steps, run.results[0].consumed.steps, "{formula}");
     }
 }
 
@@ -70,7 +70,7 @@ compare E(robustness(F<=10 s (queue.n >= 5))) in -5 .. 5 under far = 0 with far 
     let three = reached(3);
     assert!(of(2).low <= three && three <= of(2).high, "{three}");
     // Enough is known once three are there; the value needs the whole ten seconds, or five.
-    assert!(of(2).steps < of(0).steps, "{} {}", of(2).steps, of(0).steps);
+    assert!(of(2).consumed.steps < of(0).consumed.steps, "{} {}", of(2).consumed.steps, of(0).consumed.steps);
     assert!((-5.0..=0.0).contains(&of(3).estimate.unwrap()));
     assert_eq!((of(4).verdict, of(5).verdict), (Some(Verdict::Satisfied), Some(Verdict::Satisfied)));
     assert_eq!(of(6).estimate, Some(0.0), "the same worlds");

@@ -212,7 +212,7 @@ fn a_process_that_jumps_too_often_between_two_steps_ends_its_trial() {
     let text =
         "horizon = 4 s\nstep = 1 s\nprocess p { var s: 0 .. 1 = 0\n when true at 3000000 /s -> s = 1 - s }";
     let study = compiled(text, "estimate P(F[3 s, 3 s] (p.s == 0)) by fixed(trials = 3)").unwrap();
-    let counts = super::answered(&study, 0, 1).results[0].counts;
+    let counts = super::answered(&study, 0, 1).results[0].consumed.counts;
     assert_eq!((counts.trials, counts.unresolved), (3, 3));
 }
 
@@ -221,7 +221,7 @@ fn implications_that_never_had_a_case_are_told() {
     let warned = |formula: &str| {
         let study = compiled(STAIRS, &format!("estimate P({formula}) by fixed(trials = 5)")).unwrap();
         let run = super::answered(&study, 1, 1);
-        assert_eq!(run.results[0].counts.successes, 5, "{formula}");
+        assert_eq!(run.results[0].consumed.counts.successes, 5, "{formula}");
         run.results[0].warnings.iter().any(|warning| warning.contains("never triggered"))
     };
     // s is 1 from 2 s on, for a microsecond, and 3 from 5 s on.

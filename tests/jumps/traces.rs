@@ -156,7 +156,9 @@ check P(F<=10 s (watch.wear > 4)) >= 0.2
     assert_eq!(runs[0].failure, None);
     assert_eq!(runs[0], runs[1]);
     assert_eq!(runs[0], runs[2]);
-    assert!(runs[0].results[0].counts.successes > 0 && runs[0].results[0].counts.failures > 0);
+    assert!(
+        runs[0].results[0].consumed.counts.successes > 0 && runs[0].results[0].consumed.counts.failures > 0
+    );
 }
 
 #[test]

@@ -100,7 +100,7 @@ fn who_waits_for_a_proof_keeps_what_was_decided_before_an_error() {
         let runs = [1, 2].map(|threads| answered(&study, 3, threads));
         assert_eq!(runs[0].failure, runs[1].failure);
         let Some(Failure::Model(_)) = &runs[0].failure else { panic!("{:?}", runs[0].failure) };
-        runs[0].results.iter().map(|one| (one.index, one.counts.trials)).collect::<Vec<_>>()
+        runs[0].results.iter().map(|one| (one.asked.index, one.consumed.counts.trials)).collect::<Vec<_>>()
     };
     // In the table, proven, and with more trials than there are before the error.
     let (known, proven) = (counts("0.05"), counts("0.08"));
@@ -116,7 +116,7 @@ fn a_trial_that_is_decided_before_the_error_counts() {
     let study = compiled(scenario, "estimate P(F<=#5 p.n == 4) within 0.05").unwrap();
     let run = answered(&study, 3, 1);
     assert_eq!(run.failure, None);
-    assert_eq!(run.results[0].counts.failures, 0);
+    assert_eq!(run.results[0].consumed.counts.failures, 0);
 }
 
 /// What the least or greatest value of a window is compared with is looked at state by state: by `==` and `!=` too.
@@ -140,7 +140,7 @@ fn an_extreme_beside_a_number_is_decided_by_one_state() {
         match holds {
             Some(holds) => {
                 assert_eq!(run.failure, None, "{formula}");
-                let counts = &run.results[0].counts;
+                let counts = &run.results[0].consumed.counts;
                 assert_eq!(counts.successes, if holds { counts.trials } else { 0 }, "{formula}");
             }
             None => assert!(matches!(run.failure, Some(Failure::Model(_))), "{formula}: {:?}", run.failure),

@@ -8,7 +8,7 @@ fn the_leader_is_elected_as_often_as_it_must_be() {
     let study = compiled(scenario, include_str!("../../properties/leader.bltl")).unwrap();
     let run = answered(&study, 0, 2);
     for (result, exact) in run.results.iter().zip([42.0 / 64.0, 1.0 - (22.0f64 / 64.0).powi(4)]) {
-        assert!(result.low <= exact && exact <= result.high, "{}", result.query);
+        assert!(result.low <= exact && exact <= result.high, "{}", result.asked.text);
     }
     assert_eq!(run.results[2].verdict, Some(smc::engine::outcome::Verdict::Satisfied));
 }
@@ -34,7 +34,7 @@ fn the_die_has_its_exact_values() {
             assert!(
                 result.low <= exact && exact <= result.high,
                 "{}: {} .. {}",
-                result.query,
+                result.asked.text,
                 result.low,
                 result.high
             );
@@ -44,8 +44,8 @@ fn the_die_has_its_exact_values() {
     }
     for (a, b) in runs[0].results.iter().zip(&runs[1].results) {
         assert_eq!(
-            (a.estimate, a.low, a.high, a.counts, a.steps),
-            (b.estimate, b.low, b.high, b.counts, b.steps)
+            (a.estimate, a.low, a.high, a.consumed.counts, a.consumed.steps),
+            (b.estimate, b.low, b.high, b.consumed.counts, b.consumed.steps)
         );
     }
 }

@@ -13,11 +13,11 @@ use smc::base::random::TrialKey;
 use smc::compile::Study;
 use smc::compile::study::World;
 use smc::engine::PreparedWorld;
-use smc::engine::outcome::Run;
+use smc::engine::outcome::CallResult;
 use smc::kernel::{Readings, Scratch, State, dynamics, start};
 
 /// Runs a study with a seed.
-pub(crate) fn answered(study: &Study, seed: u64, threads: usize) -> Run {
+pub(crate) fn answered(study: &Study, seed: u64, threads: usize) -> CallResult {
     crate::texts::answered(study, seed, threads, 1_000_000)
 }
 

@@ -87,6 +87,6 @@ fn a_count_of_implications_of_one_state_is_a_number_of_it() {
     let study = compiled(sensors, &text).unwrap_or_else(|errors| panic!("{errors}"));
     let run = super::answered(&study, 3, 1);
     for (result, (query, successes)) in run.results.iter().zip(queries) {
-        assert_eq!(result.counts.successes, successes, "{query}");
+        assert_eq!(result.consumed.counts.successes, successes, "{query}");
     }
 }

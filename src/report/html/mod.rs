@@ -6,7 +6,7 @@ mod histogram;
 use super::number::{count, counted, duration};
 use super::phrase::{certified, endless, one_line, settings};
 use super::text;
-use crate::engine::outcome::{Interval, QueryResult, Run, Shortfall, Status, Verdict, Witness};
+use crate::engine::outcome::{CallResult, Interval, QueryResult, Shortfall, Status, Verdict, Witness};
 use crate::report::escape::escape;
 use chart::{Mark, Tone};
 use std::fmt::Write as _;
@@ -14,7 +14,7 @@ use std::fmt::Write as _;
 const STYLE: &str = include_str!("style.css");
 
 /// The page of a run.
-pub fn render(run: &Run) -> String {
+pub fn render(run: &CallResult) -> String {
     let title = escape(if run.scenario.is_empty() { "smc" } else { &run.scenario });
     let mut page = format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
@@ -56,7 +56,7 @@ pub fn render(run: &Run) -> String {
     page
 }
 
-fn tally(run: &Run) -> String {
+fn tally(run: &CallResult) -> String {
     let parts: Vec<String> = text::tally(run)
         .into_iter()
         .map(|(n, word, _)| format!("<span class=\"badge {}\">{n} {word}</span>", word.replace(' ', "-")))
@@ -69,12 +69,16 @@ fn section(page: &mut String, group: &[&QueryResult]) {
     let Some(first) = group.first() else { return };
     let word =
         group.iter().map(|result| word(result)).max_by_key(|word| severity(word)).unwrap_or("computed");
-    let place = if first.file.is_empty() { String::new() } else { format!("{}:{}", first.file, first.line) };
+    let place = if first.asked.file.is_empty() {
+        String::new()
+    } else {
+        format!("{}:{}", first.asked.file, first.asked.line)
+    };
     let _ = writeln!(
         page,
         "<section>\n<h2><span class=\"badge {}\">{word}</span> <code>{}</code> <small>{}</small></h2>",
         word.replace(' ', "-"),
-        escape(&one_line(&first.query)),
+        escape(&one_line(&first.asked.text)),
         escape(&place)
     );
     let marks: Vec<Mark> = if group.len() > 1 {
@@ -93,7 +97,7 @@ fn section(page: &mut String, group: &[&QueryResult]) {
     }
     if let Some(ranking) = &first.rank {
         let said = match &ranking.choice {
-            None if first.counts.trials > 0 => "No choice: no trial is resolved.".to_owned(),
+            None if first.consumed.counts.trials > 0 => "No choice: no trial is resolved.".to_owned(),
             None => "No choice: nothing was sampled.".to_owned(),
             Some(choice) if !first.certifies.is_empty() => format!(
                 "Choose <strong>{}</strong>{}.",
@@ -206,7 +210,7 @@ mod tests {
     #[test]
     fn nothing_gets_out_of_its_element() {
         assert_eq!(escape("<a href='x'>&\u{0}\""), "&lt;a href=&#39;x&#39;&gt;&amp; &quot;");
-        let run = Run { scenario: "</title><script>".into(), ..Run::default() };
+        let run = CallResult { scenario: "</title><script>".into(), ..CallResult::default() };
         assert!(!render(&run).contains("<script>"));
     }
 }

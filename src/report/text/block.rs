@@ -45,11 +45,14 @@ pub(super) fn write(text: &mut String, result: &QueryResult, palette: Palette) {
 /// The first line: the verdict, the query as written, where it stands.
 pub(super) fn head(text: &mut String, result: &QueryResult, palette: Palette) {
     let (word, paint) = word(result);
-    let place =
-        if result.file.is_empty() { String::new() } else { format!("  {}:{}", result.file, result.line) };
+    let place = if result.asked.file.is_empty() {
+        String::new()
+    } else {
+        format!("  {}:{}", result.asked.file, result.asked.line)
+    };
     let pad = " ".repeat(MARGIN - word.len());
     // The word already says what is asked; only a verdict needs the keyword again.
-    let query = one_line(&result.query);
+    let query = one_line(&result.asked.text);
     let asked = query.strip_prefix(word).map_or(query.as_str(), str::trim_start);
     let query = palette.paint(Paint::Strong, asked);
     let _ =
@@ -62,13 +65,13 @@ pub(super) fn word(result: &QueryResult) -> (&'static str, Paint) {
         Some(verdict @ Verdict::Satisfied) => (verdict.name(), Paint::Good),
         Some(verdict @ Verdict::Violated) => (verdict.name(), Paint::Bad),
         Some(verdict @ Verdict::Undecided) => (verdict.name(), Paint::Caution),
-        None => (result.kind.name(), Paint::Neutral),
+        None => (result.asked.kind.name(), Paint::Neutral),
     }
 }
 
 fn value(text: &mut String, result: &QueryResult, palette: Palette) {
     let Some(estimate) = result.estimate else {
-        let sampled = result.counts.trials > 0;
+        let sampled = result.consumed.counts.trials > 0;
         line(text, if sampled { "no result" } else { "nothing was sampled" });
         return;
     };
@@ -88,7 +91,7 @@ fn value(text: &mut String, result: &QueryResult, palette: Palette) {
 /// The procedure with all its numbers, where the query does not name them itself.
 pub(super) fn method(text: &mut String, result: &QueryResult, palette: Palette) {
     let name = &result.method.name;
-    let query = one_line(&result.query);
+    let query = one_line(&result.asked.text);
     // The threshold stands in every check.
     let said = |number: &str| number == "theta" || query.contains(&format!("{number} ="));
     let named = query.contains(&format!("by {name}("));
@@ -135,7 +138,7 @@ fn rare(text: &mut String, rare: &Rare) {
 pub(super) fn shortfall(text: &mut String, result: &QueryResult, palette: Palette) {
     let Some(shortfall) = result.shortfall() else { return };
     let lacking = if result.stopped_by == Stop::Cap { "too few trials" } else { "too little time" };
-    let said = match (shortfall, result.kind) {
+    let said = match (shortfall, result.asked.kind) {
         (Shortfall::NotBegun, _) if result.stopped_by == Stop::Cap => "the budget has no trial".to_owned(),
         (Shortfall::NotBegun, _) => format!("{lacking} for a trial"),
         (Shortfall::Incomplete, Kind::Rank) => {
@@ -154,7 +157,7 @@ pub(in crate::report) fn trials(result: &QueryResult) -> String {
 
 /// The counts.
 pub(in crate::report) fn counts(result: &QueryResult) -> String {
-    let counts = result.counts;
+    let counts = result.consumed.counts;
     let mut text = counted(counts.trials, "trial");
     let mut parts = Vec::new();
     if counts.successes + counts.failures > 0 {
@@ -166,8 +169,8 @@ pub(in crate::report) fn counts(result: &QueryResult) -> String {
     if counts.unresolved > 0 {
         parts.push(format!("{} unresolved", count(counts.unresolved)));
     }
-    if result.clipped > 0 {
-        parts.push(format!("{} clipped to the range", count(result.clipped)));
+    if result.consumed.clipped > 0 {
+        parts.push(format!("{} clipped to the range", count(result.consumed.clipped)));
     }
     if !parts.is_empty() {
         text = format!("{text} ({})", parts.join(", "));
@@ -177,13 +180,13 @@ pub(in crate::report) fn counts(result: &QueryResult) -> String {
 
 /// Why sampling stopped.
 pub(super) fn cause(result: &QueryResult) -> &'static str {
-    let counts = result.counts;
+    let counts = result.consumed.counts;
     match result.stopped_by {
         Stop::Boundary => "stopped at the boundary of the test",
         Stop::Width if result.rank.is_some() => "stopped when the choice was certified",
         Stop::Width => "stopped when narrow enough",
         Stop::Unresolved if counts.unresolved == counts.trials => "stopped because all trials are unresolved",
-        Stop::Unresolved if result.kind == Kind::Check => {
+        Stop::Unresolved if result.asked.kind == Kind::Check => {
             "stopped: the verdict depends on the unresolved trials, and more trials cannot change that"
         }
         Stop::Unresolved => {

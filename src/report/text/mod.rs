@@ -13,11 +13,11 @@ pub(super) use rows::printed;
 
 use super::number::{count, counted, duration};
 use super::palette::{Paint, Palette};
-use crate::engine::outcome::{QueryResult, Run, Shortfall, Verdict};
+use crate::engine::outcome::{CallResult, QueryResult, Shortfall, Verdict};
 use std::fmt::Write as _;
 
 /// The report of a run, ending with its replay line.
-pub fn render(run: &Run, palette: Palette) -> String {
+pub fn render(run: &CallResult, palette: Palette) -> String {
     let mut text = String::new();
     if !run.scenario.is_empty() {
         let _ = writeln!(text, "{}\n", palette.paint(Paint::Strong, &run.scenario));
@@ -58,19 +58,23 @@ pub fn block(result: &QueryResult, palette: Palette) -> String {
 /// Whether two successive results are of one query under different settings.
 pub(super) fn same_sweep(a: &QueryResult, b: &QueryResult) -> bool {
     let simple = |r: &QueryResult| r.compare.is_none() && r.rank.is_none();
-    a.index == b.index && !a.settings.is_empty() && !b.settings.is_empty() && simple(a) && simple(b)
+    a.asked.index == b.asked.index
+        && !a.asked.settings.is_empty()
+        && !b.asked.settings.is_empty()
+        && simple(a)
+        && simple(b)
 }
 
 /// Results query by query: a sweep comes point by point, with all queries at each.
 pub(super) fn by_query(results: &[QueryResult]) -> Vec<&QueryResult> {
     let mut ordered: Vec<&QueryResult> = results.iter().collect();
-    ordered.sort_by_key(|result| result.index);
+    ordered.sort_by_key(|result| result.asked.index);
     ordered
 }
 
 /// How many queries there are of each verdict, and of those without one how many are computed, fall short, and have no trial;
 /// each with its word.
-pub(super) fn tally(run: &Run) -> Vec<(u64, &'static str, Paint)> {
+pub(super) fn tally(run: &CallResult) -> Vec<(u64, &'static str, Paint)> {
     let number = |verdict| run.results.iter().filter(|r| r.verdict == Some(verdict)).count() as u64;
     let computed = |shortfall| {
         run.results.iter().filter(|r| r.verdict.is_none() && r.shortfall() == shortfall).count() as u64
@@ -86,7 +90,7 @@ pub(super) fn tally(run: &Run) -> Vec<(u64, &'static str, Paint)> {
     all.into_iter().filter(|(n, ..)| *n > 0).collect()
 }
 
-fn summary(run: &Run, palette: Palette) -> String {
+fn summary(run: &CallResult, palette: Palette) -> String {
     let parts: Vec<String> = tally(run)
         .into_iter()
         .map(|(n, word, paint)| palette.paint(paint, &format!("{} {word}", count(n))))

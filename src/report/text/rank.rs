@@ -9,7 +9,7 @@ use crate::report::palette::{Paint, Palette};
 /// Writes the lines under the head.
 pub(super) fn write(text: &mut String, result: &QueryResult, ranking: &Ranking, palette: Palette) {
     let Some(choice) = &ranking.choice else {
-        let sampled = result.counts.trials > 0;
+        let sampled = result.consumed.counts.trials > 0;
         let why = if sampled { "no trial is resolved" } else { "nothing was sampled" };
         rows::line(text, &format!("no choice: {why}"));
         return;

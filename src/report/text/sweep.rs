@@ -61,11 +61,11 @@ fn row(result: &QueryResult, same_cause: bool) -> Vec<Cell> {
     let (estimate, interval) = result.estimate.map_or_else(Default::default, |estimate| {
         rows::printed(result, &Interval { estimate, low: result.low, high: result.high })
     });
-    let unresolved = match result.counts.unresolved {
+    let unresolved = match result.consumed.counts.unresolved {
         0 => String::new(),
         n => format!("{} unresolved", count(n)),
     };
-    let clipped = match result.clipped {
+    let clipped = match result.consumed.clipped {
         0 => String::new(),
         n => format!("{} clipped to the range", count(n)),
     };
@@ -77,7 +77,7 @@ fn row(result: &QueryResult, same_cause: bool) -> Vec<Cell> {
         Cell::left(of),
         Cell::left(estimate).paint(Paint::Strong),
         Cell::left(interval),
-        Cell::right(counted(result.counts.trials, "trial")),
+        Cell::right(counted(result.consumed.counts.trials, "trial")),
         Cell::left(unresolved),
         Cell::left(clipped),
         Cell::left(if same_cause { "" } else { block::cause(result) }),

@@ -1,0 +1,58 @@
+//! The outcome of a `rank`.
+
+use super::counts::Counts;
+use super::interval::Interval;
+
+/// The outcome of a `rank`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ranking {
+    /// The recommended option; `None` where nothing was sampled, or no trial is resolved.
+    pub choice: Option<String>,
+    /// Certified: the choice is at most so much worse than the best. All that there can be where nothing is known yet;
+    /// infinite where nothing is chosen.
+    pub gap: f64,
+    /// Whether other options carry the same certificate.
+    pub tied: bool,
+    /// All options, best first.
+    pub options: Vec<RankedOption>,
+}
+
+/// One option of a ranking.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RankedOption {
+    /// Its name.
+    pub label: String,
+    /// Values of ranked parameters, as written.
+    pub settings: Vec<(String, String)>,
+    /// Its score.
+    pub value: Interval,
+    /// Its trials.
+    pub counts: Counts,
+    /// What is known of it.
+    pub status: Status,
+}
+
+/// What is known of an option.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Status {
+    /// The recommended one.
+    Chosen,
+    /// It carries the same certificate as the choice: it, too, is at most the wanted loss worse than the best.
+    Tied,
+    /// Shown to be worse than another option, which led when that was shown.
+    Beaten,
+    /// Neither: it may be the best by no more than the certified gap, and may be much worse.
+    Open,
+}
+
+impl Status {
+    /// Its word.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Chosen => "chosen",
+            Self::Tied => "tied",
+            Self::Beaten => "beaten",
+            Self::Open => "open",
+        }
+    }
+}
