@@ -9,9 +9,8 @@ use std::path::Path;
 /// Most files of a circle.
 const MOST: usize = 3;
 
-/// Circles that may stay as large as they are: the elaborator of `compile`; in `stats` the procedures, which name the table
-/// that lists them.
-const KNOWN: [(&str, usize); 2] = [("compile", 26), ("stats", 20)];
+/// Circles that may stay as large as they are: the elaborator of `compile`.
+const KNOWN: [(&str, usize); 1] = [("compile", 26)];
 
 type Module = Vec<String>;
 

@@ -8,7 +8,7 @@ use super::number::Number;
 use super::queries::Compiler;
 use super::study::{Ask, Measure, MeasureKind, Target};
 use super::symbols::ScopeId;
-use crate::stats::mean::RUNNING;
+use crate::stats::procedures::MEAN_RUNNING;
 use crate::syntax::ast::{self, BinaryOp, Binding, Clauses, Expr};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -35,7 +35,7 @@ impl<'a> Compiler<'a> {
         let width = elaborator.no_width(clauses, sketch.what);
         let test = match (sketch.what, &clauses.by) {
             (What::Expectation, None) => confidence
-                .map(|stated| RUNNING.with([allowance.error(stated, super::methods::DEFAULT_ALPHA)])),
+                .map(|stated| MEAN_RUNNING.with([allowance.error(stated, super::methods::DEFAULT_ALPHA)])),
             (What::Expectation, Some(method)) => {
                 let said = "a check of an expectation has only one procedure, without `by`";
                 elaborator.report(Diagnostic::error(Code::E0603, method.span, said))

@@ -5,7 +5,7 @@ use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::families::Allowance;
 use super::measures::Sketch;
 use super::methods::{DEFAULT_DELTA, DEFAULT_LOSS, Stated, stated};
-use crate::stats::ranking::BETTING;
+use crate::stats::procedures::BETTING;
 use crate::stats::spec::Serves;
 use crate::stats::{Chosen, Spec};
 use crate::syntax::ast::{Clauses, Method};

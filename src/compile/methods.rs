@@ -7,10 +7,9 @@ use super::elaborator::{Elaborator, Locals, Lowered};
 use super::families::Allowance;
 use super::measures::{Sketch, What};
 use super::nearest::nearest;
-use crate::stats::eprocess::EPROCESS;
-use crate::stats::estimator::DEFAULT;
+use crate::stats::procedures::{EPROCESS, MEAN_FIXED, MEAN_WITHIN, PROBABILITY_WITHIN, QUANTILE_FIXED};
 use crate::stats::spec::{Kind, Make, Serves};
-use crate::stats::{Chosen, Spec, mean, quantile, splitting};
+use crate::stats::{Chosen, Spec, splitting};
 use crate::syntax::ast::{Clauses, Expr, Method};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -201,10 +200,12 @@ impl Elaborator<'_> {
         }
         let trials = PLANNED_TRIALS as f64;
         Ok(match (sketch.what, within) {
-            (What::Probability, within) => DEFAULT.with([within.unwrap_or(DEFAULT_EPSILON), delta]),
-            (What::Expectation, Some(epsilon)) => mean::WITHIN.with([epsilon, delta]),
-            (What::Expectation, None) => mean::FIXED.with([trials, delta]),
-            (What::Quantile, _) => quantile::FIXED.with([trials, delta]),
+            (What::Probability, within) => {
+                PROBABILITY_WITHIN.with([within.unwrap_or(DEFAULT_EPSILON), delta])
+            }
+            (What::Expectation, Some(epsilon)) => MEAN_WITHIN.with([epsilon, delta]),
+            (What::Expectation, None) => MEAN_FIXED.with([trials, delta]),
+            (What::Quantile, _) => QUANTILE_FIXED.with([trials, delta]),
         })
     }
 

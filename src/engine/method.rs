@@ -4,8 +4,9 @@ use super::outcome::Method;
 use super::procedure::Procedure;
 use crate::compile::methods::PLANNED_TRIALS;
 use crate::compile::study::{Ask, Measure, MeasureKind};
+use crate::stats::Chosen;
+use crate::stats::procedures::PROBABILITY_WITHIN;
 use crate::stats::splitting;
-use crate::stats::{Chosen, estimator};
 
 /// Names and numbers, in the order of a report.
 type Numbers = Vec<(&'static str, f64)>;
@@ -40,7 +41,7 @@ pub(super) fn of(ask: &Ask, procedure: Option<&Procedure>) -> Method {
                 return method(estimator.spec.reported, &rule.numbers());
             }
             let name = match procedure {
-                Some(Procedure::Probability(readings)) if estimator.spec.name == estimator::DEFAULT.name => {
+                Some(Procedure::Probability(readings)) if estimator.spec.name == PROBABILITY_WITHIN.name => {
                     readings.readings().0.rule().chosen()
                 }
                 _ => estimator.spec.reported,

@@ -4,7 +4,6 @@
 //! is no cap. Or, at Okamoto's size, Hoeffding's interval alone, at the whole of the error.
 
 use super::invalid::{Invalid, probability, range};
-use super::spec::{Argument, DELTA, EPSILON, Forecast, Make, Serves, Spec, TEST_SCATTER};
 use super::{Coverage, Interval};
 use crate::base::math;
 
@@ -304,61 +303,6 @@ pub fn until_narrow(variance: f64, range: f64, epsilon: f64, delta: f64) -> f64 
     let level = math::ln(2.0 / delta);
     2.6 * variance * level / (epsilon * epsilon) + 3.0 * range * level / epsilon
 }
-
-/// The procedure of checks of an expectation, which nothing names.
-pub const RUNNING: Spec = Spec {
-    name: "running",
-    reported: "empirical_bernstein",
-    serves: Serves::Expectation,
-    arguments: &[DELTA],
-    summary: "time-uniform interval of the mean, error {delta}",
-    guarantee: "an interval that holds at all numbers of trials at once",
-    make: Make::Mean(|(low, high), values| Mean::running(low, high, values[0])),
-    forecast: Some(Forecast {
-        trials: |values, guess| {
-            let gap = math::at_least((guess.mean - guess.theta).abs(), 1e-6 * guess.range);
-            until_narrow(guess.variance, guess.range, gap, values[0])
-        },
-        scatter: TEST_SCATTER,
-    }),
-};
-
-/// The default of estimates of an expectation with a width, which nothing names.
-pub const WITHIN: Spec = Spec {
-    name: "default",
-    arguments: &[EPSILON, DELTA],
-    summary: "fewest trials for ± {epsilon}, error {delta}",
-    guarantee: "the expectation in the interval of half width epsilon",
-    make: Make::Mean(|(low, high), values| Mean::within(low, high, values[0], values[1])),
-    forecast: Some(Forecast {
-        trials: |values, guess| until_narrow(guess.variance, guess.range, values[0], values[1]),
-        scatter: (0.4, 2.0),
-    }),
-    ..RUNNING
-};
-
-/// The procedure as estimates of expectations name it.
-pub(super) const OKAMOTO: Spec = Spec {
-    name: "okamoto",
-    reported: "okamoto",
-    arguments: &[EPSILON, DELTA],
-    summary: "Okamoto bound for ± {epsilon}, error {delta}",
-    guarantee: "the expectation in the interval of half width epsilon, at a fixed size",
-    make: Make::Mean(|(low, high), values| Mean::planned(low, high, values[0], values[1])),
-    forecast: None,
-    ..RUNNING
-};
-
-/// The same for a number of trials fixed in advance; the default without a width.
-pub const FIXED: Spec = Spec {
-    name: "fixed",
-    arguments: &[Argument::trials(1_000_000_000_000), DELTA],
-    summary: "{trials} trials, error {delta}",
-    guarantee: "an interval at a number of trials fixed in advance",
-    make: Make::Mean(|(low, high), values| Mean::fixed(low, high, values[0] as u64, values[1])),
-    forecast: None,
-    ..RUNNING
-};
 
 #[cfg(test)]
 mod tests {

@@ -4,7 +4,6 @@
 //! quantile" and "below the quantile", and the band from a union bound over all numbers of trials.
 
 use super::invalid::{Invalid, probability, range};
-use super::spec::{Argument, DELTA, Make, Serves, Spec};
 use super::{Counts, Coverage, Interval, sequence};
 use crate::base::math;
 use crate::base::special::beta_tails;
@@ -221,29 +220,6 @@ impl Sample {
         Ok(qs.iter().map(|q| of(*q)).collect())
     }
 }
-
-/// The procedure as estimates of quantiles name it; the default.
-pub const FIXED: Spec = Spec {
-    name: "fixed",
-    reported: "order_statistics",
-    serves: Serves::Quantile,
-    // The values are kept.
-    arguments: &[Argument::trials(1_000_000_000), DELTA],
-    summary: "{trials} trials, error {delta}",
-    guarantee: "order statistics: exact for any distribution; several levels share the error; the default",
-    make: Make::Quantile { band: false },
-    forecast: None,
-};
-
-/// The band, as queries name it.
-pub(super) const DKW: Spec = Spec {
-    name: "dkw",
-    reported: "dkw",
-    summary: "{trials} trials, band around the distribution function, error {delta}",
-    guarantee: "the band of Dvoretzky, Kiefer and Wolfowitz: all levels at once",
-    make: Make::Quantile { band: true },
-    ..FIXED
-};
 
 #[cfg(test)]
 mod tests {

@@ -1,6 +1,6 @@
 //! What tests of P >= theta have in common, and unresolved trials.
 
-use super::{AnyTest, Readings, Rule, Sequential};
+use super::{Readings, Rule, Sequential};
 
 /// What a test decided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -73,12 +73,6 @@ impl<R: Test> Sequential<R> {
     /// What `decision` certifies.
     pub fn certifies(&self, decision: Decision) -> Statement {
         self.rule().certifies(decision)
-    }
-}
-
-impl Test for AnyTest {
-    fn certifies(&self, decision: Decision) -> Statement {
-        self.inner().certifies(decision)
     }
 }
 

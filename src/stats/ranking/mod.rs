@@ -4,7 +4,6 @@
 //! outcomes, and when a round is complete the next is a function of all outcomes so far. Any dependence
 //! between the arms of one trial is allowed, so common random numbers only help.
 
-use super::spec::{DELTA, EPSILON, Make, Serves, Spec};
 use std::cmp::Ordering;
 
 mod bet;
@@ -28,38 +27,6 @@ pub enum Ranking {
     /// Okamoto on each option (Algorithm 1 of Given-Wilson et al. 2017).
     Okamoto,
 }
-
-/// The procedure as queries name it; the default.
-pub const BETTING: Spec = Spec {
-    name: "betting",
-    reported: "betting",
-    serves: Serves::Ranking,
-    arguments: &[EPSILON, DELTA],
-    summary: "best within {epsilon}, error {delta}: paired betting, all challengers",
-    guarantee: "the choice is within epsilon of the best, jointly, with error delta; at any deadline a certified gap; the default",
-    make: Make::Ranking(Ranking::Betting(Allocation::AllFailing)),
-    forecast: None,
-};
-
-/// The procedure as queries name it.
-pub(super) const ONE_CHALLENGER: Spec = Spec {
-    name: "one_challenger",
-    reported: "one_challenger",
-    summary: "best within {epsilon}, error {delta}: paired betting, one challenger",
-    guarantee: "as betting; better choices after few trials, wider gaps",
-    make: Make::Ranking(Ranking::Betting(Allocation::OneChallenger)),
-    ..BETTING
-};
-
-/// The procedure as queries name it.
-pub(super) const OKAMOTO: Spec = Spec {
-    name: "okamoto",
-    reported: "okamoto",
-    summary: "best within {epsilon}, error {delta}: Okamoto bound on each option",
-    guarantee: "as betting, each option to half of epsilon; ranks by P(…) only",
-    make: Make::Ranking(Ranking::Okamoto),
-    ..BETTING
-};
 
 /// Trials `from .. to` of one arm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

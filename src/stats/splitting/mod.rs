@@ -17,59 +17,8 @@ pub use floor::floor;
 pub use spread::{Spread, student};
 
 use super::invalid::Invalid;
-use super::spec::{Argument, Chosen, DELTA, Kind, Make, Serves, Spec};
-use crate::base::math;
+use super::spec::{Chosen, DELTA, Make};
 use crate::base::random::{Purpose, Stream, TrialKey};
-
-/// The procedure as queries name it.
-pub(super) const SPLITTING: Spec = Spec {
-    name: "splitting",
-    reported: "splitting",
-    serves: Serves::Probability,
-    arguments: &[
-        whole("replicas", 10.0, |_| 1e6, |_| 1000.0, None),
-        whole("runs", 2.0, |_| 1000.0, |_| 20.0, None),
-        whole(
-            "plain",
-            100.0,
-            |_| 1e9,
-            |values| math::at_least((values[0] * values[1] / 2.0).floor(), 100.0),
-            None,
-        ),
-        DELTA,
-        // How many are killed is at most how many there are.
-        whole(
-            "kill",
-            1.0,
-            |values| values[0] - 1.0,
-            |values| math::at_least((values[0] / 10.0).floor(), 1.0),
-            Some(0),
-        ),
-    ],
-    summary: "adaptive splitting, {runs} runs of {replicas} paths, after {plain} plain trials",
-    guarantee: "a lower bound of P from the runs, an upper one from plain trials",
-    make: Make::Splitting { adaptive: true },
-    forecast: None,
-};
-
-/// The same at the levels of a pilot run.
-pub(super) const FIXED_EFFORT: Spec = Spec {
-    name: "fixed_effort",
-    reported: "fixed_effort",
-    summary: "splitting with fixed effort, {runs} runs of {replicas} paths, after {plain} plain trials",
-    make: Make::Splitting { adaptive: false },
-    ..SPLITTING
-};
-
-const fn whole(
-    name: &'static str,
-    low: f64,
-    high: fn(&[f64]) -> f64,
-    default: fn(&[f64]) -> f64,
-    bounded_by: Option<usize>,
-) -> Argument {
-    Argument { name, kind: Kind::Number { whole: true, low, high, default, bounded_by } }
-}
 
 /// How a rare event is split into less rare ones.
 #[derive(Clone, Copy, Debug, PartialEq)]

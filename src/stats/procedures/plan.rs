@@ -1,11 +1,10 @@
 //! The exact single-sampling plan: the smallest fixed number of trials, and of successes among them, that
 //! bounds both errors of a test with an indifference region.
 
-use super::invalid::{Invalid, probability, range, region};
-use super::spec::{ALPHA, Argument, BETA, Make, Serves, Spec};
-use super::sprt::region_statement;
-use super::{Counts, Decision, Rule, Sequential, Statement, Test};
 use crate::base::special::{beta_tails, normal_quantile};
+use crate::stats::invalid::{Invalid, probability, range, region};
+use crate::stats::sprt::region_statement;
+use crate::stats::{Counts, Decision, Rule, Sequential, Statement, Test};
 
 /// P >= theta + indifference against P <= theta - indifference by a fixed number of trials.
 ///
@@ -136,20 +135,6 @@ impl Test for Plan {
         region_statement(decision, (self.low, self.high), self.alpha, self.beta)
     }
 }
-
-/// The procedure as queries name it.
-pub(super) const PLAN: Spec = Spec {
-    name: "plan",
-    reported: "plan",
-    serves: Serves::Check,
-    arguments: &[ALPHA, BETA, Argument::indifference(5e-4)],
-    summary: "exact plan of fixed size, alpha {alpha}, beta {beta}, indifference {indifference}",
-    guarantee: "as sprt, at a fixed size; it stops before that once the answer is forced",
-    make: Make::Test(|against, values| {
-        Ok(Plan::new(against.theta, values[2], values[0], values[1])?.into_any())
-    }),
-    forecast: None,
-};
 
 #[cfg(test)]
 mod tests {

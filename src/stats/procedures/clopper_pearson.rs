@@ -1,10 +1,9 @@
 //! The Clopper-Pearson interval (Biometrika 26, 1934): exact coverage at a number of trials fixed in
 //! advance. At a number of trials that depends on the data it guarantees nothing.
 
-use super::invalid::{Invalid, probability, range};
-use super::spec::{Argument, DELTA, Make, Serves, Spec};
-use super::{Counts, Coverage, Estimator, Interval, Rule, Sequential};
 use crate::base::special::{beta_quantile, beta_tails, beta_upper_quantile};
+use crate::stats::invalid::{Invalid, probability, range};
+use crate::stats::{Counts, Coverage, Estimator, Interval, Rule, Sequential};
 
 /// Lower end at one-sided level `tail`: P(at least this many successes) is `tail` there. 0 without successes.
 pub fn lower(counts: Counts, tail: f64) -> f64 {
@@ -33,7 +32,7 @@ pub fn interval(counts: Counts, delta: f64) -> Interval {
 }
 
 /// Whether the two-sided interval at error `delta` is at most `width` wide. Cheaper than both ends.
-pub(super) fn narrow(counts: Counts, delta: f64, width: f64) -> bool {
+pub(in crate::stats) fn narrow(counts: Counts, delta: f64, width: f64) -> bool {
     let tail = 0.5 * delta;
     // From the end that is nearer to 0, so that its other tail is the plain one.
     let counts = if counts.successes > counts.failures {
@@ -118,21 +117,6 @@ impl Estimator for FixedSize {
         interval(counts, self.delta)
     }
 }
-
-/// The procedure as queries name it.
-pub(super) const CLOPPER_PEARSON: Spec = Spec {
-    name: "clopper_pearson",
-    reported: "clopper_pearson",
-    serves: Serves::Probability,
-    arguments: &[Argument::trials(1_000_000_000_000), DELTA],
-    summary: "{trials} trials, error {delta}",
-    guarantee: "an exact interval at a number of trials fixed in advance",
-    make: Make::Estimator(|values, _| Ok(FixedSize::new(values[0] as u64, values[1])?.into_any())),
-    forecast: None,
-};
-
-/// The same under the name that estimates of every kind share.
-pub(super) const FIXED: Spec = Spec { name: "fixed", ..CLOPPER_PEARSON };
 
 #[cfg(test)]
 mod tests {

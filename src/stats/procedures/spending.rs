@@ -1,11 +1,9 @@
 //! Clopper-Pearson with the error spent evenly over geometric looks: sound by the union bound for any
 //! half-width and error, without a table.
 
-use super::estimator::until_narrow;
-use super::invalid::{Invalid, probability, range};
-use super::spec::{DELTA, EPSILON, Forecast, Make, Serves, Spec};
-use super::{Counts, Coverage, Estimator, Interval, Rule, Sequential, clopper_pearson};
 use crate::base::math;
+use crate::stats::invalid::{Invalid, probability, range};
+use crate::stats::{Counts, Coverage, Estimator, Interval, Rule, Sequential, clopper_pearson};
 
 /// Each look is at half as many trials again.
 const RATIO: f64 = 1.5;
@@ -26,7 +24,7 @@ impl Spending {
         Self::rule(epsilon, delta).map(Sequential::new)
     }
 
-    pub(super) fn rule(epsilon: f64, delta: f64) -> Result<Self, Invalid> {
+    pub(in crate::stats) fn rule(epsilon: f64, delta: f64) -> Result<Self, Invalid> {
         range("epsilon", epsilon, 1e-5, 0.5)?;
         probability("delta", delta)?;
         // The more looks, the longer each takes: the smallest number that reaches the end.
@@ -46,7 +44,7 @@ impl Spending {
     }
 
     /// Goes on after outcomes at which it cannot have stopped, but for the last.
-    pub(super) fn resumed(mut self, counts: Counts) -> Sequential<Self> {
+    pub(in crate::stats) fn resumed(mut self, counts: Counts) -> Sequential<Self> {
         self.taken = self.looks.partition_point(|look| *look < counts.trials());
         let finished = self.look(counts, false);
         Sequential::resumed(self, counts, finished)
@@ -106,18 +104,6 @@ impl Estimator for Spending {
         }
     }
 }
-
-/// The procedure as queries name it.
-pub(super) const SPENDING: Spec = Spec {
-    name: "spending",
-    reported: "spending",
-    serves: Serves::Probability,
-    arguments: &[EPSILON, DELTA],
-    summary: "Clopper-Pearson with alpha spending for ± {epsilon}, error {delta}",
-    guarantee: "P in the interval of half width epsilon, by a union bound over looks",
-    make: Make::Estimator(|values, _| Ok(Spending::new(values[0], values[1])?.into_any())),
-    forecast: Some(Forecast { trials: until_narrow, scatter: (0.9, 2.2) }),
-};
 
 #[cfg(test)]
 mod tests {

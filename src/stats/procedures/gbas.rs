@@ -4,13 +4,11 @@
 //! Each trial adds an exponential number to a sum R until the k-th success; then (k - 1)/R over P has
 //! exactly the law of (k - 1)/Gamma(k), whatever P is.
 
-use super::estimator::WIDTH_SCATTER;
-use super::invalid::{Invalid, probability, range};
-use super::spec::{Argument, DELTA, Forecast, Kind, Make, Serves, Spec};
-use super::{Counts, Coverage, Estimator, Interval, Rule, Sequential, clopper_pearson};
 use crate::base::math;
 use crate::base::random::{Purpose, Stream, TrialKey};
-use crate::base::special::{gamma_quantile, gamma_reg, gamma_tails, gamma_upper_quantile, normal_quantile};
+use crate::base::special::{gamma_quantile, gamma_reg, gamma_tails, gamma_upper_quantile};
+use crate::stats::invalid::{Invalid, probability, range};
+use crate::stats::{Counts, Coverage, Estimator, Interval, Rule, Sequential, clopper_pearson};
 
 /// The share of the error kept for the interval at the cap.
 const CAP_SHARE: f64 = 0.1;
@@ -128,25 +126,7 @@ impl Estimator for Gbas {
 }
 
 /// Trials after which it gives up.
-const CAP: u64 = 1_000_000;
-
-/// The procedure as queries name it.
-pub(super) const GBAS: Spec = Spec {
-    name: "gbas",
-    reported: "gbas",
-    serves: Serves::Probability,
-    arguments: &[Argument { name: "epsilon", kind: Kind::Relative }, DELTA],
-    summary: "relative error {epsilon}, error {delta}",
-    guarantee: "relative error epsilon; it stops at a million trials, with an exact interval then",
-    make: Make::Estimator(|values, seed| Ok(Gbas::new(values[0], values[1], Some(CAP), seed)?.into_any())),
-    forecast: Some(Forecast {
-        trials: |values, guess| {
-            let z = normal_quantile(1.0 - 0.5 * values[1]);
-            z * z / (values[0] * values[0] * guess.share)
-        },
-        scatter: WIDTH_SCATTER,
-    }),
-};
+pub(super) const CAP: u64 = 1_000_000;
 
 #[cfg(test)]
 mod tests {

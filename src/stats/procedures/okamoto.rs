@@ -1,9 +1,8 @@
 //! The fixed number of trials by the bound of Okamoto (1958), Chernoff and Hoeffding (1963).
 
-use super::invalid::{Invalid, probability, range};
-use super::spec::{DELTA, EPSILON, Make, Serves, Spec};
-use super::{Counts, Coverage, Estimator, Interval, Rule, Sequential};
 use crate::base::math;
+use crate::stats::invalid::{Invalid, probability, range};
+use crate::stats::{Counts, Coverage, Estimator, Interval, Rule, Sequential};
 
 /// ceil(ln(2 / delta) / (2 epsilon^2)).
 pub fn size(epsilon: f64, delta: f64) -> u64 {
@@ -24,7 +23,7 @@ impl Okamoto {
         Self::rule(epsilon, delta).map(Sequential::new)
     }
 
-    pub(super) fn rule(epsilon: f64, delta: f64) -> Result<Self, Invalid> {
+    pub(in crate::stats) fn rule(epsilon: f64, delta: f64) -> Result<Self, Invalid> {
         range("epsilon", epsilon, 1e-5, 0.5)?;
         probability("delta", delta)?;
         Ok(Self { epsilon, delta, size: size(epsilon, delta) })
@@ -61,18 +60,6 @@ impl Estimator for Okamoto {
         Interval::around(counts.share(), self.epsilon, self.delta, Coverage::FixedSize)
     }
 }
-
-/// The procedure as estimates of probabilities name it.
-pub(super) const OKAMOTO: Spec = Spec {
-    name: "okamoto",
-    reported: "okamoto",
-    serves: Serves::Probability,
-    arguments: &[EPSILON, DELTA],
-    summary: "Okamoto bound for ± {epsilon}, error {delta}",
-    guarantee: "P in the interval of half width epsilon, at a fixed size",
-    make: Make::Estimator(|values, _| Ok(Okamoto::new(values[0], values[1])?.into_any())),
-    forecast: None,
-};
 
 #[cfg(test)]
 mod tests {

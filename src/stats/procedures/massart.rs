@@ -5,12 +5,10 @@
 //! interval is formed at every trial: the guarantee is argued by its authors, with much slack, rather than
 //! proven at every index.
 
-use super::estimator::until_narrow;
-use super::invalid::{Invalid, probability, range};
-use super::spec::{DELTA, EPSILON, Forecast, Make, Serves, Spec};
-use super::width::Ahead;
-use super::{Counts, Coverage, Estimator, Interval, Rule, Sequential, clopper_pearson, okamoto};
 use crate::base::math;
+use crate::stats::invalid::{Invalid, probability, range};
+use crate::stats::width::Ahead;
+use crate::stats::{Counts, Coverage, Estimator, Interval, Rule, Sequential, clopper_pearson, okamoto};
 
 /// Estimates P within a half-width by the share of successes.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,19 +81,7 @@ impl Estimator for Massart {
 }
 
 /// Share of the error that goes into the running interval.
-const SHARE: f64 = 0.02;
-
-/// The procedure as queries name it.
-pub(super) const MASSART: Spec = Spec {
-    name: "massart",
-    reported: "massart",
-    serves: Serves::Probability,
-    arguments: &[EPSILON, DELTA],
-    summary: "sequential Massart bound for ± {epsilon}, error {delta}",
-    guarantee: "P in the interval of half width epsilon, argued rather than proven",
-    make: Make::Estimator(|values, _| Ok(Massart::new(values[0], values[1], SHARE * values[1])?.into_any())),
-    forecast: Some(Forecast { trials: until_narrow, scatter: (0.9, 2.2) }),
-};
+pub(super) const SHARE: f64 = 0.02;
 
 #[cfg(test)]
 mod tests {

@@ -4,12 +4,11 @@
 //! nonnegative supermartingale for every P <= theta (Robbins 1970; Ville 1939). So the error holds at any
 //! stopping time, and at P = theta it is right never to stop.
 
-use super::invalid::{Invalid, probability, region};
-use super::spec::{ALPHA, Argument, BETA, Forecast, Guess, Make, Serves, Spec, TEST_SCATTER};
-use super::sprt::{SLACK, expected};
-use super::{Claim, Counts, Decision, Hypothesis, Rule, Sequential, Statement, Test};
 use crate::base::math;
 use crate::base::special::{beta_tails, ln_beta};
+use crate::stats::invalid::{Invalid, probability, region};
+use crate::stats::sprt::SLACK;
+use crate::stats::{Claim, Counts, Decision, Hypothesis, Rule, Sequential, Statement, Test};
 
 /// Beyond this no count is exact as a double; thresholds closer to 0 or 1 than that never decide.
 const MOST_TRIALS: u64 = 1 << 53;
@@ -242,48 +241,6 @@ impl Test for ThreeWay {
         Statement { claim, error: self.error }
     }
 }
-
-/// The procedure as queries name it; the default of checks.
-pub const EPROCESS: Spec = Spec {
-    name: "eprocess",
-    reported: "eprocess",
-    serves: Serves::Check,
-    arguments: &[ALPHA, BETA],
-    summary: "one-sided e-process, errors {alpha} and {beta}",
-    guarantee: "satisfied certifies P >= theta, violated P < theta, whatever P is; the default",
-    make: Make::Test(|against, values| {
-        Ok(Evidence::new(against.hypothesis, against.theta, values[0], values[1])?.into_any())
-    }),
-    forecast: Some(Forecast {
-        trials: |values, Guess { share: p, theta, .. }| {
-            let kl = p * math::ln(p / theta) + (1.0 - p) * math::ln((1.0 - p) / (1.0 - theta));
-            (5.0 - math::ln(values[0])) / math::at_least(kl, 1e-9)
-        },
-        scatter: TEST_SCATTER,
-    }),
-};
-
-/// The procedure as queries name it.
-pub(super) const THREE_WAY: Spec = Spec {
-    name: "three_way",
-    reported: "three_way",
-    serves: Serves::Check,
-    arguments: &[ALPHA, Argument::indifference(0.0)],
-    summary: "three-way e-process, error {alpha}, indifference {indifference}",
-    guarantee: "as eprocess at alpha for all answers together, and a third answer: P within the indifference of theta",
-    make: Make::Test(|against, values| {
-        Ok(ThreeWay::new(against.hypothesis, against.theta, values[1], values[0])?.into_any())
-    }),
-    forecast: Some(Forecast {
-        trials: |values, guess| {
-            // Each of the two tests at the ends of the region has to decide.
-            let (alpha, half) = (values[0], 0.5 * values[1]);
-            let one = |theta: f64| expected(guess.share, theta, half, alpha, alpha);
-            math::at_least(one(guess.theta - half), one(guess.theta + half))
-        },
-        scatter: TEST_SCATTER,
-    }),
-};
 
 #[cfg(test)]
 mod tests {

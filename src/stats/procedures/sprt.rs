@@ -3,10 +3,9 @@
 //! By Ville's inequality each error is then at most its nominal value, where Wald's own pair
 //! (1 - beta)/alpha, beta/(1 - alpha) only bounds their sum.
 
-use super::invalid::{Invalid, probability, region};
-use super::spec::{ALPHA, Argument, BETA, Forecast, Make, Serves, Spec, TEST_SCATTER};
-use super::{Claim, Counts, Decision, Rule, Sequential, Statement, Test};
 use crate::base::math;
+use crate::stats::invalid::{Invalid, probability, region};
+use crate::stats::{Claim, Counts, Decision, Rule, Sequential, Statement, Test};
 
 /// Thresholds are widened by this much, against rounding.
 pub(super) const SLACK: f64 = 1e-9;
@@ -84,26 +83,6 @@ pub(super) fn region_statement(
         Decision::Within => Statement { claim: Claim::Between(low, high), error: alpha + beta },
     }
 }
-
-/// The procedure as queries name it.
-pub(super) const SPRT: Spec = Spec {
-    name: "sprt",
-    reported: "sprt",
-    serves: Serves::Check,
-    arguments: &[ALPHA, BETA, Argument::indifference(0.0)],
-    summary: "SPRT, alpha {alpha}, beta {beta}, indifference {indifference}",
-    guarantee: "satisfied certifies P > theta - indifference, violated P < theta + indifference",
-    make: Make::Test(|against, values| {
-        Ok(Sprt::new(against.theta, values[2], values[0], values[1])?.into_any())
-    }),
-    forecast: Some(WALD),
-};
-
-/// Wald's expected number of trials for the arguments alpha, beta, indifference.
-pub(super) const WALD: Forecast = Forecast {
-    trials: |values, guess| expected(guess.share, guess.theta, values[2], values[0], values[1]),
-    scatter: TEST_SCATTER,
-};
 
 /// Wald's expected number of trials of a sequential probability ratio test where the share is `p`: the mean
 /// of the exit divided by the drift, or where there is hardly any drift, by the variance of a step.

@@ -6,9 +6,11 @@
 //! smaller levels, and the procedure goes on whatever its level is. Related: Frey, "Fixed-width sequential confidence intervals for a proportion",
 //! American Statistician 64 (2010).
 
-use super::invalid::{Invalid, probability, range};
-use super::width::Ahead;
-use super::{Counts, Coverage, Estimator, Interval, Rule, Sequential, calibration, clopper_pearson, okamoto};
+use crate::stats::invalid::{Invalid, probability, range};
+use crate::stats::width::Ahead;
+use crate::stats::{
+    Counts, Coverage, Estimator, Interval, Rule, Sequential, calibration, clopper_pearson, okamoto,
+};
 
 /// Estimates P within a half-width.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,7 +35,7 @@ impl Calibrated {
         Self::rule(epsilon, delta, gamma).map(Sequential::new)
     }
 
-    pub(super) fn rule(epsilon: f64, delta: f64, gamma: f64) -> Result<Self, Invalid> {
+    pub(in crate::stats) fn rule(epsilon: f64, delta: f64, gamma: f64) -> Result<Self, Invalid> {
         range("epsilon", epsilon, 1e-5, 0.5)?;
         probability("delta", delta)?;
         probability("gamma", gamma)?;
@@ -56,7 +58,7 @@ impl Calibrated {
     }
 
     /// Goes on at its level after outcomes at which it cannot have stopped, but for the last.
-    pub(super) fn resumed(mut self, counts: Counts) -> Sequential<Self> {
+    pub(in crate::stats) fn resumed(mut self, counts: Counts) -> Sequential<Self> {
         let before = counts.trials();
         let finished = before >= self.limit
             || (before > 0 && clopper_pearson::narrow(counts, self.gamma, 2.0 * self.epsilon));
@@ -71,7 +73,7 @@ impl Calibrated {
 
     /// Whether it waits, and may turn out to have stopped with its last outcome: at few trials the largest level that
     /// can be proven may have come to its stop, too.
-    pub(super) fn may_have_stopped(&self, counts: Counts) -> bool {
+    pub(in crate::stats) fn may_have_stopped(&self, counts: Counts) -> bool {
         let largest = calibration::LARGEST_SHARE * self.delta;
         self.waits
             && (counts.trials() >= self.limit || clopper_pearson::narrow(counts, largest, 2.0 * self.epsilon))

@@ -3,11 +3,10 @@
 //!
 //! Errors are bounded as with the SPRT, and the number of trials has a bound: the test for hard deadlines.
 
-use super::invalid::{Invalid, probability, range, region};
-use super::spec::{ALPHA, Argument, BETA, Make, Serves, Spec};
-use super::sprt::{SLACK, WALD, region_statement};
-use super::{Counts, Decision, Rule, Sequential, Statement, Test};
 use crate::base::math;
+use crate::stats::invalid::{Invalid, probability, range, region};
+use crate::stats::sprt::{SLACK, region_statement};
+use crate::stats::{Counts, Decision, Rule, Sequential, Statement, Test};
 
 /// P >= theta + indifference against P <= theta - indifference, with a closed region.
 #[derive(Clone, Debug, PartialEq)]
@@ -89,20 +88,6 @@ impl Test for TwoSprt {
         region_statement(decision, (self.low, self.high), self.alpha, self.beta)
     }
 }
-
-/// The procedure as queries name it.
-pub(super) const SPRT2: Spec = Spec {
-    name: "sprt2",
-    reported: "sprt2",
-    serves: Serves::Check,
-    arguments: &[ALPHA, BETA, Argument::indifference(1e-5)],
-    summary: "2-SPRT, alpha {alpha}, beta {beta}, indifference {indifference}",
-    guarantee: "as sprt, and the number of trials is bounded",
-    make: Make::Test(|against, values| {
-        Ok(TwoSprt::new(against.theta, values[2], values[0], values[1])?.into_any())
-    }),
-    forecast: Some(WALD),
-};
 
 #[cfg(test)]
 mod tests {
