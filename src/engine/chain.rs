@@ -91,6 +91,17 @@ pub(super) struct StepChain {
     pub(super) steps: u64,
 }
 
+/// The batch of the last block, or a new one for another seed.
+fn batch<B>(last: &mut Option<(u64, B)>, seed: u64, new: impl FnOnce(u64) -> B) -> &mut B {
+    let kept = last.take().filter(|(old, _)| *old == seed);
+    &mut last.insert(kept.unwrap_or_else(|| (seed, new(seed)))).1
+}
+
+/// Whether a block ends before its trials do. The clock is read once in so many rounds.
+fn is_cut(budget: &Budget, rounds: u64, between_looks: u64) -> bool {
+    budget.is_interrupted() || (rounds.is_multiple_of(between_looks) && budget.is_over())
+}
+
 /// The present tick for the columns, bit k for the k-th of them.
 struct AtTick {
     tick: u64,
@@ -143,12 +154,7 @@ impl StepChain {
         budget: &Budget,
     ) {
         let Some(chain) = prepared.program.processes.chain() else { return };
-        let trials = self
-            .trials
-            .take()
-            .filter(|(old, _)| *old == seed)
-            .map_or_else(|| StepBatch::new(seed), |(_, t)| t);
-        let (_, trials) = self.trials.insert((seed, trials));
+        let trials = batch(&mut self.trials, seed, StepBatch::new);
         chain.begin(trials, block.items.iter().map(|item| item.index));
         let all = STILL | (STILL - 1) >> (MOST_COLUMNS - self.flats.len());
         self.open.clear();
@@ -158,9 +164,7 @@ impl StepChain {
         };
         let negated = columns(&Flat::is_negated);
         while !trials.is_empty() {
-            if budget.is_interrupted()
-                || (self.rounds.is_multiple_of(STEPS_BETWEEN_LOOKS) && budget.is_over())
-            {
+            if is_cut(budget, self.rounds, STEPS_BETWEEN_LOOKS) {
                 return;
             }
             self.rounds += 1;
@@ -255,12 +259,7 @@ impl JumpChain {
         budget: &Budget,
     ) {
         let Some(chain) = prepared.program.processes.embedded() else { return };
-        let trials = self
-            .trials
-            .take()
-            .filter(|(old, _)| *old == seed)
-            .map_or_else(|| JumpBatch::new(seed), |(_, t)| t);
-        let (_, trials) = self.trials.insert((seed, trials));
+        let trials = batch(&mut self.trials, seed, JumpBatch::new);
         chain.begin(trials, block.items.iter().map(|item| item.index));
         let width = self.glances.len();
         let all = (STILL - 1) >> (MOST_COLUMNS - width);
@@ -268,9 +267,7 @@ impl JumpChain {
         self.open.extend((0..block.items.len() as u32).map(|slot| (slot, all)));
         let quiet = self.glances.iter().map(Glance::quiet_until).fold(f64::INFINITY, f64::min);
         while !trials.is_empty() {
-            if budget.is_interrupted()
-                || (self.rounds.is_multiple_of(JUMPS_BETWEEN_LOOKS) && budget.is_over())
-            {
+            if is_cut(budget, self.rounds, JUMPS_BETWEEN_LOOKS) {
                 return;
             }
             self.rounds += 1;
