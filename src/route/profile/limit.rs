@@ -8,8 +8,8 @@ use super::stretch::Span;
 
 /// Iterations of a search before its best point so far is taken. Newton's method needs three to six.
 const MOST_STEPS: u32 = 80;
-/// A step of this share of the range moves an end by rounding alone.
-const FINE: f64 = 1e-15;
+/// After a step of this share of the range Newton's method is exact to rounding.
+const FINE: f64 = 1e-12;
 
 /// A width of y above this is negative by rounding alone.
 const NO_ROOM: f64 = -1e-13;
@@ -73,10 +73,10 @@ impl Pieces {
             for span in spans.iter().take_while(|span| span.start < to) {
                 for place in [span.start.max(from), span.end.min(to)] {
                     let reach = 2.0 * along * (place - from);
-                    if place > from {
-                        all.limits.push(Limit::Top { top: span.cap, per_reach: 1.0 / reach });
-                    } else {
+                    if place <= from {
                         most = most.min(span.cap);
+                    } else if span.cap < span.bend {
+                        all.limits.push(Limit::Top { top: span.cap, per_reach: 1.0 / reach });
                     }
                     if span.bend < f64::INFINITY {
                         let turn = reach / span.bend;
@@ -111,10 +111,9 @@ impl Pieces {
                     let root = (1.0 + turn * turn - share * share).max(0.0).sqrt();
                     let (middle, steep) = (share * turn, share / root);
                     let scale = per_bend * per_norm;
-                    high = high
-                        .lower(Edge { at: (root - middle) * per_norm, slope: -(steep + turn) * scale });
-                    low =
-                        low.upper(Edge { at: (-root - middle) * per_norm, slope: (steep - turn) * scale });
+                    high =
+                        high.lower(Edge { at: (root - middle) * per_norm, slope: -(steep + turn) * scale });
+                    low = low.upper(Edge { at: (-root - middle) * per_norm, slope: (steep - turn) * scale });
                 }
             }
         }
@@ -169,25 +168,29 @@ impl Pieces {
         if room.at >= 0.0 {
             return high;
         }
+        let mut below = self.room(piece, target, low).at.max(0.0);
         for _ in 0..MOST_STEPS {
-            if high - low <= FINE * piece.most {
-                break;
-            }
-            // From the right, Newton's method falls to the last root without passing it. Where the slope is infinite, halve.
-            let next = high - room.at / room.slope;
-            let newton = room.slope < 0.0 && next < high && next > low;
-            let next = if newton { next } else { 0.5 * (low + high) };
-            let found = self.room(piece, target, next);
-            if found.at >= 0.0 {
-                low = next;
-                if newton {
-                    break;
-                }
+            // From the right, Newton's method falls to the last root without passing it.
+            let step = room.at / room.slope;
+            let newton = room.slope.is_finite() && step > 0.0 && high - step > low;
+            let next = if newton {
+                high - step
             } else {
-                if newton && high - next <= FINE * piece.most {
-                    return next;
-                }
+                // At the end of its range an ellipse is vertical: the width is like a square root there. Where it is flat
+                // at 0, as before a given end, halve.
+                let share = room.at / (room.at - below);
+                high - (high - low) * (share * share).clamp(FINE, 0.5)
+            };
+            if high - next <= FINE * piece.most {
+                return next.max(low);
+            }
+            let found = self.room(piece, target, next);
+            if found.at < NO_ROOM {
                 (high, room) = (next, found);
+            } else if newton {
+                return next;
+            } else {
+                (low, below) = (next, found.at.max(0.0));
             }
         }
         low

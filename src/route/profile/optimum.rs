@@ -55,13 +55,13 @@ impl Optimum {
         for span in spans {
             let square = reached.min(span.cap);
             joints.push(Joint { square, peak: square });
-            reached = gained(square, span.length(), along, span.bend).min(span.cap);
+            reached = gained(square, span, along);
         }
         // Backward: as fast as the end and the caps behind allow.
         let mut square = reached.min(end * end);
         let (last, mut most) = (Joint { square, peak: square }, square);
         for (joint, span) in joints.iter_mut().zip(spans).rev() {
-            most = gained(square, span.length(), along, span.bend).min(span.cap);
+            most = gained(square, span, along);
             square = joint.square.min(most);
             joint.square = square;
         }
@@ -113,7 +113,9 @@ impl Optimum {
         match self.phases.get(after.max(1) - 1) {
             Some(phase) => phase.motion(t, self.along),
             // A path without length.
-            None => Motion { speed: self.joints.first().map_or(0.0, |j| j.square.sqrt()), ..Motion::default() },
+            None => {
+                Motion { speed: self.joints.first().map_or(0.0, |j| j.square.sqrt()), ..Motion::default() }
+            }
         }
     }
 

@@ -35,7 +35,7 @@ pub enum Printed {
     /// No profile.
     NeverReturns(NeverReturns),
     /// A profile, legal or not.
-    Profile(PrintedProfile),
+    Profile(Box<PrintedProfile>),
 }
 
 /// A profile of the algorithm.
@@ -107,7 +107,8 @@ pub fn printed(
     let acceleration = (2.0 * uniform() - 1.0) * span.map_or(0.0, |span| effort(span, end.1, limits.along));
     let last = shrunk(&region, end, acceleration, -uniform() * LARGEST_END * length);
     let Some(last) = last else { return Ok(Printed::NeverReturns(NeverReturns::End)) };
-    // Lines 18 to 28: pieces in between. The counter begins at 1 and is compared with m0 - 3 after it is raised.
+    // Lines 18 to 28: pieces in between. The counter begins at 1 and is compared with m0 - 3 after it is raised. The loop
+    // as printed ends before P_{m0-3}, from which line 29 joins; here that piece is made too.
     let count = 2 + (uniform() * 9.0) as usize;
     if count <= 4 {
         return Ok(Printed::NeverReturns(NeverReturns::Pieces));
@@ -115,9 +116,10 @@ pub fn printed(
     let step = (last.to.0 - first.to.0) / (count - 2) as f64;
     let mut pieces = vec![first];
     let mut at = first.to;
-    for _ in 1..count - 3 {
+    for _ in 1..count - 2 {
         let span = spans.iter().find(|span| span.end > at.0);
-        let acceleration = (2.0 * uniform() - 1.0) * span.map_or(0.0, |span| effort(span, at.1, limits.along));
+        let acceleration =
+            (2.0 * uniform() - 1.0) * span.map_or(0.0, |span| effort(span, at.1, limits.along));
         let Some(piece) = shrunk(&region, at, acceleration, step) else {
             return Ok(Printed::NeverReturns(NeverReturns::Stuck));
         };
@@ -127,7 +129,7 @@ pub fn printed(
     // Line 29: the join.
     pieces.push(Straight { from: last.to, to: last.from });
     let join = Straight { from: at, to: last.to };
-    Ok(Printed::Profile(PrintedProfile { spans, limits, region, pieces, join }))
+    Ok(Printed::Profile(Box::new(PrintedProfile { spans, limits, region, pieces, join })))
 }
 
 /// The largest acceleration along a span at u, m/s^2.

@@ -16,21 +16,25 @@ fn sine_cosine(u: f64, bend: f64) -> (f64, f64) {
     (sine, ((1.0 - sine) * (1.0 + sine)).sqrt())
 }
 
-/// u after `distance` of full effort from `u`; at most `bend`.
-pub(super) fn gained(u: f64, distance: f64, along: f64, bend: f64) -> f64 {
-    let gain = 2.0 * along * distance;
+/// The largest u at one end of a span from `u` at the other end.
+pub(super) fn gained(u: f64, span: &Span, along: f64) -> f64 {
+    let (bend, cap) = (span.bend, span.cap);
+    if u >= cap {
+        return cap;
+    }
+    let gain = 2.0 * along * span.length();
     if bend == f64::INFINITY {
-        return u + gain;
+        return (u + gain).min(cap);
     }
     let turn = gain / bend;
     if turn >= FRAC_PI_2 {
-        return bend;
+        return cap;
     }
     let ((sine, cosine), (sine_turn, cosine_turn)) = (sine_cosine(u, bend), sin_cos(turn));
     if sine_turn >= cosine {
-        return bend;
+        return cap;
     }
-    bend * (sine * cosine_turn + cosine * sine_turn)
+    (bend * (sine * cosine_turn + cosine * sine_turn)).min(cap)
 }
 
 /// u after `distance` of full braking from `u`; at least 0.
@@ -112,11 +116,7 @@ impl Phase {
                 (turned * bend / (2.0 * along), root * y, along * cosine)
             }
         };
-        Motion {
-            distance: place + self.sense * covered,
-            speed,
-            acceleration: self.sense * acceleration,
-        }
+        Motion { distance: place + self.sense * covered, speed, acceleration: self.sense * acceleration }
     }
 
     /// The speed at place x of the phase, m/s.

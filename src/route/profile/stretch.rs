@@ -11,8 +11,8 @@ pub struct Stretch {
     pub radius: f64,
 }
 
-/// Limits of speed and acceleration: v <= speed and (a_t / along)^2 + (a_n / across)^2 <= 1, where a_t is the
-/// acceleration along the path and a_n = v^2 / radius.
+/// Limits of speed and acceleration: v <= speed and `(a_t / along)^2 + (a_n / across)^2 <= 1`, where `a_t` is the
+/// acceleration along the path and `a_n` = v^2 / radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     /// Largest speed, m/s.

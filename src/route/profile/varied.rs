@@ -28,8 +28,8 @@ const SAME_PLACE: f64 = 1e-12;
 pub struct Variety {
     /// How many pieces a profile has. Each part between stops has at least 2; the others are shared out by length.
     pub pieces: usize,
-    /// Least share of the largest u (on the same knots) that is drawn, in (0, 1]; 0.1 is a good choice. A profile takes at
-    /// most 1 / sqrt(floor) times as long as the fastest one on its knots.
+    /// Least share of u that is drawn, in (0, 1], as a share of a typical profile on the same knots; 0.1 is a good choice.
+    /// From rest to rest no profile takes longer than 1 / sqrt(floor) times the duration of the typical one.
     pub floor: f64,
     /// The law of the speeds at knots.
     pub law: Law,
@@ -85,7 +85,8 @@ pub fn varied(
     for (k, (part, count)) in parts.iter().zip(counts).enumerate() {
         let is_first = k == 0 && !spans.first().is_some_and(Span::is_stop);
         let is_last = k + 1 == parts.len() && !spans.last().is_some_and(Span::is_stop);
-        let ends = [(is_first, start_speed), (is_last, end_speed)].map(|(is, v)| if is { v * v } else { 0.0 });
+        let ends =
+            [(is_first, start_speed), (is_last, end_speed)].map(|(is, v)| if is { v * v } else { 0.0 });
         let mut places = drawn_knots(part, count, number, &mut draw);
         if places.windows(2).any(|w| w[1].x - w[0].x <= SAME_PLACE * optimum.length()) {
             return Err(Infeasible::Tight);
@@ -204,21 +205,15 @@ impl Values {
         let mut next: Option<(&Piece, (f64, f64))> = None;
         for ((piece, target), low) in self.pieces.iter().zip(&mut self.targets).zip(floors).rev() {
             let low = low.max(target.0).min(target.1);
-            let high = next.map_or(target.1, |(piece, onward)| {
-                self.pieces.last_source(piece, onward, low, target.1)
-            });
+            let high = next
+                .map_or(target.1, |(piece, onward)| self.pieces.last_source(piece, onward, low, target.1));
             *target = (low, high);
             next = Some((piece, *target));
         }
     }
 
     /// Draws u at every knot but the first one.
-    fn draw(
-        &self,
-        knots: &[Knot],
-        law: Law,
-        draw: &mut impl FnMut(u32) -> [f64; 2],
-    ) -> Vec<(f64, f64)> {
+    fn draw(&self, knots: &[Knot], law: Law, draw: &mut impl FnMut(u32) -> [f64; 2]) -> Vec<(f64, f64)> {
         let mut u = self.start;
         let steps = self.pieces.iter().zip(&self.targets).zip(knots.iter().skip(1));
         steps

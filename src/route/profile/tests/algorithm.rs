@@ -34,11 +34,12 @@ fn shares(speed: f64, acceleration: f64, runs: u32) -> [f64; 7] {
 
 #[test]
 fn the_printed_algorithm_fails_as_often_as_measured() {
-    let cases =
-        [(10.0, 2.0, [74.0, 8.5, 17.3, 32.0, 49.0, 43.0, 66.0]), (1.5, 0.8, [74.0, 8.7, 17.1, 3.2, 0.0, 0.0, 3.2])];
+    let cases = [
+        (10.0, 2.0, [74.0, 8.5, 17.3, 32.0, 49.0, 43.0, 66.0]),
+        (1.5, 0.8, [74.0, 8.7, 17.1, 3.2, 0.0, 0.0, 3.2]),
+    ];
     for (speed, acceleration, expected) in cases {
         let found = shares(speed, acceleration, 10_000);
-        println!("{found:.1?} {expected:?}");
         for (found, expected) in found.iter().zip(expected) {
             assert!((found - expected).abs() <= 2.0, "{found} {expected}");
         }

@@ -1,7 +1,8 @@
 //! Paths for tests: those with reference values, and random ones.
 
+use crate::base::math::pow;
 use crate::base::random::{Purpose, Stream, TrialKey};
-use crate::route::profile::{Limits, Stretch, optimal};
+use crate::route::profile::{Infeasible, Limits, Stretch, optimal};
 use std::f64::consts::PI;
 
 /// A path with limits and end speeds.
@@ -47,7 +48,7 @@ pub(super) fn random_case(index: u64) -> Case {
         next += 1;
         stream.uniform(next)
     };
-    let between = |u: f64, low: f64, high: f64| low * (high / low).powf(u);
+    let between = |u: f64, low: f64, high: f64| low * pow(high / low, u);
     let count = 1 + (uniform() * 6.0) as usize;
     let stretches = (0..count).map(|_| {
         if uniform() < 0.4 {
@@ -66,8 +67,7 @@ pub(super) fn random_case(index: u64) -> Case {
         let found = optimal(&case.stretches, case.limits, start, end);
         found.map_or_else(
             |why| match why {
-                crate::route::profile::Infeasible::Start { largest, .. }
-                | crate::route::profile::Infeasible::End { largest, .. } => largest,
+                Infeasible::Start { largest, .. } | Infeasible::End { largest, .. } => largest,
                 other => panic!("{other}"),
             },
             |_| start.max(end),

@@ -1,6 +1,7 @@
 //! Varied profiles against the limits, in terms of the path alone.
 
 use super::shape::{Case, STOP, arc, circle, line, paper_path, random_case, stream};
+use crate::base::math::pow;
 use crate::route::profile::{Infeasible, Law, Limits, Stretch, Varied, Variety, optimal, varied};
 
 /// A limit counts as broken if it is exceeded by more than this share.
@@ -44,7 +45,7 @@ fn broken(profile: &Varied, stretches: &[Stretch], limits: Limits) -> Option<Str
                 }
                 let here = u + slope * (place - x);
                 let across = here / stretch.radius / limits.across;
-                let norm = across * across + (0.5 * slope / limits.along).powi(2);
+                let norm = across * across + pow(0.5 * slope / limits.along, 2.0);
                 if here > top * (1.0 + ROUNDING) || norm > 1.0 + ROUNDING {
                     return Some(format!("u {here} of {top}, norm {norm} at {place}"));
                 }
@@ -103,8 +104,8 @@ fn count_violations(shapes: std::ops::Range<u64>, draws: u64) {
             }
         }
     }
-    println!("{total} draws, {refused} refused, {refined} refined");
     assert_eq!(rested_refused, 0);
+    assert!(refined > 0);
     // Only start speeds at the very edge have no profile of straight pieces.
     assert!(refused * 100 < total, "{refused} of {total}");
 }
@@ -229,11 +230,38 @@ fn end_speeds_at_their_largest_are_joined_on_lines() {
     }
     // On an arc the one profile that is left is curved.
     let curved = Case { stretches: vec![arc(30.0, 2.0)], limits: circle(10.0, 2.0), start: 0.0, end: 0.0 };
-    let Err(Infeasible::Start { largest, .. }) = optimal(&curved.stretches, limits, 100.0, 0.0) else { panic!() };
+    let Err(Infeasible::Start { largest, .. }) = optimal(&curved.stretches, limits, 100.0, 0.0) else {
+        panic!()
+    };
     let edge = Case { start: largest, ..curved.clone() };
     assert_eq!(drawn(&edge, &with(5, Law::Uniform), 2), Err(Infeasible::Tight));
     let near = Case { start: 0.99 * largest, ..curved };
     assert!(drawn(&near, &with(5, Law::Uniform), 2).unwrap().knots().len() > 6);
+}
+
+#[test]
+fn tiny_paths_and_sharp_arcs_have_profiles() {
+    let sharp = Stretch { length: 1e-3, radius: 1e-3 };
+    let paths: [&[Stretch]; 5] = [
+        &[line(1e-6)],
+        &[arc(170.0, 1e-4)],
+        &[line(30.0), sharp, line(30.0)],
+        &[line(30.0), sharp, line(0.01), sharp, line(30.0)],
+        &[line(1e5), arc(90.0, 1e3)],
+    ];
+    for (k, path) in paths.iter().enumerate() {
+        let case = Case { stretches: path.to_vec(), limits: circle(10.0, 2.0), start: 0.0, end: 0.0 };
+        for pieces in [2, 3, 10, 64] {
+            for law in [Law::Uniform, WALK, Law::Preferred { speed: 100.0, spread: 0.0 }] {
+                for index in 0..50 {
+                    let profile = drawn(&case, &with(pieces, law), index).unwrap();
+                    let found = broken(&profile, path, case.limits);
+                    assert!(found.is_none(), "{k} {pieces} {law:?} {index}: {found:?}");
+                    assert_eq!(profile.knots().len(), pieces + 1);
+                }
+            }
+        }
+    }
 }
 
 #[test]
