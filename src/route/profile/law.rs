@@ -19,7 +19,7 @@ pub enum Law {
 }
 
 impl Law {
-    /// Whether its numbers make sense.
+    /// Whether its numbers are valid.
     pub(super) fn check(self) -> Result<(), Infeasible> {
         match self {
             Self::Preferred { speed, spread }
@@ -88,7 +88,7 @@ const FAR: f64 = -37.0;
 
 /// The quantile of a standard normal number cut to [from, to].
 fn cut_normal(from: f64, to: f64, p: f64) -> f64 {
-    // The lower tail has all its digits, the upper one has not.
+    // Doubles resolve a lower tail, but not an upper one: 1 - 1e-20 is 1.
     if from + to > 0.0 {
         return -cut_normal(-to, -from, 1.0 - p);
     }

@@ -8,7 +8,7 @@ use super::stretch::Span;
 
 /// Iterations of a search before its best point so far is taken. Newton's method needs three to six.
 const MOST_STEPS: u32 = 80;
-/// After a step of this share of the range Newton's method is exact to rounding.
+/// After a step that is smaller than this share of the range, Newton's method is exact to rounding.
 const FINE: f64 = 1e-12;
 
 /// A width of y above this is negative by rounding alone.

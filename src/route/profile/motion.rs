@@ -1,4 +1,4 @@
-//! What a profile says of one time.
+//! The state of a motion at one time.
 
 /// The state of a motion along a path.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

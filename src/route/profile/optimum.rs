@@ -35,7 +35,7 @@ pub struct Optimum {
 ///
 /// # Errors
 ///
-/// A number that makes no sense, or an end speed that is too large; the error names the largest one.
+/// An invalid number, or an end speed that is too large; the error names the largest one.
 pub fn optimal(
     stretches: &[Stretch],
     limits: Limits,

@@ -37,13 +37,13 @@ pub enum Infeasible {
         /// Its place in the path, from 0.
         index: usize,
     },
-    /// Limits of a varied profile: the floor.
+    /// The floor of a varied profile is invalid.
     #[error("the floor of a varied profile must be above 0 and at most 1 (got {floor})")]
     Floor {
         /// Its value.
         floor: f64,
     },
-    /// A law of speeds whose numbers make no sense.
+    /// A law of speeds with an invalid number.
     #[error("the preferred speed must be positive and its spread at least 0 (got {speed} m/s and {spread})")]
     Law {
         /// The preferred speed, m/s.
@@ -97,7 +97,7 @@ impl Span {
     }
 }
 
-/// The spans of a path, or which number is wrong.
+/// The spans of a path; an error names the invalid number.
 pub(super) fn spans(stretches: &[Stretch], limits: Limits) -> Result<Vec<Span>, Infeasible> {
     let Limits { speed, along, across } = limits;
     if ![speed, along, across].iter().all(|limit| *limit > 0.0 && limit.is_finite()) {

@@ -18,7 +18,7 @@ const LEAST_PIECE: f64 = 0.25;
 const FEWEST: usize = 2;
 /// How often knots are refined before end speeds count as too close to the limits: once by the joints, then by halving.
 const REFINEMENTS: u32 = 7;
-/// So far from its interval, relative to it, an end is inside but for rounding.
+/// An end that is outside of its interval by less than this share of it is inside but for rounding.
 const ROUNDING: f64 = 1e-12;
 /// Knots closer than this share of the path coincide.
 const SAME_PLACE: f64 = 1e-12;
@@ -60,7 +60,7 @@ struct Knot {
 ///
 /// # Errors
 ///
-/// Those of `optimal`; a floor or a law that makes no sense; end speeds so close to the limits that no refinement helps.
+/// Those of `optimal`; an invalid floor or law; end speeds so close to the limits that no refinement helps.
 pub fn varied(
     stretches: &[Stretch],
     limits: Limits,

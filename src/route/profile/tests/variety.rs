@@ -265,7 +265,7 @@ fn tiny_paths_and_sharp_arcs_have_profiles() {
 }
 
 #[test]
-fn numbers_that_make_no_sense_are_refused() {
+fn invalid_numbers_are_refused() {
     let case = Case { stretches: vec![line(2.0)], limits: circle(1.5, 0.8), start: 0.0, end: 0.0 };
     let floor = Variety { pieces: 4, floor: 0.0, law: WALK };
     assert_eq!(drawn(&case, &floor, 0), Err(Infeasible::Floor { floor: 0.0 }));
