@@ -80,6 +80,8 @@ impl Person {
             Parameter::K2 => self.k2,
             Parameter::Noise => self.noise,
             Parameter::Attention => 1.0,
+            // Of plans: 2 is a value that each of them may have.
+            _ => 2.0,
         }
     }
 }

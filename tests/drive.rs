@@ -276,10 +276,13 @@ fn with_moves(agent: Agent) -> Program {
         duration: Tick(5),
         options: vec![("stop".into(), Move::Stop)],
         routes: Vec::new(),
+        paths: None,
     };
     let options = vec![("stop".into(), Move::Stop), ("left".into(), Move::Heading(0.5))];
-    scenario.moves =
-        vec![other, Moves { agent: AgentId(0), duration: Tick(100), options, routes: Vec::new() }];
+    scenario.moves = vec![
+        other,
+        Moves { agent: AgentId(0), duration: Tick(100), options, routes: Vec::new(), paths: None },
+    ];
     Program::new(Arc::new(scenario))
 }
 
@@ -351,7 +354,8 @@ fn lanes_do_not_see_one_another() {
     ];
     let mut scenario = scenario(agents);
     let options = vec![("left".into(), Move::Heading(0.5))];
-    scenario.moves = vec![Moves { agent: AgentId(0), duration: Tick(30), options, routes: Vec::new() }];
+    scenario.moves =
+        vec![Moves { agent: AgentId(0), duration: Tick(30), options, routes: Vec::new(), paths: None }];
     let program = Program::new(Arc::new(scenario));
     let mut together = State::new(program.layout, 4);
     // Lanes start at different times and with different advice.

@@ -70,6 +70,7 @@ fn scenario(agents: Vec<Agent>, walls: &[Segment]) -> Scenario {
             duration: Tick(25),
             options: vec![("stop".to_owned(), Move::Stop)],
             routes: Vec::new(),
+            paths: None,
         }],
         processes: smc::model::Processes::default(),
         behaviours: smc::model::Behaviours::default(),

@@ -1,7 +1,7 @@
 //! What the grammar accepts, and how it reads it.
 
 use smc::model::parameter::Range;
-use smc::model::{PARAMETERS, Parameter};
+use smc::model::{Kind, PARAMETERS, Parameter};
 use smc::syntax::ast::{
     ExprKind, Item, Leg, PropertyItem, QueryKind, Ranked, SceneItem, ShapeExpr, Value, Values,
 };
@@ -300,11 +300,12 @@ fn the_manual_has_the_table_of_parameters() {
     let cell = |text: &str| if text.is_empty() { " ".to_owned() } else { format!(" {text} ") };
     let mut table =
         "| field | unit | range | unless set | meaning |\n| --- | --- | --- | --- | --- |\n".to_owned();
-    for row in &PARAMETERS {
+    for row in PARAMETERS.iter().filter(|row| row.kinds.contains(&Kind::Sfm)) {
         let range = match row.range {
             Range::Positive => "above 0",
             Range::NotNegative => "0 or above",
             Range::Share => "0 to 1",
+            Range::Pieces => "2 to 64",
         };
         let default = row.default.map_or(String::new(), |value| value.to_string());
         let cells =

@@ -198,6 +198,7 @@ fn an_agent_more_and_a_move_change_nobody_elses_start() {
         duration: Tick(100),
         options: vec![("stop".into(), Move::Stop), ("left".into(), Move::Heading(0.5))],
         routes: Vec::new(),
+        paths: None,
     });
     let more = Program::new(Arc::new(more));
     for index in 0..20 {

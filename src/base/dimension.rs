@@ -19,6 +19,8 @@ impl Dimension {
     pub const TIME: Self = Self([0, 0, 1, 0, 0]);
     /// m/s
     pub const SPEED: Self = Self([0, 1, -1, 0, 0]);
+    /// m/s^2
+    pub const ACCELERATION: Self = Self([0, 1, -2, 0, 0]);
     /// 1/s
     pub const RATE: Self = Self([0, 0, -1, 0, 0]);
     /// N

@@ -62,6 +62,8 @@ pub enum Purpose {
     Procedure = 9,
     /// Drawn once per run (roadmaps, learned gaits).
     Run = 10,
+    /// Plans: goal points and knots of speed profiles.
+    Plan = 11,
     /// Synthetic data and tests.
     Test = 255,
 }

@@ -135,8 +135,8 @@ pub(super) struct Elaborator<'a> {
     pub(super) origins: Origins,
     /// Whether agents can arrive during a trial.
     pub(super) coming: bool,
-    /// The agents with moves; `None` if some moves have errors.
-    pub(super) advised: Option<BTreeSet<AgentId>>,
+    /// The agents with moves, and with paths (true); `None` if some of these have errors.
+    pub(super) advised: Option<BTreeSet<(AgentId, bool)>>,
     /// Agents who come or leave during a trial.
     pub(super) passing: BTreeSet<AgentId>,
     /// The clock.

@@ -2,13 +2,15 @@
 
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::laws::value_span;
+use super::planners::{self, Planning};
 use super::presets::{PRESETS, law};
 use super::symbols::{Meaning, unknown};
-use crate::model::{self, Body, Law, Parameter};
+use crate::model::{self, Body, Law, Parameter, Planner};
 use crate::syntax::ast::{Expr, ExprKind, Field, Ident, KindDecl, Value};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// The parameters of a kind as far as they are known.
 #[derive(Clone, Debug, Default)]
@@ -17,6 +19,8 @@ pub(super) struct Kind {
     pub(super) base: model::Kind,
     /// Whether it goes straight for its goals whatever is in the way.
     straight: bool,
+    /// How its walkers plan, if they do.
+    pub(super) planning: Planning,
     /// A law for each parameter.
     laws: [Option<Law>; Parameter::COUNT],
 }
@@ -37,9 +41,18 @@ impl Kind {
     }
 
     /// The law of a parameter: as set, or its default.
-    fn law(&self, parameter: Parameter) -> Option<Law> {
+    pub(super) fn law(&self, parameter: Parameter) -> Option<Law> {
         let default = || parameter.description().default.map(Law::Constant);
-        self.laws[parameter as usize].clone().or_else(default)
+        let planned = || {
+            let limit = self.laws[Parameter::LimitSpeed as usize].as_ref();
+            if self.base == model::Kind::Planned { planners::default_law(parameter, limit) } else { None }
+        };
+        self.laws[parameter as usize].clone().or_else(planned).or_else(default)
+    }
+
+    /// Sets the law of a parameter.
+    pub(super) fn set(&mut self, parameter: Parameter, law: Law) {
+        self.laws[parameter as usize] = Some(law);
     }
 }
 
@@ -125,7 +138,8 @@ impl Elaborator<'_> {
         let base = kind.as_ref().map(|kind| kind.base).unwrap_or_default();
         let rest = self.parameters(&decl.body, kind.as_mut().ok(), &Locals::default());
         for field in rest {
-            let known = Parameter::of_kind(base).map(Parameter::name).chain([WAYFINDING]);
+            let own: &[&str] = if base == model::Kind::Planned { &planners::FIELDS } else { &[WAYFINDING] };
+            let known = Parameter::of_kind(base).map(Parameter::name).chain(own.iter().copied());
             let error = unknown("parameter", &field.name.name, field.name.span, Code::E0207, known);
             self.note(error);
             self.look_at(&field.value, &Locals::default());
@@ -155,7 +169,14 @@ impl Elaborator<'_> {
                 self.note(error);
                 continue;
             }
-            if field.name.name == WAYFINDING {
+            let is_planned = kind.as_ref().is_some_and(|kind| kind.base == model::Kind::Planned);
+            if is_planned && planners::FIELDS.contains(&field.name.name.as_str()) {
+                if let Some(kind) = &mut kind {
+                    self.given_up |= self.planning(field, kind, locals).is_err();
+                }
+                continue;
+            }
+            if field.name.name == WAYFINDING && !is_planned {
                 if let (Some(straight), Some(kind)) = (self.goes_straight(&field.value), &mut kind) {
                     kind.straight = straight;
                 }
@@ -169,15 +190,7 @@ impl Elaborator<'_> {
                 rest.push(field);
                 continue;
             };
-            let law = match self.law(&field.value, parameter.description().dimension, locals) {
-                Ok(law) => match parameter.refuses(&law) {
-                    None => Ok(law),
-                    Some(reason) => {
-                        self.report(Diagnostic::error(Code::E0405, value_span(&field.value), reason))
-                    }
-                },
-                Err(reported) => Err(reported),
-            };
+            let law = self.parameter_law(parameter, &field.value, locals);
             self.given_up |= law.is_err();
             self.any_start |= law.is_err() && parameter == Parameter::Radius;
             // What was set wrongly is set: any value will do until it is set right.
@@ -187,6 +200,20 @@ impl Elaborator<'_> {
             }
         }
         rest
+    }
+
+    /// The law of a parameter, all of whose values are possible.
+    pub(super) fn parameter_law(
+        &mut self,
+        parameter: Parameter,
+        value: &Value,
+        locals: &Locals,
+    ) -> Lowered<Law> {
+        let law = self.law(value, parameter.description().dimension, locals)?;
+        match parameter.refuses(&law) {
+            None => Ok(law),
+            Some(reason) => self.report(Diagnostic::error(Code::E0405, value_span(value), reason)),
+        }
     }
 
     /// The body of a kind: every parameter must be known now.
@@ -199,16 +226,25 @@ impl Elaborator<'_> {
             if self.diagnostics.iter().any(|d| d.code == Code::E0209 && d.title == title) {
                 return Err(Reported);
             }
-            let error = Diagnostic::error(Code::E0209, name.span, title)
-                .hint("set the values, or start from a preset: `kind adult: sfm preset helbing2000 { … }`");
-            return self.report(error);
+            let hint = if kind.base == model::Kind::Planned {
+                "write for example `limit speed = 1.5 m/s` in the kind"
+            } else {
+                "set the values, or start from a preset: `kind adult: sfm preset helbing2000 { … }`"
+            };
+            return self.report(Diagnostic::error(Code::E0209, name.span, title).hint(hint));
         }
         let mut body = Body::new(kind.base, |parameter| {
             // A parameter that the kind does not have: 0 where it may be.
-            let neutral = if parameter.allows(0.0) { 0.0 } else { 1.0 };
-            kind.law(parameter).unwrap_or(Law::Constant(neutral))
+            let neutral = [0.0, 1.0, 2.0].into_iter().find(|value| parameter.allows(*value));
+            kind.law(parameter).unwrap_or(Law::Constant(neutral.unwrap_or_default()))
         });
-        body.finds_ways = !kind.straight;
+        let is_planned = kind.base == model::Kind::Planned;
+        body.finds_ways = !kind.straight && !is_planned;
+        let Planning { roadmap, clearance, profile } = kind.planning.clone();
+        body.planner = is_planned.then(|| {
+            let speed_follows = kind.laws[Parameter::Speed as usize].is_none();
+            Arc::new(Planner { kind: name.name.clone(), roadmap, clearance, profile, speed_follows })
+        });
         Ok(body)
     }
 

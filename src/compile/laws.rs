@@ -27,6 +27,11 @@ pub(super) fn value_span(value: &Value) -> Span {
             })
             .reduce(Span::to)
             .unwrap_or_default(),
+        Value::Sided { along, across } => value_span(along).to(value_span(across)),
+        Value::Arguments { name, arguments } => {
+            arguments.iter().fold(name.span, |span, argument| span.to(argument.value.span))
+        }
+        Value::Force { kind, preset } => kind.span.to(preset.span),
     }
 }
 
@@ -131,6 +136,11 @@ impl Elaborator<'_> {
             Value::Route(_) => {
                 let _ = self.route(value, locals);
             }
+            Value::Sided { along, across } => {
+                self.look_at(along, locals);
+                self.look_at(across, locals);
+            }
+            Value::Arguments { .. } | Value::Force { .. } => {}
         }
     }
 

@@ -33,6 +33,7 @@ mod observed;
 mod people;
 mod phrase;
 mod places;
+mod planners;
 mod positions;
 pub mod presets;
 mod process;

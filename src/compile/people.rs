@@ -178,7 +178,12 @@ impl<'a> Elaborator<'a> {
             self.only(&rest, &["at", "velocity", "route", "attraction"]);
         }
         let given = |name: &str| decl.body.iter().any(|f| f.name.name == name);
-        let body = kind.and_then(|kind| self.body(&kind, &decl.kind));
+        let body = kind.and_then(|kind| {
+            if let Some(at) = decl.particle {
+                self.refuse_planned_particle(&kind, at)?;
+            }
+            self.body(&kind, &decl.kind)
+        });
         let forces = (attraction, repulsion, friction);
         let (Ok(count), Ok(body), Ok(start), Ok(route), (Ok(attraction), Ok(repulsion), Ok(friction))) =
             (count, body, start, route, forces)
@@ -374,7 +379,7 @@ impl<'a> Elaborator<'a> {
             let velocity = found[k].velocity;
             let speed = velocity.norm();
             let mut body = base.clone();
-            if speed >= STANDS && !own_speed {
+            if speed >= STANDS && !own_speed && base.planner.is_none() {
                 body[Parameter::Speed] = Law::Constant(speed);
             }
             (Arc::new(body), Start { position: Position::Point(found[k].position), velocity }, route.clone())

@@ -426,7 +426,18 @@ impl<'a> Compiler<'a> {
         if self.queries.iter().any(|known| known.index == index && known.ask == ask) {
             return;
         }
-        self.queries.push(Query { index, name, text, said, span, settings, point: Vec::new(), ask, horizon });
+        self.queries.push(Query {
+            index,
+            name,
+            text,
+            said,
+            span,
+            settings,
+            point: Vec::new(),
+            ask,
+            horizon,
+            given: None,
+        });
     }
 
     fn finish(self) -> (Option<Study>, Vec<Diagnostic>) {

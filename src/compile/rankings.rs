@@ -117,12 +117,13 @@ impl<'a> Compiler<'a> {
     /// The options of moves.
     fn moves(&mut self, site: usize, what: &Ident, agent: &Expr, locals: &Locals) -> Lowered<Vec<Candidate>> {
         let elaborator = &mut self.sites[site].elaborator;
-        let wanted = if what.name == "moves" {
+        let paths = what.name == "paths";
+        let wanted = if paths || what.name == "moves" {
             Ok(())
         } else {
             let error =
                 Diagnostic::error(Code::E0606, what.span, format!("`{}` cannot be ranked", what.name))
-                    .hint("write `rank moves of …`");
+                    .hint("write `rank moves of …` or `rank paths of …`");
             elaborator.report(error)
         };
         let typed = elaborator.lower(agent, locals)?;
@@ -130,11 +131,13 @@ impl<'a> Compiler<'a> {
         wanted?;
         let advised = &self.sites[site].elaborator.advised;
         // If some moves have errors, their agents are unknown.
-        if advised.as_ref().is_some_and(|advised| !advised.contains(&id)) {
-            return self.sites[site].elaborator.without_moves(id, agent.span);
+        if advised.as_ref().is_some_and(|advised| !advised.contains(&(id, paths))) {
+            return self.sites[site].elaborator.without_moves((id, paths), agent.span);
         }
         let Some(scenario) = &self.sites[site].scenario else { return Err(Reported) };
-        let Some(number) = scenario.moves.iter().position(|m| m.agent == id) else { return Err(Reported) };
+        let Some(number) = scenario.moves.iter().position(|m| m.key().0 == (id, paths)) else {
+            return Err(Reported);
+        };
         let moves = &scenario.moves[number];
         let all = moves.options.iter().zip(moves.deviations()).enumerate();
         let candidate = |(k, ((label, _), deviation)): (usize, (&(String, Move), f64))| Candidate {
@@ -294,23 +297,22 @@ impl Elaborator<'_> {
     }
 
     /// Reports that an agent has no moves.
-    fn without_moves<T>(&mut self, id: AgentId, at: Span) -> Lowered<T> {
+    fn without_moves<T>(&mut self, (id, paths): (AgentId, bool), at: Span) -> Lowered<T> {
         // One that could not be declared was reported.
         let Some(name) = self.agent_names.get(id.0 as usize).filter(|_| !self.undeclared.contains(&id))
         else {
             return Err(Reported);
         };
         let name = name.clone();
-        // Moves are those of somebody who has a name alone.
-        let (alone, first) = if name.contains('[') {
-            ("robot", "moves belong to one agent, declared as `agent robot: …`; ")
+        let hint = if paths {
+            format!("write `paths {name} {{ roadmap alternatives 4 }}`")
         } else {
-            (name.as_str(), "")
+            format!(
+                "write for example `moves {name} for 2 s {{ heading from -60 deg to 60 deg by 15 deg  stop }}`"
+            )
         };
-        let hint = format!(
-            "{first}write for example `moves {alone} for 2 s {{ heading from -60 deg to 60 deg by 15 deg  stop }}`"
-        );
-        let said = format!("the scenario declares no moves for `{name}`");
+        let what = if paths { "paths" } else { "moves" };
+        let said = format!("the scenario declares no {what} for `{name}`");
         self.report(Diagnostic::error(Code::E0606, at, said).hint(hint))
     }
 }

@@ -212,6 +212,8 @@ pub struct Query {
     pub ask: Ask,
     /// The horizon with its unit, where a formula or metric ranges up to it.
     pub horizon: Option<String>,
+    /// What was drawn once for the run, so that its results are about it alone: roadmaps.
+    pub given: Option<String>,
 }
 
 /// A measure as one would say it.

@@ -8,13 +8,15 @@ use super::symbols::Meaning;
 use super::typed::Typed;
 use crate::base::tick::Tick;
 use crate::model::{AgentId, Goal, Leg, Move, Moves, Route, Who};
-use crate::syntax::ast::{self, Expr, Item, MoveOption, MovesDecl, ScenarioFile, Value};
+use crate::syntax::ast::{self, Expr, Ident, Item, MoveOption, MovesDecl, PathsDecl, ScenarioFile, Value};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
 /// Most options of a `moves` declaration.
 const MOST_OPTIONS: usize = 1000;
+/// Most alternatives of a `paths` declaration.
+const MOST_PATHS: i64 = 64;
 
 impl<'a> Elaborator<'a> {
     /// A route as written.
@@ -67,7 +69,7 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn goal(&mut self, expr: &Expr, locals: &Locals) -> Lowered<Goal> {
+    pub(super) fn goal(&mut self, expr: &Expr, locals: &Locals) -> Lowered<Goal> {
         // People are not known yet where routes are settled, and never are goals.
         if let ast::ExprKind::Name(name) = &expr.kind
             && let Some((_, meaning @ (Meaning::Declared | Meaning::Agent(_) | Meaning::Agents { .. }))) =
@@ -89,35 +91,35 @@ impl<'a> Elaborator<'a> {
         let mut moves: Vec<Moves> = Vec::new();
         let mut declared: Vec<Span> = Vec::new();
         for item in &file.items {
-            if let Item::Moves(decl) = item {
-                let Ok(one) = self.moves(decl, people) else {
-                    self.advised = None;
-                    continue;
-                };
-                if let Some(advised) = &mut self.advised {
-                    advised.insert(one.agent);
-                }
-                if let Some(first) = moves.iter().position(|m| m.agent == one.agent) {
-                    let error = Diagnostic::error(
-                        Code::E0406,
-                        decl.agent.span,
-                        format!("the moves of `{}` are declared twice", decl.agent.name),
-                    )
+            let (one, name) = match item {
+                Item::Moves(decl) => (self.moves(decl, people), &decl.agent),
+                Item::Paths(decl) => (self.paths(decl, people), &decl.agent),
+                _ => continue,
+            };
+            let Ok(one) = one else {
+                self.advised = None;
+                continue;
+            };
+            let (key, what) = one.key();
+            if let Some(advised) = &mut self.advised {
+                advised.insert(key);
+            }
+            if let Some(first) = moves.iter().position(|known| known.key().0 == key) {
+                let said = format!("the {what} of `{}` are declared twice", name.name);
+                let error = Diagnostic::error(Code::E0406, name.span, said)
                     .related(declared[first], "first declared here")
                     .hint("write all options in one list");
-                    self.note(error);
-                }
-                moves.push(one);
-                declared.push(decl.agent.span);
+                self.note(error);
             }
+            moves.push(one);
+            declared.push(name.span);
         }
         moves
     }
 
     /// `moves user for 2 s { … }`
     fn moves(&mut self, decl: &'a MovesDecl, people: &People) -> Lowered<Moves> {
-        let name = Expr { kind: ast::ExprKind::Name(decl.agent.name.clone()), span: decl.agent.span };
-        let typed = self.lower(&name, &Locals::default());
+        let agent = self.advised_agent((&decl.agent, decl.member.as_ref()), "moves", people);
         let duration = self.time(&decl.duration, &Locals::default());
         let mut options: Vec<(String, Move)> = Vec::new();
         let mut routes: Vec<Route> = Vec::new();
@@ -125,15 +127,7 @@ impl<'a> Elaborator<'a> {
         for option in &decl.options {
             failed |= self.option(option, &mut options, &mut routes).is_err();
         }
-        let typed = typed?;
-        if matches!(typed, Typed::Agents { .. }) {
-            let error = Diagnostic::error(Code::E0406, decl.agent.span, "moves must belong to one agent")
-                .hint("declare it as a single agent: `agent user: …`");
-            return self.report(error);
-        }
-        let Who::Agent(agent) = self.as_agent(typed, decl.agent.span)? else {
-            return Err(super::elaborator::Reported);
-        };
+        let agent = agent?;
         let Some(duration) = duration? else {
             return self.report(Diagnostic::error(
                 Code::E0406,
@@ -155,10 +149,61 @@ impl<'a> Elaborator<'a> {
                     .hint("write for example `heading from -60 deg to 60 deg by 15 deg` and `stop`"),
             );
         }
-        if people.agents.get(agent.0 as usize).is_none() {
-            return Err(super::elaborator::Reported);
+        Ok(Moves { agent, duration, options, routes, paths: None })
+    }
+
+    /// `paths people[1] { roadmap alternatives 4 }`: which paths there are is known when the roadmap is drawn.
+    fn paths(&mut self, decl: &'a PathsDecl, people: &People) -> Lowered<Moves> {
+        let agent = self.advised_agent((&decl.agent, decl.member.as_ref()), "paths", people);
+        let number = self.number_of(&decl.alternatives, Dimension::NONE, &Locals::default())?;
+        let Some(most) = number.as_whole().filter(|n| (1..=MOST_PATHS).contains(n)) else {
+            let said = format!(
+                "the number of alternatives must be a whole number from 1 to {MOST_PATHS} (got {})",
+                number.value
+            );
+            return self.report(Diagnostic::error(Code::E0406, decl.alternatives.span, said));
+        };
+        let agent = agent?;
+        if people.agents[agent.0 as usize].body.planner.is_none() {
+            let said = format!("`{}` does not plan, and has no paths", people.agents[agent.0 as usize].name);
+            let error = Diagnostic::error(Code::E0406, decl.agent.span, said);
+            return self
+                .report(error.hint(
+                    "declare its kind as `planned`: `kind planner: planned { limit speed = 1.5 m/s }`",
+                ));
         }
-        Ok(Moves { agent, duration, options, routes })
+        let options = (0..most as u32).map(|k| (format!("path {}", k + 1), Move::Path(k))).collect();
+        Ok(Moves { agent, duration: Tick(0), options, routes: Vec::new(), paths: Some(Vec::new()) })
+    }
+
+    /// The one agent that moves or paths belong to.
+    fn advised_agent(
+        &mut self,
+        (name, member): (&Ident, Option<&Expr>),
+        what: &str,
+        people: &People,
+    ) -> Lowered<AgentId> {
+        let plain = Expr { kind: ast::ExprKind::Name(name.name.clone()), span: name.span };
+        let expr = match member {
+            Some(member) => Expr {
+                span: name.span.to(member.span),
+                kind: ast::ExprKind::Index(Box::new(plain), Box::new(member.clone())),
+            },
+            None => plain,
+        };
+        let typed = self.lower(&expr, &Locals::default())?;
+        if matches!(typed, Typed::Agents { .. }) {
+            let said = format!("{what} must belong to one agent");
+            let error = Diagnostic::error(Code::E0406, expr.span, said);
+            return self.report(error.hint(format!(
+                "write one member, such as `{}[1]`, or declare a single agent: `agent user: …`",
+                name.name
+            )));
+        }
+        match self.as_agent(typed, expr.span)? {
+            Who::Agent(agent) if people.agents.get(agent.0 as usize).is_some() => Ok(agent),
+            _ => Err(super::elaborator::Reported),
+        }
     }
 
     /// The agents that leave after a move, by the names that are written.
@@ -167,9 +212,17 @@ impl<'a> Elaborator<'a> {
         for item in &file.items {
             if let Item::Moves(decl) = item
                 && decl.options.iter().any(leaves)
-                && let Some(agent) = self.agent_names.iter().position(|name| *name == decl.agent.name)
             {
-                self.may_be_absent(AgentId(agent as u32));
+                // Of a member whose number is computed, any may be meant.
+                let of = |name: &String| {
+                    name.strip_prefix(decl.agent.name.as_str())
+                        .is_some_and(|rest| rest.is_empty() || decl.member.is_some() && rest.starts_with('['))
+                };
+                for agent in 0..self.agent_names.len() {
+                    if of(&self.agent_names[agent]) {
+                        self.may_be_absent(AgentId(agent as u32));
+                    }
+                }
             }
         }
     }
@@ -253,7 +306,7 @@ impl<'a> Elaborator<'a> {
                 let turns = (angle - known) / std::f64::consts::TAU;
                 (turns - turns.round()).abs() < 1e-9
             }
-            Move::Stop | Move::Route(_) => false,
+            Move::Stop | Move::Route(_) | Move::Path(_) => false,
         };
         if let Some((known, _)) = options.iter().find(|(_, option)| same(option)) {
             let text = if *known == label {

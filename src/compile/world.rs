@@ -56,7 +56,11 @@ impl<'a> Elaborator<'a> {
                     self.declare_scene(items);
                     continue;
                 }
-                Item::Title(_) | Item::Setting { .. } | Item::Tracks { .. } | Item::Moves(_) => continue,
+                Item::Title(_)
+                | Item::Setting { .. }
+                | Item::Tracks { .. }
+                | Item::Moves(_)
+                | Item::Paths(_) => continue,
                 Item::Process(decl) => {
                     self.processes.push(Declared::new(decl));
                     (&decl.name, Meaning::Process(self.processes.len() as u32 - 1))

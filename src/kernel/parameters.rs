@@ -52,7 +52,7 @@ impl Parameters {
         let stream = Stream::of(key, agent.entity + later, Purpose::Parameter);
         let value = |parameter: Parameter, person: u32| {
             let law = &laws[parameter as usize];
-            let draw = || law.draw(stream.uniform(parameter.draw().wrapping_add(person)));
+            let draw = || law.draw(stream.uniform(agent.body.draw_of(parameter).wrapping_add(person)));
             let value = law.constant().unwrap_or_else(draw);
             if parameter.allows(value) { Ok(value) } else { Err(Impossible { agent: id, parameter, value }) }
         };

@@ -3,9 +3,11 @@
 use super::kind::Kind;
 use super::law::Law;
 use super::parameter::Parameter;
+use super::planner::Planner;
 use super::scene::RegionId;
 use crate::base::geometry::{Shape, Vec2};
 use std::ops::{Index, IndexMut};
+use std::sync::Arc;
 
 /// Index of an agent of the scenario.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -19,7 +21,7 @@ pub struct Agent {
     /// Stable number of 24 bits from the path of its declaration; addresses its random numbers.
     pub entity: u32,
     /// How it moves: its kind and the laws of its parameters.
-    pub body: std::sync::Arc<Body>,
+    pub body: Arc<Body>,
     /// Where and how it starts.
     pub start: Start,
     /// Where it goes.
@@ -37,13 +39,22 @@ pub struct Body {
     pub kind: Kind,
     /// Whether it finds its way around barriers; else it goes straight for its goals.
     pub finds_ways: bool,
+    /// How it plans, if it does.
+    pub planner: Option<Arc<Planner>>,
     laws: [Law; Parameter::COUNT],
 }
 
 impl Body {
     /// Of a kind, with these laws; it finds its way.
     pub fn new(kind: Kind, law: impl FnMut(Parameter) -> Law) -> Self {
-        Self { kind, finds_ways: true, laws: Parameter::ALL.map(law) }
+        Self { kind, finds_ways: true, planner: None, laws: Parameter::ALL.map(law) }
+    }
+
+    /// The number of the draw of a parameter: its own, but for a preferred speed that is a share of the largest one.
+    pub fn draw_of(&self, parameter: Parameter) -> u32 {
+        let follows = self.planner.as_ref().is_some_and(|planner| planner.speed_follows);
+        let one = if follows && parameter == Parameter::Speed { Parameter::LimitSpeed } else { parameter };
+        one.draw()
     }
 }
 

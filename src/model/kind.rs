@@ -6,16 +6,19 @@ pub enum Kind {
     /// A body of the social force model that a route drives.
     #[default]
     Sfm,
+    /// The same, driven along a path and at speeds that it has planned (Li, Li, Ge 2019).
+    Planned,
 }
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Self; 1] = [Self::Sfm];
+    pub const ALL: [Self; 2] = [Self::Sfm, Self::Planned];
 
     /// Its name in a scenario, from which declared kinds start.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Sfm => "sfm",
+            Self::Planned => "planned",
         }
     }
 
@@ -23,6 +26,7 @@ impl Kind {
     pub const fn meaning(self) -> &'static str {
         match self {
             Self::Sfm => "the social force model",
+            Self::Planned => "walkers that plan",
         }
     }
 

@@ -14,12 +14,24 @@ pub struct Moves {
     pub options: Vec<(String, Move)>,
     /// The routes that are options.
     pub routes: Vec<Route>,
+    /// Where the options are paths on a roadmap, how much longer than the shortest each is, m; known when the roadmap is.
+    pub paths: Option<Vec<f64>>,
 }
 
 impl Moves {
+    /// Whose they are and whether they are paths, and in a word what they are.
+    pub fn key(&self) -> ((AgentId, bool), &'static str) {
+        let what = if self.paths.is_some() { "paths" } else { "moves" };
+        ((self.agent, self.paths.is_some()), what)
+    }
+
     /// How far each option departs from the direct way. With a route among them that is not known, and their order of
     /// writing stands for it.
     pub fn deviations(&self) -> Vec<f64> {
+        if let Some(lengths) = &self.paths {
+            let known = |k| lengths.get(k).copied().unwrap_or(k as f64);
+            return (0..self.options.len()).map(known).collect();
+        }
         let all = self.options.iter().enumerate();
         all.map(|(k, (_, option))| if self.routes.is_empty() { option.deviation() } else { k as f64 })
             .collect()
@@ -35,14 +47,16 @@ pub enum Move {
     Stop,
     /// Take this one of the routes instead of the own one, for good.
     Route(usize),
+    /// Take the path of this class on the roadmap.
+    Path(u32),
 }
 
 impl Move {
-    /// How far it departs from the direct way, rad; a stop departs most, and of a route nobody knows.
+    /// How far it departs from the direct way, rad; a stop departs most, and of a route or path nobody knows.
     fn deviation(self) -> f64 {
         match self {
             Self::Heading(angle) => angle.abs(),
-            Self::Stop | Self::Route(_) => f64::INFINITY,
+            Self::Stop | Self::Route(_) | Self::Path(_) => f64::INFINITY,
         }
     }
 }

@@ -20,6 +20,8 @@ pub enum Range {
     NotNegative,
     /// From 0 to 1.
     Share,
+    /// A whole number from 2 to 64.
+    Pieces,
 }
 
 /// What a parameter is for the term of the force that it belongs to.
@@ -88,12 +90,14 @@ impl Description {
         changeable: true,
         role: Role::Plain,
         shown: Shown::Always,
-        kinds: &[Kind::Sfm],
+        kinds: &Kind::ALL,
     };
     /// Of the body or of contact: the same in all states of a behaviour.
     const FIXED: Self = Self { changeable: false, ..Self::USUAL };
     /// Of the social force.
     const FORCE: Self = Self { preset: true, ..Self::USUAL };
+    /// Of a plan.
+    const PLAN: Self = Self { kinds: &[Kind::Planned], range: Range::Positive, ..Self::FIXED };
 }
 
 macro_rules! parameters {
@@ -157,6 +161,18 @@ parameters! {
         USUAL { dimension: Dimension::SPEED, limit: TOP_SPEED, default: Some(0.0) }
     Attention "attention" "share of the social force, of agents and of walls, that the agent feels. Contact forces are not reduced" =
         USUAL { range: Range::Share, default: Some(1.0), shown: Shown::UnlessDefault }
+    LimitSpeed "limit speed" "largest speed of a plan" = PLAN { dimension: Dimension::SPEED, limit: TOP_SPEED }
+    LimitAlong "limit acceleration along" "largest acceleration of a plan along the way" =
+        PLAN { dimension: Dimension::ACCELERATION, default: Some(0.8) }
+    LimitAcross "limit acceleration across" "largest acceleration of a plan across the way" =
+        PLAN { dimension: Dimension::ACCELERATION, default: Some(1.6) }
+    Spread "spread" "standard deviation of the speeds of a plan around the preferred one, as a share of it" =
+        PLAN { range: Range::NotNegative, default: Some(0.15) }
+    Corner "corner" "largest turning radius of a plan at a corner" =
+        PLAN { range: Range::NotNegative, dimension: Dimension::LENGTH, default: Some(1.5) }
+    Pieces "pieces" "in how many pieces the acceleration of a plan is constant (m0)" = PLAN { range: Range::Pieces }
+    Replan "replan" "distance from the plan at which a new one is made" =
+        PLAN { dimension: Dimension::LENGTH, default: Some(1.0) }
 }
 
 impl Parameter {
@@ -208,6 +224,7 @@ impl Parameter {
                 Range::Positive => value > 0.0,
                 Range::NotNegative => value >= 0.0,
                 Range::Share => (0.0..=1.0).contains(&value),
+                Range::Pieces => (2.0..=64.0).contains(&value) && value.fract() == 0.0,
             }
     }
 
@@ -223,6 +240,9 @@ impl Parameter {
             }
             Range::NotNegative | Range::Share if low < 0.0 => {
                 Some(format!("`{name}` cannot be negative{truncate}"))
+            }
+            Range::Pieces if !(2.0..=64.0).contains(&low) || high > 64.0 || !law.is_whole() => {
+                Some(format!("`{name}` must be a whole number from 2 to 64"))
             }
             Range::Share if high > 1.0 => Some(format!("`{name}` must be between 0 and 1{truncate}")),
             _ if low > *limit => {

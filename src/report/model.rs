@@ -161,7 +161,7 @@ fn people(out: &mut String, world: &World) {
                 .routes
                 .get(*number)
                 .map_or_else(String::new, |route| format!("{label} ({})", way(scenario, route))),
-            Move::Heading(_) | Move::Stop => label.clone(),
+            Move::Heading(_) | Move::Stop | Move::Path(_) => label.clone(),
         };
         let labels: Vec<String> = moves.options.iter().map(told).collect();
         let _ = writeln!(

@@ -58,6 +58,8 @@ fn one(drive: &Drive, state: &mut State, slot: Slot) {
         legs,
         then_leave,
         advice: (way.advised_until > 0).then_some(way.advice),
+        own_speed: state.plans.courses[block].own_speed.0[lane],
+        path: held.path,
         plan: &held.plan,
         scenario: &drive.scenario,
         state,
@@ -120,7 +122,7 @@ fn take_over(drive: &Drive, state: &mut State, slot: Slot, plan: Plan, after: f6
         state.no_way |= Mask::lane(state.layout.trial_of(lane));
     }
     let held = state.plans.held_mut(slot);
-    (held.plan, held.point) = (plan, 0);
+    (held.plan, held.point, held.stuck) = (plan, 0, 0);
     if was_stepped != state.plans.is_stepped(slot) {
         state.prepare(slot, drive.dt);
     }

@@ -13,7 +13,7 @@ use crate::base::geometry::Vec2;
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::tick::steps_over;
 use crate::kernel::code::lanes::{Truth, Vector, narrow, widen};
-use crate::kernel::plan::{Occasion, Plan};
+use crate::kernel::plan::{Occasion, Plan, Trajectory};
 use crate::kernel::state::plans::Course;
 use crate::kernel::state::{Slot, State};
 use crate::model::Parameter;
@@ -21,6 +21,15 @@ use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 /// A driver is asked again, and a point looked for, at most once in this time, s.
 const AGAIN: f64 = 0.5;
+
+/// Who is slower than this stands, m/s.
+const STANDS: f64 = 0.1;
+
+/// So many looks in a row, 0.5 s apart, make 2 s.
+const LOOKS: u32 = 4;
+
+/// So much later on a trajectory is what has to be in sight, s.
+const AHEAD: f64 = 0.7;
 
 /// So many ticks are that.
 pub(super) fn again(drive: &Drive) -> f64 {
@@ -134,7 +143,6 @@ fn advance<S: Simd>(simd: S, drive: &Drive, state: &mut State, block: usize, act
     let behind = square(cubic(&course.x, since)[0] - x, cubic(&course.y, since)[0] - y);
     let beyond = |limit: &Lanes| behind.simd_gt(of(simd, limit) * of(simd, limit));
     let late = beyond(&course.lag) & widen(simd, driven);
-    let left = beyond(&course.leave) & due;
     let over = ahead((time, rate), widen(simd, stepped), late, drive.dt).simd_gt(of(simd, &course.until));
 
     let (goal_x, goal_y) = (of(simd, &course.goal_x), of(simd, &course.goal_y));
@@ -148,7 +156,7 @@ fn advance<S: Simd>(simd: S, drive: &Drive, state: &mut State, block: usize, act
     let course = &mut state.plans.courses[block];
     time.store_slice(&mut course.time.0);
     course.late = narrow(late);
-    driven & narrow(over | left) | stepped & narrow(over) | way & narrow(near | due) | stands & narrow(due)
+    driven & narrow(over | due) | stepped & narrow(over) | way & narrow(near | due) | stands & narrow(due)
 }
 
 /// Sets driving and velocity of some slots of a block for the next step.
@@ -221,7 +229,7 @@ fn event(drive: &Drive, state: &mut State, slot: Slot) {
                 if ahead > trajectory.duration() {
                     state.plans.ask(slot, Occasion::Ended);
                 }
-            } else if is_due {
+            } else if is_due && is_off(drive, state, slot, &trajectory, time) {
                 state.plans.ask(slot, Occasion::Left);
             }
         }
@@ -240,6 +248,22 @@ fn event(drive: &Drive, state: &mut State, slot: Slot) {
         }
         Plan::Keep | Plan::NoWay => {}
     }
+}
+
+/// Whether someone who is driven needs another trajectory: is too far from it, has stood for 2 s while it moved, or has a
+/// barrier in between.
+fn is_off(drive: &Drive, state: &mut State, slot: Slot, trajectory: &Trajectory, time: f64) -> bool {
+    let Slot { block, lane } = slot;
+    let (vx, vy) = (state.motion.vx[block].0[lane], state.motion.vy[block].0[lane]);
+    let leave = state.plans.courses[block].leave.0[lane];
+    let person = Person::new(drive, state, slot);
+    let (at, radius) = (person.at(), person.radius());
+    let [planned, pace, _] = trajectory.at(time);
+    let stands = vx * vx + vy * vy < STANDS * STANDS && pace.norm_squared() > STANDS * STANDS;
+    let held = state.plans.held_mut(slot);
+    held.stuck = if stands { held.stuck + 1 } else { 0 };
+    let is_far = (planned - at).norm_squared() > leave * leave;
+    is_far || held.stuck > LOOKS || !drive.sees(at, trajectory.at(time + AHEAD)[0], radius)
 }
 
 /// Whether the goal of someone who goes straight is out of sight.

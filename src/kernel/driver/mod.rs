@@ -47,6 +47,10 @@ pub(super) fn begin(
         state.plans.clear(slot);
         let speed = state.bodies[Parameter::Speed][slot.block].0[slot.lane];
         state.plans.courses[slot.block].own_speed.0[slot.lane] = if speed > 0.0 { speed } else { 1.0 };
+        state.plans.held_mut(slot).path = match advice {
+            Some((Move::Path(class), _)) => Some(class),
+            _ => None,
+        };
         state.plans.ask(slot, occasion);
     }
     let start = &drive.scenario.agents[agent].start;

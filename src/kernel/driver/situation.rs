@@ -34,6 +34,10 @@ pub struct Situation<'a> {
     pub then_leave: bool,
     /// Under advice: the direction, zero for a stop.
     pub advice: Option<Vec2>,
+    /// Its own preferred speed, m/s, whatever a behaviour has set.
+    pub own_speed: f64,
+    /// The class of paths that the agent is advised to take, as [`crate::model::Move::Path`] numbers them.
+    pub path: Option<u32>,
     /// The plan that there is.
     pub plan: &'a Plan,
     /// The scenario.

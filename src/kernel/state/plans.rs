@@ -22,6 +22,10 @@ pub(in crate::kernel) struct Held {
     pub(in crate::kernel) occasion: Occasion,
     /// How often the driver has been asked.
     pub(in crate::kernel) asked: u32,
+    /// The class of paths that the agent is advised to take.
+    pub(in crate::kernel) path: Option<u32>,
+    /// How often in a row it was seen standing while its plan moved.
+    pub(in crate::kernel) stuck: u32,
 }
 
 /// What the vector code needs of the plans of the slots of a block.

@@ -112,6 +112,31 @@ pub enum Family {
 }
 
 impl Law {
+    /// The law of `by` times the number, `by` positive; `None` for families that have no such multiple.
+    pub fn scaled(&self, by: f64) -> Option<Self> {
+        Some(match self {
+            Self::Constant(value) => Self::Constant(value * by),
+            Self::Random { family, low, high } => {
+                Self::Random { family: family.scaled(by)?, low: low * by, high: high * by }
+            }
+        })
+    }
+
+    /// Whether all numbers that it draws are whole.
+    pub fn is_whole(&self) -> bool {
+        let whole = |value: &f64| value.fract() == 0.0;
+        match self {
+            Self::Constant(value) => whole(value),
+            Self::Random { family, .. } => match family {
+                Family::UniformInt { .. } | Family::Poisson { .. } | Family::Bernoulli { .. } => true,
+                Family::Choice(options) | Family::Multiple { options, .. } => {
+                    options.iter().all(|(value, _)| whole(value))
+                }
+                _ => false,
+            },
+        }
+    }
+
     /// The constant, if it is one.
     pub const fn constant(&self) -> Option<f64> {
         match self {

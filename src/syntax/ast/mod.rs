@@ -18,6 +18,6 @@ pub use property::{
     Values,
 };
 pub use scenario::{
-    AgentsDecl, Field, GroupDecl, Item, KindDecl, Leg, LetDecl, MoveOption, MovesDecl, Recorded, Route,
-    ScenarioFile, SceneItem, ShapeExpr, Value,
+    AgentsDecl, Field, GroupDecl, Item, KindDecl, Leg, LetDecl, MoveOption, MovesDecl, PathsDecl, Recorded,
+    Route, ScenarioFile, SceneItem, ShapeExpr, Value,
 };

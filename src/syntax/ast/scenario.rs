@@ -1,6 +1,6 @@
 //! Scenario files (`.scn`).
 
-use super::{BehaviourDecl, Expr, Ident, ProcessDecl, SourceDecl, Text};
+use super::{BehaviourDecl, Binding, Expr, Ident, ProcessDecl, SourceDecl, Text};
 use crate::syntax::source::Span;
 
 /// A whole scenario file.
@@ -66,6 +66,8 @@ pub enum Item {
     Group(GroupDecl),
     /// `moves user for 2 s { … }`
     Moves(MovesDecl),
+    /// `paths user { roadmap alternatives 4 }`
+    Paths(PathsDecl),
     /// `process queue { … }`
     Process(ProcessDecl),
     /// `behaviour phone { … }`
@@ -201,6 +203,27 @@ pub enum Value {
     },
     /// `(9, 3) -> exit`, `exit then leave`, with at least two legs or a `then`; a single goal is `Plain`.
     Route(Route),
+    /// `0.8 m/s^2 along, 1.6 m/s^2 across`
+    Sided {
+        /// Along the way.
+        along: Box<Value>,
+        /// Across it.
+        across: Box<Value>,
+    },
+    /// `prm(samples = 500, sampling = bridge)`
+    Arguments {
+        /// What they are arguments of.
+        name: Ident,
+        /// The arguments.
+        arguments: Vec<Binding>,
+    },
+    /// `sfm preset helbing2000`
+    Force {
+        /// The kind.
+        kind: Ident,
+        /// Its preset.
+        preset: Ident,
+    },
 }
 
 /// A route as written.
@@ -288,12 +311,27 @@ pub struct GroupDecl {
 /// `moves user for 2 s { heading from -60 deg to 60 deg by 15 deg  stop }`
 #[derive(Clone, Debug, PartialEq)]
 pub struct MovesDecl {
-    /// The agent with the moves.
+    /// The agent with the moves, or its declaration.
     pub agent: Ident,
+    /// Which member of the declaration.
+    pub member: Option<Expr>,
     /// For how long.
     pub duration: Expr,
     /// The options.
     pub options: Vec<MoveOption>,
+    /// Where.
+    pub span: Span,
+}
+
+/// `paths people[1] { roadmap alternatives 4 }`
+#[derive(Clone, Debug, PartialEq)]
+pub struct PathsDecl {
+    /// The agent with the paths, or its declaration.
+    pub agent: Ident,
+    /// Which member of the declaration.
+    pub member: Option<Expr>,
+    /// At most so many.
+    pub alternatives: Expr,
     /// Where.
     pub span: Span,
 }

@@ -3,7 +3,7 @@
 use super::builder::{Builder, Pair, Parts};
 use super::grammar::Rule;
 use crate::syntax::ast::{
-    AgentsDecl, Expr, Field, GroupDecl, KindDecl, Leg, Recorded, Route, SourceDecl, Value,
+    AgentsDecl, Expr, Field, GroupDecl, Ident, KindDecl, Leg, Recorded, Route, SourceDecl, Value,
 };
 
 impl Builder<'_> {
@@ -62,6 +62,15 @@ impl Builder<'_> {
         Some(SourceDecl { name, kind, with, body: self.body(parts), span })
     }
 
+    /// `[k]` behind a name; the outer `None` is a failure, the inner one is no member.
+    #[allow(clippy::option_option, reason = "a failure is not the absence of a member")]
+    pub(super) fn member(&mut self, parts: &mut Parts<'_>) -> Option<Option<Expr>> {
+        match parts.part(Rule::index) {
+            Some(member) => self.expr(Parts::of(member).part(Rule::expr)?).map(Some),
+            None => Some(None),
+        }
+    }
+
     /// `[n]`; the outer `None` is a failure, the inner one is no size.
     #[allow(clippy::option_option, reason = "a failure is not the absence of a size")]
     pub(super) fn size(&mut self, parts: &mut Parts<'_>) -> Option<Option<Expr>> {
@@ -104,10 +113,27 @@ impl Builder<'_> {
         }
         let head = self.head(&pair);
         let mut parts = Parts::of(pair);
-        let name = self.ident(&parts.part(Rule::ident)?);
-        let value = parts.part(Rule::value)?.into_inner().next()?;
-        let value = self.value(value);
+        let name = match parts.part(Rule::limited) {
+            Some(limited) => {
+                let span = self.span(&limited);
+                let of = self.ident(&Parts::of(limited).part(Rule::ident)?);
+                Ident { name: format!("limit {}", of.name), span }
+            }
+            None => self.ident(&parts.part(Rule::ident)?),
+        };
+        let value = match parts.part(Rule::sided) {
+            Some(sided) => self.sided(sided),
+            None => self.value(parts.part(Rule::value)?.into_inner().next()?),
+        };
         Some(Field { name, value: self.missed(value, head)? })
+    }
+
+    /// `0.8 m/s^2 along, 1.6 m/s^2 across`
+    fn sided(&mut self, pair: Pair<'_>) -> Option<Value> {
+        let mut parts = Parts::of(pair);
+        let along = self.value(parts.part(Rule::side)?.into_inner().next()?)?;
+        let across = self.value(parts.part(Rule::side)?.into_inner().next()?)?;
+        Some(Value::Sided { along: Box::new(along), across: Box::new(across) })
     }
 
     /// The value of a field, a wait or a delay.
@@ -123,6 +149,18 @@ impl Builder<'_> {
             Rule::truncated => {
                 let (law, low, high) = self.truncated(pair)?;
                 Some(Value::Truncated { law, low, high })
+            }
+            Rule::arguments => {
+                let mut parts = Parts::of(pair);
+                let name = self.ident(&parts.part(Rule::name)?);
+                let arguments = parts.map(|binding| self.binding(binding)).collect::<Option<_>>()?;
+                Some(Value::Arguments { name, arguments })
+            }
+            Rule::force => {
+                let mut parts = Parts::of(pair);
+                let kind = self.ident(&parts.part(Rule::name)?);
+                let preset = self.ident(&Parts::of(parts.part(Rule::preset)?).part(Rule::name)?);
+                Some(Value::Force { kind, preset })
             }
             _ => self.expr(pair).map(Value::Plain),
         }

@@ -16,7 +16,7 @@ pub(super) enum Anchor {
 }
 
 /// Keywords, and what follows the name behind them.
-const NAMED: [(&str, &[&str]); 22] = [
+const NAMED: [(&str, &[&str]); 23] = [
     ("agent", &[":", "["]),
     ("agents", &[":", "["]),
     ("behaviour", &["{", "("]),
@@ -25,10 +25,11 @@ const NAMED: [(&str, &[&str]); 22] = [
     ("kind", &[":"]),
     ("label", &["="]),
     ("let", &["=", "("]),
-    ("moves", &["for"]),
+    ("moves", &["for", "["]),
     ("obstacle", &[":"]),
     ("on", &["{"]),
     ("param", &["="]),
+    ("paths", &["{", "["]),
     ("point", &[":"]),
     ("process", &["{", "["]),
     ("property", &["="]),
@@ -43,7 +44,7 @@ const NAMED: [(&str, &[&str]); 22] = [
 /// Keywords of queries, which are followed by a measure.
 const ASKING: [&str; 3] = ["check", "estimate", "compare"];
 /// Words that end what they stand in, though they are keywords.
-const LAST: [&str; 6] = ["choose", "end", "leave", "particle", "stop", "walkable"];
+const LAST: [&str; 7] = ["choose", "end", "leave", "particle", "stop", "walkable", "across"];
 
 /// How surely an item of a block begins at a byte, if at all. The part of the block is known by its rule.
 pub(super) fn at(part: Rule, text: &str, at: usize) -> Option<Anchor> {
@@ -66,6 +67,7 @@ pub(super) fn at(part: Rule, text: &str, at: usize) -> Option<Anchor> {
             "let",
             "moves",
             "param",
+            "paths",
             "process",
             "source",
             "tracks",
@@ -99,7 +101,7 @@ pub(super) fn at(part: Rule, text: &str, at: usize) -> Option<Anchor> {
             "import" => name.starts_with('"'),
             _ => false,
         },
-        Rule::field | Rule::bad_field => sets(word, name),
+        Rule::field | Rule::bad_field => sets(word, name) || word == "limit" && sets(name, mark),
         Rule::state_item | Rule::bad_state_item => sets(word, name) || matches!(word, "after" | "when"),
         Rule::move_option | Rule::bad_move => {
             matches!(word, "heading" | "stop") || word == "route" && sets(name, mark)

@@ -194,7 +194,7 @@ impl Builder<'_> {
         Parts::of(pair).map(|binding| self.binding(binding)).collect()
     }
 
-    fn binding(&mut self, pair: Pair<'_>) -> Option<Binding> {
+    pub(super) fn binding(&mut self, pair: Pair<'_>) -> Option<Binding> {
         let mut parts = Parts::of(pair);
         let name = self.ident(&parts.part(Rule::ident)?);
         Some(Binding { name, value: self.expr(parts.part(Rule::tight)?)? })

@@ -2,7 +2,7 @@
 
 use super::builder::{Builder, Pair, Parts};
 use super::grammar::Rule;
-use crate::syntax::ast::{Item, LetDecl, MoveOption, MovesDecl, Route, ScenarioFile, Value};
+use crate::syntax::ast::{Item, LetDecl, MoveOption, MovesDecl, PathsDecl, Route, ScenarioFile, Value};
 
 impl Builder<'_> {
     pub(super) fn scenario_file(&mut self, file: Pair<'_>) -> ScenarioFile {
@@ -62,6 +62,13 @@ impl Builder<'_> {
             Rule::agents => self.agents(pair).map(Item::Agents),
             Rule::group => self.group(pair).map(Item::Group),
             Rule::moves => self.moves(pair).map(|moves| Item::Moves(MovesDecl { span, ..moves })),
+            Rule::paths => {
+                let mut parts = Parts::of(pair);
+                let agent = self.ident(&parts.part(Rule::name)?);
+                let member = self.member(&mut parts)?;
+                let alternatives = self.expr(parts.part(Rule::arith)?)?;
+                Some(Item::Paths(PathsDecl { agent, member, alternatives, span }))
+            }
             Rule::process => self.process(pair).map(Item::Process),
             Rule::behaviour => self.behaviour(pair).map(Item::Behaviour),
             Rule::source => self.source_decl(pair).map(Item::Source),
@@ -87,6 +94,7 @@ impl Builder<'_> {
         let span = self.span(&pair);
         let mut parts = Parts::of(pair);
         let agent = self.ident(&parts.part(Rule::name)?);
+        let member = self.member(&mut parts)?;
         let duration = self.expr(parts.part(Rule::arith)?)?;
         let options = parts
             .filter(|part| part.as_rule() == Rule::move_option)
@@ -97,7 +105,7 @@ impl Builder<'_> {
                 self.missed(option, head)
             })
             .collect();
-        Some(MovesDecl { agent, duration, options, span })
+        Some(MovesDecl { agent, member, duration, options, span })
     }
 
     fn move_option(&mut self, pair: Pair<'_>) -> Option<MoveOption> {

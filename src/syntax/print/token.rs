@@ -40,7 +40,16 @@ pub(super) fn members(file: Pair<'_>) -> Vec<Vec<Node>> {
 }
 
 fn has_block(rule: Rule) -> bool {
-    matches!(rule, Rule::scene | Rule::fields | Rule::moves | Rule::process | Rule::behaviour | Rule::state)
+    matches!(
+        rule,
+        Rule::scene
+            | Rule::fields
+            | Rule::moves
+            | Rule::paths
+            | Rule::process
+            | Rule::behaviour
+            | Rule::state
+    )
 }
 
 fn aligns(rule: Rule) -> bool {
