@@ -32,13 +32,14 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     let budget = Arc::new(budget);
     let deadline = Deadline::watch(&budget, ender(arguments, colors));
     let cache = if arguments.ranks.is_some() { FileCache::Kept(Vec::new()) } else { FileCache::Files };
-    let inputs::Loaded { inputs, paths, cache } =
+    let inputs::Loaded { mut inputs, paths, cache } =
         inputs::load_from(cache, &arguments.model, &arguments.properties);
     if inputs.study.is_none() {
         deadline.enter(Phase::Printing);
     }
     complaint::diagnose(&inputs, colors);
     let overwritten = output::guard(arguments.report.as_deref(), &paths).err();
+    let mut study = inputs.study.take();
     let mut reporter = Reporter {
         arguments,
         colors,
@@ -52,13 +53,13 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     if let Some(error) = overwritten {
         return reporter.refuse(error);
     }
-    let Some(study) = &inputs.study else { return reporter.refused() };
+    let Some(study) = &mut study else { return reporter.refused() };
     let only = match library::chosen(study, &arguments.only) {
         Ok(only) => only,
         Err(error) => return reporter.refuse(error),
     };
     let ways = Ways::default();
-    let doubts = library::survey(study, &only, &ways);
+    let doubts = library::survey(study, &only, arguments.seed, &ways);
     if library::is_refused(&doubts) {
         return reporter.refuse_for(&doubts);
     }

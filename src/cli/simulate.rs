@@ -18,7 +18,7 @@ use crate::kernel::{Address, End, Program, Run, Slot, State};
 use crate::library;
 use crate::model::{AgentId, Domain, Parameter, Scenario};
 use crate::report::ExitCode as Exit;
-use crate::route::drivers;
+use crate::route::Ways;
 use std::io::{BufWriter, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -228,12 +228,17 @@ fn option(scenario: &Scenario, name: &str) -> Result<(usize, usize), (String, St
         declarations
             .flat_map(|(declaration, moves)| (0..moves.options.len()).map(move |at| (declaration, at)))
     };
-    if let Some(found) = all().find(|of| scenario.move_name(*of).as_deref() == Some(wanted)) {
+    // A path is known by its number, too: its length depends on the roadmap.
+    let is_meant = |name: &str| {
+        name == wanted
+            || name.strip_prefix(wanted).is_some_and(|rest| wanted.contains("path") && rest.starts_with(" ("))
+    };
+    if let Some(found) = all().find(|of| scenario.move_name(*of).is_some_and(|name| is_meant(&name))) {
         return Ok(found);
     }
     let label = |(declaration, at): (usize, usize)| scenario.moves[declaration].options[at].0.as_str();
     let same: Vec<String> = all()
-        .filter(|of| label(*of) == wanted)
+        .filter(|of| is_meant(label(*of)))
         .filter_map(|of| Some(format!("`{}`", scenario.move_name(of)?)))
         .collect();
     if !same.is_empty() {
@@ -279,7 +284,11 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
     if study.worlds.len() > 2 {
         return refuse("a trace cannot be written for a sweep", "write `--set name=value`", colors);
     }
-    let scenario: Arc<Scenario> = world.scenario.clone();
+    let ways = Ways::default();
+    let mut scenario: Arc<Scenario> = world.scenario.clone();
+    if scenario.moves.iter().any(|moves| moves.paths.is_some()) {
+        library::find_paths(Arc::make_mut(&mut scenario), arguments.seed, &ways);
+    }
     let advice = match arguments.advice.as_deref().map(|name| option(&scenario, name)) {
         Some(Err((reason, hint))) => return refuse(reason, hint, colors),
         Some(Ok(advice)) => Some(advice),
@@ -311,7 +320,7 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
             clock => (until / clock.step_seconds() * (1.0 + 1e-12)).floor() as u64,
         }));
     }
-    let program = Program::driven(scenario.clone(), drivers(&scenario, arguments.seed));
+    let program = Program::driven(scenario.clone(), ways.drivers(&scenario, arguments.seed));
     let mut walk = Walk::new(&program, arguments, advice, last);
     if arguments.output.is_some() {
         // The file gets its name only when it is complete: the first signal ends the table, the second one the process.

@@ -71,6 +71,7 @@ impl Answers<'_> {
             line,
             settings: query.settings.clone(),
             horizon: query.horizon.clone(),
+            given: query.given.clone(),
             ..AskedQuery::new(query.index, kind, query.text.clone())
         };
         QueryResult { low, high, ..QueryResult::new(asked) }

@@ -173,7 +173,7 @@ impl Model {
     pub fn check(&self, properties: &str, options: &Options) -> Result<Report, Diagnostics> {
         // Property files are told apart from the scenario by their name.
         let name = if self.draft.name == PROPERTIES { "queries.bltl" } else { PROPERTIES };
-        let (study, sources, warnings) = self.draft.compiled(Some((name, properties)))?;
+        let (mut study, sources, warnings) = self.draft.compiled(Some((name, properties)))?;
         let wrong = |found: Vec<Diagnostic>| Diagnostics::new(found, sources.clone());
         let only = options.chosen(&study).map_err(|error| wrong(vec![error]))?;
         let place = |span: Span| {
@@ -187,7 +187,8 @@ impl Model {
             data: Vec::new(),
         };
         let ways = Ways::default();
-        let doubts = if self.drivers.is_none() { survey(&study, &only, &ways) } else { Vec::new() };
+        let doubts =
+            if self.drivers.is_none() { survey(&mut study, &only, options.seed, &ways) } else { Vec::new() };
         if is_refused(&doubts) {
             return Err(wrong(doubts));
         }

@@ -1,5 +1,6 @@
 //! What is wrong with the ways of agents, as diagnostics, before the first trial.
 
+use super::paths;
 use crate::compile::Study;
 use crate::compile::study::World;
 use crate::route::{Doubt, Ways};
@@ -7,8 +8,9 @@ use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
 use std::collections::BTreeSet;
 
-/// The errors and warnings about the ways in the worlds that some queries ask about; all queries where none is named.
-pub fn survey(study: &Study, only: &[usize], ways: &Ways) -> Vec<Diagnostic> {
+/// The errors and warnings about the ways in the worlds that some queries ask about; all queries where none is named. Rankings of
+/// paths get their options, which depend on the roadmap that a seed gives.
+pub fn survey(study: &mut Study, only: &[usize], seed: u64, ways: &Ways) -> Vec<Diagnostic> {
     let asked = study.queries.iter().filter(|query| only.is_empty() || only.contains(&query.index));
     let worlds: BTreeSet<usize> = asked.flat_map(|query| query.ask.worlds()).collect();
     let mut found: Vec<Diagnostic> = Vec::new();
@@ -20,6 +22,9 @@ pub fn survey(study: &Study, only: &[usize], ways: &Ways) -> Vec<Diagnostic> {
                 found.push(one);
             }
         }
+    }
+    if !is_refused(&found) {
+        found.extend(paths::settle(study, seed, ways));
     }
     found
 }

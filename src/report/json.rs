@@ -81,6 +81,9 @@ fn result(result: &QueryResult) -> Value {
     put("verdict", json!(result.verdict.map(crate::engine::outcome::Verdict::name)));
     put("certifies", json!(result.certifies));
     put("horizon", json!(result.asked.horizon));
+    if let Some(given) = &result.asked.given {
+        put("given", json!(given));
+    }
     put("estimate", maybe(result.estimate));
     put("low", number(result.low));
     put("high", number(result.high));

@@ -59,7 +59,7 @@ impl Grid {
 
 #[derive(Debug, Default)]
 pub(super) struct Cells {
-    cells: Grid,
+    fine: Grid,
     blocks: Grid,
     /// For places outside of the grids.
     all: Vec<u32>,
@@ -73,23 +73,23 @@ impl Cells {
         };
         let size = bounds.high - bounds.low;
         let side = SIDE.max(size.x / MOST).max(size.y / MOST);
-        Self { cells: Grid::new(&bounds, side), blocks: Grid::new(&bounds, BLOCK * side), all }
+        Self { fine: Grid::new(&bounds, side), blocks: Grid::new(&bounds, BLOCK * side), all }
     }
 
     /// How many cells there are.
     pub(super) fn count(&self) -> usize {
-        self.cells.lists.len()
+        self.fine.lists.len()
     }
 
     /// The cell of a place, and the circles that may be in sight from it, and perhaps others; ascending.
     pub(super) fn seen(&self, p: Vec2, circles: &[Circle], sight: &Sight) -> (Option<usize>, &[u32]) {
-        let Some(cell) = self.cells.square(p) else { return (None, &self.all) };
-        let middle = Vec2::new((cell % self.cells.columns) as f64, (cell / self.cells.columns) as f64);
-        let middle = self.cells.low + (middle + Vec2::repeat(0.5)) * self.cells.side;
+        let Some(cell) = self.fine.square(p) else { return (None, &self.all) };
+        let middle = Vec2::new((cell % self.fine.columns) as f64, (cell / self.fine.columns) as f64);
+        let middle = self.fine.low + (middle + Vec2::repeat(0.5)) * self.fine.side;
         let scene = (circles, sight);
         let block = || self.blocks.square(middle);
         let known = || block().map_or(&self.all[..], |block| self.blocks.seen(block, scene, || &self.all));
-        (Some(cell), self.cells.seen(cell, scene, known))
+        (Some(cell), self.fine.seen(cell, scene, known))
     }
 }
 

@@ -17,6 +17,11 @@ mod tests;
 mod way;
 mod wayfinder;
 
+pub mod path;
+pub mod planner;
+pub mod profile;
+pub mod roadmap;
+
 pub use atlas::Atlas;
 pub use survey::Doubt;
 pub use way::{Bend, ShortestWay};

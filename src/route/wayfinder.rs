@@ -1,6 +1,7 @@
 //! The driver of agents that find their way around barriers.
 
 use super::atlas::Atlas;
+use super::planner::{PathOption, Terrains, Walkers, path_options, walkers};
 use super::rim;
 use super::survey::{self, Doubt};
 use crate::kernel::driver::{Driver, Drivers, Plan, Situation};
@@ -17,10 +18,11 @@ struct Wayfinder {
 /// Most scenes whose atlases are kept: worlds of a sweep mostly share one.
 const KEPT: usize = 8;
 
-/// The atlases of the scenes of a call, each made once.
+/// The atlases of the scenes of a call and the terrains of its planned kinds, each made once.
 #[derive(Debug, Default)]
 pub struct Ways {
     known: Mutex<VecDeque<Arc<Atlas>>>,
+    terrains: Arc<Terrains>,
 }
 
 impl Ways {
@@ -36,9 +38,9 @@ impl Ways {
         atlas
     }
 
-    /// The drivers of a run: everybody finds their way, unless their kind goes straight, or no barrier can stand in the way.
+    /// The drivers of a run: everybody finds their way, unless their kind plans or goes straight, or no barrier can stand in the way.
     pub fn drivers(&self, scenario: &Scenario, seed: u64) -> Drivers {
-        let drivers = Drivers::new(seed);
+        let drivers = walkers(Drivers::new(seed), &self.terrains, scenario);
         let agents = finders(scenario);
         if agents.is_empty() {
             return drivers;
@@ -46,9 +48,22 @@ impl Ways {
         drivers.with(agents, Arc::new(Wayfinder { atlas: self.atlas(&scenario.scene) }))
     }
 
-    /// What is wrong or doubtful with the ways of a scenario, before the first trial.
+    /// The walkers of a scenario that plan.
+    pub fn walkers(&self, scenario: &Scenario, seed: u64) -> Walkers {
+        Walkers::new(&self.terrains, scenario, seed)
+    }
+
+    /// At most so many paths of different classes for an agent, the shortest first.
+    pub fn paths(&self, scenario: &Scenario, seed: u64, agent: AgentId, most: usize) -> Vec<PathOption> {
+        path_options(&self.terrains, scenario, seed, agent, most)
+    }
+
+    /// What is wrong or doubtful with the ways of a scenario, before the first trial. Where no way leads at all no plan does.
     pub fn doubts(&self, scenario: &Scenario) -> Vec<Doubt> {
-        let agents = finders(scenario);
+        let plans = |id: &AgentId| scenario.agents[id.0 as usize].body.planner.is_some();
+        let planned = (0..scenario.agents.len() as u32).map(AgentId).filter(plans);
+        let mut agents: Vec<AgentId> = finders(scenario).into_iter().chain(planned).collect();
+        agents.sort_unstable();
         if agents.is_empty() {
             Vec::new()
         } else {

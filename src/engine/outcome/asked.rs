@@ -19,6 +19,8 @@ pub struct AskedQuery {
     pub settings: Vec<(String, String)>,
     /// The horizon with its unit, `30 s`, where a formula has no bound of its own.
     pub horizon: Option<String>,
+    /// What was drawn once for the run, so that the result is about it alone: `the roadmap of planner, seed 0`.
+    pub given: Option<String>,
 }
 
 impl AskedQuery {
@@ -33,6 +35,7 @@ impl AskedQuery {
             kind,
             settings: Vec::new(),
             horizon: None,
+            given: None,
         }
     }
 }

@@ -138,6 +138,9 @@ fn facts(page: &mut String, result: &QueryResult, swept: bool) {
     if !statement.is_empty() {
         let _ = writeln!(page, "<p class=\"certified\">{head}{}</p>", escape(&statement));
     }
+    if let Some(given) = &result.asked.given {
+        let _ = writeln!(page, "<p>Given: {}.</p>", escape(given));
+    }
     let _ = writeln!(page, "<p class=\"faint\">{head}{}</p>", escape(&text::trials(result)));
     if let Some(histogram) = result.distribution.as_ref().and_then(|d| d.histogram.as_ref()) {
         page.push_str(&histogram::bars(histogram, &result.unit, endless(result)));

@@ -27,6 +27,9 @@ pub(super) fn write(text: &mut String, result: &QueryResult, palette: Palette) {
     if !statement.is_empty() {
         line(text, &format!("certified: {statement}"));
     }
+    if let Some(given) = &result.asked.given {
+        line(text, &format!("given: {given}"));
+    }
     line(text, &trials(result));
     shortfall(text, result, palette);
     if let Some(rare) = &result.rare {

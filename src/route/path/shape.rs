@@ -4,6 +4,7 @@
 use super::path::Path;
 use super::piece::{Piece, left, unit};
 use crate::base::geometry::{FARTHEST, Vec2};
+use crate::route::profile::Stretch;
 use std::f64::consts::PI;
 use std::fmt;
 use std::str::FromStr;
@@ -43,6 +44,17 @@ pub struct ShapeError {
 }
 
 impl PathShape {
+    /// Its parts as a profile sees them, with exact lengths.
+    pub fn stretches(&self) -> Vec<Stretch> {
+        let stretch = |part: &Part| match *part {
+            Part::Line(length) => Stretch { length, radius: f64::INFINITY },
+            Part::Arc { degrees, radius } => {
+                Stretch { length: (degrees * (PI / 180.0)).abs() * radius, radius }
+            }
+        };
+        self.parts.iter().map(stretch).collect()
+    }
+
     /// The path from the origin along +x.
     pub fn path(&self) -> Path {
         let mut path = Path::empty(Vec2::zeros());

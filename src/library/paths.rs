@@ -1,0 +1,77 @@
+//! The options of `paths` declarations: which paths there are is known when the roadmap of the run is drawn.
+
+use crate::compile::Study;
+use crate::compile::study::Ask;
+use crate::model::{AgentId, Move, Scenario};
+use crate::route::Ways;
+use crate::syntax::codes::Code;
+use crate::syntax::diagnostic::Diagnostic;
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+/// Finds the paths of a scenario and names the options after them; those that there are not are left out. The agents without
+/// any path.
+pub fn find_paths(scenario: &mut Scenario, seed: u64, ways: &Ways) -> Vec<AgentId> {
+    let mut moves = scenario.moves.clone();
+    let mut without = Vec::new();
+    for declared in moves.iter_mut().filter(|moves| moves.paths.is_some()) {
+        let found = ways.paths(scenario, seed, declared.agent, declared.options.len());
+        let Some(shortest) = found.first().map(|path| path.length) else {
+            without.push(declared.agent);
+            continue;
+        };
+        declared.options = (0..).zip(&found).map(|(k, path)| (path.name(k), Move::Path(k))).collect();
+        declared.paths = Some(found.iter().map(|path| path.length - shortest).collect());
+    }
+    scenario.moves = moves;
+    without
+}
+
+/// The same for all worlds that rankings ask about, and for these rankings. An error for each agent without any path.
+pub(super) fn settle(study: &mut Study, seed: u64, ways: &Ways) -> Vec<Diagnostic> {
+    let asked: BTreeSet<usize> = study.queries.iter().flat_map(|query| query.ask.worlds()).collect();
+    let mut errors = Vec::new();
+    for query in &mut study.queries {
+        let worlds = query.ask.worlds();
+        let planners = worlds
+            .iter()
+            .filter_map(|world| study.worlds.get(*world))
+            .flat_map(|world| world.scenario.agents.iter().filter_map(|agent| agent.body.planner.as_ref()));
+        let kinds: BTreeSet<&str> = planners.map(|planner| planner.kind.as_str()).collect();
+        let names: Vec<&str> = kinds.into_iter().collect();
+        query.given = match names.as_slice() {
+            [] => None,
+            [one] => Some(format!("the roadmap of {one}, seed {seed}")),
+            all => Some(format!("the roadmaps of {}, seed {seed}", all.join(", "))),
+        };
+    }
+    for number in asked {
+        let Some(world) = study.worlds.get_mut(number) else { continue };
+        if world.scenario.moves.iter().all(|moves| moves.paths.is_none()) {
+            continue;
+        }
+        let scenario = Arc::make_mut(&mut world.scenario);
+        for agent in find_paths(scenario, seed, ways) {
+            let name = &world.scenario.agents[agent.0 as usize].name;
+            let said = format!("no path on the roadmap of seed {seed} leads `{name}` to its goal");
+            let error = match world.place_of(agent) {
+                Some(span) => Diagnostic::error(Code::E0803, span, said),
+                None => Diagnostic::placeless(Code::E0803, said),
+            };
+            errors.push(error.hint("draw more samples: `roadmap = prm(samples = 1000)`"));
+        }
+        let moves = &world.scenario.moves;
+        for query in &mut study.queries {
+            let Ask::Rank { options, .. } = &mut query.ask else { continue };
+            options.retain_mut(|option| {
+                let here = option.advice.filter(|_| option.target.world == number);
+                let Some((of, k)) = here.filter(|(of, _)| moves[*of].paths.is_some()) else { return true };
+                let Some((label, _)) = moves[of].options.get(k) else { return false };
+                option.label.clone_from(label);
+                option.deviation = moves[of].deviations()[k];
+                true
+            });
+        }
+    }
+    errors
+}

@@ -1,0 +1,14 @@
+//! Walkers that plan (Li, Li, Ge 2019): a path on a roadmap, its corners rounded, and speeds along it that differ from walker
+//! to walker. The plan is the driving velocity of the social force, as their section 7 leaves it to future work.
+
+mod errand;
+mod options;
+mod speeds;
+mod terrain;
+mod walker;
+
+pub use errand::Errand;
+pub use options::{PathOption, path_options};
+pub use speeds::{Course, Speeds, stretches};
+pub use terrain::{Terrain, Terrains};
+pub use walker::{Outline, Walkers, Wish, walkers};

@@ -1,0 +1,218 @@
+//! The driver of walkers that plan.
+
+use super::errand::Errand;
+use super::options::{PathOption, path_options};
+use super::speeds::{Course, Speeds};
+use super::terrain::{Terrain, Terrains};
+use crate::base::geometry::Vec2;
+use crate::base::random::{Purpose, Stream, TrialKey};
+use crate::kernel::driver::{Driver, Drivers, Limits, Occasion, Plan, Situation};
+use crate::model::{AgentId, Goal, Leg, Move, Parameter, RoadmapRule, Scenario};
+use crate::route::roadmap::shortest;
+use std::collections::BTreeMap;
+use std::sync::{Arc, OnceLock};
+
+/// Largest correction towards the plan, as a share of the largest speed.
+const CORRECTION: f64 = 0.3;
+/// Farther than this from the plan, m, the time of the plan stands still.
+const LAG: f64 = 0.5;
+/// Who is nearer to where the errand ends has nothing to plan, m.
+const THERE: f64 = 0.1;
+/// How long somebody stands until the driver looks again, s.
+const PAUSE: f64 = 0.5;
+/// Draws of one plan: knots, and those that are put between them.
+const DRAWS: u32 = 1 << 10;
+
+/// The walkers of a run.
+#[derive(Debug)]
+pub struct Walkers {
+    terrains: Arc<Terrains>,
+    seed: u64,
+    /// The terrain of each agent whose roadmap does not depend on where it goes.
+    terrain: BTreeMap<AgentId, OnceLock<Option<Arc<Terrain>>>>,
+    /// The paths of those who may be advised to take one, and how many there are at most; found when they are first needed.
+    paths: BTreeMap<AgentId, (usize, OnceLock<Vec<PathOption>>)>,
+}
+
+/// Who needs a plan, and from where.
+#[derive(Clone, Copy, Debug)]
+pub struct Wish<'a> {
+    /// The scenario.
+    pub scenario: &'a Scenario,
+    /// The agent.
+    pub agent: AgentId,
+    /// Addresses the draws of the person: trial, number of the person, and which plan of theirs it is.
+    pub address: (TrialKey, u32, u32),
+    /// Where it is, m, and its velocity, m/s.
+    pub motion: (Vec2, Vec2),
+    /// The legs of its route that are left.
+    pub legs: &'a [Leg],
+    /// What it can do and wants.
+    pub speeds: Speeds,
+    /// The class of paths that it is advised to take.
+    pub path: Option<u32>,
+}
+
+/// A plan.
+#[derive(Clone, Debug)]
+pub struct Outline {
+    /// Where it was made.
+    pub terrain: Arc<Terrain>,
+    /// The corners of its path, m.
+    pub corners: Vec<Vec2>,
+    /// The path and the speeds along it; none where there is nowhere to go.
+    pub course: Option<Course>,
+}
+
+/// All agents of a scenario that plan.
+fn planned(scenario: &Scenario) -> impl Iterator<Item = AgentId> + '_ {
+    let plans = |id: &AgentId| scenario.agents[id.0 as usize].body.planner.is_some();
+    (0..scenario.agents.len() as u32).map(AgentId).filter(plans)
+}
+
+/// Gives all agents that plan their driver.
+pub fn walkers(drivers: Drivers, terrains: &Arc<Terrains>, scenario: &Scenario) -> Drivers {
+    if planned(scenario).next().is_none() {
+        return drivers;
+    }
+    let walkers = Walkers::new(terrains, scenario, drivers.seed());
+    drivers.with(planned(scenario), Arc::new(walkers))
+}
+
+impl Walkers {
+    /// Of a scenario, in a run with a seed.
+    pub fn new(terrains: &Arc<Terrains>, scenario: &Scenario, seed: u64) -> Self {
+        let declared = scenario.moves.iter().filter(|moves| moves.paths.is_some());
+        let most = |options: &[(String, Move)]| {
+            let class = |option| if let Move::Path(k) = option { Some(k as usize + 1) } else { None };
+            options.iter().filter_map(|(_, option)| class(*option)).max().unwrap_or(0)
+        };
+        let is_fixed = |id: &AgentId| {
+            let planner = &scenario.agents[id.0 as usize].body.planner;
+            planner.as_ref().is_some_and(|planner| matches!(planner.roadmap, RoadmapRule::Prm { .. }))
+        };
+        Self {
+            terrains: Arc::clone(terrains),
+            seed,
+            terrain: planned(scenario).filter(is_fixed).map(|id| (id, OnceLock::new())).collect(),
+            paths: declared.map(|moves| (moves.agent, (most(&moves.options), OnceLock::new()))).collect(),
+        }
+    }
+
+    /// The terrain of an agent on the way to a goal.
+    fn terrain(&self, scenario: &Scenario, id: AgentId, goal: &Goal) -> Option<Arc<Terrain>> {
+        let find = || self.terrains.of(&scenario.scene, &scenario.agents[id.0 as usize], goal, self.seed);
+        self.terrain.get(&id).map_or_else(find, |known| known.get_or_init(find).clone())
+    }
+
+    /// The path of a class.
+    fn option(&self, scenario: &Scenario, id: AgentId, class: u32) -> Option<&PathOption> {
+        let (most, found) = self.paths.get(&id)?;
+        found.get_or_init(|| path_options(&self.terrains, scenario, self.seed, id, *most)).get(class as usize)
+    }
+
+    /// The corners of a way through all goals of an errand.
+    fn corners(&self, wish: &Wish<'_>, terrain: &Terrain, errand: &Errand) -> Option<Vec<Vec2>> {
+        let (free, sight) = (&terrain.free, terrain.free.sight());
+        let is_free = |a: Vec2, b: Vec2| free.is_clear(a, b);
+        // The advice is about the way to the first goal of the route.
+        let mut advised = wish.path.and_then(|class| self.option(wish.scenario, wish.agent, class));
+        let mut corners = vec![wish.motion.0];
+        for &goal in &errand.points {
+            let from = *corners.last()?;
+            let part = match advised.take() {
+                Some(option) => {
+                    let inner = option.from(terrain, from);
+                    let part: Vec<Vec2> = std::iter::once(from).chain(inner).chain([goal]).collect();
+                    let word = free.rays().word(&part);
+                    wish.speeds.straightened(part, sight, is_free, |points| free.rays().word(points) == word)
+                }
+                None => {
+                    let part = shortest(&terrain.roadmap, free, from, goal)?;
+                    wish.speeds.straightened(part, sight, is_free, |_| true)
+                }
+            };
+            corners.extend(part.into_iter().skip(1));
+        }
+        Some(corners)
+    }
+
+    /// A plan through the goals up to the next pause; `None` without a way.
+    pub fn outline(&self, wish: &Wish<'_>) -> Option<Outline> {
+        let Some(Leg::To(goal)) = wish.legs.first() else { return None };
+        let terrain = self.terrain(wish.scenario, wish.agent, goal)?;
+        let errand = wish.errand(&terrain);
+        if wish.speeds.radius > terrain.radius {
+            return None;
+        }
+        let corners = self.corners(wish, &terrain, &errand)?;
+        let through = errand.points.split_last().map_or(&[][..], |(_, through)| through);
+        let first = wish.address.2.wrapping_mul(DRAWS) & !(1 << 31);
+        let stream = wish.stream();
+        let draw = |knot: u32| stream.uniform_pair(first + knot % DRAWS);
+        let course = wish.speeds.course(&corners, through, terrain.free.sight(), wish.motion.1, draw).ok();
+        Some(Outline { terrain, corners, course })
+    }
+}
+
+impl Wish<'_> {
+    fn stream(&self) -> Stream {
+        Stream::of(self.address.0, self.address.1, Purpose::Plan)
+    }
+
+    fn errand(&self, terrain: &Terrain) -> Errand {
+        Errand::new(&self.scenario.scene, &terrain.free, self.legs, self.speeds.radius, self.stream())
+    }
+}
+
+impl Driver for Walkers {
+    fn plan(&self, situation: &Situation<'_>) -> Plan {
+        let Some(goal) = situation.goal() else {
+            // In a pause the plan goes on to its end.
+            return match (situation.occasion, situation.plan) {
+                (Occasion::Ended, _) => Plan::Stand(f64::INFINITY),
+                (_, Plan::Follow(..)) => Plan::Keep,
+                _ => Plan::Straight,
+            };
+        };
+        let (scenario, id) = (situation.scenario, situation.agent);
+        let Some(planner) = scenario.agents[id.0 as usize].body.planner.as_ref() else {
+            return Plan::Straight;
+        };
+        let speeds =
+            Speeds::new(|parameter| situation.parameter(parameter), situation.own_speed, planner.profile);
+        let wish = Wish {
+            scenario,
+            agent: id,
+            address: (situation.key, situation.entity, situation.asked),
+            motion: (situation.position, situation.velocity),
+            legs: situation.legs,
+            speeds,
+            path: situation.path,
+        };
+        let Some(terrain) = self.terrain(scenario, id, goal) else { return Plan::Straight };
+        let points = wish.errand(&terrain).points;
+        let Some(&end) = points.last() else { return Plan::Straight };
+        match (situation.occasion, situation.plan) {
+            // The plan leads on through the next goal.
+            (Occasion::Leg, Plan::Follow(trajectory, _))
+                if (trajectory.at(trajectory.duration())[0] - end).norm() < THERE =>
+            {
+                return Plan::Keep;
+            }
+            // Where somebody is who has lagged behind is known when they stand.
+            (Occasion::Ended, Plan::Follow(..)) => return Plan::Stand(PAUSE),
+            _ => {}
+        }
+        if points.len() == 1 && (situation.position - end).norm() < THERE {
+            return Plan::Stand(PAUSE);
+        }
+        let Some(outline) = self.outline(&wish) else { return Plan::NoWay };
+        let Some(trajectory) = outline.course.and_then(|course| course.trajectory()) else {
+            return Plan::Stand(PAUSE);
+        };
+        let correction = CORRECTION * speeds.limits.speed;
+        let leave = situation.parameter(Parameter::Replan);
+        Plan::Follow(Arc::new(trajectory), Limits { correction, lag: LAG, leave })
+    }
+}
