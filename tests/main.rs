@@ -32,6 +32,7 @@ mod mistakes;
 mod mutants;
 mod mutation;
 mod nesting;
+mod planned;
 mod plans;
 mod processes;
 mod program;

@@ -11,6 +11,7 @@ mod format;
 mod inputs;
 mod manual;
 mod output;
+mod path;
 mod progress;
 mod ranks;
 mod show;
@@ -118,6 +119,7 @@ fn dispatch(arguments: &Arguments) -> Exit {
     match &arguments.command {
         Command::Check(command) => check::run(command, colors),
         Command::Simulate(command) => simulate::run(command, colors),
+        Command::Path(command) => path::run(command, colors),
         Command::Drift(command) => drift::run(command, colors),
         Command::Show(command) => show::run(command, colors),
         Command::Fmt(command) => format::run(command, colors),

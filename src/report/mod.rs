@@ -15,6 +15,7 @@ pub mod junit;
 pub mod model;
 pub mod number;
 pub mod palette;
+pub mod paths;
 mod phrase;
 pub mod svg;
 pub mod text;

@@ -1,6 +1,7 @@
 //! Drawings of the plane as SVG: axes in metres, a scale bar, and colours that differ in brightness, so that they survive
 //! print in grey.
 
+pub mod chart;
 pub mod plan;
 
 use super::escape::escape;
@@ -24,6 +25,8 @@ pub enum Ink {
     Start,
     /// A way: of medium brightness.
     Way,
+    /// Edges of a roadmap: thin and light.
+    Roadmap,
 }
 
 impl Ink {
@@ -34,6 +37,7 @@ impl Ink {
             Self::Start => {
                 "fill=\"#bfe0f5\" stroke=\"#5b93b5\" stroke-dasharray=\"2 2\" fill-opacity=\"0.7\""
             }
+            Self::Roadmap => "fill=\"none\" stroke=\"#9aa5ab\" stroke-width=\"0.5\"",
             Self::Way => "fill=\"none\" stroke=\"#c2410c\" stroke-width=\"2\" stroke-linejoin=\"round\"",
         }
     }

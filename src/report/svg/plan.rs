@@ -27,7 +27,7 @@ fn way(atlas: &Atlas, agent: &Agent) -> Option<(Vec<Vec2>, f64)> {
     for leg in legs {
         let Leg::To(goal) = leg else { continue };
         let from = *points.last()?;
-        if agent.body.finds_ways {
+        if agent.body.finds_ways || agent.body.planner.is_some() {
             let way = atlas.way(from, goal, radius)?;
             points.extend(way.bends.iter().flat_map(along));
             points.push(way.end);
@@ -50,18 +50,20 @@ fn along(bend: &Bend) -> Vec<Vec2> {
     (0..=count as u32).map(|k| bend.at(f64::from(k) / count)).collect()
 }
 
-/// The plan of a scenario as SVG.
-pub fn draw(scenario: &Scenario) -> String {
-    let atlas = Atlas::new(scenario.scene.clone());
-    let scene = &scenario.scene;
-    // People who start and go alike are drawn once.
+/// People who start and go alike, one of each.
+fn shown(scenario: &Scenario) -> Vec<&Agent> {
     let mut shown: Vec<&Agent> = Vec::new();
     for agent in &scenario.agents {
         if shown.last().is_none_or(|last| last.start != agent.start || last.route != agent.route) {
             shown.push(agent);
         }
     }
-    let ways: Vec<(Vec<Vec2>, f64)> = shown.iter().filter_map(|agent| way(&atlas, agent)).collect();
+    shown
+}
+
+/// A drawing of barriers, regions and starts with room for some points.
+fn drawn(scenario: &Scenario, points: impl Iterator<Item = Vec2>) -> Drawing {
+    let (scene, shown) = (&scenario.scene, shown(scenario));
     let shapes = scene.regions.iter().map(|region| region.shape.bounds());
     let starts = shown.iter().filter_map(|agent| match &agent.start.position {
         Position::Within(shape) => Some(shape.bounds()),
@@ -72,8 +74,7 @@ pub fn draw(scenario: &Scenario) -> String {
         Obstacle::Solid(shape) => Some(shape.bounds()),
     });
     let corners = shapes.chain(starts).chain(barriers).flat_map(|b| [b.low, b.high]);
-    let points = scene.points.iter().map(|(_, point)| *point);
-    let all = corners.chain(points).chain(ways.iter().flat_map(|(points, _)| points.iter().copied()));
+    let all = corners.chain(scene.points.iter().map(|(_, point)| *point)).chain(points);
     let bounds = Bounds::around(all).unwrap_or(Bounds { low: Vec2::zeros(), high: Vec2::new(1.0, 1.0) });
     let mut drawing = Drawing::new(bounds);
     for region in &scene.regions {
@@ -92,6 +93,21 @@ pub fn draw(scenario: &Scenario) -> String {
             Obstacle::Solid(shape) => drawing.shape(shape, Ink::Barrier),
         }
     }
+    drawing
+}
+
+/// A drawing of the scene and of the starts.
+pub fn scene(scenario: &Scenario) -> Drawing {
+    drawn(scenario, std::iter::empty())
+}
+
+/// The plan of a scenario as SVG.
+pub fn draw(scenario: &Scenario) -> String {
+    let atlas = Atlas::new(scenario.scene.clone());
+    let scene = &scenario.scene;
+    let shown = shown(scenario);
+    let ways: Vec<(Vec<Vec2>, f64)> = shown.iter().filter_map(|agent| way(&atlas, agent)).collect();
+    let mut drawing = drawn(scenario, ways.iter().flat_map(|(points, _)| points.iter().copied()));
     for (points, length) in &ways {
         drawing.line(points, Ink::Way);
         drawing.text(middle(points), &format!("{} m", plain((length * 10.0).round() / 10.0)));

@@ -1,0 +1,330 @@
+//! Walkers that plan: one test for each row of the table in `docs/semantics.md`, and what is refused.
+
+use smc::base::geometry::Vec2;
+use smc::base::random::TrialKey;
+use smc::kernel::{Program, Run};
+use smc::model::{AgentId, Goal, Parameter, Position, Route, Scenario, SpeedRule};
+use smc::route::Ways;
+use smc::route::planner::{Outline, Speeds, Wish};
+use smc::{Model, Options};
+use std::sync::Arc;
+
+/// A field with a block in the middle; the goal lies behind it.
+const FIELD: &str = "
+horizon = 60 s
+step = 0.04 s
+scene {
+  region start: rect (0, 0) .. (2, 10)
+  region half:  rect (20, 14) .. (23, 17)
+  region goal:  rect (38, 0) .. (40, 10)
+  obstacle block: rect (15, 1) .. (25, 9)
+}
+";
+
+/// Little to wait for, and far from the block.
+const KIND: &str = "kind planner: planned {
+  limit speed = uniform(1.2 m/s, 1.8 m/s)
+  roadmap = prm(samples = 200, sampling = uniform, separation = 1 m, clearance = 3 m)
+}
+";
+
+fn model(text: &str) -> Model {
+    Model::parse(text).unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+fn field(rest: &str) -> Model {
+    model(&format!("{FIELD}{KIND}{rest}"))
+}
+
+/// Where an agent is and its velocity, state by state.
+fn track(model: &Model, trial: u64, name: &str) -> Vec<(Vec2, Vec2)> {
+    let states = model.trial(3, trial).unwrap_or_else(|errors| panic!("{errors}"));
+    states
+        .filter_map(|state| state.agent(name).map(|a| (a.position, a.velocity)))
+        .map(|(p, v)| (Vec2::new(p.x, p.y), Vec2::new(v.x, v.y)))
+        .collect()
+}
+
+/// The first plan of an agent in a trial, its speeds, and where it starts.
+fn first_plan(
+    scenario: &Arc<Scenario>,
+    trial: u64,
+    agent: u32,
+    path: Option<u32>,
+) -> Option<(Outline, Speeds)> {
+    let ways = Ways::default();
+    let key = TrialKey { seed: 3, index: trial, branch: 0 };
+    let program = Program::driven(scenario.clone(), ways.drivers(scenario, 3));
+    let (run, _) = Run::of(&program, key.into()).unwrap_or_else(|_| panic!("no start"));
+    let state = run.state();
+    let slot = state.slot(agent as usize, 0);
+    let of = |parameter: Parameter| state.bodies[parameter][slot.block].0[slot.lane];
+    let at = Vec2::new(state.motion.x[slot.block].0[slot.lane], state.motion.y[slot.block].0[slot.lane]);
+    let Route::Legs { legs, .. } = &scenario.agents[agent as usize].route else { return None };
+    let speeds = Speeds::new(of, of(Parameter::Speed), SpeedRule::Varied);
+    let wish = Wish {
+        scenario,
+        agent: AgentId(agent),
+        address: (key, scenario.agents[agent as usize].entity, 0),
+        motion: (at, Vec2::zeros()),
+        legs,
+        speeds,
+        path,
+    };
+    Some((ways.walkers(scenario, 3).outline(&wish)?, speeds))
+}
+
+#[test]
+fn who_is_alone_walks_the_plan_within_its_limits() {
+    let model = field("agent me: planner { at = uniform in start  route = goal }");
+    for trial in 0..8 {
+        let (outline, speeds) = first_plan(model.scenario(), trial, 0, None).unwrap();
+        let course = outline.course.unwrap();
+        let track = track(&model, trial, "me");
+        let mut farthest: f64 = 0.0;
+        for (k, (position, _)) in track.iter().enumerate() {
+            let motion = course.motion(k as f64 * 0.04);
+            farthest = farthest.max((position - course.path.at(motion.distance).position).norm());
+        }
+        assert!(farthest < 0.02, "trial {trial}: {farthest} m");
+        let limits = speeds.limits;
+        for pair in track.windows(2) {
+            let (v, w) = (pair[0].1, pair[1].1);
+            assert!(w.norm() <= 1.02 * limits.speed, "{}", w.norm());
+            let (a, middle) = ((w - v) / 0.04, 0.5 * (v + w));
+            if middle.norm() > 0.05 {
+                let along = a.dot(&middle) / middle.norm();
+                let across = (a.norm_squared() - along * along).max(0.0).sqrt();
+                let used = (along / limits.along).powi(2) + (across / limits.across).powi(2);
+                assert!(used <= 1.02 * 1.02, "{used}");
+            }
+        }
+        let last = track.last().unwrap();
+        assert!(last.1.norm() < 0.01 && last.0.x > 38.0, "{last:?}");
+    }
+}
+
+#[test]
+fn a_goal_is_a_free_point_drawn_in_its_region() {
+    let model = field("agent me: planner { at = (1, 5)  route = goal }");
+    let ends: Vec<Vec2> = (0..20)
+        .map(|trial| {
+            let (outline, speeds) = first_plan(model.scenario(), trial, 0, None).unwrap();
+            let end = *outline.corners.last().unwrap();
+            let r = speeds.radius;
+            assert!(end.x >= 38.0 + r && end.x <= 40.0 - r && end.y >= r && end.y <= 10.0 - r, "{end:?}");
+            end
+        })
+        .collect();
+    let mean = ends.iter().sum::<Vec2>() / 20.0;
+    // Uniform: the mean of 20 is within 4 standard errors of the middle.
+    assert!((mean.y - 5.0).abs() < 4.0 * 2.74 / 20.0_f64.sqrt(), "{mean:?}");
+}
+
+#[test]
+fn one_plan_leads_through_goals_and_rests_at_a_pause() {
+    let through = field("agent me: planner { at = (1, 5)  route = half -> goal }");
+    let (outline, _) = first_plan(through.scenario(), 0, 0, None).unwrap();
+    let course = outline.course.unwrap();
+    // It passes the first goal without a stop, and the second one begins when the first has been reached.
+    assert!((1..100).all(|k| course.motion(course.duration() * f64::from(k) / 100.0).speed > 0.2));
+    let walked = track(&through, 0, "me");
+    assert!(walked.iter().any(|(p, _)| p.x > 20.0 && p.x < 23.0 && p.y > 14.0 && p.y < 17.0));
+    assert!(walked.last().unwrap().0.x > 38.0);
+    let pausing = field("agent me: planner { at = (1, 5)  route = half -> wait 6 s -> goal }");
+    let walked = track(&pausing, 0, "me");
+    let rests = walked.iter().filter(|(p, v)| v.norm() < 0.01 && p.x > 20.0 && p.x < 23.0).count();
+    // At rest for most of the 6 s: the time counts from where the region is entered.
+    assert!(rests > 50, "{rests} states");
+    assert!(walked.last().unwrap().0.x > 38.0, "{:?}", walked.last());
+}
+
+#[test]
+fn a_preferred_speed_follows_the_largest_one() {
+    let model = field("agents me[20]: planner { at = uniform in start  route = goal }");
+    let program = Program::driven(model.scenario().clone(), Ways::default().drivers(model.scenario(), 1));
+    let key = TrialKey { seed: 1, index: 0, branch: 0 };
+    let (run, _) = Run::of(&program, key.into()).unwrap_or_else(|_| panic!("no start"));
+    for agent in 0..20 {
+        let slot = run.state().slot(agent, 0);
+        let of = |parameter: Parameter| run.state().bodies[parameter][slot.block].0[slot.lane];
+        let (speed, limit) = (of(Parameter::Speed), of(Parameter::LimitSpeed));
+        assert!((speed - 0.85 * limit).abs() < 1e-12, "{speed} {limit}");
+    }
+}
+
+#[test]
+fn a_behaviour_changes_the_pace_of_the_plan() {
+    let slow = "behaviour tired { state fresh { after 4 s -> tired }  state tired { speed = 0.5 * speed } }";
+    let calm = "profile = optimal  speed = 1.2 m/s";
+    let kind = KIND.replace("roadmap", &format!("{calm}  roadmap"));
+    let arrival = |behaviour: &str, with: &str| {
+        let rest = format!("{behaviour}\nagent me: planner {with} {{ at = (1, 5)  route = goal }}");
+        let track = track(&model(&format!("{FIELD}{kind}{rest}")), 0, "me");
+        track.iter().position(|(p, _)| p.x > 30.0).unwrap() as f64 * 0.04
+    };
+    let (usual, tired) = (arrival("", ""), arrival(slow, "with tired"));
+    // All but the first 4 s take twice as long.
+    assert!((tired - (2.0 * usual - 4.0)).abs() < 0.5, "{usual} {tired}");
+}
+
+#[test]
+fn who_is_pushed_off_the_plan_makes_another_one() {
+    // A heading for 5 s leads away from the plan.
+    let model = field(
+        "agent me: planner { at = (1, 5)  route = goal }
+         moves me for 5 s { heading 90 deg  heading 0 deg }",
+    );
+    let report = model
+        .check("rank moves of me by P(F<=60 s (me in goal)) within 0.2", &Options::default().max_trials(200))
+        .unwrap_or_else(|errors| panic!("{errors}"));
+    let rank = report.results()[0].rank.as_ref().unwrap();
+    assert!(rank.options.iter().all(|option| option.value.estimate > 0.9), "{rank:?}");
+}
+
+#[test]
+fn others_change_neither_the_roadmap_nor_the_draws_of_anybody() {
+    let alone = field("agent me: planner { at = (1, 1)  route = goal }");
+    let far = "kind other: planned { limit speed = 1 m/s }
+        agents others[3]: other { at = near me within 9 m  route = half }";
+    let among = field(&format!(
+        "agent me: planner {{ at = (1, 1)  route = goal }}\n{far}\npaths me {{ roadmap alternatives 3 }}"
+    ));
+    let plan = |model: &Model| first_plan(model.scenario(), 5, 0, None).unwrap().0;
+    let (a, b) = (plan(&alone), plan(&among));
+    assert_eq!(a.terrain.roadmap.vertices(), b.terrain.roadmap.vertices());
+    assert_eq!(a.corners, b.corners);
+    assert_eq!(a.course.unwrap().samples(), b.course.unwrap().samples());
+}
+
+/// Three ways lead past two blocks in a row.
+const BLOCKS: &str = "
+horizon = 40 s
+step = 0.04 s
+scene {
+  region start: rect (0, 8) .. (2, 12)
+  region goal:  rect (28, 8) .. (30, 12)
+  obstacle lower: rect (10, 2) .. (20, 9)
+  obstacle upper: rect (10, 11) .. (20, 18)
+  wall (-1, -1) -- (31, -1) -- (31, 21) -- (-1, 21) -- (-1, -1)
+}
+kind planner: planned { limit speed = 1.5 m/s  roadmap = prm(samples = 300) }
+agents people[2]: planner { at = uniform in start  route = goal }
+paths people[1] { roadmap alternatives 9 }
+";
+
+#[test]
+fn paths_of_different_classes_are_ranked_and_the_shortest_wins_a_tie() {
+    let model = model(BLOCKS);
+    let scenario = model.scenario();
+    let found = Ways::default().paths(scenario, 3, AgentId(0), 9);
+    assert_eq!(found.len(), 3, "{found:?}");
+    assert!(found.windows(2).all(|pair| pair[0].length <= pair[1].length));
+    // Each path keeps its class from wherever the walker starts: where it passes x = 15.
+    let row = |path: u32, trial: u64| {
+        let course = first_plan(scenario, trial, 0, Some(path)).unwrap().0.course.unwrap();
+        let length = course.path.length();
+        let all = (0..400).map(|k| course.path.at(length * f64::from(k) / 400.0).position);
+        all.min_by(|a, b| (a.x - 15.0).abs().total_cmp(&(b.x - 15.0).abs())).unwrap().y
+    };
+    let side = |y: f64| {
+        if y < 2.0 {
+            0
+        } else if y > 18.0 {
+            2
+        } else {
+            1
+        }
+    };
+    for path in 0..3 {
+        let sides: Vec<i32> = (0..5).map(|trial| side(row(path, trial))).collect();
+        assert!(sides.iter().all(|one| *one == sides[0]), "path {path}: {sides:?}");
+    }
+    let query = "rank paths of people[1] by P(F<=40 s (people[1] in goal)) within 0.1";
+    let report =
+        model.check(query, &Options::default().seed(3).max_trials(2_000)).unwrap_or_else(|e| panic!("{e}"));
+    let result = &report.results()[0];
+    let rank = result.rank.as_ref().unwrap();
+    assert_eq!(rank.options.len(), 3);
+    assert!(rank.choice.as_ref().unwrap().starts_with("path 1 ("), "{rank:?}");
+    assert_eq!(result.asked.given.as_deref(), Some("the roadmap of planner, seed 3"));
+}
+
+#[test]
+fn who_is_too_wide_has_no_way_and_a_closed_goal_is_an_error() {
+    let wide = BLOCKS.replace(
+        "{ limit speed = 1.5 m/s",
+        "{ limit speed = 1.5 m/s  radius = normal(0.3 m, 0.1 m) in 0.05 m .. 20 m",
+    );
+    let scenario = model(&wide);
+    let Position::Within(_) = scenario.scenario().agents[0].start.position else { panic!("a region") };
+    let closed = BLOCKS.replace("wall (-1", "wall (25, -1) -- (25, 21)\n  wall (-1");
+    let error = model(&closed)
+        .check("check P(F<=9 s (people[1] in goal)) >= 0.5", &Options::default())
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains("E0803") && error.contains("no way leads"), "{error}");
+}
+
+#[test]
+fn wrong_kinds_and_paths_are_refused_with_a_place_and_a_hint() {
+    let start = "horizon = 9 s\nstep = 0.04 s\nscene { region goal: rect (8, 0) .. (9, 1) }\n";
+    let cases = [
+        ("kind k: planned { }  agent a: k { at = (0, 0) }", "`k` has no limit speed"),
+        (
+            "kind k: planned { limit speed = 0 m/s }  agent a: k { at = (0, 0) }",
+            "`limit speed` must be positive",
+        ),
+        ("kind k: planned { limit speed = 1 m/s  limit acceleration = -1 m/s^2 }", "cannot be"),
+        ("kind k: planned { limit speed = 1 m/s  pieces = 1 }", "a whole number from 2 to 64"),
+        ("kind k: planned { limit speed = 1 m/s  pieces = uniform(2, 5) }", "a whole number from 2 to 64"),
+        ("kind k: planned { limit speed = 1 m/s  roadmap = prm(sample = 5) }", "unknown argument of `prm`"),
+        ("kind k: planned { limit speed = 1 m/s  roadmap = prm(samples = 1) }", "from 2 to 100000"),
+        ("kind k: planned { limit speed = 1 m/s  roadmap = rrt(samples = 9) }", "`rrt` has no root"),
+        ("kind k: planned { limit speed = 1 m/s  roadmap = grid(samples = 9) }", "unknown roadmap `grid`"),
+        ("kind k: planned { limit speed = 1 m/s  profile = fast }", "`varied`, `optimal` or `uniform`"),
+        ("kind k: planned { limit speed = 1 m/s  avoid = sfm preset helbing }", "unknown preset `helbing`"),
+        ("kind k: planned { limit speed = 1 m/s  wayfinding = straight }", "unknown parameter `wayfinding`"),
+        (
+            "kind k: planned { limit speed = 1 m/s }  group g[2]: k as particle { at = (0, 0) }",
+            "cannot move `as particle`",
+        ),
+        (
+            "kind k: sfm preset helbing2000  agent a: k { at = (0, 0) }  paths a { roadmap alternatives 3 }",
+            "does not plan",
+        ),
+        (
+            "kind k: planned { limit speed = 1 m/s }  agents a[2]: k { at = uniform in goal }  paths a { roadmap alternatives 3 }",
+            "paths must belong to one agent",
+        ),
+        (
+            "kind k: planned { limit speed = 1 m/s }  agent a: k { at = (0, 0) }  paths a { roadmap alternatives 0 }",
+            "a whole number from 1 to 64",
+        ),
+    ];
+    for (text, said) in cases {
+        let text = format!("{start}{text}");
+        let text = if text.contains("agent") || text.contains("group") {
+            text
+        } else {
+            format!("{text}\nagent a: k {{ at = (0, 0) }}")
+        };
+        match Model::parse(&text) {
+            Ok(_) => panic!("{text} is accepted"),
+            Err(errors) => {
+                let found = errors.to_string();
+                assert!(found.contains(said), "{text}\n{found}");
+                assert_eq!(found.matches("error[").count(), 1, "{text}\n{found}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_goal_may_be_a_point() {
+    let model = field("agent me: planner { at = (1, 5)  route = (30, 12) }");
+    let last = track(&model, 0, "me").last().unwrap().0;
+    assert!((last - Vec2::new(30.0, 12.0)).norm() < 0.15, "{last:?}");
+    let Route::Legs { legs, .. } = &model.scenario().agents[0].route else { panic!("legs") };
+    assert!(matches!(&legs[0], smc::model::Leg::To(Goal::Point(_))));
+}
