@@ -17,7 +17,7 @@ macro_rules! pair {
 }
 
 /// Pairs of scenario and properties; the recording of the hotel is not read, so that its names stay unknown.
-const PAIRS: [(&str, &str); 18] = [
+const PAIRS: [(&str, &str); 19] = [
     pair!("building"),
     pair!("corner"),
     pair!("corridor"),
@@ -34,6 +34,7 @@ const PAIRS: [(&str, &str); 18] = [
     pair!("robot"),
     pair!("sensors"),
     pair!("tandem"),
+    pair!("plaza"),
     pair!("ward"),
     (include_str!("refused/base.scn"), include_str!("../properties/corridor.bltl")),
 ];

@@ -219,7 +219,11 @@ impl Elaborator<'_> {
     /// The body of a kind: every parameter must be known now.
     pub(super) fn body(&mut self, kind: &Kind, name: &Ident) -> Lowered<Body> {
         let missing = Parameter::of_kind(kind.base).filter(|parameter| kind.law(*parameter).is_none());
-        let missing: Vec<&str> = missing.map(Parameter::name).collect();
+        // A preferred speed follows from the largest one.
+        let follows =
+            |parameter: &Parameter| kind.base == model::Kind::Planned && *parameter == Parameter::Speed;
+        let missing: Vec<&str> =
+            missing.filter(|parameter| !follows(parameter)).map(Parameter::name).collect();
         if !missing.is_empty() {
             let title = format!("`{}` has no {}", name.name, missing.join(", "));
             // Said once, however many are of that kind.

@@ -27,7 +27,13 @@ pub fn find_paths(scenario: &mut Scenario, seed: u64, ways: &Ways) -> Vec<AgentI
     without
 }
 
-/// The same for all worlds that rankings ask about, and for these rankings. An error for each agent without any path.
+/// The kind of an agent that plans.
+fn kind_of(scenario: &Scenario, agent: AgentId) -> &str {
+    scenario.agents[agent.0 as usize].body.planner.as_ref().map_or("", |planner| &planner.kind)
+}
+
+/// The same for all worlds that queries ask about, and for their rankings. An error for each agent without any path, and a warning
+/// for each kind whose roadmap has hardly a vertex. Queries learn which roadmaps they are given.
 pub(super) fn settle(study: &mut Study, seed: u64, ways: &Ways) -> Vec<Diagnostic> {
     let asked: BTreeSet<usize> = study.queries.iter().flat_map(|query| query.ask.worlds()).collect();
     let mut errors = Vec::new();
@@ -47,6 +53,19 @@ pub(super) fn settle(study: &mut Study, seed: u64, ways: &Ways) -> Vec<Diagnosti
     }
     for number in asked {
         let Some(world) = study.worlds.get_mut(number) else { continue };
+        for (agent, count) in ways.vertices(&world.scenario, seed).into_iter().filter(|(_, count)| *count < 2)
+        {
+            let said = format!(
+                "the roadmap of `{}` has {}",
+                kind_of(&world.scenario, agent),
+                if count == 1 { "only one vertex" } else { "no vertices" }
+            );
+            let warning = match world.place_of(agent) {
+                Some(span) => Diagnostic::warning(Code::W0802, span, said),
+                None => continue,
+            };
+            errors.push(warning.hint("make `separation` or `clearance` smaller, or draw more samples"));
+        }
         if world.scenario.moves.iter().all(|moves| moves.paths.is_none()) {
             continue;
         }

@@ -132,7 +132,10 @@ pub fn map(scenario: &Scenario, paths: &[PlannedPath]) -> String {
         let at = |k: u32| line.at(line.length() * f64::from(k) / f64::from(steps)).position;
         drawing.line(&(0..=steps).map(at).collect::<Vec<_>>(), Ink::Way);
         drawing.dot(at(0), Ink::Start);
-        drawing.text(at(steps / 2), &path.name);
+        // Only who has several paths needs names for them.
+        if paths.iter().filter(|other| other.agent == path.agent).count() > 1 {
+            drawing.text(at(steps / 2), &path.name);
+        }
     }
     drawing.finish(if scenario.title.is_empty() { "paths" } else { &scenario.title })
 }

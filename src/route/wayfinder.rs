@@ -5,7 +5,7 @@ use super::planner::{PathOption, Terrains, Walkers, path_options, walkers};
 use super::rim;
 use super::survey::{self, Doubt};
 use crate::kernel::driver::{Driver, Drivers, Plan, Situation};
-use crate::model::{Agent, AgentId, Parameter, Scenario, Scene};
+use crate::model::{Agent, AgentId, Leg, Parameter, Route, Scenario, Scene};
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -51,6 +51,26 @@ impl Ways {
     /// The walkers of a scenario that plan.
     pub fn walkers(&self, scenario: &Scenario, seed: u64) -> Walkers {
         Walkers::new(&self.terrains, scenario, seed)
+    }
+
+    /// How many vertices the roadmap of each kind has: the first agent of the kind, and the number.
+    pub fn vertices(&self, scenario: &Scenario, seed: u64) -> Vec<(AgentId, usize)> {
+        let mut kinds: Vec<&str> = Vec::new();
+        let mut out = Vec::new();
+        for (id, agent) in (0..).map(AgentId).zip(&scenario.agents) {
+            let Some(planner) = agent.body.planner.as_ref().filter(|one| !kinds.contains(&one.kind.as_str()))
+            else {
+                continue;
+            };
+            let Route::Legs { legs, .. } = &agent.route else { continue };
+            let goal = legs.iter().find_map(|leg| if let Leg::To(goal) = leg { Some(goal) } else { None });
+            let terrain = goal.and_then(|goal| self.terrains.of(&scenario.scene, agent, goal, seed));
+            if let Some(terrain) = terrain {
+                kinds.push(&planner.kind);
+                out.push((id, terrain.roadmap.vertices().len()));
+            }
+        }
+        out
     }
 
     /// At most so many paths of different classes for an agent, the shortest first.

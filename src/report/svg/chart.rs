@@ -42,7 +42,9 @@ impl Chart {
     pub fn finish(&self, title: &str) -> String {
         let all = self.lines.iter().flat_map(|(_, points)| points.iter().copied()).chain([Vec2::zeros()]);
         let bounds = Bounds::around(all).unwrap_or(Bounds { low: Vec2::zeros(), high: Vec2::zeros() });
-        let size = (bounds.high - bounds.low).map(|side| side.max(1e-3));
+        let mut size = (bounds.high - bounds.low).map(|side| side.max(1e-3));
+        // Room for the names of the lines.
+        size.y *= 1.0 + 0.05 * self.lines.len() as f64;
         let room = Vec2::new(SIZE.0 - 1.5 * MARGIN, SIZE.1 - 1.5 * MARGIN);
         let at = |p: Vec2| {
             let share = (p - bounds.low).component_div(&size);

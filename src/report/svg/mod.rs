@@ -34,9 +34,7 @@ impl Ink {
         match self {
             Self::Barrier => "fill=\"#37474f\" stroke=\"#1c262b\" stroke-width=\"2\"",
             Self::Region => "fill=\"#fff3c4\" stroke=\"#b8a35a\" stroke-dasharray=\"4 3\"",
-            Self::Start => {
-                "fill=\"#bfe0f5\" stroke=\"#5b93b5\" stroke-dasharray=\"2 2\" fill-opacity=\"0.7\""
-            }
+            Self::Start => "fill=\"#bfe0f5\" stroke=\"#5b93b5\" stroke-dasharray=\"2 2\"",
             Self::Roadmap => "fill=\"none\" stroke=\"#9aa5ab\" stroke-width=\"0.5\"",
             Self::Way => "fill=\"none\" stroke=\"#c2410c\" stroke-width=\"2\" stroke-linejoin=\"round\"",
         }
@@ -92,7 +90,8 @@ impl Drawing {
                 format!("<path fill-rule=\"evenodd\" d=\"{}\"", path.join(" "))
             }
         };
-        let _ = writeln!(self.body, "{drawn} {}/>", ink.attributes());
+        let opacity = if ink == Ink::Start { 0.7 } else { 1.0 };
+        let _ = writeln!(self.body, "{drawn} {} fill-opacity=\"{opacity}\"/>", ink.attributes());
     }
 
     /// A dot.
@@ -200,7 +199,20 @@ mod tests {
         assert_eq!([0.9, 1.0, 4.9, 5.0, 19.0, 20.0].map(round_step), [0.5, 1.0, 2.0, 5.0, 10.0, 20.0]);
         let mut drawing = Drawing::new(Bounds { low: Vec2::zeros(), high: Vec2::new(20.0, 10.0) });
         drawing.text(Vec2::new(1.0, 1.0), "</svg><script>");
+        drawing.line(&[Vec2::zeros(), Vec2::new(3.0, 3.0)], Ink::Start);
+        for ink in [Ink::Barrier, Ink::Region, Ink::Start, Ink::Way, Ink::Roadmap] {
+            drawing.dot(Vec2::zeros(), ink);
+            drawing.shape(&Shape::Circle { centre: Vec2::zeros(), radius: 1.0 }, ink);
+        }
         let text = drawing.finish("a & b");
+        for element in text.split('<') {
+            let names = element.split('"').step_by(2).filter_map(|part| part.trim().strip_suffix('='));
+            let names: Vec<&str> = names.map(|part| part.rsplit(' ').next().unwrap_or(part)).collect();
+            let mut once = names.clone();
+            once.sort_unstable();
+            once.dedup();
+            assert_eq!(once.len(), names.len(), "an attribute is given twice: {element}");
+        }
         assert!(
             text.contains("&lt;/svg&gt;") && !text.contains("<script>") && text.contains("a &amp; b"),
             "{text}"
