@@ -3,6 +3,7 @@
 //! The clock never decides what a trial yields, only how many trials are consumed; with a deadline a result
 //! is a function of input, seed and the number of trials.
 
+use super::outcome::Stop;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
@@ -120,6 +121,16 @@ impl Budget {
     /// Whether no more should be started, for either reason.
     pub fn must_stop(&self) -> bool {
         self.is_interrupted() || self.is_over()
+    }
+
+    /// Why no more is started, once none should be.
+    pub(super) fn stopped_by(&self) -> Stop {
+        if self.is_interrupted() { Stop::Interrupt } else { Stop::Deadline }
+    }
+
+    /// Why no more should be started, if that is so.
+    pub(super) fn reason_to_stop(&self) -> Option<Stop> {
+        self.must_stop().then(|| self.stopped_by())
     }
 
     /// Whether what was begun should be left too: some time has passed since no more should be started.

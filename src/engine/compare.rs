@@ -200,12 +200,11 @@ impl<'s> CompareSampling<'s> {
             if next >= most {
                 break if self.within.is_none() && most == planned { Stop::Plan } else { Stop::Cap };
             }
-            let halt = || if budget.is_interrupted() { Stop::Interrupt } else { Stop::Deadline };
             if share.must_stop() {
                 if !budget.must_stop() {
                     return Ok(None);
                 }
-                break halt();
+                break budget.stopped_by();
             }
             let (items, first, second) = match self.ahead.take() {
                 Some([first, second]) => (first.items, first.cells, second.cells),

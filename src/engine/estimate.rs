@@ -221,7 +221,7 @@ impl<'q> EstimateSampling<'q> {
         entry.stop = match &settled {
             Some(procedure) if procedure.is_finished() => Some(Stop::Width),
             _ if capped => Some(Stop::Cap),
-            _ => ended(budget),
+            _ => budget.reason_to_stop(),
         };
         let Some(procedure) = settled.filter(|one| one.is_finished() || entry.stop.is_none()) else {
             return Ok(Advance::Stopped);
@@ -434,16 +434,10 @@ fn columns(entries: &[EstimateEntry<'_>]) -> Vec<usize> {
 
 /// Time is up, or somebody interrupted: what is known stays known.
 fn close(entries: &mut [EstimateEntry<'_>], budget: &Budget) {
-    let stop = if budget.is_interrupted() { Stop::Interrupt } else { Stop::Deadline };
+    let stop = budget.stopped_by();
     for entry in entries.iter_mut().filter(|i| i.is_open()) {
         entry.stop = Some(stop);
     }
-}
-
-/// Why nothing more is read, if time is up or somebody interrupted.
-fn ended(budget: &Budget) -> Option<Stop> {
-    let late = budget.is_over().then_some(Stop::Deadline);
-    if budget.is_interrupted() { Some(Stop::Interrupt) } else { late }
 }
 
 /// The procedure with its level, proven if it was not known; `None` if there is no time for that. Which level it is

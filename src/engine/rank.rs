@@ -319,12 +319,11 @@ impl<'s> RankSampling<'s> {
             if round.shares.is_empty() || self.procedure.finished() {
                 break if matches!(self.procedure, Procedure::Each(_)) { Stop::Plan } else { Stop::Width };
             }
-            let halt = || if budget.is_interrupted() { Stop::Interrupt } else { Stop::Deadline };
             if share.must_stop() {
                 if !budget.must_stop() {
                     return Ok(None);
                 }
-                break halt();
+                break budget.stopped_by();
             }
             let consumed: u64 = self.tallies.iter().map(|t| t.counts.trials).sum();
             let left = budget.max_total.map_or(u64::MAX, |total| total.saturating_sub(consumed));
@@ -343,7 +342,7 @@ impl<'s> RankSampling<'s> {
                 return Ok(None);
             }
             if !self.read(&round, &rows, prefix)? {
-                break if prefix == wanted { Stop::Cap } else { halt() };
+                break if prefix == wanted { Stop::Cap } else { budget.stopped_by() };
             }
             if round.cut {
                 break Stop::Cap;

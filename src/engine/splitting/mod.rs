@@ -228,14 +228,14 @@ fn plainly(
     let planned = question.rule.plain;
     let most = planned.min(budget.max_trials);
     while tally.counts.trials < most {
-        if let Some(stop) = halted(budget) {
+        if let Some(stop) = budget.reason_to_stop() {
             return Ok((tally, Some(stop)));
         }
         let from = tally.counts.trials;
         let items = Item::run(from, ROUND.min(most - from));
         let cells = executor.run(&job, &items, budget)?;
         for (item, row) in items.iter().zip(cells.rows()) {
-            let Some(row) = row else { return Ok((tally, halted(budget).or(Some(Stop::Deadline)))) };
+            let Some(row) = row else { return Ok((tally, Some(budget.stopped_by()))) };
             if row[0].reading == Reading::Faulty {
                 return Err(super::trial::fault(question.prepared, *item, question.seed));
             }
@@ -244,10 +244,6 @@ fn plainly(
         watch.consumed(&question.query.text, tally.counts.trials, None);
     }
     Ok((tally, (most < planned).then_some(Stop::Cap)))
-}
-
-fn halted(budget: &Budget) -> Option<Stop> {
-    if budget.is_interrupted() { Some(Stop::Interrupt) } else { budget.is_over().then_some(Stop::Deadline) }
 }
 
 /// Runs go on side by side until all are finished; false if they are not.
@@ -267,7 +263,7 @@ fn advance(
         if together.is_empty() {
             return Ok(true);
         }
-        if let Some(stop) = halted(budget) {
+        if let Some(stop) = budget.reason_to_stop() {
             found.stop = stop;
             return Ok(false);
         }
@@ -277,7 +273,7 @@ fn advance(
             return Ok(false);
         }
         let Some(ended) = batches.run(&together, executor, budget)? else {
-            found.stop = halted(budget).unwrap_or(Stop::Deadline);
+            found.stop = budget.stopped_by();
             return Ok(false);
         };
         found.paths += ended.len() as u64;
