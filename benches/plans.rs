@@ -123,7 +123,7 @@ fn main() {
     let ways = Ways::default();
     let walkers = ways.walkers(scenario, 0);
     let Route::Legs { legs, .. } = &scenario.agents[0].route else { panic!("legs") };
-    let mut plan = |n: u32| {
+    let plan = |n: u32| {
         let key = TrialKey { index: u64::from(n), ..TrialKey::default() };
         let of = |parameter: Parameter| match parameter {
             Parameter::LimitSpeed => 1.5,

@@ -116,7 +116,10 @@ def ompl_task():
 
     util.setLogLevel(util.LogLevel.LOG_ERROR)
     space = base.RealVectorStateSpace(2)
-    space.setBounds(0.0, 20.0)
+    bounds = base.RealVectorBounds(2)
+    bounds.setLow(0.0)
+    bounds.setHigh(20.0)
+    space.setBounds(bounds)
 
     def is_free(state):
         x, y = state[0], state[1]
@@ -133,12 +136,9 @@ def ompl_task():
         planner = geometric.PRM(information)
         planner.setProblemDefinition(problem)
         planner.setup()
-        data = base.PlannerData(information)
-        while data.numVertices() < 1000:
+        while planner.milestoneCount() < 1000:
             planner.growRoadmap(0.002)
-            data.clear()
-            planner.getPlannerData(data)
-        return data.numVertices()
+        return planner.milestoneCount()
 
     return best(task, 3)
 

@@ -1,5 +1,6 @@
 //! The command line as typed: data only.
 
+use super::path::PathCommand;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -213,111 +214,6 @@ pub(super) enum DriftFormat {
     Json,
 }
 
-/// `smc path`
-#[derive(Args, Debug)]
-pub(super) struct PathCommand {
-    /// Scenario file (`.scn`); without one, `--shape` or `--waypoints` gives the path.
-    pub(super) scenario: Option<String>,
-    /// Set a parameter: `width=2`.
-    #[arg(long = "set", value_name = "NAME=VALUE")]
-    pub(super) set: Vec<String>,
-    /// Also search this folder for recordings and imports.
-    #[arg(long = "data", value_name = "DIR")]
-    pub(super) data: Vec<PathBuf>,
-    /// Only this walker: `people[1]`.
-    #[arg(long, value_name = "NAME")]
-    pub(super) agent: Option<String>,
-    /// Index of the trial in which the walkers start.
-    #[arg(long, default_value_t = 0, value_name = "INDEX")]
-    pub(super) trial: u64,
-    /// Seed of all random numbers.
-    #[arg(long, default_value_t = 0)]
-    pub(super) seed: u64,
-    /// Format of the output.
-    #[arg(long, value_enum, default_value_t = PathFormat::Text)]
-    pub(super) format: PathFormat,
-    /// What an SVG picture shows.
-    #[arg(long, value_enum, default_value_t = Figure::Map)]
-    pub(super) figure: Figure,
-    /// Time between rows of a table: `0.1s`.
-    #[arg(long, default_value = "0.1s", value_name = "TIME", value_parser = parse_step)]
-    pub(super) dt: f64,
-    /// A path by its shape: `L10 A45/7` is a line of 10 m and an arc of 45 degrees with a radius of 7 m; a minus turns right.
-    #[arg(long, value_name = "SHAPE")]
-    pub(super) shape: Option<String>,
-    /// A path through way points: a CSV file with the columns `x` and `y`, m.
-    #[arg(long, value_name = "FILE")]
-    pub(super) waypoints: Option<PathBuf>,
-    /// Largest turning radius at way points.
-    #[arg(long, default_value = "1.5m", value_name = "LENGTH", value_parser = parse_length)]
-    pub(super) corner: f64,
-    /// Largest speed along a shape.
-    #[arg(long, default_value = "1.5m/s", value_name = "SPEED", value_parser = parse_speed)]
-    pub(super) speed: f64,
-    /// Largest acceleration along a shape; across it, too, without `--across`.
-    #[arg(long, default_value = "0.8m/s^2", value_name = "ACCELERATION", value_parser = parse_acceleration)]
-    pub(super) acceleration: f64,
-    /// Largest acceleration across a shape.
-    #[arg(long, value_name = "ACCELERATION", value_parser = parse_acceleration)]
-    pub(super) across: Option<f64>,
-    /// Speed at the start of a shape.
-    #[arg(long, default_value = "0m/s", value_name = "SPEED", value_parser = parse_speed)]
-    pub(super) start_speed: f64,
-    /// Speed at its end.
-    #[arg(long, default_value = "0m/s", value_name = "SPEED", value_parser = parse_speed)]
-    pub(super) end_speed: f64,
-    /// In how many pieces the acceleration of a drawn profile is constant.
-    #[arg(long, default_value_t = 8, value_name = "N")]
-    pub(super) pieces: usize,
-    /// Number of profiles that are drawn along a shape.
-    #[arg(long, default_value_t = 0, value_name = "N")]
-    pub(super) profiles: u32,
-    /// How they are drawn.
-    #[arg(long, value_enum, default_value_t = SpeedLaw::Varied)]
-    pub(super) by: SpeedLaw,
-    /// How long each of them takes, if that is long enough.
-    #[arg(long, value_name = "TIME", value_parser = parse_moment)]
-    pub(super) duration: Option<f64>,
-    /// File to write instead of standard output.
-    #[arg(short, long, value_name = "FILE")]
-    pub(super) output: Option<PathBuf>,
-}
-
-/// Formats of `smc path`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum PathFormat {
-    /// For people.
-    Text,
-    /// Roadmap, paths and profiles.
-    Json,
-    /// One row for each time step.
-    Csv,
-    /// A picture.
-    Svg,
-}
-
-/// Pictures of `smc path`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Figure {
-    /// The scene, the roadmap and the paths.
-    Map,
-    /// Speed over place, with the limit curve and the feasible region.
-    Phase,
-    /// Speed and acceleration over time.
-    Speed,
-}
-
-/// How profiles are drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum SpeedLaw {
-    /// Around the preferred speed.
-    Varied,
-    /// From all legal profiles.
-    Uniform,
-    /// By the algorithm of Li, Li and Ge as printed, for comparison.
-    Printed,
-}
-
 /// `smc show`
 #[derive(Args, Debug)]
 pub(super) struct Show {
@@ -400,7 +296,7 @@ fn parse_count(text: &str) -> Result<u64, String> {
 }
 
 /// A number of seconds, or a time with its unit.
-fn parse_moment(text: &str) -> Result<f64, String> {
+pub(super) fn parse_moment(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(seconds) => Ok(seconds),
         Err(_) => parse_seconds(text),
@@ -423,41 +319,6 @@ fn parse_seconds(text: &str) -> Result<f64, String> {
     };
     let value: f64 = digits.trim().parse().map_err(|_| format!("`{digits}` is not a number"))?;
     Ok(value * scale)
-}
-
-/// A number with one of some units; without a unit, in the first.
-fn parse_quantity(text: &str, units: &[(&str, f64)]) -> Result<f64, String> {
-    let text = text.trim();
-    let split = text.find(|c: char| c.is_alphabetic() && c != 'e').unwrap_or(text.len());
-    let (digits, unit) = text.split_at(split);
-    let names: Vec<&str> = units.iter().map(|(name, _)| *name).collect();
-    let size =
-        units.iter().find(|(name, _)| *name == unit.trim()).or(units.first().filter(|_| unit.is_empty()));
-    let value = digits.trim().parse::<f64>().ok().filter(|value| *value >= 0.0 && value.is_finite());
-    match (value, size) {
-        (Some(value), Some((_, size))) => Ok(value * size),
-        _ => Err(format!("`{text}` must be a number of at least 0 in {}", names.join(" or "))),
-    }
-}
-
-fn parse_length(text: &str) -> Result<f64, String> {
-    parse_quantity(text, &[("m", 1.0), ("cm", 1e-2), ("mm", 1e-3)])
-}
-
-fn parse_speed(text: &str) -> Result<f64, String> {
-    parse_quantity(text, &[("m/s", 1.0), ("km/h", 1.0 / 3.6)])
-}
-
-fn parse_acceleration(text: &str) -> Result<f64, String> {
-    parse_quantity(text, &[("m/s^2", 1.0)])
-}
-
-/// A positive time.
-fn parse_step(text: &str) -> Result<f64, String> {
-    match parse_moment(text)? {
-        step if step > 0.0 && step.is_finite() => Ok(step),
-        _ => Err(format!("`{text}` must be a positive time")),
-    }
 }
 
 /// A positive duration with its unit.

@@ -2,7 +2,7 @@
 
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::laws::value_span;
-use super::planners::{self, Planning};
+use super::planning::{self, Planning};
 use super::presets::{PRESETS, law};
 use super::symbols::{Meaning, unknown};
 use crate::model::{self, Body, Law, Parameter, Planner};
@@ -31,7 +31,9 @@ const WAYS: [&str; 2] = ["shortest", "straight"];
 
 /// Some law of a parameter.
 fn any_law(parameter: Parameter) -> Option<Law> {
-    PRESETS.iter().find_map(|preset| law(preset.name, parameter))
+    let preset = PRESETS.iter().find_map(|preset| law(preset.name, parameter));
+    // A value that all parameters of plans may have.
+    preset.or_else(|| parameter.allows(2.0).then_some(Law::Constant(2.0)))
 }
 
 impl Kind {
@@ -45,7 +47,7 @@ impl Kind {
         let default = || parameter.description().default.map(Law::Constant);
         let planned = || {
             let limit = self.laws[Parameter::LimitSpeed as usize].as_ref();
-            if self.base == model::Kind::Planned { planners::default_law(parameter, limit) } else { None }
+            if self.base == model::Kind::Planned { planning::default_law(parameter, limit) } else { None }
         };
         self.laws[parameter as usize].clone().or_else(planned).or_else(default)
     }
@@ -138,7 +140,7 @@ impl Elaborator<'_> {
         let base = kind.as_ref().map(|kind| kind.base).unwrap_or_default();
         let rest = self.parameters(&decl.body, kind.as_mut().ok(), &Locals::default());
         for field in rest {
-            let own: &[&str] = if base == model::Kind::Planned { &planners::FIELDS } else { &[WAYFINDING] };
+            let own: &[&str] = if base == model::Kind::Planned { &planning::FIELDS } else { &[WAYFINDING] };
             let known = Parameter::of_kind(base).map(Parameter::name).chain(own.iter().copied());
             let error = unknown("parameter", &field.name.name, field.name.span, Code::E0207, known);
             self.note(error);
@@ -170,7 +172,7 @@ impl Elaborator<'_> {
                 continue;
             }
             let is_planned = kind.as_ref().is_some_and(|kind| kind.base == model::Kind::Planned);
-            if is_planned && planners::FIELDS.contains(&field.name.name.as_str()) {
+            if is_planned && planning::FIELDS.contains(&field.name.name.as_str()) {
                 if let Some(kind) = &mut kind {
                     self.given_up |= self.planning(field, kind, locals).is_err();
                 }

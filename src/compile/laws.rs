@@ -140,7 +140,12 @@ impl Elaborator<'_> {
                 self.look_at(along, locals);
                 self.look_at(across, locals);
             }
-            Value::Arguments { .. } | Value::Force { .. } => {}
+            Value::Arguments { .. } => {
+                let _ = self.roadmap(value, locals);
+            }
+            Value::Force { kind, preset } => {
+                let _ = self.force(kind, preset);
+            }
         }
     }
 

@@ -34,6 +34,7 @@ mod people;
 mod phrase;
 mod places;
 mod planners;
+mod planning;
 mod positions;
 pub mod presets;
 mod process;

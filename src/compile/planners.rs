@@ -5,49 +5,20 @@ use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Locals, Lowered, Reported};
 use super::kinds::Kind;
 use super::laws::value_span;
+use super::planning::{FORCE, is_of_force};
 use super::presets;
 use super::symbols::unknown;
 use crate::model::planner::{RoadmapRule, SpeedRule};
-use crate::model::{self, Law, Parameter};
+use crate::model::{self, Parameter};
 use crate::syntax::ast::{Binding, Expr, ExprKind, Field, Ident, Value};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 
-/// The fields.
-pub(super) const FIELDS: [&str; 4] = ["limit acceleration", "roadmap", "profile", "avoid"];
-/// The preset of the force that planned walkers feel unless their kind says otherwise.
-const FORCE: &str = "helbing2000";
 /// Most samples of a roadmap.
 const MOST_SAMPLES: f64 = 100_000.0;
 /// Most vertices to which one is joined.
 const MOST_NEIGHBOURS: f64 = 64.0;
-
-/// How the walkers of a kind plan, as far as it is known.
-#[derive(Clone, Debug)]
-pub(super) struct Planning {
-    pub(super) roadmap: RoadmapRule,
-    pub(super) clearance: f64,
-    pub(super) profile: SpeedRule,
-}
-
-impl Default for Planning {
-    fn default() -> Self {
-        Self { roadmap: RoadmapRule::default(), clearance: 0.2, profile: SpeedRule::Varied }
-    }
-}
-
-/// Whether a planned kind takes the law of a parameter from the force that it avoids others by.
-fn is_of_force(parameter: Parameter) -> bool {
-    let is_own = matches!(parameter, Parameter::Radius | Parameter::Speed);
-    !is_own && parameter.description().kinds.contains(&model::Kind::Sfm)
-}
-
-/// The law that a planned kind has of a parameter unless it is set.
-pub(super) fn default_law(parameter: Parameter, limit: Option<&Law>) -> Option<Law> {
-    let of_force = || presets::law(FORCE, parameter).filter(|_| is_of_force(parameter));
-    model::planner::planned_default(parameter, limit).or_else(of_force)
-}
 
 /// One argument of a way to draw roadmaps.
 struct Argument {
@@ -121,16 +92,7 @@ impl Elaborator<'_> {
     fn avoid(&mut self, value: &Value, kind: &mut Kind) -> Lowered<()> {
         let force = match value {
             Value::Force { kind: base, preset } => {
-                if base.name != model::Kind::Sfm.name() {
-                    let said = format!("expected `sfm preset {}`", preset.name);
-                    return self.report(Diagnostic::error(Code::E0305, base.span, said));
-                }
-                let known = presets::PRESETS.iter().any(|known| known.name == preset.name);
-                if !known {
-                    let known = presets::PRESETS.iter().map(|preset| preset.name);
-                    let error = unknown("preset", &preset.name, preset.span, Code::E0208, known);
-                    return self.report(error);
-                }
+                self.force(base, preset)?;
                 let name = preset.name.clone();
                 Parameter::ALL.map(|parameter| presets::law(&name, parameter))
             }
@@ -156,8 +118,23 @@ impl Elaborator<'_> {
         Ok(())
     }
 
+    /// Checks the words of `sfm preset helbing2000`.
+    pub(super) fn force(&mut self, base: &Ident, preset: &Ident) -> Lowered<()> {
+        let mut found = Ok(());
+        if base.name != model::Kind::Sfm.name() {
+            let said = format!("expected `sfm`, found `{}`", base.name);
+            let hint = format!("write `sfm preset {FORCE}`, or a kind of `sfm`");
+            found = self.report(Diagnostic::error(Code::E0305, base.span, said).hint(hint));
+        }
+        if presets::PRESETS.iter().all(|known| known.name != preset.name) {
+            let known = presets::PRESETS.iter().map(|preset| preset.name);
+            found = self.report(unknown("preset", &preset.name, preset.span, Code::E0208, known));
+        }
+        found
+    }
+
     /// `prm(…)` or `rrt(…)`, and the clearance.
-    fn roadmap(&mut self, value: &Value, locals: &Locals) -> Lowered<(RoadmapRule, f64)> {
+    pub(super) fn roadmap(&mut self, value: &Value, locals: &Locals) -> Lowered<(RoadmapRule, f64)> {
         let (name, arguments): (&Ident, &[Binding]) = match value {
             Value::Arguments { name, arguments } => (name, arguments),
             Value::Plain(Expr { kind: ExprKind::Call { function, arguments }, .. })
@@ -204,13 +181,27 @@ impl Elaborator<'_> {
                 };
                 Ok((rule, clearance.unwrap_or(0.2)))
             }
-            _ => self.report(unknown(
-                "roadmap",
-                &name.name,
-                name.span,
-                Code::E0208,
-                ["prm", "rrt"].into_iter(),
-            )),
+            _ => {
+                // Its arguments are looked at as those of any roadmap.
+                for argument in arguments {
+                    let known = PRM.iter().chain(&RRT).map(|known| known.name).chain(["sampling", "root"]);
+                    if known.clone().all(|name| name != argument.name.name) {
+                        let what = "argument of a roadmap";
+                        let error =
+                            unknown(what, &argument.name.name, argument.name.span, Code::E0207, known);
+                        self.note(error);
+                    } else if argument.name.name == "sampling" {
+                        let _ = self.word_of(arguments, "sampling", &["bridge", "uniform"]);
+                    }
+                }
+                self.report(unknown(
+                    "roadmap",
+                    &name.name,
+                    name.span,
+                    Code::E0208,
+                    ["prm", "rrt"].into_iter(),
+                ))
+            }
         }
     }
 

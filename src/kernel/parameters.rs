@@ -56,8 +56,9 @@ impl Parameters {
             let value = law.constant().unwrap_or_else(draw);
             if parameter.allows(value) { Ok(value) } else { Err(Impossible { agent: id, parameter, value }) }
         };
+        // Parameters that the kind does not have are never read.
         let mut values = [0.0; Parameter::COUNT];
-        for parameter in Parameter::ALL {
+        for parameter in Parameter::of_kind(agent.body.kind) {
             values[parameter as usize] = value(parameter, 0)?;
         }
         if let Some(particle) = agent.particle {

@@ -10,7 +10,7 @@ use crate::compile::study::{Ask, MeasureKind, Study, World};
 use crate::engine::at_most;
 use crate::model::parameter::Shown;
 use crate::model::{
-    Agent, AgentId, Family, Goal, Law, Leg, Move, Obstacle, Parameter, Position, Route, Scenario,
+    Agent, AgentId, Family, Goal, Law, Leg, Move, Obstacle, Parameter, Position, RoadmapRule, Route, Scenario,
 };
 use crate::stats::Chosen;
 use std::fmt::Write;
@@ -163,6 +163,11 @@ fn people(out: &mut String, world: &World) {
                 .map_or_else(String::new, |route| format!("{label} ({})", way(scenario, route))),
             Move::Heading(_) | Move::Stop | Move::Path(_) => label.clone(),
         };
+        if moves.paths.is_some() {
+            let name = &scenario.agents[moves.agent.0 as usize].name;
+            let _ = writeln!(out, "\nPaths of {name}: at most {} on its roadmap", moves.options.len());
+            continue;
+        }
         let labels: Vec<String> = moves.options.iter().map(told).collect();
         let _ = writeln!(
             out,
@@ -189,6 +194,16 @@ fn agent(out: &mut String, scenario: &Scenario, agent: &Agent) {
     for line in shown.chunks(4) {
         let _ = writeln!(out, "      {}", line.join(", "));
     }
+    if let Some(planner) = &agent.body.planner {
+        let _ = writeln!(
+            out,
+            "      roadmap {}, clearance {} m, profile {}{}",
+            roadmap(scenario, &planner.roadmap),
+            number(planner.clearance),
+            planner.profile.name(),
+            if planner.speed_follows { ", speed drawn with its limit" } else { "" }
+        );
+    }
     if let Some(p) = agent.particle {
         let _ = writeln!(
             out,
@@ -209,6 +224,24 @@ fn agent(out: &mut String, scenario: &Scenario, agent: &Agent) {
     };
     let _ = writeln!(out, "      starts {place}, {}", velocity(agent.start.velocity));
     let _ = writeln!(out, "      {}", way(scenario, &agent.route));
+}
+
+/// How a roadmap is drawn, in words.
+fn roadmap(scenario: &Scenario, rule: &RoadmapRule) -> String {
+    match rule {
+        RoadmapRule::Prm { samples, bridge, separation, neighbours } => format!(
+            "prm of {samples} samples ({}), {} m apart, {neighbours} neighbours",
+            if *bridge { "bridge" } else { "uniform" },
+            number(*separation)
+        ),
+        RoadmapRule::Rrt { root, samples, step, bias } => {
+            let root = match root {
+                Goal::Region(id) => scenario.scene.regions[id.0 as usize].name.clone(),
+                Goal::Point(p) => point(*p),
+            };
+            format!("rrt of {samples} samples from {root}, step {} m, bias {}", number(*step), number(*bias))
+        }
+    }
 }
 
 fn velocity(v: Vec2) -> String {

@@ -127,8 +127,12 @@ fn cubic<S: Simd>(c: &[Lanes; 4], t: Vector<S>) -> [Vector<S>; 3] {
 fn advance<S: Simd>(simd: S, drive: &Drive, state: &mut State, block: usize, active: Mask) -> Mask {
     let [way, driven, stepped, stands] = rules(state, block, active);
     let mut now = Lanes::ZERO;
+    let mut looked_at = Mask::NONE;
     for lane in 0..LANES {
         now.0[lane] = state.ticks[state.layout.trial_of(lane)] as f64;
+        if is_look(drive, now.0[lane]) {
+            looked_at |= Mask::lane(lane);
+        }
     }
     let course = &state.plans.courses[block];
     let due = of(simd, &now).simd_ge(of(simd, &course.next_ask));
@@ -143,6 +147,7 @@ fn advance<S: Simd>(simd: S, drive: &Drive, state: &mut State, block: usize, act
     let behind = square(cubic(&course.x, since)[0] - x, cubic(&course.y, since)[0] - y);
     let beyond = |limit: &Lanes| behind.simd_gt(of(simd, limit) * of(simd, limit));
     let late = beyond(&course.lag) & widen(simd, driven);
+    let left = beyond(&course.leave) & due;
     let over = ahead((time, rate), widen(simd, stepped), late, drive.dt).simd_gt(of(simd, &course.until));
 
     let (goal_x, goal_y) = (of(simd, &course.goal_x), of(simd, &course.goal_y));
@@ -156,7 +161,10 @@ fn advance<S: Simd>(simd: S, drive: &Drive, state: &mut State, block: usize, act
     let course = &mut state.plans.courses[block];
     time.store_slice(&mut course.time.0);
     course.late = narrow(late);
-    driven & narrow(over | due) | stepped & narrow(over) | way & narrow(near | due) | stands & narrow(due)
+    driven & (narrow(over | left) | looked_at)
+        | stepped & narrow(over)
+        | way & narrow(near | due)
+        | stands & narrow(due)
 }
 
 /// Sets driving and velocity of some slots of a block for the next step.
@@ -213,7 +221,8 @@ fn event(drive: &Drive, state: &mut State, slot: Slot) {
     let tick = state.ticks[state.layout.trial_of(lane)] as f64;
     let course = &mut state.plans.courses[block];
     let is_due = tick >= course.next_ask.0[lane];
-    if is_due {
+    let is_driven = course.driven.has(lane);
+    if is_due && !is_driven {
         course.next_ask.0[lane] = tick + again(drive);
     }
     let time = course.time.0[lane];
@@ -229,7 +238,7 @@ fn event(drive: &Drive, state: &mut State, slot: Slot) {
                 if ahead > trajectory.duration() {
                     state.plans.ask(slot, Occasion::Ended);
                 }
-            } else if is_due && is_off(drive, state, slot, &trajectory, time) {
+            } else if is_off(drive, state, slot, &trajectory, time) && is_due {
                 state.plans.ask(slot, Occasion::Left);
             }
         }
@@ -250,8 +259,13 @@ fn event(drive: &Drive, state: &mut State, slot: Slot) {
     }
 }
 
-/// Whether someone who is driven needs another trajectory: is too far from it, has stood for 2 s while it moved, or has a
-/// barrier in between.
+/// Whether driven agents are looked at in a tick.
+fn is_look(drive: &Drive, tick: f64) -> bool {
+    (tick / again(drive)).fract() == 0.0
+}
+
+/// Whether someone who is driven needs another trajectory: is too far from it, or, looked at every 0.5 s, has stood for 2 s
+/// while it moved, or has a barrier in between.
 fn is_off(drive: &Drive, state: &mut State, slot: Slot, trajectory: &Trajectory, time: f64) -> bool {
     let Slot { block, lane } = slot;
     let (vx, vy) = (state.motion.vx[block].0[lane], state.motion.vy[block].0[lane]);
@@ -259,11 +273,14 @@ fn is_off(drive: &Drive, state: &mut State, slot: Slot, trajectory: &Trajectory,
     let person = Person::new(drive, state, slot);
     let (at, radius) = (person.at(), person.radius());
     let [planned, pace, _] = trajectory.at(time);
+    let is_far = (planned - at).norm_squared() > leave * leave;
+    if is_far || !is_look(drive, state.ticks[state.layout.trial_of(lane)] as f64) {
+        return is_far;
+    }
     let stands = vx * vx + vy * vy < STANDS * STANDS && pace.norm_squared() > STANDS * STANDS;
     let held = state.plans.held_mut(slot);
     held.stuck = if stands { held.stuck + 1 } else { 0 };
-    let is_far = (planned - at).norm_squared() > leave * leave;
-    is_far || held.stuck > LOOKS || !drive.sees(at, trajectory.at(time + AHEAD)[0], radius)
+    held.stuck > LOOKS || !drive.sees(at, trajectory.at(time + AHEAD)[0], radius)
 }
 
 /// Whether the goal of someone who goes straight is out of sight.
@@ -286,19 +303,26 @@ fn pass(drive: &Drive, state: &mut State, slot: Slot, points: &[Vec2], is_due: b
     let (d, along) = (points[first] - at, points[first] - start);
     let square = d.x * d.x + d.y * d.y;
     let passes = d.x * along.x + d.y * along.y <= 0.0 && square <= PASSING * PASSING;
-    let is_clear = |to: Vec2| drive.sees(at, to, radius);
+    let mut blocker = state.plans.held(slot).blocker;
     let mut point = first;
     if square <= radius * radius * 4.0 || passes || is_due {
-        while point < points.len() && is_clear(points.get(point + 1).copied().unwrap_or(leg)) {
+        while point < points.len() {
+            let next = points.get(point + 1).copied().unwrap_or(leg);
+            let found = drive.blocker((at, next), radius, blocker);
+            if found.is_some() {
+                blocker = found;
+                break;
+            }
             point += 1;
         }
+        state.plans.held_mut(slot).blocker = blocker;
     }
     if let Some(next) = points.get(point) {
         if point > first {
             state.plans.held_mut(slot).point = point;
             state.plans.courses[block].set_goal(lane, *next, at);
             state.plans.courses[block].fresh |= Mask::lane(lane);
-        } else if is_due && !is_clear(points[first]) {
+        } else if is_due && !drive.sees(at, points[first], radius) {
             state.plans.ask(slot, Occasion::Left);
         }
     } else {

@@ -170,7 +170,12 @@ impl Drive {
     /// Whether a place is in sight of somebody of a radius, m: half of the body passes. Whoever turns around a corner in a crowd
     /// is never quite on the line that touches it.
     pub(super) fn sees(&self, from: Vec2, to: Vec2, radius: f64) -> bool {
-        self.sight.is_clear(from, to, 0.5 * radius)
+        self.blocker((from, to), radius, None).is_none()
+    }
+
+    /// The piece of a barrier that hides a place from somebody, by its number; one that is likely is looked at first.
+    pub(super) fn blocker(&self, line: (Vec2, Vec2), radius: f64, likely: Option<u32>) -> Option<u32> {
+        self.sight.blocker(line, 0.5 * radius, likely)
     }
 
     /// Adds a route that a state of a behaviour or a move demands; its first stage. Its legs have numbers of their own:

@@ -18,6 +18,8 @@ pub(in crate::kernel) struct Held {
     pub(in crate::kernel) plan: Plan,
     /// Number of the next point of a way.
     pub(in crate::kernel) point: usize,
+    /// The piece of a barrier that hid the point after it last; it is looked at first.
+    pub(in crate::kernel) blocker: Option<u32>,
     /// Why the driver is to be asked.
     pub(in crate::kernel) occasion: Occasion,
     /// How often the driver has been asked.

@@ -3,7 +3,10 @@
 use super::terrain::{Terrain, Terrains, middle};
 use crate::base::geometry::Vec2;
 use crate::model::{AgentId, Leg, Position, Route, Scenario};
-use crate::route::roadmap::{DistanceField, alternatives};
+use crate::route::roadmap::{DistanceField, alternatives, shortest};
+
+/// Places of a path are at most so far apart, m.
+const APART: f64 = 1.0;
 
 /// One path of a class.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,11 +23,32 @@ impl PathOption {
         format!("path {} ({:.1} m)", number + 1, self.length)
     }
 
-    /// The corners from a place on: from the farthest one that a body sees from there; the last one is left out.
-    pub(super) fn from(&self, terrain: &Terrain, place: Vec2) -> Vec<Vec2> {
-        let inner = self.corners.get(1..self.corners.len().saturating_sub(1)).unwrap_or_default();
-        let seen = (0..inner.len()).rev().find(|k| terrain.free.is_clear(place, inner[*k]));
-        inner[seen.unwrap_or(0).min(inner.len())..].to_vec()
+    /// A way of the class from a place to a point of the goal: to the beginning of the path, along it, and on to the point. It is
+    /// for shortening, as long as it passes all obstacles on the same sides.
+    pub(super) fn way(&self, terrain: &Terrain, place: Vec2, goal: Vec2) -> Option<Vec<Vec2>> {
+        let free = &terrain.free;
+        let join = |from: Vec2, to: Vec2| {
+            if free.is_clear(from, to) {
+                Some(vec![from, to])
+            } else {
+                shortest(&terrain.roadmap, free, from, to)
+            }
+        };
+        let (first, last) = (*self.corners.first()?, *self.corners.last()?);
+        let mut way = join(place, first)?;
+        way.extend(self.points().into_iter().skip(1));
+        way.extend(join(last, goal)?.into_iter().skip(1));
+        Some(way)
+    }
+
+    /// The corners, and places between them at most a metre apart.
+    fn points(&self) -> Vec<Vec2> {
+        let mut out: Vec<Vec2> = self.corners.first().copied().into_iter().collect();
+        for pair in self.corners.windows(2) {
+            let count = ((pair[1] - pair[0]).norm() / APART).ceil().max(1.0);
+            out.extend((1..=count as u32).map(|k| pair[0] + (pair[1] - pair[0]) * (f64::from(k) / count)));
+        }
+        out
     }
 }
 

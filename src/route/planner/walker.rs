@@ -122,8 +122,7 @@ impl Walkers {
             let from = *corners.last()?;
             let part = match advised.take() {
                 Some(option) => {
-                    let inner = option.from(terrain, from);
-                    let part: Vec<Vec2> = std::iter::once(from).chain(inner).chain([goal]).collect();
+                    let part = option.way(terrain, from, goal)?;
                     let word = free.rays().word(&part);
                     wish.speeds.straightened(part, sight, is_free, |points| free.rays().word(points) == word)
                 }

@@ -18,7 +18,21 @@ pub enum Law {
     Uniform,
 }
 
+/// Share of the largest acceleration with which a preferred speed is taken up: at least, and how much more at most.
+const RAMP: (f64, f64) = (0.4, 0.6);
+
 impl Law {
+    /// How far it is from a speed with this square until the preferred one is reached, with a share of the largest acceleration
+    /// that follows from a uniform number, m; none where no speed is preferred.
+    pub(super) fn ramp(self, square: f64, along: f64, uniform: f64) -> Option<f64> {
+        match self {
+            Self::Preferred { speed, .. } => {
+                Some((speed * speed - square).abs() / (2.0 * along * (RAMP.0 + RAMP.1 * uniform)))
+            }
+            Self::Uniform => None,
+        }
+    }
+
     /// Whether its numbers are valid.
     pub(super) fn check(self) -> Result<(), Infeasible> {
         match self {

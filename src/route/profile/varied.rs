@@ -87,7 +87,9 @@ pub fn varied(
         let is_last = k + 1 == parts.len() && !spans.last().is_some_and(Span::is_stop);
         let ends =
             [(is_first, start_speed), (is_last, end_speed)].map(|(is, v)| if is { v * v } else { 0.0 });
-        let mut places = drawn_knots(part, count, number, &mut draw);
+        let ramps = [(1, ends[0]), (count as u32, ends[1])]
+            .map(|(k, u)| law.ramp(u, limits.along, draw(number + k)[0]));
+        let mut places = drawn_knots(part, count, number, ramps, &mut draw);
         if places.windows(2).any(|w| w[1].x - w[0].x <= SAME_PLACE * optimum.length()) {
             return Err(Infeasible::Tight);
         }
@@ -116,23 +118,38 @@ fn shares(parts: &[&[Span]], pieces: usize) -> Vec<usize> {
 }
 
 /// Knots with random distances: a fixed share of each, and the rest by Dirichlet's law with all parameters 1.
+///
+/// Somebody who prefers a speed takes it up and gives it up within a few steps. The first and the last of at least three
+/// pieces are then as long as these `ramps`, at most a quarter of the part each.
 fn drawn_knots(
     part: &[Span],
     count: usize,
     before: u32,
+    ramps: [Option<f64>; 2],
     draw: &mut impl FnMut(u32) -> [f64; 2],
 ) -> Vec<Knot> {
     let (start, end) = part.first().zip(part.last()).map_or((0.0, 0.0), |(a, b)| (a.start, b.end));
-    let mut knots = vec![Knot { x: start, number: before }];
-    let mut sum = 0.0;
-    knots.extend((1..=count as u32).map(|k| {
-        sum -= ln(draw(before + k)[0]);
-        Knot { x: sum, number: before + k }
-    }));
     let length = end - start;
-    let (fixed, random) = (length * LEAST_PIECE / count as f64, length * (1.0 - LEAST_PIECE) / sum);
-    for (k, knot) in knots.iter_mut().enumerate().skip(1) {
-        knot.x = if k == count { end } else { start + fixed * k as f64 + random * knot.x };
+    let least = length * LEAST_PIECE / count as f64;
+    let within = |ramp: f64| ramp.max(least).min(0.25 * length);
+    let [first, last] = ramps.map(|ramp| ramp.filter(|_| count > FEWEST).map(within));
+    let (from, to) = (first.map_or(start, |ramp| start + ramp), last.map_or(end, |ramp| end - ramp));
+    let (skipped, inner) =
+        (usize::from(first.is_some()), count - usize::from(first.is_some()) - usize::from(last.is_some()));
+    let mut sum = 0.0;
+    let shares: Vec<f64> = (0..inner as u32)
+        .map(|k| {
+            sum -= ln(draw(before + skipped as u32 + k + 1)[0]);
+            sum
+        })
+        .collect();
+    let (fixed, random) = ((to - from) * LEAST_PIECE / inner as f64, (to - from) * (1.0 - LEAST_PIECE) / sum);
+    let inner = (1..).zip(shares).map(|(k, share)| from + fixed * f64::from(k) + random * share);
+    let places = std::iter::once(start).chain(first.map(|_| from)).chain(inner).chain(last.map(|_| end));
+    let mut knots: Vec<Knot> = (before..).zip(places).map(|(number, x)| Knot { x, number }).collect();
+    // The sums end there but for rounding.
+    if let Some(knot) = knots.get_mut(count - usize::from(last.is_some())) {
+        knot.x = to;
     }
     knots
 }

@@ -218,6 +218,11 @@ pub(super) fn noun(rule: Rule) -> Option<(u8, String)> {
         | Rule::window
         | Rule::binder
         | Rule::value
+        | Rule::sided
+        | Rule::side
+        | Rule::side_arith
+        | Rule::arguments
+        | Rule::force
         | Rule::leg
         | Rule::route
         | Rule::move_route => (0, "a number, a name or `(`".to_owned()),
@@ -239,7 +244,8 @@ pub(super) fn noun(rule: Rule) -> Option<(u8, String)> {
             let words = words(rule).iter().map(|word| format!("`{word}`")).collect::<Vec<_>>();
             (6, list(&words))
         }
-        Rule::field => (6, "`name = value`".to_owned()),
+        Rule::field | Rule::limited => (6, "`name = value`".to_owned()),
+        Rule::alternatives => (6, "`roadmap alternatives`".to_owned()),
         Rule::scene_item_end
         | Rule::process_item_end
         | Rule::behaviour_item_end

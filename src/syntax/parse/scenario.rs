@@ -66,7 +66,8 @@ impl Builder<'_> {
                 let mut parts = Parts::of(pair);
                 let agent = self.ident(&parts.part(Rule::name)?);
                 let member = self.member(&mut parts)?;
-                let alternatives = self.expr(parts.part(Rule::arith)?)?;
+                let mut item = Parts::of(parts.find(|part| part.as_rule() == Rule::alternatives)?);
+                let alternatives = self.expr(item.part(Rule::arith)?)?;
                 Some(Item::Paths(PathsDecl { agent, member, alternatives, span }))
             }
             Rule::process => self.process(pair).map(Item::Process),

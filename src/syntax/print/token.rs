@@ -155,6 +155,7 @@ fn leaf(pair: &Pair<'_>, parent: Rule) -> Token {
             let called = matches!(
                 parent,
                 Rule::call
+                    | Rule::arguments
                     | Rule::count
                     | Rule::parameters
                     | Rule::probability
