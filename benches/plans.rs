@@ -11,7 +11,7 @@ use smc::model::{AgentId, Barrier, Obstacle, Parameter, Route, Scene, SpeedRule}
 use smc::route::Ways;
 use smc::route::path::PathShape;
 use smc::route::planner::{Speeds, Wish};
-use smc::route::profile::{Law, Limits, Variety, optimal, varied};
+use smc::route::profile::{Law, Limits, Variety, optimal, printed, varied};
 use smc::route::roadmap::{FreeSpace, Prm, Roadmap, Sampler, SamplingRule, shortest};
 use std::hint::black_box;
 use std::io::Write as _;
@@ -96,6 +96,21 @@ fn main() {
             drawn[0], drawn[1]
         );
     }
+    // Figure 7 of the paper: time over the number of pieces.
+    let limits = Limits { speed: 10.0, along: 2.0, across: 2.0 };
+    let stream = Stream::of(TrialKey::default(), 2, Purpose::Test);
+    for pieces in 2..=10 {
+        let variety = Variety { pieces, floor: 0.1, law: Law::Preferred { speed: 8.5, spread: 0.15 } };
+        let time = best(10, 500, |n| {
+            let draw = |k: u32| stream.uniform_pair(99 * n + k);
+            let _ = black_box(varied(&stretches, limits, 0.0, 0.0, &variety, draw));
+        });
+        let _ = writeln!(out, "{pieces} pieces: {time:.1} us");
+    }
+    let time = best(10, 500, |n| {
+        let _ = black_box(printed(&stretches, limits, 0.0, 0.0, |k| stream.uniform(99 * n + k)));
+    });
+    let _ = writeln!(out, "the printed algorithm, 2 to 10 pieces: {time:.1} us a run, returned or not");
     let free = FreeSpace::new(&triangles(), 0.0);
     let prm = |samples, separation| {
         Sampler::Prm(Prm { samples, sampling: SamplingRule::Bridge, separation, neighbours: 6 })
@@ -107,7 +122,7 @@ fn main() {
             black_box(Roadmap::draw(&free, &prm(samples, separation), stream(k)));
         });
         let roadmap = Roadmap::draw(&free, &prm(samples, separation), stream(0));
-        let ends = (Vec2::new(0.5, 19.5), Vec2::new(19.5, 0.5));
+        let ends = (Vec2::new(2.0, 2.0), Vec2::new(18.0, 18.0));
         let path = best(5, 100, |_| {
             black_box(shortest(&roadmap, &free, ends.0, ends.1));
         });

@@ -341,7 +341,7 @@ fn wrong_kinds_and_paths_are_refused_with_a_place_and_a_hint() {
             "kind k: planned { limit speed = 0 m/s }  agent a: k { at = (0, 0) }",
             "`limit speed` must be positive",
         ),
-        ("kind k: planned { limit speed = 1 m/s  limit acceleration = -1 m/s^2 }", "cannot be"),
+        ("kind k: planned { limit speed = 1 m/s  limit acceleration = -1 m/s^2 }", "must be positive"),
         ("kind k: planned { limit speed = 1 m/s  pieces = 1 }", "a whole number from 2 to 64"),
         ("kind k: planned { limit speed = 1 m/s  pieces = uniform(2, 5) }", "a whole number from 2 to 64"),
         ("kind k: planned { limit speed = 1 m/s  roadmap = prm(sample = 5) }", "unknown argument of `prm`"),

@@ -131,9 +131,18 @@ impl Builder<'_> {
     /// `0.8 m/s^2 along, 1.6 m/s^2 across`
     fn sided(&mut self, pair: Pair<'_>) -> Option<Value> {
         let mut parts = Parts::of(pair);
-        let along = self.value(parts.part(Rule::side)?.into_inner().next()?)?;
-        let across = self.value(parts.part(Rule::side)?.into_inner().next()?)?;
+        let along = self.side(parts.part(Rule::side)?)?;
+        let across = self.side(parts.part(Rule::side)?)?;
         Some(Value::Sided { along: Box::new(along), across: Box::new(across) })
+    }
+
+    /// One of the two: a value, or a distribution that is truncated.
+    fn side(&mut self, pair: Pair<'_>) -> Option<Value> {
+        let mut parts = Parts::of(pair);
+        let law = self.expr(parts.part(Rule::side_arith)?)?;
+        let Some(low) = parts.part(Rule::side_arith) else { return Some(Value::Plain(law)) };
+        let low = self.expr(low)?;
+        Some(Value::Truncated { law, low, high: self.expr(parts.part(Rule::side_arith)?)? })
     }
 
     /// The value of a field, a wait or a delay.
