@@ -20,6 +20,8 @@ const FEWEST: usize = 2;
 const REFINEMENTS: u32 = 7;
 /// An end that is outside of its interval by less than this share of it is inside but for rounding.
 const ROUNDING: f64 = 1e-12;
+/// So far below the upper end of its interval, as a share of it, a value stays: rounding on arcs of millimetres.
+const INSIDE: f64 = 1e-7;
 /// Knots closer than this share of the path coincide.
 const SAME_PLACE: f64 = 1e-12;
 
@@ -237,7 +239,7 @@ impl Values {
             .map(|((piece, &target), knot)| {
                 let interval = self.pieces.onward(piece, u, target);
                 let [_, uniform] = draw(knot.number);
-                u = law.draw(interval, uniform);
+                u = law.draw((interval.0, interval.1 - INSIDE * (interval.1 - interval.0)), uniform);
                 (knot.x, u)
             })
             .collect()

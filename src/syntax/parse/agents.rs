@@ -121,9 +121,10 @@ impl Builder<'_> {
             }
             None => self.ident(&parts.part(Rule::ident)?),
         };
-        let value = match parts.part(Rule::sided) {
-            Some(sided) => self.sided(sided),
-            None => self.value(parts.part(Rule::value)?.into_inner().next()?),
+        let value = match parts.rule()? {
+            Rule::sided => self.sided(parts.part(Rule::sided)?),
+            Rule::arguments => self.value(parts.part(Rule::arguments)?),
+            _ => self.value(parts.part(Rule::value)?.into_inner().next()?),
         };
         Some(Field { name, value: self.missed(value, head)? })
     }
