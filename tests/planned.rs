@@ -349,8 +349,9 @@ fn wrong_kinds_and_paths_are_refused_with_a_place_and_a_hint() {
         ("kind k: planned { limit speed = 1 m/s  roadmap = rrt(samples = 9) }", "`rrt` has no root"),
         ("kind k: planned { limit speed = 1 m/s  roadmap = grid(samples = 9) }", "unknown roadmap `grid`"),
         ("kind k: planned { limit speed = 1 m/s  profile = fast }", "`varied`, `optimal` or `uniform`"),
-        ("kind k: planned { limit speed = 1 m/s  avoid = sfm preset helbing }", "unknown preset `helbing`"),
         ("kind k: planned { limit speed = 1 m/s  wayfinding = straight }", "unknown parameter `wayfinding`"),
+        ("kind k: sfm preset helbing2000 { profile = optimal }", "unknown parameter `profile`"),
+        ("kind k: planned { limit speed = 1 m/s  avoid = sfm preset helbing }", "unknown preset `helbing`"),
         (
             "kind k: planned { limit speed = 1 m/s }  group g[2]: k as particle { at = (0, 0) }",
             "cannot move `as particle`",

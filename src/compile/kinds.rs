@@ -144,7 +144,11 @@ impl Elaborator<'_> {
             let known = Parameter::of_kind(base).map(Parameter::name).chain(own.iter().copied());
             let error = unknown("parameter", &field.name.name, field.name.span, Code::E0207, known);
             self.note(error);
-            self.look_at(&field.value, &Locals::default());
+            // The words of a field that other kinds have are no names.
+            let name = field.name.name.as_str();
+            if name != WAYFINDING && !planning::FIELDS.contains(&name) {
+                self.look_at(&field.value, &Locals::default());
+            }
             kind = Err(Reported);
         }
         kind

@@ -9,6 +9,7 @@ pub(crate) mod formats;
 mod inputs;
 mod limits;
 mod outputs;
+mod paths;
 mod ranks;
 mod reasons;
 mod traces;

@@ -20,8 +20,8 @@ const FEWEST: usize = 2;
 const REFINEMENTS: u32 = 7;
 /// An end that is outside of its interval by less than this share of it is inside but for rounding.
 const ROUNDING: f64 = 1e-12;
-/// So far below the upper end of its interval, as a share of it, a value stays: rounding on arcs of millimetres.
-const INSIDE: f64 = 1e-7;
+/// Between rests all u are smaller by this factor, which keeps them legal: rounding on arcs of millimetres.
+const INSIDE: f64 = 1.0 - 1e-8;
 /// Knots closer than this share of the path coincide.
 const SAME_PLACE: f64 = 1e-12;
 
@@ -234,13 +234,15 @@ impl Values {
     /// Draws u at every knot but the first one.
     fn draw(&self, knots: &[Knot], law: Law, draw: &mut impl FnMut(u32) -> [f64; 2]) -> Vec<(f64, f64)> {
         let mut u = self.start;
+        let rests = u == 0.0 && self.targets.last() == Some(&(0.0, 0.0));
+        let factor = if rests { INSIDE } else { 1.0 };
         let steps = self.pieces.iter().zip(&self.targets).zip(knots.iter().skip(1));
         steps
             .map(|((piece, &target), knot)| {
                 let interval = self.pieces.onward(piece, u, target);
                 let [_, uniform] = draw(knot.number);
-                u = law.draw((interval.0, interval.1 - INSIDE * (interval.1 - interval.0)), uniform);
-                (knot.x, u)
+                u = law.draw(interval, uniform);
+                (knot.x, factor * u)
             })
             .collect()
     }
