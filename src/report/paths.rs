@@ -1,5 +1,6 @@
 //! Planned paths as data and as pictures: `smc path`.
 
+use super::number::plain;
 use super::svg::chart::Chart;
 use super::svg::{Ink, plan};
 use crate::base::geometry::Vec2;
@@ -117,8 +118,9 @@ pub fn to_csv(paths: &[PlannedPath], dt: f64) -> String {
     out
 }
 
-/// The map: the scene, the roadmap, and the rounded paths from where the walkers are.
-pub fn map(scenario: &Scenario, paths: &[PlannedPath]) -> String {
+/// The map: the scene, the roadmap, and the rounded paths from where the walkers are; and where they are planned to be at some
+/// times, s.
+pub fn map(scenario: &Scenario, paths: &[PlannedPath], instants: &[f64]) -> String {
     let mut drawing = plan::scene(scenario);
     if let Some(terrain) = paths.iter().find_map(|path| path.terrain.as_ref()) {
         let vertex = |k: u32| terrain.roadmap.vertices()[k as usize];
@@ -132,6 +134,11 @@ pub fn map(scenario: &Scenario, paths: &[PlannedPath]) -> String {
         let at = |k: u32| line.at(line.length() * f64::from(k) / f64::from(steps)).position;
         drawing.line(&(0..=steps).map(at).collect::<Vec<_>>(), Ink::Way);
         drawing.dot(at(0), Ink::Start);
+        for time in instants {
+            let place = line.at(path.course.motion(*time).distance).position;
+            drawing.dot(place, Ink::Barrier);
+            drawing.text(place + Vec2::new(0.0, 0.3), &format!("{} s", plain(*time)));
+        }
         // Only who has several paths needs names for them.
         if paths.iter().filter(|other| other.agent == path.agent).count() > 1 {
             drawing.text(at(steps / 2), &path.name);

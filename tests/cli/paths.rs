@@ -76,6 +76,8 @@ fn paths_of_a_scenario_come_as_text_tables_and_pictures() {
         let knots = path["knots"]["x"].as_array().unwrap();
         assert!((3..=11).contains(&knots.len()) && path["duration_s"].as_f64() >= path["optimal_s"].as_f64());
     }
+    let map = said(&["--agent", "people[2]", "--format", "svg", "--at", "5s,10s"]);
+    assert!(map.contains(">5 s</text>") && map.contains(">10 s</text>"));
     for figure in ["map", "phase", "speed"] {
         let svg = said(&["--agent", "people[1]", "--format", "svg", "--figure", figure]);
         assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n") && !svg.contains("NaN"), "{figure}");

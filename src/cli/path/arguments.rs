@@ -30,6 +30,9 @@ pub(in crate::cli) struct PathCommand {
     /// What an SVG picture shows.
     #[arg(long, value_enum, default_value_t = Figure::Map)]
     pub(in crate::cli) figure: Figure,
+    /// Also draw on the map where the walkers are planned to be at these times: `3s,6s`.
+    #[arg(long, value_name = "TIMES", value_delimiter = ',', value_parser = parse_moment)]
+    pub(in crate::cli) at: Vec<f64>,
     /// Time between rows of a table: `0.1s`.
     #[arg(long, default_value = "0.1s", value_name = "TIME", value_parser = parse_step)]
     pub(in crate::cli) dt: f64,

@@ -119,7 +119,7 @@ fn of_model(arguments: &PathCommand, scenario: &str, colors: Colors) -> Result<S
         (PathFormat::Json, _) => Ok(paths::to_json(&found)),
         (PathFormat::Csv, _) => Ok(paths::to_csv(&found, arguments.dt)),
         (PathFormat::Text, _) => Ok(told(&found)),
-        (PathFormat::Svg, Figure::Map) => Ok(paths::map(&scenario, &found)),
+        (PathFormat::Svg, Figure::Map) => Ok(paths::map(&scenario, &found, &arguments.at)),
         (PathFormat::Svg, figure) => {
             let Some(first) = found.first() else { return Err(Exit::Wrong) };
             let course = &first.course;
