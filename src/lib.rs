@@ -37,6 +37,7 @@ pub mod cli;
 pub mod compile;
 pub mod data;
 pub mod engine;
+pub mod gait;
 pub mod kernel;
 pub mod library;
 pub mod logic;

@@ -1,0 +1,8 @@
+//! Floor 4: how people step (Agethen, Gaisbauer, Manns, Link, Rukzio 2018): steps learned from motion capture or made from
+//! published relations, and walks that are chains of them.
+
+mod curve;
+mod step;
+
+pub use curve::Curve;
+pub use step::{Draws, Foot, Gait, Phase, RecordedStep, SPANS, Shape, Stance};
