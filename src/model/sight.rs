@@ -122,6 +122,17 @@ impl Sight {
         found
     }
 
+    /// How near the nearest piece is to a straight line, m, at most `most`.
+    pub fn clearance(&self, (from, to): (Vec2, Vec2), most: f64) -> f64 {
+        let line = Segment::new(from, to);
+        let mut clearance = most;
+        self.nearby.any_along(&line, most, |k| {
+            clearance = clearance.min(self.pieces[k as usize].distance_to(&line));
+            false
+        });
+        clearance
+    }
+
     /// Whether this piece is in the way of such a body.
     pub fn blocks(&self, k: u32, (from, to): (Vec2, Vec2), reach: f64) -> bool {
         let Some(piece) = self.pieces.get(k as usize) else { return false };

@@ -9,7 +9,7 @@
 use super::lanes::{load, turn};
 use super::person::{NO_LENGTH, PASSING, Person, way_to};
 use super::stage::Drive;
-use crate::base::geometry::Vec2;
+use crate::base::geometry::{Segment, Vec2};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::base::tick::steps_over;
 use crate::kernel::code::lanes::{Truth, Vector, narrow, widen};
@@ -17,6 +17,7 @@ use crate::kernel::plan::{Occasion, Plan, Trajectory};
 use crate::kernel::state::plans::Course;
 use crate::kernel::state::{Slot, State};
 use crate::model::Parameter;
+use crate::model::sight::ROUNDING;
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 /// A driver is asked again, and a point looked for, at most once in this time, s.
@@ -322,7 +323,7 @@ fn pass(drive: &Drive, state: &mut State, slot: Slot, points: &[Vec2], is_due: b
             state.plans.held_mut(slot).point = point;
             state.plans.courses[block].set_goal(lane, *next, at);
             state.plans.courses[block].fresh |= Mask::lane(lane);
-        } else if is_due && !drive.sees(at, points[first], radius) {
+        } else if is_due && !sees(drive, state, slot, points[first]) {
             state.plans.ask(slot, Occasion::Left);
         }
     } else {
@@ -330,4 +331,21 @@ fn pass(drive: &Drive, state: &mut State, slot: Slot, points: &[Vec2], is_due: b
         state.plans.watch(slot);
         Person::new(drive, state, slot).renew();
     }
+}
+
+/// Whether the point of a way is in sight. Whoever walks along a line that was free is hardly ever tested again.
+fn sees(drive: &Drive, state: &mut State, slot: Slot, point: Vec2) -> bool {
+    let person = Person::new(drive, state, slot);
+    let (at, radius) = (person.at(), person.radius());
+    let held = state.plans.held(slot);
+    let is_near = |(line, clearance): (Segment, f64)| {
+        line.b == point && line.distance(at) < clearance - 0.5 * radius - ROUNDING
+    };
+    if held.free.is_some_and(is_near) {
+        return true;
+    }
+    let sees = drive.sees(at, point, radius);
+    let line = Segment::new(at, point);
+    state.plans.held_mut(slot).free = sees.then(|| (line, drive.clearance(&line, radius)));
+    sees
 }

@@ -2,7 +2,7 @@
 
 use super::drivers::Drivers;
 use super::person::way_to;
-use crate::base::geometry::{Bounds, Shape, Vec2};
+use crate::base::geometry::{Bounds, Segment, Shape, Vec2};
 use crate::base::random::name_hash;
 use crate::kernel::code::ground::{Ground, upright};
 use crate::model::{AgentId, Goal, Law, Leg, Move, Route, Scenario, Sight};
@@ -10,6 +10,9 @@ use std::sync::Arc;
 
 /// A body that fits wherever a line does, m.
 const NARROW: f64 = 1e-3;
+
+/// How far somebody may be beside a line before it is tested again, m.
+const ASIDE: f64 = 0.5;
 
 /// Where a stage leads.
 #[derive(Clone, Debug)]
@@ -171,6 +174,11 @@ impl Drive {
     /// is never quite on the line that touches it.
     pub(super) fn sees(&self, from: Vec2, to: Vec2, radius: f64) -> bool {
         self.blocker((from, to), radius, None).is_none()
+    }
+
+    /// How near a barrier is to a line, m, as far as somebody may be off it in a look or two.
+    pub(super) fn clearance(&self, line: &Segment, radius: f64) -> f64 {
+        self.sight.clearance((line.a, line.b), 0.5 * radius + ASIDE)
     }
 
     /// The piece of a barrier that hides a place from somebody, by its number; one that is likely is looked at first.

@@ -1,6 +1,6 @@
 //! The plans that agents follow, as part of the state of a batch of trials.
 
-use crate::base::geometry::Vec2;
+use crate::base::geometry::{Segment, Vec2};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::kernel::layout::Slot;
 use crate::kernel::plan::{Occasion, Piece, Plan};
@@ -20,6 +20,9 @@ pub(in crate::kernel) struct Held {
     pub(in crate::kernel) point: usize,
     /// The piece of a barrier that hid the point after it last; it is looked at first.
     pub(in crate::kernel) blocker: Option<u32>,
+    /// The last line to a point that was found free, m, and how near a barrier is to it, m. Somebody off this line by less has the
+    /// point in sight, without another test.
+    pub(in crate::kernel) free: Option<(Segment, f64)>,
     /// Why the driver is to be asked.
     pub(in crate::kernel) occasion: Occasion,
     /// How often the driver has been asked.
