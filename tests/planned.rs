@@ -294,6 +294,51 @@ fn a_roadmap_without_vertices_is_a_warning() {
     );
 }
 
+/// A block that reaches the rim of the box around barriers, regions and points.
+const AT_THE_RIM: &str = "horizon = 60 s
+step = 0.04 s
+scene {
+  obstacle block: rect (8, -2) .. (12, 4)
+  region start: rect (0, 0) .. (2, 2)
+  region goal: rect (18, 0) .. (20, 2)
+}
+kind walker: planned { limit speed = 1.5 m/s }
+agent ann: walker { at = uniform in start  route = goal }
+";
+
+#[test]
+fn a_roadmap_that_leads_nowhere_is_an_error_with_its_box_and_a_point_widens_it() {
+    let query = "estimate P(F<=60 s (ann in goal))";
+    let options = Options::default().max_trials(20);
+    let error = model(AT_THE_RIM).check(query, &options).unwrap_err().to_string();
+    assert!(error.contains("E0803"), "{error}");
+    assert!(
+        error.contains("no path on the roadmap of `walker`, seed 0, leads `ann` from its start to `goal`"),
+        "{error}"
+    );
+    assert!(
+        error.contains("the box (0, -2) .. (20, 4) m around all barriers, regions and points"),
+        "{error}"
+    );
+    let wider = AT_THE_RIM.replace("scene {", "scene {\n  point beyond: (10, 9)");
+    let report = model(&wider).check(query, &options).unwrap_or_else(|errors| panic!("{errors}"));
+    assert!(!report.warnings().to_string().contains("roadmap"), "{}", report.warnings());
+    assert_eq!(report.results()[0].consumed.counts.successes, 20);
+}
+
+#[test]
+fn a_ranking_of_paths_needs_a_goal() {
+    let aimless = AT_THE_RIM.replace("  route = goal }", " }\npaths ann { roadmap alternatives 2 }");
+    let error = model(&aimless)
+        .check("rank paths of ann by P(F<=9 s (ann in goal)) within 0.1", &Options::default())
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("E0803") && error.contains("`ann` has no goal to which paths could lead"),
+        "{error}"
+    );
+}
+
 /// Ten blocks in a field of 30 m by 30 m.
 fn blocks(number: u32) -> Scene {
     let stream = Stream::of(TrialKey { seed: 5, ..TrialKey::default() }, number, Purpose::Test);

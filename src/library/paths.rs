@@ -2,7 +2,7 @@
 
 use crate::compile::Study;
 use crate::compile::study::Ask;
-use crate::model::{AgentId, Move, Scenario};
+use crate::model::{Agent, AgentId, Move, Scenario};
 use crate::route::Ways;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -27,13 +27,7 @@ pub fn find_paths(scenario: &mut Scenario, seed: u64, ways: &Ways) -> Vec<AgentI
     without
 }
 
-/// The kind of an agent that plans.
-fn kind_of(scenario: &Scenario, agent: AgentId) -> &str {
-    scenario.agents[agent.0 as usize].body.planner.as_ref().map_or("", |planner| &planner.kind)
-}
-
-/// The same for all worlds that queries ask about, and for their rankings. An error for each agent without any path, and a warning
-/// for each kind whose roadmap has hardly a vertex. Queries learn which roadmaps they are given.
+/// The same for all worlds that queries ask about, and for their rankings. An error for each agent without any path. Queries learn which roadmaps they are given.
 pub(super) fn settle(study: &mut Study, seed: u64, ways: &Ways) -> Vec<Diagnostic> {
     let asked: BTreeSet<usize> = study.queries.iter().flat_map(|query| query.ask.worlds()).collect();
     let mut errors = Vec::new();
@@ -53,31 +47,28 @@ pub(super) fn settle(study: &mut Study, seed: u64, ways: &Ways) -> Vec<Diagnosti
     }
     for number in asked {
         let Some(world) = study.worlds.get_mut(number) else { continue };
-        for (agent, count) in ways.vertices(&world.scenario, seed).into_iter().filter(|(_, count)| *count < 2)
-        {
-            let said = format!(
-                "the roadmap of `{}` has {}",
-                kind_of(&world.scenario, agent),
-                if count == 1 { "only one vertex" } else { "no vertices" }
-            );
-            let warning = match world.place_of(agent) {
-                Some(span) => Diagnostic::warning(Code::W0802, span, said),
-                None => continue,
-            };
-            errors.push(warning.hint("make `separation` or `clearance` smaller, or draw more samples"));
-        }
         if world.scenario.moves.iter().all(|moves| moves.paths.is_none()) {
             continue;
         }
         let scenario = Arc::make_mut(&mut world.scenario);
         for agent in find_paths(scenario, seed, ways) {
-            let name = &world.scenario.agents[agent.0 as usize].name;
-            let said = format!("no path on the roadmap of seed {seed} leads `{name}` to its goal");
+            let Agent { name, route, .. } = &world.scenario.agents[agent.0 as usize];
+            let (said, hint) = if route.goals().next().is_none() {
+                (
+                    format!("`{name}` has no goal to which paths could lead"),
+                    "write `route = GOAL` with the agent",
+                )
+            } else {
+                (
+                    format!("no path on the roadmap of seed {seed} leads `{name}` to its goal"),
+                    "draw more samples: `roadmap = prm(samples = 1000)`",
+                )
+            };
             let error = match world.place_of(agent) {
                 Some(span) => Diagnostic::error(Code::E0803, span, said),
                 None => Diagnostic::placeless(Code::E0803, said),
             };
-            errors.push(error.hint("draw more samples: `roadmap = prm(samples = 1000)`"));
+            errors.push(error.hint(hint));
         }
         let moves = &world.scenario.moves;
         for query in &mut study.queries {

@@ -15,7 +15,7 @@ pub fn survey(study: &mut Study, only: &[usize], seed: u64, ways: &Ways) -> Vec<
     let worlds: BTreeSet<usize> = asked.flat_map(|query| query.ask.worlds()).collect();
     let mut found: Vec<Diagnostic> = Vec::new();
     for world in worlds.into_iter().filter_map(|world| study.worlds.get(world)) {
-        for one in ways.doubts(&world.scenario).iter().map(|doubt| diagnostic(world, doubt)) {
+        for one in ways.doubts(&world.scenario, seed).iter().map(|doubt| diagnostic(world, doubt)) {
             // Worlds may be alike.
             let place = |one: &Diagnostic| one.place.as_ref().map(|place| place.span);
             if !found.iter().any(|known| known.code == one.code && place(known) == place(&one)) {
@@ -48,9 +48,7 @@ fn diagnostic(world: &World, doubt: &Doubt) -> Diagnostic {
             Some(span) if place.is_some() => error.related(span, "an outline of this file is in between"),
             _ => error,
         };
-        return error.hint(
-            "move the goal or the start, open the barrier, or write `wayfinding = straight` in the kind to go straight whatever is in the way",
-        );
+        return error.hint(doubt.hint.as_str());
     }
     let warning = match place {
         Some(span) => Diagnostic::warning(Code::W0802, span, doubt.said.as_str()),
@@ -59,5 +57,5 @@ fn diagnostic(world: &World, doubt: &Doubt) -> Diagnostic {
             ..Diagnostic::placeless(Code::W0802, doubt.said.as_str())
         },
     };
-    warning.hint("agents without a way stand still; see `smc explain W0802`")
+    warning.hint(doubt.hint.as_str())
 }

@@ -128,6 +128,14 @@ pub enum Route {
     Onward,
 }
 
+impl Route {
+    /// Its goals in order.
+    pub fn goals(&self) -> impl Iterator<Item = &Goal> {
+        let legs: &[Leg] = if let Self::Legs { legs, .. } = self { legs } else { &[] };
+        legs.iter().filter_map(|leg| if let Leg::To(goal) = leg { Some(goal) } else { None })
+    }
+}
+
 /// One leg of a route.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Leg {

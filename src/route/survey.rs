@@ -4,7 +4,7 @@
 use super::atlas::Atlas;
 use super::wayfinder::is_drawn;
 use crate::base::geometry::{Shape, Vec2};
-use crate::model::{Agent, AgentId, Goal, Leg, Obstacle, Parameter, Position, Route, Scenario, Scene, Sight};
+use crate::model::{Agent, AgentId, Goal, Obstacle, Parameter, Position, Scenario, Scene, Sight};
 
 /// A start or goal is looked at in so many rows of so many places; and in more where none of these has a way.
 const ROWS: u32 = 8;
@@ -24,10 +24,15 @@ pub struct Doubt {
     pub said: String,
     /// The barrier that is in between, by its number, if one is.
     pub between: Option<usize>,
+    /// What would mend it.
+    pub hint: String,
 }
 
+const MEND: &str = "move the goal or the start, open the barrier, or write `wayfinding = straight` in the kind to go straight whatever is in the way";
+const EXPLAINED: &str = "agents without a way stand still; see `smc explain W0802`";
+
 /// Places of a shape: rows of a grid, and a point inside.
-fn places(shape: &Shape, rows: u32) -> Vec<Vec2> {
+pub(super) fn places(shape: &Shape, rows: u32) -> Vec<Vec2> {
     let bounds = shape.bounds();
     let size = bounds.high - bounds.low;
     let share = |k: u32| (f64::from(k) + 0.5) / f64::from(rows);
@@ -37,15 +42,16 @@ fn places(shape: &Shape, rows: u32) -> Vec<Vec2> {
     std::iter::once(shape.inner_point()).chain(inside).collect()
 }
 
-/// Where a leg may begin.
-enum Origin<'s> {
+/// Where a leg may begin or end.
+#[derive(Clone, Copy)]
+pub(super) enum Place<'s> {
     Point(Vec2),
     Shape(&'s Shape),
 }
 
-impl Origin<'_> {
+impl Place<'_> {
     /// Its places outside of obstacles.
-    fn places(&self, scene: &Scene, rows: u32) -> Vec<Vec2> {
+    pub(super) fn places(&self, scene: &Scene, rows: u32) -> Vec<Vec2> {
         let all = match self {
             Self::Point(point) => vec![*point],
             Self::Shape(shape) => places(shape, rows),
@@ -75,8 +81,45 @@ fn goal_name(scene: &Scene, goal: &Goal) -> String {
     }
 }
 
-/// What is doubtful about the ways of some agents of a scenario.
-pub(super) fn doubts(atlas: &Atlas, scenario: &Scenario, agents: &[AgentId]) -> Vec<Doubt> {
+/// A way from one goal to the next.
+pub(super) struct Stretch<'s> {
+    /// Where it begins, and what that is called; `None` where another agent decides it.
+    pub(super) origin: Option<(Place<'s>, String)>,
+    /// Where it ends, and what that is called.
+    pub(super) goal: &'s Goal,
+    pub(super) end: Place<'s>,
+    pub(super) name: String,
+}
+
+/// The ways of an agent, from goal to goal.
+pub(super) fn stretches<'s>(scene: &'s Scene, agent: &'s Agent) -> Vec<Stretch<'s>> {
+    let mut origin = match &agent.start.position {
+        Position::Point(point) => Some((Place::Point(*point), "its start".to_owned())),
+        Position::Within(shape) => Some((Place::Shape(shape), "its start".to_owned())),
+        Position::Near { .. } => None,
+    };
+    agent
+        .route
+        .goals()
+        .map(|goal| {
+            let name = goal_name(scene, goal);
+            let end = match goal {
+                Goal::Point(point) => Place::Point(*point),
+                Goal::Region(region) => Place::Shape(&scene.regions[region.0 as usize].shape),
+            };
+            Stretch { origin: origin.replace((end, name.clone())), goal, end, name }
+        })
+        .collect()
+}
+
+/// What is doubtful about the ways of some agents of a scenario. `planned` looks at the ways of those who plan, where ways lead
+/// through the scene.
+pub(super) fn doubts(
+    atlas: &Atlas,
+    scenario: &Scenario,
+    agents: &[AgentId],
+    planned: impl Fn(AgentId, &str) -> Option<Doubt>,
+) -> Vec<Doubt> {
     let agent = |id: AgentId| &scenario.agents[id.0 as usize];
     let alike = |a: &Agent, b: &Agent| {
         a.start.position == b.start.position
@@ -93,7 +136,11 @@ pub(super) fn doubts(atlas: &Atlas, scenario: &Scenario, agents: &[AgentId]) -> 
             0 => format!("`{}`", agent(first).name),
             _ => format!("`{}` and {count} more", agent(first).name),
         };
+        let known = out.len();
         of_agent(atlas, scenario, (first, &who), &mut out);
+        if !out[known..].iter().any(|doubt| doubt.impossible) {
+            out.extend(planned(first, &who));
+        }
     }
     out
 }
@@ -101,25 +148,21 @@ pub(super) fn doubts(atlas: &Atlas, scenario: &Scenario, agents: &[AgentId]) -> 
 fn of_agent(atlas: &Atlas, scenario: &Scenario, (id, who): (AgentId, &str), out: &mut Vec<Doubt>) {
     let scene = &scenario.scene;
     let agent = &scenario.agents[id.0 as usize];
-    let Route::Legs { legs, .. } = &agent.route else { return };
     let law = &agent.body[Parameter::Radius];
     let factor = agent.particle.map_or(1.0, |particle| particle.radius_factor);
     let radius = |of: f64| Atlas::class((of * factor).max(0.01), is_drawn(agent));
     let (least, most) = (radius(law.bounds().0), radius(law.draw(WIDEST)));
-    let mut origin = match &agent.start.position {
-        Position::Point(point) => Some((Origin::Point(*point), "its start".to_owned())),
-        Position::Within(shape) => Some((Origin::Shape(shape), "its start".to_owned())),
-        Position::Near { .. } => None,
-    };
-    for goal in legs.iter().filter_map(|leg| if let Leg::To(goal) = leg { Some(goal) } else { None }) {
-        let name = goal_name(scene, goal);
+    for Stretch { origin, goal, name, .. } in stretches(scene, agent) {
         if let Some((from, from_name)) = &origin {
             let with_way = |rows: u32, radius: f64| {
                 let places = from.places(scene, rows);
                 let count = places.iter().filter(|p| atlas.way(**p, goal, radius).is_some()).count();
                 (count, places.len())
             };
-            let mut doubt = |said| out.push(Doubt { agent: id, impossible: false, said, between: None });
+            let mut doubt = |said| {
+                let hint = EXPLAINED.to_owned();
+                out.push(Doubt { agent: id, impossible: false, said, between: None, hint });
+            };
             let (some, all) = with_way(ROWS, least);
             if some == 0 && (all == 1 || with_way(MORE_ROWS, least).0 == 0) {
                 let inside = into(scene, goal);
@@ -131,7 +174,7 @@ fn of_agent(atlas: &Atlas, scenario: &Scenario, (id, who): (AgentId, &str), out:
                     (None, None) => String::new(),
                 };
                 let said = format!("no way leads {who} from {from_name} to {name}{why}");
-                out.push(Doubt { agent: id, impossible: true, said, between });
+                out.push(Doubt { agent: id, impossible: true, said, between, hint: MEND.to_owned() });
                 return;
             }
             if some < all {
@@ -152,10 +195,6 @@ fn of_agent(atlas: &Atlas, scenario: &Scenario, (id, who): (AgentId, &str), out:
                 ));
             }
         }
-        origin = match goal {
-            Goal::Point(point) => Some((Origin::Point(*point), name)),
-            Goal::Region(region) => Some((Origin::Shape(&scene.regions[region.0 as usize].shape), name)),
-        };
     }
 }
 
@@ -175,7 +214,7 @@ fn into(scene: &Scene, goal: &Goal) -> Option<String> {
 }
 
 /// A barrier that the straight way from a start to a goal meets; one with a name before others.
-fn enclosing(scene: &Scene, from: &Origin<'_>, radius: f64, goal: &Goal) -> Option<usize> {
+fn enclosing(scene: &Scene, from: &Place<'_>, radius: f64, goal: &Goal) -> Option<usize> {
     let start = *from.places(scene, 1).first()?;
     let end = match goal {
         Goal::Point(point) => *point,

@@ -1,11 +1,11 @@
 //! The driver of agents that find their way around barriers.
 
 use super::atlas::Atlas;
-use super::planner::{PathOption, Terrains, Walkers, path_options, walkers};
+use super::planner::{self, PathOption, Terrains, Walkers, path_options, walkers};
 use super::rim;
 use super::survey::{self, Doubt};
 use crate::kernel::driver::{Driver, Drivers, Plan, Situation};
-use crate::model::{Agent, AgentId, Leg, Parameter, Route, Scenario, Scene};
+use crate::model::{Agent, AgentId, Parameter, Scenario, Scene};
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -53,33 +53,14 @@ impl Ways {
         Walkers::new(&self.terrains, scenario, seed)
     }
 
-    /// How many vertices the roadmap of each kind has: the first agent of the kind, and the number.
-    pub fn vertices(&self, scenario: &Scenario, seed: u64) -> Vec<(AgentId, usize)> {
-        let mut kinds: Vec<&str> = Vec::new();
-        let mut out = Vec::new();
-        for (id, agent) in (0..).map(AgentId).zip(&scenario.agents) {
-            let Some(planner) = agent.body.planner.as_ref().filter(|one| !kinds.contains(&one.kind.as_str()))
-            else {
-                continue;
-            };
-            let Route::Legs { legs, .. } = &agent.route else { continue };
-            let goal = legs.iter().find_map(|leg| if let Leg::To(goal) = leg { Some(goal) } else { None });
-            let terrain = goal.and_then(|goal| self.terrains.of(&scenario.scene, agent, goal, seed));
-            if let Some(terrain) = terrain {
-                kinds.push(&planner.kind);
-                out.push((id, terrain.roadmap.vertices().len()));
-            }
-        }
-        out
-    }
-
     /// At most so many paths of different classes for an agent, the shortest first.
     pub fn paths(&self, scenario: &Scenario, seed: u64, agent: AgentId, most: usize) -> Vec<PathOption> {
         path_options(&self.terrains, scenario, seed, agent, most)
     }
 
-    /// What is wrong or doubtful with the ways of a scenario, before the first trial. Where no way leads at all no plan does.
-    pub fn doubts(&self, scenario: &Scenario) -> Vec<Doubt> {
+    /// What is wrong or doubtful with the ways of a scenario, before the first trial: with shortest ways, and with the roadmaps of
+    /// a run with a seed.
+    pub fn doubts(&self, scenario: &Scenario, seed: u64) -> Vec<Doubt> {
         let plans = |id: &AgentId| scenario.agents[id.0 as usize].body.planner.is_some();
         let planned = (0..scenario.agents.len() as u32).map(AgentId).filter(plans);
         let mut agents: Vec<AgentId> = finders(scenario).into_iter().chain(planned).collect();
@@ -87,7 +68,8 @@ impl Ways {
         if agents.is_empty() {
             Vec::new()
         } else {
-            survey::doubts(&self.atlas(&scenario.scene), scenario, &agents)
+            let planned = |id, who: &str| planner::doubt(&self.terrains, scenario, seed, id, who);
+            survey::doubts(&self.atlas(&scenario.scene), scenario, &agents, planned)
         }
     }
 }

@@ -3,12 +3,14 @@
 
 mod errand;
 mod options;
+mod reach;
 mod speeds;
 mod terrain;
 mod walker;
 
 pub use errand::Errand;
 pub use options::{PathOption, path_options};
+pub use reach::doubt;
 pub use speeds::{Course, Speeds, stretches};
 pub use terrain::{Terrain, Terrains};
 pub use walker::{Outline, Walkers, Wish, walkers};

@@ -2,7 +2,7 @@
 
 use super::terrain::{Terrain, Terrains, middle};
 use crate::base::geometry::Vec2;
-use crate::model::{AgentId, Leg, Position, Route, Scenario};
+use crate::model::{AgentId, Position, Scenario};
 use crate::route::roadmap::{DistanceField, alternatives, shortest};
 
 /// Places of a path are at most so far apart, m.
@@ -61,11 +61,7 @@ pub fn path_options(
     most: usize,
 ) -> Vec<PathOption> {
     let agent = &scenario.agents[id.0 as usize];
-    let Route::Legs { legs, .. } = &agent.route else { return Vec::new() };
-    let Some(goal) = legs.iter().find_map(|leg| if let Leg::To(goal) = leg { Some(goal) } else { None })
-    else {
-        return Vec::new();
-    };
+    let Some(goal) = agent.route.goals().next() else { return Vec::new() };
     let Some(terrain) = terrains.of(&scenario.scene, agent, goal, seed) else { return Vec::new() };
     let start = match &agent.start.position {
         Position::Point(point) => *point,

@@ -68,6 +68,11 @@ impl Terrain {
         Self { scene: scene.clone(), planner: Arc::clone(planner), seed, target, radius, free, roadmap }
     }
 
+    /// The kind of the walkers.
+    pub fn planner(&self) -> &Planner {
+        &self.planner
+    }
+
     /// The scene.
     pub fn scene(&self) -> &Scene {
         &self.scene
