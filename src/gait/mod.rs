@@ -3,6 +3,7 @@
 
 mod curve;
 mod step;
+pub mod synthetic;
 
 pub use curve::Curve;
 pub use step::{Draws, Foot, Gait, Phase, RecordedStep, SPANS, Shape, Stance};

@@ -1,0 +1,319 @@
+use super::*;
+use crate::base::random::{Purpose, Stream, TrialKey};
+use crate::gait::step::{Phase, SPANS};
+
+fn stream(index: u64) -> Stream {
+    Stream::of(TrialKey { seed: 5, index, branch: 0 }, 0, Purpose::Test)
+}
+
+fn gait(height: f64, speed: f64) -> SyntheticGait {
+    SyntheticGait::of(Person { height, speed, width: 0.155 })
+}
+
+fn angle(a: Vec2) -> f64 {
+    math::atan2(a.y, a.x)
+}
+
+/// A step of a chain in the frame of the floor.
+struct Made {
+    foot: Foot,
+    shape: Shape,
+    begin: Vec2,
+    /// Direction of +x of its frame.
+    frame: Vec2,
+}
+
+impl Made {
+    fn chord(&self) -> Vec2 {
+        turned(self.shape.landmarks[SPANS - 1], self.frame)
+    }
+}
+
+/// A chain of steps from standing; `next` makes the step with a number.
+fn chain(count: u32, next: impl Fn(u32, &Stance, Foot) -> Stance) -> Vec<Made> {
+    let (mut stance, mut foot, mut begin, mut frame) =
+        (Stance::default(), Foot::Left, Vec2::zeros(), Vec2::x());
+    let mut made = Vec::new();
+    for number in 0..count {
+        stance = next(number, &stance, foot);
+        let (_, shape) = stance.last.unwrap();
+        made.push(Made { foot, shape, begin, frame });
+        begin += turned(shape.landmarks[SPANS - 1], frame);
+        frame = turned(shape.curve().tangent(1.0), frame);
+        foot = foot.other();
+    }
+    made
+}
+
+fn straight(gait: &SyntheticGait, share: f64, count: u32, index: u64) -> Vec<Made> {
+    chain(count, |number, before, foot| {
+        gait.toward(before, foot, share, 0.0, Draws::of(stream(index), number, 0))
+    })
+}
+
+fn mean_and_cv(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let values: Vec<f64> = values.collect();
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let square = values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / (n - 1.0);
+    (mean, square.sqrt() / mean)
+}
+
+/// Largest deviation of the path of a step from its chord, towards its side.
+fn deviation(shape: &Shape) -> f64 {
+    let chord = shape.landmarks[SPANS - 1];
+    let across = left_of(chord) / chord.norm();
+    let curve = shape.curve();
+    let at = |k: i32| curve.place(f64::from(k) / 100.0).dot(&across);
+    (0..=100).map(at).fold(0.0, |widest: f64, d| if d.abs() > widest.abs() { d } else { widest })
+}
+
+/// Exponent of detrended fluctuation analysis (Peng et al. 1994): profiles detrended by lines in windows of 4 to n/4.
+fn fluctuation_exponent(values: &[f64]) -> f64 {
+    let n = values.len();
+    let mean = values.iter().sum::<f64>() / n as f64;
+    let profile: Vec<f64> = values
+        .iter()
+        .scan(0.0, |sum, v| {
+            *sum += v - mean;
+            Some(*sum)
+        })
+        .collect();
+    let (mut points, mut window) = (Vec::new(), 4.0f64);
+    while window <= n as f64 / 4.0 {
+        let size = window as usize;
+        let mut squares = 0.0;
+        for part in profile.chunks_exact(size) {
+            let middle = (size as f64 - 1.0) / 2.0;
+            let level = part.iter().sum::<f64>() / size as f64;
+            let at = |k: usize| k as f64 - middle;
+            let slope = part.iter().enumerate().map(|(k, y)| at(k) * y).sum::<f64>()
+                / (0..size).map(|k| at(k) * at(k)).sum::<f64>();
+            squares += part.iter().enumerate().map(|(k, y)| (y - level - slope * at(k)).powi(2)).sum::<f64>();
+        }
+        points.push((math::ln(size as f64), 0.5 * math::ln(squares / ((n / size) * size) as f64)));
+        window *= 1.3;
+    }
+    let m = points.len() as f64;
+    let (x, y) = (points.iter().map(|p| p.0).sum::<f64>() / m, points.iter().map(|p| p.1).sum::<f64>() / m);
+    points.iter().map(|p| (p.0 - x) * (p.1 - y)).sum::<f64>()
+        / points.iter().map(|p| (p.0 - x).powi(2)).sum::<f64>()
+}
+
+#[test]
+fn people_have_the_laws_of_their_fields() {
+    let people: Vec<Person> = (0..20_000).map(|k| Person::draw(stream(k), None, None)).collect();
+    let close = |of: fn(&Person) -> f64, mean: f64, sd: f64| {
+        let (m, cv) = mean_and_cv(people.iter().map(of));
+        assert!((m - mean).abs() < 0.03 * sd && (m * cv - sd).abs() < 0.03 * sd, "{m} {cv}");
+    };
+    close(|p| p.height, 1.72, 0.09);
+    // Cut at 0.5 and 2.2 m/s.
+    close(|p| p.speed, 1.3402, 0.2575);
+    close(|p| p.width, 0.155, 0.03);
+    assert!(people.iter().all(|p| (0.5..=2.2).contains(&p.speed) && p.width > 0.0));
+    let given = Person::draw(stream(3), Some(1.5), None);
+    assert_eq!(given, Person { height: 1.5, ..people[3] });
+    assert_eq!(Person::draw(stream(3), None, Some(1.0)), Person { speed: 1.0, ..people[3] });
+}
+
+#[test]
+fn cadence_and_length_are_those_of_grieve_and_gear() {
+    let gait = gait(1.72, 1.34);
+    assert!((1.0 / gait.duration() - 1.87).abs() < 0.005, "{}", gait.duration());
+    assert!((gait.length() - 0.72).abs() < 0.005);
+    // 64.8 (v/h)^0.57 strides a minute.
+    for speed in [0.6, 1.0, 1.34, 1.8] {
+        let made = straight(&gait, speed / 1.34, 600, 1);
+        let (time, _) = mean_and_cv(made[1..].iter().map(|m| m.shape.duration));
+        let (length, _) = mean_and_cv(made[1..].iter().map(|m| m.chord().norm()));
+        let rate = 64.8 / 30.0 * (speed / 1.72f64).powf(0.57);
+        assert!((time * rate - 1.0).abs() < 0.015, "{speed} {time}");
+        assert!((length * rate / speed - 1.0).abs() < 0.015, "{speed} {length}");
+    }
+}
+
+#[test]
+fn sway_is_towards_the_stance_foot_and_falls_with_speed_as_measured() {
+    for speed in [0.9, 1.0, 1.1, 1.2, 1.34, 1.5, 1.6] {
+        let made = straight(&gait(1.72, speed), 1.0, 400, 2);
+        let towards = |m: &Made| deviation(&m.shape) * side(m.foot);
+        assert!(made[1..].iter().all(|m| towards(m) > 0.01));
+        let (mean, _) = mean_and_cv(made[1..].iter().map(towards));
+        println!("{speed} m/s: {:.2} cm, measured {:.2} cm", mean * 100.0, 4.5 - 1.55 * speed);
+        assert!((mean * 100.0 - (4.5 - 1.55 * speed)).abs() < 0.5, "{speed} {mean}");
+    }
+}
+
+#[test]
+fn steps_begin_along_x() {
+    for number in 0..200 {
+        let made = chain(6, |k, before, foot| {
+            gait(1.7, 1.3).step(before, foot, 1.0, Draws::of(stream(number), k, 7))
+        });
+        for m in made {
+            assert!((m.shape.curve().tangent(0.0) - Vec2::x()).norm() < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn a_long_straight_chain_stays_straight_at_the_speed_of_the_person() {
+    let (mut spread, mut speeds) = (Vec::new(), Vec::new());
+    for index in 0..20 {
+        let gait = SyntheticGait::of(Person::draw(stream(index), None, None));
+        let made = straight(&gait, 1.0, 1000, index);
+        let (last, first) = (&made[999], &made[0]);
+        let whole = last.begin + last.chord() - first.begin;
+        assert!(angle(whole).abs() < 0.02, "{}", angle(whole));
+        let time: f64 = made[1..].iter().map(|m| m.shape.duration).sum();
+        speeds.push((whole - first.chord()).norm() / time / gait.person().speed);
+        spread.extend(made.iter().map(|m| angle(m.chord()).to_degrees()));
+    }
+    let (speed, cv) = mean_and_cv(speeds.into_iter());
+    assert!((speed - 1.0).abs() < 0.01 && cv < 0.01, "{speed} {cv}");
+    let square = spread.iter().map(|a| a * a).sum::<f64>() / spread.len() as f64;
+    println!("speed {speed:.4} of the person's, heading {:.3} degrees", square.sqrt());
+    assert!((square.sqrt() - 1.2).abs() < 0.1, "{}", square.sqrt());
+}
+
+#[test]
+fn noise_has_its_spread_from_the_first_step_on() {
+    let gait = gait(1.72, 1.34);
+    let cv = |number: usize, of: fn(&Shape) -> f64| {
+        let made = |index| straight(&gait, 1.0, number as u32 + 1, index)[number].shape;
+        mean_and_cv((0..4000).map(|index| of(&made(index)))).1
+    };
+    let length = |s: &Shape| s.landmarks[SPANS - 1].norm();
+    // The speed changes the length with its power 0.43 and the time with -0.57.
+    let (of_length, of_time) = ((0.43f64 * 2.3).hypot(1.5) / 100.0, (0.57f64 * 2.3).hypot(2.0) / 100.0);
+    for number in [0, 1, 20] {
+        let (l, t) = (cv(number, length), cv(number, |s| s.duration));
+        println!("step {number}: CV of length {l:.4} ({of_length:.4}), of time {t:.4} ({of_time:.4})");
+        assert!((l / of_length - 1.0).abs() < 0.06 && (t / of_time - 1.0).abs() < 0.06);
+    }
+}
+
+#[test]
+fn stride_times_have_long_range_correlation() {
+    let mut exponents = Vec::new();
+    for index in 0..20 {
+        let made = straight(&gait(1.72, 1.34), 1.0, 1201, 100 + index);
+        let strides: Vec<f64> =
+            made[1..].chunks_exact(2).map(|pair| pair[0].shape.duration + pair[1].shape.duration).collect();
+        exponents.push(fluctuation_exponent(&strides));
+    }
+    let (mean, cv) = mean_and_cv(exponents.into_iter());
+    println!("exponent {mean:.3}, SD {:.3}", cv * mean);
+    assert!((0.6..1.0).contains(&mean), "{mean}");
+}
+
+#[test]
+fn white_noise_has_an_exponent_of_one_half() {
+    let white: Vec<f64> = (0..4000).map(|k| stream(0).normal_pair(k)[0]).collect();
+    assert!((fluctuation_exponent(&white) - 0.5).abs() < 0.07, "{}", fluctuation_exponent(&white));
+}
+
+#[test]
+fn turns_keep_their_limits_and_the_best_of_24_turns_by_90_degrees_in_about_three_steps() {
+    let gait = gait(1.72, 1.34);
+    let (mut widest, mut turned_by) = (0.0f64, Vec::new());
+    for index in 0..200 {
+        // Three straight steps; then the most to the left of 24 candidates.
+        let made = chain(8, |number, before, foot| {
+            if number < 3 {
+                return gait.toward(before, foot, 1.0, 0.0, Draws::of(stream(index), number, 0));
+            }
+            let candidates =
+                (0..24).map(|k| gait.step(before, foot, 1.0, Draws::of(stream(index), number, k)));
+            let end = |s: &Stance| angle(s.last.unwrap().1.landmarks[SPANS - 1]);
+            candidates.max_by(|a, b| end(a).total_cmp(&end(b))).unwrap()
+        });
+        for pair in made[1..].windows(2) {
+            let [a, b] = [pair[0].chord(), pair[1].chord()];
+            widest = widest.max(angle(turned(b, Vec2::new(a.x, -a.y))).to_degrees().abs() / a.norm());
+        }
+        let after = |k: usize| angle(turned(made[k].shape.curve().tangent(1.0), made[k].frame));
+        let whole: f64 = (3..6).map(|k| (after(k) - after(k - 1)).rem_euclid(2.0 * PI)).sum();
+        turned_by.push(if whole > PI * 1.9 { whole - 2.0 * PI } else { whole });
+    }
+    let (mean, cv) = mean_and_cv(turned_by.iter().map(|a| a.to_degrees()));
+    println!("three steps turn by {mean:.1} degrees, SD {:.1}; widest of one {widest:.1}", mean * cv);
+    assert!((75.0..115.0).contains(&mean));
+}
+
+#[test]
+fn the_direction_of_walking_turns_by_what_is_asked() {
+    let gait = gait(1.72, 1.34);
+    let speed = |m: &Made| m.chord().norm() / m.shape.duration;
+    for degrees in [-50.0f64, -20.0, 0.0, 20.0, 50.0] {
+        let (mut turns, mut speeds) = (Vec::new(), Vec::new());
+        for index in 0..400 {
+            let made = chain(8, |number, before, foot| {
+                let turn = if number == 4 { degrees.to_radians() } else { 0.0 };
+                gait.toward(before, foot, 1.0, turn, Draws::of(stream(index), number, 0))
+            });
+            // Chords 3 and 5 are straight steps before and after the turn.
+            let (a, b) = (made[3].chord(), made[5].chord());
+            turns.push(angle(turned(b, Vec2::new(a.x, -a.y))).to_degrees());
+            speeds.push(speed(&made[4]));
+        }
+        let mean = turns.iter().sum::<f64>() / 400.0;
+        let (speed, _) = mean_and_cv(speeds.into_iter());
+        println!("{degrees}: turns by {mean:.2}, at {speed:.3} m/s");
+        assert!((mean - degrees).abs() < 1.0, "{degrees} {mean}");
+        assert!((speed / 1.34 - slowing(degrees.to_radians())).abs() < 0.01);
+    }
+    // Medians of section 4 in the middle of their classes.
+    for (degrees, speed) in [(11.0f64, 1.21), (18.5, 1.20), (26.0, 1.16), (40.0, 1.12)] {
+        assert!((slowing(degrees.to_radians()) - speed / 1.30).abs() < 0.015, "{degrees}");
+    }
+    assert_eq!(gait.widest_turn(&Stance::default()), PI / 2.0);
+    let walking = gait.toward(&Stance::default(), Foot::Left, 1.0, 0.0, Draws::of(stream(0), 0, 0));
+    assert!((gait.widest_turn(&walking).to_degrees() - 50.0).abs() < 1e-9);
+}
+
+#[test]
+fn first_steps_begin_slowly_and_last_steps_end_at_their_place_at_rest() {
+    let gait = gait(1.72, 1.34);
+    let made = straight(&gait, 1.0, 5, 9);
+    let speed = |s: &Shape, u: f64| s.curve().rise(u).norm() / s.duration;
+    assert!(speed(&made[0].shape, 0.0) < 0.1 && (speed(&made[0].shape, 1.0) / 1.34 - 1.0).abs() < 0.15);
+    let (length, _) = mean_and_cv((0..500).map(|k| straight(&gait, 1.0, 1, k)[0].chord().norm()));
+    assert!((length - 0.57 * gait.length()).abs() < 0.005);
+    let before =
+        chain(5, |number, before, foot| gait.toward(before, foot, 1.0, 0.0, Draws::of(stream(9), number, 0)));
+    let stance = Stance { last: Some((Foot::Left, before[4].shape)), drift: [0.0; 8] };
+    for length in [0.05, 0.2, 0.36, gait.last_length(), 0.6, 0.72] {
+        for stance in [stance, Stance::default()] {
+            let place = Vec2::new(length, 0.05 * length);
+            let shape = gait.stop(&stance, Foot::Right, place);
+            println!("{length}: {:.3} s", shape.duration);
+            assert!((shape.landmarks[SPANS - 1] - place).norm() < 1e-12);
+            assert!(speed(&shape, 1.0) < 0.1);
+            // It does not go back (sway aside) and does not speed up much.
+            let ahead = (0..=100).map(|k| shape.curve().rise(f64::from(k) / 100.0).x / shape.duration);
+            assert!(ahead.clone().all(|v| v > -0.02), "{length}");
+            assert!(ahead.fold(0.0, f64::max) < 1.34 * 1.65, "{length}");
+        }
+    }
+}
+
+#[test]
+fn a_step_has_the_same_bytes_everywhere() {
+    let gait = SyntheticGait::of(Person::draw(stream(1), None, None));
+    let mut stance = Stance::default();
+    let mut foot = Foot::Left;
+    let mut sum = 0u64;
+    for number in 0..50 {
+        stance = gait.step(&stance, foot, 0.9, Draws::of(stream(1), number, 3));
+        foot = foot.other();
+        let shape = stance.last.unwrap().1;
+        for value in
+            shape.landmarks.iter().flat_map(|p| [p.x, p.y]).chain([shape.duration]).chain(stance.drift)
+        {
+            sum = sum.rotate_left(5).wrapping_mul(0x0000_0100_0000_01b3) ^ value.to_bits();
+        }
+    }
+    assert_eq!(sum, 0x2aa5_62e0_cbe5_35ed, "{sum:#x}");
+}
