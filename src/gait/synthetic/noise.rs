@@ -52,3 +52,105 @@ impl Noise {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::math;
+    use crate::base::random::{Purpose, Stream, TrialKey};
+    use crate::gait::step::{Foot, SPANS, Shape, Stance};
+    use crate::gait::synthetic::{Person, SyntheticGait};
+
+    fn stream(index: u64) -> Stream {
+        Stream::of(TrialKey { seed: 6, index, branch: 0 }, 0, Purpose::Test)
+    }
+
+    fn straight(count: u32, index: u64) -> Vec<Shape> {
+        let gait = SyntheticGait::of(Person { height: 1.72, speed: 1.34, width: 0.155 });
+        let (mut stance, mut foot) = (Stance::default(), Foot::Left);
+        let mut next = |number| {
+            stance = gait.toward(&stance, foot, 1.0, 0.0, Draws::of(stream(index), number, 0));
+            foot = foot.other();
+            stance.last.unwrap().1
+        };
+        (0..count).map(&mut next).collect()
+    }
+
+    fn mean_and_cv(values: &[f64]) -> (f64, f64) {
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        let square = values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / (n - 1.0);
+        (mean, square.sqrt() / mean)
+    }
+
+    /// Exponent of detrended fluctuation analysis (Peng et al. 1994): profiles detrended by lines in windows of 4 to n/4.
+    fn fluctuation_exponent(values: &[f64]) -> f64 {
+        let n = values.len();
+        let mean = values.iter().sum::<f64>() / n as f64;
+        let profile: Vec<f64> = values
+            .iter()
+            .scan(0.0, |sum, v| {
+                *sum += v - mean;
+                Some(*sum)
+            })
+            .collect();
+        let (mut points, mut window) = (Vec::new(), 4.0f64);
+        while window <= n as f64 / 4.0 {
+            let size = window as usize;
+            let mut squares = 0.0;
+            for part in profile.chunks_exact(size) {
+                let middle = (size as f64 - 1.0) / 2.0;
+                let level = part.iter().sum::<f64>() / size as f64;
+                let at = |k: usize| k as f64 - middle;
+                let slope = part.iter().enumerate().map(|(k, y)| at(k) * y).sum::<f64>()
+                    / (0..size).map(|k| at(k) * at(k)).sum::<f64>();
+                squares +=
+                    part.iter().enumerate().map(|(k, y)| (y - level - slope * at(k)).powi(2)).sum::<f64>();
+            }
+            points.push((math::ln(size as f64), 0.5 * math::ln(squares / ((n / size) * size) as f64)));
+            window *= 1.3;
+        }
+        let m = points.len() as f64;
+        let (x, y) =
+            (points.iter().map(|p| p.0).sum::<f64>() / m, points.iter().map(|p| p.1).sum::<f64>() / m);
+        points.iter().map(|p| (p.0 - x) * (p.1 - y)).sum::<f64>()
+            / points.iter().map(|p| (p.0 - x).powi(2)).sum::<f64>()
+    }
+
+    #[test]
+    fn white_noise_has_an_exponent_of_one_half() {
+        let white: Vec<f64> = (0..4000).map(|k| stream(0).normal_pair(k)[0]).collect();
+        assert!((fluctuation_exponent(&white) - 0.5).abs() < 0.07, "{}", fluctuation_exponent(&white));
+    }
+
+    #[test]
+    fn stride_times_have_long_range_correlation() {
+        let mut exponents = Vec::new();
+        for index in 0..20 {
+            let steps = straight(1201, 100 + index);
+            let strides: Vec<f64> =
+                steps[1..].chunks_exact(2).map(|pair| pair[0].duration + pair[1].duration).collect();
+            exponents.push(fluctuation_exponent(&strides));
+        }
+        let (mean, cv) = mean_and_cv(&exponents);
+        println!("exponent {mean:.3}, SD {:.3}", cv * mean);
+        assert!((0.6..1.0).contains(&mean), "{mean}");
+    }
+
+    #[test]
+    fn noise_has_its_spread_from_the_first_step_on() {
+        let cv = |number: usize, of: fn(&Shape) -> f64| {
+            let values: Vec<f64> =
+                (0..4000).map(|index| of(&straight(number as u32 + 1, index)[number])).collect();
+            mean_and_cv(&values).1
+        };
+        let length = |s: &Shape| s.landmarks[SPANS - 1].norm();
+        // The speed changes the length with its power 0.43 and the time with -0.57.
+        let (of_length, of_time) = ((0.43f64 * 2.3).hypot(1.5) / 100.0, (0.57f64 * 2.3).hypot(2.0) / 100.0);
+        for number in [0, 1, 20] {
+            let (l, t) = (cv(number, length), cv(number, |s| s.duration));
+            println!("step {number}: CV of length {l:.4} ({of_length:.4}), of time {t:.4} ({of_time:.4})");
+            assert!((l / of_length - 1.0).abs() < 0.06 && (t / of_time - 1.0).abs() < 0.06);
+        }
+    }
+}
