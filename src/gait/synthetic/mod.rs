@@ -21,7 +21,7 @@ use super::step::{Draws, Foot, Gait, Shape, Stance};
 use crate::base::geometry::Vec2;
 use crate::base::math;
 use noise::Noise;
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Share of the drawn steps that turn, half to each side; the others go straight on. The angle is the limit times the
 /// square of a uniform number. A planner that draws 24 candidates and keeps the best needs both: 18 straight ones, which
@@ -30,7 +30,7 @@ use std::f64::consts::PI;
 /// same foot: sway turns the end of a step by 6 degrees at 1.34 m/s, which the next step turns back.
 const TURNING: f64 = 0.25;
 /// Widest turn of a step, rad: when walking (50 degrees), and for a pivot (90 degrees).
-const WIDEST: [f64; 2] = [0.872_664_625_997_164_8, 1.570_796_326_794_896_6];
+const WIDEST: [f64; 2] = [0.872_664_625_997_164_8, FRAC_PI_2];
 /// Speed below which a step can be a pivot, m/s.
 const PIVOTS_BELOW: f64 = 0.7;
 /// Length of first and last steps, over the usual one.
@@ -238,4 +238,5 @@ impl Gait for SyntheticGait {
 }
 
 #[cfg(test)]
+#[allow(clippy::disallowed_methods, reason = "the platform's functions are the reference")]
 mod tests;

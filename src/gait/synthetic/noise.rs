@@ -54,6 +54,7 @@ impl Noise {
 }
 
 #[cfg(test)]
+#[allow(clippy::disallowed_methods, reason = "the platform's functions are the reference")]
 mod tests {
     use super::*;
     use crate::base::math;
@@ -133,7 +134,6 @@ mod tests {
             exponents.push(fluctuation_exponent(&strides));
         }
         let (mean, cv) = mean_and_cv(&exponents);
-        println!("exponent {mean:.3}, SD {:.3}", cv * mean);
         assert!((0.6..1.0).contains(&mean), "{mean}");
     }
 
@@ -149,7 +149,6 @@ mod tests {
         let (of_length, of_time) = ((0.43f64 * 2.3).hypot(1.5) / 100.0, (0.57f64 * 2.3).hypot(2.0) / 100.0);
         for number in [0, 1, 20] {
             let (l, t) = (cv(number, length), cv(number, |s| s.duration));
-            println!("step {number}: CV of length {l:.4} ({of_length:.4}), of time {t:.4} ({of_time:.4})");
             assert!((l / of_length - 1.0).abs() < 0.06 && (t / of_time - 1.0).abs() < 0.06);
         }
     }

@@ -108,7 +108,6 @@ fn sway_is_towards_the_stance_foot_and_falls_with_speed_as_measured() {
         let towards = |m: &Made| deviation(&m.shape) * side(m.foot);
         assert!(made[1..].iter().all(|m| towards(m) > 0.01));
         let (mean, _) = mean_and_cv(made[1..].iter().map(towards));
-        println!("{speed} m/s: {:.2} cm, measured {:.2} cm", mean * 100.0, 4.5 - 1.55 * speed);
         assert!((mean * 100.0 - (4.5 - 1.55 * speed)).abs() < 0.5, "{speed} {mean}");
     }
 }
@@ -144,7 +143,6 @@ fn a_long_straight_chain_stays_straight_at_the_speed_of_the_person() {
     let (speed, cv) = mean_and_cv(speeds.into_iter());
     assert!((speed - 1.0).abs() < 0.01 && cv < 0.01, "{speed} {cv}");
     let square = spread.iter().map(|a| a * a).sum::<f64>() / spread.len() as f64;
-    println!("speed {speed:.4} of the person's, heading {:.3} degrees", square.sqrt());
     assert!((square.sqrt() - 1.2).abs() < 0.1, "{}", square.sqrt());
 }
 
@@ -164,8 +162,7 @@ fn turns_keep_their_limits_and_reach_them() {
                 widest = widest.max(angle(turned(to, Vec2::new(from.x, -from.y))).abs());
             }
         }
-        println!("widest turn {:.2} of {limit} degrees", widest.to_degrees());
-        assert!((0.98 * limit..limit + 1e-9).contains(&widest.to_degrees()));
+        assert!((0.98 * limit..limit + 1e-9).contains(&widest.to_degrees()), "{widest}");
     }
 }
 
@@ -190,8 +187,7 @@ fn the_best_of_24_turns_by_90_degrees_in_three_steps() {
         turns.push(angle(turned(to, Vec2::new(from.x, -from.y))).to_degrees().rem_euclid(360.0));
     }
     let (mean, cv) = mean_and_cv(turns.into_iter());
-    println!("three steps turn by {mean:.1} degrees, SD {:.1}", mean * cv);
-    assert!((75.0..105.0).contains(&mean) && mean * cv < 30.0);
+    assert!((75.0..105.0).contains(&mean) && mean * cv < 30.0, "{mean} {}", mean * cv);
 }
 
 #[test]
@@ -212,7 +208,6 @@ fn the_direction_of_walking_turns_by_what_is_asked() {
         }
         let mean = turns.iter().sum::<f64>() / 400.0;
         let (speed, _) = mean_and_cv(speeds.into_iter());
-        println!("{degrees}: turns by {mean:.2}, at {speed:.3} m/s");
         assert!((mean - degrees).abs() < 1.0, "{degrees} {mean}");
         assert!((speed / 1.34 - slowing(degrees.to_radians())).abs() < 0.01);
     }
@@ -240,7 +235,6 @@ fn first_steps_begin_slowly_and_last_steps_end_at_their_place_at_rest() {
         for stance in [stance, Stance::default()] {
             let place = Vec2::new(length, 0.05 * length);
             let shape = gait.stop(&stance, Foot::Right, place);
-            println!("{length}: {:.3} s", shape.duration);
             assert!((shape.landmarks[SPANS - 1] - place).norm() < 1e-12);
             assert!(speed(&shape, 1.0) < 0.1);
             // It does not go back (sway aside) and does not speed up much.
