@@ -4,6 +4,7 @@
 //! at once, each with its place.
 
 pub mod geometry;
+pub mod mocap;
 pub mod outcomes;
 pub mod table;
 pub mod tracks;

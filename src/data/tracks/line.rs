@@ -38,7 +38,7 @@ impl LineError {
 }
 
 /// The blank-separated fields of a line, each with the character (from 1) at which it begins.
-pub(super) fn fields(line: &str) -> impl Iterator<Item = (usize, &str)> {
+pub(in crate::data) fn fields(line: &str) -> impl Iterator<Item = (usize, &str)> {
     let start = line.as_ptr() as usize;
     let (mut counted, mut column) = (0, 1);
     line.split_whitespace().map(move |field| {
@@ -50,7 +50,7 @@ pub(super) fn fields(line: &str) -> impl Iterator<Item = (usize, &str)> {
 }
 
 /// A field for a message: quoted, and cut where it is long.
-pub(super) fn quoted(field: &str) -> String {
+pub(in crate::data) fn quoted(field: &str) -> String {
     const LONGEST: usize = 24;
     if field.chars().count() <= LONGEST {
         return format!("`{}`", field.escape_debug());

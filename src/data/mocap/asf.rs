@@ -1,0 +1,141 @@
+//! Reader of ASF (Acclaim skeleton file): the bones of a person, for the motions in AMC files.
+//!
+//! A bone begins at the end of its parent. With `C = Rz Ry Rx` of its `axis` and `B = Rz Ry Rx` of its values, its rotation is
+//! `C B C^-1` within that of its parent. Limits and masses have no effect on a recorded motion and are ignored.
+
+use super::pose::{Channel, motion, numbers};
+use crate::data::tracks::LineError;
+use crate::data::tracks::line::{fields, quoted};
+use nalgebra::{Matrix3, Vector3};
+
+/// A skeleton.
+#[derive(Clone, Debug)]
+pub struct Asf {
+    /// The root, then the other bones.
+    pub(super) bones: Vec<Bone>,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Bone {
+    pub(super) name: String,
+    pub(super) parent: Option<usize>,
+    /// From its begin to its end, in the axes of the file.
+    along: Vector3<f64>,
+    length: f64,
+    axis: Matrix3<f64>,
+    pub(super) channels: Vec<Channel>,
+}
+
+impl Bone {
+    fn named(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            parent: None,
+            along: Vector3::zeros(),
+            length: 0.0,
+            axis: Matrix3::identity(),
+            channels: Vec::new(),
+        }
+    }
+
+    /// Shift, rotation and shift after it, with the values of its channels.
+    pub(super) fn link(&self, values: &[f64]) -> (Vector3<f64>, Matrix3<f64>, Vector3<f64>) {
+        // The channel that is written last turns first in the frame of the parent: B = Rz Ry Rx for `rx ry rz`.
+        let (shift, own) = motion(self.channels.iter().copied().zip(values.iter().copied()).rev());
+        (shift.unwrap_or_default(), self.axis * own * self.axis.transpose(), self.along * self.length)
+    }
+}
+
+impl Asf {
+    /// Reads a skeleton.
+    ///
+    /// # Errors
+    /// The first line that is not as the format says.
+    pub fn read(text: &str) -> Result<Self, LineError> {
+        let mut bones = vec![Bone::named("root")];
+        let mut section = "";
+        for (k, line) in text.lines().enumerate() {
+            let number = k + 1;
+            let mut rest = fields(line);
+            let Some((column, key)) = rest.next() else { continue };
+            let fault = |message: String| Err(LineError::at(number, column, message));
+            if key.starts_with(':') {
+                section = key;
+                continue;
+            }
+            let last = bones.len() - 1;
+            match (section, key) {
+                (":units", "angle") if rest.next().is_some_and(|(_, unit)| unit != "deg") => {
+                    return fault("angles must be in degrees (`deg`)".to_owned());
+                }
+                (":root", "position" | "orientation") => {
+                    if numbers(number, 3, key, rest)?.iter().any(|value| *value != 0.0) {
+                        return fault(format!("a root with {key} other than 0 0 0 is not supported"));
+                    }
+                }
+                (":root", "order") => bones[0].channels = channels(number, rest)?,
+                (":bonedata", "begin") => bones.push(Bone::named("")),
+                (":bonedata", "name" | "direction" | "length" | "axis" | "dof") if last == 0 => {
+                    return fault(format!("`{key}` stands outside of a bone (`begin` … `end`)"));
+                }
+                (":bonedata", "name") => bones[last].name = rest.next().unwrap_or_default().1.to_owned(),
+                (":bonedata", "direction") => {
+                    bones[last].along = Vector3::from_vec(numbers(number, 3, key, rest)?);
+                }
+                (":bonedata", "length") => bones[last].length = numbers(number, 1, key, rest)?[0],
+                (":bonedata", "axis") => bones[last].axis = axis(number, rest)?,
+                (":bonedata", "dof") => bones[last].channels = channels(number, rest)?,
+                (":hierarchy", "begin" | "end") => {}
+                (":hierarchy", parent) => {
+                    let mut find = |(column, name): (usize, &str)| {
+                        let at = bones.iter().position(|bone| bone.name == name);
+                        at.ok_or_else(|| {
+                            LineError::at(number, column, format!("the file has no bone {}", quoted(name)))
+                        })
+                    };
+                    let parent = find((column, parent))?;
+                    let children = rest.map(&mut find).collect::<Result<Vec<usize>, _>>()?;
+                    for child in children {
+                        bones[child].parent = Some(parent);
+                    }
+                }
+                _ => {}
+            }
+        }
+        if bones.len() == 1 {
+            return Err(LineError::of_file("the file has no bones; is it a skeleton (.asf)?"));
+        }
+        Ok(Self { bones })
+    }
+}
+
+fn channels<'a>(
+    line: usize,
+    fields: impl Iterator<Item = (usize, &'a str)>,
+) -> Result<Vec<Channel>, LineError> {
+    let channel = |(column, field): (usize, &str)| {
+        let channel = field.split_at_checked(1).and_then(|(kind, axis)| Channel::of(axis, kind, "t", "r"));
+        let fault = || format!("{} is not supported; use tx, ty, tz, rx, ry and rz", quoted(field));
+        channel.ok_or_else(|| LineError::at(line, column, fault()))
+    };
+    fields.map(channel).collect()
+}
+
+/// `C` of the line `axis`: three angles and their order, the one that turns first written first.
+fn axis<'a>(
+    line: usize,
+    fields: impl Iterator<Item = (usize, &'a str)>,
+) -> Result<Matrix3<f64>, LineError> {
+    let mut fields: Vec<(usize, &str)> = fields.collect();
+    let order = fields.pop().filter(|(_, order)| order.len() == 3 && order.is_ascii());
+    let turn = |name: char| Channel::of(name.encode_utf8(&mut [0; 4]), "r", "t", "r");
+    let turns: Option<Vec<Channel>> = order.and_then(|(_, order)| order.chars().map(turn).collect());
+    let angles = numbers(line, 3, "`axis`", fields.into_iter())?;
+    let turns =
+        turns.ok_or_else(|| LineError::whole(line, "`axis` needs three angles and their order, as in `0 0 20 XYZ`"))?;
+    // The angles are those around x, y and z, whatever their order.
+    let value = |turn: &Channel| match turn {
+        Channel::Turn(axis) | Channel::Move(axis) => angles[*axis],
+    };
+    Ok(motion(turns.iter().rev().map(|turn| (*turn, value(turn)))).1)
+}

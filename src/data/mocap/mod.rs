@@ -1,0 +1,19 @@
+//! Recorded walking: the root and the feet of one person over time, from motion capture.
+//!
+//! Readers for BVH, for ASF/AMC and for CSV tables of positions. They take text, since the caller opens the files.
+
+mod amc;
+mod asf;
+mod bvh;
+mod layout;
+mod pose;
+mod positions;
+mod read;
+mod take;
+mod takes;
+
+pub use asf::Asf;
+pub use layout::{Layout, Up};
+pub use read::read_takes;
+pub use take::{FootTrack, Take};
+pub use takes::{TakeRow, read_take_table};

@@ -1,0 +1,102 @@
+//! Reading the takes of one file, in the format that its extension says.
+
+use super::amc::read_amc;
+use super::asf::Asf;
+use super::bvh::read_bvh;
+use super::layout::{Layout, listed};
+use super::positions::{Clip, read_positions};
+use super::take::Take;
+use super::takes::{TakeRow, stem};
+use crate::data::tracks::LineError;
+use crate::data::tracks::line::quoted;
+
+/// The takes of a file with its text; an AMC file needs its skeleton. The rows are those of a table of takes that name the file:
+/// they choose clips and state rates. Without rows all takes of the file are read. Without a layout the preset of the format
+/// is used, for a BVH file the one whose joints it has.
+///
+/// # Errors
+/// Every line that is wrong, or else what the whole file lacks.
+pub fn read_takes(
+    file: &str,
+    text: &str,
+    skeleton: Option<&Asf>,
+    layout: Option<&Layout>,
+    rows: &[TakeRow],
+) -> Result<Vec<Take>, Vec<LineError>> {
+    let one = |message: String| Err(vec![LineError::of_file(message)]);
+    let extension = file.rsplit_once('.').map_or("", |(_, extension)| extension).to_ascii_lowercase();
+    let preset = match extension.as_str() {
+        "amc" => "cmu-asfamc",
+        "csv" => "csv",
+        "bvh" => "bvh",
+        _ => return one(format!("{} has no known extension (.bvh, .amc or .csv)", quoted(file))),
+    };
+    let Some(layout_or_preset) = layout.cloned().or_else(|| Layout::named(preset)) else {
+        return one(format!("the layout {preset} is unknown"));
+    };
+    let (frames, layout) = match (preset, skeleton) {
+        ("csv", _) => return clips(file, text, &layout_or_preset, rows),
+        ("bvh", _) => read_bvh(text, layout)?,
+        (_, Some(skeleton)) => (read_amc(skeleton, text, &layout_or_preset)?, layout_or_preset),
+        (_, None) => return one("an AMC file needs its skeleton (.asf)".to_owned()),
+    };
+    let take = match rows {
+        [] => frames.take(stem(file), "", None, &layout),
+        [row] => frames.take(&row.name, &row.subject, row.fps, &layout),
+        [a, b, ..] => {
+            return one(format!("the file has one take, but lines {} and {} of the table name it", a.line, b.line));
+        }
+    };
+    take.map(|take| vec![take]).map_err(|error| vec![error])
+}
+
+fn clips(file: &str, text: &str, layout: &Layout, rows: &[TakeRow]) -> Result<Vec<Take>, Vec<LineError>> {
+    let clips = read_positions(text, layout)?;
+    if rows.is_empty() {
+        let rate = |clip: &Clip| clip.frames.fps.map(|fps| (fps, clip.name.clone()));
+        let rates: Vec<(f64, String)> = clips.iter().filter_map(rate).collect();
+        let other = rates.iter().find(|(fps, _)| (fps / rates[0].0 - 1.0).abs() > 0.01);
+        if let (Some((fps, name)), None) = (other, layout.fps) {
+            let (first, clip) = &rates[0];
+            let message = format!(
+                "clips {} and {} have {first:.2} and {fps:.2} frames per second; list them in a table of takes",
+                quoted(clip),
+                quoted(name)
+            );
+            return Err(vec![LineError::of_file(message)]);
+        }
+        let name = |clip: &Clip| if clip.name.is_empty() { stem(file).to_owned() } else { clip.name.clone() };
+        let take = |clip: &Clip| {
+            let named = |error: LineError| LineError {
+                message: format!("clip {}: {}", quoted(&clip.name), error.message),
+                ..error
+            };
+            clip.frames.take(&name(clip), "", None, layout).map_err(named)
+        };
+        return collected(clips.iter().map(take));
+    }
+    let names: Vec<&str> = clips.iter().map(|clip| clip.name.as_str()).collect();
+    collected(rows.iter().map(|row| match clips.iter().find(|clip| clip.name == row.clip) {
+        Some(clip) => clip.frames.take(&row.name, &row.subject, row.fps, layout),
+        None => {
+            let (clip, line, names) = (quoted(&row.clip), row.line, listed(&names));
+            let message = format!("the file has no clip {clip} (line {line} of the table); it has {names}");
+            Err(LineError::of_file(message))
+        }
+    }))
+}
+
+/// All takes, or all errors.
+fn collected(takes: impl Iterator<Item = Result<Take, LineError>>) -> Result<Vec<Take>, Vec<LineError>> {
+    let (mut good, mut errors) = (Vec::new(), Vec::new());
+    for take in takes {
+        match take {
+            Ok(take) => good.push(take),
+            Err(error) => errors.push(error),
+        }
+    }
+    if good.is_empty() && errors.is_empty() {
+        errors.push(LineError::of_file("the file has no frames"));
+    }
+    if errors.is_empty() { Ok(good) } else { Err(errors) }
+}
