@@ -4,6 +4,7 @@
 mod curve;
 mod step;
 pub mod synthetic;
+pub mod steps;
 
 pub use curve::Curve;
 pub use step::{Draws, Foot, Gait, Phase, RecordedStep, SPANS, Shape, Stance};

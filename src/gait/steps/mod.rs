@@ -1,0 +1,12 @@
+//! Steps of recorded walks: when the feet touch the ground (Agethen et al. 2018, section 3.3), and the root path from each contact to
+//! the next one.
+
+mod contact;
+mod cut;
+mod landmarks;
+mod report;
+mod signal;
+
+pub use contact::Contact;
+pub use cut::{Cut, Dropped, NoSteps, cut};
+pub use report::{report, write_steps};
