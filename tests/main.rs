@@ -29,6 +29,7 @@ mod language;
 mod library;
 mod machines;
 mod mistakes;
+mod mocap;
 mod mutants;
 mod mutation;
 mod nesting;

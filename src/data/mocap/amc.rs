@@ -27,9 +27,8 @@ pub(super) fn read_amc(asf: &Asf, text: &str, layout: &Layout) -> Result<Frames,
         if let Some(bone) = (0..names.len()).find(lacks) {
             errors.push(LineError::whole(line, format!("frame {frame} lacks {}", quoted(names[bone]))));
         }
-        let places = chains.each_ref().map(|chain| {
-            end(chain.iter().map(|&at| asf.bones[at].link(&values[at])))
-        });
+        let places =
+            chains.each_ref().map(|chain| end(chain.iter().map(|&at| asf.bones[at].link(&values[at]))));
         frames.places.push((line, places));
         values.iter_mut().for_each(Vec::clear);
     };
@@ -54,7 +53,8 @@ pub(super) fn read_amc(asf: &Asf, text: &str, layout: &Layout) -> Result<Frames,
             let again = !values[bone].is_empty();
             match numbers(k + 1, count, &quoted(key), rest) {
                 Ok(_) if again || open.is_none() => {
-                    let fault = if again { "is in this frame twice" } else { "stands before the first frame" };
+                    let fault =
+                        if again { "is in this frame twice" } else { "stands before the first frame" };
                     errors.push(LineError::at(k + 1, column, format!("{} {fault}", quoted(key))));
                 }
                 Ok(found) => values[bone] = found,

@@ -122,17 +122,15 @@ fn channels<'a>(
 }
 
 /// `C` of the line `axis`: three angles and their order, the one that turns first written first.
-fn axis<'a>(
-    line: usize,
-    fields: impl Iterator<Item = (usize, &'a str)>,
-) -> Result<Matrix3<f64>, LineError> {
+fn axis<'a>(line: usize, fields: impl Iterator<Item = (usize, &'a str)>) -> Result<Matrix3<f64>, LineError> {
     let mut fields: Vec<(usize, &str)> = fields.collect();
     let order = fields.pop().filter(|(_, order)| order.len() == 3 && order.is_ascii());
     let turn = |name: char| Channel::of(name.encode_utf8(&mut [0; 4]), "r", "t", "r");
     let turns: Option<Vec<Channel>> = order.and_then(|(_, order)| order.chars().map(turn).collect());
     let angles = numbers(line, 3, "`axis`", fields.into_iter())?;
-    let turns =
-        turns.ok_or_else(|| LineError::whole(line, "`axis` needs three angles and their order, as in `0 0 20 XYZ`"))?;
+    let turns = turns.ok_or_else(|| {
+        LineError::whole(line, "`axis` needs three angles and their order, as in `0 0 20 XYZ`")
+    })?;
     // The angles are those around x, y and z, whatever their order.
     let value = |turn: &Channel| match turn {
         Channel::Turn(axis) | Channel::Move(axis) => angles[*axis],

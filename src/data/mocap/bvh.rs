@@ -103,9 +103,8 @@ fn hierarchy(text: &str) -> Result<(Vec<Joint>, usize), LineError> {
         .enumerate()
         .flat_map(|(k, line)| fields(line).map(move |(column, word)| (k + 1, column, word)));
     let (mut joints, mut open, mut columns) = (Vec::<Joint>::new(), Vec::<usize>::new(), 0);
-    let ends = |wanted: &str| {
-        LineError::whole(motion + 1, format!("the skeleton ends where {wanted} is expected"))
-    };
+    let ends =
+        |wanted: &str| LineError::whole(motion + 1, format!("the skeleton ends where {wanted} is expected"));
     let first = words.next().ok_or_else(|| ends("`HIERARCHY`"))?;
     if first.2 != "HIERARCHY" {
         return Err(expected(first, "`HIERARCHY`"));
@@ -146,7 +145,8 @@ fn hierarchy(text: &str) -> Result<(Vec<Joint>, usize), LineError> {
                 for _ in 0..count {
                     let word = next("a channel")?;
                     let channel = word.2.split_at_checked(1);
-                    let channel = channel.and_then(|(axis, kind)| Channel::of(axis, kind, "position", "rotation"));
+                    let channel =
+                        channel.and_then(|(axis, kind)| Channel::of(axis, kind, "position", "rotation"));
                     let wanted = "a channel such as `Xposition` or `Zrotation`";
                     joints[at].channels.push(channel.ok_or_else(|| expected(word, wanted))?);
                 }

@@ -12,6 +12,9 @@ mod read;
 mod take;
 mod takes;
 
+#[cfg(test)]
+mod tests;
+
 pub use asf::Asf;
 pub use layout::{Layout, Up};
 pub use read::read_takes;

@@ -38,9 +38,7 @@ fn turn(axis: usize, degrees: f64) -> Matrix3<f64> {
 }
 
 /// The shift and the rotation (the product from the left to the right) of channels and their values in degrees.
-pub(super) fn motion(
-    channels: impl Iterator<Item = (Channel, f64)>,
-) -> (Option<Vector3<f64>>, Matrix3<f64>) {
+pub(super) fn motion(channels: impl Iterator<Item = (Channel, f64)>) -> (Option<Vector3<f64>>, Matrix3<f64>) {
     let (mut shift, mut rotation) = (None, Matrix3::identity());
     for (channel, value) in channels {
         match channel {
@@ -52,9 +50,7 @@ pub(super) fn motion(
 }
 
 /// The end of a chain of links, each a shift, a rotation, and a shift after it.
-pub(super) fn end(
-    links: impl Iterator<Item = (Vector3<f64>, Matrix3<f64>, Vector3<f64>)>,
-) -> [f64; 3] {
+pub(super) fn end(links: impl Iterator<Item = (Vector3<f64>, Matrix3<f64>, Vector3<f64>)>) -> [f64; 3] {
     let (mut place, mut rotation) = (Vector3::zeros(), Matrix3::identity());
     for (before, own, after) in links {
         place += rotation * before;

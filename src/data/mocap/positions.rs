@@ -28,8 +28,7 @@ pub(super) fn table<'t, const N: usize>(
     let mut reader = ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
     let header = reader.headers().map_err(|error| fault(&error))?.clone();
     let at = |name: &String| name.split('|').find_map(|name| header.iter().position(|field| field == name));
-    let lacking: Vec<&str> =
-        wanted.iter().filter(|name| at(name).is_none()).map(String::as_str).collect();
+    let lacking: Vec<&str> = wanted.iter().filter(|name| at(name).is_none()).map(String::as_str).collect();
     if lacking.is_empty() {
         return Ok((reader, wanted.each_ref().map(|name| at(name).unwrap_or_default())));
     }
@@ -106,7 +105,8 @@ pub(super) fn read_positions(text: &str, layout: &Layout) -> Result<Vec<Clip>, V
         if let Some(last) = clip.marks.last() {
             let good = if timed { mark > *last } else { mark == last + 1.0 };
             if !good {
-                let message = format!("{} {mark} follows {last} in its clip", if timed { "time" } else { "frame" });
+                let message =
+                    format!("{} {mark} follows {last} in its clip", if timed { "time" } else { "frame" });
                 errors.push(LineError::at(line, place.0, message));
             }
         }

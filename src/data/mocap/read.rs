@@ -44,7 +44,10 @@ pub fn read_takes(
         [] => frames.take(stem(file), "", None, &layout),
         [row] => frames.take(&row.name, &row.subject, row.fps, &layout),
         [a, b, ..] => {
-            return one(format!("the file has one take, but lines {} and {} of the table name it", a.line, b.line));
+            return one(format!(
+                "the file has one take, but lines {} and {} of the table name it",
+                a.line, b.line
+            ));
         }
     };
     take.map(|take| vec![take]).map_err(|error| vec![error])

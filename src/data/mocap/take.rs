@@ -85,7 +85,8 @@ impl Frames {
         }
         if take.root.len() < 2 {
             let (count, skip) = (self.places.len(), layout.skip);
-            let message = format!("a take needs at least 2 frames (got {count}, of which {skip} are skipped)");
+            let message =
+                format!("a take needs at least 2 frames (got {count}, of which {skip} are skipped)");
             return Err(LineError::of_file(message));
         }
         Ok(take)
@@ -100,9 +101,11 @@ impl Frames {
             (Some(fps), _) | (None, Some(fps)) => {
                 format!("the frame rate must lie between 1 and 10000 per second (got {fps})")
             }
-            (None, None) => "the file has no frame rate; state it, or list the file in a table of takes with \
+            (None, None) => {
+                "the file has no frame rate; state it, or list the file in a table of takes with \
                              column `fps`"
-                .to_owned(),
+                    .to_owned()
+            }
         };
         Err(LineError::of_file(message))
     }

@@ -47,7 +47,9 @@ impl Contact {
                 let top = signal.iter().copied().max_by(f64::total_cmp).unwrap_or_default();
                 // Shares of the largest value, so that speeds and heights can be compared.
                 let scale = if top > 0.0 { top } else { 1.0 };
-                for ((most, value), smooth) in most.iter_mut().zip(&signal).zip(smoothed(&signal, SIGMA * fps)) {
+                for ((most, value), smooth) in
+                    most.iter_mut().zip(&signal).zip(smoothed(&signal, SIGMA * fps))
+                {
                     let excess = (value - smooth - offset) / scale;
                     *most = if excess > *most { excess } else { *most };
                 }
@@ -70,7 +72,8 @@ impl Contact {
                 }
                 let end = excess[k..].iter().position(|e| *e >= 0.0).map_or(excess.len(), |more| k + more);
                 // Where the excess is 0 between two frames.
-                let crossing = |a: usize, b: usize| (a as f64 + excess[a] / (excess[a] - excess[b])) / take.fps;
+                let crossing =
+                    |a: usize, b: usize| (a as f64 + excess[a] / (excess[a] - excess[b])) / take.fps;
                 let from = if k > 0 { crossing(k - 1, k) } else { 0.0 };
                 let to = if end < excess.len() { crossing(end - 1, end) } else { take.duration() };
                 match supports[first..].last_mut() {

@@ -22,7 +22,8 @@ const LENGTHS: (f64, f64) = (0.05, 2.0);
 /// The distance between ankle and toe of a person, m.
 const FEET: (f64, f64) = (0.05, 0.45);
 /// Other units of length that files have, m, and their inverses.
-const UNITS: [f64; 10] = [0.001, 0.01, 0.0254, 0.0254 / 0.45, 0.3048, 1.0 / 0.3048, 0.45 / 0.0254, 1.0 / 0.0254, 100.0, 1000.0];
+const UNITS: [f64; 10] =
+    [0.001, 0.01, 0.0254, 0.0254 / 0.45, 0.3048, 1.0 / 0.3048, 0.45 / 0.0254, 1.0 / 0.0254, 100.0, 1000.0];
 
 /// Why a step was dropped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -110,8 +111,8 @@ pub fn cut(take: &Take, contact: Contact) -> Result<Cut, NoSteps> {
         let length = shape.curve().length();
         let reason = match phase {
             Phase::First if stop.is_some() => Some(Dropped::Alone),
-            Phase::Inner | Phase::Last if before.foot == end.foot => Some(Dropped::SameFoot),
             Phase::Inner | Phase::Last if !before.seen => Some(Dropped::Begun),
+            Phase::Inner | Phase::Last if before.foot == end.foot => Some(Dropped::SameFoot),
             _ if shape.duration > LONGEST_TIME => Some(Dropped::Slow),
             _ if length < LENGTHS.0 => Some(Dropped::Short),
             _ if length > LENGTHS.1 => Some(Dropped::Long),
@@ -165,9 +166,11 @@ fn stands(take: &Take, supports: &[Support]) -> Vec<(f64, f64)> {
 
 /// What is wrong with the unit of length; see [`NoSteps`].
 fn unit(take: &Take) -> Option<(f64, f64)> {
-    let lengths = take.feet.iter().flat_map(|foot| foot.ankle.iter().zip(&foot.toe)).map(|(a, t)| {
-        (0..3).map(|k| (a[k] - t[k]) * (a[k] - t[k])).sum::<f64>().sqrt()
-    });
+    let lengths = take
+        .feet
+        .iter()
+        .flat_map(|foot| foot.ankle.iter().zip(&foot.toe))
+        .map(|(a, t)| (0..3).map(|k| (a[k] - t[k]) * (a[k] - t[k])).sum::<f64>().sqrt());
     let foot = percentile(&lengths.collect::<Vec<f64>>(), 0.5);
     let usual = (FEET.0 * FEET.1).sqrt();
     let off = |factor: &f64| {

@@ -7,6 +7,9 @@ mod landmarks;
 mod report;
 mod signal;
 
+#[cfg(test)]
+mod tests;
+
 pub use contact::Contact;
 pub use cut::{Cut, Dropped, NoSteps, cut};
 pub use report::{report, write_steps};

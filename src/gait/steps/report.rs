@@ -13,10 +13,7 @@ const COLUMNS: [&str; 11] =
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn write_steps<'a>(
-    out: impl Write,
-    steps: impl IntoIterator<Item = &'a RecordedStep>,
-) -> io::Result<()> {
+pub fn write_steps<'a>(out: impl Write, steps: impl IntoIterator<Item = &'a RecordedStep>) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
     table.write_record(COLUMNS)?;
     for step in steps {
@@ -59,7 +56,13 @@ pub fn report<'a>(cuts: impl IntoIterator<Item = &'a Result<Cut, NoSteps>>) -> S
                 add(&mut all.dropped, &cut.dropped);
             }
             Err(none) => {
-                lines.push([none.take.clone(), "0".to_owned(), String::new(), String::new(), none.to_string()]);
+                lines.push([
+                    none.take.clone(),
+                    "0".to_owned(),
+                    String::new(),
+                    String::new(),
+                    none.to_string(),
+                ]);
                 add(&mut all.dropped, &none.dropped);
             }
         }
@@ -85,7 +88,8 @@ fn line(name: &str, cut: &Cut) -> [String; 5] {
     let count = cut.steps.len();
     let mean = |of: fn(&RecordedStep) -> f64| cut.steps.iter().map(of).sum::<f64>() / count as f64;
     let show = |text: String| if count > 0 { text } else { String::new() };
-    let dropped: Vec<String> = cut.dropped.iter().map(|(reason, count)| format!("{count} {reason}")).collect();
+    let dropped: Vec<String> =
+        cut.dropped.iter().map(|(reason, count)| format!("{count} {reason}")).collect();
     [
         name.to_owned(),
         count.to_string(),

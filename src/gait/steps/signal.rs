@@ -11,7 +11,9 @@ pub(super) fn speed(points: &[[f64; 3]], fps: f64) -> Vec<f64> {
     let last = points.len().saturating_sub(1);
     let at = |k: usize| {
         let (a, b) = (k.saturating_sub(half), (k + half).min(last));
-        let square: f64 = (0..3).map(|axis| (points[b][axis] - points[a][axis]) * (points[b][axis] - points[a][axis])).sum();
+        let square: f64 = (0..3)
+            .map(|axis| (points[b][axis] - points[a][axis]) * (points[b][axis] - points[a][axis]))
+            .sum();
         if a < b { square.sqrt() * fps / (b - a) as f64 } else { 0.0 }
     };
     (0..points.len()).map(at).collect()
