@@ -69,7 +69,8 @@ impl Asf {
                     return fault("angles must be in degrees (`deg`)".to_owned());
                 }
                 (":root", "position" | "orientation") => {
-                    if numbers(number, 3, key, rest)?.iter().any(|value| *value != 0.0) {
+                    let moved = numbers(number, 3, key, rest)?;
+                    if moved != [0.0; 3] {
                         return fault(format!("a root with {key} other than 0 0 0 is not supported"));
                     }
                 }
@@ -78,7 +79,9 @@ impl Asf {
                 (":bonedata", "name" | "direction" | "length" | "axis" | "dof") if last == 0 => {
                     return fault(format!("`{key}` stands outside of a bone (`begin` … `end`)"));
                 }
-                (":bonedata", "name") => bones[last].name = rest.next().unwrap_or_default().1.to_owned(),
+                (":bonedata", "name") => {
+                    rest.next().unwrap_or_default().1.clone_into(&mut bones[last].name);
+                }
                 (":bonedata", "direction") => {
                     bones[last].along = Vector3::from_vec(numbers(number, 3, key, rest)?);
                 }

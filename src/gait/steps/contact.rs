@@ -34,7 +34,7 @@ impl Contact {
     /// By how much a foot exceeds the thresholds in each frame; negative in contact.
     fn excess(self, foot: &FootTrack, fps: f64) -> Vec<f64> {
         if self == Self::Rest {
-            let middle = |(a, t): (&[f64; 3], &[f64; 3])| std::array::from_fn(|k| (a[k] + t[k]) / 2.0);
+            let middle = |(a, t): (&[f64; 3], &[f64; 3])| std::array::from_fn(|k| f64::midpoint(a[k], t[k]));
             let middles: Vec<[f64; 3]> = foot.ankle.iter().zip(&foot.toe).map(middle).collect();
             return speed(&middles, fps).iter().map(|speed| speed - REST_SPEED).collect();
         }

@@ -66,7 +66,7 @@ pub struct Cut {
 
 /// A take without steps.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("take `{take}` has no steps{}{}", reasons(.dropped), unit_hint(.unit))]
+#[error("take `{take}` has no steps{}{}", reasons(.dropped), unit_hint(*.unit))]
 pub struct NoSteps {
     /// The take.
     pub take: String,
@@ -81,7 +81,7 @@ fn reasons(dropped: &BTreeMap<Dropped, usize>) -> String {
     if all.is_empty() { String::new() } else { format!(" ({})", all.join(", ")) }
 }
 
-fn unit_hint(unit: &Option<(f64, f64)>) -> String {
+fn unit_hint(unit: Option<(f64, f64)>) -> String {
     unit.map_or_else(String::new, |(foot, factor)| {
         format!(": its feet are {foot:.3} m from ankle to toe; multiply the unit by {factor:.4}")
     })
