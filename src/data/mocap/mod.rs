@@ -13,6 +13,7 @@ mod take;
 mod takes;
 
 #[cfg(test)]
+#[allow(clippy::disallowed_methods, reason = "the platform's functions are the reference")]
 mod tests;
 
 pub use asf::Asf;

@@ -8,6 +8,7 @@ mod report;
 mod signal;
 
 #[cfg(test)]
+#[allow(clippy::disallowed_methods, reason = "the platform's functions are the reference")]
 mod tests;
 
 pub use contact::Contact;

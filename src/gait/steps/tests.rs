@@ -31,7 +31,7 @@ fn steps_are_as_they_were_made() {
             assert!((expected - 1..=expected + 1).contains(&cut.steps.len()), "{contact:?} {}", take.name);
             for (k, step) in cut.steps.iter().enumerate() {
                 let near = |a: f64, b: f64, e: f64| {
-                    assert!((a - b).abs() < e, "{contact:?} {} {k}: {a} {b}", take.name)
+                    assert!((a - b).abs() < e, "{contact:?} {} {k}: {a} {b}", take.name);
                 };
                 near(step.shape.duration, 0.5, 0.01);
                 near(step.shape.curve().length(), 0.6, 0.015);
