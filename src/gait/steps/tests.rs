@@ -2,6 +2,7 @@
 
 use super::signal::{percentile, smoothed};
 use super::*;
+use crate::base::geometry::Vec2;
 use crate::data::mocap::{Asf, FootTrack, Layout, Take, read_takes};
 use crate::gait::{Foot, Phase};
 
@@ -95,7 +96,7 @@ fn a_wrong_unit_is_recognised() {
     // Somebody who stands has feet of the right size, and makes no steps.
     let places = vec![[0.0, 0.1, 0.08]; 50];
     let foot = FootTrack { toe: vec![[0.12, 0.1, 0.03]; 50], ankle: places };
-    let still = Take { root: vec![Default::default(); 50], feet: [foot.clone(), foot], ..take };
+    let still = Take { root: vec![Vec2::zeros(); 50], feet: [foot.clone(), foot], ..take };
     let none = cut(&still, Contact::Adaptive).unwrap_err();
     assert_eq!((none.unit, none.to_string()), (None, "take `circle` has no steps".to_owned()));
     assert!(cut(&still, Contact::Rest).is_err());
@@ -139,7 +140,7 @@ fn steps_are_written_as_a_table_and_reported() {
         .filter(|line| line.starts_with("circle"))
         .map(|line| line.split(',').nth(8).unwrap().parse().unwrap())
         .collect();
-    let mean = (turns[0] + turns[1]) / 2.0;
+    let mean = f64::midpoint(turns[0], turns[1]);
     assert!((mean - 11.46).abs() < 1.0, "{mean}");
     let report = report(&cuts);
     let lines: Vec<&str> = report.lines().collect();
