@@ -20,6 +20,7 @@
 //! | which of k moves | [`ranking`] |
 //! | P far below one in a million | [`splitting`] |
 //! | has P drifted | [`Cusum`] |
+//! | do two samples have one distribution | [`twosample`] |
 
 pub mod calibration;
 pub mod counts;
@@ -39,6 +40,7 @@ pub mod sequential;
 pub mod spec;
 pub mod splitting;
 pub mod test;
+pub mod twosample;
 mod width;
 
 pub use counts::{Counts, Outcome};
