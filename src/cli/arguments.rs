@@ -40,6 +40,8 @@ pub(super) enum Command {
     Simulate(Box<Simulate>),
     /// Write the paths and speed profiles of walkers that plan.
     Path(Box<PathCommand>),
+    /// Compare two sets of recorded or simulated walks.
+    CompareWalks(CompareWalks),
     /// Detect a change of the probability of recorded or streamed outcomes.
     Drift(Drift),
     /// Show how a scenario and its property files were understood.
@@ -175,6 +177,42 @@ pub(super) enum TableFormat {
     Json,
     /// One object per line.
     Jsonl,
+}
+
+/// `smc compare-walks`
+#[derive(Args, Debug)]
+pub(super) struct CompareWalks {
+    /// The first set, such as recorded walks: a CSV file with the columns `walk`, `t` (s), `x` and `y` (m), and perhaps
+    /// `leg`; `-` for standard input.
+    #[arg(value_name = "A.csv")]
+    pub(super) first: String,
+    /// The second set, such as simulated walks.
+    #[arg(value_name = "B.csv")]
+    pub(super) second: String,
+    /// Walks with the same name belong together: also test whether they differ (Wilcoxon).
+    #[arg(long)]
+    pub(super) paired: bool,
+    /// Also write the distance of each point to the nearest one of the other set.
+    #[arg(long, value_name = "FILE.csv")]
+    pub(super) points: Option<PathBuf>,
+    /// Seed of permutations, resamples and halves.
+    #[arg(long, default_value_t = 0)]
+    pub(super) seed: u64,
+    /// Format of the comparison.
+    #[arg(long, value_enum, default_value_t = WalksFormat::Text)]
+    pub(super) format: WalksFormat,
+    /// File to write instead of standard output.
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
+}
+
+/// Formats of `smc compare-walks`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum WalksFormat {
+    /// For people.
+    Text,
+    /// One object; see docs/schema/walks.schema.json.
+    Json,
 }
 
 /// `smc drift`

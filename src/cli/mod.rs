@@ -2,6 +2,7 @@
 
 mod arguments;
 mod check;
+mod compare_walks;
 mod complaint;
 mod deadline;
 mod drift;
@@ -120,6 +121,7 @@ fn dispatch(arguments: &Arguments) -> Exit {
         Command::Check(command) => check::run(command, colors),
         Command::Simulate(command) => simulate::run(command, colors),
         Command::Path(command) => path::run(command, colors),
+        Command::CompareWalks(command) => compare_walks::run(command, colors),
         Command::Drift(command) => drift::run(command, colors),
         Command::Show(command) => show::run(command, colors),
         Command::Fmt(command) => format::run(command, colors),

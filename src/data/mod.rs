@@ -8,3 +8,4 @@ pub mod mocap;
 pub mod outcomes;
 pub mod table;
 pub mod tracks;
+pub mod walks;

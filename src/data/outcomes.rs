@@ -12,7 +12,7 @@ pub enum Column {
 }
 
 /// The cells of a line; a comma between quotes parts nothing.
-fn cells(line: &str) -> Vec<&str> {
+pub(super) fn cells(line: &str) -> Vec<&str> {
     let mut quoted = false;
     let parts = line.split(move |c: char| {
         quoted ^= c == '"';

@@ -1,6 +1,7 @@
 //! Floor 4: how people step (Agethen, Gaisbauer, Manns, Link, Rukzio 2018): steps learned from motion capture or made from
-//! published relations, and walks that are chains of them.
+//! published relations, and walks that are chains of them; and sets of walks compared.
 
+pub mod compare;
 mod curve;
 mod step;
 pub mod synthetic;

@@ -19,6 +19,7 @@ pub mod paths;
 mod phrase;
 pub mod svg;
 pub mod text;
+pub mod walks;
 
 pub use exit::{ExitCode, exit_code};
 pub use palette::Palette;

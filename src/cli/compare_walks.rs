@@ -1,0 +1,128 @@
+//! `smc compare-walks`: are two sets of recorded or simulated walks alike?
+
+use super::arguments::{CompareWalks, WalksFormat};
+use super::complaint;
+use super::inputs;
+use super::output;
+use super::terminal::{Colors, print};
+use crate::base::visible::visible;
+use crate::data::tracks::LineError;
+use crate::data::walks::{Walk, read_walks};
+use crate::gait::compare::{compare, has_pairs};
+use crate::report::ExitCode as Exit;
+use crate::report::walks::{self, WalkSet};
+use crate::syntax::codes::Code;
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::parse::decode;
+use crate::syntax::source::{Source, SourceId, Span};
+use std::path::{Path, PathBuf};
+
+/// Errors of a file that are shown.
+const SHOWN: usize = 5;
+
+/// What a table looks like.
+const HINT: &str = "write a table with the columns `walk,t,x,y`, perhaps `leg`: seconds and metres, one row for each \
+                    point, at least two walks";
+
+/// Runs the command.
+pub(super) fn run(arguments: &CompareWalks, colors: Colors) -> Exit {
+    let mut sources = Vec::new();
+    match answer(arguments, &mut sources) {
+        Ok(()) => Exit::Success,
+        Err(errors) => {
+            complaint::tell_all(&errors, &sources, colors);
+            Exit::Wrong
+        }
+    }
+}
+
+fn answer(arguments: &CompareWalks, sources: &mut Vec<Source>) -> Result<(), Vec<Diagnostic>> {
+    let files = [&arguments.first, &arguments.second];
+    if files.iter().all(|file| *file == "-") {
+        return Err(vec![complaint::input("standard input can be read only once")]);
+    }
+    let paths = files.map(|file| PathBuf::from(if file == "-" { inputs::STDIN } else { file }));
+    for written in [&arguments.output, &arguments.points] {
+        output::guard(written.as_deref(), &paths).map_err(|error| vec![error])?;
+    }
+    let first = read(&arguments.first, sources);
+    let second = read(&arguments.second, sources);
+    let (first, second) = match (first, second) {
+        (Ok(first), Ok(second)) => (first, second),
+        (first, second) => {
+            return Err([first.err(), second.err()].into_iter().flatten().flatten().collect());
+        }
+    };
+    // The first walk shows whether a table has legs.
+    if first[0].leg.is_some() != second[0].leg.is_some() {
+        let without = usize::from(first[0].leg.is_some());
+        let title = format!("`{}` has no column `leg`, but the other table has", sources[without].name);
+        let hint = "add the column, or remove it from the other table";
+        return Err(vec![Diagnostic::error(Code::E0708, header(&sources[without]), title).hint(hint)]);
+    }
+    if arguments.paired && !has_pairs(&first, &second) {
+        let hint = "give walks that belong together one name in both tables, or remove `--paired`";
+        return Err(vec![complaint::argument("`--paired` finds no walk with one name in both tables", hint)]);
+    }
+    let found = compare(&first, &second, arguments.paired, arguments.seed);
+    let sets = [(&arguments.first, &first), (&arguments.second, &second)]
+        .map(|(file, walks)| WalkSet { file: inputs::shown(file), walks });
+    if let Some(path) = &arguments.points {
+        output::write(path, |out| walks::write_points(out, &found.whole, sets))
+            .map_err(|error| unwritten(path, &error))?;
+    }
+    let text = match arguments.format {
+        WalksFormat::Text => visible(&walks::to_text(&found, sets)).into_owned(),
+        WalksFormat::Json => walks::to_json(&found, sets, arguments.seed),
+    };
+    match &arguments.output {
+        Some(path) => {
+            output::write(path, |out| out.write_all(text.as_bytes())).map_err(|error| unwritten(path, &error))
+        }
+        None => print(&text).map_err(|reason| vec![complaint::output(reason)]),
+    }
+}
+
+fn unwritten(path: &Path, error: &std::io::Error) -> Vec<Diagnostic> {
+    vec![complaint::output(format!("`{}` cannot be written: {error}", path.display()))]
+}
+
+/// The walks of a file. Its text is kept for the places of errors.
+fn read(file: &str, sources: &mut Vec<Source>) -> Result<Vec<Walk>, Vec<Diagnostic>> {
+    let id = SourceId(sources.len() as u16);
+    let name = inputs::shown(file);
+    let bytes = inputs::read(file).map_err(|reason| vec![complaint::input(reason)])?;
+    let source = match decode(id, name, &bytes) {
+        Ok(source) => source,
+        Err(error) => {
+            sources.push(Source::new(id, name, String::from_utf8_lossy(&bytes)));
+            return Err(vec![error]);
+        }
+    };
+    let walks = read_walks(&source.text).map_err(|errors| {
+        let shown = errors.iter().take(SHOWN).map(|error| {
+            Diagnostic::error(Code::E0708, span(&source, error), error.message.clone()).hint(HINT)
+        });
+        shown.collect()
+    });
+    sources.push(source);
+    walks
+}
+
+/// The cell or the line of an error.
+fn span(source: &Source, error: &LineError) -> Span {
+    let lines = source.text.split_inclusive('\n');
+    let start: usize = lines.clone().take(error.line.saturating_sub(1)).map(str::len).sum();
+    let line = lines.clone().nth(error.line.saturating_sub(1)).unwrap_or_default().trim_end();
+    let Some(column) = error.column else { return Span::new(source.id, start, start + line.len()) };
+    let before = line.char_indices().nth(column - 1).map_or(line.len(), |(at, _)| at);
+    let cell = line[before..].split(',').next().unwrap_or_default();
+    Span::new(source.id, start + before, start + before + cell.len())
+}
+
+/// The line of a table that names its columns.
+fn header(source: &Source) -> Span {
+    let is_header = |line: &str| !line.trim().is_empty() && !line.starts_with('#');
+    let line = source.text.lines().position(is_header).unwrap_or(0) + 1;
+    span(source, &LineError::whole(line, ""))
+}

@@ -1,0 +1,188 @@
+//! Two sets of walks compared, as text, JSON and the distances of points: `smc compare-walks`.
+
+use super::number::{brief, count, counted, interval};
+use crate::data::walks::Walk;
+use crate::engine::outcome::Interval;
+use crate::gait::compare::{
+    CONFIDENCE, Comparison, Comparisons, MOST_WALKS, Measure, POINTS, RESAMPLES, SHUFFLES,
+};
+use crate::stats::twosample::{EnergyTest, SpreadRatio, Summary};
+use serde_json::{Value, json};
+use std::fmt::Write as _;
+
+/// A set of walks and the name of its file.
+#[derive(Clone, Copy, Debug)]
+pub struct WalkSet<'a> {
+    /// Name of the file.
+    pub file: &'a str,
+    /// Its walks.
+    pub walks: &'a [Walk],
+}
+
+impl WalkSet<'_> {
+    fn points(&self) -> u64 {
+        self.walks.iter().map(|walk| walk.points.len() as u64).sum()
+    }
+}
+
+/// For people. Lengths in metres, times in seconds.
+pub fn to_text(found: &Comparisons, sets: [WalkSet<'_>; 2]) -> String {
+    let mut out = String::new();
+    for (name, set) in ["A", "B"].into_iter().zip(sets) {
+        let (walks, points) = (counted(set.walks.len() as u64, "walk"), counted(set.points(), "point"));
+        let _ = writeln!(out, "{name}  {}  ({walks}, {points})", set.file);
+    }
+    table(&mut out, &found.whole);
+    for leg in &found.legs {
+        table(&mut out, leg);
+    }
+    for (leg, [a, b]) in &found.left_out {
+        let _ =
+            writeln!(out, "\nLeg {leg} is not compared: A has {}, B has {b}.", counted(*a as u64, "walk"));
+    }
+    out
+}
+
+fn row(out: &mut String, name: &str, cells: &[String]) {
+    let cells: String = cells.iter().map(|cell| format!(" {cell:>9}")).collect();
+    let _ = writeln!(out, "  {name:<24}{cells}");
+}
+
+fn heads(out: &mut String, title: &str, heads: &[&str]) {
+    out.push('\n');
+    row(out, title, &heads.iter().map(|head| (*head).to_owned()).collect::<Vec<_>>());
+}
+
+fn table(out: &mut String, found: &Comparison) {
+    let sizes = found.length.sets.map(|set| count(set.count as u64));
+    let name = found.leg.as_ref().map_or_else(|| "All walks".to_owned(), |leg| format!("Leg {leg}"));
+    let _ = writeln!(out, "\n{name}: {} of A, {} of B", sizes[0], sizes[1]);
+    heads(out, "nearest point (m)", &["mean", "median", "IQR", "95 %", "max"]);
+    let clouds = [("from B to A", &found.clouds[1]), ("from A to B", &found.clouds[0])];
+    for (name, s) in clouds.into_iter().chain([("between halves of A", &found.halves)]) {
+        row(out, name, &[s.mean, s.median, s.iqr(), s.p95, s.max].map(brief));
+    }
+    heads(out, "each walk", &["A median", "A IQR", "B median", "B IQR", "KS D", "p"]);
+    let measures = [("length (m)", &found.length), ("duration (s)", &found.duration)];
+    for (name, Measure { sets: [a, b], test, .. }) in measures {
+        row(out, name, &[a.median, a.iqr(), b.median, b.iqr(), test.d, test.p].map(brief));
+    }
+    heads(out, "IQR of B / IQR of A", &["ratio", "95 % interval"]);
+    for (name, measure) in measures {
+        let spread = measure.spread.map_or_else(
+            || vec!["undefined".to_owned()],
+            |SpreadRatio { ratio, low, high }| {
+                let shown = interval(&Interval { estimate: ratio, low, high }, None);
+                vec![shown.estimate, shown.interval]
+            },
+        );
+        row(out, name, &spread);
+    }
+    heads(out, "energy distance (m)", &["distance", "p"]);
+    for (name, test) in [("path", found.path), ("path and duration", found.pace)] {
+        row(out, name, &[brief(test.distance), brief(test.p)]);
+    }
+    if measures.iter().any(|(_, measure)| measure.paired.is_some()) {
+        heads(out, "pairs, B - A", &["pairs", "median", "W", "p"]);
+    }
+    for (name, measure) in measures {
+        if let Some(test) = measure.paired {
+            row(out, name, &[count(test.pairs as u64), brief(test.median), brief(test.w), brief(test.p)]);
+        }
+    }
+}
+
+/// One object; `docs/schema/walks.schema.json` describes it.
+pub fn to_json(found: &Comparisons, sets: [WalkSet<'_>; 2], seed: u64) -> String {
+    let set =
+        |set: WalkSet<'_>| json!({ "file": set.file, "walks": set.walks.len(), "points": set.points() });
+    let all = json!({
+        "schema": 1,
+        "a": set(sets[0]),
+        "b": set(sets[1]),
+        "method": {
+            "seed": seed,
+            "permutations": SHUFFLES,
+            "resamples": RESAMPLES,
+            "confidence": CONFIDENCE,
+            "path_points": POINTS,
+            "energy_walks_at_most": MOST_WALKS,
+        },
+        "all": comparison(&found.whole),
+        "legs": found.legs.iter().map(comparison).collect::<Vec<_>>(),
+        "legs_left_out": found
+            .left_out
+            .iter()
+            .map(|(leg, [a, b])| json!({ "leg": leg, "walks": { "a": a, "b": b } }))
+            .collect::<Vec<_>>(),
+    });
+    format!("{all:#}\n")
+}
+
+fn summary(s: &Summary) -> Value {
+    json!({
+        "count": s.count,
+        "mean": s.mean,
+        "median": s.median,
+        "quartiles": [s.low_quartile, s.high_quartile],
+        "iqr": s.iqr(),
+        "p95": s.p95,
+        "max": s.max,
+    })
+}
+
+fn comparison(found: &Comparison) -> Value {
+    let energy = |test: EnergyTest| json!({ "distance_m": test.distance, "p": test.p });
+    let measure = |measure: &Measure| {
+        json!({
+            "a": summary(&measure.sets[0]),
+            "b": summary(&measure.sets[1]),
+            "kolmogorov_smirnov": { "d": measure.test.d, "p": measure.test.p },
+            // An infinite end has no number in JSON: it is null.
+            "iqr_ratio": measure.spread.map(|s| json!({ "ratio": s.ratio, "low": s.low, "high": s.high })),
+            "signed_rank": measure.paired.map(|test| json!({
+                "pairs": test.pairs,
+                "equal": test.equal,
+                "median_difference": test.median,
+                "w": test.w,
+                "p": test.p,
+            })),
+        })
+    };
+    json!({
+        "leg": found.leg,
+        "cloud_m": {
+            "b_to_a": summary(&found.clouds[1]),
+            "a_to_b": summary(&found.clouds[0]),
+            "halves_of_a": summary(&found.halves),
+        },
+        "length_m": measure(&found.length),
+        "duration_s": measure(&found.duration),
+        "energy": { "path": energy(found.path), "path_and_duration": energy(found.pace) },
+    })
+}
+
+/// One row for each point: its distance to the nearest point of the other set.
+///
+/// # Errors
+/// Errors of the writer.
+pub fn write_points(
+    out: impl std::io::Write,
+    found: &Comparison,
+    sets: [WalkSet<'_>; 2],
+) -> std::io::Result<()> {
+    let mut table = csv::Writer::from_writer(out);
+    let has_legs = sets.iter().any(|set| set.walks.iter().any(|walk| walk.leg.is_some()));
+    let leg = |leg| has_legs.then_some(leg);
+    table.write_record(["set", "walk"].into_iter().chain(leg("leg")).chain(["t", "x", "y", "distance"]))?;
+    for ((name, set), distances) in ["A", "B"].into_iter().zip(sets).zip(&found.distances) {
+        let of_walk = |walk| std::iter::repeat_n(walk, walk.points.len()).enumerate();
+        for ((k, walk), distance) in set.walks.iter().flat_map(of_walk).zip(distances) {
+            let place = walk.points[k];
+            let numbers = [walk.times[k], place.x, place.y, *distance].map(|number| number.to_string());
+            let names = [name, &walk.name].into_iter().chain(leg(walk.leg.as_deref().unwrap_or_default()));
+            table.write_record(names.chain(numbers.iter().map(String::as_str)))?;
+        }
+    }
+    table.flush()
+}
