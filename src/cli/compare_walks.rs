@@ -126,3 +126,19 @@ fn header(source: &Source) -> Span {
     let line = source.text.lines().position(is_header).unwrap_or(0) + 1;
     span(source, &LineError::whole(line, ""))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_mark_their_cell_or_line() {
+        let source = Source::new(SourceId(0), "a.csv", "# é\n\nwalk,t\r\né,no,1\n");
+        let marked = |error: LineError| source.slice(span(&source, &error)).to_owned();
+        assert_eq!(marked(LineError::at(4, 3, "")), "no");
+        assert_eq!(marked(LineError::whole(4, "")), "é,no,1");
+        assert_eq!(source.slice(header(&source)), "walk,t");
+        assert_eq!(marked(LineError::at(9, 9, "")), "");
+        assert_eq!(marked(LineError::of_file("")), "# é");
+    }
+}

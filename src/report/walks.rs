@@ -1,8 +1,7 @@
 //! Two sets of walks compared, as text, JSON and the distances of points: `smc compare-walks`.
 
-use super::number::{brief, count, counted, interval};
+use super::number::{brief, count, counted};
 use crate::data::walks::Walk;
-use crate::engine::outcome::Interval;
 use crate::gait::compare::{
     CONFIDENCE, Comparison, Comparisons, MOST_WALKS, Measure, POINTS, RESAMPLES, SHUFFLES,
 };
@@ -69,14 +68,9 @@ fn table(out: &mut String, found: &Comparison) {
     }
     heads(out, "IQR of B / IQR of A", &["ratio", "95 % interval"]);
     for (name, measure) in measures {
-        let spread = measure.spread.map_or_else(
-            || vec!["undefined".to_owned()],
-            |SpreadRatio { ratio, low, high }| {
-                let shown = interval(&Interval { estimate: ratio, low, high }, None);
-                vec![shown.estimate, shown.interval]
-            },
-        );
-        row(out, name, &spread);
+        let cells =
+            |s: SpreadRatio| vec![format!("{:.2}", s.ratio), format!("{:.2} to {:.2}", s.low, s.high)];
+        row(out, name, &measure.spread.map_or_else(|| vec!["undefined".to_owned()], cells));
     }
     heads(out, "energy distance (m)", &["distance", "p"]);
     for (name, test) in [("path", found.path), ("path and duration", found.pace)] {
@@ -176,13 +170,71 @@ pub fn write_points(
     let leg = |leg| has_legs.then_some(leg);
     table.write_record(["set", "walk"].into_iter().chain(leg("leg")).chain(["t", "x", "y", "distance"]))?;
     for ((name, set), distances) in ["A", "B"].into_iter().zip(sets).zip(&found.distances) {
-        let of_walk = |walk| std::iter::repeat_n(walk, walk.points.len()).enumerate();
-        for ((k, walk), distance) in set.walks.iter().flat_map(of_walk).zip(distances) {
-            let place = walk.points[k];
-            let numbers = [walk.times[k], place.x, place.y, *distance].map(|number| number.to_string());
-            let names = [name, &walk.name].into_iter().chain(leg(walk.leg.as_deref().unwrap_or_default()));
-            table.write_record(names.chain(numbers.iter().map(String::as_str)))?;
+        let mut distances = distances.iter();
+        for walk in set.walks {
+            for ((t, place), distance) in walk.times.iter().zip(&walk.points).zip(&mut distances) {
+                let numbers = [*t, place.x, place.y, *distance].map(|number| number.to_string());
+                let names =
+                    [name, &walk.name].into_iter().chain(leg(walk.leg.as_deref().unwrap_or_default()));
+                table.write_record(names.chain(numbers.iter().map(String::as_str)))?;
+            }
         }
     }
     table.flush()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::walks::read_walks;
+    use crate::gait::compare::compare;
+
+    const A: &str =
+        "walk,leg,t,x,y\n1,in,0,0,0\n1,in,1,1,0\n2,in,0,0,1\n2,in,2,2,1\n3,out,0,0,0\n3,out,1,0,1\n";
+    const B: &str = "walk,leg,t,x,y\n1,in,0,0,0.5\n1,in,1,1,0.5\n2,in,0,0,1.5\n2,in,3,3,1.5\n";
+
+    fn shown(of: impl Fn(&Comparisons, [WalkSet<'_>; 2]) -> String) -> String {
+        let [a, b] = [A, B].map(|text| read_walks(text).unwrap());
+        let found = compare(&a, &b, true, 0);
+        of(&found, [WalkSet { file: "a.csv", walks: &a }, WalkSet { file: "b.csv", walks: &b }])
+    }
+
+    #[test]
+    fn text_has_a_table_for_all_walks_and_each_leg() {
+        let text = shown(to_text);
+        for line in [
+            "A  a.csv  (3 walks, 6 points)\nB  b.csv  (2 walks, 4 points)\n\nAll walks: 3 of A, 2 of B\n",
+            "\nLeg in: 2 of A, 2 of B\n",
+            "\n  nearest point (m)             mean    median       IQR      95 %       max\n",
+            // Half a metre from each point but the last, which is 1 m farther along.
+            "\n  from B to A                 0.6545       0.5    0.1545       1.0",
+            "\n  length (m)                    2.00 ",
+            "\nLeg out is not compared: A has 1 walk, B has 0.\n",
+        ] {
+            assert!(text.contains(line), "{line}\nin\n{text}");
+        }
+    }
+
+    #[test]
+    fn points_have_their_distances() {
+        let table = shown(|found, sets| {
+            let mut out = Vec::new();
+            write_points(&mut out, &found.whole, sets).unwrap();
+            String::from_utf8(out).unwrap()
+        });
+        let lines: Vec<&str> = table.lines().collect();
+        assert_eq!(lines[..2], ["set,walk,leg,t,x,y,distance", "A,1,in,0,0,0,0.5"]);
+        assert_eq!((lines.len(), lines[6], lines[7]), (11, "A,3,out,1,0,1,0.5", "B,1,in,0,0,0.5,0.5"));
+    }
+
+    #[test]
+    fn json_has_null_where_there_is_no_number() {
+        let text = shown(|found, sets| to_json(found, sets, 7));
+        let json: Value = serde_json::from_str(&text).unwrap();
+        assert_eq!((&json["method"]["seed"], &json["all"]["leg"]), (&7.into(), &Value::Null));
+        assert_eq!(json["legs"][0]["leg"], "in");
+        assert_eq!(json["legs"][0]["length_m"]["iqr_ratio"]["high"], Value::Null);
+        assert_eq!(json["legs"][0]["length_m"]["signed_rank"]["pairs"], 2);
+        assert_eq!(json["legs_left_out"][0]["walks"]["a"], 1);
+    }
 }

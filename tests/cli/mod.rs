@@ -13,4 +13,5 @@ mod paths;
 mod ranks;
 mod reasons;
 mod traces;
+mod walks;
 mod witnesses;

@@ -231,6 +231,25 @@ mod tests {
         assert!(slow.pace.p == 0.001 && slow.duration.test.p < 1e-6 && slow.length.test.p > 0.05);
     }
 
+    /// Two samples of one population: p has no reason to be small.
+    #[test]
+    fn samples_of_one_population_are_alike() {
+        let of = |k: u64| {
+            compare(&walks(2 * k, 14, POPULATION), &walks(2 * k + 1, 14, POPULATION), false, k).whole
+        };
+        let all: Vec<Comparison> = (0..20).map(of).collect();
+        let shares = |of: fn(&Comparison) -> f64| {
+            let small = all.iter().filter(|one| of(one) <= 0.1).count();
+            let mean = all.iter().map(of).sum::<f64>() / all.len() as f64;
+            // Of 20 uniform numbers, more than 6 are below 0.1 once in 400 times; the mean has a deviation of 0.065.
+            assert!(small <= 6 && (mean - 0.5).abs() < 0.2, "{small} of 20, {mean}");
+        };
+        shares(|one| one.path.p);
+        shares(|one| one.pace.p);
+        shares(|one| one.length.test.p);
+        shares(|one| one.duration.test.p);
+    }
+
     #[test]
     fn pairs_and_legs_are_found_by_name() {
         let on = |leg: &str, walks: Vec<Walk>| -> Vec<Walk> {
@@ -255,6 +274,20 @@ mod tests {
     #[test]
     #[ignore = "prints a table"]
     fn table_of_traps() {
+        let pairs = |k: u64| {
+            compare(&walks(2 * k, 40, POPULATION), &walks(2 * k + 1, 40, POPULATION), false, k).whole
+        };
+        let all: Vec<Comparison> = (100..300).map(pairs).collect();
+        for level in [0.05, 0.25, 0.5, 0.75] {
+            let share =
+                |of: fn(&Comparison) -> f64| all.iter().filter(|one| of(one) <= level).count() as f64 / 200.0;
+            println!(
+                "{level}: {} {} {}",
+                share(|one| one.path.p),
+                share(|one| one.pace.p),
+                share(|one| one.length.test.p)
+            );
+        }
         let captured = walks(0, 400, POPULATION);
         let points: usize = captured.iter().map(|walk| walk.points.len()).sum();
         println!("{points} points");
@@ -271,7 +304,7 @@ mod tests {
             let mm = |x: f64| format!("{:.1}", 1e3 * x);
             let ratio = one.length.spread.unwrap();
             println!(
-                "| {name} | {} | {} | {} | {} | {:.2} [{:.2}, {:.2}] | {:.2} | {:.1e} | {}, {:.3} | {}, {:.3} |",
+                "| {name} | {} | {} | {} | {} | {:.2} [{:.2}, {:.2}] | {:.1e} | {:.1e} | {}, {:.3} | {}, {:.3} |",
                 mm(one.clouds[1].median),
                 mm(one.clouds[0].median),
                 mm(one.clouds[0].p95),
