@@ -207,7 +207,7 @@ mod tests {
             "\nLeg in: 2 of A, 2 of B\n",
             "\n  nearest point (m)             mean    median       IQR      95 %       max\n",
             // Half a metre from each point but the last, which is 1 m farther along.
-            "\n  from B to A                 0.6545       0.5    0.1545       1.0",
+            "\n  from B to A                 0.6545       0.5    0.1545     1.025     1.118\n",
             "\n  length (m)                    2.00 ",
             "\nLeg out is not compared: A has 1 walk, B has 0.\n",
         ] {
