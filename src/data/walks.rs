@@ -102,10 +102,7 @@ pub fn read_walks(text: &str) -> Result<Vec<Walk>, Vec<LineError>> {
     let mut known = BTreeMap::<(&str, Option<&str>), usize>::new();
     for (number, line) in lines {
         let row = cells(line);
-        if row.len() != columns.count {
-            let message = format!("the row has {} cells, the header has {}", row.len(), columns.count);
-            errors.push(LineError::whole(number, message));
-        } else {
+        if row.len() == columns.count {
             let (name, leg) = (row[columns.walk], columns.leg.map(|place| row[place]));
             let at = *known.entry((name, leg)).or_insert(walks.len());
             if at == walks.len() {
@@ -113,6 +110,9 @@ pub fn read_walks(text: &str) -> Result<Vec<Walk>, Vec<LineError>> {
                 walks.push(Walk { name: name.to_owned(), leg, line: number, ..Walk::default() });
             }
             errors.extend(add(&mut walks[at], number, line, columns.numbers.map(|place| row[place])).err());
+        } else {
+            let message = format!("the row has {} cells, the header has {}", row.len(), columns.count);
+            errors.push(LineError::whole(number, message));
         }
         if errors.len() >= MOST_ERRORS {
             break;
