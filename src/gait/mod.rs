@@ -3,6 +3,7 @@
 
 pub mod compare;
 mod curve;
+pub mod model;
 mod step;
 pub mod synthetic;
 pub mod steps;

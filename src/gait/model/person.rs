@@ -1,0 +1,130 @@
+//! A person with a learned gait: draws its steps.
+
+use super::basis::combined;
+use super::columns::{COLUMNS, Columns, DURATION, LENGTH, plus, seen_from};
+use super::density::normals;
+use super::{LearnedGait, Residuals, columns};
+use crate::base::math;
+use crate::gait::{Draws, Foot, Gait, Shape, Stance};
+use std::sync::Arc;
+
+/// Length of a step on speed: v^0.6 in free walking; the duration takes the rest. (Grieve and Gear 1966 give a power law; the
+/// exponent is that of the takes of the CMU database.)
+const LENGTH_POWER: f64 = 0.6;
+
+/// Where a stance says that its last step began from standing (1) or not (0).
+const BEGAN: usize = 0;
+/// Where a stance has the logarithm of the share of the speed that its last step was made with.
+const SHARE: usize = 1;
+
+/// A person: a gait and the offset of this person.
+#[derive(Clone, Debug)]
+pub struct Person {
+    gait: Arc<LearnedGait>,
+    /// Left, right.
+    offsets: [Columns; 2],
+}
+
+/// A step at another speed: longer and quicker by powers of the speed.
+fn at_speed(shape: Shape, log_share: f64) -> Shape {
+    let (length, duration) =
+        (math::exp(LENGTH_POWER * log_share), math::exp((LENGTH_POWER - 1.0) * log_share));
+    Shape { landmarks: shape.landmarks.map(|p| p * length), duration: shape.duration * duration }
+}
+
+impl LearnedGait {
+    /// A new person, whose offset is drawn by standard normal numbers.
+    pub fn person(self: &Arc<Self>, normals: &[f64; COLUMNS]) -> Person {
+        self.with_offset(&self.people.drawn(normals))
+    }
+
+    /// The person with an offset seen from the foot.
+    pub(super) fn with_offset(self: &Arc<Self>, offset: &Columns) -> Person {
+        let offsets = [Foot::Left, Foot::Right].map(|foot| seen_from(foot, offset));
+        Person { gait: Arc::clone(self), offsets }
+    }
+}
+
+impl Person {
+    fn offset(&self, foot: Foot) -> &Columns {
+        &self.offsets[usize::from(foot == Foot::Right)]
+    }
+
+    /// What a transition takes: the scores of a step with a foot and whether it began from standing.
+    pub(super) fn inputs(&self, foot: Foot, shape: &Shape, began: bool) -> [f64; COLUMNS + 1] {
+        let basis = &self.gait.side(foot).basis;
+        let scores = basis.scores(&basis.scaled(&plus(&columns::of(shape), -1.0, self.offset(foot))));
+        let mut inputs = [0.0; COLUMNS + 1];
+        inputs[..COLUMNS].copy_from_slice(&scores);
+        inputs[basis.components()] = f64::from(began && !self.gait.as_published);
+        inputs
+    }
+
+    /// The step with a foot of a row in scaled columns.
+    fn shape(&self, foot: Foot, scaled: &Columns) -> Shape {
+        columns::shape(&plus(&self.gait.side(foot).basis.row(scaled), 1.0, self.offset(foot)))
+    }
+
+    /// A step that follows one with the foot `last`.
+    pub(super) fn next(&self, last: Foot, shape: &Shape, began: bool, draws: Draws) -> Shape {
+        let side = self.gait.side(last);
+        let mut inputs = self.inputs(last, shape, began);
+        let mut mean = [0.0; COLUMNS];
+        let factor = side.transition.predict(&inputs, &mut mean);
+        let residual = match self.gait.residuals {
+            Residuals::Nearest => {
+                let count = side.basis.components() + 1;
+                for (q, input) in inputs[..count].iter_mut().enumerate() {
+                    *input /= side.transition.unit(q);
+                }
+                side.pairs.residual(&inputs, count, draws.uniform_pair(0)[0])
+            }
+            Residuals::Gaussian => {
+                let deviation = (factor / side.usual).sqrt();
+                combined(&side.gaussian, &normals(draws, 0)).map(|x| deviation * x)
+            }
+        };
+        let next = last.other();
+        self.shape(next, &plus(&self.gait.side(next).basis.spanned(&mean), 1.0, &residual))
+    }
+
+    /// The mean of the next scores less those of a step that followed, in standard deviations, and the logarithms of these.
+    pub(super) fn errors(&self, last: Foot, shape: &Shape, began: bool, next: &Shape) -> Vec<(f64, f64)> {
+        let side = self.gait.side(last);
+        let mut mean = [0.0; COLUMNS];
+        let factor = side.transition.predict(&self.inputs(last, shape, began), &mut mean);
+        let found = self.inputs(last.other(), next, false);
+        let variances = side.transition.variances().iter().map(|v| v * factor);
+        variances.enumerate().map(|(k, v)| ((found[k] - mean[k]) / v.sqrt(), 0.5 * math::ln(v))).collect()
+    }
+}
+
+impl Gait for Person {
+    fn step(&self, before: &Stance, foot: Foot, share: f64, draws: Draws) -> Stance {
+        // A step is drawn as at the person's own speed and then brought to that of the share.
+        let log_share = math::ln(math::at_most(math::at_least(share, 0.1), 3.0));
+        let (shape, began) = match &before.last {
+            None => (self.shape(foot, &self.gait.side(foot).first.draw(draws)), true),
+            Some((last, shape)) => {
+                let own = at_speed(*shape, -before.drift[SHARE]);
+                // Of two steps with the same foot the first one counts as its mirror image.
+                let row = seen_from(*last, &seen_from(foot.other(), &columns::of(&own)));
+                let began = before.drift[BEGAN] > 0.5;
+                (self.next(foot.other(), &columns::shape(&row), began, draws), false)
+            }
+        };
+        let mut drift = [0.0; 8];
+        (drift[BEGAN], drift[SHARE]) = (f64::from(began), log_share);
+        Stance { last: Some((foot, at_speed(shape, log_share))), drift }
+    }
+
+    fn length(&self) -> f64 {
+        let mean = |k: usize| self.gait.sides[k].basis.center[LENGTH] + self.offsets[k][LENGTH];
+        0.5 * (mean(0) + mean(1))
+    }
+
+    fn duration(&self) -> f64 {
+        let mean = |k: usize| self.gait.sides[k].basis.center[DURATION] + self.offsets[k][DURATION];
+        0.5 * (mean(0) + mean(1))
+    }
+}

@@ -1,0 +1,155 @@
+//! From one step to the next: mean and variance of the scores of the successor. Predicting uses plain loops over `+ - *` and
+//! `base::math` in a fixed order, so that a drawn step has the same bytes on every machine.
+
+use super::basis::Scores;
+use super::columns::COLUMNS;
+use crate::base::math;
+use serde::{Deserialize, Serialize};
+
+/// Inputs of a transition: the scores of a step and whether it began from standing; those beyond are 0.
+pub(super) type Inputs = [f64; COLUMNS + 1];
+
+/// Most points of a kernel.
+pub(super) const MOST_POINTS: usize = 2000;
+
+/// What gives the scores of the next step.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Transition {
+    /// A Gaussian process.
+    Process(Process),
+    /// A linear function of the inputs, for comparison.
+    Linear(Linear),
+}
+
+/// The posterior of a Gaussian process as a sum over points: with k the kernel between an input and the points, the mean of output
+/// o is `weights[o]' k` and the variance is `signals[o] (1 + noise - k' reduction k)`.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Process {
+    /// Length scale of each input.
+    pub(super) lengths: Vec<f64>,
+    /// Variance of the noise over that of the signal.
+    pub(super) noise: f64,
+    /// Variance of the signal of each output.
+    pub(super) signals: Vec<f64>,
+    /// Coordinates of the points over the length scales: one list for each input.
+    pub(super) points: Vec<Vec<f64>>,
+    /// One list for each output.
+    pub(super) weights: Vec<Vec<f64>>,
+    /// Lower triangle by rows; entries off the diagonal count twice.
+    pub(super) reduction: Vec<f64>,
+    /// Logarithm of the marginal likelihood of all pairs, nats for each number.
+    pub(super) log_likelihood: f64,
+}
+
+/// The outputs are `rows[o]' (inputs, 1)` with constant variances.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Linear {
+    /// Coefficients of each output; the constant is the last one.
+    pub(super) rows: Vec<Vec<f64>>,
+    /// Variance of the residuals of each output.
+    pub(super) variances: Vec<f64>,
+}
+
+/// The sum of products, in eight lanes.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut lanes = [0.0; 8];
+    let (long, short) = (a.chunks_exact(8), b.chunks_exact(8));
+    let rest: f64 = long.remainder().iter().zip(short.remainder()).map(|(x, y)| x * y).sum();
+    for (x, y) in long.zip(short) {
+        for l in 0..8 {
+            lanes[l] += x[l] * y[l];
+        }
+    }
+    let [p, q, r, s, t, u, v, w] = lanes;
+    rest + (((p + q) + (r + s)) + ((t + u) + (v + w)))
+}
+
+impl Process {
+    fn predict<const MOST: usize>(&self, inputs: &Inputs, mean: &mut Scores) -> f64 {
+        let mut kernel = [0.0; MOST];
+        let count = self.points.first().map_or(0, Vec::len).min(MOST);
+        let kernel = &mut kernel[..count];
+        for ((points, length), input) in self.points.iter().zip(&self.lengths).zip(inputs) {
+            let at = input / length;
+            for (k, point) in kernel.iter_mut().zip(points) {
+                *k += (at - point) * (at - point);
+            }
+        }
+        for k in kernel.iter_mut() {
+            *k = math::exp(-0.5 * *k);
+        }
+        for (m, weights) in mean.iter_mut().zip(&self.weights) {
+            *m = dot(weights, kernel);
+        }
+        let (mut reduced, mut from) = (0.0, 0);
+        for (i, k) in kernel.iter().enumerate() {
+            reduced += k * dot(&self.reduction[from..=from + i], &kernel[..=i]);
+            from += i + 1;
+        }
+        // Rounding must not make the variance smaller than that of the noise.
+        math::at_least(1.0 - reduced, 0.0) + self.noise
+    }
+}
+
+impl Transition {
+    /// Writes the mean of the next scores and returns the factor of their variances.
+    pub(super) fn predict(&self, inputs: &Inputs, mean: &mut Scores) -> f64 {
+        match self {
+            Self::Process(process) => match process.points.first().map_or(0, Vec::len) {
+                ..=128 => process.predict::<128>(inputs, mean),
+                _ => process.predict::<MOST_POINTS>(inputs, mean),
+            },
+            Self::Linear(linear) => {
+                for (m, row) in mean.iter_mut().zip(&linear.rows) {
+                    let (last, coefficients) =
+                        row.split_last().map_or((0.0, &row[..]), |(x, rest)| (*x, rest));
+                    *m = last + dot(coefficients, &inputs[..coefficients.len()]);
+                }
+                1.0
+            }
+        }
+    }
+
+    /// The variance of each output where the factor is 1.
+    pub(super) fn variances(&self) -> &[f64] {
+        match self {
+            Self::Process(process) => &process.signals,
+            Self::Linear(linear) => &linear.variances,
+        }
+    }
+
+    /// The unit of an input in the distance between pairs.
+    pub(super) fn unit(&self, input: usize) -> f64 {
+        match self {
+            Self::Process(process) => process.lengths[input],
+            Self::Linear(_) => 1.0,
+        }
+    }
+
+    /// Whether it takes and gives these numbers of scores and all its lists fit together.
+    pub(super) fn fits(&self, inputs: usize, outputs: usize) -> bool {
+        match self {
+            Self::Process(p) => {
+                let count = p.points.first().map_or(0, Vec::len);
+                p.lengths.len() == inputs
+                    && p.lengths.iter().all(|l| *l > 0.0)
+                    && p.noise >= 0.0
+                    && p.points.len() == inputs
+                    && p.points.iter().all(|list| list.len() == count)
+                    && (1..=MOST_POINTS).contains(&count)
+                    && p.weights.len() == outputs
+                    && p.weights.iter().all(|list| list.len() == count)
+                    && p.reduction.len() == count * (count + 1) / 2
+                    && p.signals.len() == outputs
+                    && p.signals.iter().all(|s| *s >= 0.0)
+            }
+            Self::Linear(l) => {
+                l.rows.len() == outputs
+                    && l.rows.iter().all(|row| row.len() == inputs + 1)
+                    && l.variances.len() == outputs
+                    && l.variances.iter().all(|s| *s >= 0.0)
+            }
+        }
+    }
+}
