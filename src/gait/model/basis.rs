@@ -136,3 +136,60 @@ pub(super) fn combined(vectors: &[Columns], factors: &[f64]) -> Columns {
     }
     sum
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{columns, made};
+    use super::*;
+
+    fn rows() -> Vec<Columns> {
+        made::steps(20, 12).iter().map(|s| columns::of(&s.shape)).collect()
+    }
+
+    #[test]
+    fn components_are_the_eigenvectors_of_the_covariance() {
+        let rows = rows();
+        let (center, covariance) = moments(&rows);
+        let basis = Basis::fit(&rows, center, 0.95, true).unwrap();
+        let correlation: SMatrix<f64, COLUMNS, COLUMNS> =
+            SMatrix::from_fn(|i, j| covariance[(i, j)] / (covariance[(i, i)] * covariance[(j, j)]).sqrt());
+        let mut values: Vec<f64> = SymmetricEigen::new(correlation).eigenvalues.iter().copied().collect();
+        values.sort_by(|a, b| b.total_cmp(a));
+        let held = |k: usize| values[..k].iter().sum::<f64>() / COLUMNS as f64;
+        let kept = basis.components();
+        assert!(held(kept) >= 0.95 && held(kept - 1) < 0.95);
+        for (k, direction) in basis.directions.iter().enumerate() {
+            assert!((basis.spread[k] - values[k].sqrt()).abs() < 1e-9);
+            assert!((basis.explained[k] - values[k] / COLUMNS as f64).abs() < 1e-9);
+            let v = nalgebra::SVector::from(*direction);
+            assert!((correlation * v - v * values[k]).amax() < 1e-9 && (v.norm() - 1.0).abs() < 1e-12);
+        }
+        // Scores have variance one and no correlation, and with all components they keep the row.
+        let scores: Vec<Columns> = rows.iter().map(|r| basis.scores(&basis.scaled(r))).collect();
+        let (_, of_scores) = moments(&scores);
+        for i in 0..kept {
+            for j in 0..kept {
+                assert!((of_scores[(i, j)] - f64::from(i == j)).abs() < 1e-9);
+            }
+        }
+        let all = Basis::fit(&rows, center, 1.0, true).unwrap();
+        let back = all.row(&all.spanned(&all.scores(&all.scaled(&rows[5]))));
+        assert!((0..COLUMNS).all(|k| (back[k] - rows[5][k]).abs() < 1e-9));
+        let published = Basis::fit(&rows, center, 0.95, false).unwrap();
+        assert!(published.components() <= 2 && published.scale[columns::DURATION] == 0.0);
+        assert!(Basis::fit(&[rows[0]; 30], rows[0], 0.95, true).is_none());
+    }
+
+    #[test]
+    fn square_roots_have_their_covariance() {
+        let (_, covariance) = moments(&rows());
+        let root = square_root(covariance);
+        let product = |i: usize, j: usize| root.iter().map(|r| r[i] * r[j]).sum::<f64>();
+        for i in 0..COLUMNS {
+            for j in 0..COLUMNS {
+                assert!((product(i, j) - covariance[(i, j)]).abs() < 1e-10);
+            }
+        }
+        assert!(square_root(SMatrix::zeros()).is_empty());
+    }
+}

@@ -43,3 +43,44 @@ pub(super) fn normals(draws: Draws, from: u32) -> [f64; COLUMNS] {
     }
     numbers
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{columns, made};
+    use super::*;
+    use crate::base::random::{Purpose, Stream, TrialKey};
+    use crate::base::special::normal_cdf;
+    use crate::gait::{Foot, Phase};
+
+    #[test]
+    fn draws_have_the_density_of_its_definition() {
+        let steps = made::steps(60, 8);
+        let rows = |first: bool| -> Vec<Columns> {
+            let of = steps.iter().filter(|s| s.foot == Foot::Left && (!first || s.phase == Phase::First));
+            of.map(|s| columns::of(&s.shape)).collect()
+        };
+        let all = rows(false);
+        let basis = Basis::fit(&all, moments(&all).0, 0.95, true).unwrap();
+        let first: Vec<Columns> = rows(true).iter().map(|r| basis.scaled(r)).collect();
+        let density = Density::fit(first.clone(), &basis);
+        // A projection of the density is a mixture of normal distributions about the steps, with the covariance of the steps'
+        // scores times n^(-2/(d+4)), d components.
+        let direction: Columns =
+            basis.spanned(&std::array::from_fn(|k| if k < 2 { 1.0 + k as f64 } else { 0.0 }));
+        let along = |r: &Columns| r.iter().zip(&direction).map(|(a, b)| a * b).sum::<f64>();
+        let (n, d) = (first.len() as f64, basis.components() as f64);
+        let scores: Vec<f64> = first.iter().map(|s| along(&basis.spanned(&basis.scores(s)))).collect();
+        let mean = scores.iter().sum::<f64>() / n;
+        let variance = scores.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0);
+        let bandwidth = (variance * n.powf(-2.0 / (d + 4.0))).sqrt();
+        let mixture = |x: f64| first.iter().map(|s| normal_cdf((x - along(s)) / bandwidth)).sum::<f64>() / n;
+        let stream = Stream::of(TrialKey::default(), 5, Purpose::Test);
+        let mut drawn: Vec<f64> =
+            (0..20_000).map(|k| along(&density.draw(Draws::of(stream, k, 0)))).collect();
+        drawn.sort_by(f64::total_cmp);
+        let gap = |k: usize| ((k as f64 + 0.5) / drawn.len() as f64 - mixture(drawn[k])).abs();
+        let largest = (0..drawn.len()).map(gap).fold(0.0, f64::max);
+        // 1.95 / sqrt(20000): the 0.1 % point of Kolmogorov's distribution.
+        assert!(largest < 0.0138, "{largest}");
+    }
+}

@@ -89,3 +89,93 @@ impl LearnedGait {
         if model.fits() { Ok(model) } else { Err(FileError::Inconsistent) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Residuals, made};
+    use super::*;
+    use crate::base::random::{Purpose, Stream, TrialKey};
+    use crate::gait::{Draws, Foot, Gait, Stance};
+    use proptest::prelude::*;
+    use serde_json::Value;
+    use std::sync::Arc;
+
+    fn bits(model: LearnedGait) -> Vec<u64> {
+        let stream = Stream::of(TrialKey::default(), 4, Purpose::Test);
+        let person = Arc::new(model).person(&[0.4; LearnedGait::NORMALS]);
+        let (mut stance, mut foot) = (Stance::default(), Foot::Right);
+        let mut bits = Vec::new();
+        for k in 0..40 {
+            stance = person.step(&stance, foot, 1.1, Draws::of(stream, k, k % 3));
+            foot = foot.other();
+            let shape = stance.last.unwrap().1;
+            bits.extend(shape.landmarks.iter().flat_map(|p| [p.x.to_bits(), p.y.to_bits()]));
+            bits.push(shape.duration.to_bits());
+        }
+        bits
+    }
+
+    #[test]
+    fn a_model_that_was_read_draws_the_same_bytes() {
+        for residuals in [Residuals::Nearest, Residuals::Gaussian] {
+            let options = super::super::Options { residuals, ..Default::default() };
+            let (model, _) = super::super::fit(&made::steps(12, 12), &options).unwrap();
+            let text = model.to_json().unwrap();
+            let read = LearnedGait::from_json(&text).unwrap();
+            assert_eq!(read.to_json().unwrap(), text);
+            assert_eq!(bits(read), bits(model));
+        }
+    }
+
+    #[test]
+    fn other_formats_and_versions_are_named() {
+        let text = made::small().to_json().unwrap();
+        let other = text.replacen("\"version\":1", "\"version\":2", 1);
+        assert_eq!(LearnedGait::from_json(&other).unwrap_err(), FileError::Version(2));
+        let other = text.replacen(FORMAT, "gpx", 1);
+        assert_eq!(LearnedGait::from_json(&other).unwrap_err(), FileError::Format("gpx".into()));
+        let changed = text.replacen("0.5", "0.25", 1);
+        assert!(matches!(LearnedGait::from_json(&changed), Err(FileError::Hash { .. })));
+    }
+
+    /// The places of all values of a text below its model.
+    fn paths(value: &Value, at: &str, all: &mut Vec<String>) {
+        all.push(at.to_owned());
+        match value {
+            Value::Array(list) => {
+                list.iter().enumerate().for_each(|(k, v)| paths(v, &format!("{at}/{k}"), all));
+            }
+            Value::Object(map) => map.iter().for_each(|(k, v)| paths(v, &format!("{at}/{k}"), all)),
+            _ => (),
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn damaged_files_are_errors(cut in 0.0f64..1.0, flip in 0.0f64..1.0, to in 32u8..127) {
+            let text = made::small().to_json().unwrap();
+            prop_assert!(LearnedGait::from_json(&text[..(cut * (text.len() - 2) as f64) as usize]).is_err());
+            let mut bytes = text.clone().into_bytes();
+            let at = (flip * bytes.len() as f64) as usize;
+            bytes[at] = to;
+            if let Ok(read) = LearnedGait::from_json(std::str::from_utf8(&bytes).unwrap()) {
+                prop_assert_eq!(bits(read), bits(made::small()));
+            }
+        }
+
+        #[test]
+        fn what_has_a_right_hash_can_be_drawn_from_or_is_an_error(at in 0.0f64..1.0, new in prop::sample::select(
+            vec!["null", "0", "-1", "1e300", "[]", "[1.0]", "{}", "\"x\""],
+        )) {
+            let mut file: Value = serde_json::from_str(&made::small().to_json().unwrap()).unwrap();
+            let mut all = Vec::new();
+            paths(&file["model"], "/model", &mut all);
+            let path = &all[(at * all.len() as f64) as usize];
+            *file.pointer_mut(path).unwrap() = serde_json::from_str(new).unwrap();
+            file["hash"] = Fingerprint::of(file["model"].to_string().as_bytes()).to_string().into();
+            if let Ok(read) = LearnedGait::from_json(&file.to_string()) {
+                prop_assert_eq!(bits(read).len(), 440);
+            }
+        }
+    }
+}

@@ -1,6 +1,6 @@
 //! A model from recorded steps.
 
-use super::basis::{Basis, combined, moments, square_root};
+use super::basis::{Basis, moments, square_root};
 use super::columns::{COLUMNS, Columns, plus, seen_from};
 use super::density::Density;
 use super::nearest::Pairs;
@@ -18,6 +18,8 @@ const FEWEST: (usize, usize) = (50, 20);
 const FEW: usize = 200;
 /// Fewest first steps of a foot that make a density of their own.
 const FEWEST_FIRST: usize = 10;
+/// Fewest first steps of both feet.
+const FEWEST_FIRST_BOTH: usize = 3;
 
 /// Places of the steps of all pairs: consecutive steps of a take with different feet, the second one neither the first nor the last of
 /// its walk. With `all` phases, each two consecutive steps with different feet.
@@ -126,7 +128,7 @@ impl Task<'_> {
         let own = steps.len();
         if own < FEWEST_FIRST {
             steps = chosen(&|s| s.phase == Phase::First);
-            let few = steps.len() < FEWEST_FIRST;
+            let few = steps.len() < FEWEST_FIRST_BOTH;
             let instead =
                 if few { "steps of all phases" } else { "those of the other foot as well, mirrored," };
             if few {
@@ -168,7 +170,10 @@ impl Task<'_> {
             } else {
                 process::sparse(&x, &y, hyper, options.inducing)
             };
-            let fitted = fitted.ok_or_else(singular)?;
+            let mut fitted = fitted.ok_or_else(singular)?;
+            if options.as_published {
+                fitted.transition.signals.fill(1.0);
+            }
             (Transition::Process(fitted.transition), fitted.residuals, fitted.variance)
         };
         // What the components leave out of a step goes with its residual.
@@ -179,12 +184,8 @@ impl Task<'_> {
         };
         let residuals: Vec<Columns> = (0..pairs.len()).map(residual).collect();
         let (gaussian, usual) = if options.as_published {
-            let deviation = |k: usize| transition.variances()[k].sqrt();
-            let axis = |k: usize| {
-                let mut scores = [0.0; COLUMNS];
-                scores[k] = deviation(k);
-                combined(&[next.spanned(&scores)], &[1.0])
-            };
+            // Independent outputs of variance one.
+            let axis = |k: usize| next.spanned(&std::array::from_fn(|q| f64::from(q == k)));
             ((0..outputs).map(axis).collect(), 1.0)
         } else {
             (square_root(moments(&residuals).1), usual)
@@ -202,5 +203,50 @@ impl Task<'_> {
             usual,
         };
         Ok((side, warnings))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::made;
+    use super::*;
+
+    #[test]
+    fn bad_data_and_options_are_named() {
+        let error = |steps: &[RecordedStep], options: Options| fit(steps, &options).unwrap_err();
+        let mut steps = made::steps(10, 12);
+        assert!(matches!(error(&steps[..40], Options::default()), FitError::TooFewPairs { .. }));
+        assert_eq!(error(&steps, Options { variance: 0.0, ..Options::default() }), FitError::Variance(0.0));
+        assert_eq!(error(&steps, Options { inducing: 2001, ..Options::default() }), FitError::Inducing(2001));
+        let (_, warnings) = fit(&steps, &Options::default()).unwrap();
+        assert!(warnings.contains(&Warning::FewPairs(110)), "{warnings:?}");
+        steps[3].shape.duration = f64::NAN;
+        assert_eq!(error(&steps, Options::default()), FitError::NotFinite { take: "t000".into(), number: 3 });
+        let same: Vec<RecordedStep> =
+            made::steps(10, 12).iter().map(|s| RecordedStep { shape: steps[0].shape, ..s.clone() }).collect();
+        assert!(matches!(error(&same, Options::default()), FitError::NoVariation(_)));
+    }
+
+    #[test]
+    fn pairs_are_consecutive_steps_of_other_feet_in_a_take() {
+        let mut steps = made::steps(2, 6);
+        assert_eq!(pairs(&steps, false).len(), 10);
+        steps[2].number = 40;
+        steps[10].foot = steps[10].foot.other();
+        let places = pairs(&steps, false);
+        assert_eq!(places, [(0, 1), (3, 4), (4, 5), (6, 7), (7, 8), (8, 9)]);
+        steps[5].phase = Phase::Last;
+        assert_eq!(pairs(&steps, false).len(), 5);
+        assert_eq!(pairs(&steps, true).len(), 6);
+    }
+
+    #[test]
+    fn without_noise_the_length_scale_falls_below_all_distances() {
+        let (model, _) =
+            fit(&made::steps(20, 12), &Options { as_published: true, ..Options::default() }).unwrap();
+        let shown = model.show();
+        assert!(shown.feet.iter().all(|f| f.length_scales[0] < 0.06), "{shown:?}");
+        let (model, _) = fit(&made::steps(20, 12), &Options::default()).unwrap();
+        assert!(model.show().feet.iter().all(|f| f.length_scales[0] > 0.3 && f.noise > 0.01));
     }
 }

@@ -82,13 +82,21 @@ pub(super) fn with_gradient(
     Some((value, (0..inputs.ncols()).map(length).chain([noise]).collect()))
 }
 
-/// The logarithm of the likelihood alone.
-pub(super) fn value(inputs: &DMatrix<f64>, outputs: &DMatrix<f64>, hyper: &Hyper) -> Option<f64> {
+/// The logarithm of the likelihood alone; with `unscaled` for signals of variance one, as published.
+pub(super) fn value(
+    inputs: &DMatrix<f64>,
+    outputs: &DMatrix<f64>,
+    hyper: &Hyper,
+    unscaled: bool,
+) -> Option<f64> {
     let at = scaled(inputs, &hyper.lengths);
     let n = inputs.nrows();
     let (lower, inverse) = factor(&(kernel(&at, &at) + DMatrix::identity(n, n) * hyper.noise))?;
-    let solved = inverse.transpose() * (&inverse * outputs);
-    Some(log_likelihood(&signals(outputs, &solved), log_determinant(&lower), n))
+    let signals = signals(outputs, &(inverse.transpose() * (&inverse * outputs)));
+    let best = log_likelihood(&signals, log_determinant(&lower), n);
+    // Away from its best scale s^2 an output loses n/2 (s^2 - 1 - ln s^2).
+    let lost: f64 = signals.iter().map(|s| s - 1.0 - math::ln(*s)).sum();
+    Some(if unscaled { best - 0.5 * n as f64 * lost } else { best })
 }
 
 #[cfg(test)]
@@ -128,8 +136,10 @@ mod tests {
             y.dot(&(covariance.clone().try_inverse().unwrap() * y)) / 20.0
         };
         let best = [best(0), best(1)];
-        let got = value(&inputs, &outputs, &hyper).unwrap();
+        let got = value(&inputs, &outputs, &hyper, false).unwrap();
         assert!((got - density(best)).abs() < 1e-9, "{got} {}", density(best));
+        let unscaled = value(&inputs, &outputs, &hyper, true).unwrap();
+        assert!((unscaled - density([1.0, 1.0])).abs() < 1e-9);
         assert!(got > density([best[0] * 1.05, best[1]]) && got > density([best[0], best[1] * 0.95]));
     }
 
@@ -138,12 +148,15 @@ mod tests {
         let (inputs, outputs) = data(70);
         let at = [-0.3, 0.4, 0.9, -1.2];
         let (value, gradient) = with_gradient(&inputs, &outputs, &at).unwrap();
-        assert!((value - super::value(&inputs, &outputs, &Hyper::of_logarithms(&at)).unwrap()).abs() < 1e-9);
+        assert!(
+            (value - super::value(&inputs, &outputs, &Hyper::of_logarithms(&at), false).unwrap()).abs()
+                < 1e-9
+        );
         for q in 0..at.len() {
             let shifted = |by: f64| {
                 let mut to = at;
                 to[q] += by;
-                super::value(&inputs, &outputs, &Hyper::of_logarithms(&to)).unwrap()
+                super::value(&inputs, &outputs, &Hyper::of_logarithms(&to), false).unwrap()
             };
             let difference = (shifted(1e-5) - shifted(-1e-5)) / 2e-5;
             assert!((difference - gradient[q]).abs() < 1e-5 * difference.abs().max(1.0), "{q}");

@@ -15,6 +15,8 @@ mod factor;
 mod file;
 mod fit;
 mod likelihood;
+#[cfg(test)]
+mod made;
 mod nearest;
 mod options;
 mod people;

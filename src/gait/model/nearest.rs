@@ -45,11 +45,16 @@ impl Found {
     }
 }
 
+/// The last input is no axis: the mark of a first step is 0 nearly always.
+fn axis_at(depth: usize, inputs: usize) -> usize {
+    depth % (inputs - 1).max(1)
+}
+
 fn arrange(order: &mut [usize], depth: usize, coordinate: &impl Fn(usize, usize) -> f64, inputs: usize) {
     if order.len() < 2 {
         return;
     }
-    let (middle, axis) = (order.len() / 2, depth % inputs);
+    let (middle, axis) = (order.len() / 2, axis_at(depth, inputs));
     order.select_nth_unstable_by(middle, |a, b| {
         coordinate(*a, axis).total_cmp(&coordinate(*b, axis)).then(a.cmp(b))
     });
@@ -73,7 +78,8 @@ impl Pairs {
         if low >= high {
             return;
         }
-        let (middle, axis, inputs) = (low + (high - low) / 2, depth % place.len(), place.len());
+        let (middle, inputs) = (low + (high - low) / 2, place.len());
+        let axis = axis_at(depth, inputs);
         let pair = &self.places[middle * inputs..(middle + 1) * inputs];
         let mut square = 0.0;
         for (x, y) in pair.iter().zip(place) {

@@ -33,9 +33,17 @@ fn at_speed(shape: Shape, log_share: f64) -> Shape {
 }
 
 impl LearnedGait {
+    /// Standard normal numbers that make a person.
+    pub const NORMALS: usize = COLUMNS;
+
     /// A new person, whose offset is drawn by standard normal numbers.
-    pub fn person(self: &Arc<Self>, normals: &[f64; COLUMNS]) -> Person {
+    pub fn person(self: &Arc<Self>, normals: &[f64; Self::NORMALS]) -> Person {
         self.with_offset(&self.people.drawn(normals))
+    }
+
+    /// A person like a recorded subject; `None` for one that the model does not know.
+    pub fn recorded(self: &Arc<Self>, subject: &str) -> Option<Person> {
+        Some(self.with_offset(&self.people.recorded(subject)?))
     }
 
     /// The person with an offset seen from the foot.
@@ -70,7 +78,8 @@ impl Person {
         let side = self.gait.side(last);
         let mut inputs = self.inputs(last, shape, began);
         let mut mean = [0.0; COLUMNS];
-        let factor = side.transition.predict(&inputs, &mut mean);
+        let gaussian = self.gait.residuals == Residuals::Gaussian;
+        let factor = side.transition.predict(&inputs, &mut mean, gaussian);
         let residual = match self.gait.residuals {
             Residuals::Nearest => {
                 let count = side.basis.components() + 1;
@@ -92,7 +101,7 @@ impl Person {
     pub(super) fn errors(&self, last: Foot, shape: &Shape, began: bool, next: &Shape) -> Vec<(f64, f64)> {
         let side = self.gait.side(last);
         let mut mean = [0.0; COLUMNS];
-        let factor = side.transition.predict(&self.inputs(last, shape, began), &mut mean);
+        let factor = side.transition.predict(&self.inputs(last, shape, began), &mut mean, true);
         let found = self.inputs(last.other(), next, false);
         let variances = side.transition.variances().iter().map(|v| v * factor);
         variances.enumerate().map(|(k, v)| ((found[k] - mean[k]) / v.sqrt(), 0.5 * math::ln(v))).collect()
@@ -126,5 +135,93 @@ impl Gait for Person {
     fn duration(&self) -> f64 {
         let mean = |k: usize| self.gait.sides[k].basis.center[DURATION] + self.offsets[k][DURATION];
         0.5 * (mean(0) + mean(1))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::made;
+    use super::*;
+    use crate::base::fingerprint::Fingerprint;
+    use crate::base::random::{Purpose, Stream, TrialKey};
+    use crate::gait::Phase;
+
+    fn stream(index: u64) -> Stream {
+        Stream::of(TrialKey { seed: 3, index, branch: 0 }, 0, Purpose::Test)
+    }
+
+    /// Lengths and durations of a walk of some steps at a share of the speed.
+    fn walk(person: &Person, steps: u32, share: f64) -> Vec<(Foot, Shape)> {
+        let (mut stance, mut foot) = (Stance::default(), Foot::Left);
+        let one = |k: u32| {
+            stance = person.step(&stance, foot, share, Draws::of(stream(0), k, 0));
+            foot = foot.other();
+            stance.last.unwrap()
+        };
+        (0..steps).map(one).collect()
+    }
+
+    #[test]
+    fn drawn_steps_have_these_bits() {
+        // Every machine draws these bytes; a change of them is a change of what a seed gives.
+        let model = Arc::new(made::small());
+        let mut print = Fingerprint::default();
+        for (normals, share) in [([0.0; COLUMNS], 1.0), ([0.7; COLUMNS], 0.8)] {
+            for (_, shape) in walk(&model.person(&normals), 50, share) {
+                columns::of(&shape).iter().for_each(|x| print.add(&x.to_bits().to_le_bytes()));
+            }
+        }
+        assert_eq!(print.to_string(), "fnv1a64:64dbaf6d1692e641");
+    }
+
+    #[test]
+    fn long_walks_keep_the_steps_of_the_data() {
+        let steps = made::steps(40, 30);
+        let (model, _) = super::super::fit(&steps, &super::super::Options::default()).unwrap();
+        let model = Arc::new(model);
+        let of = |steps: &[(Foot, Shape)], foot: Foot, q: usize| -> (f64, f64) {
+            let values: Vec<f64> = steps
+                .iter()
+                .filter(|s| s.0 == foot)
+                .map(|s| if q == 3 { s.1.landmarks[2].y } else { super::super::score::quantities(&s.1)[q] })
+                .collect();
+            let mean = values.iter().sum::<f64>() / values.len() as f64;
+            (mean, (values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / values.len() as f64).sqrt())
+        };
+        let subject = "s0";
+        let data: Vec<(Foot, Shape)> = steps
+            .iter()
+            .filter(|s| s.subject == subject && s.phase == Phase::Inner)
+            .map(|s| (s.foot, s.shape))
+            .collect();
+        let drawn = walk(&model.recorded(subject).unwrap(), 4000, 1.0);
+        assert!(drawn.windows(2).all(|w| w[1].0 == w[0].0.other()));
+        // Sway is half-way at the third landmark.
+        for (q, tolerance) in [(0, 0.012), (1, 0.03), (2, 0.012), (3, 0.004)] {
+            for foot in [Foot::Left, Foot::Right] {
+                let ((a, spread), (b, drawn_spread)) = (of(&data, foot, q), of(&drawn[3000..], foot, q));
+                assert!((a - b).abs() < tolerance, "{q} {foot:?} {a} {b}");
+                assert!(
+                    (0.75..1.3).contains(&(drawn_spread / spread)),
+                    "{q} {foot:?} {spread} {drawn_spread}"
+                );
+            }
+        }
+        // First steps are short ones.
+        let person = model.recorded(subject).unwrap();
+        let first =
+            person.step(&Stance::default(), Foot::Right, 1.0, Draws::of(stream(9), 0, 0)).last.unwrap();
+        assert!(first.1.landmarks[4].x < 0.55);
+    }
+
+    #[test]
+    fn speed_shares_scale_steps_and_nothing_else() {
+        let person = Arc::new(made::small()).person(&[0.3; COLUMNS]);
+        let (own, slow) = (walk(&person, 30, 1.0), walk(&person, 30, 0.5));
+        for (a, b) in own.iter().zip(&slow) {
+            assert!((b.1.duration / a.1.duration - 0.5f64.powf(-0.4)).abs() < 1e-9);
+            assert!((b.1.landmarks[4] - a.1.landmarks[4] * 0.5f64.powf(0.6)).norm() < 1e-9);
+        }
+        assert!(person.length() > 0.4 && person.duration() > 0.3);
     }
 }

@@ -4,9 +4,10 @@
 use super::ascent::ascend;
 use super::factor::{factor, log_determinant};
 use super::likelihood::{self, Hyper, kernel, log_likelihood, scaled, signals};
-use super::transition::{Linear, Process};
+use super::transition::{LANES, Linear, Process};
 use crate::base::math;
 use nalgebra::{DMatrix, DVector};
+use std::cmp::Ordering;
 
 /// Most pairs of which the marginal likelihood is taken in the search.
 const MOST_SEARCHED: usize = 1000;
@@ -33,7 +34,8 @@ pub(super) fn search(inputs: &DMatrix<f64>, outputs: &DMatrix<f64>, as_published
         // One length scale for all inputs between 1e-5 and 1e5, the bounds of scikit-learn, eight in a decade.
         let hyper =
             |k: i32| Hyper { lengths: vec![math::pow(10.0, f64::from(k) / 8.0); q], noise: PUBLISHED_NOISE };
-        let values = (-40..=40).filter_map(|k| Some((k, likelihood::value(&inputs, &outputs, &hyper(k))?)));
+        let values =
+            (-40..=40).filter_map(|k| Some((k, likelihood::value(&inputs, &outputs, &hyper(k), true)?)));
         return values.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(k, _)| hyper(k));
     }
     let bound = |low: f64, high: f64| (math::ln(low), math::ln(high));
@@ -53,15 +55,23 @@ fn process(
     signals: Vec<f64>,
     log_likelihood: f64,
 ) -> Process {
-    let lists = |of: &DMatrix<f64>| of.column_iter().map(|c| c.iter().copied().collect()).collect();
-    let entry = |i: usize, j: usize| if i == j { reduction[(i, i)] } else { 2.0 * reduction[(i, j)] };
+    let count = points.nrows().next_multiple_of(LANES);
+    let at = |of: &DMatrix<f64>, i: usize, j: usize| of.get((i, j)).copied().unwrap_or(0.0);
+    let list = |of: &DMatrix<f64>, c: usize| (0..count).map(|i| at(of, i, c)).collect();
+    let lists = |of: &DMatrix<f64>| (0..of.ncols()).map(|c| list(of, c)).collect();
+    let entry = |i: usize, j: usize| match i.cmp(&j) {
+        Ordering::Less => 0.0,
+        Ordering::Equal => at(reduction, i, i),
+        Ordering::Greater => 2.0 * at(reduction, i, j),
+    };
+    let row = |i: usize| (0..(i / LANES + 1) * LANES).map(move |j| entry(i, j));
     Process {
         lengths: hyper.lengths,
         noise: hyper.noise,
         signals,
         points: lists(points),
         weights: lists(weights),
-        reduction: (0..points.nrows()).flat_map(|i| (0..=i).map(move |j| entry(i, j))).collect(),
+        reduction: (0..count).flat_map(row).collect(),
         log_likelihood,
     }
 }
@@ -184,7 +194,7 @@ mod tests {
     fn predicted(transition: Process, x: [f64; 3]) -> ([f64; 2], f64) {
         let (mut inputs, mut mean) = ([0.0; 12], [0.0; 11]);
         inputs[..3].copy_from_slice(&x);
-        let variance = Transition::Process(transition).predict(&inputs, &mut mean);
+        let variance = Transition::Process(transition).predict(&inputs, &mut mean, true);
         ([mean[0], mean[1]], variance)
     }
 
@@ -219,7 +229,7 @@ mod tests {
         }
         assert!((exact.transition.log_likelihood - all.transition.log_likelihood).abs() < 1e-6);
         assert!((exact.variance - all.variance).abs() < 1e-5);
-        let value = likelihood::value(&inputs, &outputs, &hyper()).unwrap() / 120.0;
+        let value = likelihood::value(&inputs, &outputs, &hyper(), false).unwrap() / 120.0;
         assert!((exact.transition.log_likelihood - value).abs() < 1e-12);
     }
 

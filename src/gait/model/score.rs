@@ -111,3 +111,43 @@ pub fn folds(steps: &[RecordedStep], count: usize, by_subject: bool) -> Vec<usiz
     let place = |s: &RecordedStep| names.iter().position(|n| *n == name(s)).unwrap_or(0);
     steps.iter().map(|s| place(s) % count.max(1)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Method, Options, fit, made};
+    use super::*;
+
+    #[test]
+    fn held_out_steps_are_predicted_and_covered() {
+        let steps = made::steps(80, 16);
+        let fold = folds(&steps, 5, false);
+        let part = |held: bool| -> Vec<RecordedStep> {
+            steps.iter().zip(&fold).filter(|(_, f)| (**f == 4) == held).map(|(s, _)| s.clone()).collect()
+        };
+        let scores = |options: Options| score(&fit(&part(false), &options).unwrap().0, &part(true));
+        let sparse = scores(Options::default());
+        let exact = scores(Options { method: Method::Exact, ..Options::default() });
+        let linear = scores(Options { method: Method::Linear, ..Options::default() });
+        let published = scores(Options { as_published: true, ..Options::default() });
+        assert!((sparse.nlpd - exact.nlpd).abs() < 0.01 && (sparse.crps - exact.crps).abs() < 0.003);
+        // These steps are a linear process: nothing is lost by the kernel, and much by what was published.
+        assert!((sparse.nlpd - linear.nlpd).abs() < 0.05, "{sparse:?} {linear:?}");
+        assert!(published.nlpd > sparse.nlpd + 0.02 && published.coverage.duration == 0.0, "{published:?}");
+        for covered in [sparse.coverage.length, sparse.coverage.turn, sparse.coverage.duration] {
+            assert!((0.82..0.97).contains(&covered), "{sparse:?}");
+        }
+    }
+
+    #[test]
+    fn folds_keep_takes_and_subjects_together() {
+        let steps = made::steps(10, 3);
+        for (by_subject, name) in [(false, 0), (true, 1)] {
+            let fold = folds(&steps, 3, by_subject);
+            let of = |s: &RecordedStep| if name == 0 { s.take.clone() } else { s.subject.clone() };
+            for (s, f) in steps.iter().zip(&fold) {
+                assert!(*f < 3 && steps.iter().zip(&fold).all(|(t, g)| of(s) != of(t) || f == g));
+            }
+        }
+        assert_eq!(folds(&steps, 3, false)[3..6], [1, 1, 1]);
+    }
+}

@@ -32,11 +32,11 @@ pub(super) struct Process {
     pub(super) noise: f64,
     /// Variance of the signal of each output.
     pub(super) signals: Vec<f64>,
-    /// Coordinates of the points over the length scales: one list for each input.
+    /// Coordinates of the points over the length scales: one list for each input, with points of no weight up to whole blocks.
     pub(super) points: Vec<Vec<f64>>,
     /// One list for each output.
     pub(super) weights: Vec<Vec<f64>>,
-    /// Lower triangle by rows; entries off the diagonal count twice.
+    /// Lower triangle by rows of whole blocks; entries off the diagonal count twice.
     pub(super) reduction: Vec<f64>,
     /// Logarithm of the marginal likelihood of all pairs, nats for each number.
     pub(super) log_likelihood: f64,
@@ -51,22 +51,24 @@ pub(super) struct Linear {
     pub(super) variances: Vec<f64>,
 }
 
-/// The sum of products, in eight lanes.
+/// Numbers that are multiplied and summed side by side; points come in blocks of as many.
+pub(super) const LANES: usize = 8;
+
+/// The sum of products of two lists of whole blocks.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut lanes = [0.0; 8];
-    let (long, short) = (a.chunks_exact(8), b.chunks_exact(8));
-    let rest: f64 = long.remainder().iter().zip(short.remainder()).map(|(x, y)| x * y).sum();
-    for (x, y) in long.zip(short) {
-        for l in 0..8 {
+    let mut lanes = [0.0; LANES];
+    for (x, y) in a.chunks_exact(LANES).zip(b.chunks_exact(LANES)) {
+        for l in 0..LANES {
             lanes[l] += x[l] * y[l];
         }
     }
     let [p, q, r, s, t, u, v, w] = lanes;
-    rest + (((p + q) + (r + s)) + ((t + u) + (v + w)))
+    ((p + q) + (r + s)) + ((t + u) + (v + w))
 }
 
 impl Process {
-    fn predict<const MOST: usize>(&self, inputs: &Inputs, mean: &mut Scores) -> f64 {
+    /// `MOST` is a bound of the number of points.
+    fn predict<const MOST: usize>(&self, inputs: &Inputs, mean: &mut Scores, spread: bool) -> f64 {
         let mut kernel = [0.0; MOST];
         let count = self.points.first().map_or(0, Vec::len).min(MOST);
         let kernel = &mut kernel[..count];
@@ -82,10 +84,14 @@ impl Process {
         for (m, weights) in mean.iter_mut().zip(&self.weights) {
             *m = dot(weights, kernel);
         }
-        let (mut reduced, mut from) = (0.0, 0);
+        if !spread {
+            return 1.0;
+        }
+        let (mut reduced, mut rows) = (0.0, self.reduction.as_slice());
         for (i, k) in kernel.iter().enumerate() {
-            reduced += k * dot(&self.reduction[from..=from + i], &kernel[..=i]);
-            from += i + 1;
+            let (row, rest) = rows.split_at((i / LANES + 1) * LANES);
+            reduced += k * dot(row, kernel);
+            rows = rest;
         }
         // Rounding must not make the variance smaller than that of the noise.
         math::at_least(1.0 - reduced, 0.0) + self.noise
@@ -93,18 +99,19 @@ impl Process {
 }
 
 impl Transition {
-    /// Writes the mean of the next scores and returns the factor of their variances.
-    pub(super) fn predict(&self, inputs: &Inputs, mean: &mut Scores) -> f64 {
+    /// Writes the mean of the next scores and returns the factor of their variances; 1 if the spread is not asked for.
+    pub(super) fn predict(&self, inputs: &Inputs, mean: &mut Scores, spread: bool) -> f64 {
         match self {
             Self::Process(process) => match process.points.first().map_or(0, Vec::len) {
-                ..=128 => process.predict::<128>(inputs, mean),
-                _ => process.predict::<MOST_POINTS>(inputs, mean),
+                ..=128 => process.predict::<128>(inputs, mean, spread),
+                _ => process.predict::<MOST_POINTS>(inputs, mean, spread),
             },
             Self::Linear(linear) => {
                 for (m, row) in mean.iter_mut().zip(&linear.rows) {
-                    let (last, coefficients) =
-                        row.split_last().map_or((0.0, &row[..]), |(x, rest)| (*x, rest));
-                    *m = last + dot(coefficients, &inputs[..coefficients.len()]);
+                    *m = row.last().copied().unwrap_or(0.0);
+                    for (coefficient, input) in row[..row.len() - 1].iter().zip(inputs) {
+                        *m += coefficient * input;
+                    }
                 }
                 1.0
             }
@@ -138,9 +145,10 @@ impl Transition {
                     && p.points.len() == inputs
                     && p.points.iter().all(|list| list.len() == count)
                     && (1..=MOST_POINTS).contains(&count)
+                    && count % LANES == 0
                     && p.weights.len() == outputs
                     && p.weights.iter().all(|list| list.len() == count)
-                    && p.reduction.len() == count * (count + 1) / 2
+                    && p.reduction.len() == count * (count / LANES + 1) * LANES / 2
                     && p.signals.len() == outputs
                     && p.signals.iter().all(|s| *s >= 0.0)
             }
