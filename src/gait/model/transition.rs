@@ -4,6 +4,7 @@
 use super::basis::Scores;
 use super::columns::COLUMNS;
 use crate::base::math;
+use fearless_simd::{Level, Simd, dispatch};
 use serde::{Deserialize, Serialize};
 
 /// Inputs of a transition: the scores of a step and whether it began from standing; those beyond are 0.
@@ -54,21 +55,34 @@ pub(super) struct Linear {
 /// Numbers that are multiplied and summed side by side; points come in blocks of as many.
 pub(super) const LANES: usize = 8;
 
-/// The sum of products of two lists of whole blocks.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+/// Sums of products of two lists of whole blocks, one for each lane.
+#[inline(always)]
+fn products(a: &[f64], b: &[f64]) -> [f64; LANES] {
     let mut lanes = [0.0; LANES];
     for (x, y) in a.chunks_exact(LANES).zip(b.chunks_exact(LANES)) {
         for l in 0..LANES {
             lanes[l] += x[l] * y[l];
         }
     }
-    let [p, q, r, s, t, u, v, w] = lanes;
+    lanes
+}
+
+/// The sum of all lanes.
+#[inline(always)]
+fn total([p, q, r, s, t, u, v, w]: [f64; LANES]) -> f64 {
     ((p + q) + (r + s)) + ((t + u) + (v + w))
 }
 
 impl Process {
-    /// `MOST` is a bound of the number of points.
-    fn predict<const MOST: usize>(&self, inputs: &Inputs, mean: &mut Scores, spread: bool) -> f64 {
+    /// `MOST` is a bound of the number of points. The widest vectors of the machine are used, with the same bits.
+    #[inline(always)]
+    fn predict<S: Simd, const MOST: usize>(
+        &self,
+        _: S,
+        inputs: &Inputs,
+        mean: &mut Scores,
+        spread: bool,
+    ) -> f64 {
         let mut kernel = [0.0; MOST];
         let count = self.points.first().map_or(0, Vec::len).min(MOST);
         let kernel = &mut kernel[..count];
@@ -78,23 +92,28 @@ impl Process {
                 *k += (at - point) * (at - point);
             }
         }
-        for k in kernel.iter_mut() {
-            *k = math::exp(-0.5 * *k);
+        // Blocks of fixed length become vector code.
+        for block in kernel.chunks_exact_mut(LANES) {
+            let squares: [f64; LANES] = std::array::from_fn(|l| block[l]);
+            block.copy_from_slice(&squares.map(|square| math::exp(-0.5 * square)));
         }
         for (m, weights) in mean.iter_mut().zip(&self.weights) {
-            *m = dot(weights, kernel);
+            *m = total(products(weights, kernel));
         }
         if !spread {
             return 1.0;
         }
-        let (mut reduced, mut rows) = (0.0, self.reduction.as_slice());
+        let (mut reduced, mut rows) = ([0.0; LANES], self.reduction.as_slice());
         for (i, k) in kernel.iter().enumerate() {
             let (row, rest) = rows.split_at((i / LANES + 1) * LANES);
-            reduced += k * dot(row, kernel);
+            let row = products(row, kernel);
+            for l in 0..LANES {
+                reduced[l] += k * row[l];
+            }
             rows = rest;
         }
         // Rounding must not make the variance smaller than that of the noise.
-        math::at_least(1.0 - reduced, 0.0) + self.noise
+        math::at_least(1.0 - total(reduced), 0.0) + self.noise
     }
 }
 
@@ -103,8 +122,12 @@ impl Transition {
     pub(super) fn predict(&self, inputs: &Inputs, mean: &mut Scores, spread: bool) -> f64 {
         match self {
             Self::Process(process) => match process.points.first().map_or(0, Vec::len) {
-                ..=128 => process.predict::<128>(inputs, mean, spread),
-                _ => process.predict::<MOST_POINTS>(inputs, mean, spread),
+                ..=128 => {
+                    dispatch!(Level::new(), simd => process.predict::<_, 128>(simd, inputs, mean, spread))
+                }
+                _ => {
+                    dispatch!(Level::new(), simd => process.predict::<_, MOST_POINTS>(simd, inputs, mean, spread))
+                }
             },
             Self::Linear(linear) => {
                 for (m, row) in mean.iter_mut().zip(&linear.rows) {
