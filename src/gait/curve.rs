@@ -76,6 +76,17 @@ impl Curve {
         if norm > 1e-9 { rise / norm } else { Vec2::x() }
     }
 
+    /// An upper bound of the second derivative of the place by the share, m. It is linear in each span, so its ends decide.
+    pub fn bend(&self) -> f64 {
+        let spans = SPANS as f64;
+        let at = |k: usize| {
+            let (p, q, v, w) = (self.places[k], self.places[k + 1], self.rises[k], self.rises[k + 1]);
+            let rise = (q - p) * 6.0;
+            (rise - v * 4.0 - w * 2.0).norm().max((rise - w * 4.0 - v * 2.0).norm())
+        };
+        (0..SPANS).map(at).fold(0.0, f64::max) * spans * spans
+    }
+
     /// Its length, m, by five Gauss-Legendre points a span.
     pub fn length(&self) -> f64 {
         const POINTS: [(f64, f64); 5] = [

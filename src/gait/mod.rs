@@ -7,6 +7,7 @@ pub mod model;
 mod step;
 pub mod synthetic;
 pub mod steps;
+pub mod walk;
 
 pub use curve::Curve;
 pub use step::{Draws, Foot, Gait, Phase, RecordedStep, SPANS, Shape, Stance};

@@ -17,6 +17,7 @@ mod tests;
 mod way;
 mod wayfinder;
 
+pub mod grid;
 pub mod path;
 pub mod planner;
 pub mod profile;

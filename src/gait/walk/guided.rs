@@ -1,0 +1,98 @@
+//! The guided choice of a step: one of some candidates, with weight exp(-12 (detour + 0.35 heading error)).
+//!
+//! The candidate with the largest sum of log weight and Gumbel noise has the law of a draw by weight, and passing over those that
+//! meet a barrier gives the law among the others. So only few candidates are swept.
+
+use super::candidate::{Change, Pose};
+use super::others::{Gaps, WIDE, log_weight};
+use super::placed::PlacedStep;
+use super::search::Walk;
+use crate::base::math;
+use crate::gait::{Draws, Stance};
+use crate::route::grid::Way;
+
+/// The draws of the choice among candidates have these numbers and the ones after.
+const CHOICE: u32 = 2048;
+
+/// Most candidates of a choice.
+pub(super) const MOST: u32 = 512;
+
+/// Why no candidate was chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Rejected {
+    /// All meet a barrier.
+    Barriers,
+    /// Those that meet no barrier meet another body.
+    Bodies,
+}
+
+/// A choice among options by key (log weight and Gumbel noise): the best one that is clear, its gap to others weighed.
+pub(super) fn choose<T>(
+    mut options: Vec<(f64, T)>,
+    is_clear: impl Fn(&T) -> bool,
+    gap: impl Fn(&T) -> Option<f64>,
+) -> Result<(T, f64), Rejected> {
+    options.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut best: Option<(f64, T, f64)> = None;
+    let mut rejected = Rejected::Barriers;
+    for (key, option) in options {
+        if best.as_ref().is_some_and(|(known, ..)| *known >= key) {
+            break;
+        }
+        if !is_clear(&option) {
+            continue;
+        }
+        let gap = gap(&option).unwrap_or(f64::INFINITY);
+        match log_weight(gap) {
+            None => rejected = Rejected::Bodies,
+            Some(log) if best.as_ref().is_none_or(|(known, ..)| *known < key + log) => {
+                best = Some((key + log, option, gap));
+            }
+            Some(_) => {}
+        }
+    }
+    best.map(|(_, option, gap)| (option, gap)).ok_or(rejected)
+}
+
+impl Walk<'_> {
+    /// Gumbel noise and a uniform number for a choice.
+    pub(super) fn choice(&self, number: u32, candidate: u32) -> (f64, f64) {
+        let [u, v] = Draws::of(self.stream, number, CHOICE + candidate).uniform_pair(0);
+        (-math::ln(-math::ln(u)), v)
+    }
+
+    /// One of some candidates.
+    pub(super) fn guided(
+        &self,
+        (pose, way, number): (&Pose, &Way, u32),
+        candidates: u32,
+        others: Option<Gaps>,
+    ) -> Result<(PlacedStep, Stance), Rejected> {
+        let count = candidates.clamp(1, MOST);
+        let draw = |k: u32, change: &dyn Fn(f64) -> Change| {
+            let (noise, share) = self.choice(number, k);
+            let draws = Draws::of(self.stream, number, k);
+            let found = self.candidate(pose, way, draws, change(share))?;
+            Some((noise - found.cost, (found.step, found.after)))
+        };
+        let is_clear = |(step, _): &(PlacedStep, Stance)| self.ground.is_clear(step);
+        let gap = |(step, _): &(PlacedStep, Stance)| others.map(|others| others(step));
+        let steer = |k: u32| move |share| if k % 2 == 1 { Change::Steer(1.5 * share) } else { Change::Never };
+        let options = (0..count).filter_map(|k| draw(k, &steer(k))).collect();
+        let chosen = choose(options, is_clear, gap);
+        match chosen {
+            Ok((chosen, gap)) if gap >= WIDE => Ok(chosen),
+            Err(Rejected::Barriers) => Err(Rejected::Barriers),
+            _ => {
+                // Somebody is near: also steps to the side and shorter ones.
+                let swerve = |k: u32| {
+                    let scale = 1.0 - 0.35 * f64::from(k % 3);
+                    move |share| Change::Swerve(2.0 * share - 1.0, scale)
+                };
+                let plain = (0..count).filter_map(|k| draw(k, &steer(k)));
+                let more = (count..2 * count).filter_map(|k| draw(k, &swerve(k)));
+                choose(plain.chain(more).collect(), is_clear, gap).map(|(chosen, _)| chosen)
+            }
+        }
+    }
+}

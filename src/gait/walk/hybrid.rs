@@ -1,0 +1,171 @@
+//! Hybrid A* over drawn steps (Petereit et al. 2012; Agethen et al. 2018, Algorithm 1). Cells are closed by place, foot and
+//! heading, and the heuristic is the length of the way among the barriers.
+
+use super::candidate::{Candidate, Change, Pose};
+use super::last::Chain;
+use super::no_step::NoStep;
+use super::placed::{PlacedStep, angle};
+use super::search::Walk;
+use crate::base::geometry::{Vec2, rotated};
+use crate::gait::{Draws, Foot, Stance};
+use crate::route::grid::Way;
+use std::cmp::Reverse;
+use std::collections::{BTreeSet, BinaryHeap};
+use std::f64::consts::PI;
+
+/// Headings that are told apart.
+const HEADINGS: f64 = 16.0;
+
+/// The steps of a search have draws from this number on; those of walks before.
+const SEARCHED: u32 = 1 << 15;
+
+/// Candidates of the last steps.
+const LAST: u32 = 8;
+
+/// In the paper a walk ends within this distance of the goal, m.
+const TOLERANCE: f64 = 0.25;
+
+/// Parameters of the search.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HybridAStar {
+    /// Side of the cells that are closed, m.
+    pub cell: f64,
+    /// First steps that are drawn; at most 32.
+    pub starters: u32,
+    /// Successors that are drawn of each step; at most 32.
+    pub successors: u32,
+    /// Most steps that are expanded; at most 32 000.
+    pub expansions: u32,
+    /// As in the paper: straight-line distance as heuristic, only ends of steps are tested, cells are closed whatever the foot
+    /// and the heading, and a walk ends within 0.25 m of the goal.
+    pub is_as_published: bool,
+}
+
+impl Default for HybridAStar {
+    fn default() -> Self {
+        Self { cell: 0.08, starters: 30, successors: 10, expansions: 20_000, is_as_published: false }
+    }
+}
+
+/// A step in the tree.
+struct Node {
+    step: PlacedStep,
+    after: Stance,
+    before: Option<u32>,
+    /// Length of the chords up to its end, m.
+    length: f64,
+    number: u32,
+}
+
+struct Tree {
+    nodes: Vec<Node>,
+    queue: BinaryHeap<Reverse<(u64, u64, u32)>>,
+}
+
+impl Tree {
+    fn push(&mut self, found: &Candidate, left: f64, before: Option<u32>, number: u32) {
+        let start = before.map_or(0.0, |k| self.nodes[k as usize].length);
+        let length = start + found.length;
+        self.queue.push(Reverse(((length + left).to_bits(), left.to_bits(), self.nodes.len() as u32)));
+        self.nodes.push(Node { step: found.step, after: found.after, before, length, number });
+    }
+
+    /// The steps up to a node.
+    fn chain(&self, last: u32) -> Chain {
+        let nodes = std::iter::successors(Some(last), |k| self.nodes[*k as usize].before);
+        let mut chain: Chain = nodes.map(|k| &self.nodes[k as usize]).map(|n| (n.step, n.after)).collect();
+        chain.reverse();
+        chain
+    }
+}
+
+impl HybridAStar {
+    /// As Agethen et al. 2018 describe it. Its walks cross obstacles between the ends of steps, and are too short.
+    pub fn as_published() -> Self {
+        Self { is_as_published: true, ..Self::default() }
+    }
+
+    /// Steps to the goal, the first one first. A person who stands begins with either foot, and with headings within `spread`
+    /// (rad) of that of the pose.
+    pub(super) fn steps(
+        &self,
+        walk: &Walk,
+        (pose, way, number): (&Pose, &Way, u32),
+        spread: f64,
+    ) -> Result<Chain, NoStep> {
+        let mut tree = Tree { nodes: Vec::new(), queue: BinaryHeap::new() };
+        let left = |found: &Candidate| {
+            if self.is_as_published { (found.step.end() - walk.goal).norm() } else { found.way.length }
+        };
+        let draws =
+            |expansion: u32, k: u32| Draws::of(walk.stream, SEARCHED + expansion, number % 128 * 32 + k % 32);
+        let change = |k: u32| {
+            let is_plain = self.is_as_published || k % 2 == 0;
+            if is_plain {
+                Change::Never
+            } else {
+                Change::Steer(f64::from(k) / f64::from(self.successors.max(1)))
+            }
+        };
+        let is_standing = pose.stance.last.is_none();
+        for k in 0..self.starters.min(32) {
+            let mut from = *pose;
+            if is_standing && k % 2 == 1 {
+                from.foot = pose.foot.other();
+            }
+            if is_standing && !self.is_as_published && k >= self.starters / 2 {
+                let [u, _] = draws(0, k).uniform_pair(Draws::COUNT - 1);
+                from.heading = rotated(pose.heading, (2.0 * u - 1.0) * spread);
+            }
+            if let Some(found) = walk.candidate(&from, way, draws(0, k), change(k % self.successors.max(1))) {
+                tree.push(&found, left(&found), None, number);
+            }
+        }
+        let mut closed = BTreeSet::new();
+        let mut expansions = 0;
+        while let Some(Reverse((_, _, at))) = tree.queue.pop() {
+            let Node { step, after, number, .. } = &tree.nodes[at as usize];
+            let (step, from, next) = (*step, Pose::after(step, *after), number + 1);
+            if !closed.insert(self.closing(&from)) || !self.is_clear(walk, &step) {
+                continue;
+            }
+            expansions += 1;
+            let Some(way) = walk.way(from.at) else { continue };
+            if self.is_as_published {
+                if (from.at - walk.goal).norm() <= TOLERANCE {
+                    return Ok(tree.chain(at));
+                }
+            } else if let Some(steps) = walk.remaining(&from, &way)
+                && let Ok(last) = walk.last_steps((&from, steps, next), LAST, None)
+            {
+                let mut chain = tree.chain(at);
+                chain.extend(last);
+                return Ok(chain);
+            }
+            if expansions >= self.expansions.min(32_000) {
+                return Err(NoStep::Limit { expansions });
+            }
+            for k in 0..self.successors.min(32) {
+                if let Some(found) = walk.candidate(&from, &way, draws(expansions, k), change(k)) {
+                    tree.push(&found, left(&found), Some(at), next);
+                }
+            }
+        }
+        Err(NoStep::Exhausted { expansions })
+    }
+
+    fn is_clear(&self, walk: &Walk, step: &PlacedStep) -> bool {
+        if self.is_as_published { walk.ground.is_end_free(step) } else { walk.ground.is_clear(step) }
+    }
+
+    /// What is closed with a pose: cell, foot and heading.
+    fn closing(&self, pose: &Pose) -> (i64, i64, bool, u8) {
+        let at = pose.at / self.cell;
+        let (x, y) = (at.x.floor() as i64, at.y.floor() as i64);
+        if self.is_as_published {
+            return (x, y, false, 0);
+        }
+        let share = angle(Vec2::x(), pose.heading) / (2.0 * PI) + 0.5;
+        (x, y, pose.foot == Foot::Left, (share * HEADINGS) as u8 % HEADINGS as u8)
+    }
+}

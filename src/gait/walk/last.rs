@@ -1,0 +1,95 @@
+//! The last one or two steps: drawn from the gait, then scaled and bent so that the walk ends at the goal point.
+
+use super::candidate::{DETOUR, Pose};
+use super::guided::{Rejected, choose};
+use super::others::Gaps;
+use super::placed::{PlacedStep, angle, end_of, turned};
+use super::search::Walk;
+use super::turn;
+use crate::base::geometry::Vec2;
+use crate::gait::{Draws, Stance};
+use crate::route::grid::Way;
+
+/// Two last steps begin within so many usual lengths of the goal, one step within so many of them; a person who stands makes
+/// one step only within the last of these.
+const TWO: f64 = 2.1;
+const ONE: f64 = 1.25;
+const ONE_FROM_STANDING: f64 = 0.7;
+
+/// The draws of last steps have these numbers and the ones after.
+const FIRST: u32 = 1024;
+
+/// Steps with their stances after them.
+pub(super) type Chain = Vec<(PlacedStep, Stance)>;
+
+/// `v` in a frame whose +x has this direction.
+fn seen(v: Vec2, heading: Vec2) -> Vec2 {
+    turned(v, Vec2::new(heading.x, -heading.y))
+}
+
+impl Walk<'_> {
+    /// How many last steps lead from a pose to the goal: 1 or 2; `None` farther away.
+    pub(super) fn remaining(&self, pose: &Pose, way: &Way) -> Option<u32> {
+        let usual = self.usual();
+        let one = if pose.stance.last.is_some() { ONE } else { ONE_FROM_STANDING };
+        let is_near = way.is_straight && way.length <= TWO * usual;
+        is_near.then_some(if way.length <= one * usual { 1 } else { 2 })
+    }
+
+    /// The usual length of a step at the preferred speed, m: it grows about with the root of the speed.
+    pub(super) fn usual(&self) -> f64 {
+        self.gait.length() * self.share.max(0.0).sqrt()
+    }
+
+    /// Last steps from a pose, the first one first.
+    pub(super) fn last_steps(
+        &self,
+        (pose, steps, number): (&Pose, u32, u32),
+        candidates: u32,
+        others: Option<Gaps>,
+    ) -> Result<Chain, Rejected> {
+        let option = |k: u32| {
+            let (cost, chain) = self.last_option(pose, steps, number, FIRST + k)?;
+            Some((self.choice(number, FIRST + k).0 - cost, chain))
+        };
+        let is_clear = |chain: &Chain| chain.iter().all(|(step, _)| self.ground.is_clear(step));
+        let gap = |chain: &Chain| others.zip(chain.first()).map(|(others, (step, _))| others(step));
+        choose((0..candidates).filter_map(option).collect(), is_clear, gap).map(|(chain, _)| chain)
+    }
+
+    fn last_option(&self, pose: &Pose, steps: u32, number: u32, candidate: u32) -> Option<(f64, Chain)> {
+        let draw = |before: &Stance, foot, number| {
+            let after = self.gait.step(before, foot, self.share, Draws::of(self.stream, number, candidate));
+            Some((after.last?.1, after))
+        };
+        let place = |pose: &Pose, shape, mut after: Stance| {
+            after.last = Some((pose.foot, shape));
+            let step = PlacedStep::new(pose.foot, pose.at, pose.heading, shape);
+            (Pose::after(&step, after), (step, after))
+        };
+        let mut chain = Chain::new();
+        let (mut at, mut cost, mut common) = (*pose, 0.0, None);
+        if steps > 1 {
+            let target = seen(self.goal - pose.at, pose.heading);
+            let (first, middle) = draw(&pose.stance, pose.foot, number)?;
+            let (second, _) = draw(&middle, pose.foot.other(), number + 1)?;
+            let both = end_of(&first) + turned(end_of(&second), first.curve().tangent(1.0));
+            let scale = target.norm() / both.norm().max(1e-9);
+            // Half of the turn of both steps.
+            let by = angle(both, target);
+            if by.abs() > turn::limit(&first) {
+                return None;
+            }
+            let (next, made) = place(pose, turn::bent(&first, by, scale), middle);
+            (at, common) = (next, Some(scale));
+            cost += by.abs();
+            chain.push(made);
+        }
+        let (shape, after) = draw(&at.stance, at.foot, number + steps - 1)?;
+        let (shape, scale, by) = turn::fitted(&shape, seen(self.goal - at.at, at.heading))?;
+        let uneven = scale / common.unwrap_or(scale);
+        cost += by.abs() + (uneven - 1.0).abs();
+        chain.push(place(&at, shape, after).1);
+        Some((DETOUR * 0.35 * cost, chain))
+    }
+}

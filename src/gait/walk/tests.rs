@@ -1,0 +1,163 @@
+//! Walks of a plain gait: in the scene of Figure 5 of Agethen et al. 2018, on open floor, and where there is no way.
+
+use super::*;
+use crate::base::geometry::{Bounds, Polygon, Shape as Area, Vec2};
+use crate::base::random::{Purpose, Stream, TrialKey};
+use crate::gait::{Draws, Foot, Gait, SPANS, Shape, Stance};
+use crate::model::{Barrier, Obstacle, Scene};
+use crate::route::grid::{ClearanceGrid, GoalField};
+use crate::route::roadmap::FreeSpace;
+
+/// Steps of 0.65 m, first steps of 0.37 m; noise of length and direction, and a sway of 2.5 cm.
+#[derive(Debug)]
+struct PlainGait;
+
+impl Gait for PlainGait {
+    fn step(&self, before: &Stance, foot: Foot, _share: f64, draws: Draws) -> Stance {
+        let [a, b] = draws.normal_pair(0);
+        let mean = if before.last.is_some() { 0.65 } else { 0.37 };
+        let (length, turn) = (mean + 0.04 * a, 5.0_f64.to_radians() * b);
+        let side = if foot == Foot::Left { -0.025 } else { 0.025 };
+        let at = |k: usize| {
+            let t = (k + 1) as f64 / SPANS as f64;
+            Vec2::new(length * t, side * (t * std::f64::consts::PI).sin() + 0.5 * length * turn * t * t)
+        };
+        let shape = Shape { landmarks: std::array::from_fn(at), duration: 0.53 };
+        Stance { last: Some((foot, shape.aligned())), drift: before.drift }
+    }
+
+    fn length(&self) -> f64 {
+        0.65
+    }
+
+    fn duration(&self) -> f64 {
+        0.53
+    }
+}
+
+const RADIUS: f64 = 0.25;
+
+const BOXES: [[f64; 4]; 5] = [
+    [1.2, 3.9, 2.6, 5.0],
+    [2.9, 2.2, 4.3, 3.4],
+    [0.8, 1.2, 2.0, 2.6],
+    [4.6, 3.6, 5.8, 5.2],
+    [4.7, 1.2, 5.3, 2.4],
+];
+
+fn stream(seed: u64) -> Stream {
+    Stream::of(TrialKey { seed, index: 0, branch: 0 }, 0, Purpose::Test)
+}
+
+fn ground(boxes: &[[f64; 4]]) -> Ground {
+    let area = |b: &[f64; 4]| Area::rectangle(Vec2::new(b[0], b[1]), Vec2::new(b[2], b[3]));
+    let barrier = |b| Barrier { name: String::new(), obstacle: Obstacle::Solid(area(b)) };
+    let scene = Scene { barriers: boxes.iter().map(barrier).collect(), ..Scene::default() };
+    let free = FreeSpace::new(&scene, RADIUS);
+    let bounds = Bounds { low: Vec2::zeros(), high: Vec2::new(6.5, 6.5) };
+    let grid = ClearanceGrid::new(&free, &bounds, ClearanceGrid::SIDE);
+    Ground::new(free, grid)
+}
+
+fn walk<'a>(ground: &'a Ground, field: &'a GoalField, goal: Vec2, seed: u64, search: Search) -> Walk<'a> {
+    Walk { ground, field, goal, gait: &PlainGait, share: 1.0, stream: stream(seed), search }
+}
+
+/// The least distance of the path from the boxes, at points much closer than those of the sweep.
+fn least_distance(steps: &[PlacedStep], boxes: &[[f64; 4]]) -> f64 {
+    let distance = |p: Vec2, b: &[f64; 4]| {
+        let dx = (b[0] - p.x).max(p.x - b[2]).max(0.0);
+        let dy = (b[1] - p.y).max(p.y - b[3]).max(0.0);
+        (dx * dx + dy * dy).sqrt()
+    };
+    let places = steps.iter().flat_map(|step| (0..=400).map(move |k| step.place(f64::from(k) / 400.0)));
+    places.flat_map(|p| boxes.iter().map(move |b| distance(p, b))).fold(f64::INFINITY, f64::min)
+}
+
+fn assert_chained(steps: &[PlacedStep], start: Vec2) {
+    let mut at = start;
+    let mut heading = None;
+    for step in steps {
+        assert!((step.start - at).norm() < 1e-9);
+        assert!(heading.is_none_or(|h: Vec2| (step.heading - h).norm() < 1e-9));
+        (at, heading) = (step.end(), Some(step.end_heading()));
+    }
+    assert!(steps.windows(2).all(|pair| pair[0].foot != pair[1].foot));
+}
+
+fn all_reach_the_goal(search: Search, seeds: u64) {
+    let ground = ground(&BOXES);
+    let (start, goal) = (Vec2::new(0.5, 6.0), Vec2::new(6.0, 0.5));
+    let field = GoalField::new(ground.grid(), goal);
+    for seed in 0..seeds {
+        let walk = walk(&ground, &field, goal, seed, search);
+        let steps = walk.whole(Walker::standing(start, None)).unwrap();
+        assert_chained(&steps, start);
+        assert!((steps[steps.len() - 1].end() - goal).norm() < 1e-6);
+        assert!(least_distance(&steps, &BOXES) >= RADIUS - 1e-9, "{seed}");
+        assert!((10..25).contains(&steps.len()), "{seed}: {}", steps.len());
+        assert_eq!(walk.whole(Walker::standing(start, None)).unwrap(), steps);
+    }
+}
+
+#[test]
+fn guided_walks_reach_the_goal_and_no_step_meets_a_barrier() {
+    all_reach_the_goal(Search::default(), 100);
+}
+
+#[test]
+fn walks_of_hybrid_a_star_reach_the_goal_and_no_step_meets_a_barrier() {
+    all_reach_the_goal(Search::HybridAStar(HybridAStar::default()), 50);
+}
+
+#[test]
+fn published_walks_cross_obstacles_and_end_near_the_goal() {
+    let ground = ground(&BOXES);
+    let (start, goal) = (Vec2::new(0.5, 6.0), Vec2::new(6.0, 0.5));
+    let field = GoalField::new(ground.grid(), goal);
+    let mut crossing = 0;
+    for seed in 0..5 {
+        let walk = walk(&ground, &field, goal, seed, Search::HybridAStar(HybridAStar::as_published()));
+        let steps = walk.whole(Walker::standing(start, None)).unwrap();
+        assert!((steps[steps.len() - 1].end() - goal).norm() <= 0.25);
+        crossing += u32::from(least_distance(&steps, &BOXES) < RADIUS - 1e-9);
+    }
+    assert!(crossing >= 4, "{crossing}");
+}
+
+/// Median length, interquartile range and share of walks of two steps to a disc of this radius around a point ahead.
+fn lengths(distance: f64, radius: f64, search: Search) -> (f64, f64, f64) {
+    let ground = ground(&[]);
+    let start = Vec2::new(1.0, 1.0);
+    let center = start + Vec2::new(distance, 0.0);
+    let field = GoalField::new(ground.grid(), center);
+    let made = |seed| {
+        let [u, v] = stream(seed).uniform_pair(u32::MAX);
+        let (sin, cos) = (v * std::f64::consts::TAU).sin_cos();
+        let goal = center + Vec2::new(cos, sin) * (radius * u.sqrt());
+        let steps = walk(&ground, &field, goal, seed, search).whole(Walker::standing(start, None)).unwrap();
+        (steps.iter().map(PlacedStep::length).sum::<f64>(), steps.len())
+    };
+    let walks: Vec<(f64, usize)> = (0..1000).map(made).collect();
+    let mut lengths: Vec<f64> = walks.iter().map(|(length, _)| *length).collect();
+    lengths.sort_by(f64::total_cmp);
+    let of_two = walks.iter().filter(|(_, steps)| *steps == 2).count() as f64 / walks.len() as f64;
+    (lengths[500], lengths[750] - lengths[250], of_two)
+}
+
+#[test]
+fn walks_on_open_floor_are_as_long_as_captured_ones() {
+    // Agethen et al. 2018, Table 1, captured medians; straight distances slightly below them.
+    for (distance, captured) in [(2.3, 2.38), (2.2, 2.25), (3.0, 3.15), (2.35, 2.44), (1.0, 1.07)] {
+        for radius in [0.0, 0.1, 0.2, 0.25] {
+            let (median, _, _) = lengths(distance, radius, Search::default());
+            assert!((median / captured - 1.0).abs() < 0.08, "{distance} {radius}: {median}");
+            assert!(median > distance - 0.01, "{distance} {radius}: {median}");
+        }
+    }
+    let (_, _, of_two) = lengths(1.0, 0.25, Search::default());
+    assert!(of_two >= 0.95, "{of_two}");
+    // The published planner stops early, with the luckiest draws.
+    let (median, _, of_two) = lengths(1.0, 0.0, Search::HybridAStar(HybridAStar::as_published()));
+    assert!(median < 0.95, "{median} {of_two}");
+}

@@ -1,0 +1,169 @@
+//! Lengths of the shortest ways from everywhere to a goal: Dijkstra on cells whose parents are the farthest cells in sight, as
+//! in lazy Theta* (Nash, Koenig, Tovey 2010). Steps between neighbours alone would make ways up to 8 % too long.
+
+use super::clearance::ClearanceGrid;
+use crate::base::geometry::Vec2;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// Ways keep this distance from barriers in addition to the radius, m, where there is room for it: about the sway of a walk.
+const COMFORT: f64 = 0.05;
+
+/// A metre nearer to barriers than that counts as so many.
+const TIGHT: f64 = 3.0;
+
+/// How a way begins: straight to an anchor, with `rest` metres from there.
+#[derive(Clone, Copy, Debug)]
+struct Onward {
+    anchor: Vec2,
+    rest: f64,
+    /// The last anchor before the goal; `None` if the anchor is the goal.
+    root: Option<Vec2>,
+}
+
+/// The ways to one goal.
+#[derive(Clone, Debug)]
+pub struct GoalField {
+    goal: Vec2,
+    cells: Vec<Option<Onward>>,
+}
+
+impl GoalField {
+    /// The field of a goal point.
+    pub fn new(grid: &ClearanceGrid, goal: Vec2) -> Self {
+        let mut field = Self { goal, cells: vec![None; grid.columns() * grid.rows()] };
+        field.spread(grid);
+        // Places between free and other cells need the ways of both.
+        field.widen(grid);
+        field.widen(grid);
+        field
+    }
+
+    fn spread(&mut self, grid: &ClearanceGrid) {
+        let comfort = grid.reach() + COMFORT;
+        let (near, start) = (1.5 * grid.side(), 1.5 * grid.side() + COMFORT);
+        let mut lengths = vec![f64::INFINITY; self.cells.len()];
+        let mut states = vec![State::Open; self.cells.len()];
+        let mut queue = BinaryHeap::new();
+        let source = grid.cell(self.goal);
+        for cell in grid.around(source).chain([source]).filter(|k| grid.is_free(*k)) {
+            let length = (grid.center(cell) - self.goal).norm();
+            lengths[cell as usize] = length;
+            self.cells[cell as usize] = Some(Onward { anchor: self.goal, rest: 0.0, root: None });
+            queue.push(Reverse((length.to_bits(), cell)));
+        }
+        while let Some(Reverse((bits, at))) = queue.pop() {
+            let (k, center) = (at as usize, grid.center(at));
+            if states[k] == State::Closed || f64::from_bits(bits) > lengths[k] {
+                continue;
+            }
+            let Some(onward) = self.cells[k] else { continue };
+            let sees = |anchor: Vec2| {
+                (anchor - center).norm() <= near || grid.is_clear(center, anchor, comfort, start)
+            };
+            if states[k] == State::Open {
+                states[k] = State::Checked;
+                if !sees(onward.anchor) {
+                    // The cells around it whose ways are known: their anchors, or the cells themselves.
+                    let mut best = (f64::INFINITY, onward);
+                    for other in grid.around(at).filter(|other| states[*other as usize] == State::Closed) {
+                        let Some(known) = self.cells[other as usize] else { continue };
+                        let through = (center - known.anchor).norm() + known.rest;
+                        if through < best.0 && sees(known.anchor) {
+                            best = (through, known);
+                            continue;
+                        }
+                        let place = grid.center(other);
+                        let factor = if grid.keeps(at, comfort) { 1.0 } else { TIGHT };
+                        let (step, rest) = ((center - place).norm(), lengths[other as usize]);
+                        let rest = rest + (factor - 1.0) * step;
+                        if step + rest < best.0 {
+                            let root = Some(known.root.unwrap_or(place));
+                            best = (step + rest, Onward { anchor: place, rest, root });
+                        }
+                    }
+                    lengths[k] = best.0;
+                    self.cells[k] = Some(best.1).filter(|_| best.0.is_finite());
+                    if best.0.is_finite() {
+                        queue.push(Reverse((best.0.to_bits(), at)));
+                    }
+                    continue;
+                }
+            }
+            states[k] = State::Closed;
+            for other in grid.around(at) {
+                let j = other as usize;
+                let length = (grid.center(other) - onward.anchor).norm() + onward.rest;
+                if states[j] == State::Open && length < lengths[j] && grid.is_free(other) {
+                    lengths[j] = length;
+                    self.cells[j] = Some(onward);
+                    queue.push(Reverse((length.to_bits(), other)));
+                }
+            }
+        }
+    }
+
+    /// Gives cells without a way the best one of the cells around them.
+    fn widen(&mut self, grid: &ClearanceGrid) {
+        let known = self.cells.clone();
+        for cell in (0..known.len() as u32).filter(|k| known[*k as usize].is_none()) {
+            let center = grid.center(cell);
+            let length = |way: &Onward| (center - way.anchor).norm() + way.rest;
+            let ways = grid.around(cell).filter_map(|other| known[other as usize]);
+            self.cells[cell as usize] = ways.min_by(|a, b| length(a).total_cmp(&length(b)));
+        }
+    }
+
+    /// The goal point of the field, m.
+    pub fn goal(&self) -> Vec2 {
+        self.goal
+    }
+
+    /// Length of the way from a place to `goal`, m, and its direction (length 1; zero at the goal); `None` where no way leads
+    /// there. `goal` is a point near that of the field and in sight of it. Continuous in the place.
+    pub fn way(&self, grid: &ClearanceGrid, from: Vec2, goal: Vec2) -> Option<Way> {
+        let (at, corner) = grid.corner(from);
+        let columns = grid.columns() as u32;
+        let (column, row) = (f64::from(corner % columns), f64::from(corner / columns));
+        let share = Vec2::new((at.x - column).clamp(0.0, 1.0), (at.y - row).clamp(0.0, 1.0));
+        let right = [1.0 - share.x, share.x];
+        let (mut length, mut direction, mut total, mut sees) = (0.0, Vec2::zeros(), 0.0, true);
+        for (k, weight) in [(0, 1.0 - share.y), (columns, share.y)]
+            .into_iter()
+            .flat_map(|(row, up)| [(corner + row, up * right[0]), (corner + row + 1, up * right[1])])
+        {
+            let Some(Some(way)) = self.cells.get(k as usize).filter(|_| weight > 0.0) else { continue };
+            let (anchor, rest) = match way.root {
+                None => (goal, 0.0),
+                Some(root) => (way.anchor, way.rest + (root - goal).norm() - (root - self.goal).norm()),
+            };
+            let ahead = anchor - from;
+            let distance = ahead.norm();
+            sees &= way.root.is_none();
+            length += weight * (distance + rest);
+            direction += ahead * (weight / distance.max(1e-12));
+            total += weight;
+        }
+        let norm = direction.norm();
+        let direction = if norm > 1e-9 { direction / norm } else { Vec2::zeros() };
+        (total > 0.0).then(|| Way { length: length / total, direction, is_straight: sees })
+    }
+}
+
+/// A way to the goal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Way {
+    /// Its length, m.
+    pub length: f64,
+    /// In which direction it begins.
+    pub direction: Vec2,
+    /// Whether it leads straight to the goal.
+    pub is_straight: bool,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum State {
+    Open,
+    Checked,
+    Closed,
+}
