@@ -4,13 +4,15 @@ use super::placed::{PlacedStep, angle, end_of, turned};
 use super::search::Walk;
 use super::turn;
 use crate::base::geometry::Vec2;
-use crate::gait::{Draws, Foot, Stance};
+use crate::gait::{Draws, Foot, SPANS, Shape, Stance};
 use crate::route::grid::Way;
 use std::f64::consts::PI;
 
-/// Weight of a detour of 1 m, and of an error of the heading of 1 rad: the negative logarithm of the weight of a step.
+/// The negative logarithm of the weight of a step with a detour of 1 m.
 pub(super) const DETOUR: f64 = 12.0;
-const HEADING: f64 = 12.0 * 0.35;
+
+/// An error of the heading of 1 rad counts as a detour of this length, m.
+pub(super) const HEADING: f64 = 0.35;
 
 /// Larger errors of the heading count as this, rad.
 const MOST_ERROR: f64 = 1.5;
@@ -43,6 +45,8 @@ pub(super) struct Candidate {
     pub(super) length: f64,
     /// The way from its end.
     pub(super) way: Way,
+    /// Error of the heading at its end, rad, faded out within the last metre.
+    pub(super) turning: f64,
     /// Negative logarithm of its weight.
     pub(super) cost: f64,
 }
@@ -74,7 +78,10 @@ impl Walk<'_> {
         let (by, scale) = match change {
             Change::Never => (0.0, 1.0),
             Change::Steer(share) => {
-                let error = angle(turned(end, pose.heading), way.direction);
+                // Towards the direction that the way has at the end of the step.
+                let ahead =
+                    self.way(pose.at + way.direction * end.norm()).map_or(way.direction, |w| w.direction);
+                let error = angle(turned(end, pose.heading), ahead);
                 (if error.abs() > OFF { error * share } else { 0.0 }, 1.0)
             }
             Change::Swerve(share, scale) => (turn::WIDEST * share, scale),
@@ -91,8 +98,30 @@ impl Walk<'_> {
         let length = end_of(&shape).norm();
         let error = angle(step.end_heading(), onward.direction).abs().min(MOST_ERROR);
         let detour = length + onward.length - way.length;
+        let turning = error * onward.length.min(1.0);
         let slowing = 4.0 * (1.0 - scale);
-        let cost = DETOUR * detour + HEADING * error * onward.length.min(1.0) + slowing;
-        Some(Candidate { step, after, length, way: onward, cost })
+        let cost = DETOUR * (detour + HEADING * turning) + slowing;
+        Some(Candidate { step, after, length, way: onward, turning, cost })
+    }
+
+    /// Whether a step may go on from its end: a straight or a turned line of the length of a step is clear. True far from
+    /// barriers.
+    pub(super) fn goes_on(&self, found: &Candidate) -> bool {
+        let (at, heading) = (found.step.end(), found.step.end_heading());
+        let length = self.usual().min(found.way.length);
+        if self.ground.grid().clearance(at) > length + self.ground.grid().reach() {
+            return true;
+        }
+        let error = angle(heading, found.way.direction).clamp(-turn::WIDEST, turn::WIDEST);
+        let line = |scale: f64| Shape {
+            landmarks: std::array::from_fn(|k| {
+                Vec2::new(length * scale * (k + 1) as f64 / SPANS as f64, 0.0)
+            }),
+            duration: 1.0,
+        };
+        [(1.0, 1.0), (0.5, 1.0), (1.0, 0.6)].into_iter().any(|(share, scale)| {
+            let shape = turn::bent(&line(scale), share * error, 1.0);
+            self.ground.is_clear(&PlacedStep::new(found.step.foot.other(), at, heading, shape))
+        })
     }
 }

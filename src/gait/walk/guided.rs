@@ -3,7 +3,7 @@
 //! The candidate with the largest sum of log weight and Gumbel noise has the law of a draw by weight, and passing over those that
 //! meet a barrier gives the law among the others. So only few candidates are swept.
 
-use super::candidate::{Change, Pose};
+use super::candidate::{Candidate, Change, Pose};
 use super::others::{Gaps, WIDE, log_weight};
 use super::placed::PlacedStep;
 use super::search::Walk;
@@ -73,26 +73,25 @@ impl Walk<'_> {
             let (noise, share) = self.choice(number, k);
             let draws = Draws::of(self.stream, number, k);
             let found = self.candidate(pose, way, draws, change(share))?;
-            Some((noise - found.cost, (found.step, found.after)))
+            Some((noise - found.cost, found))
         };
-        let is_clear = |(step, _): &(PlacedStep, Stance)| self.ground.is_clear(step);
-        let gap = |(step, _): &(PlacedStep, Stance)| others.map(|others| others(step));
+        let is_clear = |found: &Candidate| self.ground.is_clear(&found.step) && self.goes_on(found);
+        let gap = |found: &Candidate| others.map(|others| others(&found.step));
         let steer = |k: u32| move |share| if k % 2 == 1 { Change::Steer(1.5 * share) } else { Change::Never };
         let options = (0..count).filter_map(|k| draw(k, &steer(k))).collect();
-        let chosen = choose(options, is_clear, gap);
-        match chosen {
-            Ok((chosen, gap)) if gap >= WIDE => Ok(chosen),
-            Err(Rejected::Barriers) => Err(Rejected::Barriers),
+        let chosen = match choose(options, is_clear, gap) {
+            Ok((chosen, gap)) if gap >= WIDE => chosen,
             _ => {
-                // Somebody is near: also steps to the side and shorter ones.
+                // Somebody or a barrier is near: also steps to the side and shorter ones.
                 let swerve = |k: u32| {
                     let scale = 1.0 - 0.35 * f64::from(k % 3);
                     move |share| Change::Swerve(2.0 * share - 1.0, scale)
                 };
                 let plain = (0..count).filter_map(|k| draw(k, &steer(k)));
                 let more = (count..2 * count).filter_map(|k| draw(k, &swerve(k)));
-                choose(plain.chain(more).collect(), is_clear, gap).map(|(chosen, _)| chosen)
+                choose(plain.chain(more).collect(), is_clear, gap)?.0
             }
-        }
+        };
+        Ok((chosen.step, chosen.after))
     }
 }

@@ -1,7 +1,7 @@
 //! Hybrid A* over drawn steps (Petereit et al. 2012; Agethen et al. 2018, Algorithm 1). Cells are closed by place, foot and
 //! heading, and the heuristic is the length of the way among the barriers.
 
-use super::candidate::{Candidate, Change, Pose};
+use super::candidate::{Candidate, Change, HEADING, Pose};
 use super::last::Chain;
 use super::no_step::NoStep;
 use super::placed::{PlacedStep, angle};
@@ -85,17 +85,20 @@ impl HybridAStar {
         Self { is_as_published: true, ..Self::default() }
     }
 
-    /// Steps to the goal, the first one first. A person who stands begins with either foot, and with headings within `spread`
-    /// (rad) of that of the pose.
+    /// Steps to the goal, the first one first. A person who stands begins with either foot, half of the starters in any
+    /// direction.
     pub(super) fn steps(
         &self,
         walk: &Walk,
         (pose, way, number): (&Pose, &Way, u32),
-        spread: f64,
     ) -> Result<Chain, NoStep> {
         let mut tree = Tree { nodes: Vec::new(), queue: BinaryHeap::new() };
         let left = |found: &Candidate| {
-            if self.is_as_published { (found.step.end() - walk.goal).norm() } else { found.way.length }
+            if self.is_as_published {
+                (found.step.end() - walk.goal).norm()
+            } else {
+                found.way.length + HEADING * found.turning
+            }
         };
         let draws =
             |expansion: u32, k: u32| Draws::of(walk.stream, SEARCHED + expansion, number % 128 * 32 + k % 32);
@@ -115,7 +118,7 @@ impl HybridAStar {
             }
             if is_standing && !self.is_as_published && k >= self.starters / 2 {
                 let [u, _] = draws(0, k).uniform_pair(Draws::COUNT - 1);
-                from.heading = rotated(pose.heading, (2.0 * u - 1.0) * spread);
+                from.heading = rotated(pose.heading, (2.0 * u - 1.0) * PI);
             }
             if let Some(found) = walk.candidate(&from, way, draws(0, k), change(k % self.successors.max(1))) {
                 tree.push(&found, left(&found), None, number);

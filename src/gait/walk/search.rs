@@ -89,34 +89,45 @@ impl Walk<'_> {
         if !self.ground.is_free(self.goal) {
             return Err(NoStep::GoalBlocked);
         }
+        walker.planned.clear();
+        let found = self.new_step(walker, others);
+        if !matches!(found, Err(NoStep::Exhausted { .. })) || walker.stance.last.is_none() {
+            return found.map(Some);
+        }
+        // Somebody who walked into a dead end stops, and goes on from there.
+        let mut stopped = walker.clone();
+        stopped.stance.last = None;
+        let step = self.new_step(&mut stopped, others)?;
+        *walker = stopped;
+        Ok(Some(step))
+    }
+
+    fn new_step(&self, walker: &mut Walker, others: Option<Gaps>) -> Result<PlacedStep, NoStep> {
         let way = self.way(walker.at).ok_or(NoStep::NoWay { x: walker.at.x, y: walker.at.y })?;
         let number = walker.number;
         if let Some(turn) = self.turn_needed(walker, &way) {
             let step = self.turned_on_the_spot(walker, turn, others)?;
-            walker.planned.clear();
             walker.make(&step, &Stance { last: None, ..walker.stance });
-            return Ok(Some(step));
+            return Ok(step);
         }
-        let (pose, spread) = self.pose(walker, &way);
+        let pose = self.pose(walker, &way);
         let mut chain = match self.search {
-            Search::HybridAStar(search) => search.steps(self, (&pose, &way, number), spread)?,
+            Search::HybridAStar(search) => search.steps(self, (&pose, &way, number))?,
             Search::Guided { candidates } => match self.guided_steps(&pose, &way, number, candidates, others)
             {
                 Ok(chain) => chain,
                 Err(Rejected::Bodies) => return Err(NoStep::Crowded),
-                Err(Rejected::Barriers) => {
-                    HybridAStar::default().steps(self, (&pose, &way, number), spread)?
-                }
+                Err(Rejected::Barriers) => HybridAStar::default().steps(self, (&pose, &way, number))?,
             },
         };
         chain.reverse();
-        let Some((step, after)) = chain.pop() else { return Ok(None) };
+        let (step, after) = chain.pop().ok_or(NoStep::Exhausted { expansions: 0 })?;
         if others.is_some_and(|others| others(&step) <= 0.0) {
             return Err(NoStep::Crowded);
         }
         walker.planned = chain;
         walker.make(&step, &after);
-        Ok(Some(step))
+        Ok(step)
     }
 
     /// All steps of a person to the goal.
@@ -198,15 +209,13 @@ impl Walk<'_> {
         clear.find(|step| gap(step)).copied().ok_or(NoStep::Crowded)
     }
 
-    /// Where the next step begins, and by how much its heading may differ, rad: the path of somebody who stands may begin in
-    /// any direction, within the widest turn from the heading of the body.
-    fn pose(&self, walker: &Walker, way: &Way) -> (Pose, f64) {
+    /// Where the next step begins. The path of somebody who stands may begin in any direction.
+    fn pose(&self, walker: &Walker, way: &Way) -> Pose {
         let pose = |heading| Pose { at: walker.at, heading, stance: walker.stance, foot: walker.foot };
         if let (Some(heading), Some(_)) = (walker.heading, walker.stance.last) {
-            return (pose(heading), 0.0);
+            return pose(heading);
         }
         let [noise, _] = Draws::of(self.stream, walker.number, HEADING).normal_pair(0);
-        let spread = if walker.heading.is_some() { turn::WIDEST } else { PI };
-        (pose(rotated(way.direction, NOISE * noise)), spread)
+        pose(rotated(way.direction, NOISE * noise))
     }
 }

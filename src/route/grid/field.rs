@@ -66,11 +66,19 @@ impl GoalField {
                 if !sees(onward.anchor) {
                     // The cells around it whose ways are known: their anchors, or the cells themselves.
                     let mut best = (f64::INFINITY, onward);
+                    // Many cells share an anchor; it is looked at once.
+                    let mut hidden = onward.anchor;
                     for other in grid.around(at).filter(|other| states[*other as usize] == State::Closed) {
                         let Some(known) = self.cells[other as usize] else { continue };
                         let through = (center - known.anchor).norm() + known.rest;
-                        if through < best.0 && sees(known.anchor) {
-                            best = (through, known);
+                        if through < best.0 && known.anchor != hidden {
+                            if sees(known.anchor) {
+                                best = (through, known);
+                                continue;
+                            }
+                            hidden = known.anchor;
+                        }
+                        if known.anchor == best.1.anchor && best.0.is_finite() {
                             continue;
                         }
                         let place = grid.center(other);
