@@ -53,3 +53,43 @@ pub fn shortest_cells(grid: &ClearanceGrid, from: Vec2, to: Vec2) -> Option<Vec<
     }
     None
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::geometry::{Bounds, Shape};
+    use crate::model::{Barrier, Obstacle, Scene};
+    use crate::route::roadmap::FreeSpace;
+
+    #[test]
+    fn a_path_is_as_short_as_sweeps_over_all_cells_find() {
+        let area = Shape::rectangle(Vec2::new(1.0, 0.0), Vec2::new(1.6, 2.4));
+        let barriers = vec![Barrier { name: String::new(), obstacle: Obstacle::Solid(area) }];
+        let free = FreeSpace::new(&Scene { barriers, ..Scene::default() }, 0.25);
+        let bounds = Bounds { low: Vec2::zeros(), high: Vec2::new(3.2, 3.2) };
+        let grid = ClearanceGrid::new(&free, &bounds, 0.08);
+        let (from, to) = (Vec2::new(0.3, 0.4), Vec2::new(2.9, 0.3));
+        let path = shortest_cells(&grid, from, to).unwrap();
+        let length: f64 = path.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
+        assert!(path.iter().all(|p| grid.is_free(grid.cell(*p))));
+        assert!(path.windows(2).all(|pair| (pair[1] - pair[0]).norm() < 1.5 * grid.side()));
+        // Bellman and Ford.
+        let count = (grid.columns() * grid.rows()) as u32;
+        let mut lengths = vec![f64::INFINITY; count as usize];
+        lengths[grid.cell(to) as usize] = 0.0;
+        for _ in 0..count {
+            let before = lengths.clone();
+            for k in (0..count).filter(|k| grid.is_free(*k)) {
+                for other in grid.around(k).filter(|k| grid.is_free(*k)) {
+                    let step = (grid.center(k) - grid.center(other)).norm();
+                    lengths[k as usize] = lengths[k as usize].min(lengths[other as usize] + step);
+                }
+            }
+            if before == lengths {
+                break;
+            }
+        }
+        assert!((length - lengths[grid.cell(from) as usize]).abs() < 1e-3);
+        assert!(shortest_cells(&grid, from, Vec2::new(1.3, 1.0)).is_none());
+    }
+}

@@ -175,3 +175,61 @@ enum State {
     Checked,
     Closed,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::geometry::{Bounds, Shape};
+    use crate::model::{Barrier, Obstacle, Scene};
+    use crate::route::roadmap::FreeSpace;
+
+    fn grid(shape: Option<Shape>) -> ClearanceGrid {
+        let barrier = |shape| Barrier { name: String::new(), obstacle: Obstacle::Solid(shape) };
+        let scene = Scene { barriers: shape.map(barrier).into_iter().collect(), ..Scene::default() };
+        let bounds = Bounds { low: Vec2::zeros(), high: Vec2::new(8.0, 8.0) };
+        ClearanceGrid::new(&FreeSpace::new(&scene, 0.25), &bounds, ClearanceGrid::SIDE)
+    }
+
+    #[test]
+    fn open_floor_has_straight_ways_also_to_a_goal_nearby_and_from_outside() {
+        let grid = grid(None);
+        let field = GoalField::new(&grid, Vec2::new(3.0, 4.0));
+        for k in 0..400_u32 {
+            let from = Vec2::new(f64::from(k % 20), f64::from(k / 20)) * 0.45 - Vec2::repeat(0.3);
+            let goal = Vec2::new(3.1, 3.8);
+            let way = field.way(&grid, from, goal).unwrap();
+            assert!((way.length - (goal - from).norm()).abs() < 1e-9);
+            assert!(way.is_straight && (from + way.direction * way.length - goal).norm() < 1e-9);
+        }
+    }
+
+    /// The shortest way around a disc: two tangents and an arc.
+    fn around(from: Vec2, to: Vec2, center: Vec2, radius: f64) -> f64 {
+        let (a, b) = (from - center, to - center);
+        let tangent = |v: Vec2| (v.norm_squared() - radius * radius).sqrt();
+        let angle = (a.dot(&b) / (a.norm() * b.norm())).acos();
+        let arc = angle - (radius / a.norm()).acos() - (radius / b.norm()).acos();
+        if arc <= 0.0 { (to - from).norm() } else { tangent(a) + tangent(b) + radius * arc }
+    }
+
+    #[test]
+    fn ways_around_a_disc_are_two_percent_off_at_most_and_continuous() {
+        let (center, radius, goal) = (Vec2::new(4.0, 4.0), 1.0, Vec2::new(7.0, 4.3));
+        let grid = grid(Some(Shape::Circle { centre: center, radius }));
+        let field = GoalField::new(&grid, goal);
+        let mut worst: f64 = 0.0;
+        for k in 0..40_000_u32 {
+            let from = Vec2::new(f64::from(k % 200), f64::from(k / 200)) * 0.04;
+            if (from - center).norm() < radius + 0.32 || (from - goal).norm() < 0.5 {
+                continue;
+            }
+            let exact = around(from, goal, center, radius + 0.25);
+            let way = field.way(&grid, from, goal).unwrap();
+            assert!(way.length > 0.995 * exact - 1e-9, "{from}: {} {exact}", way.length);
+            worst = worst.max(way.length / exact - 1.0);
+            let near = field.way(&grid, from + Vec2::new(1e-4, 1e-4), goal).unwrap();
+            assert!((near.length - way.length).abs() < 1e-3, "{from}");
+        }
+        assert!(worst < 0.025, "{worst}");
+    }
+}
