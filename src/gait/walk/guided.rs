@@ -7,12 +7,16 @@ use super::candidate::{Candidate, Change, Pose};
 use super::others::{Gaps, WIDE, log_weight};
 use super::placed::PlacedStep;
 use super::search::Walk;
+use crate::base::geometry::rotated;
 use crate::base::math;
 use crate::gait::{Draws, Stance};
 use crate::route::grid::Way;
 
 /// The draws of the choice among candidates have these numbers and the ones after.
 const CHOICE: u32 = 2048;
+
+/// Angle between the directions in which somebody who stands gets out of the way, rad.
+const ASIDE: f64 = 45.0 * std::f64::consts::PI / 180.0;
 
 /// Most candidates of a choice.
 pub(super) const MOST: u32 = 512;
@@ -69,12 +73,13 @@ impl Walk<'_> {
         others: Option<Gaps>,
     ) -> Result<(PlacedStep, Stance), Rejected> {
         let count = candidates.clamp(1, MOST);
-        let draw = |k: u32, change: &dyn Fn(f64) -> Change| {
+        let draw_from = |pose: &Pose, k: u32, change: &dyn Fn(f64) -> Change| {
             let (noise, share) = self.choice(number, k);
             let draws = Draws::of(self.stream, number, k);
             let found = self.candidate(pose, way, draws, change(share))?;
             Some((noise - found.cost, found))
         };
+        let draw = |k: u32, change: &dyn Fn(f64) -> Change| draw_from(pose, k, change);
         let is_clear = |found: &Candidate| self.ground.is_clear(&found.step) && self.goes_on(found);
         let gap = |found: &Candidate| others.map(|others| others(&found.step));
         let steer = |k: u32| move |share| if k % 2 == 1 { Change::Steer(1.5 * share) } else { Change::Never };
@@ -88,7 +93,12 @@ impl Walk<'_> {
                     move |share| Change::Swerve(2.0 * share - 1.0, scale)
                 };
                 let plain = (0..count).filter_map(|k| draw(k, &steer(k)));
-                let more = (count..2 * count).filter_map(|k| draw(k, &swerve(k)));
+                let more = (count..2 * count).filter_map(|k| {
+                    // The path of somebody who stands may begin to the side.
+                    let side =
+                        if pose.stance.last.is_none() { ASIDE * f64::from(k % 5) - 2.0 * ASIDE } else { 0.0 };
+                    draw_from(&Pose { heading: rotated(pose.heading, side), ..*pose }, k, &swerve(k))
+                });
                 choose(plain.chain(more).collect(), is_clear, gap)?.0
             }
         };

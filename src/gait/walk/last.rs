@@ -77,10 +77,11 @@ impl Walk<'_> {
             let scale = target.norm() / both.norm().max(1e-9);
             // Half of the turn of both steps.
             let by = angle(both, target);
-            if by.abs() > turn::limit(&first) {
+            let first = turn::bent(&first, by, scale);
+            if !turn::is_legal(&first) {
                 return None;
             }
-            let (next, made) = place(pose, turn::bent(&first, by, scale), middle);
+            let (next, made) = place(pose, first, middle);
             (at, common) = (next, Some(scale));
             cost += by.abs();
             chain.push(made);

@@ -91,10 +91,10 @@ impl Walk<'_> {
         }
         walker.planned.clear();
         let found = self.new_step(walker, others);
-        if !matches!(found, Err(NoStep::Exhausted { .. })) || walker.stance.last.is_none() {
+        if !matches!(found, Err(NoStep::Exhausted { .. } | NoStep::Crowded)) || walker.stance.last.is_none() {
             return found.map(Some);
         }
-        // Somebody who walked into a dead end stops, and goes on from there.
+        // Somebody who walked into a dead end or up to others stops, and goes on from there.
         let mut stopped = walker.clone();
         stopped.stance.last = None;
         let step = self.new_step(&mut stopped, others)?;

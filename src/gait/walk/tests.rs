@@ -12,18 +12,20 @@ use crate::route::roadmap::FreeSpace;
 #[derive(Debug)]
 struct PlainGait {
     first: f64,
+    /// Standard deviation of the turn, degrees.
+    noise: f64,
 }
 
-const GAIT: PlainGait = PlainGait { first: 0.37 };
+const GAIT: PlainGait = PlainGait { first: 0.37, noise: 5.0 };
 
 /// As in the paper, walks begin with a step as of somebody who walks.
-const FULL_FIRST_STEP: PlainGait = PlainGait { first: 0.7 };
+const FULL_FIRST_STEP: PlainGait = PlainGait { first: 0.7, noise: 5.0 };
 
 impl Gait for PlainGait {
     fn step(&self, before: &Stance, foot: Foot, _share: f64, draws: Draws) -> Stance {
         let [a, b] = draws.normal_pair(0);
         let mean = if before.last.is_some() { 0.65 } else { self.first };
-        let (length, turn) = (mean + 0.04 * a, 5.0_f64.to_radians() * b);
+        let (length, turn) = (mean + 0.04 * a, self.noise.to_radians() * b);
         let side = if foot == Foot::Left { -0.025 } else { 0.025 };
         let at = |k: usize| {
             let t = (k + 1) as f64 / SPANS as f64;
@@ -81,30 +83,28 @@ fn least_distance(steps: &[PlacedStep], boxes: &[[f64; 4]]) -> f64 {
     places.flat_map(|p| boxes.iter().map(move |b| distance(p, b))).fold(f64::INFINITY, f64::min)
 }
 
-fn assert_chained(steps: &[PlacedStep], start: Vec2) {
-    let mut at = start;
-    let mut heading = None;
-    for step in steps {
-        assert!((step.start - at).norm() < 1e-9);
-        assert!(heading.is_none_or(|h: Vec2| (step.heading - h).norm() < 1e-9));
-        (at, heading) = (step.end(), Some(step.end_heading()));
-    }
-    assert!(steps.windows(2).all(|pair| pair[0].foot != pair[1].foot));
+/// How often a walk stops: there the next step may begin in another direction.
+fn stops_of_chain(steps: &[PlacedStep], start: Vec2) -> usize {
+    assert_eq!(steps[0].start, start);
+    assert!(steps.windows(2).all(|pair| (pair[1].start - pair[0].end()).norm() < 1e-9));
+    steps.windows(2).filter(|pair| (pair[1].heading - pair[0].end_heading()).norm() > 1e-9).count()
 }
 
 fn all_reach_the_goal(search: Search, seeds: u64) {
     let ground = ground(&BOXES);
     let (start, goal) = (Vec2::new(0.5, 6.0), Vec2::new(6.0, 0.5));
     let field = GoalField::new(ground.grid(), goal);
+    let mut stops = 0;
     for seed in 0..seeds {
         let walk = walk(&ground, &field, goal, seed, search);
         let steps = walk.whole(Walker::standing(start, None)).unwrap();
-        assert_chained(&steps, start);
+        stops += stops_of_chain(&steps, start);
         assert!((steps[steps.len() - 1].end() - goal).norm() < 1e-6);
         assert!(least_distance(&steps, &BOXES) >= RADIUS - 1e-9, "{seed}");
         assert!((10..25).contains(&steps.len()), "{seed}: {}", steps.len());
         assert_eq!(walk.whole(Walker::standing(start, None)).unwrap(), steps);
     }
+    assert!(20 * stops < seeds as usize, "{stops}");
 }
 
 #[test]
@@ -124,7 +124,9 @@ fn published_walks_cross_obstacles_and_end_near_the_goal() {
     let field = GoalField::new(ground.grid(), goal);
     let mut crossing = 0;
     for seed in 0..5 {
-        let walk = walk(&ground, &field, goal, seed, Search::HybridAStar(HybridAStar::as_published()));
+        let search = Search::HybridAStar(HybridAStar::as_published());
+        let gait = &PlainGait { first: 0.37, noise: 20.0 };
+        let walk = Walk { gait, ..walk(&ground, &field, goal, seed, search) };
         let steps = walk.whole(Walker::standing(start, None)).unwrap();
         assert!((steps[steps.len() - 1].end() - goal).norm() <= 0.25);
         crossing += u32::from(least_distance(&steps, &BOXES) < RADIUS - 1e-9);
@@ -143,14 +145,16 @@ fn lengths(distance: f64, radius: f64, gait: &PlainGait, search: Search) -> (f64
         let (sin, cos) = (v * std::f64::consts::TAU).sin_cos();
         let goal = center + Vec2::new(cos, sin) * (radius * u.sqrt());
         let walk = Walk { gait, ..walk(&ground, &field, goal, seed, search) };
-        let steps = walk.whole(Walker::standing(start, None)).unwrap();
-        (steps.iter().map(PlacedStep::length).sum::<f64>(), steps.len())
+        let steps = walk.whole(Walker::standing(start, None)).ok()?;
+        Some((steps.iter().map(PlacedStep::length).sum::<f64>(), steps.len()))
     };
-    let walks: Vec<(f64, usize)> = (0..200).map(made).collect();
+    let walks: Vec<(f64, usize)> = (0..200).filter_map(made).collect();
+    assert!(walks.len() >= 160, "{}", walks.len());
+    let rank = |quarters: usize| walks.len() * quarters / 4;
     let mut lengths: Vec<f64> = walks.iter().map(|(length, _)| *length).collect();
     lengths.sort_by(f64::total_cmp);
     let of_two = walks.iter().filter(|(_, steps)| *steps == 2).count() as f64 / walks.len() as f64;
-    (lengths[100], lengths[150] - lengths[50], of_two)
+    (lengths[rank(2)], lengths[rank(3)] - lengths[rank(1)], of_two)
 }
 
 #[test]
@@ -196,7 +200,7 @@ fn a_body_in_the_way_is_passed_without_contact() {
         }
     }
     // On all sides of it: no step can be made, and the walker has not changed.
-    let ring: Vec<OtherBody> = [(0.6, 0.0), (-0.6, 0.0), (0.0, 0.6), (0.0, -0.6)]
+    let ring: Vec<OtherBody> = [(0.505, 0.0), (-0.505, 0.0), (0.0, 0.505), (0.0, -0.505)]
         .map(|(x, y)| OtherBody { at: start + Vec2::new(x, y), ..other })
         .to_vec();
     let gaps = |step: &PlacedStep| least_gap(step, RADIUS, &ring);
@@ -233,8 +237,9 @@ fn somebody_with_the_goal_behind_turns_with_the_first_steps() {
         let on_the_spot = steps.iter().take_while(|step| step.length() < 0.1).count();
         assert_eq!(on_the_spot, turns, "{behind}");
         for step in &steps {
+            // Sway turns the path by up to 14 degrees in addition.
             let turn = placed::angle(step.heading, step.end_heading()).abs().to_degrees();
-            let most = if step.length() < 0.7 * step.duration() { 91.0 } else { 50.0 };
+            let most = if step.length() < 0.7 * step.duration() { 91.0 } else { 50.0 + 14.0 };
             assert!(turn < most, "{behind}: {turn}");
         }
         assert!((steps[steps.len() - 1].end() - goal).norm() < 1e-6);

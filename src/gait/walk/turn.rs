@@ -1,6 +1,6 @@
 //! Turned and scaled steps, and turns on the spot.
 
-use super::placed::end_of;
+use super::placed::{angle, end_of};
 use crate::base::geometry::Vec2;
 use crate::base::math;
 use crate::gait::{SPANS, Shape};
@@ -15,6 +15,11 @@ const SLOW: f64 = 0.7;
 /// Most by which a step of this length and duration turns, rad.
 pub(super) fn limit(shape: &Shape) -> f64 {
     if end_of(shape).norm() < SLOW * shape.duration { FRAC_PI_2 } else { WIDEST }
+}
+
+/// Whether the path of a step turns by no more than the limit.
+pub(super) fn is_legal(shape: &Shape) -> bool {
+    angle(Vec2::x(), shape.curve().tangent(1.0)).abs() <= limit(shape)
 }
 
 /// The step bent along an arc by an angle, rad, positive to the left, and scaled. Its direction at the begin stays.
@@ -42,7 +47,7 @@ pub(super) fn fitted(shape: &Shape, target: Vec2) -> Option<(Shape, f64, f64)> {
         made = bent(shape, turn, scale);
         let end = end_of(&made);
         scale *= target.norm() / end.norm().max(1e-9);
-        turn += 2.0 * super::placed::angle(end, target);
+        turn += 2.0 * angle(end, target);
         if !(0.2..=2.0).contains(&scale) || turn.abs() > limit(&made) {
             return None;
         }
@@ -54,7 +59,7 @@ pub(super) fn fitted(shape: &Shape, target: Vec2) -> Option<(Shape, f64, f64)> {
         *p += miss * (share * share);
     }
     made.landmarks[SPANS - 1] = target;
-    (miss.norm() < 0.02).then_some((made, scale, turn))
+    (miss.norm() < 0.02 && is_legal(&made)).then_some((made, scale, turn))
 }
 
 /// A turn on the spot by an angle, rad: a short arc of this radius, m.

@@ -159,8 +159,9 @@ mod tests {
         assert_eq!((grid.columns(), grid.rows()), (82, 82));
         for k in 0..10_000_u32 {
             let p = Vec2::new(f64::from(k % 100), f64::from(k / 100)) * 0.066 - Vec2::repeat(0.05);
-            let distance = shapes.iter().map(|s| if s.contains(p) { 0.0 } else { (p - s.nearest(p)).norm() });
-            assert!(grid.clearance(p) <= distance.fold(f64::INFINITY, f64::min) + 1e-12, "{p}");
+            let distance = shapes.iter().map(|s| s.distance(p));
+            let is_inside = shapes.iter().any(|s| s.contains(p));
+            assert!(is_inside || grid.clearance(p) <= distance.fold(f64::INFINITY, f64::min) + 1e-12, "{p}");
             let cell = grid.cell(p);
             assert_eq!(grid.is_free(cell), free.is_free(grid.center(cell)), "{p}");
         }

@@ -207,7 +207,7 @@ mod tests {
     fn around(from: Vec2, to: Vec2, center: Vec2, radius: f64) -> f64 {
         let (a, b) = (from - center, to - center);
         let tangent = |v: Vec2| (v.norm_squared() - radius * radius).sqrt();
-        let angle = (a.dot(&b) / (a.norm() * b.norm())).acos();
+        let angle = (a.dot(&b) / (a.norm() * b.norm())).clamp(-1.0, 1.0).acos();
         let arc = angle - (radius / a.norm()).acos() - (radius / b.norm()).acos();
         if arc <= 0.0 { (to - from).norm() } else { tangent(a) + tangent(b) + radius * arc }
     }
@@ -217,7 +217,7 @@ mod tests {
         let (center, radius, goal) = (Vec2::new(4.0, 4.0), 1.0, Vec2::new(7.0, 4.3));
         let grid = grid(Some(Shape::Circle { centre: center, radius }));
         let field = GoalField::new(&grid, goal);
-        let mut worst: f64 = 0.0;
+        let (mut worst, mut sum, mut count): (f64, f64, f64) = (0.0, 0.0, 0.0);
         for k in 0..40_000_u32 {
             let from = Vec2::new(f64::from(k % 200), f64::from(k / 200)) * 0.04;
             if (from - center).norm() < radius + 0.32 || (from - goal).norm() < 0.5 {
@@ -226,10 +226,12 @@ mod tests {
             let exact = around(from, goal, center, radius + 0.25);
             let way = field.way(&grid, from, goal).unwrap();
             assert!(way.length > 0.995 * exact - 1e-9, "{from}: {} {exact}", way.length);
-            worst = worst.max(way.length / exact - 1.0);
+            // The way keeps some centimetres more from the disc than the body.
+            worst = worst.max((way.length - exact - 0.05) / exact);
+            (sum, count) = (sum + way.length / exact - 1.0, count + 1.0);
             let near = field.way(&grid, from + Vec2::new(1e-4, 1e-4), goal).unwrap();
             assert!((near.length - way.length).abs() < 1e-3, "{from}");
         }
-        assert!(worst < 0.025, "{worst}");
+        assert!(worst < 0.02 && sum / count < 0.01, "{worst} {}", sum / count);
     }
 }
