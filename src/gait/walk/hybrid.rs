@@ -103,7 +103,7 @@ impl HybridAStar {
         let draws =
             |expansion: u32, k: u32| Draws::of(walk.stream, SEARCHED + expansion, number % 128 * 32 + k % 32);
         let change = |k: u32| {
-            let is_plain = self.is_as_published || k % 2 == 0;
+            let is_plain = self.is_as_published || k.is_multiple_of(2);
             if is_plain {
                 Change::Never
             } else {

@@ -7,6 +7,10 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::f64::consts::SQRT_2;
 
+/// Lengths of steps in units of 1e-4 of a side: whole numbers, so that the queue compares one.
+const STRAIGHT: u32 = 10_000;
+const DIAGONAL: u32 = (1e4 * SQRT_2) as u32;
+
 /// The centers of the cells of a shortest path between the cells of two places, by steps to the eight cells around; `None` if
 /// there is none.
 pub fn shortest_cells(grid: &ClearanceGrid, from: Vec2, to: Vec2) -> Option<Vec<Vec2>> {
@@ -14,9 +18,6 @@ pub fn shortest_cells(grid: &ClearanceGrid, from: Vec2, to: Vec2) -> Option<Vec<
     if !grid.is_free(first) || !grid.is_free(last) {
         return None;
     }
-    // Lengths in units of 1e-4 of a side: whole numbers, so that the queue compares one.
-    const STRAIGHT: u32 = 10_000;
-    const DIAGONAL: u32 = (1e4 * SQRT_2) as u32;
     let heuristic = |k: u32| {
         let (dx, dy) = ((k % columns).abs_diff(last % columns), (k / columns).abs_diff(last / columns));
         STRAIGHT * (dx.max(dy) - dx.min(dy)) + DIAGONAL * dx.min(dy)

@@ -10,6 +10,9 @@ const FARTHEST: f64 = 2.0;
 /// Most cells in a row or column; the cells of a larger scene are larger.
 const MOST: f64 = 2000.0;
 
+/// Where the eight cells around a cell are.
+const SIDES: [(i64, i64); 8] = [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)];
+
 /// Cells over a rectangle.
 #[derive(Clone, Debug)]
 pub struct ClearanceGrid {
@@ -113,7 +116,6 @@ impl ClearanceGrid {
     pub(super) fn around(&self, cell: u32) -> impl Iterator<Item = u32> + use<> {
         let (columns, rows) = (self.columns as i64, self.rows as i64);
         let (column, row) = (i64::from(cell) % columns, i64::from(cell) / columns);
-        const SIDES: [(i64, i64); 8] = [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)];
         SIDES.into_iter().filter_map(move |(dx, dy)| {
             let (x, y) = (column + dx, row + dy);
             (x >= 0 && y >= 0 && x < columns && y < rows).then_some((y * columns + x) as u32)
