@@ -3,7 +3,7 @@
 //! `cargo run --example driver`
 #![allow(clippy::print_stdout, reason = "a program prints")]
 
-use smc::kernel::driver::{Driver, Drivers, Occasion, Plan, Situation};
+use smc::kernel::driver::{Driver, Drivers, Memory, Occasion, Plan, Situation};
 use smc::{Diagnostics, Model, Options};
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ const SCENARIO: &str = "
 struct Careful;
 
 impl Driver for Careful {
-    fn plan(&self, situation: &Situation<'_>) -> Plan {
+    fn plan(&self, situation: &Situation<'_>, _: &mut Memory) -> Plan {
         let is_waiting = matches!(situation.plan, Plan::Stand(_));
         if situation.occasion != Occasion::Leg && !is_waiting {
             return Plan::Straight;

@@ -6,7 +6,7 @@ use smc::base::geometry::{Segment, Shape, Vec2};
 use smc::base::lanes::{LANES, Mask};
 use smc::base::random::TrialKey;
 use smc::base::tick::{Clock, Tick};
-use smc::kernel::driver::{Driver, Drivers, Limits, Occasion, Plan, Sample, Situation, Trajectory};
+use smc::kernel::driver::{Driver, Drivers, Limits, Memory, Occasion, Plan, Sample, Situation, Trajectory};
 use smc::kernel::start::load;
 use smc::kernel::{Layout, Program, Scratch, State, refresh, step};
 use smc::model::{
@@ -96,7 +96,7 @@ impl Listed {
 }
 
 impl Driver for Listed {
-    fn plan(&self, situation: &Situation<'_>) -> Plan {
+    fn plan(&self, situation: &Situation<'_>, _: &mut Memory) -> Plan {
         self.asked.lock().unwrap().push((situation.time, situation.occasion, situation.position));
         self.plans.get(situation.asked as usize).cloned().unwrap_or(Plan::Keep)
     }

@@ -64,6 +64,8 @@ pub enum Purpose {
     Run = 10,
     /// Plans: goal points and knots of speed profiles.
     Plan = 11,
+    /// Steps of walkers that step.
+    Step = 12,
     /// Synthetic data and tests.
     Test = 255,
 }

@@ -15,6 +15,7 @@ use crate::engine::outcome::{CallResult, Failure, Finding};
 use crate::engine::{
     Budget, Call, CallForecast, CommandLine, Fault, Ranks, Threads, forecast, run as run_study,
 };
+use crate::gait;
 use crate::library;
 use crate::model::Scenario;
 use crate::report::{self, ExitCode as Exit, Format, Palette};
@@ -83,7 +84,7 @@ pub(super) fn run(arguments: &Check, colors: Colors) -> Exit {
     };
     drop(cache);
     let place = |span: Span| locate(&inputs.sources, span);
-    let drivers = move |scenario: &Scenario, seed: u64| ways.drivers(scenario, seed);
+    let drivers = move |scenario: &Scenario, seed: u64| gait::drivers(&ways, scenario, seed);
     let call = Call { seed: arguments.seed, line: line(arguments), only, place: &place, drivers: &drivers };
     if arguments.forecast {
         deadline.enter(Phase::Sampling);

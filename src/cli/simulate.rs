@@ -14,6 +14,7 @@ use crate::data::table::{
     write_states_json_lines,
 };
 use crate::engine::{divergence, no_start, placeable, smaller};
+use crate::gait;
 use crate::kernel::{Address, End, Program, Run, Slot, State};
 use crate::library;
 use crate::model::{AgentId, Domain, Parameter, Scenario};
@@ -320,7 +321,7 @@ pub(super) fn run(arguments: &Simulate, colors: Colors) -> Exit {
             clock => (until / clock.step_seconds() * (1.0 + 1e-12)).floor() as u64,
         }));
     }
-    let program = Program::driven(scenario.clone(), ways.drivers(&scenario, arguments.seed));
+    let program = Program::driven(scenario.clone(), gait::drivers(&ways, &scenario, arguments.seed));
     let mut walk = Walk::new(&program, arguments, advice, last);
     if arguments.output.is_some() {
         // The file gets its name only when it is complete: the first signal ends the table, the second one the process.

@@ -119,10 +119,14 @@ pub(super) struct Elaborator<'a> {
     pub(super) stray: Vec<&'a [Expr]>,
     /// Names of the agents so far.
     pub(super) agent_names: Vec<String>,
+    /// How many legs their routes have; of routes among moves, the most.
+    pub(super) legs: Vec<u32>,
     /// Where the starts of people are written.
     pub(super) places: Written,
     /// The starts of agents, in a scenario with other errors.
     pub(super) starts: Option<Starts>,
+    /// Files of learned gaits that could be read.
+    pub(super) gaits: BTreeMap<String, Arc<str>>,
     /// Stand-ins for people whose declaration is wrong.
     pub(super) undeclared: BTreeSet<AgentId>,
     /// Whether a part of the scenario was left out, which is never done without an error.
@@ -221,6 +225,7 @@ impl<'a> Elaborator<'a> {
             constants: BTreeMap::new(),
             expanding: Vec::new(),
             recordings: Vec::new(),
+            gaits: BTreeMap::new(),
             recorded: BTreeMap::new(),
             shapes: Vec::new(),
             kinds: BTreeMap::new(),
@@ -232,6 +237,7 @@ impl<'a> Elaborator<'a> {
             strayed: BTreeSet::new(),
             stray: Vec::new(),
             agent_names: Vec::new(),
+            legs: Vec::new(),
             places: Vec::new(),
             starts: None,
             undeclared: BTreeSet::new(),

@@ -1,6 +1,6 @@
 //! Files that a scenario names. They are opened by the command line; here they are bytes.
 
-use crate::syntax::ast::{Item, ScenarioFile, SceneItem};
+use crate::syntax::ast::{Item, ScenarioFile, SceneItem, Value};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -27,6 +27,13 @@ pub fn requests(file: &ScenarioFile) -> Vec<Request> {
                         found.push(Request { path: path.value.clone(), span: path.span });
                     }
                 }
+            }
+            Item::Kind(kind) => {
+                let files = kind.body.iter().filter_map(|field| match &field.value {
+                    Value::Learned { file, .. } => Some(file),
+                    _ => None,
+                });
+                found.extend(files.map(|file| Request { path: file.value.clone(), span: file.span }));
             }
             _ => {}
         }

@@ -5,7 +5,8 @@ use super::laws::value_span;
 use super::planning::{self, Planning};
 use super::presets::{PRESETS, law};
 use super::symbols::{Meaning, unknown};
-use crate::model::{self, Body, Law, Parameter, Planner};
+use crate::model::stepper::stepped_default;
+use crate::model::{self, Body, GaitRule, Law, Parameter, Planner, SearchRule, Stepper};
 use crate::syntax::ast::{Expr, ExprKind, Field, Ident, KindDecl, Value};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -21,6 +22,9 @@ pub(super) struct Kind {
     straight: bool,
     /// How its walkers plan, if they do.
     pub(super) planning: Planning,
+    /// Where the steps of its walkers come from, and how they are chosen, if they step.
+    pub(super) gait: GaitRule,
+    pub(super) search: SearchRule,
     /// A law for each parameter.
     laws: [Option<Law>; Parameter::COUNT],
 }
@@ -28,6 +32,15 @@ pub(super) struct Kind {
 /// The field that says how an agent finds its way, and its values; the first one is the default.
 const WAYFINDING: &str = "wayfinding";
 const WAYS: [&str; 2] = ["shortest", "straight"];
+
+/// The fields of a kind that are no parameters.
+fn fields_of(kind: model::Kind) -> &'static [&'static str] {
+    match kind {
+        model::Kind::Sfm => &[WAYFINDING],
+        model::Kind::Planned => &planning::FIELDS,
+        model::Kind::Stepped => &["gait", "search"],
+    }
+}
 
 /// Some law of a parameter.
 fn any_law(parameter: Parameter) -> Option<Law> {
@@ -45,11 +58,14 @@ impl Kind {
     /// The law of a parameter: as set, or its default.
     pub(super) fn law(&self, parameter: Parameter) -> Option<Law> {
         let default = || parameter.description().default.map(Law::Constant);
-        let planned = || {
-            let limit = self.laws[Parameter::LimitSpeed as usize].as_ref();
-            if self.base == model::Kind::Planned { planning::default_law(parameter, limit) } else { None }
+        let of_kind = || match self.base {
+            model::Kind::Sfm => None,
+            model::Kind::Planned => {
+                planning::default_law(parameter, self.laws[Parameter::LimitSpeed as usize].as_ref())
+            }
+            model::Kind::Stepped => stepped_default(parameter),
         };
-        self.laws[parameter as usize].clone().or_else(planned).or_else(default)
+        self.laws[parameter as usize].clone().or_else(of_kind).or_else(default)
     }
 
     /// Sets the law of a parameter.
@@ -140,13 +156,12 @@ impl Elaborator<'_> {
         let base = kind.as_ref().map(|kind| kind.base).unwrap_or_default();
         let rest = self.parameters(&decl.body, kind.as_mut().ok(), &Locals::default());
         for field in rest {
-            let own: &[&str] = if base == model::Kind::Planned { &planning::FIELDS } else { &[WAYFINDING] };
-            let known = Parameter::of_kind(base).map(Parameter::name).chain(own.iter().copied());
+            let known = Parameter::of_kind(base).map(Parameter::name).chain(fields_of(base).iter().copied());
             let error = unknown("parameter", &field.name.name, field.name.span, Code::E0207, known);
             self.note(error);
             // The words of a field that other kinds have are no names.
             let name = field.name.name.as_str();
-            if name != WAYFINDING && !planning::FIELDS.contains(&name) {
+            if model::Kind::ALL.iter().all(|kind| !fields_of(*kind).contains(&name)) {
                 self.look_at(&field.value, &Locals::default());
             }
             kind = Err(Reported);
@@ -175,17 +190,18 @@ impl Elaborator<'_> {
                 self.note(error);
                 continue;
             }
-            let is_planned = kind.as_ref().is_some_and(|kind| kind.base == model::Kind::Planned);
-            if is_planned && planning::FIELDS.contains(&field.name.name.as_str()) {
-                if let Some(kind) = &mut kind {
-                    self.given_up |= self.planning(field, kind, locals).is_err();
-                }
-                continue;
-            }
-            if field.name.name == WAYFINDING && !is_planned {
-                if let (Some(straight), Some(kind)) = (self.goes_straight(&field.value), &mut kind) {
-                    kind.straight = straight;
-                }
+            let base = kind.as_ref().map(|kind| kind.base).unwrap_or_default();
+            if fields_of(base).contains(&field.name.name.as_str()) {
+                let taken = match (&mut kind, base) {
+                    (Some(kind), model::Kind::Planned) => self.planning(field, kind, locals),
+                    (Some(kind), model::Kind::Stepped) => self.stepping(field, kind, locals),
+                    (kind, _) => self.goes_straight(&field.value).map(|straight| {
+                        if let Some(kind) = kind {
+                            kind.straight = straight;
+                        }
+                    }),
+                };
+                self.given_up |= taken.is_err();
                 continue;
             }
             let known = match &kind {
@@ -249,7 +265,11 @@ impl Elaborator<'_> {
             kind.law(parameter).unwrap_or(Law::Constant(neutral.unwrap_or_default()))
         });
         let is_planned = kind.base == model::Kind::Planned;
-        body.finds_ways = !kind.straight && !is_planned;
+        body.finds_ways = !kind.straight && kind.base == model::Kind::Sfm;
+        body.stepper = (kind.base == model::Kind::Stepped).then(|| {
+            let sets_speed = kind.laws[Parameter::Speed as usize].is_some();
+            Arc::new(Stepper { gait: kind.gait.clone(), search: kind.search, sets_speed })
+        });
         let Planning { roadmap, clearance, profile } = kind.planning.clone();
         body.planner = is_planned.then(|| {
             let speed_follows = kind.laws[Parameter::Speed as usize].is_none();
@@ -259,7 +279,7 @@ impl Elaborator<'_> {
     }
 
     /// The value of the field that says how an agent finds its way.
-    fn goes_straight(&mut self, value: &Value) -> Option<bool> {
+    fn goes_straight(&mut self, value: &Value) -> Lowered<bool> {
         let name = match value {
             Value::Plain(Expr { kind: ExprKind::Name(name), .. }) => Some(name.as_str()),
             _ => None,
@@ -269,9 +289,8 @@ impl Elaborator<'_> {
             let said = "`wayfinding` must be `shortest` or `straight`";
             let error = Diagnostic::error(Code::E0305, value_span(value), said)
                 .hint("write `wayfinding = straight` for agents that go straight for their goals whatever is in the way");
-            self.note(error);
-            self.given_up = true;
+            return self.report(error);
         }
-        known.map(|at| at == 1)
+        Ok(known == Some(1))
     }
 }

@@ -31,6 +31,7 @@ pub(super) fn value_span(value: &Value) -> Span {
         Value::Arguments { name, arguments } => {
             arguments.iter().fold(name.span, |span, argument| span.to(argument.value.span))
         }
+        Value::Learned { span, .. } => *span,
         Value::Force { kind, preset } => kind.span.to(preset.span),
     }
 }
@@ -143,6 +144,7 @@ impl Elaborator<'_> {
             Value::Arguments { .. } => {
                 let _ = self.roadmap(value, locals);
             }
+            Value::Learned { .. } => {}
             Value::Force { kind, preset } => {
                 let _ = self.force(kind, preset);
             }

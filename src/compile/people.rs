@@ -8,7 +8,7 @@ use super::laws::value_span;
 use super::places::Written;
 use super::symbols::{Meaning, unknown};
 use crate::base::random::name_hash;
-use crate::model::{Agent, AgentId, Body, Group, Law, Parameter, Particle, Position, Route, Start};
+use crate::model::{self, Agent, AgentId, Body, Group, Law, Parameter, Particle, Position, Route, Start};
 use crate::syntax::ast::{AgentsDecl, Expr, Field, GroupDecl, Ident, Value};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -179,8 +179,16 @@ impl<'a> Elaborator<'a> {
         }
         let given = |name: &str| decl.body.iter().any(|f| f.name.name == name);
         let body = kind.and_then(|kind| {
-            if let Some(at) = decl.particle {
-                self.refuse_planned_particle(&kind, at)?;
+            let meaning = kind.base.meaning();
+            if let (Some(at), true) = (decl.particle, kind.base != model::Kind::Sfm) {
+                let error =
+                    Diagnostic::error(Code::E0406, at, format!("{meaning} cannot move `as particle`"));
+                return self.report(error.hint("remove `as particle` to simulate the members"));
+            }
+            if kind.base == model::Kind::Stepped {
+                let said = format!("{meaning} cannot be a group: no force acts on them");
+                let error = Diagnostic::error(Code::E0406, decl.kind.span, said);
+                return self.report(error.hint(format!("write `agents {}[…]`", decl.name.name)));
             }
             self.body(&kind, &decl.kind)
         });
@@ -281,6 +289,7 @@ impl<'a> Elaborator<'a> {
                 };
                 shared = Some(body.clone());
                 self.agent_names.push(text.clone());
+                self.legs.push(route.goals().count() as u32);
                 if matches!(route, Route::Legs { then_leave: true, .. }) {
                     self.may_be_absent(AgentId(self.agent_names.len() as u32 - 1));
                 }

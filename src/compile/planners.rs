@@ -1,8 +1,9 @@
 //! The fields of planned kinds that are no parameters of a body: `roadmap`, `profile`, `avoid`, and both sides of
 //! `limit acceleration`.
 
+use super::call_arguments::{Argument, call, word};
 use super::dimension::Dimension;
-use super::elaborator::{Elaborator, Locals, Lowered, Reported};
+use super::elaborator::{Elaborator, Locals, Lowered};
 use super::kinds::Kind;
 use super::laws::value_span;
 use super::planning::{FORCE, is_of_force};
@@ -10,35 +11,14 @@ use super::presets;
 use super::symbols::unknown;
 use crate::model::planner::{RoadmapRule, SpeedRule};
 use crate::model::{self, Parameter};
-use crate::syntax::ast::{Binding, Expr, ExprKind, Field, Ident, Value};
+use crate::syntax::ast::{Expr, ExprKind, Field, Ident, Value};
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
-use crate::syntax::source::Span;
 
 /// Most samples of a roadmap.
 const MOST_SAMPLES: f64 = 100_000.0;
 /// Most vertices to which one is joined.
 const MOST_NEIGHBOURS: f64 = 64.0;
-
-/// One argument of a way to draw roadmaps.
-struct Argument {
-    name: &'static str,
-    dimension: Dimension,
-    /// Least and largest value; open below where it must be positive.
-    range: (f64, f64),
-    positive: bool,
-    whole: bool,
-}
-
-impl Argument {
-    const fn length(name: &'static str, positive: bool) -> Self {
-        Self { name, dimension: Dimension::LENGTH, range: (0.0, 1e4), positive, whole: false }
-    }
-
-    const fn count(name: &'static str, least: f64, most: f64) -> Self {
-        Self { name, dimension: Dimension::NONE, range: (least, most), positive: false, whole: true }
-    }
-}
 
 const SAMPLES: Argument = Argument::count("samples", 2.0, MOST_SAMPLES);
 const CLEARANCE: Argument = Argument::length("clearance", false);
@@ -135,25 +115,15 @@ impl Elaborator<'_> {
 
     /// `prm(…)` or `rrt(…)`, and the clearance.
     pub(super) fn roadmap(&mut self, value: &Value, locals: &Locals) -> Lowered<(RoadmapRule, f64)> {
-        let (name, arguments): (&Ident, &[Binding]) = match value {
-            Value::Arguments { name, arguments } => (name, arguments),
-            Value::Plain(Expr { kind: ExprKind::Call { function, arguments }, .. })
-                if arguments.is_empty() =>
-            {
-                (function, &[])
-            }
-            other => {
-                let error =
-                    Diagnostic::error(Code::E0305, value_span(other), "expected `prm(…)` or `rrt(…)`");
-                return self.report(
-                    error.hint("write for example `roadmap = prm(samples = 500, sampling = bridge)`"),
-                );
-            }
+        let Some((name, arguments)) = call(value) else {
+            let error = Diagnostic::error(Code::E0305, value_span(value), "expected `prm(…)` or `rrt(…)`");
+            return self
+                .report(error.hint("write for example `roadmap = prm(samples = 500, sampling = bridge)`"));
         };
         match name.name.as_str() {
             "prm" => {
                 let sampling = self.word_of(arguments, "sampling", &["bridge", "uniform"]);
-                let values = self.roadmap_numbers(name, arguments, &PRM, &["sampling"], locals)?;
+                let values = self.numbers_among(name, arguments, &PRM, &["sampling"], locals)?;
                 let [samples, separation, neighbours, clearance] = values;
                 let rule = RoadmapRule::Prm {
                     samples: samples.unwrap_or(500.0) as u32,
@@ -171,7 +141,7 @@ impl Elaborator<'_> {
                         self.report(error.hint("write `rrt(root = …)` with a region or a point"))
                     }
                 };
-                let values = self.roadmap_numbers(name, arguments, &RRT, &["root"], locals)?;
+                let values = self.numbers_among(name, arguments, &RRT, &["root"], locals)?;
                 let [samples, step, bias, clearance] = values;
                 let rule = RoadmapRule::Rrt {
                     root: root?,
@@ -203,96 +173,5 @@ impl Elaborator<'_> {
                 ))
             }
         }
-    }
-
-    /// An argument that is one of some words.
-    fn word_of(
-        &mut self,
-        all: &[Binding],
-        name: &str,
-        words: &[&'static str],
-    ) -> Lowered<Option<&'static str>> {
-        let Some(argument) = all.iter().find(|argument| argument.name.name == name) else { return Ok(None) };
-        let found = match &argument.value.kind {
-            ExprKind::Name(word) => words.iter().copied().find(|known| known == word),
-            _ => None,
-        };
-        if found.is_some() {
-            return Ok(found);
-        }
-        let said = format!("`{name}` must be `{}`", words.join("` or `"));
-        self.report(Diagnostic::error(Code::E0305, argument.value.span, said))
-    }
-
-    /// The numbers among the arguments of a roadmap.
-    fn roadmap_numbers<const N: usize>(
-        &mut self,
-        of: &Ident,
-        all: &[Binding],
-        known: &[Argument; N],
-        others: &[&str],
-        locals: &Locals,
-    ) -> Lowered<[Option<f64>; N]> {
-        let mut values = [None; N];
-        let mut failed = false;
-        for (k, argument) in all.iter().enumerate() {
-            let name = &argument.name;
-            if all[..k].iter().any(|before| before.name.name == name.name) {
-                let said = format!("`{}` is given twice", name.name);
-                self.note(Diagnostic::error(Code::E0202, name.span, said));
-                failed = true;
-            } else if let Some(at) = known.iter().position(|known| known.name == name.name) {
-                match self.roadmap_number(&known[at], &argument.value, locals) {
-                    Ok(value) => values[at] = Some(value),
-                    Err(Reported) => failed = true,
-                }
-            } else if !others.contains(&name.name.as_str()) {
-                let names = known.iter().map(|known| known.name).chain(others.iter().copied());
-                let what = format!("argument of `{}`", of.name);
-                self.note(unknown(&what, &name.name, name.span, Code::E0207, names));
-                failed = true;
-            }
-        }
-        if failed { Err(Reported) } else { Ok(values) }
-    }
-
-    fn roadmap_number(&mut self, argument: &Argument, value: &Expr, locals: &Locals) -> Lowered<f64> {
-        let number = self.number_of(value, argument.dimension, locals)?;
-        let (low, high) = argument.range;
-        let fits = (low..=high).contains(&number.value)
-            && !(argument.positive && number.value == 0.0)
-            && !(argument.whole && number.as_whole().is_none());
-        if fits {
-            return Ok(number.value);
-        }
-        let unit = argument.dimension.to_string();
-        let (unit, what) = (if unit.is_empty() { unit } else { format!(" {unit}") }, argument.name);
-        let said = match (argument.whole, argument.positive) {
-            (true, _) => format!("`{what}` must be a whole number from {low} to {high}"),
-            (false, true) => format!("`{what}` must be positive and at most {high}{unit}"),
-            (false, false) => format!("`{what}` must be from {low} to {high}{unit}"),
-        };
-        self.report(Diagnostic::error(
-            Code::E0405,
-            value.span,
-            format!("{said} (got {}{unit})", number.value),
-        ))
-    }
-
-    /// Refuses a walker who plans where one body stands for several persons.
-    pub(super) fn refuse_planned_particle(&mut self, kind: &Kind, at: Span) -> Lowered<()> {
-        if kind.base != model::Kind::Planned {
-            return Ok(());
-        }
-        let error = Diagnostic::error(Code::E0406, at, "walkers that plan cannot move `as particle`");
-        self.report(error.hint("remove `as particle` to simulate the members"))
-    }
-}
-
-/// A value that is one word.
-fn word(value: &Value) -> Option<&str> {
-    match value {
-        Value::Plain(Expr { kind: ExprKind::Name(name), .. }) => Some(name),
-        _ => None,
     }
 }

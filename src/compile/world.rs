@@ -175,6 +175,7 @@ impl<'a> Elaborator<'a> {
                 self.tracks(name, format, path, files);
             }
         }
+        self.settle_gaits(file, files);
         let mut barrier = 0;
         for item in &file.items {
             if let Item::Scene(items) = item {

@@ -11,10 +11,11 @@ use crate::base::random::TrialKey;
 use crate::compile::Study;
 use crate::engine::outcome::CallResult;
 use crate::engine::{Call, CommandLine, Nobody, no_start, placeable, run};
+use crate::gait;
 use crate::kernel::driver::{Drivers, MakeDrivers};
 use crate::kernel::{Address, Program};
 use crate::model::Scenario;
-use crate::route::{Ways, drivers};
+use crate::route::Ways;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::{Source, Span};
@@ -192,7 +193,7 @@ impl Model {
         if is_refused(&doubts) {
             return Err(wrong(doubts));
         }
-        let find = move |scenario: &Scenario, seed: u64| ways.drivers(scenario, seed);
+        let find = move |scenario: &Scenario, seed: u64| gait::drivers(&ways, scenario, seed);
         let drivers: &MakeDrivers = match &self.drivers {
             Some(make) => &**make,
             None => &find,
@@ -212,9 +213,10 @@ impl Model {
     pub fn trial(&self, seed: u64, index: u64) -> Result<Trial, Diagnostics> {
         let program = Program::driven(
             self.scenario.clone(),
-            self.drivers
-                .as_ref()
-                .map_or_else(|| drivers(&self.scenario, seed), |make| make(&self.scenario, seed)),
+            self.drivers.as_ref().map_or_else(
+                || gait::drivers(&Ways::default(), &self.scenario, seed),
+                |make| make(&self.scenario, seed),
+            ),
         );
         let key = TrialKey { seed, index, branch: 0 };
         Trial::new(program, Address::from(key)).map_err(|fault| {

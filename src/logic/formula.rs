@@ -128,6 +128,8 @@ pub enum Aggregation {
     Sum,
     /// Mean over the states.
     Mean,
+    /// The first finite number, of numbers that stay once they are; infinite if there is none.
+    First,
 }
 
 /// Arithmetic of two numbers.

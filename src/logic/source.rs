@@ -55,7 +55,8 @@ pub fn sides(tree: &Tree, leaf: NodeId, at: Tick, recording: &Recording) -> Vec<
 
 /// The number inside extremes and later states.
 fn within(tree: &Tree, mut id: TermId) -> TermId {
-    while let Term::Later(_, x) | Term::Window(Aggregation::Min | Aggregation::Max, _, x) =
+    while let Term::Later(_, x)
+    | Term::Window(Aggregation::Min | Aggregation::Max | Aggregation::First, _, x) =
         &tree.terms[id.0 as usize]
     {
         id = *x;
@@ -95,7 +96,7 @@ impl Walk<'_> {
                 self.term(*y, at);
             }
             Term::Abs(x) => self.term(*x, at),
-            Term::Window(Aggregation::Min | Aggregation::Max, window, x) => {
+            Term::Window(Aggregation::Min | Aggregation::Max | Aggregation::First, window, x) => {
                 let extreme = offline.number(id, at);
                 let mut states = at + window.from.0..=offline.end(at, window.to.map(|to| to.0));
                 if let Some(state) = states.find(|k| offline.number(*x, *k) == extreme) {

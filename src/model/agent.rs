@@ -5,6 +5,7 @@ use super::law::Law;
 use super::parameter::Parameter;
 use super::planner::Planner;
 use super::scene::RegionId;
+use super::stepper::Stepper;
 use crate::base::geometry::{Shape, Vec2};
 use std::ops::{Index, IndexMut};
 use std::sync::Arc;
@@ -41,13 +42,15 @@ pub struct Body {
     pub finds_ways: bool,
     /// How it plans, if it does.
     pub planner: Option<Arc<Planner>>,
+    /// How it steps, if it does.
+    pub stepper: Option<Arc<Stepper>>,
     laws: [Law; Parameter::COUNT],
 }
 
 impl Body {
     /// Of a kind, with these laws; it finds its way.
     pub fn new(kind: Kind, law: impl FnMut(Parameter) -> Law) -> Self {
-        Self { kind, finds_ways: true, planner: None, laws: Parameter::ALL.map(law) }
+        Self { kind, finds_ways: true, planner: None, stepper: None, laws: Parameter::ALL.map(law) }
     }
 
     /// The number of the draw of a parameter: its own, but for a preferred speed that is a share of the largest one.

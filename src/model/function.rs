@@ -24,10 +24,29 @@ pub enum Field {
     DrivingSpeed,
     /// Length of the way gone since the start, m.
     Travelled,
+    /// Finished legs of the route; pauses are none.
+    Legs,
+    /// Whole steps made, of somebody who steps.
+    StepCount,
+    /// When the last goal is reached and pauses are over, s; infinite until that is known.
+    DoneAt,
+    /// A number of a leg, from 0; infinite until it ends.
+    Leg(LegMeasure, u32),
     /// How far others are.
     Separation(Separation),
     /// Number of the state of a behaviour, from 0; -1 in someone who has no such behaviour.
     Mode(BehaviourId),
+}
+
+/// What is measured from the beginning of a leg to its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum LegMeasure {
+    /// Length of the way gone, m.
+    Length,
+    /// Time, s.
+    Time,
+    /// Steps.
+    Steps,
 }
 
 /// How far others are from an agent; infinite where nobody and nothing is.
@@ -82,6 +101,8 @@ pub enum Special {
     Count,
     Density,
     Distance,
+    Done,
+    Leg(LegMeasure),
     /// `min` and `max` of several numbers.
     Extremum(Arithmetic),
     If,
@@ -177,11 +198,16 @@ pub const FUNCTIONS: &[BuiltIn] = &[
     special("count", (1, 1), Special::Count, NONE),
     special("density", (1, 1), Special::Density, Rule::Always(Dimension::DENSITY)),
     special("distance", (2, 2), Special::Distance, LENGTH),
+    special("done", (1, 1), Special::Done, Rule::Open),
     agent("driving_speed", Field::DrivingSpeed, SPEED),
     number("exp", Function::Exp, Some(Dimension::NONE), NONE),
     number("floor", Function::Floor, Some(Dimension::NONE), NONE),
     agent("heading", Field::Heading, ANGLE),
     special("if", (3, 3), Special::If, Rule::Same(1)),
+    special("leg_length", (2, 2), Special::Leg(LegMeasure::Length), LENGTH),
+    special("leg_steps", (2, 2), Special::Leg(LegMeasure::Steps), NONE),
+    special("leg_time", (2, 2), Special::Leg(LegMeasure::Time), Rule::Always(Dimension::TIME)),
+    agent("legs", Field::Legs, NONE),
     number("ln", Function::Ln, Some(Dimension::NONE), NONE),
     agent("mass", Field::Mass, Rule::Always(Dimension::MASS)),
     special("max", (2, usize::MAX), Special::Extremum(Arithmetic::Max), Rule::Same(0)),
@@ -199,6 +225,7 @@ pub const FUNCTIONS: &[BuiltIn] = &[
     agent("speed", Field::Speed, SPEED),
     set("spread", Collective::Spread, LENGTH),
     number("sqrt", Function::Sqrt, None, Rule::Root),
+    agent("step_count", Field::StepCount, NONE),
     special("sum", (1, 1), Special::Join, Rule::Open),
     special("mean", (1, 1), Special::Join, Rule::Open),
     agents("time_to_collision", Pair::TimeToCollision, Rule::Always(Dimension::TIME)),
@@ -241,13 +268,15 @@ impl Field {
     pub fn dimension(self) -> Option<Dimension> {
         match self {
             Self::VelocityX | Self::VelocityY => Some(Dimension::SPEED),
+            Self::DoneAt => Some(Dimension::TIME),
+            Self::Leg(measure, _) => dimension(Signature::Special(Special::Leg(measure))),
             field => dimension(Signature::Agent(field)),
         }
     }
 
     /// Whether it can be infinite in a trial that goes on.
     pub const fn may_be_infinite(self) -> bool {
-        matches!(self, Self::Separation(_))
+        matches!(self, Self::Separation(_) | Self::DoneAt | Self::Leg(..))
     }
 }
 

@@ -8,17 +8,20 @@ pub enum Kind {
     Sfm,
     /// The same, driven along a path and at speeds that it has planned (Li, Li, Ge 2019).
     Planned,
+    /// Somebody who goes step by step by themselves: no force moves them (Agethen et al. 2018).
+    Stepped,
 }
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Self; 2] = [Self::Sfm, Self::Planned];
+    pub const ALL: [Self; 3] = [Self::Sfm, Self::Planned, Self::Stepped];
 
     /// Its name in a scenario, from which declared kinds start.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Sfm => "sfm",
             Self::Planned => "planned",
+            Self::Stepped => "stepped",
         }
     }
 
@@ -27,8 +30,12 @@ impl Kind {
         match self {
             Self::Sfm => "the social force model",
             Self::Planned => "walkers that plan",
+            Self::Stepped => "walkers that step",
         }
     }
+
+    /// Those that forces move.
+    pub const FORCED: [Self; 2] = [Self::Sfm, Self::Planned];
 
     /// The kind of this name.
     pub fn named(name: &str) -> Option<Self> {

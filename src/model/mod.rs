@@ -19,6 +19,7 @@ pub mod scenario;
 pub mod scene;
 pub mod sight;
 pub mod source;
+pub mod stepper;
 
 pub use agent::{Agent, AgentId, Body, Goal, Group, Leg, Particle, Position, Route, Start};
 pub use behaviour::{Amount, Attached, Behaviour, Behaviours, Conduct, Mode, Transition, Trigger};
@@ -35,3 +36,4 @@ pub use scenario::Scenario;
 pub use scene::{Barrier, BarrierId, Obstacle, Region, RegionId, Scene};
 pub use sight::{Piece, Sight};
 pub use source::Source;
+pub use stepper::{GaitRule, SearchRule, Stepper};

@@ -11,6 +11,9 @@ use crate::base::random::name_hash;
 /// No human reaches this speed: a trial in which somebody does has diverged, m/s.
 pub const TOP_SPEED: f64 = 15.0;
 
+/// Nobody is as tall, m.
+const TALLEST: f64 = 3.0;
+
 /// What a parameter of a body may be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Range {
@@ -90,10 +93,12 @@ impl Description {
         changeable: true,
         role: Role::Plain,
         shown: Shown::Always,
-        kinds: &Kind::ALL,
+        kinds: &Kind::FORCED,
     };
-    /// Of the body or of contact: the same in all states of a behaviour.
+    /// Of contact: the same in all states of a behaviour.
     const FIXED: Self = Self { changeable: false, ..Self::USUAL };
+    /// Of the body.
+    const BODY: Self = Self { range: Range::Positive, kinds: &Kind::ALL, ..Self::FIXED };
     /// Of the social force.
     const FORCE: Self = Self { preset: true, ..Self::USUAL };
     /// Of a plan.
@@ -131,11 +136,10 @@ macro_rules! parameters {
 }
 
 parameters! {
-    Mass "mass" "mass" = FIXED { dimension: Dimension::MASS, range: Range::Positive }
-    Radius "radius" "radius of the disc that represents the body" =
-        FIXED { dimension: Dimension::LENGTH, range: Range::Positive }
+    Mass "mass" "mass" = BODY { dimension: Dimension::MASS }
+    Radius "radius" "radius of the disc that represents the body" = BODY { dimension: Dimension::LENGTH }
     Speed "speed" "driving speed: the speed of undisturbed walking" =
-        USUAL { dimension: Dimension::SPEED, limit: TOP_SPEED }
+        USUAL { dimension: Dimension::SPEED, limit: TOP_SPEED, kinds: &Kind::ALL }
     Tau "tau" "relaxation time: how fast the velocity returns to the driving velocity" =
         USUAL { dimension: Dimension::TIME, range: Range::Positive }
     A "A" "social force: strength when two bodies touch" =
@@ -173,6 +177,8 @@ parameters! {
     Pieces "pieces" "in how many pieces the acceleration of a plan is constant (m0)" = PLAN { range: Range::Pieces }
     Replan "replan" "distance from the plan at which a new one is made" =
         PLAN { dimension: Dimension::LENGTH, default: Some(1.0) }
+    Height "height" "stature of a walker that steps" =
+        BODY { dimension: Dimension::LENGTH, limit: TALLEST, kinds: &[Kind::Stepped] }
 }
 
 impl Parameter {

@@ -22,7 +22,8 @@ pub(super) fn settings(result: &QueryResult) -> String {
 /// nobody is infinite. Where the query names a metric that is declared
 /// elsewhere it cannot be told which, and "infinite" is true of both.
 pub(super) fn endless(result: &QueryResult) -> &'static str {
-    let time = result.censored.is_some() || result.asked.text.contains("time_until");
+    let time = result.censored.is_some()
+        || ["time_until", "leg_"].iter().any(|word| result.asked.text.contains(word));
     if time { "beyond the horizon" } else { "infinite" }
 }
 

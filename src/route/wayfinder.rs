@@ -4,7 +4,7 @@ use super::atlas::Atlas;
 use super::planner::{self, PathOption, Terrains, Walkers, path_options, walkers};
 use super::rim;
 use super::survey::{self, Doubt};
-use crate::kernel::driver::{Driver, Drivers, Plan, Situation};
+use crate::kernel::driver::{Driver, Drivers, Memory, Plan, Situation};
 use crate::model::{Agent, AgentId, Parameter, Scenario, Scene};
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -61,9 +61,12 @@ impl Ways {
     /// What is wrong or doubtful with the ways of a scenario, before the first trial: with shortest ways, and with the roadmaps of
     /// a run with a seed.
     pub fn doubts(&self, scenario: &Scenario, seed: u64) -> Vec<Doubt> {
-        let plans = |id: &AgentId| scenario.agents[id.0 as usize].body.planner.is_some();
-        let planned = (0..scenario.agents.len() as u32).map(AgentId).filter(plans);
-        let mut agents: Vec<AgentId> = finders(scenario).into_iter().chain(planned).collect();
+        let others = |id: &AgentId| {
+            let body = &scenario.agents[id.0 as usize].body;
+            body.planner.is_some() || body.stepper.is_some()
+        };
+        let others = (0..scenario.agents.len() as u32).map(AgentId).filter(others);
+        let mut agents: Vec<AgentId> = finders(scenario).into_iter().chain(others).collect();
         agents.sort_unstable();
         if agents.is_empty() {
             Vec::new()
@@ -94,7 +97,7 @@ pub(super) fn is_drawn(agent: &Agent) -> bool {
 }
 
 impl Driver for Wayfinder {
-    fn plan(&self, situation: &Situation<'_>) -> Plan {
+    fn plan(&self, situation: &Situation<'_>, _: &mut Memory) -> Plan {
         let Some(goal) = situation.goal() else { return Plan::Straight };
         let agent = &situation.scenario.agents[situation.agent.0 as usize];
         let radius = Atlas::class(situation.parameter(Parameter::Radius), is_drawn(agent));

@@ -4,6 +4,7 @@ use super::AGENTS;
 use proptest::prelude::*;
 use smc::base::lanes::{LANES, Mask};
 use smc::kernel::{Layout, State};
+use smc::model::function::LegMeasure;
 use smc::model::{
     AgentId, Arithmetic, Axis, BarrierId, Bool, Collective, Comparison, Field, Fold, Function, Num, Pair,
     Parameter, Place, RegionId, Separation, Set, Who,
@@ -57,6 +58,9 @@ pub(crate) fn field() -> impl Strategy<Value = Field> {
         Field::Mass,
         Field::DrivingSpeed,
         Field::Travelled,
+        Field::Legs,
+        Field::DoneAt,
+        Field::Leg(LegMeasure::Length, 0),
     ])
 }
 

@@ -66,6 +66,12 @@ impl Plain<'_> {
             Field::Mass => self.of(&s.bodies[Parameter::Mass], agent),
             Field::DrivingSpeed => self.of(&s.bodies[Parameter::Speed], agent),
             Field::Travelled => self.of(&s.motion.travelled, agent),
+            Field::Legs => self.of(&s.progress.legs, agent),
+            Field::StepCount => self.of(&s.progress.steps, agent),
+            Field::DoneAt => self.of(&s.progress.done_at, agent),
+            Field::Leg(measure, leg) => {
+                s.progress.record(leg, measure as usize).map_or(f64::INFINITY, |of| self.of(of, agent))
+            }
             Field::Separation(separation) => {
                 assert_eq!(separation, Separation::Clearance);
                 self.clearance(agent)

@@ -163,6 +163,15 @@ impl Prefix<'_> {
                 Some(combined(*operation, self.number(*x, at)?, self.number(*y, at)?))
             }
             Term::Abs(x) => self.number(*x, at).map(f64::abs),
+            Term::Window(Aggregation::First, w, x) => {
+                let finite = |k: u64| self.number(*x, k).filter(|v| v.is_finite());
+                let states = self.states(*w, at);
+                let is_complete = *states.end() < self.seen;
+                states
+                    .take_while(|k| *k < self.seen)
+                    .find_map(finite)
+                    .or(is_complete.then_some(f64::INFINITY))
+            }
             Term::Window(aggregation, w, x) => {
                 let states = self.states(*w, at);
                 // A window is complete when its last state has been seen.
@@ -174,7 +183,7 @@ impl Prefix<'_> {
                 let numbers = numbers?;
                 let reduced = |by: Aggregation| {
                     numbers.iter().copied().reduce(|a, b| match by {
-                        Aggregation::Min => combined(Operation::Min, a, b),
+                        Aggregation::Min | Aggregation::First => combined(Operation::Min, a, b),
                         Aggregation::Max => combined(Operation::Max, a, b),
                         Aggregation::Sum | Aggregation::Mean => a + b,
                     })

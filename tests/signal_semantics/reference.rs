@@ -200,7 +200,7 @@ impl Signal<'_> {
                 let values: Option<Vec<f64>> = self.window(*w, at).map(|k| self.number(*x, k)).collect();
                 let values = values?;
                 Some(match aggregation {
-                    Aggregation::Min => values.into_iter().reduce(f64::min)?,
+                    Aggregation::Min | Aggregation::First => values.into_iter().reduce(f64::min)?,
                     Aggregation::Max => values.into_iter().reduce(f64::max)?,
                     Aggregation::Sum | Aggregation::Mean => panic!("no sum in continuous time"),
                 })

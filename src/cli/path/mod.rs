@@ -13,6 +13,7 @@ use super::terminal::{Colors, print, warn};
 use crate::base::geometry::Vec2;
 use crate::base::random::TrialKey;
 use crate::compile::nearest::nearest;
+use crate::gait;
 use crate::kernel::{Program, Run, State};
 use crate::library;
 use crate::model::{AgentId, Move, Parameter, Route, Scenario, SpeedRule};
@@ -83,7 +84,7 @@ fn of_model(arguments: &PathCommand, scenario: &str, colors: Colors) -> Result<S
     let mut scenario = Arc::clone(&world.scenario);
     library::find_paths(Arc::make_mut(&mut scenario), arguments.seed, &ways);
     let chosen = chosen(&scenario, arguments.agent.as_deref()).map_err(refuse)?;
-    let program = Program::driven(scenario.clone(), ways.drivers(&scenario, arguments.seed));
+    let program = Program::driven(scenario.clone(), gait::drivers(&ways, &scenario, arguments.seed));
     let key = TrialKey { seed: arguments.seed, index: arguments.trial, branch: 0 };
     let (run, _) = Run::of(&program, key.into()).map_err(|fault| {
         let why = crate::engine::no_start(&scenario, fault);

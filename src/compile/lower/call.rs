@@ -7,7 +7,7 @@ use super::super::symbols::{Meaning, unknown};
 use super::super::typed::Typed;
 use super::super::weight::Weight;
 use super::builtin::DISTRIBUTIONS;
-use super::{coordinates, counted_arguments};
+use super::{coordinates, counted_arguments, legs};
 use crate::logic::Term;
 use crate::model::function::{Rule, Signature, Special};
 use crate::model::{Arithmetic, Axis, Bool, BuiltIn, Collective, Field, Function, Num, Place, Set, Who};
@@ -124,6 +124,9 @@ impl Elaborator<'_> {
             Signature::Special(Special::TimeUntil) => {
                 return self.time_until(expr, function, arguments, locals);
             }
+            Signature::Special(Special::Leg(measure)) if let [agent, number] = arguments => {
+                return self.leg(built_in, measure, (expr, [agent, number]), locals);
+            }
             Signature::Special(Special::Robustness) => {
                 let error = Diagnostic::error(
                     Code::E0504,
@@ -228,6 +231,7 @@ impl Elaborator<'_> {
             _ => return Err(Reported),
         };
         Ok(match special {
+            (Special::Done, typed) => legs::done(self.as_agent(typed, span)?),
             (Special::Present, typed) => Typed::truth(Bool::Present(self.as_agent(typed, span)?)),
             (Special::Position, Typed::Agents { set, particle: false }) => centroid(set),
             (Special::Position, typed) => {

@@ -4,6 +4,7 @@ mod arithmetic;
 mod builtin;
 mod call;
 mod gist;
+mod legs;
 mod logic;
 mod mention;
 mod misread;

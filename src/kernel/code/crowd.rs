@@ -231,6 +231,13 @@ pub(super) fn reading<S: Simd, const ONE: bool>(
         Reading::Field(Field::Mass) => view.read(&state.bodies[Parameter::Mass], body),
         Reading::Field(Field::DrivingSpeed) => view.read(&state.bodies[Parameter::Speed], body),
         Reading::Field(Field::Travelled) => view.read(&state.motion.travelled, body),
+        Reading::Field(Field::Legs) => view.read(&state.progress.legs, body),
+        Reading::Field(Field::StepCount) => view.read(&state.progress.steps, body),
+        Reading::Field(Field::DoneAt) => view.read(&state.progress.done_at, body),
+        Reading::Field(Field::Leg(measure, leg)) => match state.progress.record(leg, measure as usize) {
+            Some(record) => view.read(record, body),
+            None => view.splat(f64::INFINITY),
+        },
         // It is composed of others (`lower`).
         Reading::Field(Field::Separation(_)) => view.splat(f64::NAN),
         Reading::Field(Field::Mode(behaviour)) => match state.behaviours.modes.get(behaviour.0 as usize) {

@@ -52,6 +52,7 @@ fn one(drive: &Drive, state: &mut State, slot: Slot) {
         key: state.keys[trial],
         asked: held.asked,
         time: state.ticks[trial] as f64 * drive.dt,
+        dt: drive.dt,
         after,
         position,
         velocity,
@@ -65,7 +66,9 @@ fn one(drive: &Drive, state: &mut State, slot: Slot) {
         state,
         slot,
     };
-    let plan = driver.plan(&situation);
+    let mut memory = held.memory.clone();
+    let plan = driver.plan(&situation, &mut memory);
+    state.plans.held_mut(slot).memory = memory;
     take_over(drive, state, slot, plan, after);
 }
 
@@ -80,10 +83,14 @@ fn take_over(drive: &Drive, state: &mut State, slot: Slot, plan: Plan, after: f6
         return;
     }
     let was_stepped = state.plans.is_stepped(slot);
+    if state.plans.stepping(block).has(lane) && state.plans.held(slot).occasion == Occasion::Ended {
+        state.progress.steps[block].0[lane] += 1.0;
+    }
     state.plans.end(slot);
     let person = Person::new(drive, state, slot);
     let (at, has_arrived) = (person.at(), person.has_arrived());
     let rate = state.bodies[Parameter::Speed][block].0[lane] / state.plans.courses[block].own_speed.0[lane];
+    let is_alone = drive.scenario.agents[state.layout.agent_of(slot)].body.stepper.is_some();
     let course = &mut state.plans.courses[block];
     let here = Mask::lane(lane);
     course.fresh |= here;
@@ -93,11 +100,17 @@ fn take_over(drive: &Drive, state: &mut State, slot: Slot, plan: Plan, after: f6
         Plan::Straight => course.watched |= here,
         Plan::NoWay => {
             course.stands |= here;
+            if is_alone {
+                course.rest(lane, at);
+            }
             course.stranded |= here;
             course.next_ask.0[lane] = f64::INFINITY;
         }
         Plan::Stand(seconds) => {
             course.stands |= here;
+            if is_alone {
+                course.rest(lane, at);
+            }
             course.next_ask.0[lane] = tick + steps_over(*seconds, drive.dt);
         }
         Plan::Way(points) => {

@@ -1,7 +1,7 @@
 //! The trait by which a higher floor tells agents where to go, and which agents have which driver.
 
 use super::situation::Situation;
-use crate::kernel::plan::Plan;
+use crate::kernel::plan::{Memory, Plan};
 use crate::model::{AgentId, Scenario};
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -10,8 +10,8 @@ use std::sync::Arc;
 /// trial stays a function of model, seed and index; random numbers come from `Stream::of(situation.key, situation.entity,
 /// purpose)`.
 pub trait Driver: Debug + Send + Sync {
-    /// Where an agent goes from now on.
-    fn plan(&self, situation: &Situation<'_>) -> Plan;
+    /// Where an agent goes from now on. What it puts into the memory is there when it is asked about the same person again.
+    fn plan(&self, situation: &Situation<'_>, memory: &mut Memory) -> Plan;
 }
 
 /// The drivers of a run: which agents have which.

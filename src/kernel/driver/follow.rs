@@ -85,7 +85,8 @@ pub(super) fn pursue_at(level: Level, drive: &Drive, state: &mut State, block: u
 fn rules(state: &State, block: usize, slots: Mask) -> [Mask; 4] {
     let course = &state.plans.courses[block];
     let free = slots & !state.route.advised[block];
-    [course.way & free, course.driven & free, course.stepped & slots, course.stands & free]
+    let stands = course.stands & (free | course.stepped & slots);
+    [course.way & free, course.driven & free, course.stepped & slots, stands]
 }
 
 #[inline(always)]

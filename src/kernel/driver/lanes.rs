@@ -83,10 +83,14 @@ pub(super) fn steer<S: Simd>(
     turn(simd, state, block, (turning.select(dx * inverse, ex), turning.select(dy * inverse, ey)));
     let wanted = reached.select(Vector::splat(simd, 0.0), speed);
     walking.select(wanted, drive).store_slice(&mut state.driving.speed[block].0);
-    let done = narrow(reached);
-    let stays = stage.last && !stage.leaves;
-    // Whoever stays at a goal ends the way of points that led there.
-    over | slots & if stays { done & state.plans.on_way(block) } else { done }
+    // Who makes a step ends no leg before its end.
+    let done = slots & narrow(reached) & !state.plans.stepping(block);
+    if done.is_empty() || !stage.last || stage.leaves {
+        return over | done;
+    }
+    // Whoever stays at the last goal has finished there, once, and ends the way of points that led there.
+    let finished = load(simd, block, &state.progress.done_at).simd_lt(Vector::splat(simd, f64::INFINITY));
+    over | done & (state.plans.on_way(block) | !narrow(finished))
 }
 
 /// Turns the driving directions of a block. The step just made was driven along the direction at its beginning: half of what

@@ -18,7 +18,7 @@ mod person;
 mod situation;
 mod stage;
 
-pub use super::plan::{Limits, Occasion, Plan, Sample, Trajectory};
+pub use super::plan::{Limits, Memory, Occasion, Plan, Sample, Trajectory};
 pub use drivers::{Driver, Drivers, MakeDrivers, straight};
 pub use situation::{Other, Situation};
 pub use stage::Drive;
@@ -42,6 +42,7 @@ pub(super) fn begin(
     advice: Option<(Move, u64)>,
 ) {
     let slot = state.slot(agent, lane);
+    state.progress.begin(slot, state.motion.x.len(), drive.most_legs);
     if drive.drivers.of(agent).is_some() {
         state.plans.reserve(state.motion.x.len());
         state.plans.clear(slot);

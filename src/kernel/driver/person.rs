@@ -11,7 +11,7 @@ use crate::kernel::code::lanes::Vector;
 use crate::kernel::plan::Occasion;
 use crate::kernel::state::route::Halt;
 use crate::kernel::state::{Slot, State, Way};
-use crate::model::{Move, Parameter, Start};
+use crate::model::{Law, Move, Parameter, Start};
 use fearless_simd::{Level, dispatch, prelude::*};
 
 /// How far from a point the line across it may be passed so that it counts as reached, m.
@@ -152,13 +152,7 @@ impl<'a> Person<'a> {
         self.way.origin = self.at();
         let stage = &self.drive.stages[stage as usize];
         if let Target::Pause(law) = &stage.target {
-            let later = self.state.queues.later(self.agent, self.state.layout.trial_of(self.lane));
-            let entity = self.drive.scenario.agents[self.agent].entity + later;
-            let stream = Stream::of(self.key(), entity, Purpose::Pause);
-            let uniform = stream.uniform(stage.leg.wrapping_add(self.way.round.wrapping_mul(ROUND)));
-            // A negative time or NaN is no pause; one that never ends is cut at the end of all ticks.
-            let ticks = steps_over(law.draw(uniform), self.drive.dt) as u64;
-            self.way.until = self.tick().saturating_add(ticks);
+            self.way.until = self.tick().saturating_add(self.pause(law, stage.leg));
         }
     }
 
@@ -166,22 +160,73 @@ impl<'a> Person<'a> {
     fn proceed(&mut self) -> bool {
         loop {
             let stage = &self.drive.stages[self.way.stage as usize];
-            let done = match stage.target {
-                Target::Pause(_) => self.tick() >= self.way.until,
-                _ => reached(stage, self.at(), self.radius(), self.way.origin),
+            let is_pause = matches!(stage.target, Target::Pause(_));
+            let done = if is_pause {
+                self.tick() >= self.way.until
+            } else {
+                let steps = self.state.plans.stepping(self.block).has(self.lane);
+                !steps && reached(stage, self.at(), self.radius(), self.way.origin)
             };
             if !done {
                 return false;
             }
             if stage.last {
+                self.finish(stage);
                 return stage.leaves;
             }
             if stage.open && !self.sees_next() {
                 return false;
             }
+            if !is_pause {
+                self.arrive();
+            }
             self.enter(self.way.stage + 1);
+            self.set_out();
             self.ask(Occasion::Leg);
         }
+    }
+
+    /// Way gone, m, and time, s.
+    fn now(&self) -> (f64, f64) {
+        (self.state.motion.travelled[self.block].0[self.lane], self.tick() as f64 * self.drive.dt)
+    }
+
+    /// Begins a leg.
+    fn set_out(&mut self) {
+        let (travelled, time) = self.now();
+        self.state.progress.set_out(Slot { block: self.block, lane: self.lane }, travelled, time);
+    }
+
+    /// Ends a leg of its own route.
+    fn arrive(&mut self) {
+        if self.way.round == 0 {
+            let (travelled, time) = self.now();
+            self.state.progress.arrive(Slot { block: self.block, lane: self.lane }, travelled, time);
+        }
+    }
+
+    /// Ends its own route, once. Pauses that come after the last goal of somebody who stays are over later.
+    fn finish(&mut self, stage: &Stage) {
+        let Slot { block, lane } = Slot { block: self.block, lane: self.lane };
+        if self.way.round != 0 || self.state.progress.done_at[block].0[lane] < f64::INFINITY {
+            return;
+        }
+        if !matches!(stage.target, Target::Pause(_)) {
+            self.arrive();
+        }
+        let rests = (1..).zip(&stage.rests).map(|(k, law)| self.pause(law, stage.leg.wrapping_add(k)));
+        let ticks = rests.fold(self.tick(), u64::saturating_add);
+        self.state.progress.done_at[block].0[lane] = ticks as f64 * self.drive.dt;
+    }
+
+    /// A pause of a leg, in ticks.
+    fn pause(&self, law: &Law, leg: u32) -> u64 {
+        let later = self.state.queues.later(self.agent, self.state.layout.trial_of(self.lane));
+        let entity = self.drive.scenario.agents[self.agent].entity + later;
+        let stream = Stream::of(self.key(), entity, Purpose::Pause);
+        let uniform = stream.uniform(leg.wrapping_add(self.way.round.wrapping_mul(ROUND)));
+        // A negative time or NaN is no pause; one that never ends is cut at the end of all ticks.
+        steps_over(law.draw(uniform), self.drive.dt) as u64
     }
 
     /// Whether the goal of the next stage is in sight; always for who goes straight whatever is in the way, or along a
@@ -269,6 +314,7 @@ impl<'a> Person<'a> {
             _ => own,
         };
         self.enter(first);
+        self.set_out();
         // The first goal, past the pauses before it.
         let stages = &self.drive.stages[first as usize..];
         let towards = stages

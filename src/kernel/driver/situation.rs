@@ -22,6 +22,8 @@ pub struct Situation<'a> {
     pub asked: u32,
     /// Time of the state.
     pub time: f64,
+    /// From one state to the next.
+    pub dt: f64,
     /// How much later the plan begins: what is left of a trajectory that ends within the next step, else 0.
     pub after: f64,
     /// Where the agent is when the plan begins.

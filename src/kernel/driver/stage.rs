@@ -66,6 +66,8 @@ pub(super) struct Stage {
     pub(super) leaves: bool,
     /// Whether the goal that follows is in sight from the middle of this one: then it must be in sight for who goes on.
     pub(super) open: bool,
+    /// Pauses after the last goal of somebody who stays there.
+    pub(super) rests: Vec<Law>,
 }
 
 /// All routes of a scenario, and the drivers of a run.
@@ -84,6 +86,8 @@ pub struct Drive {
     pub(super) first: Vec<u32>,
     /// First stages of the routes that are moves of an agent.
     named: Vec<(AgentId, Vec<u32>)>,
+    /// Most goals of a route.
+    pub(super) most_legs: usize,
 }
 
 fn target(scenario: &Scenario, leg: &Leg) -> Target {
@@ -111,6 +115,7 @@ fn stages(scenario: &Scenario, route: &Route, from: u32, number: u32) -> Vec<Sta
         last,
         leaves,
         open: false,
+        rests: Vec::new(),
     };
     let (legs, leaves) = match route {
         Route::Onward => {
@@ -129,6 +134,12 @@ fn stages(scenario: &Scenario, route: &Route, from: u32, number: u32) -> Vec<Sta
             stage(target(scenario, leg), (number, k), from.wrapping_add(k as u32), (last, last && leaves))
         })
         .collect();
+    if let Some(last) = stages.last_mut() {
+        let rests = legs[used.len()..]
+            .iter()
+            .filter_map(|leg| if let Leg::Wait(law) = leg { Some(law) } else { None });
+        last.rests = rests.cloned().collect();
+    }
     if stages.is_empty() {
         stages.push(stage(Target::Rest, (number, 0), 0, (true, false)));
     }
@@ -149,7 +160,11 @@ impl Drive {
             stages: Vec::new(),
             first: Vec::new(),
             named: Vec::new(),
+            most_legs: 0,
         };
+        let moves = scenario.moves.iter().flat_map(|moves| &moves.routes);
+        let routes = scenario.agents.iter().map(|agent| &agent.route).chain(moves);
+        out.most_legs = routes.map(|route| route.goals().count()).max().unwrap_or(0);
         for (k, agent) in scenario.agents.iter().enumerate() {
             let same = k.checked_sub(1).filter(|&before| scenario.agents[before].route == agent.route);
             let first = if let Some(before) = same { out.first[before] } else { out.add(&agent.route, 0) };

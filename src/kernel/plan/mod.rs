@@ -6,6 +6,7 @@ pub(super) use trajectory::Piece;
 pub use trajectory::{Sample, Trajectory};
 
 use crate::base::geometry::Vec2;
+use std::any::Any;
 use std::sync::Arc;
 
 /// Where an agent goes until its driver is asked again. Times count from the moment at which the plan begins.
@@ -17,7 +18,7 @@ pub enum Plan {
     /// out of sight, the driver is asked again, at most every 0.5 s.
     #[default]
     Straight,
-    /// Stands for so many seconds (infinite: for good). Then the driver is asked again.
+    /// Stands for so many seconds (infinite: for good). Then the driver is asked again. No force moves an agent that steps.
     Stand(f64),
     /// No way leads to the goal: stands, and the trial is counted as one in which somebody has no way.
     NoWay,
@@ -28,8 +29,33 @@ pub enum Plan {
     /// Is driven along a trajectory by its driving velocity; all forces act on it.
     Follow(Arc<Trajectory>, Limits),
     /// Is moved along a trajectory by itself: no force moves it. Others feel it as a body with its velocity, which in
-    /// contact does not yield. The trajectory begins where the agent is.
+    /// contact does not yield. The trajectory begins where the agent is. It is one step; no leg ends before it does.
     Step(Arc<Trajectory>),
+}
+
+/// What a driver remembers of a person from plan to plan, in a trial.
+#[derive(Clone, Debug, Default)]
+pub struct Memory(Option<Arc<dyn Any + Send + Sync>>);
+
+impl Memory {
+    /// What was put there last, if it is of this type.
+    pub fn get<T: Any>(&self) -> Option<&T> {
+        self.0.as_deref()?.downcast_ref()
+    }
+
+    /// Remembers something.
+    pub fn put<T: Any + Send + Sync>(&mut self, value: T) {
+        self.0 = Some(Arc::new(value));
+    }
+}
+
+impl PartialEq for Memory {
+    fn eq(&self, other: &Self) -> bool {
+        match (&self.0, &other.0) {
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            (a, b) => a.is_none() && b.is_none(),
+        }
+    }
 }
 
 /// How an agent is driven along a trajectory: at plan time `t` with `v(t) + tau a(t)`, which compensates the relaxation, and

@@ -11,6 +11,7 @@ mod clocks;
 mod driving;
 mod motion;
 pub(super) mod plans;
+pub(super) mod progress;
 mod queues;
 pub(super) mod route;
 
@@ -21,6 +22,7 @@ pub use clocks::Clocks;
 pub use driving::Driving;
 pub use motion::Motion;
 pub use plans::Plans;
+pub use progress::Progress;
 pub use queues::Queues;
 pub use route::{Routes, Way};
 
@@ -58,6 +60,8 @@ pub struct State {
     pub route: Routes,
     /// The plans that those with a driver follow.
     pub plans: Plans,
+    /// How far they have come.
+    pub progress: Progress,
     /// States of their behaviours.
     pub behaviours: ActiveModes,
     /// Arrivals of the sources.
@@ -91,6 +95,7 @@ impl State {
             driving: Driving::new(blocks),
             route: Routes::new(blocks),
             plans: Plans::default(),
+            progress: Progress::default(),
             behaviours: ActiveModes::default(),
             queues: Queues::default(),
             variables: Vec::new(),

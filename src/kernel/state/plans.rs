@@ -3,7 +3,7 @@
 use crate::base::geometry::{Segment, Vec2};
 use crate::base::lanes::{LANES, Lanes, Mask};
 use crate::kernel::layout::Slot;
-use crate::kernel::plan::{Occasion, Piece, Plan};
+use crate::kernel::plan::{Memory, Occasion, Piece, Plan};
 
 /// The plans of a batch; empty while no agent has a driver.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,6 +23,8 @@ pub(in crate::kernel) struct Held {
     /// The last line to a point that was found free, m, and how near a barrier is to it, m. Somebody off this line by less has the
     /// point in sight, without another test.
     pub(in crate::kernel) free: Option<(Segment, f64)>,
+    /// What the driver remembers.
+    pub(in crate::kernel) memory: Memory,
     /// Why the driver is to be asked.
     pub(in crate::kernel) occasion: Occasion,
     /// How often the driver has been asked.
@@ -85,6 +87,13 @@ impl Course {
         self.way | self.driven | self.stepped | self.stands
     }
 
+    /// Lets a lane stand at a place by itself: no force moves it.
+    pub(in crate::kernel) fn rest(&mut self, lane: usize, at: Vec2) {
+        self.stepped |= Mask::lane(lane);
+        let span = (f64::NEG_INFINITY, f64::INFINITY);
+        self.set_piece(lane, &Piece { span, x: [at.x, 0.0, 0.0, 0.0], y: [at.y, 0.0, 0.0, 0.0] });
+    }
+
     /// Puts a piece of a trajectory into a lane.
     pub(in crate::kernel) fn set_piece(&mut self, lane: usize, piece: &Piece) {
         (self.from.0[lane], self.until.0[lane]) = piece.span;
@@ -122,6 +131,12 @@ impl Plans {
     /// Whether the agent in a slot moves by itself, whatever forces act on it.
     pub(in crate::kernel) fn is_stepped(&self, slot: Slot) -> bool {
         self.courses.get(slot.block).is_some_and(|course| course.stepped.has(slot.lane))
+    }
+
+    /// The slots of a block that are making a step.
+    #[inline(always)]
+    pub(in crate::kernel) fn stepping(&self, block: usize) -> Mask {
+        self.courses.get(block).map_or(Mask::NONE, |course| course.stepped & !course.stands)
     }
 
     /// Whether the agent in a slot goes along a trajectory.

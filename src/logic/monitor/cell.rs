@@ -212,7 +212,7 @@ pub(super) fn events(before: &[Cell], child: Ref, now: u64) -> impl Iterator<Ite
 /// What an aggregate starts from. Adding to minus zero changes nothing, not even the sign of a zero.
 pub(super) fn identity(aggregation: Aggregation) -> f64 {
     match aggregation {
-        Aggregation::Min => f64::INFINITY,
+        Aggregation::Min | Aggregation::First => f64::INFINITY,
         Aggregation::Max => f64::NEG_INFINITY,
         Aggregation::Sum | Aggregation::Mean => -0.0,
     }

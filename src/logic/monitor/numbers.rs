@@ -40,10 +40,16 @@ pub(super) fn combine(arithmetic: Arithmetic, x: Lanes, y: Lanes) -> Lanes {
 #[inline(always)]
 fn gather(aggregation: Aggregation, so_far: Lanes, next: Lanes) -> Lanes {
     match aggregation {
-        Aggregation::Min => so_far.zip(next, |x, y| Operation::Min.apply(x, y)),
+        Aggregation::Min | Aggregation::First => so_far.zip(next, |x, y| Operation::Min.apply(x, y)),
         Aggregation::Max => so_far.zip(next, |x, y| Operation::Max.apply(x, y)),
         Aggregation::Sum | Aggregation::Mean => so_far.zip(next, |x, y| x + y),
     }
+}
+
+/// The lanes whose number is finite.
+#[inline(always)]
+fn finite(value: Lanes) -> u8 {
+    value.compare(Lanes::splat(f64::INFINITY), |x, y| x < y).0
 }
 
 #[inline(always)]
@@ -111,7 +117,8 @@ pub(super) fn step(cell: &mut Cell, before: &[Cell], cx: &Context) {
             if *aggregation == Aggregation::Mean {
                 **extent = extent.with(before[*child].value).within(asked, **extent);
             }
-            let done = asked & cell.last;
+            let early = if *aggregation == Aggregation::First { finite(value) } else { 0 };
+            let done = asked & (cell.last | early);
             if done != 0 {
                 value = select(done, finish(*aggregation, value, *states, extent), value);
                 cell.t |= done;
@@ -177,7 +184,7 @@ pub(super) fn step(cell: &mut Cell, before: &[Cell], cx: &Context) {
             cell.track.begin(now, !cell.live, cell.need);
             let mut position = now;
             // The least and the largest do not depend on the order of states: each window is the next one and a state more.
-            let joins = matches!(aggregation, Aggregation::Min | Aggregation::Max);
+            let joins = !matches!(aggregation, Aggregation::Sum | Aggregation::Mean);
             let mut joined = Lanes::splat(identity(*aggregation));
             while cx.ending & cell.track.open(position, now) != 0 {
                 let fresh = cx.ending & cell.track.open(position, now);

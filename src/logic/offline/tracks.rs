@@ -225,7 +225,7 @@ impl Work<'_> {
             Slot::Time(goal) => track.numbers = self.times(*goal),
             Slot::Aggregate { aggregation, from, to, of } => {
                 track.numbers = match aggregation {
-                    Aggregation::Min => self.extremes(*from, *to, *of, Operation::Min),
+                    Aggregation::Min | Aggregation::First => self.extremes(*from, *to, *of, Operation::Min),
                     Aggregation::Max => self.extremes(*from, *to, *of, Operation::Max),
                     Aggregation::Sum => self.sums(*from, *to, *of, false),
                     Aggregation::Mean => self.sums(*from, *to, *of, true),

@@ -119,7 +119,7 @@ impl Direct {
             return None;
         }
         self.folded = Some(match (aggregation, self.folded) {
-            (Aggregation::Min, Some(folded)) => Operation::Min.apply(folded, value),
+            (Aggregation::Min | Aggregation::First, Some(folded)) => Operation::Min.apply(folded, value),
             (Aggregation::Max, Some(folded)) => Operation::Max.apply(folded, value),
             _ => value,
         });

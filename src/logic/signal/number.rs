@@ -195,7 +195,7 @@ fn fold(
         let end = end.min(to + 1);
         let first = folded.next == from;
         folded.value = match aggregation {
-            Aggregation::Min if !first => Operation::Min.apply(folded.value, value),
+            Aggregation::Min | Aggregation::First if !first => Operation::Min.apply(folded.value, value),
             Aggregation::Max if !first => Operation::Max.apply(folded.value, value),
             _ => value,
         };

@@ -31,7 +31,7 @@ impl Errand {
 }
 
 /// A free point of a goal, a radius inside if there is room.
-fn point_in(
+pub fn point_in(
     scene: &Scene,
     free: &FreeSpace,
     goal: &Goal,

@@ -8,9 +8,9 @@ mod speeds;
 mod terrain;
 mod walker;
 
-pub use errand::Errand;
+pub use errand::{Errand, point_in};
 pub use options::{PathOption, path_options};
 pub use reach::doubt;
 pub use speeds::{Course, Speeds, stretches};
-pub use terrain::{Terrain, Terrains};
+pub use terrain::{Terrain, Terrains, middle, widest};
 pub use walker::{Outline, Walkers, Wish, walkers};

@@ -28,13 +28,13 @@ pub struct Terrain {
 }
 
 /// The largest radius that a law draws, or nearly, m.
-pub(super) fn widest(law: &Law) -> f64 {
+pub fn widest(law: &Law) -> f64 {
     let most = law.bounds().1;
     if most.is_finite() { most } else { law.draw(WIDEST) }
 }
 
 /// The middle of a goal.
-pub(super) fn middle(scene: &Scene, goal: &Goal) -> Vec2 {
+pub fn middle(scene: &Scene, goal: &Goal) -> Vec2 {
     match goal {
         Goal::Point(point) => *point,
         Goal::Region(id) => {

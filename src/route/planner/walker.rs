@@ -6,7 +6,7 @@ use super::speeds::{Course, Speeds};
 use super::terrain::{Terrain, Terrains};
 use crate::base::geometry::Vec2;
 use crate::base::random::{Purpose, Stream, TrialKey};
-use crate::kernel::driver::{Driver, Drivers, Limits, Occasion, Plan, Situation};
+use crate::kernel::driver::{Driver, Drivers, Limits, Memory, Occasion, Plan, Situation};
 use crate::model::{AgentId, Goal, Leg, Move, Parameter, RoadmapRule, Scenario};
 use crate::route::roadmap::shortest;
 use std::collections::BTreeMap;
@@ -165,7 +165,7 @@ impl Wish<'_> {
 }
 
 impl Driver for Walkers {
-    fn plan(&self, situation: &Situation<'_>) -> Plan {
+    fn plan(&self, situation: &Situation<'_>, _: &mut Memory) -> Plan {
         let Some(goal) = situation.goal() else {
             // In a pause the plan goes on to its end.
             return match (situation.occasion, situation.plan) {

@@ -217,6 +217,13 @@ pub enum Value {
         /// The arguments.
         arguments: Vec<Binding>,
     },
+    /// `learned "operators.gait"`
+    Learned {
+        /// The file.
+        file: Text,
+        /// Where all of it stands.
+        span: Span,
+    },
     /// `sfm preset helbing2000`
     Force {
         /// The kind.

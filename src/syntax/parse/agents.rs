@@ -166,6 +166,10 @@ impl Builder<'_> {
                 let arguments = parts.map(|binding| self.binding(binding)).collect::<Option<_>>()?;
                 Some(Value::Arguments { name, arguments })
             }
+            Rule::learned => {
+                let span = self.span(&pair);
+                Some(Value::Learned { file: self.quoted(&Parts::of(pair).part(Rule::text)?), span })
+            }
             Rule::force => {
                 let mut parts = Parts::of(pair);
                 let kind = self.ident(&parts.part(Rule::name)?);

@@ -60,6 +60,8 @@ pub(super) fn keyword(rule: Rule) -> Option<&'static str> {
         Rule::kw_rect => "rect",
         Rule::kw_region => "region",
         Rule::kw_roadmap => "roadmap",
+        Rule::kw_search => "search",
+        Rule::kw_learned => "learned",
         Rule::kw_route => "route",
         Rule::kw_scenario => "scenario",
         Rule::kw_scene => "scene",
@@ -223,6 +225,7 @@ pub(super) fn noun(rule: Rule) -> Option<(u8, String)> {
         | Rule::side_arith
         | Rule::arguments
         | Rule::force
+        | Rule::learned
         | Rule::leg
         | Rule::route
         | Rule::move_route => (0, "a number, a name or `(`".to_owned()),

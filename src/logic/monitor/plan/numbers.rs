@@ -305,7 +305,7 @@ impl Builder<'_> {
             return Ok(Made::Of(self.answer(machine, (lo, reach), 0, true)));
         }
         let smallest = match aggregation {
-            Aggregation::Min => Some(Operation::Min),
+            Aggregation::Min | Aggregation::First => Some(Operation::Min),
             Aggregation::Max => Some(Operation::Max),
             Aggregation::Sum | Aggregation::Mean => None,
         };

@@ -1,0 +1,123 @@
+//! Named arguments of values that are calls: `prm(samples = 500)`, `guided(candidates = 24)`.
+
+use super::dimension::Dimension;
+use super::elaborator::{Elaborator, Locals, Lowered, Reported};
+use super::symbols::unknown;
+use crate::syntax::ast::{Binding, Expr, ExprKind, Ident, Value};
+use crate::syntax::codes::Code;
+use crate::syntax::diagnostic::Diagnostic;
+
+/// A number among the named arguments of a call.
+pub(super) struct Argument {
+    pub(super) name: &'static str,
+    pub(super) dimension: Dimension,
+    /// Least and largest value; open below where it must be positive.
+    pub(super) range: (f64, f64),
+    pub(super) positive: bool,
+    pub(super) whole: bool,
+}
+
+impl Argument {
+    pub(super) const fn length(name: &'static str, positive: bool) -> Self {
+        Self { name, dimension: Dimension::LENGTH, range: (0.0, 1e4), positive, whole: false }
+    }
+
+    pub(super) const fn count(name: &'static str, least: f64, most: f64) -> Self {
+        Self { name, dimension: Dimension::NONE, range: (least, most), positive: false, whole: true }
+    }
+}
+
+impl Elaborator<'_> {
+    /// An argument that is one of some words.
+    pub(super) fn word_of(
+        &mut self,
+        all: &[Binding],
+        name: &str,
+        words: &[&'static str],
+    ) -> Lowered<Option<&'static str>> {
+        let Some(argument) = all.iter().find(|argument| argument.name.name == name) else { return Ok(None) };
+        let found = match &argument.value.kind {
+            ExprKind::Name(word) => words.iter().copied().find(|known| known == word),
+            _ => None,
+        };
+        if found.is_some() {
+            return Ok(found);
+        }
+        let said = format!("`{name}` must be `{}`", words.join("` or `"));
+        self.report(Diagnostic::error(Code::E0305, argument.value.span, said))
+    }
+
+    /// The numbers among the arguments of a call; `others` are known names of other arguments.
+    pub(super) fn numbers_among<const N: usize>(
+        &mut self,
+        of: &Ident,
+        all: &[Binding],
+        known: &[Argument; N],
+        others: &[&str],
+        locals: &Locals,
+    ) -> Lowered<[Option<f64>; N]> {
+        let mut values = [None; N];
+        let mut failed = false;
+        for (k, argument) in all.iter().enumerate() {
+            let name = &argument.name;
+            if all[..k].iter().any(|before| before.name.name == name.name) {
+                let said = format!("`{}` is given twice", name.name);
+                self.note(Diagnostic::error(Code::E0202, name.span, said));
+                failed = true;
+            } else if let Some(at) = known.iter().position(|known| known.name == name.name) {
+                match self.number_among(&known[at], &argument.value, locals) {
+                    Ok(value) => values[at] = Some(value),
+                    Err(Reported) => failed = true,
+                }
+            } else if !others.contains(&name.name.as_str()) {
+                let names = known.iter().map(|known| known.name).chain(others.iter().copied());
+                let what = format!("argument of `{}`", of.name);
+                self.note(unknown(&what, &name.name, name.span, Code::E0207, names));
+                failed = true;
+            }
+        }
+        if failed { Err(Reported) } else { Ok(values) }
+    }
+
+    fn number_among(&mut self, argument: &Argument, value: &Expr, locals: &Locals) -> Lowered<f64> {
+        let number = self.number_of(value, argument.dimension, locals)?;
+        let (low, high) = argument.range;
+        let fits = (low..=high).contains(&number.value)
+            && !(argument.positive && number.value == 0.0)
+            && !(argument.whole && number.as_whole().is_none());
+        if fits {
+            return Ok(number.value);
+        }
+        let unit = argument.dimension.to_string();
+        let (unit, what) = (if unit.is_empty() { unit } else { format!(" {unit}") }, argument.name);
+        let said = match (argument.whole, argument.positive) {
+            (true, _) => format!("`{what}` must be a whole number from {low} to {high}"),
+            (false, true) => format!("`{what}` must be positive and at most {high}{unit}"),
+            (false, false) => format!("`{what}` must be from {low} to {high}{unit}"),
+        };
+        self.report(Diagnostic::error(
+            Code::E0405,
+            value.span,
+            format!("{said} (got {}{unit})", number.value),
+        ))
+    }
+}
+
+/// A value that is one word.
+pub(super) fn word(value: &Value) -> Option<&str> {
+    match value {
+        Value::Plain(Expr { kind: ExprKind::Name(name), .. }) => Some(name),
+        _ => None,
+    }
+}
+
+/// A value that is a call with named arguments, perhaps none: its name and its arguments.
+pub(super) fn call(value: &Value) -> Option<(&Ident, &[Binding])> {
+    match value {
+        Value::Arguments { name, arguments } => Some((name, arguments)),
+        Value::Plain(Expr { kind: ExprKind::Call { function, arguments }, .. }) if arguments.is_empty() => {
+            Some((function, &[]))
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,100 @@
+//! The fields of stepped kinds that are no parameters of a body: `gait` and `search`.
+
+use super::call_arguments::{Argument, call, word};
+use super::dimension::Dimension;
+use super::elaborator::{Elaborator, Locals, Lowered, Reported};
+use super::kinds::Kind;
+use super::laws::value_span;
+use super::symbols::unknown;
+use crate::model::{GaitRule, SearchRule};
+use crate::syntax::ast::{Field, ScenarioFile, Value};
+use crate::syntax::codes::Code;
+use crate::syntax::diagnostic::Diagnostic;
+use std::sync::Arc;
+
+/// Ways of choosing steps.
+const SEARCHES: [&str; 3] = ["guided", "hybrid_a_star", "as_published"];
+/// Most steps that are tried after one.
+const MOST: f64 = 1000.0;
+const GUIDED: [Argument; 1] = [Argument::count("candidates", 1.0, MOST)];
+const HYBRID: [Argument; 3] = [
+    Argument { name: "cell", dimension: Dimension::LENGTH, range: (0.02, 1.0), positive: true, whole: false },
+    Argument::count("starters", 1.0, MOST),
+    Argument::count("successors", 1.0, MOST),
+];
+
+impl Elaborator<'_> {
+    /// Takes the files of learned gaits that kinds name.
+    pub(super) fn settle_gaits(&mut self, file: &ScenarioFile, files: &super::files::Files) {
+        let fields = file.items.iter().filter_map(|item| match item {
+            crate::syntax::ast::Item::Kind(kind) => Some(&kind.body),
+            _ => None,
+        });
+        for field in fields.flatten() {
+            let Value::Learned { file, .. } = &field.value else { continue };
+            let text = match files.get(&file.value) {
+                Ok(bytes) => std::str::from_utf8(bytes)
+                    .map_err(|_| Diagnostic::error(Code::E0702, file.span, "the file is not UTF-8 text")),
+                Err(reason) => Err(super::files::missing(file.span, &reason)),
+            };
+            match text {
+                Ok(text) => {
+                    self.gaits.insert(file.value.clone(), Arc::from(text));
+                }
+                Err(error) => self.note(error),
+            }
+        }
+    }
+
+    /// Takes one of the fields into a kind.
+    pub(super) fn stepping(&mut self, field: &Field, kind: &mut Kind, locals: &Locals) -> Lowered<()> {
+        if field.name.name == "search" {
+            kind.search = self.search(&field.value, locals)?;
+            return Ok(());
+        }
+        kind.gait = match &field.value {
+            Value::Learned { file, .. } => match self.gaits.get(&file.value) {
+                Some(text) => GaitRule::Learned { file: file.value.clone(), text: Arc::clone(text) },
+                None => return Err(Reported),
+            },
+            value if word(value) == Some("synthetic") => GaitRule::Synthetic,
+            value => {
+                let said = "`gait` must be `synthetic`, or `learned` with a file";
+                let error = Diagnostic::error(Code::E0305, value_span(value), said);
+                return self
+                    .report(error.hint("write `gait = synthetic` or `gait = learned \"walkers.gait\"`"));
+            }
+        };
+        Ok(())
+    }
+
+    /// `guided(…)`, `hybrid_a_star(…)` or `as_published()`.
+    fn search(&mut self, value: &Value, locals: &Locals) -> Lowered<SearchRule> {
+        let Some((name, arguments)) = call(value) else {
+            let said = "expected `guided(…)`, `hybrid_a_star(…)` or `as_published()`";
+            let error = Diagnostic::error(Code::E0305, value_span(value), said);
+            return self.report(error.hint("write for example `search = guided(candidates = 24)`"));
+        };
+        match name.name.as_str() {
+            "guided" => {
+                let [candidates] = self.numbers_among(name, arguments, &GUIDED, &[], locals)?;
+                Ok(candidates.map_or_else(SearchRule::default, |count| SearchRule::Guided {
+                    candidates: count as u32,
+                }))
+            }
+            "hybrid_a_star" => {
+                let [cell, starters, successors] =
+                    self.numbers_among(name, arguments, &HYBRID, &[], locals)?;
+                Ok(SearchRule::HybridAStar {
+                    cell: cell.unwrap_or(0.08),
+                    starters: starters.unwrap_or(30.0) as u32,
+                    successors: successors.unwrap_or(10.0) as u32,
+                })
+            }
+            "as_published" => {
+                self.numbers_among::<0>(name, arguments, &[], &[], locals).map(|_| SearchRule::AsPublished)
+            }
+            _ => self.report(unknown("search", &name.name, name.span, Code::E0208, SEARCHES.into_iter())),
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! How far everybody has come on their routes: finished legs, steps, and the length, time and steps of each leg.
+
+use crate::base::lanes::Lanes;
+use crate::kernel::layout::Slot;
+
+/// Numbers of a leg.
+pub(in crate::kernel) const MEASURES: usize = 3;
+
+/// The progress of all slots.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Progress {
+    /// How many legs are finished; pauses are none.
+    pub legs: Vec<Lanes>,
+    /// How many whole steps were made.
+    pub steps: Vec<Lanes>,
+    /// When the last goal is reached and pauses are over, s; infinite before that is known.
+    pub done_at: Vec<Lanes>,
+    /// Way gone, m, time, s, and steps at the beginning of the present leg.
+    began: [Vec<Lanes>; MEASURES],
+    /// The same of each leg from its beginning to its end; infinite until it ends.
+    records: Vec<[Vec<Lanes>; MEASURES]>,
+}
+
+impl Progress {
+    /// Puts a slot, of so many blocks, at the beginning of a route of at most so many legs.
+    pub(in crate::kernel) fn begin(&mut self, slot: Slot, blocks: usize, legs: usize) {
+        self.records.resize_with(self.records.len().max(legs), Default::default);
+        let Self { legs, steps, done_at, began, records } = self;
+        let put = |field: &mut Vec<Lanes>, value: f64| {
+            field.resize(blocks, Lanes::splat(value));
+            field[slot.block].0[slot.lane] = value;
+        };
+        [legs, steps].into_iter().chain(began).for_each(|field| put(field, 0.0));
+        records.iter_mut().flatten().chain([done_at]).for_each(|field| put(field, f64::INFINITY));
+    }
+
+    /// Begins a leg at a way gone, m, and a time, s.
+    pub(in crate::kernel) fn set_out(&mut self, slot: Slot, travelled: f64, time: f64) {
+        let now = self.now(slot, travelled, time);
+        for (field, value) in self.began.iter_mut().zip(now) {
+            field[slot.block].0[slot.lane] = value;
+        }
+    }
+
+    /// Ends a leg.
+    pub(in crate::kernel) fn arrive(&mut self, slot: Slot, travelled: f64, time: f64) {
+        let Slot { block, lane } = slot;
+        let now = self.now(slot, travelled, time);
+        let finished = &mut self.legs[block].0[lane];
+        if let Some(record) = self.records.get_mut(*finished as usize) {
+            for ((field, value), began) in record.iter_mut().zip(now).zip(&self.began) {
+                field[block].0[lane] = value - began[block].0[lane];
+            }
+        }
+        *finished += 1.0;
+    }
+
+    fn now(&self, slot: Slot, travelled: f64, time: f64) -> [f64; MEASURES] {
+        [travelled, time, self.steps[slot.block].0[slot.lane]]
+    }
+
+    /// A number of a leg, from 0, of all slots; none of a leg that nobody has.
+    pub fn record(&self, leg: u32, measure: usize) -> Option<&[Lanes]> {
+        self.records.get(leg as usize).map(|record| record[measure].as_slice())
+    }
+}
