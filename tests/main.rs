@@ -50,6 +50,7 @@ mod signal_semantics;
 mod splitting;
 mod start;
 mod statistics;
+mod stepped;
 mod tables;
 mod texts;
 mod tracks;
