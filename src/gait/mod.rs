@@ -3,11 +3,13 @@
 
 pub mod compare;
 mod curve;
+mod driver;
 pub mod model;
 mod step;
-pub mod synthetic;
 pub mod steps;
+pub mod synthetic;
 pub mod walk;
 
 pub use curve::Curve;
+pub use driver::drivers;
 pub use step::{Draws, Foot, Gait, Phase, RecordedStep, SPANS, Shape, Stance};

@@ -133,7 +133,7 @@ mod tests {
                 steps[1..].chunks_exact(2).map(|pair| pair[0].duration + pair[1].duration).collect();
             exponents.push(fluctuation_exponent(&strides));
         }
-        let (mean, cv) = mean_and_cv(&exponents);
+        let (mean, _) = mean_and_cv(&exponents);
         assert!((0.6..1.0).contains(&mean), "{mean}");
     }
 

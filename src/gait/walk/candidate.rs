@@ -121,7 +121,7 @@ impl Walk<'_> {
         };
         [(1.0, 1.0), (0.5, 1.0), (1.0, 0.6)].into_iter().any(|(share, scale)| {
             let shape = turn::bent(&line(scale), share * error, 1.0);
-            self.ground.is_clear(&PlacedStep::new(found.step.foot.other(), at, heading, shape))
+            self.is_clear(&PlacedStep::new(found.step.foot.other(), at, heading, shape))
         })
     }
 }

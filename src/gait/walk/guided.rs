@@ -80,7 +80,7 @@ impl Walk<'_> {
             Some((noise - found.cost, found))
         };
         let draw = |k: u32, change: &dyn Fn(f64) -> Change| draw_from(pose, k, change);
-        let is_clear = |found: &Candidate| self.ground.is_clear(&found.step) && self.goes_on(found);
+        let is_clear = |found: &Candidate| self.is_clear(&found.step) && self.goes_on(found);
         let gap = |found: &Candidate| others.map(|others| others(&found.step));
         let steer = |k: u32| move |share| if k % 2 == 1 { Change::Steer(1.5 * share) } else { Change::Never };
         let options = (0..count).filter_map(|k| draw(k, &steer(k))).collect();

@@ -158,7 +158,7 @@ impl HybridAStar {
     }
 
     fn is_clear(&self, walk: &Walk, step: &PlacedStep) -> bool {
-        if self.is_as_published { walk.ground.is_end_free(step) } else { walk.ground.is_clear(step) }
+        if self.is_as_published { walk.ground.is_end_free(step) } else { walk.is_clear(step) }
     }
 
     /// What is closed with a pose: cell, foot and heading.

@@ -52,7 +52,7 @@ impl Walk<'_> {
             let (cost, chain) = self.last_option(pose, steps, number, FIRST + k)?;
             Some((self.choice(number, FIRST + k).0 - cost, chain))
         };
-        let is_clear = |chain: &Chain| chain.iter().all(|(step, _)| self.ground.is_clear(step));
+        let is_clear = |chain: &Chain| chain.iter().all(|(step, _)| self.is_clear(step));
         let gap = |chain: &Chain| others.zip(chain.first()).map(|(others, (step, _))| others(step));
         choose((0..candidates).filter_map(option).collect(), is_clear, gap).map(|(chain, _)| chain)
     }

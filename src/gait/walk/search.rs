@@ -6,7 +6,7 @@ use super::guided::Rejected;
 use super::hybrid::HybridAStar;
 use super::last::Chain;
 use super::no_step::NoStep;
-use super::others::Gaps;
+use super::others::{Gaps, OtherBody, least_gap};
 use super::placed::{PlacedStep, angle};
 use super::turn;
 use super::walker::Walker;
@@ -68,6 +68,8 @@ pub struct Walk<'a> {
     pub stream: Stream,
     /// How steps are found.
     pub search: Search,
+    /// Bodies that stand, around which a search of all steps leads.
+    pub around: &'a [OtherBody],
 }
 
 impl Walk<'_> {
@@ -117,6 +119,9 @@ impl Walk<'_> {
             {
                 Ok(chain) => chain,
                 Err(Rejected::Bodies) => return Err(NoStep::Crowded),
+                Err(Rejected::Barriers) if self.field.is_straight() => {
+                    return Err(NoStep::Exhausted { expansions: 0 });
+                }
                 Err(Rejected::Barriers) => HybridAStar::default().steps(self, (&pose, &way, number))?,
             },
         };
@@ -128,6 +133,12 @@ impl Walk<'_> {
         walker.planned = chain;
         walker.make(&step, &after);
         Ok(step)
+    }
+
+    /// Whether a step meets no barrier, and none of those around whom the walk leads.
+    pub(super) fn is_clear(&self, step: &PlacedStep) -> bool {
+        let reach = self.ground.free().reach();
+        self.ground.is_clear(step) && (self.around.is_empty() || least_gap(step, reach, self.around) > 0.0)
     }
 
     /// All steps of a person to the goal.

@@ -71,7 +71,7 @@ fn ground(boxes: &[[f64; 4]]) -> Ground {
 }
 
 fn walk<'a>(ground: &'a Ground, field: &'a GoalField, goal: Vec2, seed: u64, search: Search) -> Walk<'a> {
-    Walk { ground, field, goal, gait: &GAIT, share: 1.0, stream: stream(seed), search }
+    Walk { ground, field, goal, gait: &GAIT, share: 1.0, stream: stream(seed), search, around: &[] }
 }
 
 /// The least distance of the path from the boxes, at points much closer than those of the sweep.

@@ -42,9 +42,8 @@ pub(super) fn bent(shape: &Shape, turn: f64, scale: f64) -> Shape {
 /// takes more than half or twice its length or a turn beyond the limit.
 pub(super) fn fitted(shape: &Shape, target: Vec2) -> Option<(Shape, f64, f64)> {
     let (mut scale, mut turn) = (target.norm() / end_of(shape).norm().max(1e-9), 0.0);
-    let mut made = *shape;
     for _ in 0..4 {
-        made = bent(shape, turn, scale);
+        let made = bent(shape, turn, scale);
         let end = end_of(&made);
         scale *= target.norm() / end.norm().max(1e-9);
         turn += 2.0 * angle(end, target);
@@ -52,7 +51,7 @@ pub(super) fn fitted(shape: &Shape, target: Vec2) -> Option<(Shape, f64, f64)> {
             return None;
         }
     }
-    made = bent(shape, turn, scale);
+    let mut made = bent(shape, turn, scale);
     let miss = target - end_of(&made);
     for (k, p) in made.landmarks.iter_mut().enumerate() {
         let share = (k + 1) as f64 / SPANS as f64;

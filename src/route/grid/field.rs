@@ -39,6 +39,16 @@ impl GoalField {
         field
     }
 
+    /// The field of a point to which straight lines lead from everywhere.
+    pub fn straight(goal: Vec2) -> Self {
+        Self { goal, cells: Vec::new() }
+    }
+
+    /// Whether it is one to which straight lines lead.
+    pub fn is_straight(&self) -> bool {
+        self.cells.is_empty()
+    }
+
     fn spread(&mut self, grid: &ClearanceGrid) {
         let comfort = grid.reach() + COMFORT;
         let (near, start) = (1.5 * grid.side(), 1.5 * grid.side() + COMFORT);
@@ -130,6 +140,11 @@ impl GoalField {
     /// Length of the way from a place to `goal`, m, and its direction (length 1; zero at the goal); `None` where no way leads
     /// there. `goal` is a point near that of the field and in sight of it. Continuous in the place.
     pub fn way(&self, grid: &ClearanceGrid, from: Vec2, goal: Vec2) -> Option<Way> {
+        if self.is_straight() {
+            let ahead = goal - from;
+            let length = ahead.norm();
+            return Some(Way { length, direction: ahead / length.max(1e-12), is_straight: false });
+        }
         let (at, corner) = grid.corner(from);
         let columns = grid.columns() as u32;
         let (column, row) = (f64::from(corner % columns), f64::from(corner / columns));
