@@ -17,7 +17,7 @@ macro_rules! pair {
 }
 
 /// Pairs of scenario and properties; the recording of the hotel is not read, so that its names stay unknown.
-const PAIRS: [(&str, &str); 19] = [
+const PAIRS: [(&str, &str); 21] = [
     pair!("building"),
     pair!("corner"),
     pair!("corridor"),
@@ -33,9 +33,11 @@ const PAIRS: [(&str, &str); 19] = [
     pair!("queue"),
     pair!("robot"),
     pair!("sensors"),
+    pair!("station"),
     pair!("tandem"),
     pair!("plaza"),
     pair!("ward"),
+    pair!("workplace"),
     (include_str!("refused/base.scn"), include_str!("../properties/corridor.bltl")),
 ];
 

@@ -43,7 +43,7 @@ fn every_model_and_its_properties() {
 
 #[test]
 fn threads_change_no_byte() {
-    for stem in ["corridor", "hotel", "distracted", "plaza"] {
+    for stem in ["corridor", "hotel", "distracted", "plaza", "station", "workplace"] {
         let run = |threads: &str| verdicts(stem, &["--max-trials", "60", "--threads", threads]);
         let one = run("1").map(|json| json.to_string());
         assert_eq!(run("2").map(|json| json.to_string()), one);

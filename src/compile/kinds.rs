@@ -5,7 +5,7 @@ use super::laws::value_span;
 use super::planning::{self, Planning};
 use super::presets::{PRESETS, law};
 use super::symbols::{Meaning, unknown};
-use crate::model::stepper::stepped_default;
+use crate::model::stepper::{stature, stepped_default};
 use crate::model::{self, Body, GaitRule, Law, Parameter, Planner, SearchRule, Stepper};
 use crate::syntax::ast::{Expr, ExprKind, Field, Ident, KindDecl, Value};
 use crate::syntax::codes::Code;
@@ -231,7 +231,10 @@ impl Elaborator<'_> {
         value: &Value,
         locals: &Locals,
     ) -> Lowered<Law> {
-        let law = self.law(value, parameter.description().dimension, locals)?;
+        let mut law = self.law(value, parameter.description().dimension, locals)?;
+        if parameter == Parameter::Height {
+            law = stature(law);
+        }
         match parameter.refuses(&law) {
             None => Ok(law),
             Some(reason) => self.report(Diagnostic::error(Code::E0405, value_span(value), reason)),

@@ -21,6 +21,8 @@ const CELL: f64 = 0.08;
 const PAUSE: f64 = 0.25;
 /// After so many pauses a way around those who stand there is searched.
 const TRIES: u32 = 3;
+/// Most steps that this search expands.
+const AROUND: u32 = 300;
 /// Whoever is farther away when a step begins does not change it, m.
 const SEEN: f64 = 4.0;
 /// Slower bodies stand, m/s.
@@ -77,8 +79,9 @@ impl Floor {
 struct Remembered {
     walker: Walker,
     person: Arc<dyn Gait + Send + Sync>,
-    /// The goal point of the present leg, and how many legs are left.
-    goal: (Vec2, usize),
+    /// The goal of the present leg, how many legs are left, and the point that is drawn.
+    goal: Option<(Goal, usize)>,
+    point: Vec2,
     /// How often in a row no step was found.
     tries: u32,
 }
@@ -131,12 +134,15 @@ fn search(rule: SearchRule) -> Search {
     }
 }
 
-/// A step over time.
-fn trajectory(step: &PlacedStep) -> Option<Trajectory> {
+/// A step over time. The last one of a walk comes to rest: it slows down all the way, and takes half as long again.
+fn trajectory(step: &PlacedStep, is_last: bool) -> Option<Trajectory> {
+    let longer = if is_last { 1.5 } else { 1.0 };
     let sample = |k: usize| {
-        let share = k as f64 / SPANS as f64;
-        let (position, velocity) = (step.place(share), step.velocity(share));
-        Sample { time: share * step.duration(), position, velocity }
+        let part = k as f64 / SPANS as f64;
+        let (share, pace) =
+            if is_last { (part * (1.5 - 0.5 * part * part), 1.0 - part * part) } else { (part, 1.0) };
+        let (position, velocity) = (step.place(share), step.velocity(share) * pace);
+        Sample { time: part * longer * step.duration(), position, velocity }
     };
     Trajectory::through(&(0..=SPANS).map(sample).collect::<Vec<_>>())
 }
@@ -169,7 +175,8 @@ impl Steppers {
         Some(Remembered {
             walker,
             person: self.person(situation)?,
-            goal: (Vec2::zeros(), usize::MAX),
+            goal: None,
+            point: situation.position,
             tries: 0,
         })
     }
@@ -201,23 +208,25 @@ impl Steppers {
             return Some(Plan::NoWay);
         }
         let stream = Stream::of(situation.key, situation.entity, Purpose::Step);
-        let straight;
         let field = match (situation.advice, situation.goal()) {
             (Some(direction), _) => {
                 known.walker.forget_planned();
-                known.goal = (known.walker.at + direction * FAR, usize::MAX);
-                straight = GoalField::straight(known.goal.0);
-                Arc::new(straight)
+                (known.goal, known.point) = (None, known.walker.at + direction * FAR);
+                Arc::new(GoalField::straight(known.point))
             }
             (None, Some(goal)) => {
                 let left = situation.legs.len();
-                if known.goal.1 != left || situation.occasion == Occasion::Diverted {
+                if known.goal.as_ref().is_none_or(|(known, then)| known != goal || *then != left) {
                     let scene = &situation.scenario.scene;
                     let draws = Stream::of(situation.key, situation.entity, Purpose::Plan);
                     let draw = |n: u32| draws.uniform_pair((left as u32) << 8 | n);
-                    let point = point_in(scene, floor.ground.free(), goal, radius, draw);
                     known.walker.forget_planned();
-                    known.goal = (point, left);
+                    // In the paper walks end near the middle.
+                    known.point = match stepper.search {
+                        SearchRule::AsPublished => middle(scene, goal),
+                        _ => point_in(scene, |p| floor.ground.is_free(p), goal, radius, draw),
+                    };
+                    known.goal = Some((goal.clone(), left));
                 }
                 floor.field(middle(&situation.scenario.scene, goal))
             }
@@ -226,7 +235,7 @@ impl Steppers {
         let others = Self::others(situation, radius);
         let standing: Vec<OtherBody> =
             others.iter().copied().filter(|other| other.velocity.norm() < STANDS).collect();
-        let is_blocked = known.tries >= TRIES && situation.advice.is_none();
+        let is_blocked = known.tries > 0 && known.tries % TRIES == 0 && situation.advice.is_none();
         let own = situation.own_speed;
         let relative = situation.parameter(Parameter::Speed) / own;
         // A learned gait has a speed of its own, unless the kind sets one.
@@ -239,12 +248,12 @@ impl Steppers {
         let walk = Walk {
             ground: &floor.ground,
             field: &field,
-            goal: known.goal.0,
+            goal: known.point,
             gait: known.person.as_ref(),
             share,
             stream,
             search: if is_blocked {
-                Search::HybridAStar(HybridAStar::default())
+                Search::HybridAStar(HybridAStar { expansions: AROUND, ..HybridAStar::default() })
             } else {
                 search(stepper.search)
             },
@@ -255,15 +264,16 @@ impl Steppers {
         Some(match found {
             Ok(Some(step)) => {
                 known.tries = 0;
-                trajectory(&step).map_or(Plan::Stand(PAUSE), |path| Plan::Step(Arc::new(path)))
+                let is_last = walk.is_over(&known.walker);
+                trajectory(&step, is_last).map_or(Plan::Stand(PAUSE), |path| Plan::Step(Arc::new(path)))
             }
             Ok(None) => Plan::Stand(f64::INFINITY),
             Err(NoStep::NoWay { .. } | NoStep::GoalBlocked) if situation.advice.is_none() => Plan::NoWay,
             Err(reason) => {
                 known.tries += 1;
-                let is_lost =
-                    known.tries > 2 * TRIES && reason != NoStep::Crowded && situation.advice.is_none();
-                if is_lost {
+                // Others go away in time; barriers do not.
+                let is_alone = others.is_empty() && situation.advice.is_none();
+                if known.tries > 2 * TRIES && is_alone && reason != NoStep::Crowded {
                     return Some(Plan::NoWay);
                 }
                 // Other candidates.
@@ -280,11 +290,6 @@ impl Driver for Steppers {
         let is_new = matches!(situation.occasion, Occasion::Begins | Occasion::Enters);
         // A step is made to its end, whatever happens.
         if is_stepping && !is_new && situation.occasion != Occasion::Ended {
-            if situation.occasion == Occasion::Diverted
-                && let Some(known) = memory.get::<Remembered>()
-            {
-                memory.put(Remembered { goal: (known.goal.0, usize::MAX), ..known.clone() });
-            }
             return Plan::Keep;
         }
         let Some(mut known) = memory.get::<Remembered>().cloned().or_else(|| self.new_person(situation))

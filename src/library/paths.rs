@@ -1,8 +1,9 @@
 //! The options of `paths` declarations: which paths there are is known when the roadmap of the run is drawn.
 
+use crate::base::fingerprint::Fingerprint;
 use crate::compile::Study;
 use crate::compile::study::Ask;
-use crate::model::{Agent, AgentId, Move, Scenario};
+use crate::model::{Agent, AgentId, Body, GaitRule, Move, Scenario};
 use crate::route::Ways;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::Diagnostic;
@@ -27,23 +28,40 @@ pub fn find_paths(scenario: &mut Scenario, seed: u64, ways: &Ways) -> Vec<AgentI
     without
 }
 
-/// The same for all worlds that queries ask about, and for their rankings. An error for each agent without any path. Queries learn which roadmaps they are given.
+/// What verdicts about some bodies are conditional on: roadmaps, and files of gaits.
+fn given<'s>(bodies: impl Iterator<Item = &'s Arc<Body>>, seed: u64) -> Option<String> {
+    let (mut kinds, mut gaits) = (BTreeSet::new(), BTreeSet::new());
+    for body in bodies {
+        kinds.extend(body.planner.as_ref().map(|planner| planner.kind.as_str()));
+        if let Some(GaitRule::Learned { file, text }) = body.stepper.as_ref().map(|stepper| &stepper.gait) {
+            gaits.insert((file, text));
+        }
+    }
+    let kinds: Vec<&str> = kinds.into_iter().collect();
+    let roadmaps = match kinds.as_slice() {
+        [] => None,
+        [one] => Some(format!("the roadmap of {one}, seed {seed}")),
+        all => Some(format!("the roadmaps of {}, seed {seed}", all.join(", "))),
+    };
+    let gaits = gaits
+        .into_iter()
+        .map(|(file, text)| format!("the gait {file} ({})", Fingerprint::of(text.as_bytes())));
+    let all: Vec<String> = roadmaps.into_iter().chain(gaits).collect();
+    (!all.is_empty()).then(|| all.join("; "))
+}
+
+/// The same for all worlds that queries ask about, and for their rankings. An error for each agent without any path. Queries
+/// learn what they are given.
 pub(super) fn settle(study: &mut Study, seed: u64, ways: &Ways) -> Vec<Diagnostic> {
     let asked: BTreeSet<usize> = study.queries.iter().flat_map(|query| query.ask.worlds()).collect();
     let mut errors = Vec::new();
     for query in &mut study.queries {
         let worlds = query.ask.worlds();
-        let planners = worlds
+        let bodies = worlds
             .iter()
             .filter_map(|world| study.worlds.get(*world))
-            .flat_map(|world| world.scenario.agents.iter().filter_map(|agent| agent.body.planner.as_ref()));
-        let kinds: BTreeSet<&str> = planners.map(|planner| planner.kind.as_str()).collect();
-        let names: Vec<&str> = kinds.into_iter().collect();
-        query.given = match names.as_slice() {
-            [] => None,
-            [one] => Some(format!("the roadmap of {one}, seed {seed}")),
-            all => Some(format!("the roadmaps of {}, seed {seed}", all.join(", "))),
-        };
+            .flat_map(|world| world.scenario.agents.iter().map(|agent| &agent.body));
+        query.given = given(bodies, seed);
     }
     for number in asked {
         let Some(world) = study.worlds.get_mut(number) else { continue };

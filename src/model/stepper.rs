@@ -57,6 +57,16 @@ impl Default for SearchRule {
     }
 }
 
+/// A distribution of statures, m, cut to those of people unless it is cut already.
+pub fn stature(law: Law) -> Law {
+    match law {
+        Law::Random { family, low: f64::NEG_INFINITY, high: f64::INFINITY } => {
+            Law::Random { family, low: 1.0, high: 2.5 }
+        }
+        other => other,
+    }
+}
+
 /// The law of a parameter that a stepped kind leaves open: stature and free speed of adults (Weidmann 1993), and a body.
 pub fn stepped_default(parameter: Parameter) -> Option<Law> {
     let normal = |mean: f64, sd: f64, low: f64, high: f64| {

@@ -10,7 +10,8 @@ use crate::compile::study::{Ask, MeasureKind, Study, World};
 use crate::engine::at_most;
 use crate::model::parameter::Shown;
 use crate::model::{
-    Agent, AgentId, Family, Goal, Law, Leg, Move, Obstacle, Parameter, Position, RoadmapRule, Route, Scenario,
+    Agent, AgentId, Family, GaitRule, Goal, Law, Leg, Move, Obstacle, Parameter, Position, RoadmapRule,
+    Route, Scenario, SearchRule,
 };
 use crate::stats::Chosen;
 use std::fmt::Write;
@@ -203,6 +204,21 @@ fn agent(out: &mut String, scenario: &Scenario, agent: &Agent) {
             planner.profile.name(),
             if planner.speed_follows { ", speed drawn with its limit" } else { "" }
         );
+    }
+    if let Some(stepper) = &agent.body.stepper {
+        let gait = match &stepper.gait {
+            GaitRule::Synthetic => "synthetic".to_owned(),
+            GaitRule::Learned { file, .. } => format!("learned, {file}"),
+        };
+        let search = match stepper.search {
+            SearchRule::Guided { candidates } => format!("guided by {candidates} candidates"),
+            SearchRule::HybridAStar { cell, starters, successors } => format!(
+                "hybrid A* in cells of {} m, {starters} starters, {successors} successors",
+                number(cell)
+            ),
+            SearchRule::AsPublished => "as published".to_owned(),
+        };
+        let _ = writeln!(out, "      gait {gait}; search {search}");
     }
     if let Some(p) = agent.particle {
         let _ = writeln!(

@@ -48,6 +48,10 @@ const ASIDE: f64 = 40.0 * PI / 180.0;
 /// Radii of the arc of a turn on the spot that are tried, m.
 const ARCS: [f64; 2] = [0.03, 1e-3];
 
+/// The search where all candidates meet barriers.
+const FALLBACK: HybridAStar =
+    HybridAStar { cell: 0.08, starters: 30, successors: 10, expansions: 3000, is_as_published: false };
+
 /// The draws of the heading at the begin have this number.
 const HEADING: u32 = 4095;
 
@@ -77,7 +81,7 @@ impl Walk<'_> {
     /// `others` is the gap to other bodies on a step: steps that meet one are not made, steps with small gaps rarely. A retry
     /// with the same number draws the same candidates.
     pub fn next(&self, walker: &mut Walker, others: Option<Gaps>) -> Result<Option<PlacedStep>, NoStep> {
-        if (walker.at - self.goal).norm() <= THERE {
+        if self.is_over(walker) {
             return Ok(None);
         }
         if let Some((step, after)) = walker.planned.last().copied()
@@ -122,7 +126,7 @@ impl Walk<'_> {
                 Err(Rejected::Barriers) if self.field.is_straight() => {
                     return Err(NoStep::Exhausted { expansions: 0 });
                 }
-                Err(Rejected::Barriers) => HybridAStar::default().steps(self, (&pose, &way, number))?,
+                Err(Rejected::Barriers) => FALLBACK.steps(self, (&pose, &way, number))?,
             },
         };
         chain.reverse();
@@ -151,17 +155,15 @@ impl Walk<'_> {
                 Some(step) => steps.push(step),
                 None => return Ok(steps),
             }
-            if self.is_over(&walker) {
-                return Ok(steps);
-            }
         }
         Err(NoStep::TooLong { steps: most })
     }
 
-    /// In the paper the walk ends where the search ends, near the goal.
-    fn is_over(&self, walker: &Walker) -> bool {
+    /// Whether a person is where the walk ends: at the goal point; in the paper where the search ends, near it.
+    pub fn is_over(&self, walker: &Walker) -> bool {
         let is_as_published = matches!(self.search, Search::HybridAStar(search) if search.is_as_published);
-        is_as_published && walker.planned.is_empty() && walker.stance.last.is_some()
+        (walker.at - self.goal).norm() <= THERE
+            || is_as_published && walker.planned.is_empty() && walker.stance.last.is_some()
     }
 
     /// The way to the goal from a place.

@@ -90,7 +90,7 @@ impl Course {
     /// Lets a lane stand at a place by itself: no force moves it.
     pub(in crate::kernel) fn rest(&mut self, lane: usize, at: Vec2) {
         self.stepped |= Mask::lane(lane);
-        let span = (f64::NEG_INFINITY, f64::INFINITY);
+        let span = (0.0, f64::INFINITY);
         self.set_piece(lane, &Piece { span, x: [at.x, 0.0, 0.0, 0.0], y: [at.y, 0.0, 0.0, 0.0] });
     }
 
@@ -189,10 +189,11 @@ impl Plans {
         self.courses.get(slot.block).is_some_and(|course| course.stranded.has(slot.lane))
     }
 
-    /// The driver of a slot is to be asked; of several occasions the first counts.
+    /// The driver of a slot is to be asked; of several occasions the first counts, or the end of a step.
     pub(in crate::kernel) fn ask(&mut self, slot: Slot, occasion: Occasion) {
+        let is_step = occasion == Occasion::Ended && matches!(self.held(slot).plan, Plan::Step(_));
         let course = &mut self.courses[slot.block];
-        if !course.asks.has(slot.lane) {
+        if is_step || !course.asks.has(slot.lane) {
             course.asks |= Mask::lane(slot.lane);
             self.held_mut(slot).occasion = occasion;
         }

@@ -24,7 +24,7 @@ impl Errand {
         let goals = legs.iter().map_while(|leg| if let Leg::To(goal) = leg { Some(goal) } else { None });
         let left = |k: usize| GOALS | ((legs.len() - k) as u32) << 8;
         let point = |(k, goal): (usize, &Goal)| {
-            point_in(scene, free, goal, radius, |n| stream.uniform_pair(left(k) + n))
+            point_in(scene, |p| free.is_free(p), goal, radius, |n| stream.uniform_pair(left(k) + n))
         };
         Self { points: goals.enumerate().map(point).collect() }
     }
@@ -33,7 +33,7 @@ impl Errand {
 /// A free point of a goal, a radius inside if there is room.
 pub fn point_in(
     scene: &Scene,
-    free: &FreeSpace,
+    is_free: impl Fn(Vec2) -> bool,
     goal: &Goal,
     radius: f64,
     draw: impl Fn(u32) -> [f64; 2],
@@ -58,10 +58,10 @@ pub fn point_in(
     for n in 0..TRIES {
         let [x, y] = draw(n);
         let p = bounds.low + Vec2::new(size.x * x, size.y * y);
-        if is_inside(p) && free.is_free(p) {
+        if is_inside(p) && is_free(p) {
             return p;
         }
-        other = other.or(Some(p).filter(|p| shape.contains(*p) && free.is_free(*p)));
+        other = other.or(Some(p).filter(|p| shape.contains(*p) && is_free(*p)));
     }
     other.unwrap_or_else(|| shape.inner_point())
 }
