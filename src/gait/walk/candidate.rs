@@ -1,7 +1,7 @@
 //! Possible next steps: drawn from the gait, and some of them turned towards the way.
 
 use super::placed::{PlacedStep, angle, end_of, turned};
-use super::search::Walk;
+use super::task::Walk;
 use super::turn;
 use crate::base::geometry::Vec2;
 use crate::gait::{Draws, Foot, SPANS, Shape, Stance};

@@ -6,7 +6,7 @@
 use super::candidate::{Candidate, Change, Pose};
 use super::others::{Gaps, WIDE, log_weight};
 use super::placed::PlacedStep;
-use super::search::Walk;
+use super::task::Walk;
 use crate::base::geometry::rotated;
 use crate::base::math;
 use crate::gait::{Draws, Stance};

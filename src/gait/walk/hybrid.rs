@@ -5,7 +5,7 @@ use super::candidate::{Candidate, Change, HEADING, Pose};
 use super::last::Chain;
 use super::no_step::NoStep;
 use super::placed::{PlacedStep, angle};
-use super::search::Walk;
+use super::task::{HybridAStar, Walk};
 use crate::base::geometry::{Vec2, rotated};
 use crate::gait::{Draws, Foot, Stance};
 use crate::route::grid::Way;
@@ -24,28 +24,6 @@ const LAST: u32 = 8;
 
 /// In the paper a walk ends within this distance of the goal, m.
 const TOLERANCE: f64 = 0.25;
-
-/// Parameters of the search.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HybridAStar {
-    /// Side of the cells that are closed, m.
-    pub cell: f64,
-    /// First steps that are drawn; at most 32.
-    pub starters: u32,
-    /// Successors that are drawn of each step; at most 32.
-    pub successors: u32,
-    /// Most steps that are expanded; at most 32 000.
-    pub expansions: u32,
-    /// As in the paper: straight-line distance as heuristic, only ends of steps are tested, cells are closed whatever the foot
-    /// and the heading, and a walk ends within 0.25 m of the goal.
-    pub is_as_published: bool,
-}
-
-impl Default for HybridAStar {
-    fn default() -> Self {
-        Self { cell: 0.08, starters: 30, successors: 10, expansions: 20_000, is_as_published: false }
-    }
-}
 
 /// A step in the tree.
 struct Node {
@@ -80,11 +58,6 @@ impl Tree {
 }
 
 impl HybridAStar {
-    /// As Agethen et al. 2018 describe it. Its walks cross obstacles between the ends of steps, and are too short.
-    pub fn as_published() -> Self {
-        Self { is_as_published: true, ..Self::default() }
-    }
-
     /// Steps to the goal, the first one first. A person who stands begins with either foot, half of the starters in any
     /// direction.
     pub(super) fn steps(

@@ -4,7 +4,7 @@ use super::candidate::{DETOUR, Pose};
 use super::guided::{Rejected, choose};
 use super::others::Gaps;
 use super::placed::{PlacedStep, angle, end_of, turned};
-use super::search::Walk;
+use super::task::Walk;
 use super::turn;
 use crate::base::geometry::Vec2;
 use crate::gait::{Draws, Stance};

@@ -10,15 +10,15 @@ mod no_step;
 mod others;
 mod placed;
 mod search;
+mod task;
 #[cfg(test)]
 mod tests;
 mod turn;
 mod walker;
 
 pub use ground::Ground;
-pub use hybrid::HybridAStar;
 pub use no_step::NoStep;
 pub use others::{Gaps, OtherBody, least_gap};
 pub use placed::PlacedStep;
-pub use search::{Search, Walk};
+pub use task::{HybridAStar, Search, Walk};
 pub use walker::Walker;

@@ -1,38 +1,18 @@
 //! A person's walk to a goal point: the next step, or all of them.
 
 use super::candidate::Pose;
-use super::ground::Ground;
 use super::guided::Rejected;
-use super::hybrid::HybridAStar;
 use super::last::Chain;
 use super::no_step::NoStep;
-use super::others::{Gaps, OtherBody, least_gap};
+use super::others::{Gaps, least_gap};
 use super::placed::{PlacedStep, angle};
+use super::task::{HybridAStar, Search, Walk};
 use super::turn;
 use super::walker::Walker;
 use crate::base::geometry::{Vec2, rotated};
-use crate::base::random::Stream;
-use crate::gait::{Draws, Gait, Stance};
-use crate::route::grid::{GoalField, Way};
+use crate::gait::{Draws, Stance};
+use crate::route::grid::Way;
 use std::f64::consts::{FRAC_PI_2, PI};
-
-/// How the next step is found.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Search {
-    /// One of some candidates, by detour and heading. Where all of them meet a barrier, hybrid A* with its usual parameters.
-    Guided {
-        /// Steps that are drawn from the gait for each choice, at most 512.
-        candidates: u32,
-    },
-    /// Hybrid A*: all steps to the goal at once.
-    HybridAStar(HybridAStar),
-}
-
-impl Default for Search {
-    fn default() -> Self {
-        Self::Guided { candidates: 24 }
-    }
-}
 
 /// Somebody at most this far from the goal, m, is there.
 const THERE: f64 = 1e-6;
@@ -54,27 +34,6 @@ const FALLBACK: HybridAStar =
 
 /// The draws of the heading at the begin have this number.
 const HEADING: u32 = 4095;
-
-/// What is fixed during a walk of one person.
-#[derive(Clone, Copy, Debug)]
-pub struct Walk<'a> {
-    /// The floor, for the radius of the body.
-    pub ground: &'a Ground,
-    /// The ways to the goal.
-    pub field: &'a GoalField,
-    /// The goal point, m: that of the field, or near it and in sight of it.
-    pub goal: Vec2,
-    /// What draws the steps.
-    pub gait: &'a dyn Gait,
-    /// Preferred speed over the person's own.
-    pub share: f64,
-    /// Random numbers of the person.
-    pub stream: Stream,
-    /// How steps are found.
-    pub search: Search,
-    /// Bodies that stand, around which a search of all steps leads.
-    pub around: &'a [OtherBody],
-}
 
 impl Walk<'_> {
     /// The next step of a person, who has made it afterwards; `None` at the goal. Without a step the person does not change.

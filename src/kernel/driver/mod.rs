@@ -42,7 +42,7 @@ pub(super) fn begin(
     advice: Option<(Move, u64)>,
 ) {
     let slot = state.slot(agent, lane);
-    state.progress.begin(slot, state.motion.x.len(), drive.most_legs);
+    state.progress.begin(slot, drive.most_legs);
     if drive.drivers.of(agent).is_some() {
         state.plans.reserve(state.motion.x.len());
         state.plans.clear(slot);

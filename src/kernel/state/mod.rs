@@ -95,7 +95,7 @@ impl State {
             driving: Driving::new(blocks),
             route: Routes::new(blocks),
             plans: Plans::default(),
-            progress: Progress::default(),
+            progress: Progress::new(blocks),
             behaviours: ActiveModes::default(),
             queues: Queues::default(),
             variables: Vec::new(),

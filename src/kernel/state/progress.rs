@@ -7,7 +7,7 @@ use crate::kernel::layout::Slot;
 pub(in crate::kernel) const MEASURES: usize = 3;
 
 /// The progress of all slots.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Progress {
     /// How many legs are finished; pauses are none.
     pub legs: Vec<Lanes>,
@@ -22,14 +22,22 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// Puts a slot, of so many blocks, at the beginning of a route of at most so many legs.
-    pub(in crate::kernel) fn begin(&mut self, slot: Slot, blocks: usize, legs: usize) {
-        self.records.resize_with(self.records.len().max(legs), Default::default);
+    /// Of so many blocks, before any leg.
+    pub(super) fn new(blocks: usize) -> Self {
+        let all = |value: f64| vec![Lanes::splat(value); blocks];
+        let (zero, never) = (all(0.0), all(f64::INFINITY));
+        let began = [zero.clone(), zero.clone(), zero.clone()];
+        Self { legs: zero.clone(), steps: zero, done_at: never, began, records: Vec::new() }
+    }
+
+    /// Puts a slot at the beginning of a route of at most so many legs.
+    pub(in crate::kernel) fn begin(&mut self, slot: Slot, legs: usize) {
+        while self.records.len() < legs {
+            let never = || vec![Lanes::splat(f64::INFINITY); self.legs.len()];
+            self.records.push([never(), never(), never()]);
+        }
         let Self { legs, steps, done_at, began, records } = self;
-        let put = |field: &mut Vec<Lanes>, value: f64| {
-            field.resize(blocks, Lanes::splat(value));
-            field[slot.block].0[slot.lane] = value;
-        };
+        let put = |field: &mut Vec<Lanes>, value: f64| field[slot.block].0[slot.lane] = value;
         [legs, steps].into_iter().chain(began).for_each(|field| put(field, 0.0));
         records.iter_mut().flatten().chain([done_at]).for_each(|field| put(field, f64::INFINITY));
     }
