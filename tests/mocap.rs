@@ -5,6 +5,7 @@
 
 use smc::data::mocap::{Asf, Take, TakeRow, read_take_table, read_takes};
 use smc::gait::RecordedStep;
+use smc::gait::model::{Method, Options, fit, score};
 use smc::gait::steps::{Contact, Dropped, cut, report};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -130,5 +131,44 @@ fn clips_in_two_formats_are_the_same_takes() {
             let same = |(a, b): (&[f64; 3], &[f64; 3])| (0..3).all(|k| (a[k] - b[k]).abs() < 1e-3);
             assert!(a.ankle.iter().zip(&b.ankle).all(same) && a.toe.iter().zip(&b.toe).all(same), "{name}");
         }
+    }
+}
+
+/// Subjects of CMU that are held out.
+const HELD_OUT: [&str; 8] = ["06", "12", "26", "29", "32", "38", "45", "46"];
+
+/// Fitting takes long: `cargo test --release --test suite mocap:: -- --ignored`
+#[test]
+#[ignore = "takes a minute, and needs the recordings"]
+fn held_out_steps_are_predicted() {
+    let Some(folder) = folder() else { return };
+    let rows = read_take_table(&text(&folder, "takes.csv")).expect("the table is well formed");
+    let takes = takes(&folder, &rows);
+    let mut styles = std::collections::BTreeMap::<&str, Vec<&str>>::new();
+    for row in rows.iter().filter(|row| row.subject.is_empty()) {
+        styles.entry(&row.file).or_default().push(&row.name);
+    }
+    styles.values_mut().for_each(|names| names.sort_unstable());
+    let is_held = |row: &TakeRow| match styles.get(row.file.as_str()) {
+        Some(names) => names.iter().position(|name| **name == *row.name).is_some_and(|k| k % 5 == 4),
+        None => HELD_OUT.contains(&row.subject.as_str()),
+    };
+    let (mut learned, mut held_out) = (Vec::new(), Vec::new());
+    for (row, take) in rows.iter().zip(&takes) {
+        let mut steps = cut(take, Contact::Rest).map_or_else(|_| Vec::new(), |cut| cut.steps);
+        for step in steps.iter_mut().filter(|step| step.subject.is_empty()) {
+            step.subject.clone_from(&row.file);
+        }
+        if is_held(row) { held_out.extend(steps) } else { learned.extend(steps) }
+    }
+    let scores = |method: Method| {
+        let options = Options { method, ..Options::default() };
+        score(&fit(&learned, &options).expect("there are enough pairs").0, &held_out)
+    };
+    let (sparse, exact) = (scores(Method::Sparse), scores(Method::Exact));
+    println!("sparse {sparse:?}\nexact {exact:?}");
+    assert!((sparse.nlpd - exact.nlpd).abs() < 0.01, "{sparse:?} {exact:?}");
+    for covered in [sparse.coverage.length, sparse.coverage.turn, sparse.coverage.duration] {
+        assert!((0.86..0.94).contains(&covered), "{sparse:?}");
     }
 }

@@ -1,5 +1,6 @@
 //! The command line as typed: data only.
 
+use super::gait::GaitCommand;
 use super::path::PathCommand;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -40,6 +41,9 @@ pub(super) enum Command {
     Simulate(Box<Simulate>),
     /// Write the paths and speed profiles of walkers that plan.
     Path(Box<PathCommand>),
+    /// Cut motion capture into steps; learn gaits from them, show, draw and score these.
+    #[command(subcommand)]
+    Gait(Box<GaitCommand>),
     /// Compare two sets of recorded or simulated walks.
     CompareWalks(CompareWalks),
     /// Detect a change of the probability of recorded or streamed outcomes.

@@ -18,7 +18,7 @@ use crate::syntax::source::{Source, SourceId, Span};
 use std::path::{Path, PathBuf};
 
 /// Errors of a file that are shown.
-const SHOWN: usize = 5;
+pub(super) const SHOWN: usize = 5;
 
 /// What a table looks like.
 const HINT: &str = "write a table with the columns `walk,t,x,y`, perhaps `leg`: seconds and metres, one row for each \
@@ -109,14 +109,15 @@ fn read(file: &str, sources: &mut Vec<Source>) -> Result<Vec<Walk>, Vec<Diagnost
     walks
 }
 
-/// The cell or the line of an error.
-fn span(source: &Source, error: &LineError) -> Span {
+/// The cell or the line of an error. Cells end with a comma, or with a blank in lines without commas.
+pub(super) fn span(source: &Source, error: &LineError) -> Span {
     let lines = source.text.split_inclusive('\n');
     let start: usize = lines.clone().take(error.line.saturating_sub(1)).map(str::len).sum();
     let line = lines.clone().nth(error.line.saturating_sub(1)).unwrap_or_default().trim_end();
     let Some(column) = error.column else { return Span::new(source.id, start, start + line.len()) };
     let before = line.char_indices().nth(column - 1).map_or(line.len(), |(at, _)| at);
-    let cell = line[before..].split(',').next().unwrap_or_default();
+    let ends: &[char] = if line.contains(',') { &[','] } else { &[' ', '\t'] };
+    let cell = line[before..].split(ends).next().unwrap_or_default();
     Span::new(source.id, start + before, start + before + cell.len())
 }
 

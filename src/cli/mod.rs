@@ -9,6 +9,7 @@ mod drift;
 mod explain;
 mod file_cache;
 mod format;
+mod gait;
 mod inputs;
 mod manual;
 mod output;
@@ -121,6 +122,7 @@ fn dispatch(arguments: &Arguments) -> Exit {
         Command::Check(command) => check::run(command, colors),
         Command::Simulate(command) => simulate::run(command, colors),
         Command::Path(command) => path::run(command, colors),
+        Command::Gait(command) => gait::run(command, colors),
         Command::CompareWalks(command) => compare_walks::run(command, colors),
         Command::Drift(command) => drift::run(command, colors),
         Command::Show(command) => show::run(command, colors),

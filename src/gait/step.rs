@@ -4,7 +4,7 @@
 use super::curve::Curve;
 use crate::base::geometry::Vec2;
 use crate::base::random::Stream;
-use std::fmt::Debug;
+use std::fmt::{self, Debug};
 
 /// Spans of the root path of a step, equally long in time.
 pub const SPANS: usize = 5;
@@ -17,6 +17,12 @@ pub enum Foot {
     Left,
     /// The right one.
     Right,
+}
+
+impl fmt::Display for Foot {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if *self == Self::Left { "left" } else { "right" })
+    }
 }
 
 impl Foot {

@@ -8,6 +8,7 @@ pub mod behaviours;
 mod escape;
 mod exit;
 pub mod forecast;
+pub mod gait;
 pub mod github;
 pub mod html;
 pub mod json;

@@ -6,6 +6,7 @@ mod errors;
 mod escapes;
 mod forecasts;
 pub(crate) mod formats;
+mod gait;
 mod inputs;
 mod limits;
 mod outputs;

@@ -21,8 +21,7 @@ struct Joint {
 pub(super) fn read_bvh(text: &str, layout: Option<&Layout>) -> Result<(Frames, Layout), Vec<LineError>> {
     let (joints, motion) = hierarchy(text).map_err(|error| vec![error])?;
     let names: Vec<&str> = joints.iter().map(|joint| joint.name.as_str()).collect();
-    let preset = || Layout::presets().into_iter().map(|(_, layout)| layout).find(|l| l.find(&names).is_ok());
-    let Some(layout) = layout.cloned().or_else(preset) else {
+    let Some(layout) = layout.cloned().or_else(|| preset(&names)) else {
         let message = format!(
             "no layout fits the skeleton; state which joints are root, ankles and toes among {}",
             listed(&names)
@@ -51,6 +50,17 @@ pub(super) fn read_bvh(text: &str, layout: Option<&Layout>) -> Result<(Frames, L
         errors.push(LineError::whole(motion + 2, message));
     }
     if errors.is_empty() { Ok((frames, layout)) } else { Err(errors) }
+}
+
+/// The preset whose joints a skeleton has.
+fn preset(joints: &[&str]) -> Option<Layout> {
+    Layout::presets().into_iter().map(|(_, layout)| layout).find(|layout| layout.find(joints).is_ok())
+}
+
+/// The preset whose joints the skeleton of a BVH file has; none for other texts.
+pub fn bvh_preset(text: &str) -> Option<Layout> {
+    let (joints, _) = hierarchy(text).ok()?;
+    preset(&joints.iter().map(|joint| joint.name.as_str()).collect::<Vec<_>>())
 }
 
 fn link(joint: &Joint, values: &[f64], replace: bool) -> (Vector3<f64>, Matrix3<f64>, Vector3<f64>) {

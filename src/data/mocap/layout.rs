@@ -40,6 +40,17 @@ impl Layout {
         Self::presets().into_iter().find(|(preset, _)| *preset == name).map(|(_, layout)| layout)
     }
 
+    /// The preset of the format that the extension of a file says, and its name.
+    pub fn of_file(file: &str) -> Option<(&'static str, Self)> {
+        let extension = file.rsplit_once('.').map_or("", |(_, extension)| extension).to_ascii_lowercase();
+        let name = match extension.as_str() {
+            "amc" => "cmu-asfamc",
+            "csv" | "bvh" => extension.as_str(),
+            _ => return None,
+        };
+        Self::presets().into_iter().find(|(preset, _)| *preset == name)
+    }
+
     /// The presets: the CMU data set as ASF/AMC and as BVH of the cgspeed release (its first frame is an artificial pose), the
     /// BVH files of the Bandai-Namco research data set, BVH files with the most frequent names of joints, and CSV tables of
     /// positions in metres.

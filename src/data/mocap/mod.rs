@@ -17,6 +17,7 @@ mod takes;
 mod tests;
 
 pub use asf::Asf;
+pub use bvh::bvh_preset;
 pub use layout::{Layout, Up};
 pub use read::read_takes;
 pub use take::{FootTrack, Take};

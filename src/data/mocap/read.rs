@@ -24,16 +24,10 @@ pub fn read_takes(
     rows: &[TakeRow],
 ) -> Result<Vec<Take>, Vec<LineError>> {
     let one = |message: String| Err(vec![LineError::of_file(message)]);
-    let extension = file.rsplit_once('.').map_or("", |(_, extension)| extension).to_ascii_lowercase();
-    let preset = match extension.as_str() {
-        "amc" => "cmu-asfamc",
-        "csv" => "csv",
-        "bvh" => "bvh",
-        _ => return one(format!("{} has no known extension (.bvh, .amc or .csv)", quoted(file))),
+    let Some((preset, own)) = Layout::of_file(file) else {
+        return one(format!("{} has no known extension (.bvh, .amc or .csv)", quoted(file)));
     };
-    let Some(layout_or_preset) = layout.cloned().or_else(|| Layout::named(preset)) else {
-        return one(format!("the layout {preset} is unknown"));
-    };
+    let layout_or_preset = layout.cloned().unwrap_or(own);
     let (frames, layout) = match (preset, skeleton) {
         ("csv", _) => return clips(file, text, &layout_or_preset, rows),
         ("bvh", _) => read_bvh(text, layout)?,

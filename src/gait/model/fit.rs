@@ -8,7 +8,8 @@ use super::options::{FitError, Method, Options, Residuals, Warning};
 use super::people::People;
 use super::transition::{MOST_POINTS, Transition};
 use super::{LearnedGait, Side, columns, process};
-use crate::gait::{Foot, Phase, RecordedStep};
+use crate::gait::steps::measures;
+use crate::gait::{Foot, Phase, RecordedStep, SPANS, Shape};
 use nalgebra::DMatrix;
 use std::collections::BTreeMap;
 
@@ -19,7 +20,16 @@ const FEW: usize = 200;
 /// Fewest first steps of a foot that make a density of their own.
 const FEWEST_FIRST: usize = 10;
 /// Fewest first steps of both feet.
-const FEWEST_FIRST_BOTH: usize = 3;
+const FEWEST_FIRST_BOTH: usize = 10;
+/// Length of a first step over that of a step between others: 0.37 m of root path to 0.65 m in 304 recorded takes.
+const FIRST_LENGTH: f64 = 0.57;
+/// Its duration over the usual one, and the share of the mean speed with which it begins: with these it ends at 0.95 of the
+/// usual speed.
+const FIRST_DURATION: f64 = 1.14;
+const FIRST_SPEED: f64 = 0.1;
+/// Shorter steps (m) and steps that turn by more (rad) are no steps of a walk.
+const SHORTEST: f64 = 0.15;
+const WIDEST: f64 = 120.0 * std::f64::consts::PI / 180.0;
 
 /// Places of the steps of all pairs: consecutive steps of a take with different feet, the second one neither the first nor the last of
 /// its walk. With `all` phases, each two consecutive steps with different feet.
@@ -32,6 +42,30 @@ pub(super) fn pairs(steps: &[RecordedStep], all: bool) -> Vec<(usize, usize)> {
         (walks && steps[next].foot == step.foot.other()).then_some((k, next))
     };
     steps.iter().enumerate().filter_map(follows).collect()
+}
+
+/// Steps of a walk, without the others, and a warning if there are any.
+pub(super) fn usual(steps: &[RecordedStep]) -> (Vec<RecordedStep>, Option<Warning>) {
+    let (mut kept, mut short, mut turning) = (Vec::new(), 0, 0);
+    for step in steps {
+        let [length, turn, _] = measures(&step.shape);
+        match (length < SHORTEST, turn.abs() > WIDEST) {
+            (true, _) => short += 1,
+            (_, true) => turning += 1,
+            _ => kept.push(step.clone()),
+        }
+    }
+    (kept, (short + turning > 0).then_some(Warning::LeftOut { short, turning }))
+}
+
+/// A first step made of one between others: shorter, and from rest with constant acceleration.
+fn begun(shape: &Shape) -> Shape {
+    let curve = shape.curve();
+    let place = |k: usize| {
+        let time = (k + 1) as f64 / SPANS as f64;
+        curve.place(time * (FIRST_SPEED + (1.0 - FIRST_SPEED) * time)) * FIRST_LENGTH
+    };
+    Shape { landmarks: std::array::from_fn(place), duration: FIRST_DURATION * shape.duration }
 }
 
 /// What both feet share when they are fitted.
@@ -52,15 +86,18 @@ pub fn fit(steps: &[RecordedStep], options: &Options) -> Result<(LearnedGait, Ve
     if !(1..=MOST_POINTS).contains(&options.inducing) {
         return Err(FitError::Inducing(options.inducing));
     }
-    let own: Vec<Columns> = steps.iter().map(|s| columns::of(&s.shape)).collect();
-    if let Some(k) = own.iter().position(|row| row.iter().any(|x| !x.is_finite())) {
-        return Err(FitError::NotFinite { take: steps[k].take.clone(), number: steps[k].number });
+    let infinite = |s: &&RecordedStep| columns::of(&s.shape).iter().any(|x| !x.is_finite());
+    if let Some(step) = steps.iter().find(infinite) {
+        return Err(FitError::NotFinite { take: step.take.clone(), number: step.number });
     }
+    let (usual, left_out) = usual(steps);
+    let own: Vec<Columns> = usual.iter().map(|s| columns::of(&s.shape)).collect();
+    let steps = &usual[..];
     let pairs = pairs(steps, options.as_published);
     if pairs.len() < FEWEST.0 {
         return Err(FitError::TooFewPairs { pairs: pairs.len(), wanted: FEWEST.0 });
     }
-    let mut warnings = Vec::new();
+    let mut warnings: Vec<Warning> = left_out.into_iter().collect();
     if pairs.len() < FEW {
         warnings.push(Warning::FewPairs(pairs.len()));
     }
@@ -114,7 +151,8 @@ impl Task<'_> {
         self.basis(self.steps[k].foot).scaled(&self.rows[k])
     }
 
-    /// The first steps of a foot; where there are few, those of the other foot as their mirror images; where there are still few, all.
+    /// The first steps of a foot; where there are few, those of the other foot as their mirror images; where there are still few, steps
+    /// between others made into first ones.
     fn first(&self, foot: Foot, warnings: &mut Vec<Warning>) -> Density {
         let basis = self.basis(foot);
         let chosen = |which: &dyn Fn(&RecordedStep) -> bool| -> Vec<Columns> {
@@ -129,10 +167,15 @@ impl Task<'_> {
         if own < FEWEST_FIRST {
             steps = chosen(&|s| s.phase == Phase::First);
             let few = steps.len() < FEWEST_FIRST_BOTH;
-            let instead =
-                if few { "steps of all phases" } else { "those of the other foot as well, mirrored," };
+            let instead = match few {
+                true => "steps between others, shortened to 0.57 and begun from rest,",
+                false => "those of the other foot as well, mirrored,",
+            };
             if few {
-                steps = chosen(&|s| s.foot == foot);
+                let inner = self.steps.iter().zip(&self.rows);
+                let inner = inner.filter(|(s, _)| s.foot == foot && s.phase == Phase::Inner);
+                let made = |row: &Columns| basis.scaled(&columns::of(&begun(&columns::shape(row))));
+                steps = inner.map(|(_, row)| made(row)).collect();
             }
             warnings.push(Warning::FewFirstSteps { foot, steps: own, instead });
         }

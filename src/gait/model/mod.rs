@@ -22,6 +22,7 @@ mod options;
 mod people;
 mod person;
 mod process;
+mod sample;
 mod score;
 mod summary;
 mod transition;

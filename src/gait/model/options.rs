@@ -73,9 +73,7 @@ pub enum FitError {
         wanted: usize,
     },
     /// Not enough pairs that begin with one foot.
-    #[error(
-        "at least {wanted} pairs that begin with each foot are needed (got {pairs} for the {foot:?} foot)"
-    )]
+    #[error("at least {wanted} pairs that begin with each foot are needed (got {pairs} for the {foot} foot)")]
     OneSided {
         /// The foot.
         foot: Foot,
@@ -93,10 +91,10 @@ pub enum FitError {
         number: u32,
     },
     /// The steps of a foot are all the same.
-    #[error("the steps of the {0:?} foot do not vary")]
+    #[error("the steps of the {0} foot do not vary")]
     NoVariation(Foot),
     /// The covariance of the pairs of a foot has no factor.
-    #[error("the transition from the {0:?} foot cannot be fitted: the covariance of its pairs is singular")]
+    #[error("the transition from the {0} foot cannot be fitted: the covariance of its pairs is singular")]
     Singular(Foot),
     /// A share of the variance outside of (0, 1].
     #[error("`variance` must be above 0 and at most 1 (got {0})")]
@@ -112,8 +110,18 @@ pub enum Warning {
     /// Few pairs.
     #[error("the model has only {0} pairs of consecutive steps; below 200 it follows single steps closely")]
     FewPairs(usize),
+    /// Steps that are no steps of a walk.
+    #[error(
+        "{short} steps shorter than 0.15 m and {turning} steps that turn by more than 120 degrees are left out"
+    )]
+    LeftOut {
+        /// How many are short.
+        short: usize,
+        /// How many turn.
+        turning: usize,
+    },
     /// Few first steps of a foot.
-    #[error("only {steps} first steps of the {foot:?} foot were recorded; {instead} are used")]
+    #[error("first steps of the {foot} foot that were recorded: {steps}; {instead} are used")]
     FewFirstSteps {
         /// The foot.
         foot: Foot,

@@ -2,8 +2,9 @@
 //! intervals.
 
 use super::LearnedGait;
+use super::Warning;
 use super::columns::{Columns, plus, seen_from};
-use super::fit::pairs;
+use super::fit::{pairs, usual};
 use crate::base::math;
 use crate::base::random::{Purpose, Stream, TrialKey};
 use crate::base::special::normal_cdf;
@@ -18,6 +19,8 @@ use std::sync::Arc;
 pub struct Scores {
     /// Pairs of steps that were held out.
     pub pairs: usize,
+    /// Steps that are left out, as in a fit: shorter than 0.15 m or with a turn of more than 120 degrees.
+    pub left_out: usize,
     /// Mean negative logarithm of the predicted density of the components of the next step, nats for each; the prediction is
     /// taken as normal, whatever residuals are drawn.
     pub nlpd: f64,
@@ -50,6 +53,8 @@ pub(super) fn quantities(shape: &Shape) -> [f64; 3] {
 pub fn score(model: &LearnedGait, held_out: &[RecordedStep]) -> Scores {
     const DRAWS: u32 = 400;
     let shared = Arc::new(model.clone());
+    let (usual, left_out) = usual(held_out);
+    let held_out = &usual[..];
     let pairs = pairs(held_out, model.as_published);
     let (mut density, mut ranked, mut numbers) = (0.0, 0.0, 0usize);
     let mut inside = [0usize; 3];
@@ -77,8 +82,13 @@ pub fn score(model: &LearnedGait, held_out: &[RecordedStep]) -> Scores {
     let count = pairs.len().max(1) as f64;
     let numbers = numbers.max(1) as f64;
     let [length, turn, duration] = inside.map(|n| n as f64 / count);
+    let left_out = match left_out {
+        Some(Warning::LeftOut { short, turning }) => short + turning,
+        _ => 0,
+    };
     Scores {
         pairs: pairs.len(),
+        left_out,
         nlpd: density / numbers,
         crps: ranked / numbers,
         coverage: Coverage { length, turn, duration },

@@ -12,5 +12,6 @@ mod signal;
 mod tests;
 
 pub use contact::Contact;
-pub use cut::{Cut, Dropped, NoSteps, cut};
-pub use report::{report, write_steps};
+pub use cut::{Cut, Dropped, NoSteps, WrongUnit, cut};
+pub(in crate::gait) use report::measures;
+pub use report::{report, write_drawn_steps, write_steps};

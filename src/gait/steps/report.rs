@@ -2,12 +2,44 @@
 
 use super::cut::{Cut, Dropped, NoSteps};
 use crate::base::math::atan2;
-use crate::gait::{Foot, Phase, RecordedStep};
+use crate::gait::{Phase, RecordedStep, Shape};
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 const COLUMNS: [&str; 11] =
     ["take", "subject", "step", "foot", "phase", "from", "to", "length", "turn", "duration", "width"];
+
+/// The columns of a step that no take has.
+const DRAWN: [usize; 7] = [1, 2, 3, 4, 7, 8, 9];
+
+/// Length (m), turn of the root path (rad, left positive) and duration (s) of a step, which begins along +x.
+pub(in crate::gait) fn measures(shape: &Shape) -> [f64; 3] {
+    let curve = shape.curve();
+    let end = curve.tangent(1.0);
+    [curve.length(), atan2(end.y, end.x), shape.duration]
+}
+
+fn cells(step: &RecordedStep) -> [String; COLUMNS.len()] {
+    let [length, turn, duration] = measures(&step.shape);
+    let phase = match step.phase {
+        Phase::First => "first",
+        Phase::Inner => "inner",
+        Phase::Last => "last",
+    };
+    [
+        step.take.clone(),
+        step.subject.clone(),
+        step.number.to_string(),
+        step.foot.to_string(),
+        phase.to_owned(),
+        format!("{:.4}", step.span.0),
+        format!("{:.4}", step.span.1),
+        format!("{length:.4}"),
+        format!("{:.2}", turn.to_degrees()),
+        format!("{duration:.4}"),
+        format!("{:.4}", step.width),
+    ]
+}
 
 /// Writes a header and one row per step: times in s, lengths in m, the turn of the root path in degrees (left positive).
 ///
@@ -17,28 +49,21 @@ pub fn write_steps<'a>(out: impl Write, steps: impl IntoIterator<Item = &'a Reco
     let mut table = csv::Writer::from_writer(out);
     table.write_record(COLUMNS)?;
     for step in steps {
-        let curve = step.shape.curve();
-        let (a, b) = (curve.tangent(0.0), curve.tangent(1.0));
-        let turn = atan2(a.x * b.y - a.y * b.x, a.dot(&b)).to_degrees();
-        let foot = if step.foot == Foot::Left { "left" } else { "right" };
-        let phase = match step.phase {
-            Phase::First => "first",
-            Phase::Inner => "inner",
-            Phase::Last => "last",
-        };
-        table.write_record([
-            step.take.clone(),
-            step.subject.clone(),
-            step.number.to_string(),
-            foot.to_owned(),
-            phase.to_owned(),
-            format!("{:.4}", step.span.0),
-            format!("{:.4}", step.span.1),
-            format!("{:.4}", curve.length()),
-            format!("{turn:.2}"),
-            format!("{:.4}", step.shape.duration),
-            format!("{:.4}", step.width),
-        ])?;
+        table.write_record(cells(step))?;
+    }
+    table.flush()
+}
+
+/// The same for steps that were drawn, without the columns of takes.
+///
+/// # Errors
+/// Errors of the writer.
+pub fn write_drawn_steps(out: impl Write, steps: impl IntoIterator<Item = RecordedStep>) -> io::Result<()> {
+    let mut table = csv::Writer::from_writer(out);
+    table.write_record(DRAWN.map(|k| COLUMNS[k]))?;
+    for step in steps {
+        let cells = cells(&step);
+        table.write_record(DRAWN.map(|k| &cells[k]))?;
     }
     table.flush()
 }

@@ -3,6 +3,7 @@
 
 pub mod chart;
 pub mod plan;
+pub mod steps;
 
 use super::escape::escape;
 use super::number::plain;
@@ -27,6 +28,10 @@ pub enum Ink {
     Way,
     /// Edges of a roadmap: thin and light.
     Roadmap,
+    /// Steps with the left foot: thin and dark.
+    LeftStep,
+    /// Steps with the right foot: thin and light.
+    RightStep,
 }
 
 impl Ink {
@@ -36,6 +41,8 @@ impl Ink {
             Self::Region => "fill=\"#fff3c4\" stroke=\"#b8a35a\" stroke-dasharray=\"4 3\"",
             Self::Start => "fill=\"#bfe0f5\" stroke=\"#5b93b5\" stroke-dasharray=\"2 2\"",
             Self::Roadmap => "fill=\"none\" stroke=\"#9aa5ab\" stroke-width=\"0.5\"",
+            Self::LeftStep => "fill=\"none\" stroke=\"#1f4e79\" stroke-width=\"0.6\" stroke-opacity=\"0.5\"",
+            Self::RightStep => "fill=\"none\" stroke=\"#e69f00\" stroke-width=\"0.6\" stroke-opacity=\"0.5\"",
             Self::Way => "fill=\"none\" stroke=\"#c2410c\" stroke-width=\"2\" stroke-linejoin=\"round\"",
         }
     }
