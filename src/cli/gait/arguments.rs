@@ -1,8 +1,9 @@
 //! The options of `smc gait`.
 
 use crate::data::mocap::{Layout, Up, bvh_preset};
+use crate::gait::model::Residuals;
 use crate::gait::steps::Contact;
-use clap::builder::PossibleValuesParser;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -29,14 +30,14 @@ pub(in crate::cli) struct Reading {
     #[arg(required = true, value_name = "DATA")]
     pub(super) data: Vec<String>,
     /// Joints, unit and axes as in this data set; by default those that fit each file.
-    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Layout::presets().map(|(name, _)| name)))]
-    pub(super) source: Option<String>,
+    #[arg(long, value_name = "NAME", value_parser = choice(Layout::presets()))]
+    pub(super) source: Option<Layout>,
     /// Length that a coordinate of 1 stands for: `1cm`, `1in`, `0.0564m`.
     #[arg(long, value_name = "LENGTH", value_parser = parse_unit)]
     pub(super) unit: Option<f64>,
     /// Axis that points up.
-    #[arg(long, value_enum)]
-    pub(super) up: Option<Axis>,
+    #[arg(long, value_name = "AXIS", value_parser = choice([("y", Up::Y), ("z", Up::Z)]))]
+    pub(super) up: Option<Up>,
     /// Frames per second of files that do not state them.
     #[arg(long, value_name = "RATE")]
     pub(super) fps: Option<f64>,
@@ -56,8 +57,8 @@ pub(in crate::cli) struct Reading {
     #[arg(long)]
     pub(super) replace_offsets: bool,
     /// Rule for contact of a foot with the ground: its speed, or the adaptive thresholds of Agethen et al. (2018).
-    #[arg(long, value_enum, default_value_t = ContactRule::Rest)]
-    pub(super) contact: ContactRule,
+    #[arg(long, value_name = "RULE", default_value = "rest", value_parser = choice(Contact::NAMES))]
+    pub(super) contact: Contact,
     /// Only steps of these subjects.
     #[arg(long, value_name = "NAMES", value_delimiter = ',', conflicts_with = "except")]
     pub(super) subjects: Vec<String>,
@@ -69,49 +70,18 @@ pub(in crate::cli) struct Reading {
 impl Reading {
     /// The layout of a file with its text; none if that of the file's own joints or extension is meant.
     pub(super) fn layout(&self, file: &str, text: &str) -> Option<Layout> {
-        let named = self.source.as_deref().and_then(Layout::named);
-        let mut layout = named
-            .clone()
-            .or_else(|| bvh_preset(text))
-            .or_else(|| Layout::of_file(file).map(|(_, layout)| layout))?;
+        let preset = || bvh_preset(text).or_else(|| Layout::of_file(file).map(|(_, layout)| layout));
+        let mut layout = self.source.clone().or_else(preset)?;
         let own = layout.clone();
         layout.unit = self.unit.unwrap_or(layout.unit);
-        layout.up = match self.up {
-            Some(Axis::Y) => Up::Y,
-            Some(Axis::Z) => Up::Z,
-            None => layout.up,
-        };
+        layout.up = self.up.unwrap_or(layout.up);
         layout.fps = self.fps.or(layout.fps);
         layout.skip = self.skip.unwrap_or(layout.skip);
         layout.replace_offsets |= self.replace_offsets;
         layout.root = self.root.clone().unwrap_or(layout.root);
         layout.left = self.left.clone().unwrap_or(layout.left);
         layout.right = self.right.clone().unwrap_or(layout.right);
-        (named.is_some() || layout != own).then_some(layout)
-    }
-}
-
-/// Axes that point up.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(in crate::cli) enum Axis {
-    /// y; the floor plane is (x, -z).
-    Y,
-    /// z; the floor plane is (x, y).
-    Z,
-}
-
-/// Rules for contact.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(in crate::cli) enum ContactRule {
-    /// The foot is slower than 0.6 m/s for at least 0.12 s.
-    Rest,
-    /// Speed and height of ankle and toe are below adaptive thresholds.
-    Adaptive,
-}
-
-impl From<ContactRule> for Contact {
-    fn from(rule: ContactRule) -> Self {
-        if rule == ContactRule::Rest { Self::Rest } else { Self::Adaptive }
+        (self.source.is_some() || layout != own).then_some(layout)
     }
 }
 
@@ -147,8 +117,9 @@ pub(in crate::cli) struct Learning {
     #[arg(long, default_value_t = 0.95, value_name = "SHARE")]
     pub(super) variance: f64,
     /// How steps vary about their mean: as after one of the 32 nearest recorded steps, or normally distributed.
-    #[arg(long, value_enum, default_value_t = Variation::Nearest)]
-    pub(super) residuals: Variation,
+    #[arg(long, value_name = "RULE", default_value = "nearest",
+        value_parser = choice([("nearest", Residuals::Nearest), ("gaussian", Residuals::Gaussian)]))]
+    pub(super) residuals: Residuals,
     /// Number of inducing points of the Gaussian process.
     #[arg(long, default_value_t = 128, value_name = "POINTS")]
     pub(super) sparse: usize,
@@ -161,15 +132,6 @@ pub(in crate::cli) struct Learning {
     /// The model as Agethen et al. (2018) describe it, for comparison.
     #[arg(long, conflicts_with = "linear")]
     pub(super) as_published: bool,
-}
-
-/// How steps vary.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(in crate::cli) enum Variation {
-    /// As after one of the 32 nearest recorded steps.
-    Nearest,
-    /// Normally distributed.
-    Gaussian,
 }
 
 /// `smc gait fit`
@@ -244,6 +206,17 @@ pub(in crate::cli) struct ScoreCommand {
     /// Format of the scores.
     #[arg(long, value_enum, default_value_t = TextFormat::Text)]
     pub(super) format: TextFormat,
+}
+
+/// One of some values by its name.
+fn choice<T: Clone + Send + Sync + 'static, const N: usize>(
+    values: [(&'static str, T); N],
+) -> impl TypedValueParser<Value = T> {
+    let names = PossibleValuesParser::new(values.each_ref().map(|(name, _)| *name));
+    names.try_map(move |given| {
+        let found = values.iter().find(|(name, _)| *name == given);
+        found.map(|(_, value)| value.clone()).ok_or("unknown name")
+    })
 }
 
 /// The ankle and the toe of a foot.

@@ -1,13 +1,13 @@
 //! `smc gait fit` and `smc gait score`.
 
-use super::arguments::{FitCommand, Learning, Reading, ScoreCommand, TextFormat, Variation};
+use super::arguments::{FitCommand, Learning, Reading, ScoreCommand, TextFormat};
 use super::takes::Takes;
 use super::{Stop, open, told, write};
 use crate::base::visible::visible;
 use crate::cli::terminal::Colors;
 use crate::cli::{complaint, output};
 use crate::gait::RecordedStep;
-use crate::gait::model::{self, FitError, Method, Options, Residuals, Scores, Warning};
+use crate::gait::model::{self, FitError, Method, Options, Scores, Warning};
 use crate::report::gait as reports;
 use crate::syntax::codes::Code;
 use crate::syntax::diagnostic::{Diagnostic, Severity};
@@ -21,13 +21,9 @@ impl Learning {
             (_, true) => Method::Linear,
             _ => Method::Sparse,
         };
-        let residuals = match self.residuals {
-            Variation::Nearest => Residuals::Nearest,
-            Variation::Gaussian => Residuals::Gaussian,
-        };
         Options {
             variance: self.variance,
-            residuals,
+            residuals: self.residuals,
             method,
             inducing: self.sparse,
             as_published: self.as_published,

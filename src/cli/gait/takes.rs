@@ -195,7 +195,7 @@ impl Takes {
             if !self.names.insert(take.name.clone()) {
                 take.name = whole;
             }
-            let cut = cut(&take, reading.contact.into());
+            let cut = cut(&take, reading.contact);
             if let Some(found) = doubt(&cut, &take.name, span(&source, &LineError::of_file(""))) {
                 self.found.push(found);
                 told = true;
