@@ -2,6 +2,7 @@
 
 use super::gait::GaitCommand;
 use super::path::PathCommand;
+use super::walk::WalkCommand;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -44,6 +45,8 @@ pub(super) enum Command {
     /// Cut motion capture into steps; learn gaits from them, show, draw and score these.
     #[command(subcommand)]
     Gait(Box<GaitCommand>),
+    /// Run many trials and write how agents walk, leg by leg: lengths, times, steps, traces, a picture.
+    Walk(Box<WalkCommand>),
     /// Compare two sets of recorded or simulated walks.
     CompareWalks(CompareWalks),
     /// Detect a change of the probability of recorded or streamed outcomes.
@@ -153,7 +156,7 @@ pub(super) struct Simulate {
     #[arg(long, default_value_t = 0, value_name = "INDEX")]
     pub(super) trial: u64,
     /// Number of trials.
-    #[arg(long, default_value_t = 1, value_name = "N")]
+    #[arg(short = 'n', long, default_value_t = 1, value_name = "N")]
     pub(super) trials: u64,
     /// Follow a move or a path, named as in a ranking: `heading 15 deg`, `stop`, `route left`, `path 2`.
     #[arg(long = "move", visible_alias = "path", value_name = "MOVE")]

@@ -19,6 +19,7 @@ mod ranks;
 mod show;
 mod simulate;
 mod terminal;
+mod walk;
 
 use crate::base::visible::visible;
 use crate::engine::outcome::Failure;
@@ -123,6 +124,7 @@ fn dispatch(arguments: &Arguments) -> Exit {
         Command::Simulate(command) => simulate::run(command, colors),
         Command::Path(command) => path::run(command, colors),
         Command::Gait(command) => gait::run(command, colors),
+        Command::Walk(command) => walk::run(command, colors),
         Command::CompareWalks(command) => compare_walks::run(command, colors),
         Command::Drift(command) => drift::run(command, colors),
         Command::Show(command) => show::run(command, colors),

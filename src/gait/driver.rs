@@ -3,10 +3,11 @@
 use super::model::LearnedGait;
 use super::synthetic::{Person, SyntheticGait};
 use super::walk::{Ground, HybridAStar, NoStep, OtherBody, PlacedStep, Search, Walk, Walker, least_gap};
-use super::{Gait, SPANS};
+use super::{Foot, Gait, SPANS};
 use crate::base::geometry::{Bounds, Vec2};
 use crate::base::random::{Purpose, Stream, name_hash};
 use crate::kernel::driver::{Driver, Drivers, Memory, Occasion, Plan, Sample, Situation, Trajectory};
+use crate::kernel::{Slot, State};
 use crate::model::{Agent, AgentId, GaitRule, Goal, Leg, Parameter, Position, Scenario, SearchRule};
 use crate::route::Ways;
 use crate::route::grid::{ClearanceGrid, GoalField};
@@ -121,6 +122,12 @@ pub fn drivers(ways: &Ways, scenario: &Scenario, seed: u64) -> Drivers {
         }
     }
     drivers.with(stepped(scenario), Arc::new(Steppers { floors, gaits }))
+}
+
+/// The foot of the present step of an agent, or of its last one; `None` before its first step and for other kinds.
+pub fn present_foot(state: &State, slot: Slot) -> Option<Foot> {
+    let known: &Remembered = state.plans.memory(slot)?.get()?;
+    known.walker.stance.last.map(|(foot, _)| foot)
 }
 
 /// How a kind searches.

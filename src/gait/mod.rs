@@ -11,5 +11,5 @@ pub mod synthetic;
 pub mod walk;
 
 pub use curve::Curve;
-pub use driver::drivers;
+pub use driver::{drivers, present_foot};
 pub use step::{Draws, Foot, Gait, Phase, RecordedStep, SPANS, Shape, Stance};

@@ -20,6 +20,7 @@ pub mod paths;
 mod phrase;
 pub mod svg;
 pub mod text;
+pub mod walked;
 pub mod walks;
 
 pub use exit::{ExitCode, exit_code};

@@ -14,5 +14,6 @@ mod paths;
 mod ranks;
 mod reasons;
 mod traces;
+mod walk;
 mod walks;
 mod witnesses;

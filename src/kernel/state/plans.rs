@@ -139,6 +139,16 @@ impl Plans {
         self.courses.get(block).map_or(Mask::NONE, |course| course.stepped & !course.stands)
     }
 
+    /// Whether the agent in a slot is making a step.
+    pub fn is_stepping(&self, slot: Slot) -> bool {
+        self.courses.get(slot.block).is_some_and(|course| (course.stepped & !course.stands).has(slot.lane))
+    }
+
+    /// What the driver of a slot remembers; `None` without drivers.
+    pub fn memory(&self, slot: Slot) -> Option<&Memory> {
+        self.held.get(slot.block).map(|block| &block[slot.lane].memory)
+    }
+
     /// Whether the agent in a slot goes along a trajectory.
     pub(in crate::kernel) fn has_trajectory(&self, slot: Slot) -> bool {
         self.courses.get(slot.block).is_some_and(|course| (course.driven | course.stepped).has(slot.lane))

@@ -32,6 +32,8 @@ pub enum Ink {
     LeftStep,
     /// Steps with the right foot: thin and light.
     RightStep,
+    /// One of many walks: thin, and transparent.
+    Walk,
 }
 
 impl Ink {
@@ -43,6 +45,9 @@ impl Ink {
             Self::Roadmap => "fill=\"none\" stroke=\"#9aa5ab\" stroke-width=\"0.5\"",
             Self::LeftStep => "fill=\"none\" stroke=\"#1f4e79\" stroke-width=\"0.6\" stroke-opacity=\"0.5\"",
             Self::RightStep => "fill=\"none\" stroke=\"#e69f00\" stroke-width=\"0.6\" stroke-opacity=\"0.5\"",
+            Self::Walk => {
+                "fill=\"none\" stroke=\"#7c2d12\" stroke-width=\"0.8\" stroke-opacity=\"0.25\" stroke-linejoin=\"round\""
+            }
             Self::Way => "fill=\"none\" stroke=\"#c2410c\" stroke-width=\"2\" stroke-linejoin=\"round\"",
         }
     }
@@ -99,6 +104,23 @@ impl Drawing {
         };
         let opacity = if ink == Ink::Start { 0.7 } else { 1.0 };
         let _ = writeln!(self.body, "{drawn} {} fill-opacity=\"{opacity}\"/>", ink.attributes());
+    }
+
+    /// A square cell from its lower left corner, m, the darker the larger a share in 0 .. 1.
+    pub fn cell(&mut self, low: Vec2, side: f64, share: f64) {
+        let ((x, y), size) = (self.at(low + Vec2::new(0.0, side)), side * self.scale);
+        let _ = writeln!(
+            self.body,
+            "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{size:.1}\" height=\"{size:.1}\" fill=\"#1d4e89\" fill-opacity=\"{:.2}\"/>",
+            0.85 * share
+        );
+    }
+
+    /// A line of text below the axes, in the lower left corner.
+    pub fn note(&mut self, text: &str) {
+        let (x, y) = self.at(self.bounds.low);
+        let _ =
+            writeln!(self.body, "<text x=\"{x:.1}\" y=\"{:.1}\">{}</text>", y + MARGIN - 4.0, escape(text));
     }
 
     /// A dot.

@@ -62,7 +62,7 @@ fn shown(scenario: &Scenario) -> Vec<&Agent> {
 }
 
 /// A drawing of barriers, regions and starts with room for some points.
-fn drawn(scenario: &Scenario, points: impl Iterator<Item = Vec2>) -> Drawing {
+pub fn drawn(scenario: &Scenario, points: impl Iterator<Item = Vec2>) -> Drawing {
     let (scene, shown) = (&scenario.scene, shown(scenario));
     let shapes = scene.regions.iter().map(|region| region.shape.bounds());
     let starts = shown.iter().filter_map(|agent| match &agent.start.position {
@@ -104,7 +104,6 @@ pub fn scene(scenario: &Scenario) -> Drawing {
 /// The plan of a scenario as SVG.
 pub fn draw(scenario: &Scenario) -> String {
     let atlas = Atlas::new(scenario.scene.clone());
-    let scene = &scenario.scene;
     let shown = shown(scenario);
     let ways: Vec<(Vec<Vec2>, f64)> = shown.iter().filter_map(|agent| way(&atlas, agent)).collect();
     let mut drawing = drawn(scenario, ways.iter().flat_map(|(points, _)| points.iter().copied()));
@@ -112,14 +111,19 @@ pub fn draw(scenario: &Scenario) -> String {
         drawing.line(points, Ink::Way);
         drawing.text(middle(points), &format!("{} m", plain((length * 10.0).round() / 10.0)));
     }
-    for region in &scene.regions {
+    name_places(&mut drawing, scenario);
+    drawing.finish(if scenario.title.is_empty() { "plan" } else { &scenario.title })
+}
+
+/// Names of regions and points.
+pub fn name_places(drawing: &mut Drawing, scenario: &Scenario) {
+    for region in &scenario.scene.regions {
         drawing.text(region.shape.inner_point(), &region.name);
     }
-    for (name, at) in &scene.points {
+    for (name, at) in &scenario.scene.points {
         drawing.dot(*at, Ink::Region);
         drawing.text(*at, name);
     }
-    drawing.finish(if scenario.title.is_empty() { "plan" } else { &scenario.title })
 }
 
 /// The place half-way along a line.

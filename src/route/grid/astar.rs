@@ -59,6 +59,8 @@ pub fn shortest_cells(grid: &ClearanceGrid, from: Vec2, to: Vec2) -> Option<Vec<
 mod tests {
     use super::*;
     use crate::base::geometry::{Bounds, Shape};
+    use crate::base::math;
+    use crate::base::random::{Purpose, Stream, TrialKey};
     use crate::model::{Barrier, Obstacle, Scene};
     use crate::route::roadmap::FreeSpace;
 
@@ -92,5 +94,33 @@ mod tests {
         }
         assert!((length - lengths[grid.cell(from) as usize]).abs() < 1e-3);
         assert!(shortest_cells(&grid, from, Vec2::new(1.3, 1.0)).is_none());
+    }
+
+    /// The column of plain grid paths in the table of docs/gait.md, with the distances and radii of models/table1.scn.
+    #[test]
+    fn grid_paths_between_discs_vary_as_their_ends_do() {
+        let free = FreeSpace::new(&Scene::default(), 0.25);
+        let bounds = Bounds { low: Vec2::repeat(-2.0), high: Vec2::new(6.0, 2.0) };
+        let grid = ClearanceGrid::new(&free, &bounds, 0.08);
+        for (distance, radius) in [(2.3, 0.205), (2.2, 0.36), (3.0, 0.37), (2.35, 0.33), (1.0, 0.2)] {
+            let length = |trial: u64| {
+                let key = TrialKey { seed: 0, index: trial, branch: 0 };
+                let stream = Stream::of(key, 0, Purpose::Placement);
+                let in_disc = |k: u32| {
+                    let [u, v] = stream.uniform_pair(k);
+                    let (sin, cos) = math::sin_cos(v * std::f64::consts::TAU);
+                    Vec2::new(cos, sin) * (radius * u.sqrt())
+                };
+                let path = shortest_cells(&grid, in_disc(0), in_disc(1) + Vec2::new(distance, 0.0)).unwrap();
+                path.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum::<f64>()
+            };
+            let mut lengths: Vec<f64> = (0..400).map(length).collect();
+            lengths.sort_by(f64::total_cmp);
+            let quantile = |q| crate::stats::twosample::quantile(&lengths, q);
+            let (median, iqr) = (quantile(0.5), quantile(0.75) - quantile(0.25));
+            println!("{distance} m, radius {radius} m: {median:.2}/{iqr:.2}");
+            assert!(median > distance - 0.03 && median < distance + 0.15, "{distance}: {median}");
+            assert!(iqr > 0.6 * radius && iqr < 1.2 * radius, "{distance}: {iqr}");
+        }
     }
 }
