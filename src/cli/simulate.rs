@@ -125,22 +125,25 @@ impl<'p> Walk<'p> {
 
     /// Notes why a trial ended, if that was before its time.
     fn note(&mut self, end: End) {
-        let (trial, scenario, state) = (self.trial, &self.program.scenario, self.run.state());
-        let time = scenario.clock.seconds(Tick(state.ticks[0]));
-        self.notes.push(match end {
-            End::Horizon => return,
-            End::Faulty(fault) => {
-                self.is_wrong = true;
-                format!("trial {trial} ended with an error of the model: {}", fault.describe(scenario))
-            }
-            End::Full => {
-                let reason = state.queues.overrun(&scenario.sources, 0).unwrap_or_default();
-                format!("trial {trial} is unresolved at {time} s: {reason}")
-            }
-            End::Diverged => {
-                format!("trial {trial} diverged at {time} s: {}", divergence(self.program, state))
-            }
-        });
+        self.is_wrong |= matches!(end, End::Faulty(_));
+        if let Some(reason) = early_end(self.program, self.run.state(), end) {
+            self.notes.push(format!("trial {} {reason}", self.trial));
+        }
+    }
+}
+
+/// Why a trial ended, if that was before its time.
+pub(super) fn early_end(program: &Program, state: &State, end: End) -> Option<String> {
+    let scenario = &program.scenario;
+    let time = scenario.clock.seconds(Tick(state.ticks[0]));
+    match end {
+        End::Horizon => None,
+        End::Faulty(fault) => Some(format!("ended with an error of the model: {}", fault.describe(scenario))),
+        End::Full => {
+            let reason = state.queues.overrun(&scenario.sources, 0).unwrap_or_default();
+            Some(format!("is unresolved at {time} s: {reason}"))
+        }
+        End::Diverged => Some(format!("diverged at {time} s: {}", divergence(program, state))),
     }
 }
 

@@ -25,9 +25,6 @@ pub(in crate::cli) struct WalkCommand {
     /// Format of the output.
     #[arg(long, value_enum, default_value_t = WalkFormat::Text)]
     pub(in crate::cli) format: WalkFormat,
-    /// Also write the traces of all walks: `walk,leg,t,x,y,heading,foot,step`.
-    #[arg(long, value_name = "FILE.csv")]
-    pub(in crate::cli) traces: Option<PathBuf>,
     /// Rows of a trace for each second.
     #[arg(long, default_value_t = 120.0, value_name = "RATE", allow_negative_numbers = true)]
     pub(in crate::cli) fps: f64,
@@ -45,7 +42,7 @@ pub(in crate::cli) enum WalkFormat {
     Json,
     /// One row for each leg.
     Csv,
-    /// One row for each place of each walk.
+    /// One row for each place of each walk: `walk,leg,t,x,y,heading,foot,step`.
     Traces,
     /// A picture of all walks.
     Svg,

@@ -9,6 +9,7 @@ use super::complaint;
 use super::inputs;
 use super::output;
 use super::terminal::{Colors, print, warn};
+use crate::base::geometry::Vec2;
 use crate::base::random::{MOST_TRIALS, TrialKey};
 use crate::base::visible::visible;
 use crate::compile::nearest::nearest;
@@ -23,7 +24,6 @@ use crate::report::walked::{self, Walked, WalkedLeg};
 use crate::route::Ways;
 use crate::syntax::diagnostic::Diagnostic;
 use arguments::WalkFormat;
-use std::path::Path;
 use std::sync::Arc;
 use trials::Task;
 
@@ -33,77 +33,50 @@ pub(super) fn run(arguments: &WalkCommand, colors: Colors) -> Exit {
     complaint::diagnose(&inputs, colors);
     let Some(study) = &inputs.study else { return Exit::Wrong };
     let Some(world) = study.worlds.get(study.base) else { return Exit::Wrong };
-    let outputs = [arguments.output.as_deref(), arguments.traces.as_deref()];
-    let found = checked(arguments)
-        .and_then(|()| {
-            if study.worlds.len() > 2 {
-                return Err(complaint::argument(
-                    "walks cannot be written for a sweep",
-                    "write `--set name=value`",
-                ));
-            }
-            outputs.into_iter().try_for_each(|path| output::guard(path, &paths))
-        })
+    let sweep = || complaint::argument("walks cannot be written for a sweep", "write `--set name=value`");
+    let done = checked(arguments)
+        .and_then(|()| if study.worlds.len() > 2 { Err(sweep()) } else { Ok(()) })
+        .and_then(|()| output::guard(arguments.output.as_deref(), &paths))
         .and_then(|()| placeable(world).map_err(|fault| library::refusal(&fault)))
-        .and_then(|()| walks(arguments, &world.scenario));
-    let (scenario, walked, is_wrong) = match found {
-        Ok(found) => found,
-        Err(error) => {
-            complaint::tell(&error, &inputs.sources, colors);
-            return Exit::Wrong;
-        }
-    };
-    match write(arguments, &scenario, &walked) {
-        Ok(()) if is_wrong => Exit::Wrong,
-        Ok(()) => Exit::Success,
-        Err(error) => {
-            complaint::tell(&error, &[], colors);
-            Exit::Wrong
-        }
-    }
+        .and_then(|()| walk(arguments, Arc::clone(&world.scenario)));
+    done.unwrap_or_else(|error| {
+        complaint::tell(&error, &inputs.sources, colors);
+        Exit::Wrong
+    })
 }
 
 /// Whether the numbers of a call are possible.
 fn checked(arguments: &WalkCommand) -> Result<(), Diagnostic> {
-    if arguments.trials == 0 {
-        return Err(complaint::argument("`--trials` must be positive (got 0)", "write a number from 1"));
-    }
-    if arguments.trials > MOST_TRIALS {
-        let hint = format!("write a number up to {MOST_TRIALS}");
-        return Err(complaint::argument("`--trials` is too large", hint));
-    }
-    if arguments.threads == Some(0) {
-        return Err(complaint::argument("`--threads` must be positive (got 0)", "write a number from 1"));
-    }
-    let fps = arguments.fps;
-    if fps > 0.0 && fps <= 1e6 {
+    let WalkCommand { trials, threads, fps, .. } = arguments;
+    let (title, hint) = if !(1..=MOST_TRIALS).contains(trials) {
+        let hint = format!("write a number from 1 to {MOST_TRIALS}");
+        (format!("`--trials` is out of range (got {trials})"), hint)
+    } else if *threads == Some(0) {
+        ("`--threads` must be positive (got 0)".to_owned(), "write a number from 1".to_owned())
+    } else if !(*fps > 0.0 && *fps <= 1e6) {
+        let title = format!("`--fps` must be above 0 and at most 1e6 (got {fps})");
+        (title, "write a number of rows a second, such as 120".to_owned())
+    } else {
         return Ok(());
-    }
-    let title = format!("`--fps` must be above 0 and at most 1e6 (got {fps})");
-    Err(complaint::argument(title, "write a number of rows a second, such as 120"))
+    };
+    Err(complaint::argument(title, hint))
 }
 
-/// Runs the trials; and whether the model was wrong in one of them.
-fn walks(
-    arguments: &WalkCommand,
-    scenario: &Arc<Scenario>,
-) -> Result<(Arc<Scenario>, Walked, bool), Diagnostic> {
+/// Runs the trials and writes what they gave.
+fn walk(arguments: &WalkCommand, mut scenario: Arc<Scenario>) -> Result<Exit, Diagnostic> {
     let ways = Ways::default();
-    let mut scenario = Arc::clone(scenario);
     library::find_paths(Arc::make_mut(&mut scenario), arguments.seed, &ways);
     let program = Program::driven(scenario.clone(), gait::drivers(&ways, &scenario, arguments.seed));
     let agents = chosen(&program, &arguments.agent)?;
     let threads = Threads::new(arguments.threads).map_err(|error| {
         complaint::argument(format!("no thread can be started: {error}"), "write fewer `--threads`")
     })?;
-    let legs = |agent: usize| scenario.agents[agent].route.goals().count();
     let task = Task {
         program: &program,
         seed: arguments.seed,
         trials: arguments.trials,
-        agents: agents.iter().map(|agent| (*agent, legs(*agent))).collect(),
-        keeps_places: arguments.traces.is_some()
-            || matches!(arguments.format, WalkFormat::Traces | WalkFormat::Svg),
+        agents: agents.iter().map(|k| (*k, scenario.agents[*k].route.goals().count())).collect(),
+        keeps_places: matches!(arguments.format, WalkFormat::Traces | WalkFormat::Svg),
     };
     let mut walked = Walked {
         title: scenario.title.clone(),
@@ -113,35 +86,38 @@ fn walks(
         legs: agents.iter().flat_map(|agent| legs_of(&scenario, &scenario.agents[*agent])).collect(),
         ..Walked::default()
     };
-    let (mut is_wrong, mut shrunk) = (false, Vec::new());
+    let (mut exit, mut shrunk) = (Exit::Success, Vec::new());
     for (trial, outcome) in (0..).zip(task.run(&threads)) {
         let mut first = 0;
         for (walks, (_, legs)) in outcome.walks.into_iter().zip(&task.agents) {
-            for (leg, walk) in walked.legs[first..].iter_mut().zip(walks) {
-                leg.walks.push(walk);
-            }
+            walked.legs[first..].iter_mut().zip(walks).for_each(|(leg, walk)| leg.walks.push(walk));
             first += legs;
         }
         walked.no_way += u64::from(outcome.has_no_way);
-        if let Some((reason, wrong)) = outcome.broken {
-            is_wrong |= wrong;
-            walked.broken.push((trial, reason));
-        }
-        if outcome.has_shrunk {
-            shrunk.push(trial);
-        }
+        walked.broken.extend(outcome.broken.map(|reason| (trial, reason)));
+        // As a check of the same trials would.
+        exit = if outcome.is_wrong { Exit::Wrong } else { exit };
+        shrunk.extend(outcome.has_shrunk.then_some(trial));
     }
+    write(arguments, &scenario, &walked)?;
     if let Some(first) = shrunk.first() {
         let key = TrialKey { seed: arguments.seed, index: *first, branch: 0 };
         warn(&format!("warning: {}\n", smaller(&program, key, shrunk.len() as u64)));
     }
-    Ok((scenario, walked, is_wrong))
+    if walked.no_way > 0 {
+        warn(&format!("warning: an agent has no way to a goal in {}\n", counted(walked.no_way, "trial")));
+    }
+    if let Some((trial, reason)) = walked.broken.first() {
+        let trials = counted(walked.broken.len() as u64, "trial");
+        warn(&format!("warning: {trials} broken off: trial {trial} {reason}\n"));
+    }
+    Ok(exit)
 }
 
 /// The legs of an agent, without walks.
 fn legs_of(scenario: &Scenario, agent: &Agent) -> Vec<WalkedLeg> {
     let scene = &scenario.scene;
-    let point = |at: &crate::base::geometry::Vec2| {
+    let point = |at: &Vec2| {
         let named = scene.points.iter().find(|(_, known)| known == at);
         named.map_or_else(|| format!("({}, {})", plain(at.x), plain(at.y)), |(name, _)| name.clone())
     };
@@ -171,35 +147,30 @@ fn legs_of(scenario: &Scenario, agent: &Agent) -> Vec<WalkedLeg> {
 /// The agents of these names, or all that have a route and are there from the start.
 fn chosen(program: &Program, names: &[String]) -> Result<Vec<usize>, Diagnostic> {
     let agents = &program.scenario.agents;
-    let walks = |agent: &usize| agents[*agent].route.goals().next().is_some();
-    let comes = |agent: &usize| program.arrivals.comes(*agent);
-    let all: Vec<usize> = (0..agents.len()).filter(|agent| walks(agent) && !comes(agent)).collect();
+    let walks = |k: &usize| agents[*k].route.goals().next().is_some() && !program.arrivals.comes(*k);
+    let all: Vec<usize> = (0..agents.len()).filter(walks).collect();
     if all.is_empty() {
         let hint = "write a route: `agent worker: operator { at = rack  route = station }`";
-        return Err(complaint::argument("no agent has a route from the start", hint));
+        return Err(complaint::argument("no agent has a route from the start of a trial on", hint));
     }
     if names.is_empty() {
-        if (0..agents.len()).any(|agent| comes(&agent)) {
+        if (0..agents.len()).any(|k| program.arrivals.comes(k)) {
             warn("warning: agents from sources are left out; `smc simulate` writes their traces\n");
         }
         return Ok(all);
     }
-    let known = || all.iter().map(|agent| agents[*agent].name.as_str());
+    let known: Vec<&str> = all.iter().map(|k| agents[*k].name.as_str()).collect();
     let find = |name: &String| {
-        let name = name.trim();
-        if let Some(at) = known().position(|known| known == name) {
-            return Ok(all[at]);
-        }
-        let hint = nearest(name, known()).map_or_else(
-            || format!("agents with a route are {}", known().take(12).collect::<Vec<_>>().join(", ")),
-            |near| format!("did you mean `{near}`?"),
-        );
-        let title = match agents.iter().position(|agent| agent.name == name) {
-            Some(agent) if comes(&agent) => format!("agent `{name}` comes from a source"),
-            Some(_) => format!("agent `{name}` has no route"),
-            None => format!("unknown agent `{name}`"),
+        let hint = || match nearest(name, known.iter().copied()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!("agents with a route are {}", known.join(", ")),
         };
-        Err(complaint::argument(title, hint))
+        let title = match agents.iter().any(|agent| agent.name == *name) {
+            true => format!("agent `{name}` has no route from the start of a trial on"),
+            false => format!("unknown agent `{name}`"),
+        };
+        let found = known.iter().position(|known| known == name).map(|at| all[at]);
+        found.ok_or_else(|| complaint::argument(title, hint()))
     };
     let mut found = names.iter().map(find).collect::<Result<Vec<usize>, _>>()?;
     found.sort_unstable();
@@ -208,43 +179,25 @@ fn chosen(program: &Program, names: &[String]) -> Result<Vec<usize>, Diagnostic>
 }
 
 fn write(arguments: &WalkCommand, scenario: &Scenario, walked: &Walked) -> Result<(), Diagnostic> {
-    let mut bytes = Vec::new();
-    let mut left_out = 0;
-    let unwritten = |path: &Path, error: &std::io::Error| {
-        complaint::output(format!("`{}` cannot be written: {error}", path.display()))
+    let failed = |error: std::io::Error| match &arguments.output {
+        Some(path) => complaint::output(format!("`{}` cannot be written: {error}", path.display())),
+        None => complaint::output(error.to_string()),
     };
-    let internal = |error: std::io::Error| complaint::output(error.to_string());
+    let mut bytes = Vec::new();
     match arguments.format {
         WalkFormat::Text => bytes.extend(visible(&walked::to_text(walked)).bytes()),
         WalkFormat::Json => bytes.extend(walked::to_json(walked).bytes()),
-        WalkFormat::Csv => walked::write_csv(&mut bytes, walked).map_err(internal)?,
-        WalkFormat::Traces => {
-            left_out = walked::write_traces(&mut bytes, walked, arguments.fps).map_err(internal)?;
-        }
+        WalkFormat::Csv => walked::write_csv(&mut bytes, walked).map_err(failed)?,
         WalkFormat::Svg => bytes.extend(walked::draw(scenario, walked).bytes()),
-    }
-    if let Some(path) = &arguments.traces {
-        left_out = output::write(path, |out| walked::write_traces(out, walked, arguments.fps))
-            .map_err(|error| unwritten(path, &error))?;
+        WalkFormat::Traces => {
+            let left_out = walked::write_traces(&mut bytes, walked, arguments.fps).map_err(failed)?;
+            if left_out > 0 {
+                warn(&format!("warning: {} that took no time left out\n", counted(left_out, "walk")));
+            }
+        }
     }
     match &arguments.output {
-        Some(path) => {
-            output::write(path, |out| out.write_all(&bytes)).map_err(|error| unwritten(path, &error))?;
-        }
-        None => print(&String::from_utf8_lossy(&bytes)).map_err(complaint::output)?,
+        Some(path) => output::write(path, |out| out.write_all(&bytes)).map_err(failed),
+        None => print(&String::from_utf8_lossy(&bytes)).map_err(complaint::output),
     }
-    if left_out > 0 {
-        let walks = counted(left_out, "walk");
-        warn(&format!("warning: {walks} without a length in time left out of the traces\n"));
-    }
-    if !matches!(arguments.format, WalkFormat::Text | WalkFormat::Json) {
-        if walked.no_way > 0 {
-            warn(&format!("warning: no way to a goal in {}\n", counted(walked.no_way, "trial")));
-        }
-        if let Some((trial, reason)) = walked.broken.first() {
-            let trials = counted(walked.broken.len() as u64, "trial");
-            warn(&format!("warning: {trials} broken off, first trial {trial}: {reason}\n"));
-        }
-    }
-    Ok(())
 }

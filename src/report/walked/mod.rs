@@ -6,12 +6,12 @@ mod traces;
 pub use picture::draw;
 pub use traces::write_traces;
 
-use super::number::{count, counted};
 use crate::base::geometry::Vec2;
 use crate::gait::Foot;
 use crate::stats::twosample::Summary;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
+use std::io;
 
 /// An agent in one state of a walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,13 +70,36 @@ pub struct Walked {
 }
 
 impl WalkedLeg {
-    fn summaries(&self) -> [Summary; 3] {
-        [0, 1, 2].map(|k| Summary::of(&self.walks.iter().map(|walk| walk.measures[k]).collect::<Vec<_>>()))
+    /// Median, quartiles and interquartile range of length, time and steps; NaN where there are none.
+    fn numbers(&self) -> [[f64; 4]; 3] {
+        [0, 1, 2].map(|k| {
+            let has = k < 2 || self.steps;
+            let values: Vec<f64> = self.walks.iter().filter(|_| has).map(|walk| walk.measures[k]).collect();
+            let s = Summary::of(&values);
+            [s.median, s.low_quartile, s.high_quartile, s.iqr()]
+        })
     }
 
-    /// Trials in which it did not end.
-    fn unfinished(&self, of: &Walked) -> u64 {
-        of.trials - self.walks.len() as u64
+    /// The row of a table, with the names of its columns; null where there is no number.
+    fn row(&self, trials: u64) -> Map<String, Value> {
+        let [from, to] = &self.ends;
+        let count = self.walks.len() as u64;
+        let names = ["agent", "leg", "from", "to", "walks", "unfinished"];
+        let known = [
+            json!(self.agent),
+            json!(self.number),
+            json!(from),
+            json!(to),
+            json!(count),
+            json!(trials - count),
+        ];
+        let mut row: Map<_, _> = names.map(str::to_owned).into_iter().zip(known).collect();
+        for (name, numbers) in ["length_m", "time_s", "steps"].into_iter().zip(self.numbers()) {
+            for (what, number) in ["median", "q1", "q3", "iqr"].into_iter().zip(numbers) {
+                row.insert(format!("{name}_{what}"), json!(number));
+            }
+        }
+        row
     }
 }
 
@@ -90,74 +113,41 @@ impl Walked {
 /// For people.
 pub fn to_text(walked: &Walked) -> String {
     let mut out = String::new();
-    for legs in walked.agents() {
-        let names: Vec<String> =
-            legs.iter().map(|leg| format!("{} {} -> {}", leg.number, leg.ends[0], leg.ends[1])).collect();
-        let width = names.iter().map(|name| name.chars().count()).max().unwrap_or(0).max(4);
-        let trials = counted(walked.trials, "trial");
-        let _ = writeln!(out, "{}: {trials}, seed {}\n", legs[0].agent, walked.seed);
-        let mut row = |name: &str, cells: [&str; 7]| {
-            let cells: String = cells.iter().map(|cell| format!(" {cell:>10}")).collect();
-            let _ = writeln!(out, "  {name:<width$}{cells}");
-        };
-        row("", ["", "", "length (m)", "", "time (s)", "", "steps"]);
-        row("leg", ["walks", "unfinished", "median", "IQR", "median", "IQR", "median"]);
-        for (leg, name) in legs.iter().zip(&names) {
-            let [length, time, steps] = leg.summaries();
-            let cell = |value: f64| if value.is_nan() { "-".to_owned() } else { format!("{value:.3}") };
-            let steps =
-                if leg.steps && !leg.walks.is_empty() { steps.median.to_string() } else { "-".into() };
-            let cells = [
-                count(leg.walks.len() as u64),
-                count(leg.unfinished(walked)),
-                cell(length.median),
-                cell(length.iqr()),
-                cell(time.median),
-                cell(time.iqr()),
-                steps,
-            ];
-            row(name, cells.each_ref().map(String::as_str));
+    let name = |leg: &WalkedLeg| format!("{} {} -> {}", leg.number, leg.ends[0], leg.ends[1]);
+    let width = walked.legs.iter().map(|leg| name(leg).chars().count()).max().unwrap_or(0);
+    let mut line = |name: &str, cells: &[String]| {
+        let cells: String = cells.iter().map(|cell| format!(" {cell:>10}")).collect();
+        let _ = writeln!(out, "{name:<width$}{cells}");
+    };
+    let heads = |words: &str| words.split(',').map(str::to_owned).collect::<Vec<_>>();
+    for (k, legs) in walked.agents().enumerate() {
+        if k > 0 {
+            line("", &[]);
         }
-        out.push('\n');
+        line(&legs[0].agent, &heads(",,length (m),,time (s),,steps"));
+        line("leg", &heads("walks,unfinished,median,IQR,median,IQR,median"));
+        for leg in legs {
+            let [[length, .., lengths], [time, .., times], [steps, ..]] = leg.numbers();
+            let count = leg.walks.len() as u64;
+            let mut cells = vec![count.to_string(), (walked.trials - count).to_string()];
+            let shown = |value: f64| if value.is_nan() { "-".to_owned() } else { format!("{value:.3}") };
+            cells.extend([length, lengths, time, times].map(shown));
+            cells.push(if steps.is_nan() { "-".to_owned() } else { steps.to_string() });
+            line(&name(leg), &cells);
+        }
     }
-    if walked.no_way > 0 {
-        let _ = writeln!(out, "No way to a goal in {}.", counted(walked.no_way, "trial"));
-    }
-    if let Some((trial, reason)) = walked.broken.first() {
-        let trials = counted(walked.broken.len() as u64, "trial");
-        let _ = writeln!(out, "Broken off: {trials}, first trial {trial}: {reason}");
-    }
-    out.truncate(out.trim_end().len());
-    out.push('\n');
     out
 }
 
 /// One object; `docs/schema/legs.schema.json` describes it.
 pub fn to_json(walked: &Walked) -> String {
-    let summary = |s: Summary| json!({ "median": s.median, "quartiles": [s.low_quartile, s.high_quartile], "iqr": s.iqr(), "mean": s.mean });
-    let leg = |leg: &WalkedLeg| {
-        let [length, time, steps] = leg.summaries();
-        json!({
-            "leg": leg.number,
-            "from": leg.ends[0],
-            "to": leg.ends[1],
-            "walks": leg.walks.len(),
-            "unfinished": leg.unfinished(walked),
-            "length_m": summary(length),
-            "time_s": summary(time),
-            "steps": if leg.steps { summary(steps) } else { Value::Null },
-        })
-    };
-    let agents = walked
-        .agents()
-        .map(|legs| json!({ "agent": legs[0].agent, "legs": legs.iter().map(leg).collect::<Vec<_>>() }));
     let broken = walked.broken.iter().map(|(trial, reason)| json!({ "trial": trial, "reason": reason }));
     let all = json!({
         "schema": 1,
         "scenario": walked.title,
         "trials": walked.trials,
         "seed": walked.seed,
-        "agents": agents.collect::<Vec<_>>(),
+        "legs": walked.legs.iter().map(|leg| leg.row(walked.trials)).collect::<Vec<_>>(),
         "trials_without_way": walked.no_way,
         "trials_broken_off": broken.collect::<Vec<_>>(),
     });
@@ -168,25 +158,19 @@ pub fn to_json(walked: &Walked) -> String {
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn write_csv(out: impl std::io::Write, walked: &Walked) -> std::io::Result<()> {
+pub fn write_csv(out: impl io::Write, walked: &Walked) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
-    let of = |name: &str| ["median", "q1", "q3", "iqr"].map(|what| format!("{name}_{what}"));
-    let heads = ["agent", "leg", "from", "to", "walks", "unfinished"].map(str::to_owned);
-    table.write_record(
-        heads.into_iter().chain(["length_m", "time_s", "steps"].iter().flat_map(|name| of(name))),
-    )?;
-    for leg in &walked.legs {
-        let [from, to] = leg.ends.clone();
-        let (walks, unfinished) = (leg.walks.len().to_string(), leg.unfinished(walked).to_string());
-        let known = [leg.agent.clone(), leg.number.to_string(), from, to, walks, unfinished];
-        let numbers = leg.summaries().into_iter().enumerate().flat_map(|(k, s)| {
-            // What is undefined has no number.
-            let cell = |value: f64| {
-                if value.is_nan() || k == 2 && !leg.steps { String::new() } else { value.to_string() }
-            };
-            [s.median, s.low_quartile, s.high_quartile, s.iqr()].map(cell)
-        });
-        table.write_record(known.into_iter().chain(numbers))?;
+    let cell = |value: Value| match value {
+        Value::Null => String::new(),
+        Value::String(text) => text,
+        number => number.to_string(),
+    };
+    let rows: Vec<Map<String, Value>> = walked.legs.iter().map(|leg| leg.row(walked.trials)).collect();
+    if let Some(first) = rows.first() {
+        table.write_record(first.keys())?;
+    }
+    for row in rows {
+        table.write_record(row.into_iter().map(|(_, value)| cell(value)))?;
     }
     table.flush()
 }

@@ -1,6 +1,6 @@
 //! Traces of walks as `smc compare-walks` reads them, at any rate: between two states the line between them.
 
-use super::{LegWalk, Walked, WalkedLeg};
+use super::Walked;
 use crate::gait::Foot;
 use std::io::{self, Write};
 
@@ -17,45 +17,31 @@ pub fn write_traces(out: impl Write, walked: &Walked, rate: f64) -> io::Result<u
     table.write_record(["walk", "leg", "t", "x", "y", "heading", "foot", "step"])?;
     let is_alone = walked.agents().count() == 1;
     let mut left_out = 0;
-    for leg in &walked.legs {
+    for (leg, walk) in walked.legs.iter().flat_map(|leg| leg.walks.iter().map(move |walk| (leg, walk))) {
         let name =
             |number: u64| if is_alone { number.to_string() } else { format!("{} {number}", leg.agent) };
-        for walk in &leg.walks {
-            let names = [name(walk.trial), name(leg.number as u64)];
-            if walk.places.len() < 2 {
-                left_out += 1;
-            } else {
-                rows(&mut table, leg, walk, &names, (walked.dt, rate))?;
-            }
+        let names = [name(walk.trial), name(leg.number as u64)];
+        let (places, dt) = (&walk.places, walked.dt);
+        let end = dt * places.len().saturating_sub(1) as f64;
+        if end == 0.0 {
+            left_out += 1;
+            continue;
+        }
+        let times = (0_u64..).map(|k| k as f64 / rate).take_while(|t| *t < end - NEAR).chain([end]);
+        for t in times {
+            let before = ((t / dt) as usize).min(places.len() - 2);
+            let (a, b) = (places[before], places[before + 1]);
+            let at = a.position + (b.position - a.position) * (t / dt - before as f64);
+            let (foot, step) = match a.step {
+                Some((Foot::Left, step)) => ("left", step.to_string()),
+                Some((Foot::Right, step)) => ("right", step.to_string()),
+                None => ("", String::new()),
+            };
+            let numbers = [t, at.x, at.y].map(|number| format!("{number:.5}"));
+            let cells = names.iter().chain(&numbers).map(String::as_str);
+            table.write_record(cells.chain([format!("{:.2}", a.heading).as_str(), foot, &step]))?;
         }
     }
     table.flush()?;
     Ok(left_out)
-}
-
-fn rows(
-    table: &mut csv::Writer<impl Write>,
-    leg: &WalkedLeg,
-    walk: &LegWalk,
-    names: &[String; 2],
-    (dt, rate): (f64, f64),
-) -> io::Result<()> {
-    let places = &walk.places;
-    let end = dt * (places.len() - 1) as f64;
-    let times = (0_u64..).map(|k| k as f64 / rate).take_while(|t| *t < end - NEAR).chain([end]);
-    for t in times {
-        let before = ((t / dt) as usize).min(places.len() - 2);
-        let (a, b) = (places[before], places[before + 1]);
-        let at = a.position + (b.position - a.position) * (t / dt - before as f64);
-        let (foot, step) = match a.step.filter(|_| leg.steps) {
-            Some((Foot::Left, step)) => ("left", step.to_string()),
-            Some((Foot::Right, step)) => ("right", step.to_string()),
-            None => ("", String::new()),
-        };
-        let numbers = [t, at.x, at.y].map(|number| format!("{number:.5}"));
-        let heading = format!("{:.2}", a.heading);
-        let cells = names.iter().chain(&numbers).map(String::as_str);
-        table.write_record(cells.chain([heading.as_str(), foot, step.as_str()]))?;
-    }
-    Ok(())
 }
