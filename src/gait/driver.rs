@@ -124,10 +124,10 @@ pub fn drivers(ways: &Ways, scenario: &Scenario, seed: u64) -> Drivers {
     drivers.with(stepped(scenario), Arc::new(Steppers { floors, gaits }))
 }
 
-/// The foot of the present step of an agent, or of its last one; `None` before its first step and for other kinds.
+/// The foot of the present step of an agent, or of its last one; `None` for other kinds.
 pub fn present_foot(state: &State, slot: Slot) -> Option<Foot> {
     let known: &Remembered = state.plans.memory(slot)?.get()?;
-    known.walker.stance.last.map(|(foot, _)| foot)
+    Some(known.walker.foot.other())
 }
 
 /// How a kind searches.

@@ -11,7 +11,7 @@ step = 1 s / 60
 scene {
   region shelf: circle (0, 0) radius 0.5 m
   region desk:  circle (4, 0) radius 0.5 m
-  point door = (0, 6)
+  point door: (0, 6)
 }
 kind operator: stepped { }
 kind adult: sfm preset helbing2000 { }

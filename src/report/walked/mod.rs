@@ -117,7 +117,7 @@ pub fn to_text(walked: &Walked) -> String {
     let width = walked.legs.iter().map(|leg| name(leg).chars().count()).max().unwrap_or(0);
     let mut line = |name: &str, cells: &[String]| {
         let cells: String = cells.iter().map(|cell| format!(" {cell:>10}")).collect();
-        let _ = writeln!(out, "{name:<width$}{cells}");
+        let _ = writeln!(out, "{}", format!("{name:<width$}{cells}").trim_end());
     };
     let heads = |words: &str| words.split(',').map(str::to_owned).collect::<Vec<_>>();
     for (k, legs) in walked.agents().enumerate() {

@@ -102,7 +102,7 @@ mod tests {
         let free = FreeSpace::new(&Scene::default(), 0.25);
         let bounds = Bounds { low: Vec2::repeat(-2.0), high: Vec2::new(6.0, 2.0) };
         let grid = ClearanceGrid::new(&free, &bounds, 0.08);
-        for (distance, radius) in [(2.3, 0.205), (2.2, 0.36), (3.0, 0.37), (2.35, 0.33), (1.0, 0.2)] {
+        for (distance, radius) in [(2.3, 0.205), (2.2, 0.355), (3.0, 0.37), (2.35, 0.33), (1.0, 0.21)] {
             let length = |trial: u64| {
                 let key = TrialKey { seed: 0, index: trial, branch: 0 };
                 let stream = Stream::of(key, 0, Purpose::Placement);
