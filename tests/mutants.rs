@@ -17,7 +17,7 @@ macro_rules! pair {
 }
 
 /// Pairs of scenario and properties; the recording of the hotel is not read, so that its names stay unknown.
-const PAIRS: [(&str, &str); 21] = [
+const PAIRS: [(&str, &str); 22] = [
     pair!("building"),
     pair!("corner"),
     pair!("corridor"),
@@ -34,6 +34,7 @@ const PAIRS: [(&str, &str); 21] = [
     pair!("robot"),
     pair!("sensors"),
     pair!("station"),
+    pair!("table1"),
     pair!("tandem"),
     pair!("plaza"),
     pair!("ward"),
