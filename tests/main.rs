@@ -23,6 +23,7 @@ mod expressions;
 mod floors;
 mod forces;
 mod formatter;
+mod gait_measured;
 mod jumps;
 mod lanes;
 mod language;

@@ -11,7 +11,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 /// The folder of the recordings.
-fn folder() -> Option<PathBuf> {
+pub(super) fn folder() -> Option<PathBuf> {
     let beside = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
     let folders = std::env::var_os("SMC_DATA").map(PathBuf::from).into_iter().chain([beside]);
     let found = folders
@@ -25,12 +25,12 @@ fn folder() -> Option<PathBuf> {
     found
 }
 
-fn text(folder: &Path, file: &str) -> String {
+pub(super) fn text(folder: &Path, file: &str) -> String {
     std::fs::read_to_string(folder.join(file)).unwrap_or_else(|error| panic!("{file}: {error}"))
 }
 
 /// The takes of the rows, in their order.
-fn takes(folder: &Path, rows: &[TakeRow]) -> Vec<Take> {
+pub(super) fn takes(folder: &Path, rows: &[TakeRow]) -> Vec<Take> {
     let mut files: Vec<&str> = rows.iter().map(|row| row.file.as_str()).collect();
     files.sort_unstable();
     files.dedup();
