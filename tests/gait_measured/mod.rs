@@ -193,7 +193,8 @@ fn walks() {
     let model = steps.model(&Options::default());
     let mut ratios = BTreeMap::<(bool, bool), Vec<[f64; 3]>>::new();
     let mut farther = BTreeMap::<bool, Vec<[f64; 3]>>::new();
-    let mut sets = BTreeMap::<bool, [Vec<[f64; 4]>; 3]>::new();
+    // Of all takes, of the straight ones and of turns.
+    let mut sets = BTreeMap::<(bool, Option<bool>), [Vec<[f64; 4]>; 3]>::new();
     for (number, captured) in steps.captured.iter().enumerate() {
         let (is_known, rest) = (captured.is_known(), captured.rest());
         let people = |index| person_of(&model, captured, 1000 * number as u64 + index);
@@ -212,8 +213,8 @@ fn walks() {
             let passed = passed.iter().map(|walk| ratio(captured.passed(walk)));
             farther.entry(is_known).or_default().extend(passed);
         }
-        let [seen, led, alone] = sets.entry(is_known).or_default();
-        seen.extend(inner(&rest.iter().map(|s| (s.foot, s.shape)).collect::<Vec<_>>()));
+        let seen = inner(&rest.iter().map(|s| (s.foot, s.shape)).collect::<Vec<_>>());
+        let [mut led, mut alone] = [Vec::new(), Vec::new()];
         for (index, walk) in (0..).zip(&walks) {
             led.extend(inner(&walk.iter().map(|s| (s.foot, s.shape)).collect::<Vec<_>>()));
             let (person, mut walker) = (people(index), captured.walker());
@@ -224,6 +225,12 @@ fn walks() {
                 walker.stance.last.expect("a step was made")
             };
             alone.extend(inner(&(0..rest.len()).map(one).collect::<Vec<_>>()));
+        }
+        for kind in [None, Some(captured.is_turn)] {
+            let set = sets.entry((is_known, kind)).or_default();
+            for (all, part) in set.iter_mut().zip([&seen, &led, &alone]) {
+                all.extend(part);
+            }
         }
     }
     let show = |name: &str, rows: &[[f64; 3]]| {
@@ -257,10 +264,11 @@ fn walks() {
         steps.train.iter().filter(|s| s.phase == Phase::Inner).map(|s| vector(s.foot, &s.shape)).collect();
     let spreads = std::array::from_fn(|q| spread(&column(&inner, q)));
     println!("spreads {spreads:.3?}");
-    for (is_known, [seen, led, alone]) in &sets {
-        tested(&format!("known {is_known}, to a goal"), seen, led, &spreads);
-        let [p, controls @ ..] = tested(&format!("known {is_known}, gait alone"), seen, alone, &spreads);
-        if *is_known {
+    for ((is_known, kind), [seen, led, alone]) in &sets {
+        let name = format!("known {is_known}, turn {kind:?}");
+        tested(&format!("{name}, to a goal"), seen, led, &spreads);
+        let [p, controls @ ..] = tested(&format!("{name}, gait alone"), seen, alone, &spreads);
+        if *is_known && kind.is_none() {
             assert!(p > 0.05 && controls.iter().all(|p| *p < 0.01), "{p} {controls:?}");
         }
     }
