@@ -148,7 +148,9 @@ fn held_out_steps_are_predicted() {
     for row in rows.iter().filter(|row| row.subject.is_empty()) {
         styles.entry(&row.file).or_default().push(&row.name);
     }
-    styles.values_mut().for_each(|names| names.sort_unstable());
+    for names in styles.values_mut() {
+        names.sort_unstable();
+    }
     let is_held = |row: &TakeRow| match styles.get(row.file.as_str()) {
         Some(names) => names.iter().position(|name| **name == *row.name).is_some_and(|k| k % 5 == 4),
         None => HELD_OUT.contains(&row.subject.as_str()),

@@ -81,7 +81,7 @@ fn the_root_goes_along_its_steps_whatever_pushes() {
 
 #[test]
 fn a_walk_ends_at_a_drawn_point_and_the_leg_with_its_last_step() {
-    let model = hall(&format!("{ALONE}"));
+    let model = hall(ALONE);
     let mut ends = Vec::new();
     for trial in 0..12 {
         let path = track(&model, trial, "me");

@@ -35,7 +35,7 @@ impl Curve {
         for k in 2..SPANS {
             let factor = below(k) / diagonal[k - 1];
             diagonal[k] -= factor * above(k - 1);
-            d[k] = d[k] - d[k - 1] * factor;
+            d[k] -= d[k - 1] * factor;
         }
         d[SPANS - 1] /= diagonal[SPANS - 1];
         for k in (1..SPANS - 1).rev() {
@@ -106,6 +106,12 @@ impl Curve {
 
 #[cfg(test)]
 mod tests {
+    #![allow(
+        clippy::disallowed_methods,
+        clippy::print_stdout,
+        reason = "tests may use the platform's functions"
+    )]
+
     use super::*;
 
     fn shape(of: impl Fn(f64) -> Vec2) -> Shape {

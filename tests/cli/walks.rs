@@ -60,7 +60,7 @@ fn tables_that_are_wrong_have_a_code_and_a_place() {
         ("one.csv", "walk,t,x,y\n1,0,0,0\n1,1,0,0\n"),
         ("columns.csv", "# recorded\nwalk,time,x,y\n1,0,0,0\n"),
         ("cells.csv", "walk,t,x,y\n1,0,0,0\n1,1,é,0\n2,0,0,0\n2,0,0,0\n"),
-        ("others.csv", &good.replace('\n', "\nn").trim_end_matches('n').to_owned()),
+        ("others.csv", good.replace('\n', "\nn").trim_end_matches('n')),
         ("empty.csv", "\n"),
     ]);
     place.write("latin.csv", b"walk,t,x,y\n\xe9,0,0,0\n");

@@ -161,6 +161,7 @@ fn tested(name: &str, captured: &[[f64; 4]], drawn: &[[f64; 4]], spreads: &[f64;
     };
     let (a, b) = (pick(captured, 1), pick(drawn, 2));
     let middle: [f64; 4] = std::array::from_fn(|q| mean(&column(&b, q)));
+    #[allow(clippy::type_complexity, reason = "a table of names and changes")]
     let controls: [(&str, &dyn Fn([f64; 4]) -> [f64; 4]); 4] = [
         ("as drawn", &|v| v),
         ("20 % slower", &|[length, turn, duration, sway]| [length, turn, 1.25 * duration, sway]),

@@ -51,7 +51,9 @@ impl Takes {
             let file = if name == "-" { "stdin.csv" } else { name };
             let Some(source) = takes.open(name, None) else { continue };
             let header = source.text.trim_start_matches('\u{feff}').lines().next().unwrap_or_default();
-            if file.ends_with(".csv") && header.split(',').any(|field| field.trim() == "file") {
+            if Path::new(file).extension().is_some_and(|end| end.eq_ignore_ascii_case("csv"))
+                && header.split(',').any(|field| field.trim() == "file")
+            {
                 takes.table(reading, name, source);
             } else {
                 takes.file(reading, file, source, &[]);

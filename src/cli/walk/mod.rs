@@ -165,9 +165,10 @@ fn chosen(program: &Program, names: &[String]) -> Result<Vec<usize>, Diagnostic>
             Some(near) => format!("did you mean `{near}`?"),
             None => format!("agents with a route are {}", known.join(", ")),
         };
-        let title = match agents.iter().any(|agent| agent.name == *name) {
-            true => format!("agent `{name}` has no route from the start of a trial on"),
-            false => format!("unknown agent `{name}`"),
+        let title = if agents.iter().any(|agent| agent.name == *name) {
+            format!("agent `{name}` has no route from the start of a trial on")
+        } else {
+            format!("unknown agent `{name}`")
         };
         let found = known.iter().position(|known| known == name).map(|at| all[at]);
         found.ok_or_else(|| complaint::argument(title, hint()))

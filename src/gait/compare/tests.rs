@@ -1,5 +1,7 @@
 //! The traps of comparing clouds: synthetic walks that differ in one thing each.
 
+#![allow(clippy::disallowed_methods, clippy::print_stdout, reason = "tests may use the platform's functions")]
+
 use super::*;
 use crate::base::geometry::Vec2;
 use crate::base::math::sin_cos;
@@ -26,12 +28,12 @@ fn walks(sample: u64, count: u32, kind: Kind) -> Vec<Walk> {
         let [pace, amplitude] = stream.normal_pair(2);
         let speed = 1.1 * (1.0 + 0.08 * pace * kind.scatter) / kind.slower;
         let sway = 0.02 * (1.0 + 0.2 * amplitude) * kind.sway;
-        let (way, turn) = (goal - start, 6.283 * stream.uniform(3));
+        let (way, turn) = (goal - start, std::f64::consts::TAU * stream.uniform(3));
         let across = Vec2::new(-way.y, way.x) / way.norm();
         let rows = (way.norm() / speed * 60.0) as u32;
         let times: Vec<f64> = (0..=rows).map(|k| f64::from(k) / 60.0).collect();
         let at = |t: &f64| {
-            let swing = sway * sin_cos(turn + 6.283 * 0.9 * t).0;
+            let swing = sway * sin_cos(turn + std::f64::consts::TAU * 0.9 * t).0;
             start + way * (t * speed / way.norm()) + across * swing
         };
         let points = times.iter().map(at).collect();
@@ -132,7 +134,7 @@ fn table_of_traps() {
         ("second sample of the population", 1, POPULATION),
         ("sway removed", 1, Kind { sway: 0.0, ..POPULATION }),
         ("sway doubled", 1, Kind { sway: 2.0, ..POPULATION }),
-        ("goal shifted by 5 cm", 1, Kind { shift: 0.05 / 1.414_213_562, ..POPULATION }),
+        ("goal shifted by 5 cm", 1, Kind { shift: 0.05 / std::f64::consts::SQRT_2, ..POPULATION }),
         ("20 % slower", 1, Kind { slower: 1.2, ..POPULATION }),
         ("half the scatter", 1, Kind { scatter: 0.5, ..POPULATION }),
         ("one straight line, 400 times", 1, STRAIGHT),

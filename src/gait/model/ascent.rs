@@ -64,6 +64,7 @@ mod tests {
     use super::*;
 
     /// A bent ridge (Rosenbrock 1960) with its top at (1, 1).
+    #[allow(clippy::unnecessary_wraps, reason = "as the function that is climbed")]
     fn ridge(x: &[f64]) -> Option<(f64, Vec<f64>)> {
         let (a, b) = (1.0 - x[0], x[1] - x[0] * x[0]);
         Some((-(a * a + 100.0 * b * b), vec![2.0 * a + 400.0 * b * x[0], -200.0 * b]))

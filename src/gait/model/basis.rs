@@ -33,10 +33,8 @@ impl Basis {
                 (rows.iter().map(|r| (r[k] - center[k]) * (r[k] - center[k])).sum::<f64>() / count).sqrt();
             if deviation > 1e-9 { deviation } else { 0.0 }
         };
-        let scale: Columns = std::array::from_fn(|k| match scaled {
-            true => deviation(k),
-            false => f64::from(k + 1 < COLUMNS),
-        });
+        let scale: Columns =
+            std::array::from_fn(|k| if scaled { deviation(k) } else { f64::from(k + 1 < COLUMNS) });
         let mut basis =
             Self { center, scale, directions: Vec::new(), spread: Vec::new(), explained: Vec::new() };
         let scaled_rows: Vec<Columns> = rows.iter().map(|r| basis.scaled(r)).collect();
@@ -105,8 +103,8 @@ impl Basis {
 }
 
 /// Vectors whose sum with independent standard normal factors has a covariance; as many as it has ranks.
-pub(super) fn square_root(covariance: SMatrix<f64, COLUMNS, COLUMNS>) -> Vec<Columns> {
-    let eigen = SymmetricEigen::new(covariance);
+pub(super) fn square_root(covariance: &SMatrix<f64, COLUMNS, COLUMNS>) -> Vec<Columns> {
+    let eigen = SymmetricEigen::new(*covariance);
     let mut order: Vec<usize> = (0..COLUMNS).collect();
     order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
     let least = eigen.eigenvalues.max() * 1e-12;
@@ -183,13 +181,13 @@ mod tests {
     #[test]
     fn square_roots_have_their_covariance() {
         let (_, covariance) = moments(&rows());
-        let root = square_root(covariance);
+        let root = square_root(&covariance);
         let product = |i: usize, j: usize| root.iter().map(|r| r[i] * r[j]).sum::<f64>();
         for i in 0..COLUMNS {
             for j in 0..COLUMNS {
                 assert!((product(i, j) - covariance[(i, j)]).abs() < 1e-10);
             }
         }
-        assert!(square_root(SMatrix::zeros()).is_empty());
+        assert!(square_root(&SMatrix::zeros()).is_empty());
     }
 }

@@ -24,7 +24,7 @@ impl Density {
         let (_, covariance) = moments(&spanned);
         let (n, d) = (steps.len() as f64, basis.components() as f64);
         let factor = math::pow(n, -2.0 / (d + 4.0)) * n / (n - 1.0).max(1.0);
-        Self { kernel: square_root(SMatrix::from_fn(|i, j| covariance[(i, j)] * factor)), steps }
+        Self { kernel: square_root(&SMatrix::from_fn(|i, j| covariance[(i, j)] * factor)), steps }
     }
 
     /// A step in scaled columns.
@@ -46,6 +46,12 @@ pub(super) fn normals(draws: Draws, from: u32) -> [f64; COLUMNS] {
 
 #[cfg(test)]
 mod tests {
+    #![allow(
+        clippy::disallowed_methods,
+        clippy::print_stdout,
+        reason = "tests may use the platform's functions"
+    )]
+
     use super::super::{columns, made};
     use super::*;
     use crate::base::random::{Purpose, Stream, TrialKey};

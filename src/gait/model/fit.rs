@@ -167,9 +167,10 @@ impl Task<'_> {
         if own < FEWEST_FIRST {
             steps = chosen(&|s| s.phase == Phase::First);
             let few = steps.len() < FEWEST_FIRST_BOTH;
-            let instead = match few {
-                true => "steps between others, shortened to 0.57 and begun from rest,",
-                false => "those of the other foot as well, mirrored,",
+            let instead = if few {
+                "steps between others, shortened to 0.57 and begun from rest,"
+            } else {
+                "those of the other foot as well, mirrored,"
             };
             if few {
                 let inner = self.steps.iter().zip(&self.rows);
@@ -231,7 +232,7 @@ impl Task<'_> {
             let axis = |k: usize| next.spanned(&std::array::from_fn(|q| f64::from(q == k)));
             ((0..outputs).map(axis).collect(), 1.0)
         } else {
-            (square_root(moments(&residuals).1), usual)
+            (square_root(&moments(&residuals).1), usual)
         };
         let places: Vec<f64> = (0..pairs.len())
             .flat_map(|i| (0..count).map(move |q| (i, q)))

@@ -1,8 +1,8 @@
 //! The marginal likelihood of a Gaussian process with several outputs (Rasmussen and Williams 2006, sections 2.3 and 5.4).
 //!
 //! All outputs share C = R + noise I, where R is the squared exponential kernel with a length scale for each input and variance
-//! one. Output k has the covariance s_k^2 C. The best s_k^2 = y_k' C^-1 y_k / n is put in, which leaves
-//! L = -n/2 sum ln s_k^2 - d/2 ln|C| - n d/2 (1 + ln 2 pi) as a function of the length scales and the noise.
+//! one. Output k has the covariance `s_k^2` C. The best `s_k^2` = `y_k`' C^-1 `y_k` / n is put in, which leaves
+//! L = -n/2 sum ln `s_k^2` - d/2 ln|C| - n d/2 (1 + ln 2 pi) as a function of the length scales and the noise.
 
 use super::factor::{factor, log_determinant};
 use crate::base::math;
@@ -101,6 +101,12 @@ pub(super) fn value(
 
 #[cfg(test)]
 mod tests {
+    #![allow(
+        clippy::disallowed_methods,
+        clippy::print_stdout,
+        reason = "tests may use the platform's functions"
+    )]
+
     use super::*;
 
     fn data(n: usize) -> (DMatrix<f64>, DMatrix<f64>) {

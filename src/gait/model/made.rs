@@ -1,5 +1,7 @@
 //! Made steps and a made model for tests.
 
+#![allow(clippy::disallowed_methods, clippy::print_stdout, reason = "tests may use the platform's functions")]
+
 use super::columns::{COLUMNS, Columns};
 use super::people::People;
 use super::transition::{Process, Transition};

@@ -106,6 +106,12 @@ impl Pairs {
 
 #[cfg(test)]
 mod tests {
+    #![allow(
+        clippy::disallowed_methods,
+        clippy::print_stdout,
+        reason = "tests may use the platform's functions"
+    )]
+
     use super::*;
     use crate::base::random::{Purpose, Stream, TrialKey};
 

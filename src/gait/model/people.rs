@@ -1,5 +1,5 @@
 //! Within and between people: the mean step of each subject is the typical one plus an offset, a one-way model with random effects
-//! (Searle, Casella, McCulloch 1992, chapter 3), column by column, shrunk by the ratio of variances. Rows are seen from the
+//! (Searle, Casella, `McCulloch` 1992, chapter 3), column by column, shrunk by the ratio of variances. Rows are seen from the
 //! foot (`columns::seen_from`), so that both feet share an offset.
 
 use super::basis::{combined, moments, square_root};
@@ -75,7 +75,7 @@ impl People {
         let offsets: Vec<Columns> = people.subjects.iter().map(|s| plus(&s.offset, -1.0, &typical)).collect();
         let square = |i: usize, j: usize| offsets.iter().map(|o| o[i] * o[j]).sum::<f64>();
         let scale = |k: usize| if square(k, k) > 0.0 { (between[k] / square(k, k)).sqrt() } else { 0.0 };
-        people.loadings = square_root(SMatrix::from_fn(|i, j| square(i, j) * scale(i) * scale(j)));
+        people.loadings = square_root(&SMatrix::from_fn(|i, j| square(i, j) * scale(i) * scale(j)));
         people
     }
 
@@ -102,6 +102,12 @@ impl People {
 
 #[cfg(test)]
 mod tests {
+    #![allow(
+        clippy::disallowed_methods,
+        clippy::print_stdout,
+        reason = "tests may use the platform's functions"
+    )]
+
     use super::*;
     use crate::base::random::{Purpose, Stream, TrialKey};
 

@@ -154,6 +154,12 @@ impl Gait for Person {
 
 #[cfg(test)]
 mod tests {
+    #![allow(
+        clippy::disallowed_methods,
+        clippy::print_stdout,
+        reason = "tests may use the platform's functions"
+    )]
+
     use super::super::made;
     use super::*;
     use crate::base::fingerprint::Fingerprint;
@@ -182,7 +188,9 @@ mod tests {
         let mut print = Fingerprint::default();
         for (normals, share) in [([0.0; COLUMNS], 1.0), ([0.7; COLUMNS], 0.8)] {
             for (_, shape) in walk(&model.person(&normals), 50, share) {
-                columns::of(&shape).iter().for_each(|x| print.add(&x.to_bits().to_le_bytes()));
+                for x in columns::of(&shape) {
+                    print.add(&x.to_bits().to_le_bytes());
+                }
             }
         }
         assert_eq!(print.to_string(), "fnv1a64:4c5964624321e3ee");

@@ -176,6 +176,12 @@ pub(super) fn linear(inputs: &DMatrix<f64>, outputs: &DMatrix<f64>) -> Option<Fi
 
 #[cfg(test)]
 mod tests {
+    #![allow(
+        clippy::disallowed_methods,
+        clippy::print_stdout,
+        reason = "tests may use the platform's functions"
+    )]
+
     use super::super::transition::Transition;
     use super::*;
 

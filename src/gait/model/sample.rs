@@ -24,7 +24,7 @@ fn walk(gait: &Arc<LearnedGait>, key: TrialKey) -> Vec<RecordedStep> {
     }
     let person = gait.person(&normals);
     let stream = Stream::of(key, 0, Purpose::Step);
-    let mut foot = if key.index % 2 == 0 { Foot::Left } else { Foot::Right };
+    let mut foot = if key.index.is_multiple_of(2) { Foot::Left } else { Foot::Right };
     let mut stance = Stance::default();
     let step = |number: u32| {
         stance = person.step(&stance, foot, 1.0, Draws::of(stream, number, 0));

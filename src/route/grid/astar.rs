@@ -57,6 +57,12 @@ pub fn shortest_cells(grid: &ClearanceGrid, from: Vec2, to: Vec2) -> Option<Vec<
 
 #[cfg(test)]
 mod tests {
+    #![allow(
+        clippy::disallowed_methods,
+        clippy::print_stdout,
+        reason = "tests may use the platform's functions"
+    )]
+
     use super::*;
     use crate::base::geometry::{Bounds, Shape};
     use crate::base::math;
