@@ -66,6 +66,8 @@ pub enum Purpose {
     Plan = 11,
     /// Steps of walkers that step.
     Step = 12,
+    /// First centroids of groups of people.
+    Group = 13,
     /// Synthetic data and tests.
     Test = 255,
 }

@@ -6,7 +6,7 @@ use super::files::Files;
 use super::files::missing;
 use super::places;
 use super::symbols::{Meaning, unknown};
-use crate::data::tracks::{LineError, Observation, Recording, read_eth_biwi};
+use crate::data::tracks::{LineError, PersonState, Recording, read_eth_biwi};
 use crate::model::Law;
 use crate::syntax::ast::{Expr, Ident, Recorded, Text};
 use crate::syntax::codes::Code;
@@ -66,7 +66,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// The people of a recording at a time.
-    pub(super) fn observations(&mut self, recorded: &Recorded, plural: bool) -> Lowered<Vec<Observation>> {
+    pub(super) fn observations(&mut self, recorded: &Recorded, plural: bool) -> Lowered<Vec<PersonState>> {
         let time = self.number_of(&recorded.at, Dimension::TIME, &Locals::default());
         let only: Vec<_> = recorded.only.iter().map(|e| self.identity(e)).collect();
         let except: Vec<_> = recorded.except.iter().map(|e| self.identity(e)).collect();
@@ -143,7 +143,7 @@ impl<'a> Elaborator<'a> {
             }
             named.push(*id);
         }
-        let chosen: Vec<Observation> = found
+        let chosen: Vec<PersonState> = found
             .into_iter()
             .filter(|o| (only.is_empty() || only.contains(&o.id)) && !except.contains(&o.id))
             .collect();
@@ -177,9 +177,9 @@ impl<'a> Elaborator<'a> {
     pub(super) fn onto_rims(
         &mut self,
         recorded: &Recorded,
-        mut found: Vec<Observation>,
+        mut found: Vec<PersonState>,
         radius: &Law,
-    ) -> Vec<Observation> {
+    ) -> Vec<PersonState> {
         let barriers = places::solids(&self.scene.barriers);
         let (least, most) = radius.bounds();
         let room = if most.is_finite() { most } else { least };

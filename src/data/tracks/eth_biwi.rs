@@ -8,10 +8,10 @@
 //! the distance in frames between two observations of one person gives the rate: 10 frames mean 25 frames
 //! per second (hotel), 6 mean 15 (eth). Time 0 is the first annotated frame of the file.
 
-use super::line::{LineError, fields, quoted};
-use super::recording::{Person, Recording, Sample};
+use super::line::{LineError, fields, number, quoted, whole_fault};
+use super::recording::{Clock, Person, Recording};
+use super::rows::{Row, people, usual_stride};
 use crate::base::geometry::{Vec2, coordinate_fault};
-use std::collections::BTreeMap;
 
 /// Seconds between two annotations, in every sequence of the set.
 const SECONDS_PER_ANNOTATION: f64 = 0.4;
@@ -24,15 +24,6 @@ const ENOUGH: f64 = 5.0;
 const DOUBTFUL: f64 = 1.15;
 
 const NAMES: [&str; 8] = ["frame", "id", "x", "z", "y", "vx", "vz", "vy"];
-
-/// One good row of the table.
-struct Row {
-    line: usize,
-    frame: u32,
-    id: u32,
-    position: Vec2,
-    velocity: Vec2,
-}
 
 /// Reads a whole `obsmat.txt`. Empty lines are passed over.
 ///
@@ -51,33 +42,7 @@ pub fn read_eth_biwi(text: &str) -> Result<Recording, Vec<LineError>> {
             rows.push(row);
         }
     }
-    rows.sort_by_key(|row| (row.id, row.frame, row.line));
-    for pair in rows.windows(2) {
-        if (pair[0].id, pair[0].frame) == (pair[1].id, pair[1].frame) {
-            let message = format!(
-                "person {} is in frame {} twice, first in line {}",
-                pair[1].id, pair[1].frame, pair[0].line
-            );
-            errors.push(LineError::whole(pair[1].line, message));
-        }
-    }
-    if rows.is_empty() && errors.is_empty() {
-        errors.push(LineError::of_file("the file contains no observation"));
-    }
-    if !errors.is_empty() {
-        errors.sort_by_key(|error| (error.line, error.column));
-        return Err(errors);
-    }
-    let people: Vec<Person> = rows
-        .chunk_by(|a, b| a.id == b.id)
-        .map(|track| Person {
-            id: track[0].id,
-            samples: track
-                .iter()
-                .map(|row| Sample { frame: row.frame, position: row.position, velocity: row.velocity })
-                .collect(),
-        })
-        .collect();
+    let people = people(rows, errors, |row| format!("in frame {}", row.frame))?;
     let stride = usual_stride(&people).unwrap_or(DEFAULT_STRIDE);
     if let Some(seconds) = other_interval(&people, stride) {
         let message = format!(
@@ -85,10 +50,10 @@ pub fn read_eth_biwi(text: &str) -> Result<Recording, Vec<LineError>> {
         );
         return Err(vec![LineError::of_file(message)]);
     }
-    Ok(Recording::new(people, stride, SECONDS_PER_ANNOTATION / f64::from(stride)))
+    Ok(Recording::new(people, Clock::film(stride, SECONDS_PER_ANNOTATION / f64::from(stride))))
 }
 
-fn read_row(number: usize, line: &str, errors: &mut Vec<LineError>) -> Option<Row> {
+fn read_row(at: usize, line: &str, errors: &mut Vec<LineError>) -> Option<Row> {
     let count = line.split_whitespace().count();
     if count != NAMES.len() {
         let message = format!(
@@ -97,15 +62,14 @@ fn read_row(number: usize, line: &str, errors: &mut Vec<LineError>) -> Option<Ro
             NAMES.len(),
             NAMES.join(" ")
         );
-        errors.push(LineError::whole(number, message));
+        errors.push(LineError::whole(at, message));
         return None;
     }
     let before = errors.len();
     let mut values = [0.0; 8];
     for (k, (column, field)) in fields(line).enumerate() {
-        let fault = match field.parse::<f64>() {
-            Err(_) => Some("is not a number"),
-            Ok(value) if !value.is_finite() => Some("is not a finite number"),
+        let fault = match number(field) {
+            Err(fault) => Some(fault),
             Ok(value) => {
                 values[k] = value;
                 (k < 2).then(|| whole_fault(value)).flatten()
@@ -113,48 +77,20 @@ fn read_row(number: usize, line: &str, errors: &mut Vec<LineError>) -> Option<Ro
         };
         if let Some(fault) = fault {
             let message = format!("{} {} {fault}", NAMES[k], quoted(field));
-            errors.push(LineError::at(number, column, message));
+            errors.push(LineError::at(at, column, message));
         }
     }
     let position = Vec2::new(values[2], values[4]);
     if let Some(fault) = coordinate_fault(position) {
-        errors.push(LineError::whole(number, fault));
+        errors.push(LineError::whole(at, fault));
     }
     (errors.len() == before).then(|| Row {
-        line: number,
+        line: at,
         frame: values[0] as u32,
         id: values[1] as u32,
         position,
-        velocity: Vec2::new(values[5], values[7]),
+        velocity: Some(Vec2::new(values[5], values[7])),
     })
-}
-
-/// Why a number is no frame and no id.
-fn whole_fault(value: f64) -> Option<&'static str> {
-    if value < 0.0 {
-        Some("is negative")
-    } else if value.fract() != 0.0 {
-        Some("is not a whole number")
-    } else if value > f64::from(u32::MAX) {
-        Some("is too large")
-    } else {
-        None
-    }
-}
-
-/// The most frequent distance in frames between successive observations of one person; of equally
-/// frequent ones the smallest.
-fn usual_stride(people: &[Person]) -> Option<u32> {
-    let mut counts = BTreeMap::<u32, usize>::new();
-    for person in people {
-        for pair in person.samples.windows(2) {
-            *counts.entry(pair[1].frame - pair[0].frame).or_default() += 1;
-        }
-    }
-    counts
-        .into_iter()
-        .max_by_key(|&(stride, count)| (count, std::cmp::Reverse(stride)))
-        .map(|(stride, _)| stride)
 }
 
 /// Seconds between two annotations, if places and velocities together tell clearly that these are others.
@@ -166,7 +102,8 @@ fn other_interval(people: &[Person], stride: u32) -> Option<f64> {
         for pair in person.samples.windows(2) {
             let annotations = f64::from(pair[1].frame - pair[0].frame) / f64::from(stride);
             way += pair[1].position - pair[0].position;
-            sum += (pair[0].velocity + pair[1].velocity) * (0.5 * annotations * SECONDS_PER_ANNOTATION);
+            let velocities = pair.iter().filter_map(|sample| sample.velocity).sum::<Vec2>();
+            sum += velocities * (0.5 * annotations * SECONDS_PER_ANNOTATION);
         }
         gone += way.norm();
         told += sum.norm();

@@ -59,6 +59,40 @@ pub(in crate::data) fn quoted(field: &str) -> String {
     format!("`{}…`", head.escape_debug())
 }
 
+/// The finite number of a field.
+///
+/// # Errors
+/// What is wrong with the field, to be put after it.
+pub(in crate::data) fn number(field: &str) -> Result<f64, &'static str> {
+    match field.parse::<f64>() {
+        Err(_) => Err("is not a number"),
+        Ok(value) if !value.is_finite() => Err("is not a finite number"),
+        Ok(value) => Ok(value),
+    }
+}
+
+/// Why a number is not a frame or an id: a whole number from 0 to 4294967295.
+pub(in crate::data) fn whole_fault(value: f64) -> Option<&'static str> {
+    if value < 0.0 {
+        Some("is negative")
+    } else if value.fract() != 0.0 {
+        Some("is not a whole number")
+    } else if value > f64::from(u32::MAX) {
+        Some("is too large")
+    } else {
+        None
+    }
+}
+
+/// An error of JSON in one line, at its character.
+pub(super) fn json_fault(number: usize, line: &str, error: &serde_json::Error) -> LineError {
+    let said = error.to_string();
+    // The place is said by the error of the line.
+    let message = said.split(" at line ").next().unwrap_or(&said);
+    let before = line.as_bytes().get(..error.column().saturating_sub(1)).unwrap_or(line.as_bytes());
+    LineError::at(number, String::from_utf8_lossy(before).chars().count() + 1, message)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

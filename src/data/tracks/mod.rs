@@ -1,11 +1,25 @@
-//! Recorded tracks of people seen from above.
+//! Recorded tracks of people seen from above, and batches of observations.
 
+pub mod batch;
+pub mod csv;
 pub mod eth_biwi;
+pub mod format;
 pub mod groups;
 pub mod line;
+pub mod observations;
+pub mod pedpy;
 pub mod recording;
+mod rows;
+mod timed;
+pub mod trajnet;
 
+pub use batch::{Batch, Observation};
+pub use csv::read_csv;
 pub use eth_biwi::read_eth_biwi;
+pub use format::{Format, Reading};
 pub use groups::read_groups;
 pub use line::LineError;
-pub use recording::{Observation, Person, Recording, Sample};
+pub use observations::{read_batch, read_observations};
+pub use pedpy::read_pedpy;
+pub use recording::{Person, PersonState, Recording, Sample, Velocity};
+pub use trajnet::read_trajnet;

@@ -2,6 +2,31 @@
 
 use crate::base::geometry::Vec2;
 
+/// Which velocities a recording has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Velocity {
+    /// As the file has them. Those of ETH/BIWI are central differences, which hold the next position.
+    #[default]
+    Recorded,
+    /// The difference from the last position of the track, which an observer knows at the time.
+    Seen,
+}
+
+impl Velocity {
+    /// Its name in files and options: `recorded`, `seen`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Recorded => "recorded",
+            Self::Seen => "seen",
+        }
+    }
+
+    /// The one of that name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        [Self::Recorded, Self::Seen].into_iter().find(|velocity| velocity.name() == name)
+    }
+}
+
 /// How far, in frames of the film, a time may lie from an annotated frame and still mean that frame.
 const SAME_FRAME: f64 = 0.5;
 
@@ -12,8 +37,8 @@ pub struct Sample {
     pub frame: u32,
     /// Position, m.
     pub position: Vec2,
-    /// Velocity, m/s.
-    pub velocity: Vec2,
+    /// Velocity, m/s; `None` where it is unknown.
+    pub velocity: Option<Vec2>,
 }
 
 /// One person, with samples of ascending frames.
@@ -27,32 +52,77 @@ pub struct Person {
 
 /// One person at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Observation {
+pub struct PersonState {
     /// Number given by the annotators.
     pub id: u32,
     /// Position, m.
     pub position: Vec2,
-    /// Velocity, m/s.
+    /// Velocity, m/s; zero where it is unknown.
     pub velocity: Vec2,
 }
 
-/// People over time. Time 0 is the first annotated frame.
+/// How frames of a recording are seconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Clock {
+    /// Time of the first annotated frame, s.
+    pub(super) start: f64,
+    pub(super) seconds_per_frame: f64,
+    /// Usual number of frames between two annotations of one person.
+    pub(super) stride: u32,
+    /// Most frames between two annotations of one person that are not a hole.
+    pub(super) longest_gap: u32,
+}
+
+impl Clock {
+    /// A film that begins at time 0 with its first annotated frame.
+    pub(super) const fn film(stride: u32, seconds_per_frame: f64) -> Self {
+        Self { start: 0.0, seconds_per_frame, stride, longest_gap: stride }
+    }
+}
+
+/// People over time. Time 0 is the first annotated frame, unless the file has times of its own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
     people: Vec<Person>,
     /// Annotated frames, ascending.
     frames: Vec<u32>,
-    stride: u32,
-    seconds_per_frame: f64,
+    clock: Clock,
+    velocity: Velocity,
 }
 
 impl Recording {
-    /// A recording of people with ascending ids, annotated every `stride` frames of so many seconds.
-    pub(super) fn new(people: Vec<Person>, stride: u32, seconds_per_frame: f64) -> Self {
+    /// A recording of people with ascending ids. Where a sample lacks a velocity, all become the seen ones.
+    pub(super) fn new(people: Vec<Person>, clock: Clock) -> Self {
         let mut frames: Vec<u32> = people.iter().flat_map(|p| p.samples.iter().map(|s| s.frame)).collect();
         frames.sort_unstable();
         frames.dedup();
-        Self { people, frames, stride, seconds_per_frame }
+        let all = people.iter().flat_map(|person| &person.samples).all(|sample| sample.velocity.is_some());
+        let recording = Self { people, frames, clock, velocity: Velocity::Recorded };
+        if all { recording } else { recording.with(Velocity::Seen) }
+    }
+
+    /// The recording with these velocities. A file without velocities has only the seen ones, which then stay.
+    #[must_use]
+    pub fn with(mut self, velocity: Velocity) -> Self {
+        if velocity == Velocity::Seen && self.velocity != velocity {
+            for person in &mut self.people {
+                let mut last: Option<Sample> = None;
+                for sample in &mut person.samples {
+                    let before = last.replace(*sample);
+                    sample.velocity = before.map(|before| {
+                        let seconds = f64::from(sample.frame - before.frame) * self.clock.seconds_per_frame;
+                        (sample.position - before.position) / seconds
+                    });
+                }
+            }
+            self.velocity = velocity;
+        }
+        self
+    }
+
+    /// Which velocities it has.
+    pub const fn velocity(&self) -> Velocity {
+        self.velocity
     }
 
     /// Everybody, by ascending id.
@@ -77,18 +147,18 @@ impl Recording {
 
     /// Frames of the film per second.
     pub fn frames_per_second(&self) -> f64 {
-        1.0 / self.seconds_per_frame
+        1.0 / self.clock.seconds_per_frame
     }
 
     /// Seconds between two annotations of one person.
     pub fn step(&self) -> f64 {
-        f64::from(self.stride) * self.seconds_per_frame
+        f64::from(self.clock.stride) * self.clock.seconds_per_frame
     }
 
-    /// Time of a frame, s; negative before the first annotated one.
+    /// Time of a frame, s.
     pub fn time_of(&self, frame: u32) -> f64 {
         let first = self.frames.first().copied().unwrap_or(0);
-        (f64::from(frame) - f64::from(first)) * self.seconds_per_frame
+        self.clock.start + (f64::from(frame) - f64::from(first)) * self.clock.seconds_per_frame
     }
 
     /// Time of the last annotated frame, s.
@@ -106,9 +176,9 @@ impl Recording {
     /// frame of the film away, else in
     /// proportion between the two frames of the same person around it. Nobody is present before the first
     /// or after the last frame of a track, nor in a hole of it longer than the usual step.
-    pub fn at(&self, time: f64) -> Vec<Observation> {
+    pub fn at(&self, time: f64) -> Vec<PersonState> {
         let Some(&first) = self.frames.first() else { return Vec::new() };
-        let mut frame = f64::from(first) + time / self.seconds_per_frame;
+        let mut frame = f64::from(first) + (time - self.clock.start) / self.clock.seconds_per_frame;
         if !frame.is_finite() {
             return Vec::new();
         }
@@ -121,23 +191,24 @@ impl Recording {
         self.people.iter().filter_map(|person| self.seen(person, frame)).collect()
     }
 
-    fn seen(&self, person: &Person, frame: f64) -> Option<Observation> {
+    fn seen(&self, person: &Person, frame: f64) -> Option<PersonState> {
         let after = person.samples.partition_point(|sample| f64::from(sample.frame) < frame);
         let next = person.samples.get(after)?;
-        let observation = |position, velocity| Observation { id: person.id, position, velocity };
+        let state = |position, velocity: Option<Vec2>| PersonState { id: person.id, position, velocity: velocity.unwrap_or_default() };
         if f64::from(next.frame) == frame {
-            return Some(observation(next.position, next.velocity));
+            return Some(state(next.position, next.velocity));
         }
         let last = &person.samples[after.checked_sub(1)?];
         let gap = next.frame - last.frame;
-        if gap > self.stride {
+        if gap > self.clock.longest_gap {
             return None;
         }
         let share = (frame - f64::from(last.frame)) / f64::from(gap);
-        Some(observation(
-            last.position + (next.position - last.position) * share,
-            last.velocity + (next.velocity - last.velocity) * share,
-        ))
+        let velocity = match (last.velocity, next.velocity) {
+            (Some(last), Some(next)) => Some(last + (next - last) * share),
+            (known, None) | (None, known) => known,
+        };
+        Some(state(last.position + (next.position - last.position) * share, velocity))
     }
 
     /// The annotated time nearest to a time, s; for messages about a time at which no person is present.
@@ -157,7 +228,7 @@ impl Recording {
     /// than the usual step.
     pub fn stretches(&self) -> Vec<(f64, f64)> {
         self.frames
-            .chunk_by(|a, b| b - a <= self.stride)
+            .chunk_by(|a, b| b - a <= self.clock.longest_gap)
             .map(|part| (self.time_of(part[0]), self.time_of(part[part.len() - 1])))
             .collect()
     }
@@ -169,15 +240,15 @@ mod tests {
 
     fn recording() -> Recording {
         let sample =
-            |frame, x| Sample { frame, position: Vec2::new(x, 0.0), velocity: Vec2::new(2.0 * x, 1.0) };
+            |frame, x| Sample { frame, position: Vec2::new(x, 0.0), velocity: Some(Vec2::new(2.0 * x, 1.0)) };
         let people = vec![
             Person { id: 1, samples: vec![sample(10, 0.0), sample(20, 1.0), sample(50, 4.0)] },
             Person { id: 4, samples: vec![sample(20, 8.0)] },
         ];
-        Recording::new(people, 10, 0.04)
+        Recording::new(people, Clock::film(10, 0.04))
     }
 
-    fn ids(seen: &[Observation]) -> Vec<u32> {
+    fn ids(seen: &[PersonState]) -> Vec<u32> {
         seen.iter().map(|o| o.id).collect()
     }
 
@@ -186,7 +257,7 @@ mod tests {
         let seen = recording().at(0.1);
         assert_eq!(
             seen,
-            [Observation { id: 1, position: Vec2::new(0.25, 0.0), velocity: Vec2::new(0.5, 1.0) }]
+            [PersonState { id: 1, position: Vec2::new(0.25, 0.0), velocity: Vec2::new(0.5, 1.0) }]
         );
     }
 
@@ -220,6 +291,15 @@ mod tests {
         assert_eq!(r.nearest_time(0.9), Some(0.4));
         assert_eq!(r.nearest_time(-7.0), Some(0.0));
         assert_eq!(r.nearest_time(99.0), Some(1.6));
+    }
+
+    #[test]
+    fn seen_velocities_look_back() {
+        let seen = recording().with(Velocity::Seen);
+        let velocities: Vec<_> = seen.people()[0].samples.iter().map(|s| s.velocity.map(|v| v.x)).collect();
+        assert_eq!(velocities, [None, Some(2.5), Some(2.5)]);
+        assert_eq!(seen.velocity(), Velocity::Seen);
+        assert_eq!(seen.clone().with(Velocity::Recorded), seen, "recorded velocities are gone");
     }
 
     #[test]

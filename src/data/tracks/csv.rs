@@ -1,0 +1,203 @@
+//! Reader of tracks as comma-separated values.
+//!
+//! The header names the columns, in any order: `id,x,y` and either `time` in seconds or `frame`; `vx,vy` may follow,
+//! and other columns are ignored. Lengths are metres. A table with `frame` needs the frames per second.
+
+use super::line::{LineError, number, quoted, whole_fault};
+use super::recording::{Clock, Recording};
+use super::rows::{Row, people, usual_stride};
+use super::timed::{self, TimedRow};
+use crate::base::geometry::{Vec2, coordinate_fault};
+
+/// Names of columns; `time` and `frame` exclude each other.
+const COLUMNS: [&str; 7] = ["time", "frame", "id", "x", "y", "vx", "vy"];
+
+/// Where the columns of a table stand, from 0.
+struct Header([Option<usize>; 7]);
+
+impl Header {
+    fn read(line: &str) -> Result<Self, Vec<LineError>> {
+        let mut places = [None; 7];
+        let mut errors = Vec::new();
+        for (k, (column, field)) in cells(line).enumerate() {
+            let Some(name) = COLUMNS.iter().position(|name| *name == field) else { continue };
+            if places[name].replace(k).is_some() {
+                errors.push(LineError::at(1, column, format!("column {} is there twice", quoted(field))));
+            }
+        }
+        let [time, frame, id, x, y, vx, vy] = places;
+        for (name, place) in [("id", id), ("x", x), ("y", y)] {
+            if place.is_none() {
+                errors.push(LineError::whole(1, format!("the header has no column `{name}`")));
+            }
+        }
+        if time.is_some() == frame.is_some() {
+            let found = if time.is_some() { "both" } else { "neither" };
+            let message = format!("the header must have `time` or `frame` (it has {found})");
+            errors.push(LineError::whole(1, message));
+        }
+        if vx.is_some() != vy.is_some() {
+            errors.push(LineError::whole(1, "the header must have both `vx` and `vy` or neither"));
+        }
+        if errors.is_empty() { Ok(Self(places)) } else { Err(errors) }
+    }
+}
+
+/// Reads a whole table. A table with `time` keeps its times; one with `frame` begins at time 0. Empty lines are passed
+/// over.
+///
+/// # Errors
+/// A header without the columns, `frame` without `frames_per_second`, and every bad line: a field that is missing or
+/// not a finite number, an id or a frame that is not a whole number, a position too far from the origin, a person
+/// twice at one time, and time that runs backwards.
+pub fn read_csv(text: &str, frames_per_second: Option<f64>) -> Result<Recording, Vec<LineError>> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut lines = text.lines().enumerate();
+    let Some((_, first)) = lines.next() else {
+        return Err(vec![LineError::of_file("the file contains no observation")]);
+    };
+    let header = Header::read(first)?;
+    let has_frames = header.0[1].is_some();
+    let rate = frames_per_second.filter(|rate| rate.is_finite() && *rate > 0.0);
+    if has_frames && rate.is_none() {
+        let found = frames_per_second.map_or_else(String::new, |rate| format!(" (got {rate})"));
+        let message = format!("a table with frames needs a positive number of frames per second{found}");
+        return Err(vec![LineError::at(1, 1, message)]);
+    }
+    let mut errors = Vec::new();
+    let mut rows = Vec::with_capacity(text.len() / 32);
+    for (k, line) in lines.filter(|(_, line)| !line.trim().is_empty()) {
+        rows.extend(read_row(k + 1, line, &header, &mut errors));
+    }
+    let Some(rate) = rate.filter(|_| has_frames) else { return timed::recording(&rows, errors) };
+    let framed = rows.iter().map(|row| {
+        let TimedRow { line, time, id, position, velocity } = *row;
+        Row { line, frame: time as u32, id, position, velocity }
+    });
+    let people = people(framed.collect(), errors, |row| format!("in frame {}", row.frame))?;
+    let stride = usual_stride(&people).unwrap_or(1);
+    Ok(Recording::new(people, Clock::film(stride, 1.0 / rate)))
+}
+
+/// One row; of a table with frames, its time is the frame.
+fn read_row(line: usize, text: &str, header: &Header, errors: &mut Vec<LineError>) -> Option<TimedRow> {
+    let before = errors.len();
+    let mut values = [0.0; 7];
+    let mut is_read = [false; 7];
+    for (k, (column, field)) in cells(text).enumerate() {
+        let Some(name) = header.0.iter().position(|place| *place == Some(k)) else { continue };
+        is_read[name] = true;
+        let is_whole = name == 1 || name == 2;
+        let fault = match number(field) {
+            Err(fault) => Some(fault),
+            Ok(value) => {
+                values[name] = value;
+                is_whole.then(|| whole_fault(value)).flatten()
+            }
+        };
+        if let Some(fault) = fault {
+            errors.push(LineError::at(line, column, format!("{} {} {fault}", COLUMNS[name], quoted(field))));
+        }
+    }
+    for (k, name) in COLUMNS.iter().enumerate() {
+        if header.0[k].is_some() && !is_read[k] {
+            errors.push(LineError::whole(line, format!("column `{name}` is missing")));
+        }
+    }
+    let position = Vec2::new(values[3], values[4]);
+    if let Some(fault) = coordinate_fault(position) {
+        errors.push(LineError::whole(line, fault));
+    }
+    let velocity = header.0[5].map(|_| Vec2::new(values[5], values[6]));
+    let time = if header.0[1].is_some() { values[1] } else { values[0] };
+    (errors.len() == before).then_some(TimedRow { line, time, id: values[2] as u32, position, velocity })
+}
+
+/// The cells of a line without blanks around them, each with the character (from 1) at which it begins.
+fn cells(line: &str) -> impl Iterator<Item = (usize, &str)> {
+    let mut column = 1;
+    line.split(',').map(move |cell| {
+        let blanks = cell.chars().take_while(|c| c.is_whitespace()).count();
+        let start = column + blanks;
+        column += cell.chars().count() + 1;
+        (start, cell.trim())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::recording::Velocity;
+    use super::*;
+
+    fn said(text: &str, rate: Option<f64>) -> Vec<String> {
+        read_csv(text, rate).unwrap_err().iter().map(ToString::to_string).collect()
+    }
+
+    #[test]
+    fn times_stay_as_written_and_velocities_look_back() {
+        let recording = read_csv("time,id,x,y\n100.0,3,0,0\n100.5,3,1,0\n101,3,2,1\n", None).unwrap();
+        assert_eq!(recording.velocity(), Velocity::Seen);
+        assert_eq!(recording.presence(3), Some((100.0, 101.0)));
+        assert!((recording.step() - 0.5).abs() < 1e-12);
+        let velocities: Vec<_> = recording.people()[0].samples.iter().map(|s| s.velocity).collect();
+        assert_eq!(velocities[0], None);
+        assert!((velocities[2].unwrap() - Vec2::new(2.0, 2.0)).norm() < 1e-9);
+        assert!((recording.at(100.25)[0].position.x - 0.5).abs() < 1e-9);
+    }
+
+    #[test]
+    fn frames_need_their_rate_and_columns_have_any_order() {
+        let text = " y , x,vy,vx,frame,id,extra\n2,1,0.5,0,30,7,a\n\n";
+        let recording = read_csv(text, Some(25.0)).unwrap();
+        assert_eq!(recording.velocity(), Velocity::Recorded);
+        let sample = recording.people()[0].samples[0];
+        assert_eq!((sample.frame, sample.position, sample.velocity), (30, Vec2::new(1.0, 2.0), Some(Vec2::new(0.0, 0.5))));
+        assert!(said(text, None)[0].contains("needs a positive number"), "{:?}", said(text, None));
+        assert!(said(text, Some(0.0))[0].ends_with("(got 0)"));
+    }
+
+    #[test]
+    fn all_faults_come_at_once_and_in_order() {
+        assert_eq!(
+            said("time,id,x,y\n0,1,0,0\n1,1,0\n-0.5,1,0,0\n2,x,é,inf\n2,-1,0,0\n2,4,0,2e6\n0,2,1,1\n0,2,1,1\n", None),
+            [
+                "line 3: column `y` is missing",
+                "line 4: the time of person 1 runs backwards: -0.5 after 0 in line 2",
+                "line 5, column 3: id `x` is not a number",
+                "line 5, column 5: x `é` is not a number",
+                "line 5, column 7: y `inf` is not a finite number",
+                "line 6, column 3: id `-1` is negative",
+                "line 7: a coordinate must lie between -1e6 m and 1e6 m (got 2e6 m)",
+                "line 9: person 2 is at time 0 twice, first in line 8",
+            ]
+        );
+        assert_eq!(
+            said("time,frame,id,vx,x,x\n", None),
+            [
+                "line 1, column 20: column `x` is there twice",
+                "line 1: the header has no column `y`",
+                "line 1: the header must have `time` or `frame` (it has both)",
+                "line 1: the header must have both `vx` and `vy` or neither",
+            ]
+        );
+        assert_eq!(said("", None), ["the file contains no observation"]);
+        assert_eq!(said("time,id,x,y\n", None), ["the file contains no observation"]);
+        assert!(said("time,id,x,y\n0,1,0,0\n1e9,1,0,0\n", None)[0].contains("119 hours"));
+    }
+
+    #[test]
+    fn mixed_rates_are_refused_and_holes_are_not() {
+        let rows = |id: u32, step: f64, count: u32| -> String {
+            (0..count).map(|k| format!("{},{id},0,{k}\n", f64::from(k) * step)).collect()
+        };
+        let head = "time,id,x,y\n";
+        let mixed = format!("{head}{}{}", rows(1, 0.4, 9), rows(2, 0.1, 4));
+        assert_eq!(said(&mixed, None), ["line 11: person 2 is recorded every 0.1 s, most others every 0.4 s"]);
+        let sparse = format!("{head}{}0,2,0,0\n0.4,2,0,0\n1.2,2,0,0\n2,2,0,0\n", rows(1, 0.4, 9));
+        assert!(read_csv(&sparse, None).is_ok());
+        // A thirtieth of a second in milliseconds is 33 or 34 of them.
+        let film: String = (0..60).map(|k| format!("{:.3},1,0,{k}\n", f64::from(k) / 30.0)).collect();
+        let recording = read_csv(&format!("{head}{film}"), None).unwrap();
+        assert_eq!(recording.stretches().len(), 1);
+    }
+}
