@@ -42,6 +42,7 @@ pub mod kernel;
 pub mod library;
 pub mod logic;
 pub mod model;
+pub mod perception;
 pub mod report;
 pub mod route;
 pub mod stats;

@@ -151,7 +151,10 @@ mod tests {
         let recording = read_csv(text, Some(25.0)).unwrap();
         assert_eq!(recording.velocity(), Velocity::Recorded);
         let sample = recording.people()[0].samples[0];
-        assert_eq!((sample.frame, sample.position, sample.velocity), (30, Vec2::new(1.0, 2.0), Some(Vec2::new(0.0, 0.5))));
+        assert_eq!(
+            (sample.frame, sample.position, sample.velocity),
+            (30, Vec2::new(1.0, 2.0), Some(Vec2::new(0.0, 0.5)))
+        );
         assert!(said(text, None)[0].contains("needs a positive number"), "{:?}", said(text, None));
         assert!(said(text, Some(0.0))[0].ends_with("(got 0)"));
     }
@@ -159,7 +162,10 @@ mod tests {
     #[test]
     fn all_faults_come_at_once_and_in_order() {
         assert_eq!(
-            said("time,id,x,y\n0,1,0,0\n1,1,0\n-0.5,1,0,0\n2,x,é,inf\n2,-1,0,0\n2,4,0,2e6\n0,2,1,1\n0,2,1,1\n", None),
+            said(
+                "time,id,x,y\n0,1,0,0\n1,1,0\n-0.5,1,0,0\n2,x,é,inf\n2,-1,0,0\n2,4,0,2e6\n0,2,1,1\n0,2,1,1\n",
+                None
+            ),
             [
                 "line 3: column `y` is missing",
                 "line 4: the time of person 1 runs backwards: -0.5 after 0 in line 2",
@@ -192,7 +198,10 @@ mod tests {
         };
         let head = "time,id,x,y\n";
         let mixed = format!("{head}{}{}", rows(1, 0.4, 9), rows(2, 0.1, 4));
-        assert_eq!(said(&mixed, None), ["line 11: person 2 is recorded every 0.1 s, most others every 0.4 s"]);
+        assert_eq!(
+            said(&mixed, None),
+            ["line 11: person 2 is recorded every 0.1 s, most others every 0.4 s"]
+        );
         let sparse = format!("{head}{}0,2,0,0\n0.4,2,0,0\n1.2,2,0,0\n2,2,0,0\n", rows(1, 0.4, 9));
         assert!(read_csv(&sparse, None).is_ok());
         // A thirtieth of a second in milliseconds is 33 or 34 of them.

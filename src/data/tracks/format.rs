@@ -123,7 +123,10 @@ mod tests {
             ("pedpy", "# framerate: 25\n1 0 0 0\n"),
             ("observations", "{\"t\":0,\"seen\":[{\"x\":0,\"y\":0,\"id\":1}]}"),
         ];
-        assert_eq!(lines.map(|(name, _)| name).to_vec(), Format::all().iter().map(|f| f.name).collect::<Vec<_>>());
+        assert_eq!(
+            lines.map(|(name, _)| name).to_vec(),
+            Format::all().iter().map(|f| f.name).collect::<Vec<_>>()
+        );
         for (name, text) in lines {
             let format = Format::of(text).unwrap();
             assert_eq!(format.name, name);

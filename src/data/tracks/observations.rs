@@ -94,7 +94,8 @@ pub(super) fn read_identified(text: &str) -> Result<Recording, Vec<LineError>> {
                 match one.id {
                     Some(id) => people.entry(id).or_default().push((*line, *one)),
                     None => {
-                        errors.push(LineError::whole(*line, "an observation of a recording must have an `id`"));
+                        errors
+                            .push(LineError::whole(*line, "an observation of a recording must have an `id`"));
                     }
                 }
             }
@@ -161,7 +162,11 @@ mod tests {
     #[test]
     fn a_bad_line_is_refused_with_its_place() {
         let said = |line: &str| read_batch(line).unwrap_err().to_string();
-        assert!(said("{\"t\":1}").starts_with("line 1, column 7: missing field `seen`"), "{}", said("{\"t\":1}"));
+        assert!(
+            said("{\"t\":1}").starts_with("line 1, column 7: missing field `seen`"),
+            "{}",
+            said("{\"t\":1}")
+        );
         assert!(said("{\"t\":1e999,\"seen\":[]}").contains("number out of range"));
         assert_eq!(
             said(r#"{"t":1,"seen":[{"x":0,"y":0,"vx":1}]}"#),
@@ -178,7 +183,8 @@ mod tests {
     #[test]
     fn a_text_names_all_its_bad_lines() {
         let text = "{\"t\":1,\"seen\":[]}\nx\n{\"t\":0,\"seen\":[]}\n{\"t\":1,\"seen\":[]}\n{\"t\":1,\"sensor\":\"b\",\"seen\":[]}\n";
-        let said: Vec<String> = read_observations(text).unwrap_err().iter().map(ToString::to_string).collect();
+        let said: Vec<String> =
+            read_observations(text).unwrap_err().iter().map(ToString::to_string).collect();
         assert!(said[0].starts_with("line 2, column 1: "), "{said:?}");
         assert_eq!(said[1], "line 3: time runs backwards: 0 after 1 in line 1");
         assert_eq!(said[2], "line 4: the same sensor is at time 1 twice, first in line 1");

@@ -34,7 +34,8 @@ pub fn read_pedpy(text: &str) -> Result<Recording, Vec<LineError>> {
             (Ok(found), None) if found > 0.0 => rate = Some((found, k + 1)),
             (Ok(found), Some((first, at))) if found > 0.0 => {
                 if found != first {
-                    let message = format!("framerate is {found}, but {first} in line {at}: the rates are mixed");
+                    let message =
+                        format!("framerate is {found}, but {first} in line {at}: the rates are mixed");
                     errors.push(LineError::whole(k + 1, message));
                 }
             }
@@ -95,12 +96,13 @@ mod tests {
 
     #[test]
     fn all_faults_come_at_once_and_in_order() {
-        let said: Vec<String> =
-            read_pedpy("# framerate: 0\n# framerate: 25\n# framerate: 10\n# x/cm\n1 2 3\n1.5 0 x 0\n1 1 0 0\n1 1 0 0\n")
-                .unwrap_err()
-                .iter()
-                .map(ToString::to_string)
-                .collect();
+        let said: Vec<String> = read_pedpy(
+            "# framerate: 0\n# framerate: 25\n# framerate: 10\n# x/cm\n1 2 3\n1.5 0 x 0\n1 1 0 0\n1 1 0 0\n",
+        )
+        .unwrap_err()
+        .iter()
+        .map(ToString::to_string)
+        .collect();
         assert_eq!(
             said,
             [

@@ -194,7 +194,11 @@ impl Recording {
     fn seen(&self, person: &Person, frame: f64) -> Option<PersonState> {
         let after = person.samples.partition_point(|sample| f64::from(sample.frame) < frame);
         let next = person.samples.get(after)?;
-        let state = |position, velocity: Option<Vec2>| PersonState { id: person.id, position, velocity: velocity.unwrap_or_default() };
+        let state = |position, velocity: Option<Vec2>| PersonState {
+            id: person.id,
+            position,
+            velocity: velocity.unwrap_or_default(),
+        };
         if f64::from(next.frame) == frame {
             return Some(state(next.position, next.velocity));
         }

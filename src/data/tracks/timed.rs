@@ -49,7 +49,8 @@ pub(super) fn recording(rows: &[TimedRow], mut errors: Vec<LineError>) -> Result
         let before = last.insert(row.id, *row);
         if let Some(before) = before.filter(|before| before.time > row.time) {
             let (id, time, earlier, line) = (row.id, row.time, before.time, before.line);
-            let message = format!("the time of person {id} runs backwards: {time} after {earlier} in line {line}");
+            let message =
+                format!("the time of person {id} runs backwards: {time} after {earlier} in line {line}");
             errors.push(LineError::whole(row.line, message));
         }
         let TimedRow { line, id, position, velocity, .. } = *row;

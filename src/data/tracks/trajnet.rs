@@ -65,7 +65,13 @@ pub fn read_trajnet(text: &str) -> Result<Recording, Vec<LineError>> {
                 match coordinate_fault(position) {
                     Some(fault) => errors.push(LineError::whole(number, fault)),
                     None => {
-                        rows.push(Row { line: number, frame: track.f, id: track.p, position, velocity: None });
+                        rows.push(Row {
+                            line: number,
+                            frame: track.f,
+                            id: track.p,
+                            position,
+                            velocity: None,
+                        });
                     }
                 }
             }

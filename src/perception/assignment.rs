@@ -1,0 +1,215 @@
+//! The assignment problem: pairs of rows and columns with the least sum of costs, by the Hungarian method with
+//! shortest augmenting paths (Kuhn 1955; Jonker and Volgenant 1987), in O(n² m).
+
+/// Costs of rows and columns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Costs {
+    rows: usize,
+    columns: usize,
+    values: Vec<f64>,
+}
+
+impl Costs {
+    /// The costs that a function gives for each row and column. They must be finite.
+    pub fn of(rows: usize, columns: usize, mut cost: impl FnMut(usize, usize) -> f64) -> Self {
+        let values = (0..rows).flat_map(|i| (0..columns).map(move |j| (i, j))).map(|(i, j)| cost(i, j));
+        Self { rows, columns, values: values.collect() }
+    }
+
+    /// The cost of a row and a column.
+    pub fn at(&self, row: usize, column: usize) -> f64 {
+        self.values[row * self.columns + column]
+    }
+
+    /// The largest cost; 0 without any.
+    pub fn largest(&self) -> f64 {
+        self.values.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// The column of each row, such that the sum is least; as many pairs as the smaller side has members. Ties go to
+    /// the lowest column.
+    pub fn assign(&self) -> Vec<Option<usize>> {
+        if self.rows <= self.columns {
+            return augment(self.rows, self.columns, &self.values).into_iter().map(Some).collect();
+        }
+        let turned = Self::of(self.columns, self.rows, |j, i| self.at(i, j));
+        let mut assigned = vec![None; self.rows];
+        for (column, row) in augment(turned.rows, turned.columns, &turned.values).into_iter().enumerate() {
+            assigned[row] = Some(column);
+        }
+        assigned
+    }
+}
+
+/// The column of each row; there are no fewer columns than rows. Each row is added with the cheapest path of
+/// exchanges, in costs reduced by the potentials of rows and columns.
+fn augment(rows: usize, columns: usize, costs: &[f64]) -> Vec<usize> {
+    const FREE: usize = usize::MAX;
+    let mut row_potential = vec![0.0; rows];
+    let mut column_potential = vec![0.0; columns];
+    let mut row_of = vec![FREE; columns];
+    let mut distance = vec![0.0; columns];
+    let mut previous = vec![FREE; columns];
+    // Columns that are not yet reached, in any order; ties are broken by their numbers.
+    let mut open: Vec<usize> = Vec::with_capacity(columns);
+    let mut reached: Vec<usize> = Vec::with_capacity(columns);
+    // Each row begins at its least cost, and takes such a column if it is free. A column that may stay free must keep
+    // the potential 0, so only a square is reduced by columns as well.
+    for (potential, line) in row_potential.iter_mut().zip(costs.chunks_exact(columns.max(1))) {
+        *potential = line.iter().copied().fold(f64::INFINITY, f64::min);
+    }
+    if rows == columns {
+        column_potential.fill(f64::INFINITY);
+        for (base, line) in row_potential.iter().zip(costs.chunks_exact(columns.max(1))) {
+            for (potential, cost) in column_potential.iter_mut().zip(line) {
+                *potential = potential.min(cost - base);
+            }
+        }
+    }
+    let mut left = Vec::with_capacity(rows);
+    for (row, line) in costs.chunks_exact(columns.max(1)).enumerate() {
+        let tight =
+            |j: &usize| row_of[*j] == FREE && line[*j] - row_potential[row] - column_potential[*j] <= 0.0;
+        match (0..columns).find(tight) {
+            Some(column) => row_of[column] = row,
+            None => left.push(row),
+        }
+    }
+    for start in left {
+        distance.fill(f64::INFINITY);
+        previous.fill(FREE);
+        open.clear();
+        open.extend(0..columns);
+        reached.clear();
+        let (mut row, mut so_far, mut last) = (start, 0.0, FREE);
+        let end = loop {
+            let line = &costs[row * columns..(row + 1) * columns];
+            let base = so_far - row_potential[row];
+            let (mut best, mut at) = (f64::INFINITY, 0);
+            for (k, &column) in open.iter().enumerate() {
+                let through = base + line[column] - column_potential[column];
+                if through < distance[column] {
+                    distance[column] = through;
+                    previous[column] = last;
+                }
+                let found = distance[column];
+                if found < best || (found == best && column < open[at]) {
+                    best = found;
+                    at = k;
+                }
+            }
+            let column = open.swap_remove(at);
+            so_far = best;
+            if row_of[column] == FREE {
+                break column;
+            }
+            reached.push(column);
+            last = column;
+            row = row_of[column];
+        };
+        row_potential[start] += so_far;
+        for &column in &reached {
+            let slack = so_far - distance[column];
+            row_potential[row_of[column]] += slack;
+            column_potential[column] -= slack;
+        }
+        let mut column = end;
+        loop {
+            let before = previous[column];
+            if before == FREE {
+                row_of[column] = start;
+                break;
+            }
+            row_of[column] = row_of[before];
+            column = before;
+        }
+    }
+    let mut column_of = vec![0; rows];
+    for (column, &row) in row_of.iter().enumerate() {
+        if row != FREE {
+            column_of[row] = column;
+        }
+    }
+    column_of
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::random::{Purpose, Stream, TrialKey};
+
+    /// The least sum over all ways to pair the smaller side.
+    fn brute(costs: &Costs) -> f64 {
+        fn from(costs: &Costs, row: usize, used: &mut Vec<bool>, left_out: usize) -> f64 {
+            if row == costs.rows {
+                return 0.0;
+            }
+            let mut best = f64::INFINITY;
+            if left_out > 0 {
+                best = from(costs, row + 1, used, left_out - 1);
+            }
+            for column in 0..costs.columns {
+                if !used[column] {
+                    used[column] = true;
+                    best = best.min(costs.at(row, column) + from(costs, row + 1, used, left_out));
+                    used[column] = false;
+                }
+            }
+            best
+        }
+        from(costs, 0, &mut vec![false; costs.columns], costs.rows.saturating_sub(costs.columns))
+    }
+
+    #[test]
+    fn the_sum_is_that_of_trying_all() {
+        let stream = Stream::of(TrialKey::default(), 0, Purpose::Test);
+        let mut draw = 0;
+        for rows in 0..6 {
+            for columns in 0..6 {
+                for levels in [1.0, 3.0, 1e6] {
+                    let costs = Costs::of(rows, columns, |_, _| {
+                        draw += 1;
+                        (stream.uniform(draw) * levels).floor() - 1.0
+                    });
+                    let assigned = costs.assign();
+                    let pairs: Vec<(usize, usize)> =
+                        assigned.iter().enumerate().filter_map(|(i, j)| j.map(|j| (i, j))).collect();
+                    assert_eq!(pairs.len(), rows.min(columns));
+                    let mut taken: Vec<usize> = pairs.iter().map(|pair| pair.1).collect();
+                    taken.sort_unstable();
+                    taken.dedup();
+                    assert_eq!(taken.len(), pairs.len(), "each column once");
+                    let sum: f64 = pairs.iter().map(|&(i, j)| costs.at(i, j)).sum();
+                    assert!((sum - brute(&costs)).abs() < 1e-6, "{costs:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn ties_go_to_the_lowest_columns() {
+        assert_eq!(Costs::of(3, 5, |_, _| 1.0).assign(), [Some(0), Some(1), Some(2)]);
+    }
+
+    #[test]
+    #[allow(clippy::disallowed_methods, clippy::print_stdout, reason = "this test measures the time")]
+    fn two_hundred_people_are_fast() {
+        let stream = Stream::of(TrialKey::default(), 1, Purpose::Test);
+        let costs = Costs::of(200, 200, |i, j| stream.uniform((i * 200 + j) as u32));
+        let places: Vec<[f64; 2]> = (1_000_000..1_000_400).map(|k| stream.uniform_pair(k)).collect();
+        let apart = Costs::of(200, 200, |i, j| {
+            let (a, b) = (places[i], places[200 + j]);
+            ((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1])).sqrt() * 20.0
+        });
+        for costs in [costs, apart] {
+            let best = (0..20)
+                .map(|_| {
+                    let start = std::time::Instant::now();
+                    std::hint::black_box(costs.assign());
+                    start.elapsed()
+                })
+                .min();
+            println!("assignment 200 x 200: {best:?}");
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! Observations of one time from several sensors as one list of people.
+//!
+//! Observations of different sensors that are near in `D_trace` are one person, assigned one to one, at their mean. An
+//! id is trusted: equal ids are one person, different ids are not.
+
+use super::assignment::Costs;
+use super::distance::distance;
+use crate::base::geometry::Vec2;
+use crate::data::tracks::{Batch, Observation};
+
+/// What is farther apart than any two people.
+const NEVER: f64 = 1e9;
+
+/// One person, seen by one sensor or several.
+#[derive(Clone, Debug)]
+pub(super) struct Fused {
+    /// The mean of all observations.
+    pub(super) mean: Observation,
+    /// Sums of positions and of known velocities, with their numbers.
+    positions: (Vec2, f64),
+    velocities: (Vec2, f64),
+}
+
+impl Fused {
+    fn new(one: &Observation) -> Self {
+        let velocities = one.velocity.map_or((Vec2::zeros(), 0.0), |v| (v, 1.0));
+        Self { mean: *one, positions: (one.position, 1.0), velocities }
+    }
+
+    fn add(&mut self, one: &Observation) {
+        self.positions = (self.positions.0 + one.position, self.positions.1 + 1.0);
+        if let Some(v) = one.velocity {
+            self.velocities = (self.velocities.0 + v, self.velocities.1 + 1.0);
+        }
+        self.mean.position = self.positions.0 / self.positions.1;
+        self.mean.velocity = (self.velocities.1 > 0.0).then(|| self.velocities.0 / self.velocities.1);
+        self.mean.id = self.mean.id.or(one.id);
+    }
+}
+
+/// All people of some batches, and for each batch and observation its person. `within` is the largest distance of two
+/// observations of one person, m.
+pub(super) fn fuse(batches: &[Batch], within: f64, discount: f64) -> (Vec<Fused>, Vec<Vec<usize>>) {
+    let mut people: Vec<Fused> = Vec::new();
+    let mut places = Vec::with_capacity(batches.len());
+    for batch in batches {
+        let known = people.len();
+        let costs = Costs::of(batch.seen.len(), known, |i, j| {
+            let (one, other) = (&batch.seen[i], &people[j].mean);
+            match (one.id, other.id) {
+                (Some(a), Some(b)) if a == b => -NEVER,
+                (Some(_), Some(_)) => 0.0,
+                _ => {
+                    let apart =
+                        distance((one.position, one.velocity), (other.position, other.velocity), discount);
+                    // Farther than `within`, a pair is as good as none.
+                    if apart <= within { apart - 2.0 * within } else { 0.0 }
+                }
+            }
+        });
+        let mut place = Vec::with_capacity(batch.seen.len());
+        for (i, (one, assigned)) in batch.seen.iter().zip(costs.assign()).enumerate() {
+            if let Some(j) = assigned.filter(|j| costs.at(i, *j) < 0.0) {
+                people[j].add(one);
+                place.push(j);
+            } else {
+                people.push(Fused::new(one));
+                place.push(people.len() - 1);
+            }
+        }
+        places.push(place);
+    }
+    (people, places)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn batch(sensor: &str, seen: &[(f64, Option<u32>)]) -> Batch {
+        let one =
+            |&(x, id): &(f64, Option<u32>)| Observation { position: Vec2::new(x, 0.0), velocity: None, id };
+        Batch { sensor: Some(sensor.to_owned()), seen: seen.iter().map(one).collect(), ..Batch::default() }
+    }
+
+    #[test]
+    fn near_observations_of_two_sensors_are_one_person_at_the_mean() {
+        let (people, places) = fuse(
+            &[
+                batch("a", &[(0.0, None), (1.0, None)]),
+                batch("b", &[(1.2, Some(7)), (5.0, None), (0.9, None)]),
+            ],
+            0.3,
+            2.0,
+        );
+        assert_eq!(places, [vec![0, 1], vec![2, 3, 1]]);
+        assert_eq!(people.len(), 4);
+        assert!((people[1].mean.position.x - 0.95).abs() < 1e-12);
+    }
+
+    #[test]
+    fn ids_are_trusted() {
+        let (people, places) = fuse(
+            &[batch("a", &[(0.0, Some(1)), (0.1, Some(2))]), batch("b", &[(9.0, Some(1)), (0.1, Some(3))])],
+            0.3,
+            2.0,
+        );
+        assert_eq!(places, [vec![0, 1], vec![0, 2]]);
+        assert!((people[0].mean.position.x - 4.5).abs() < 1e-12);
+        assert_eq!(people.iter().map(|one| one.mean.id).collect::<Vec<_>>(), [Some(1), Some(2), Some(3)]);
+        let same_sensor = fuse(&[batch("a", &[(0.0, None), (0.0, None)])], 0.3, 2.0);
+        assert_eq!(same_sensor.0.len(), 2);
+    }
+}
