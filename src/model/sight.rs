@@ -49,6 +49,15 @@ impl Piece {
         }
     }
 
+    /// Whether it surely lies on one side of a line, farther than `reach` from it, m. So do most pieces, and this is found fast.
+    fn is_aside(&self, line: &Segment, reach: f64) -> bool {
+        let Self::Edge(edge) = self else { return false };
+        let along = line.b - line.a;
+        let (a, b) = (cross(along, edge.a - line.a), cross(along, edge.b - line.a));
+        let square = along.norm_squared() * reach * reach;
+        a * b > 0.0 && a * a > square && b * b > square
+    }
+
     fn bounds(&self) -> Bounds {
         match self {
             Self::Edge(edge) => Bounds { low: edge.a.inf(&edge.b), high: edge.a.sup(&edge.b) },
@@ -127,7 +136,10 @@ impl Sight {
         let line = Segment::new(from, to);
         let mut clearance = most;
         self.nearby.any_along(&line, most, |k| {
-            clearance = clearance.min(self.pieces[k as usize].distance_to(&line));
+            let piece = &self.pieces[k as usize];
+            if !piece.is_aside(&line, clearance) {
+                clearance = clearance.min(piece.distance_to(&line));
+            }
             false
         });
         clearance
@@ -136,14 +148,9 @@ impl Sight {
     /// Whether this piece is in the way of such a body.
     pub fn blocks(&self, k: u32, (from, to): (Vec2, Vec2), reach: f64) -> bool {
         let Some(piece) = self.pieces.get(k as usize) else { return false };
-        let (along, line) = (to - from, Segment::new(from, to));
-        // Most pieces lie on one side of the line, beyond its reach.
-        if let Piece::Edge(edge) = piece {
-            let (a, b) = (cross(along, edge.a - from), cross(along, edge.b - from));
-            let square = along.norm_squared() * reach * reach;
-            if a * b > 0.0 && a * a > square && b * b > square {
-                return false;
-            }
+        let line = Segment::new(from, to);
+        if piece.is_aside(&line, reach) {
+            return false;
         }
         let distance = piece.distance_to(&line);
         distance < reach - ROUNDING && distance < piece.distance(from).min(piece.distance(to)) - ROUNDING

@@ -345,8 +345,9 @@ fn sees(drive: &Drive, state: &mut State, slot: Slot, point: Vec2) -> bool {
     if held.free.is_some_and(is_near) {
         return true;
     }
-    let sees = drive.sees(at, point, radius);
     let line = Segment::new(at, point);
-    state.plans.held_mut(slot).free = sees.then(|| (line, drive.clearance(&line, radius)));
+    let clearance = drive.clearance(&line, radius);
+    let sees = clearance >= 0.5 * radius || drive.sees(at, point, radius);
+    state.plans.held_mut(slot).free = sees.then_some((line, clearance));
     sees
 }
