@@ -34,6 +34,7 @@ mod mocap;
 mod mutants;
 mod mutation;
 mod nesting;
+mod perception;
 mod planned;
 mod plans;
 mod processes;

@@ -8,7 +8,7 @@ use smc::base::geometry::Vec2;
 use smc::data::geometry::{
     Geometry, Placement, PropertyValue, open_doors, plan, read_dxf, read_geojson, read_wkt,
 };
-use smc::data::tracks::{Recording, read_eth_biwi, read_groups};
+use smc::data::tracks::{Format, Reading, Recording, Velocity, read_batch, read_eth_biwi, read_groups};
 use std::io::Write as _;
 use std::path::PathBuf;
 
@@ -133,7 +133,10 @@ proptest! {
     fn readers_survive_any_bytes(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
         let text = String::from_utf8_lossy(&bytes);
         let _ = (read_eth_biwi(&text), read_groups(&text), read_geojson(&text), read_wkt(&text));
-        let _ = read_dxf(&text, None, &mut |_, _| true);
+        let _ = (read_dxf(&text, None, &mut |_, _| true), read_batch(&text));
+        for format in Format::all() {
+            let _ = format.read_batches(&text, &Reading::default(), Velocity::Seen);
+        }
     }
 
     #[test]
@@ -155,6 +158,26 @@ proptest! {
         }
         if let Err(errors) = read_groups(&text) {
             prop_assert!(errors.iter().all(|e| (1..=lines).contains(&e.line)));
+        }
+    }
+
+    #[test]
+    fn shuffled_tracks_are_survived(
+        parts in prop::collection::vec(
+            prop::sample::select(vec!["time,id,x,y\n", "frame,id,x,y,vx,vy\n", "# framerate: 8\n", "{\"track\":", "}\n",
+                "{\"f\":1,\"p\":2,\"x\":3,\"y\":4}", "{\"scene\":{\"fps\":2}", "{\"t\":1,\"seen\":[", "{\"x\":1,\"y\":2,\"id\":1}",
+                "]}\n", ",", "1", "0.5", "-2", " ", "\n", "1e300", "nan", "é"]), 0..30),
+        table in table(),
+        rate in prop::option::of(any::<f64>()),
+    ) {
+        for text in [parts.concat(), format!("time,id,x,y\n{}", table.replace(' ', ",")), format!("# framerate: 2\n{table}")] {
+            let lines = text.lines().count();
+            for format in Format::all() {
+                if let Err(errors) = format.read(&text, &Reading { frames_per_second: rate }) {
+                    prop_assert!(!errors.is_empty());
+                    prop_assert!(errors.iter().all(|e| e.line <= lines));
+                }
+            }
         }
     }
 

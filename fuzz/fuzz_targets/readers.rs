@@ -4,11 +4,22 @@
 use libfuzzer_sys::fuzz_target;
 use smc::data::geometry::{Placement, open_doors, plan, read_dxf, read_geojson, read_wkt};
 use smc::base::geometry::Vec2;
-use smc::data::tracks::{read_eth_biwi, read_groups};
+use smc::data::tracks::{Format, Reading, Velocity, read_batch, read_eth_biwi, read_groups};
+use smc::perception::{ConstantVelocity, Inferring, infer};
 
 fuzz_target!(|text: &str| {
     let _ = read_eth_biwi(text);
     let _ = read_groups(text);
+    let _ = read_batch(text);
+    for format in Format::all() {
+        for frames_per_second in [None, Some(25.0)] {
+            let _ = format.read(text, &Reading { frames_per_second });
+            let reading = Reading { frames_per_second };
+            if let Ok(batches) = format.read_batches(text, &reading, Velocity::Seen) {
+                let _ = infer(&batches, &Inferring::default(), &mut ConstantVelocity);
+            }
+        }
+    }
     let drawing = read_dxf(text, None, &mut |_, _| true).map(|drawing| drawing.features);
     for features in [read_geojson(text), read_wkt(text), drawing] {
         for walkable in [false, true] {

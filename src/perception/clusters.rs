@@ -53,24 +53,23 @@ pub fn clusters(
     }
     let stream = Stream::of(key, instant, Purpose::Group);
     let limit = options.threshold * options.threshold;
-    let mut work = Work::new(n);
-    let mut best = Vec::new();
+    let mut starts: Vec<Work> = (0..STARTS).map(|_| Work::new(n)).collect();
+    let (mut work, mut best) = (Work::new(n), Work::new(n));
     for k in points.least_clusters(options.threshold)..n {
         let mut least = f64::INFINITY;
-        let mut is_near = false;
-        for start in 0..STARTS {
-            let first = (k as u32).wrapping_mul(STARTS).wrapping_add(start).wrapping_mul(n as u32);
-            work.seed(&points, k, stream, first);
+        for (start, seeded) in (0..STARTS).zip(&mut starts) {
+            // The first centroids of a start are those that it had for fewer clusters, and one more.
+            seeded.seed(&points, k, stream, start.wrapping_mul(n as u32));
+            work.clone_from(seeded);
             work.settle(&points);
             let sum: f64 = work.nearest.iter().sum();
             if sum < least {
                 least = sum;
-                is_near = work.nearest.iter().all(|d| *d <= limit);
-                best.clone_from(&work.labels);
+                std::mem::swap(&mut best, &mut work);
             }
         }
-        if is_near {
-            return lists(&best);
+        if best.nearest.iter().all(|d| *d <= limit) {
+            return lists(&best.labels);
         }
     }
     (0..n).map(|i| vec![i]).collect()
@@ -87,8 +86,8 @@ fn lists(labels: &[usize]) -> Vec<Vec<usize>> {
     clusters.into_iter().map(|(_, members)| members).collect()
 }
 
-/// Points of the space of groups, coordinate by coordinate.
-struct Points([Vec<f64>; 4]);
+/// Points of the space of groups: coordinate by coordinate, and point by point.
+struct Points([Vec<f64>; 4], Vec<[f64; 4]>);
 
 impl Points {
     fn of(people: &[(Vec2, Option<Vec2>)], options: &Clustering) -> Self {
@@ -96,18 +95,20 @@ impl Points {
         let speed = |f: fn(Vec2) -> f64| {
             people.iter().map(|p| p.1.map_or(0.0, f) / options.velocity_discount).collect()
         };
-        Self([place(|p| p.x), place(|p| p.y), speed(|v| v.x), speed(|v| v.y)])
+        let axes: [Vec<f64>; 4] = [place(|p| p.x), place(|p| p.y), speed(|v| v.x), speed(|v| v.y)];
+        let points = (0..people.len()).map(|i| std::array::from_fn(|c| axes[c][i])).collect();
+        Self(axes, points)
     }
 
     fn at(&self, i: usize) -> [f64; 4] {
-        std::array::from_fn(|c| self.0[c][i])
+        self.1[i]
     }
 
     /// Squared distance of a point from a place.
     #[inline(always)]
     fn squared(&self, i: usize, place: &[f64; 4]) -> f64 {
-        let [x, y, u, v] = &self.0;
-        let d = [x[i] - place[0], y[i] - place[1], u[i] - place[2], v[i] - place[3]];
+        let p = &self.1[i];
+        let d = [p[0] - place[0], p[1] - place[1], p[2] - place[2], p[3] - place[3]];
         (d[0] * d[0] + d[1] * d[1]) + (d[2] * d[2] + d[3] * d[3])
     }
 
@@ -151,6 +152,7 @@ impl Points {
 }
 
 /// Centroids, and for each point the nearest.
+#[derive(Clone)]
 struct Work {
     centroids: Vec<[f64; 4]>,
     labels: Vec<usize>,
@@ -166,33 +168,30 @@ impl Work {
         Self {
             centroids: Vec::new(),
             labels: vec![0; n],
-            nearest: vec![0.0; n],
+            nearest: vec![f64::INFINITY; n],
             sums: Vec::new(),
             blocks: Vec::new(),
         }
     }
 
     /// k-means++: each next centroid is a point, drawn in proportion to its squared distance from the nearest one. There
-    /// are fewer where all points are centroids.
+    /// are fewer where all points are centroids. Continues what is there.
     fn seed(&mut self, points: &Points, k: usize, stream: Stream, first_draw: u32) {
         let n = self.labels.len();
-        self.centroids.clear();
-        self.nearest.fill(f64::INFINITY);
-        self.labels.fill(0);
-        let mut chosen = (stream.uniform(first_draw) * n as f64) as usize;
-        for number in 0..k {
-            let place = points.at(chosen.min(n - 1));
+        for number in self.centroids.len()..k {
+            let uniform = stream.uniform(first_draw.wrapping_add(number as u32));
+            let total: f64 = self.blocks.iter().sum();
+            let chosen = match number {
+                0 => ((uniform * n as f64) as usize).min(n - 1),
+                _ if total <= 0.0 => break,
+                _ => self.drawn(uniform * total),
+            };
+            let place = points.at(chosen);
             self.centroids.push(place);
             points.approach(&place, number, &mut self.nearest, &mut self.labels);
             // Sums of blocks are independent, so the processor adds several at a time.
             self.blocks.clear();
             self.blocks.extend(self.nearest.chunks(BLOCK).map(|block| block.iter().sum::<f64>()));
-            let total: f64 = self.blocks.iter().sum();
-            if total <= 0.0 || number + 1 == k {
-                break;
-            }
-            let left = stream.uniform(first_draw.wrapping_add(number as u32 + 1)) * total;
-            chosen = self.drawn(left);
         }
     }
 

@@ -38,6 +38,9 @@ pub struct Tracking {
     pub padding: Padding,
     /// Largest `D_trace` of two observations of one person by different sensors, m.
     pub sensors_within: f64,
+    /// Added to the distance for each second between the end of a trace and the last step, m/s: of two traces that are
+    /// equally near, the one seen later is continued. Algorithm 2 has 0, and so has the published padding.
+    pub waiting: f64,
     /// How many points a trace keeps at least; `None` for all. With a number, memory stays bounded.
     pub kept: Option<usize>,
 }
@@ -50,6 +53,7 @@ impl Default for Tracking {
             discount: 2.0,
             padding: Padding::Gated,
             sensors_within: 0.3,
+            waiting: 0.2,
             kept: None,
         }
     }
@@ -119,7 +123,7 @@ impl Tracker {
         if let Some(last) = self.last.filter(|last| *last >= time || time.is_nan()) {
             return Err(TrackingError::Late { time, last });
         }
-        self.last = Some(time);
+        let before = self.last.replace(time).unwrap_or(time);
         let (old, active) = std::mem::take(&mut self.active)
             .into_iter()
             .partition(|trace| time - trace.end().time > self.options.longest + ROUNDING);
@@ -128,30 +132,47 @@ impl Tracker {
         let (people, places) = fuse(batches, self.options.sensors_within, self.options.discount);
         let ends: Vec<TracePoint> = self.active.iter().map(Trace::end).collect();
         let projected = motion.project(&ends, time);
-        let assigned = self.assign(&people, &projected);
+        let assigned = self.assign(&people, &projected, before);
         let numbers: Vec<u64> =
             people.iter().zip(assigned).map(|(one, to)| self.append(one, to, time)).collect();
         Ok(places.iter().map(|place| place.iter().map(|k| numbers[*k]).collect()).collect())
     }
 
-    /// The active trace of each person, by its place.
-    fn assign(&self, people: &[Fused], projected: &[TracePoint]) -> Vec<Option<usize>> {
-        let Tracking { threshold, discount, padding, .. } = self.options;
+    /// The active trace of each person, by its place; `before` is the time of the last step.
+    fn assign(&self, people: &[Fused], projected: &[TracePoint], before: f64) -> Vec<Option<usize>> {
         let owner: BTreeMap<u32, usize> =
             self.active.iter().enumerate().filter_map(|(k, trace)| Some((trace.person?, k))).collect();
         let mut assigned: Vec<Option<usize>> =
             people.iter().map(|one| owner.get(&one.mean.id?).copied()).collect();
-        let mut is_pinned = vec![false; self.active.len()];
-        assigned.iter().flatten().for_each(|k| is_pinned[*k] = true);
+        let mut is_free = vec![true; self.active.len().min(projected.len())];
+        assigned.iter().flatten().for_each(|k| is_free[*k] = false);
         let open: Vec<usize> = (0..people.len()).filter(|i| assigned[*i].is_none()).collect();
-        let free: Vec<usize> =
-            (0..self.active.len().min(projected.len())).filter(|j| !is_pinned[*j]).collect();
+        let free: Vec<usize> = (0..is_free.len()).filter(|k| is_free[*k]).collect();
+        for (i, k) in self.pairs(people, projected, &open, &free, before) {
+            assigned[i] = Some(k);
+        }
+        assigned
+    }
+
+    /// Pairs of an open person and a free trace.
+    fn pairs(
+        &self,
+        people: &[Fused],
+        projected: &[TracePoint],
+        open: &[usize],
+        free: &[usize],
+        before: f64,
+    ) -> Vec<(usize, usize)> {
+        let Tracking { threshold, discount, padding, waiting, .. } = self.options;
         let apart = Costs::of(open.len(), free.len(), |i, j| {
             let (one, point) = (&people[open[i]].mean, &projected[free[j]]);
             if one.id.is_some() && self.active[free[j]].person.is_some() {
                 return NEVER;
             }
-            distance((one.position, one.velocity), (point.position, point.velocity), discount)
+            let waited = before - self.active[free[j]].end().time;
+            let waited = if padding == Padding::Gated { waited } else { 0.0 };
+            waiting * waited
+                + distance((one.position, one.velocity), (point.position, point.velocity), discount)
         });
         // The smaller side is assigned as a whole, and dummy entries of equal cost do not move the least sum. A pair
         // that costs the threshold is then as good as leaving both unmatched.
@@ -161,10 +182,10 @@ impl Tracker {
                 Costs::of(open.len(), free.len(), |i, j| apart.at(i, j).min(threshold)).assign()
             }
         };
-        for (i, j) in pairs.into_iter().enumerate() {
-            assigned[open[i]] = j.filter(|j| apart.at(i, *j) <= threshold).map(|j| free[j]);
-        }
-        assigned
+        let near = |(i, j): (usize, Option<usize>)| {
+            j.filter(|j| apart.at(i, *j) <= threshold).map(|j| (open[i], free[j]))
+        };
+        pairs.into_iter().enumerate().filter_map(near).collect()
     }
 
     /// Appends a person to an active trace or to a new one; returns its number.
