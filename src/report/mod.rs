@@ -11,6 +11,7 @@ pub mod forecast;
 pub mod gait;
 pub mod github;
 pub mod html;
+pub mod infer;
 pub mod json;
 pub mod junit;
 pub mod model;

@@ -34,6 +34,14 @@ pub enum Ink {
     RightStep,
     /// One of many walks: thin, and transparent.
     Walk,
+    /// An inferred trace: black.
+    Trace,
+    /// The start of a trace: blue.
+    TraceStart,
+    /// The end of a trace: red.
+    TraceEnd,
+    /// A group at an instant: a thin black rim.
+    Group,
 }
 
 impl Ink {
@@ -48,6 +56,10 @@ impl Ink {
             Self::Walk => {
                 "fill=\"none\" stroke=\"#7c2d12\" stroke-width=\"0.8\" stroke-opacity=\"0.25\" stroke-linejoin=\"round\""
             }
+            Self::Trace => "fill=\"none\" stroke=\"#000000\" stroke-width=\"1\" stroke-linejoin=\"round\"",
+            Self::TraceStart => "fill=\"#1d4ed8\" stroke=\"none\"",
+            Self::TraceEnd => "fill=\"#dc2626\" stroke=\"none\"",
+            Self::Group => "fill=\"none\" stroke=\"#000000\" stroke-width=\"0.6\"",
             Self::Way => "fill=\"none\" stroke=\"#c2410c\" stroke-width=\"2\" stroke-linejoin=\"round\"",
         }
     }
