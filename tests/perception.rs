@@ -172,7 +172,9 @@ fn near(
     let now: Vec<_> = now.collect();
     for instant in now.chunk_by(|a, b| a.point.time == b.point.time) {
         let mut groups = std::collections::BTreeMap::<u64, Vec<_>>::new();
-        instant.iter().for_each(|one| groups.entry(one.group).or_default().push(one));
+        for one in instant {
+            groups.entry(one.group).or_default().push(one);
+        }
         for members in groups.values().filter(|members| members.len() == size) {
             let mean = members.iter().map(|one| one.point.position).sum::<Vec2>() / size as f64;
             if (mean - Vec2::new(place.0, place.1)).norm() <= 0.5 {
@@ -190,14 +192,15 @@ fn near(
     })
 }
 
+/// Interval, place, size, then from when to when such a group is there and who belonged to it.
+type Claim<'a> = ((f64, f64), (f64, f64), usize, Option<(f64, f64, &'a [u32])>);
+
 #[test]
 fn the_figures_say_what_the_data_say() {
     let Some(found) = hotel() else { return };
-    // Interval, place, size, then from when to when such a group is there and who belonged to it.
     let three: (f64, f64) = (34.8, 82.4);
     let four = (110.8, 119.2);
     let five = (177.2, 200.4);
-    type Claim<'a> = ((f64, f64), (f64, f64), usize, Option<(f64, f64, &'a [u32])>);
     let claims: [Claim; 14] = [
         // Figure 3: two standing pairs, renumbered by the annotators, and one person.
         (three, (-1.7, 1.1), 2, Some((42.0, 55.2, &[40, 41, 46, 47]))),

@@ -78,16 +78,13 @@ fn exchange(
                 break;
             }
             turns -= 1;
-            if before != FREE {
-                column_potential[at] -= second - least;
-                row_potential[row] = second;
-            } else {
-                row_potential[row] = least;
-            }
             row_of[at] = row;
             if before == FREE {
+                row_potential[row] = least;
                 break;
             }
+            column_potential[at] -= second - least;
+            row_potential[row] = second;
             row = before;
         }
     }

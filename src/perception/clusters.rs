@@ -253,9 +253,9 @@ impl Work {
                     }
                 };
                 if all {
-                    (0..self.centroids.len()).for_each(&mut compare)
+                    (0..self.centroids.len()).for_each(&mut compare);
                 } else {
-                    moved.iter().copied().for_each(&mut compare)
+                    moved.iter().copied().for_each(&mut compare);
                 }
                 is_settled &= best.1 == own;
                 self.nearest[i] = best.0;
@@ -298,9 +298,9 @@ mod tests {
     fn least(people: &[(Vec2, Option<Vec2>)], threshold: f64) -> usize {
         fn cohesive(points: &Points, members: &[usize], threshold: f64) -> bool {
             let mut mean = [0.0; 4];
-            members
-                .iter()
-                .for_each(|i| (0..4).for_each(|c| mean[c] += points.at(*i)[c] / members.len() as f64));
+            for i in members {
+                (0..4).for_each(|c| mean[c] += points.at(*i)[c] / members.len() as f64);
+            }
             members.iter().all(|i| points.squared(*i, &mean) <= threshold * threshold)
         }
         fn place(points: &Points, i: usize, parts: &mut Vec<Vec<usize>>, threshold: f64, best: &mut usize) {
@@ -312,9 +312,9 @@ mod tests {
             }
             for k in 0..=parts.len() {
                 if k == parts.len() {
-                    parts.push(vec![i])
+                    parts.push(vec![i]);
                 } else {
-                    parts[k].push(i)
+                    parts[k].push(i);
                 }
                 place(points, i + 1, parts, threshold, best);
                 parts[k].pop();

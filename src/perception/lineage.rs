@@ -71,7 +71,9 @@ impl Lineage {
 fn mutual(clusters: &[Vec<u64>], open: &[usize], groups: &[Members]) -> Vec<(usize, u64)> {
     let mut group_of = BTreeMap::<u64, Vec<usize>>::new();
     for (g, (_, members)) in groups.iter().enumerate() {
-        members.iter().for_each(|member| group_of.entry(*member).or_default().push(g));
+        for member in members {
+            group_of.entry(*member).or_default().push(g);
+        }
     }
     let mut shared = BTreeMap::<(usize, usize), usize>::new();
     for &c in open {

@@ -33,7 +33,9 @@ pub fn score_tracks(tracks: &BTreeMap<u32, TrackTraces>) -> TrackScore {
         switches += changes;
         unsplit += usize::from(changes == 0);
         all += seen.len();
-        seen.iter().for_each(|(_, trace)| *common.entry((*trace, *id)).or_default() += 1);
+        for (_, trace) in seen {
+            *common.entry((*trace, *id)).or_default() += 1;
+        }
     }
     let pairs: Vec<(u64, u32, usize)> = common.iter().map(|((trace, id), n)| (*trace, *id, *n)).collect();
     let (mut joins, mut wrong_joins) = (0, 0);
@@ -64,10 +66,12 @@ fn paired(pairs: &[(u64, u32, usize)]) -> usize {
             trace.iter().filter_map(|pair| part_of_track.get(&pair.1).copied()).collect();
         touched.sort_unstable();
         touched.dedup();
-        touched.iter().for_each(|k| part.append(&mut parts[*k]));
-        part.iter().for_each(|pair| {
+        for k in touched {
+            part.append(&mut parts[k]);
+        }
+        for pair in &part {
             part_of_track.insert(pair.1, parts.len());
-        });
+        }
         parts.push(part);
     }
     parts.iter().map(|part| paired_in_part(part)).sum()

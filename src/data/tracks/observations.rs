@@ -54,8 +54,8 @@ pub fn read_batch(line: &str) -> Result<Batch, LineError> {
         seen.push(Observation { position, velocity, id: one.id });
     }
     ids.sort_unstable();
-    if let Some(pair) = ids.windows(2).find(|pair| pair[0] == pair[1]) {
-        return refuse(format!("person {} is seen twice", pair[0]));
+    if let Some((id, _)) = ids.iter().zip(ids.iter().skip(1)).find(|(id, next)| id == next) {
+        return refuse(format!("person {id} is seen twice"));
     }
     let field: Option<Vec<Vec2>> =
         read.field.map(|corners| corners.into_iter().map(|[x, y]| Vec2::new(x, y)).collect());
